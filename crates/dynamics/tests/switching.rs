@@ -73,8 +73,15 @@ fn pulse(shape: usize, at: f64, width: f64) -> String {
     match shape {
         0 => format!("if(abs(t - {at}) < {}, {}, 0)", 0.5 * width, 1.0 / width),
         1 => format!("max(0, 1 - abs(t - {at})/{width})/{width}"),
-        2 => format!("{}*exp(-((t - {at})/{width})^2)", 1.0 / (width * std::f64::consts::PI.sqrt())),
-        _ => format!("(step(t - {}) - step(t - {}))/{width}", at - 0.5 * width, at + 0.5 * width),
+        2 => format!(
+            "{}*exp(-((t - {at})/{width})^2)",
+            1.0 / (width * std::f64::consts::PI.sqrt())
+        ),
+        _ => format!(
+            "(step(t - {}) - step(t - {}))/{width}",
+            at - 0.5 * width,
+            at + 0.5 * width
+        ),
     }
 }
 
@@ -150,7 +157,10 @@ fn the_error_is_that_of_restarts_by_hand() {
             }
             let speed = (3.0 * 0.7 - 5.0 * 1.3 + (4.0 - 0.49)) / INERTIA;
             let [one, two] = [whole[1], at.y[1]].map(|v: f64| (v - speed).abs());
-            assert!(one <= 10.0 * two + 1e-14, "{method:?} {exponent}: {one:e} {two:e}");
+            assert!(
+                one <= 10.0 * two + 1e-14,
+                "{method:?} {exponent}: {one:e} {two:e}"
+            );
         }
     }
 }
@@ -167,7 +177,13 @@ fn what_varies_too_fast_is_refused() {
     };
     let refused = solve(&machine, machine.model(), &start, 1000.0, &options, &[]);
     assert!(
-        matches!(refused, Err(DynamicsError::VariesTooFast { source_index: 0, .. })),
+        matches!(
+            refused,
+            Err(DynamicsError::VariesTooFast {
+                source_index: 0,
+                ..
+            })
+        ),
         "{refused:?}"
     );
     let options = Options {

@@ -68,10 +68,6 @@ fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     list_or(names, "")
 }
 
-fn body_names(mechanism: &Mechanism, bodies: &[BodyId]) -> String {
-    list(bodies.iter().map(|&b| mechanism.body_name(b)))
-}
-
 /// The bodies that a group places.
 fn group_bodies(mechanism: &Mechanism, plan: &Plan, g: usize) -> String {
     let bodies = plan.group_bodies(g);
@@ -83,9 +79,8 @@ fn describe_freedom(scene: &Scene, plan: &Plan) -> String {
     let mechanism = &scene.mechanism;
     let reactions = mechanism.reactions().into_iter().enumerate();
     let indeterminate = reactions.filter(|&(k, _)| !plan.is_determinate(k));
-    let names: Vec<_> = indeterminate
-        .map(|(_, r)| mechanism.reaction_name(r))
-        .collect();
+    let names = indeterminate.map(|(_, r)| mechanism.reaction_name(r));
+    let names: Vec<String> = names.collect();
     if names.is_empty() {
         return String::new();
     }
@@ -150,7 +145,10 @@ fn describe_limit(mechanism: &Mechanism, plan: &Plan, limit: RangeLimit) -> Stri
     };
     let bodies = match plan.group_methods().is_empty() {
         true => String::new(),
-        false => " of ".to_owned() + &body_names(mechanism, &plan.group_bodies(limit.group)),
+        false => {
+            let bodies = plan.group_bodies(limit.group);
+            " of ".to_owned() + &list(bodies.iter().map(|&b| mechanism.body_name(b)))
+        }
     };
     let unit = coordinate_unit(plan.is_angle(0));
     format!("    {:.12} {unit}: {what}{bodies}\n", limit.q)
@@ -165,20 +163,12 @@ fn describe_groups(mechanism: &Mechanism, plan: &Plan) -> String {
     for (g, (size, kind)) in groups.into_iter().enumerate() {
         let joints = plan.group_joints(g);
         let joints = joints.iter().map(|j| mechanism.joints[j.0].name.as_str());
-        text += &format!(
-            "    {}. {} closed by {}: {}, {kind}\n",
-            g + 1,
-            group_bodies(mechanism, plan, g),
-            list_or(joints, "its actuator"),
-            count(size, "unknown"),
-        );
+        let (joints, unknowns) = (list_or(joints, "its actuator"), count(size, "unknown"));
+        let (number, bodies) = (g + 1, group_bodies(mechanism, plan, g));
+        text += &format!("    {number}. {bodies} closed by {joints}: {unknowns}, {kind}\n");
         let found = &plan.group_modes()[g];
-        for (k, mode) in found
-            .modes
-            .iter()
-            .enumerate()
-            .filter(|_| found.modes.len() > 1)
-        {
+        let is_ambiguous = found.modes.len() > 1;
+        for (k, mode) in found.modes.iter().enumerate().filter(|_| is_ambiguous) {
             let label = match k {
                 0 => "assembly mode in use:",
                 _ => "other assembly mode:",
@@ -201,11 +191,8 @@ fn describe_mode(mechanism: &Mechanism, found: &GroupModes, mode: &[f64]) -> Str
         format!("{} = {:.4} {unit}", joint.name, value + 0.0)
     });
     let angles = (!angles.is_empty()).then(|| format!("{angles} rad"));
-    angles
-        .into_iter()
-        .chain(values)
-        .collect::<Vec<_>>()
-        .join(", ")
+    let all: Vec<String> = angles.into_iter().chain(values).collect();
+    all.join(", ")
 }
 
 /// The angles of all bodies at the start.
@@ -223,15 +210,11 @@ fn describe_branch(mechanism: &Mechanism, plan: &Plan) -> String {
     let mut text = format!("  body angles at {}:\n", at.collect::<Vec<_>>().join(", "));
     let bodies = plan.moving_bodies().iter().map(|c| c.body);
     let bodies = bodies.filter(|&b| b < mechanism.bodies.len()).map(BodyId);
-    let widths = bodies
-        .clone()
-        .map(|b| mechanism.body_name(b).chars().count());
-    let width = widths.max().unwrap_or(0);
+    let widths = bodies.clone().map(|b| mechanism.body_name(b).chars());
+    let width = widths.map(Iterator::count).max().unwrap_or(0);
     for body in bodies {
-        let (name, angle) = (
-            mechanism.body_name(body),
-            plan.body_rotation(body, &pose).angle(),
-        );
+        let name = mechanism.body_name(body);
+        let angle = plan.body_rotation(body, &pose).angle();
         // Rounded first, so that no zero keeps a minus sign.
         let [radians, degrees] = [(angle, 1e6), (angle.to_degrees(), 1e3)]
             .map(|(value, parts)| (value * parts).round() / parts + 0.0);
@@ -248,8 +231,7 @@ fn describe_pruning(scene: &Scene, model: &Model) -> String {
     if plan.actuators() == 1 {
         let requested = requested_reaction_bodies(scene);
         let unloaded = Model::clone(model).with_loads(Vec::new());
-        let pruned =
-            unloaded.map(|unloaded| unloaded.pruned_for(&requested).plan().pruned_groups());
+        let pruned = unloaded.map(|model| model.pruned_for(&requested).plan().pruned_groups());
         let pruned = pruned.unwrap_or_default().into_iter().enumerate();
         let pruned: Vec<String> = pruned.filter(|s| s.1).map(|(g, _)| group(g)).collect();
         if !pruned.is_empty() {
@@ -263,12 +245,9 @@ fn describe_pruning(scene: &Scene, model: &Model) -> String {
         let mass = scene.masses.get(b);
         mass.is_some_and(|mass| mass.mass == 0.0 && mass.inertia == 0.0)
     };
-    let massless = plan
-        .moving_bodies()
-        .iter()
-        .map(|c| c.body)
-        .filter(is_massless);
-    let massless = list(massless.map(|b| mechanism.body_name(BodyId(b))));
+    let massless = plan.moving_bodies().iter().map(|c| c.body);
+    let massless = massless.filter(is_massless).map(BodyId);
+    let massless = list(massless.map(|b| mechanism.body_name(b)));
     if !massless.is_empty() {
         text += &format!("  massless, so without inertia forces: {massless}\n");
     }
@@ -288,17 +267,13 @@ fn describe_needs(scene: &Scene, model: &Model, group: &dyn Fn(usize) -> String)
     };
     let massive = scene.masses.iter().enumerate();
     let massive = massive.filter(|(_, m)| m.mass > 0.0 || m.inertia > 0.0);
-    let loaded = scene
-        .loads
-        .iter()
-        .flat_map(|load| load.bodies(&scene.mechanism));
+    let loaded = scene.loads.iter();
+    let loaded = loaded.flat_map(|load| load.bodies(&scene.mechanism));
+    let requested = requested.iter().map(|b| b.0);
     let needs = [
         ("inertia", plan.groups_needed_by(massive.map(|(b, _)| b))),
         ("loads", plan.groups_needed_by(loaded.map(|b| b.0))),
-        (
-            "requests",
-            plan.groups_needed_by(requested.iter().map(|b| b.0)),
-        ),
+        ("requests", plan.groups_needed_by(requested)),
     ];
     let mut text = "  modelled along a trajectory, because of:\n".to_owned();
     for g in 0..groups {

@@ -57,13 +57,14 @@ pub fn current_columns(former: &str) -> impl Iterator<Item = String> {
     COLUMNS.iter().filter_map(one)
 }
 
-/// The line of a summary that names the current form of a former name.
-pub fn note(former: &str, current: &[impl AsRef<str>]) -> String {
-    let current: Vec<String> = current
-        .iter()
-        .map(|name| format!("`{}`", name.as_ref()))
-        .collect();
-    format!("  note: `{former}` is now called {}\n", current.join(", "))
+/// The line of a summary that names the current forms of a former name; empty if there are none.
+pub fn note(former: &str, current: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+    let current = current.into_iter();
+    let current: Vec<String> = current.map(|name| format!("`{}`", name.as_ref())).collect();
+    match current.as_slice() {
+        [] => String::new(),
+        names => format!("  note: `{former}` is now called {}\n", names.join(", ")),
+    }
 }
 
 #[cfg(test)]

@@ -51,30 +51,30 @@ pub mod trajectory;
 
 pub use calibrate::{CalibrationResult, find_value};
 pub use check::describe_scene;
-pub use cycle::compute_cycle;
+pub use cycle::compute::compute_cycle;
 pub use dwell_symbolic::Language;
-pub use equilibria::compute_equilibria;
+pub use equilibria::compute::compute_equilibria;
 pub use explain::{StudyError, SweepError};
-pub use free_motion::{MotionSolver, compute_free_motion};
-pub use linearise::{OperatingPoint, compute_linearisation};
+pub use free_motion::compute::{MotionSolver, compute_free_motion};
+pub use linearise::compute::{OperatingPoint, compute_linearisation};
 pub use models::{PRESETS, PreparedScene, SolverSettings};
 pub use progress::{Progress, Step, no_progress};
-pub use reduce::{TableRequest, compute_reduction};
+pub use reduce::compute::{TableRequest, compute_reduction};
 pub use sweep::{Shard, compute_sweep};
-pub use symbolic::{compute_closed_form, symbolic_findings};
-pub use trajectory::{Analysis, compute_trajectory};
+pub use symbolic::compute::{compute_closed_form, symbolic_findings};
+pub use trajectory::compute::{Analysis, compute_trajectory};
 
 #[cfg(feature = "output")]
 pub use {
     calibrate::calibrate,
     check::check,
-    cycle::cycle,
-    equilibria::equilibria,
-    free_motion::{simulate, simulate_to_accuracy},
-    linearise::linearise,
+    cycle::output::cycle,
+    equilibria::output::equilibria,
+    free_motion::output::{simulate, simulate_to_accuracy},
+    linearise::output::linearise,
     output::Outcome,
-    reduce::reduce,
-    sweep::{ParameterSweep, sweep},
-    symbolic::{FormulaFormat, symbolic},
-    trajectory::{TrajectoryOutcome, analyse_trajectory},
+    reduce::output::reduce,
+    sweep::output::{ParameterSweep, sweep},
+    symbolic::output::{FormulaFormat, symbolic},
+    trajectory::output::{TrajectoryOutcome, analyse_trajectory},
 };

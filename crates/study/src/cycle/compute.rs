@@ -1,7 +1,7 @@
 //! Computes the steady cycle, its tables, and the flywheel.
 
 use crate::explain::{StudyError, labels};
-use crate::models::{SceneMachine, SolverSettings};
+use crate::models::{SceneMachine, SolverSettings, source_name};
 use crate::number_format::{coordinate_unit, count, digits};
 use dwell_dynamics::{
     Cycle, DynamicsError, Flywheel, Machine, OdeState, Options, initial_transient, size_flywheel,
@@ -90,7 +90,7 @@ fn run_up_error(prepared: &SceneMachine<'_>, error: &DynamicsError) -> StudyErro
 /// A column for the work of each load and drive.
 fn work_columns(prepared: &SceneMachine<'_>) -> impl Iterator<Item = Column> {
     let sources = prepared.machine.nonconservative_sources().iter();
-    sources.map(|&source| Column::new(format!("{}.work", prepared.source_name(source)), "J"))
+    sources.map(|&source| Column::new(format!("{}.work", source_name(prepared.scene, source)), "J"))
 }
 
 /// One cycle: time, states, acceleration and works since its start.
@@ -176,15 +176,12 @@ pub fn compute_cycle<'a>(
     let guess = guess.map_err(|e| run_up_error(&prepared, &e))?;
     let explain = |e: DynamicsError| prepared.explain(&e);
     let steady = in_first_revolution(steady_cycle(machine, &guess, &options).map_err(explain)?);
-    let flywheel = match fluctuation {
-        None => None,
-        Some(target) => {
-            let sized = size_flywheel(machine, &steady.initial_state, target, &options);
-            let sized = sized.map_err(explain)?;
-            let cycle = in_first_revolution(sized.cycle);
-            Some((target, Flywheel { cycle, ..sized }))
-        }
+    let size = |target: f64| {
+        let sized = size_flywheel(machine, &steady.initial_state, target, &options)?;
+        let cycle = in_first_revolution(sized.cycle);
+        Ok((target, Flywheel { cycle, ..sized }))
     };
+    let flywheel = fluctuation.map(size).transpose().map_err(explain)?;
     let samples = cycle_table(&prepared, machine, &steady)?;
     let works = work_table(&prepared, &steady);
     let flywheel_samples = match &flywheel {

@@ -20,14 +20,9 @@ pub(crate) fn cycle(results: &CycleResults<'_>, settings: &SolverSettings) -> Fi
         let margin = 0.01 * mean.abs();
         speed = speed.with_range(mean - margin, mean + margin);
     }
-    let position = Axis::degrees(&*name);
+    let (title, position) = ("Speed over the coordinate", Axis::degrees(&*name));
     let speed_curves = curves(results, |row| [row[1].to_degrees(), row[2]]);
-    let mut over_coordinate = chart(
-        "Speed over the coordinate",
-        position,
-        speed.clone(),
-        speed_curves,
-    );
+    let mut over_coordinate = chart(title, position, speed.clone(), speed_curves);
     over_coordinate.marks.push(Mark::Horizontal {
         at: mean,
         label: format!("mean {mean:.5} rad/s"),
@@ -40,25 +35,16 @@ pub(crate) fn cycle(results: &CycleResults<'_>, settings: &SolverSettings) -> Fi
         let title = "Phase: acceleration over speed";
         panels.push(chart(title, speed, acceleration, phase).into());
     }
-    let text = format!(
-        "{}; period {:.6} s, coefficient of fluctuation {:.4e}.",
-        if steady.is_stable() {
-            "Stable"
-        } else {
-            "Unstable"
-        },
-        steady.period,
-        steady.fluctuation
-    );
+    let stability = match steady.is_stable() {
+        true => "Stable",
+        false => "Unstable",
+    };
+    let (period, fluctuation) = (steady.period, steady.fluctuation);
+    let text =
+        format!("{stability}; period {period:.6} s, coefficient of fluctuation {fluctuation:.4e}.");
     let method = format!("shooting over the coordinate, {}", settings.describe());
-    figure(
-        prepared.scene,
-        "cycle",
-        "Steady cycle",
-        &text,
-        panels,
-        method,
-    )
+    let (scene, title) = (prepared.scene, "Steady cycle");
+    figure(scene, "cycle", title, &text, panels, method)
 }
 
 /// A curve of the cycle, and of the cycle with the flywheel.

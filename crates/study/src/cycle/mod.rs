@@ -4,8 +4,4 @@ pub mod compute;
 #[cfg(feature = "output")]
 mod figures;
 #[cfg(feature = "output")]
-mod output;
-
-pub use compute::compute_cycle;
-#[cfg(feature = "output")]
-pub use output::cycle;
+pub(crate) mod output;

@@ -3,7 +3,7 @@
 use super::figures;
 use crate::cycle::compute::compute_cycle;
 use crate::explain::StudyError;
-use crate::models::{SceneMachine, SolverSettings};
+use crate::models::{SceneMachine, SolverSettings, source_name};
 use crate::number_format::{count, digits};
 use crate::output::{Outcome, signed_png};
 use dwell_dynamics::{Cycle, Flywheel};
@@ -38,28 +38,25 @@ pub fn cycle(
     Ok(outcome)
 }
 
-/// An angular velocity in rad/s and revolutions per minute.
-fn speed_text(value: f64) -> String {
-    let minute = digits(value * 30.0 / PI, 6);
-    format!("{} rad/s ({minute} 1/min)", digits(value, 9))
+/// Mean, slowest and fastest angular velocity in rad/s and revolutions per minute.
+fn speeds(cycle: &Cycle) -> [String; 3] {
+    [cycle.mean_speed, cycle.slowest[1], cycle.fastest[1]].map(|value| {
+        let minute = digits(value * 30.0 / PI, 6);
+        format!("{} rad/s ({minute} 1/min)", digits(value, 9))
+    })
 }
 
 pub(crate) fn summary(prepared: &SceneMachine<'_>, cycle: &Cycle) -> String {
     let (coordinate, _) = prepared.first_free_coordinate();
     let revolutions = count((cycle.cycle_angle / TAU).round() as usize, "revolution");
     let position = |[q, _]: [f64; 2]| prepared.describe_coordinate(coordinate, q);
+    let (title, name) = (&prepared.scene.title, prepared.coordinate_name(coordinate));
+    let [period, fluctuation] = [cycle.period, cycle.fluctuation].map(|v| digits(v, 9));
+    let [mean, slowest, fastest] = speeds(cycle);
+    let [slowest_at, fastest_at] = [cycle.slowest, cycle.fastest].map(position);
     let mut text = format!(
-        "{}: steady cycle of {}, {revolutions} in {} s\n  mean speed {}\n  slowest {} at {}\n  fastest {} \
-         at {}\n  coefficient of fluctuation {}\n",
-        prepared.scene.title,
-        prepared.coordinate_name(coordinate),
-        digits(cycle.period, 9),
-        speed_text(cycle.mean_speed),
-        speed_text(cycle.slowest[1]),
-        position(cycle.slowest),
-        speed_text(cycle.fastest[1]),
-        position(cycle.fastest),
-        digits(cycle.fluctuation, 9),
+        "{title}: steady cycle of {name}, {revolutions} in {period} s\n  mean speed {mean}\n  slowest {slowest} at \
+         {slowest_at}\n  fastest {fastest} at {fastest_at}\n  coefficient of fluctuation {fluctuation}\n"
     );
     let multipliers = cycle.floquet_multipliers.iter();
     let multipliers: Vec<String> = multipliers.map(|&z| complex_text(z, 6)).collect();
@@ -73,7 +70,7 @@ pub(crate) fn summary(prepared: &SceneMachine<'_>, cycle: &Cycle) -> String {
     );
     let sources = prepared.machine.nonconservative_sources().iter();
     for (&source, &work) in sources.zip(&cycle.works) {
-        let name = prepared.source_name(source);
+        let name = source_name(prepared.scene, source);
         text += &format!("  work of {name} per cycle {} J\n", digits(work, 9));
     }
     let sum: f64 = cycle.works.iter().sum();
@@ -97,14 +94,12 @@ pub(crate) fn flywheel_text(
         return format!("  no flywheel is needed for a coefficient of fluctuation of {target}\n");
     }
     let (coordinate, _) = prepared.first_free_coordinate();
+    let name = prepared.coordinate_name(coordinate);
+    let inertia = digits(flywheel.inertia, 9);
+    let [mean, slowest, fastest] = speeds(&flywheel.cycle);
     format!(
-        "  for a coefficient of fluctuation of {target}: flywheel of {} kg m² on {}\n  with it: mean speed {}, \
-         from {} to {}\n",
-        digits(flywheel.inertia, 9),
-        prepared.coordinate_name(coordinate),
-        speed_text(flywheel.cycle.mean_speed),
-        speed_text(flywheel.cycle.slowest[1]),
-        speed_text(flywheel.cycle.fastest[1]),
+        "  for a coefficient of fluctuation of {target}: flywheel of {inertia} kg m² on {name}\n  with it: mean speed \
+         {mean}, from {slowest} to {fastest}\n"
     )
 }
 

@@ -17,6 +17,8 @@ pub struct StaticCurves {
     pub q: Vec<f64>,
     /// Force and potential at each.
     pub force_and_potential: Vec<[f64; 2]>,
+    /// Force and potential at each equilibrium.
+    pub at_equilibria: Vec<[f64; 2]>,
 }
 
 /// Fraction of a range left out at each end, where the configuration is singular.
@@ -123,8 +125,8 @@ pub struct EquilibriaResults<'a> {
     pub interval: Option<[f64; 2]>,
     /// One row per equilibrium.
     pub table: Table,
-    /// Static force and potential over the interval; and at the equilibria.
-    pub curves: Option<(StaticCurves, Vec<[f64; 2]>)>,
+    /// Static force and potential over the interval.
+    pub curves: Option<StaticCurves>,
 }
 
 /// Computes the equilibria of a scene.
@@ -144,11 +146,11 @@ pub fn compute_equilibria(scene: &Scene) -> Result<EquilibriaResults<'_>, StudyE
         Some(interval) => {
             let q = equally_spaced(interval, POSITIONS);
             let marked: Vec<f64> = found.iter().map(|e| e.y[0]).collect();
-            let curves = StaticCurves {
+            Some(StaticCurves {
                 force_and_potential: force_and_potential(&q)?,
+                at_equilibria: force_and_potential(&marked)?,
                 q,
-            };
-            Some((curves, force_and_potential(&marked)?))
+            })
         }
     };
     Ok(EquilibriaResults {

@@ -1,26 +1,21 @@
 //! Equilibria on the static force, and on the potential of a conservative machine.
 
-use crate::equilibria::compute::StaticCurves;
-use crate::models::SceneMachine;
+use crate::equilibria::compute::{EquilibriaResults, StaticCurves};
 use crate::number_format::{count, force_unit};
 use crate::output::{chart, coordinate_axis, figure, symbol};
-use dwell_dynamics::{Equilibrium, Stability};
+use dwell_dynamics::Stability;
 use dwell_report::{Axis, Figure, Mark, Paint, Panel, Series, Stroke};
 
-/// The curves with the equilibria found, whose forces and potentials are `values`.
-pub(crate) fn equilibria(
-    prepared: &SceneMachine<'_>,
-    curves: &StaticCurves,
-    found: &[Equilibrium],
-    values: &[[f64; 2]],
-) -> Figure {
+/// The curves with the equilibria found.
+pub(crate) fn equilibria(results: &EquilibriaResults<'_>, curves: &StaticCurves) -> Figure {
+    let prepared = &results.prepared;
     let (actuator, angle) = prepared.first_free_coordinate();
     let name = symbol(prepared.coordinate_name(actuator));
     let x = |q: f64| if angle { q.to_degrees() } else { q };
     let panel = |title: &str, y: Axis, k: usize| {
         let pairs = curves.q.iter().zip(&curves.force_and_potential);
         let line = Series::line("", pairs.map(|(q, values)| [x(*q), values[k]]).collect());
-        let points = found.iter().zip(values);
+        let points = results.found.iter().zip(&curves.at_equilibria);
         let points = points.map(|(e, values)| (e.stability, [x(e.y[0]), values[k]]));
         let (stable, others): (Vec<_>, Vec<_>) = points.partition(|(stability, _)| {
             matches!(stability, Stability::Asymptotic | Stability::Centre)
@@ -32,13 +27,12 @@ pub(crate) fn equilibria(
             series.push(filled.color(Paint::Palette(1)));
         }
         let mut chart = chart(title, coordinate_axis(&name, angle), y, series);
-        let label = String::new;
-        let rings = others.into_iter();
-        chart.marks = rings
-            .map(|(_, at)| Mark::Point { at, label: label() })
-            .collect();
+        for (_, at) in others {
+            let label = String::new();
+            chart.marks.push(Mark::Point { at, label });
+        }
         if k == 0 {
-            let (at, label) = (0.0, label());
+            let (at, label) = (0.0, String::new());
             chart.marks.push(Mark::Horizontal { at, label });
         }
         Panel::from(chart)
@@ -51,12 +45,6 @@ pub(crate) fn equilibria(
     let text = "Filled: stable equilibria; rings: others. Drives are in their steady state at each position.";
     let positions = count(curves.q.len(), "position");
     let method = format!("static force at {positions}, and its zeros");
-    figure(
-        prepared.scene,
-        "equilibria",
-        "Equilibria",
-        text,
-        panels,
-        method,
-    )
+    let (scene, title) = (prepared.scene, "Equilibria");
+    figure(scene, "equilibria", title, text, panels, method)
 }

@@ -5,7 +5,3 @@ pub mod compute;
 mod figures;
 #[cfg(feature = "output")]
 pub(crate) mod output;
-
-pub use compute::compute_equilibria;
-#[cfg(feature = "output")]
-pub use output::equilibria;

@@ -22,8 +22,8 @@ pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
     let mut outcome = Outcome::default();
     let name = |rest: &str| format!("{}-equilibria.{rest}", scene.name);
     outcome.files.add(name("csv"), results.table.csv()?);
-    if let Some((curves, marked)) = &results.curves {
-        let figure = figures::equilibria(&results.prepared, curves, &results.found, marked);
+    if let Some(curves) = &results.curves {
+        let figure = figures::equilibria(&results, curves);
         outcome.files.add(name("png"), signed_png(scene, &figure)?);
     }
     outcome.summary = summary(&results);
@@ -96,16 +96,13 @@ pub(crate) fn describe_eigenvalues(values: &[[f64; 2]]) -> String {
     let one = |&z: &[f64; 2]| {
         let [re, im] = without_rounding(z);
         let size = re.hypot(im);
+        let damping = digits(if re == 0.0 { 0.0 } else { -re / size }, 6);
+        let [a, b, angular, frequency] = [re, im, size, size / TAU].map(|v| digits(v, 9));
         match im {
-            0.0 => format!("    eigenvalue {} 1/s\n", digits(re, 9)),
+            0.0 => format!("    eigenvalue {a} 1/s\n"),
             im if im < 0.0 => String::new(),
             _ => format!(
-                "    eigenvalues {} ± {}i 1/s: {} rad/s = {} Hz, damping ratio {}\n",
-                digits(re, 9),
-                digits(im, 9),
-                digits(size, 9),
-                digits(size / TAU, 9),
-                digits(if re == 0.0 { 0.0 } else { -re / size }, 6)
+                "    eigenvalues {a} ± {b}i 1/s: {angular} rad/s = {frequency} Hz, damping ratio {damping}\n"
             ),
         }
     };

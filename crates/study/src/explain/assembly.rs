@@ -2,32 +2,35 @@
 
 use crate::explain::{
     Labels, StudyError, actuator_labels, body_labels, body_names, body_names_or_mechanism,
-    explain_ambiguous, joint_labels, joint_names, labels, non_finite_coupling,
-    non_finite_coupling_error, scene_error, start_labels,
+    joint_labels, joint_names, labels, non_finite_coupling, non_finite_coupling_error, scene_error,
+    start_labels,
 };
 use crate::number_format::{count, number};
 use dwell_dynamics::MachineError;
-use dwell_geometry::{ActuatorId, AssemblyError, JointId, StructureError};
+use dwell_geometry::{
+    ActuatorId, AssemblyError, BodyId, BranchHint, JointId, Mechanism, StructureError,
+};
 use dwell_kinetostatics::ModelError;
 use dwell_scene::{Scene, SceneLocation};
 
 /// A gap below this fraction of the mechanism's size may be rounding of the lengths.
 const MARGINAL_GAP: f64 = 1e-6;
 
+/// Maximum number of assembly modes in a message.
+const MAX_LISTED: usize = 6;
+
 /// Explains why a scene could not be compiled.
 pub fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
     let assembly = match error {
-        ModelError::Assembly(AssemblyError::Structure(error)) => {
-            return explain_structure(scene, error);
-        }
         ModelError::Assembly(assembly) => assembly,
         ModelError::Masses | ModelError::Reaction(_) => {
             return scene_error(scene, error.to_string(), "", [(SceneLocation::Whole, "")]);
         }
     };
+    let is_sound = !matches!(assembly, AssemblyError::Structure(_));
     match non_finite_coupling(&scene.mechanism, &scene.assembly.coordinates) {
-        Some(coupling) => non_finite_coupling_error(scene, coupling, "at the assembly coordinates"),
-        None => explain_assembly(scene, assembly),
+        Some(at) if is_sound => non_finite_coupling_error(scene, at, "at the assembly coordinates"),
+        _ => explain_assembly(scene, assembly),
     }
 }
 
@@ -56,10 +59,9 @@ fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
                     "start a little farther from it",
                 )
             } else {
-                let missing = if gap.is_finite() {
-                    format!(": {} m are missing", number(*gap))
-                } else {
-                    String::new()
+                let missing = match gap.is_finite() {
+                    true => format!(": {} m are missing", number(*gap)),
+                    false => String::new(),
                 };
                 (
                     format!("{names} cannot be assembled at the start{missing}"),
@@ -103,29 +105,29 @@ fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
             "redundant constraints must agree to the last digits: correct a length or a point, or remove a joint",
             joint_labels(joints, "among the redundant constraints"),
         ),
-        AssemblyError::SingularAssembly { bodies, joints } => scene_error(
-            scene,
-            format!(
-                "the start is a limit position: the actuator does not determine the motion of {}",
-                body_names(mechanism, bodies)
-            ),
-            "start a little away from it, or drive another joint",
-            with_start(joints, "singular here"),
-        ),
+        AssemblyError::SingularAssembly { bodies, joints } => {
+            let what =
+                "the start is a limit position: the actuator does not determine the motion of";
+            let message = format!("{what} {}", body_names(mechanism, bodies));
+            let help = "start a little away from it, or drive another joint";
+            scene_error(scene, message, help, with_start(joints, "singular here"))
+        }
     }
 }
 
 fn explain_structure(scene: &Scene, error: &StructureError) -> StudyError {
     match error {
-        StructureError::NotConnected { bodies } => scene_error(
-            scene,
-            format!(
-                "no chain of joints connects {} with the ground",
-                body_names(&scene.mechanism, bodies)
-            ),
-            "add the missing joint, or remove the body",
-            body_labels(bodies, "not reached by any chain of joints"),
-        ),
+        StructureError::NotConnected { bodies } => {
+            let names = body_names(&scene.mechanism, bodies);
+            let message = format!("no chain of joints connects {names} with the ground");
+            let labels = body_labels(bodies, "not reached by any chain of joints");
+            scene_error(
+                scene,
+                message,
+                "add the missing joint, or remove the body",
+                labels,
+            )
+        }
         StructureError::UnderActuated {
             degrees_of_freedom,
             actuators,
@@ -156,9 +158,9 @@ fn explain_structure(scene: &Scene, error: &StructureError) -> StudyError {
 }
 
 fn freedom_text(degrees_of_freedom: usize, actuators: usize) -> String {
+    let freedom = count(degrees_of_freedom, "degree of freedom");
     format!(
-        "the mechanism has {} and {}",
-        count(degrees_of_freedom, "degree of freedom"),
+        "the mechanism has {freedom} and {}",
         count(actuators, "actuator")
     )
 }
@@ -237,4 +239,91 @@ pub fn explain_machine(scene: &Scene, error: MachineError) -> StudyError {
         // The scene has checked its drives and laws: other errors have no location.
         other => scene_error(scene, other.to_string(), "", Labels::new()),
     }
+}
+
+/// Explains that no initial guess selects one of the assembly modes. Each mode lists the angle of each body
+/// (rad), then the travel or direction of each joint (m or rad).
+fn explain_ambiguous(
+    scene: &Scene,
+    bodies: &[BodyId],
+    joints: &[JointId],
+    modes: &[Vec<f64>],
+) -> StudyError {
+    let mechanism = &scene.mechanism;
+    let mut labels = body_labels(bodies, "its angle is ambiguous");
+    labels.extend(joint_labels(joints, "its position is ambiguous"));
+    let by_angles = describe_by_angles(mechanism, bodies, modes);
+    let help = match (bodies, joints) {
+        ([], []) => {
+            labels = start_labels(scene);
+            "no body angle and no joint travel distinguishes them: drive another joint".to_owned()
+        }
+        (_, []) => format!(
+            "give an approximate angle of one of them in [assembly]; the assembly modes are: {by_angles}"
+        ),
+        ([], _) => suggested_hints(scene, joints, modes),
+        _ => {
+            let after = |mode: &Vec<f64>| mode.get(bodies.len()..).unwrap_or_default().to_vec();
+            let travels: Vec<_> = modes.iter().map(after).collect();
+            let hints = suggested_hints(scene, joints, &travels);
+            format!("body angles do not distinguish all of them: they are {by_angles}; {hints}")
+        }
+    };
+    let names = body_names_or_mechanism(mechanism, bodies);
+    let count = modes.len();
+    let message = format!("{names} has {count} assembly modes, and no initial guess selects one");
+    scene_error(scene, message, help, labels)
+}
+
+fn describe_by_angles(mechanism: &Mechanism, bodies: &[BodyId], modes: &[Vec<f64>]) -> String {
+    let mode = |angles: &Vec<f64>| {
+        let angle = |(b, a): (&BodyId, &f64)| {
+            let degrees = a.to_degrees();
+            format!("{} {a:.3} rad ({degrees:.1}°)", mechanism.body_name(*b))
+        };
+        let all: Vec<_> = bodies.iter().zip(angles).map(angle).collect();
+        all.join(", ")
+    };
+    let modes: Vec<_> = modes.iter().take(MAX_LISTED).map(mode).collect();
+    modes.join("; or ")
+}
+
+/// Entries for [assembly]: of one joint if it differs in every mode, else of all.
+fn suggested_hints(scene: &Scene, joints: &[JointId], modes: &[Vec<f64>]) -> String {
+    let mechanism = &scene.mechanism;
+    let joint = |k: usize| &mechanism.joints[joints[k].0];
+    let hint_text = |k: usize, mode: &[f64]| {
+        let is_angle = joint(k).kind.branch_hint() == Some(BranchHint::Direction);
+        let si = mode.get(k).copied().unwrap_or(f64::NAN);
+        let (value, _) = scene.to_scene_unit(si, is_angle);
+        format!("{} = {}", joint(k).name, number(value))
+    };
+    // In [assembly] the name of a body or an actuator takes precedence.
+    let is_taken = |k: usize| {
+        let bodies = mechanism.bodies.iter().map(|b| &b.name);
+        let mut names = bodies.chain(mechanism.actuators.iter().map(|a| &a.name));
+        names.any(|other| *other == joint(k).name)
+    };
+    let distinguishes = |k: usize| {
+        let mut texts: Vec<_> = modes.iter().map(|mode| hint_text(k, mode)).collect();
+        texts.sort();
+        texts.windows(2).all(|pair| pair[0] != pair[1])
+    };
+    let free: Vec<usize> = (0..joints.len()).filter(|&k| !is_taken(k)).collect();
+    let one = free.iter().copied().find(|&k| distinguishes(k));
+    let rename = match free.is_empty() {
+        true => "give the joint a name that no body or actuator has, and ",
+        false => "",
+    };
+    let listed = match one {
+        Some(one) => vec![one],
+        None if free.is_empty() => (0..joints.len()).collect(),
+        None => free,
+    };
+    let mode = |mode: &Vec<f64>| {
+        let each = listed.iter().map(|&k| format!("`{}`", hint_text(k, mode)));
+        each.collect::<Vec<_>>().join(" and ")
+    };
+    let modes: Vec<_> = modes.iter().take(MAX_LISTED).map(mode).collect();
+    format!("{rename}add {} to [assembly]", modes.join(" or "))
 }

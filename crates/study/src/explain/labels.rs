@@ -58,16 +58,12 @@ pub(crate) fn missing_section_label(section: &str) -> Labels {
 pub(crate) fn start_labels(scene: &Scene) -> Labels {
     let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
     // A coordinate that is not written has the location of the initial state.
-    let written = actuators.filter(|&a| {
-        let [at, initial] = [
-            SceneLocation::AssemblyCoordinate(a),
-            SceneLocation::InitialCoordinate(a),
-        ];
-        scene.span(at) != scene.span(initial)
-    });
-    let written = written
-        .take(MAX_MARKED)
-        .map(SceneLocation::AssemblyCoordinate);
+    let is_written = |&a: &ActuatorId| {
+        let initial = SceneLocation::InitialCoordinate(a);
+        scene.span(SceneLocation::AssemblyCoordinate(a)) != scene.span(initial)
+    };
+    let written = actuators.filter(is_written).take(MAX_MARKED);
+    let written = written.map(SceneLocation::AssemblyCoordinate);
     match labels(written, "at this start") {
         none if none.is_empty() => labels([SceneLocation::Assembly].into_iter(), "at this start"),
         labels => labels,

@@ -1,17 +1,14 @@
 //! Errors with their locations in the scene file. Below all analyses: nothing here depends on any of them.
 
 mod assembly;
-mod assembly_modes;
 mod coupling;
 mod labels;
 mod motion;
 mod position;
 mod study_error;
-mod sweep_error;
 
 pub(crate) use assembly::not_one_actuator;
 pub use assembly::{explain_machine, explain_model};
-pub(crate) use assembly_modes::explain_ambiguous;
 pub(crate) use coupling::{couplings, non_finite_coupling, non_finite_coupling_error};
 pub use labels::scene_error;
 pub(crate) use labels::{
@@ -21,5 +18,4 @@ pub(crate) use labels::{
 pub use motion::explain_motion;
 pub use position::explain_position;
 pub(crate) use position::quoted_coordinate;
-pub use study_error::StudyError;
-pub use sweep_error::SweepError;
+pub use study_error::{StudyError, SweepError};

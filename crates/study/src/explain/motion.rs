@@ -161,12 +161,8 @@ fn explain_limit_position(scene: &Scene, plan: &Plan, t: f64, q: f64) -> StudyEr
         }
         None => "start farther from it, or drive a joint that rotates fully".to_owned(),
     };
-    scene_error(
-        scene,
-        message,
-        help,
-        [(SceneLocation::Duration, "too long")],
-    )
+    let place = (SceneLocation::Duration, "too long");
+    scene_error(scene, message, help, [place])
 }
 
 fn explain_no_inertia(scene: &Scene, q: f64) -> StudyError {

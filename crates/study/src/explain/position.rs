@@ -16,61 +16,51 @@ pub fn explain_position(scene: &Scene, plan: &Plan, error: &PositionError) -> St
     const RANGE_ENDS: &str = "this is outside the range; `dwell check` shows the range";
     let phi = quoted_coordinate(scene);
     let unit = coordinate_unit(plan.is_angle(0));
-    let at = |q: f64| format!("{phi} = {} {unit}", number(q));
+    let (PositionError::NoAssembly { q, .. }
+    | PositionError::Singular { q, .. }
+    | PositionError::OtherBranch { q, .. }
+    | PositionError::NotConverged { q, .. }
+    | PositionError::OutOfRange { q, .. }
+    | PositionError::LanesDiverge { q }
+    | PositionError::NotFinite { q }) = *error;
+    let at = format!("{phi} = {} {unit}", number(q));
     let group = error.group();
     let bodies = group.map(|g| body_names(&scene.mechanism, &plan.group_bodies(g)));
     let bodies = bodies.unwrap_or_default();
     let (message, help) = match *error {
-        PositionError::NoAssembly { q, gap, .. } => (
+        PositionError::NoAssembly { gap, .. } => {
+            let gap = digits(gap, 3);
+            let message = format!("{bodies} cannot reach each other at {at}: gap of {gap} m");
+            (message, RANGE_ENDS)
+        }
+        PositionError::Singular { .. } => (
             format!(
-                "{bodies} cannot reach each other at {}: gap of {} m",
-                at(q),
-                digits(gap, 3)
-            ),
-            RANGE_ENDS,
-        ),
-        PositionError::Singular { q, .. } => (
-            format!(
-                "{bodies} are in a singular configuration at {}: {phi} does not determine their motion there",
-                at(q)
+                "{bodies} are in a singular configuration at {at}: {phi} does not determine their motion there"
             ),
             match plan.range().limits() {
                 None => "it is a change point: change a length, or drive another joint",
                 Some(_) => RANGE_ENDS,
             },
         ),
-        PositionError::OtherBranch { q, .. } => (
-            format!(
-                "{bodies} can only be assembled in another assembly mode at {}",
-                at(q)
-            ),
+        PositionError::OtherBranch { .. } => (
+            format!("{bodies} can only be assembled in another assembly mode at {at}"),
             "two assembly modes are close to each other there",
         ),
-        PositionError::NotConverged { q, residual, .. } => (
-            format!(
-                "the positions of {bodies} could not be computed at {}: residual {} m",
-                at(q),
-                digits(residual, 3)
-            ),
-            RANGE_ENDS,
-        ),
-        PositionError::OutOfRange { q, from, to } => (
-            format!(
-                "{} is outside its range, {} to {} {unit}",
-                at(q),
-                number(from),
-                number(to)
-            ),
-            "start within the range; `dwell check` shows it",
-        ),
-        PositionError::LanesDiverge { q } => (
-            format!(
-                "the poses near {} cannot be evaluated together in SIMD lanes",
-                at(q)
-            ),
+        PositionError::NotConverged { residual, .. } => {
+            let what = format!("the positions of {bodies} could not be computed at {at}");
+            let message = format!("{what}: residual {} m", digits(residual, 3));
+            (message, RANGE_ENDS)
+        }
+        PositionError::OutOfRange { from, to, .. } => {
+            let [from, to] = [from, to].map(number);
+            let message = format!("{at} is outside its range, {from} to {to} {unit}");
+            (message, "start within the range; `dwell check` shows it")
+        }
+        PositionError::LanesDiverge { .. } => (
+            format!("the poses near {at} cannot be evaluated together in SIMD lanes"),
             "evaluate them one by one",
         ),
-        PositionError::NotFinite { q } => (
+        PositionError::NotFinite { .. } => (
             format!("{phi} = {q} {unit} is not a finite number"),
             "check the numbers of the motion",
         ),

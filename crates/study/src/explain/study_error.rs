@@ -1,9 +1,9 @@
-//! The error of an analysis, with its locations in the scene file.
+//! The errors of analyses, with their locations in the scene file.
 
-use crate::explain::SweepError;
 #[cfg(feature = "output")]
 use dwell_report::ReportError;
 use dwell_scene::SceneError;
+use std::path::PathBuf;
 use thiserror::Error;
 
 /// Why an analysis fails.
@@ -24,5 +24,70 @@ pub enum StudyError {
 impl From<SceneError> for StudyError {
     fn from(error: SceneError) -> Self {
         Self::Scene(Box::new(error))
+    }
+}
+
+/// Why a sweep fails.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SweepError {
+    /// An axis is invalid.
+    #[error("`--vary {given}`: {reason}")]
+    Axis {
+        /// The text given.
+        given: String,
+        /// What is wrong with it.
+        reason: String,
+        /// What to try.
+        help: String,
+    },
+    /// The axes together are invalid.
+    #[error("{0}")]
+    Design(String),
+    /// The scene has no such result.
+    #[error("this scene has no result `{name}`")]
+    Result {
+        /// The requested name.
+        name: String,
+        /// The available results.
+        known: Vec<String>,
+    },
+    /// An invalid shard.
+    #[error("`{0}` is not a shard: write it as 2/8, the second of eight")]
+    Shard(String),
+    /// The file holds another study.
+    #[error("{} holds another study: {difference}", path.display())]
+    DifferentStudy {
+        /// The file.
+        path: PathBuf,
+        /// The first difference.
+        difference: String,
+    },
+    /// The file is not a sweep store, or cannot be read or written.
+    #[error("{}: {reason}", path.display())]
+    Store {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+}
+
+impl SweepError {
+    /// What to try.
+    pub fn help(&self) -> Option<String> {
+        match self {
+            Self::Axis { help, .. } => Some(help.clone()),
+            Self::Result { known, .. } if known.is_empty() => {
+                Some("it defines no motion, load or range to compute results from".to_owned())
+            }
+            Self::Result { known, .. } => Some(format!("it has: {}", known.join(", "))),
+            Self::DifferentStudy { .. } => Some(
+                "give the same --vary, --samples, --seed and --result to continue it, choose another folder \
+                 with --out, or move the file"
+                    .to_owned(),
+            ),
+            Self::Store { .. } => Some("choose another folder with --out".to_owned()),
+            Self::Design(_) | Self::Shard(_) => None,
+        }
     }
 }

@@ -2,8 +2,4 @@
 
 pub mod compute;
 #[cfg(feature = "output")]
-mod output;
-
-pub use compute::{FreeMotion, MotionSolver, compute_free_motion};
-#[cfg(feature = "output")]
-pub use output::{simulate, simulate_to_accuracy};
+pub(crate) mod output;

@@ -4,8 +4,7 @@ use crate::explain::StudyError;
 use crate::free_motion::compute::{MotionSolver, compute_free_motion};
 use crate::models::SolverSettings;
 use crate::progress::Progress;
-use crate::trajectory::compute::Analysis;
-use crate::trajectory::{TrajectoryOutcome, report};
+use crate::trajectory::output::{TrajectoryOutcome, report};
 use dwell_report::TableExport as _;
 use dwell_scene::Scene;
 
@@ -48,7 +47,7 @@ fn simulate_with(
 ) -> Result<TrajectoryOutcome, StudyError> {
     let motion = compute_free_motion(scene, solver, progress)?;
     let (scene, computed) = (&motion.loaded_scene, motion.computed);
-    let mut outcome = report(scene, &computed, Analysis::FreeMotion, progress)?;
+    let mut outcome = report(scene, &computed, progress)?;
     if !motion.events.is_empty() {
         let name = format!("{}-motion-events.csv", scene.name);
         outcome.files.add(name, motion.event_table.csv()?);

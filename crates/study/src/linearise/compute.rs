@@ -2,7 +2,7 @@
 
 use crate::equilibria::compute::find_equilibria;
 use crate::explain::StudyError;
-use crate::models::{SceneMachine, indeterminate_reactions};
+use crate::models::{SceneMachine, build_machine, requested_reactions};
 use crate::number_format::force_unit;
 use dwell_dynamics::{
     DynamicsError, Equilibrium, Machine, StateSpace, linearise as linearise_about,
@@ -26,9 +26,8 @@ fn nearest_equilibrium(prepared: &SceneMachine<'_>) -> Result<Equilibrium, Study
     let (found, _) = find_equilibria(prepared)?;
     let start = prepared.initial_state()[0];
     let distance = |e: &Equilibrium| (e.y[0] - start).abs();
-    let nearest = found
-        .into_iter()
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let found = found.into_iter();
+    let nearest = found.min_by(|a, b| distance(a).total_cmp(&distance(b)));
     let what = "the static force has no zero in the range";
     nearest.ok_or_else(|| prepared.explain(&DynamicsError::NoEquilibrium { what }))
 }
@@ -99,11 +98,8 @@ pub fn compute_linearisation(
     point: OperatingPoint,
 ) -> Result<LinearisedMotion<'_>, StudyError> {
     let prepared = SceneMachine::new(scene)?;
-    let indeterminate = indeterminate_reactions(scene, prepared.machine.model().plan());
-    let requested = scene.requests.reactions.iter().copied();
-    let (omitted, reactions): (Vec<Reaction>, Vec<Reaction>) =
-        requested.partition(|reaction| indeterminate.contains(reaction));
-    let machine = prepared.machine_with_reactions(&reactions)?;
+    let [reactions, omitted] = requested_reactions(scene, prepared.machine.model().plan());
+    let machine = build_machine(scene, &prepared.spec, &reactions)?;
     let (state, equilibrium) = match point {
         OperatingPoint::InitialState => (prepared.initial_state(), None),
         OperatingPoint::Equilibrium => {

@@ -2,8 +2,4 @@
 
 pub mod compute;
 #[cfg(feature = "output")]
-mod output;
-
-pub use compute::{OperatingPoint, compute_linearisation};
-#[cfg(feature = "output")]
-pub use output::linearise;
+pub(crate) mod output;

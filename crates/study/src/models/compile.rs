@@ -17,7 +17,12 @@ pub fn compile_model(scene: &Scene, reactions: &[Reaction]) -> Result<Model, Stu
 
 /// A reduced model of a scene for some reactions.
 pub fn reduced_model(scene: &Scene, reactions: &[Reaction]) -> Result<ExactModel, StudyError> {
-    ExactModel::new(compile_model(scene, reactions)?).ok_or_else(|| not_one_actuator(scene))
+    exact_model(scene, compile_model(scene, reactions)?)
+}
+
+/// The reduced model of a compiled one.
+pub(crate) fn exact_model(scene: &Scene, model: Model) -> Result<ExactModel, StudyError> {
+    ExactModel::new(model).ok_or_else(|| not_one_actuator(scene))
 }
 
 /// The requested reactions that are statically indeterminate: no analysis returns them.
@@ -30,15 +35,21 @@ pub fn indeterminate_reactions(scene: &Scene, plan: &Plan) -> HashSet<Reaction> 
         .collect()
 }
 
+/// The requested reactions: those that are statically determinate, and the others.
+pub(crate) fn requested_reactions(scene: &Scene, plan: &Plan) -> [Vec<Reaction>; 2] {
+    let indeterminate = indeterminate_reactions(scene, plan);
+    let requested = scene.requests.reactions.iter();
+    let (determinate, others) = requested.partition(|r| !indeterminate.contains(r));
+    [determinate, others]
+}
+
 /// The model of a scene with the requested reactions that are statically determinate.
 pub(crate) fn determinate_model(scene: &Scene) -> Result<Model, StudyError> {
     let model = compile_model(scene, &scene.requests.reactions)?;
-    let indeterminate = indeterminate_reactions(scene, model.plan());
+    let [determinate, indeterminate] = requested_reactions(scene, model.plan());
     if indeterminate.is_empty() {
         return Ok(model);
     }
-    let mut determinate = scene.requests.reactions.clone();
-    determinate.retain(|reaction| !indeterminate.contains(reaction));
     model
         .with_reactions(&determinate)
         .map_err(|e| explain_model(scene, &e))

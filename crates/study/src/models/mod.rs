@@ -11,7 +11,8 @@ pub use compile::{
     with_drive_loads,
 };
 pub(crate) use compile::{
-    determinate_model, loaded_determinate_model, requested_reaction_bodies, with_loads,
+    determinate_model, exact_model, loaded_determinate_model, requested_reaction_bodies,
+    requested_reactions, with_loads,
 };
 pub(crate) use drives::{drive_states, source_name};
 pub use prepared_scene::PreparedScene;

@@ -1,11 +1,11 @@
 //! A scene with the exact reduced model of what it requests.
 
-use crate::explain::{StudyError, not_one_actuator, scene_error};
-use crate::models::{determinate_model, requested_reaction_bodies};
+use crate::explain::{StudyError, scene_error};
+use crate::models::{determinate_model, exact_model, requested_reaction_bodies};
 use crate::ranges::equally_spaced;
 use dwell_dynamics::ReducedState;
 use dwell_geometry::{ActuatorId, Reaction};
-use dwell_kinetostatics::{ExactModel, Load, Model, ReducedModel};
+use dwell_kinetostatics::{ExactModel, Load, ReducedModel};
 use dwell_scene::{Scene, SceneLocation};
 use std::f64::consts::TAU;
 
@@ -25,11 +25,7 @@ impl<'a> PreparedScene<'a> {
     /// [`StudyError::Scene`] when the mechanism cannot be put together or does not have one
     /// degree of freedom.
     pub fn new(scene: &'a Scene) -> Result<Self, StudyError> {
-        Self::from_model(scene, determinate_model(scene)?)
-    }
-
-    fn from_model(scene: &'a Scene, model: Model) -> Result<Self, StudyError> {
-        let model = ExactModel::new(model).ok_or_else(|| not_one_actuator(scene))?;
+        let model = exact_model(scene, determinate_model(scene)?)?;
         Ok(Self { scene, model })
     }
 
@@ -42,8 +38,8 @@ impl<'a> PreparedScene<'a> {
     pub fn for_driven_angle(scene: &'a Scene, for_period: bool) -> Result<Self, StudyError> {
         let model = determinate_model(scene)?;
         let pruned = model.pruned_for(&requested_reaction_bodies(scene));
-        let prepared_scene = Self::from_model(scene, pruned)?;
-        if !prepared_scene.model.model().plan().is_angle(0) {
+        let model = exact_model(scene, pruned)?;
+        if !model.model().plan().is_angle(0) {
             return Err(scene_error(
                 scene,
                 "the reduced model is available for driven angles only",
@@ -61,7 +57,7 @@ impl<'a> PreparedScene<'a> {
                 [(SceneLocation::Load(load), "this load would be ignored")],
             ));
         }
-        Ok(prepared_scene)
+        Ok(Self { scene, model })
     }
 
     /// The name of the coordinate.

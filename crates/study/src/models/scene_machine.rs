@@ -3,11 +3,11 @@
 use crate::explain::{
     Labels, StudyError, explain_motion, initial_state_location, labels, scene_error,
 };
-use crate::models::{build_machine, drive_states, source_name, with_drive_loads};
+use crate::models::{build_machine, drive_states, with_drive_loads};
 use crate::number_format::{coordinate_unit, digits};
-use dwell_dynamics::{DynamicsError, Machine, NonconservativeSource};
+use dwell_dynamics::{DynamicsError, Machine};
 use dwell_findings::Column;
-use dwell_geometry::{ActuatorId, Reaction};
+use dwell_geometry::ActuatorId;
 use dwell_kinetostatics::Signal;
 use dwell_scene::{FreeMotionSpec, MotionDuration, Scene, SceneLocation};
 
@@ -17,7 +17,7 @@ pub struct SceneMachine<'a> {
     pub scene: &'a Scene,
     /// The scene with the loads of its drives added.
     loaded_scene: Scene,
-    spec: FreeMotionSpec,
+    pub(crate) spec: FreeMotionSpec,
     /// Its machine without reactions.
     pub machine: Machine,
 }
@@ -42,14 +42,6 @@ impl<'a> SceneMachine<'a> {
             spec,
             machine,
         })
-    }
-
-    /// The machine with some reactions.
-    pub(crate) fn machine_with_reactions(
-        &self,
-        reactions: &[Reaction],
-    ) -> Result<Machine, StudyError> {
-        build_machine(self.scene, &self.spec, reactions)
     }
 
     /// The initial state of `[motion]`, or else the assembly configuration at rest.
@@ -134,10 +126,6 @@ impl<'a> SceneMachine<'a> {
         let states = states.map(|(name, unit, _)| Column::new(name, unit));
         let coordinates = free.clone().map(coordinate).chain(free.map(speed));
         coordinates.chain(states).collect()
-    }
-
-    pub(crate) fn source_name(&self, source: NonconservativeSource) -> &str {
-        source_name(self.scene, source)
     }
 }
 

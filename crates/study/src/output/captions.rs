@@ -1,7 +1,6 @@
 //! Captions, labels, limits and axes that figures share.
 
 use crate::models::PreparedScene;
-use crate::number_format::count;
 use crate::ranges::extent;
 use dwell_geometry::Range;
 use dwell_kinetostatics::ReducedModel;
@@ -90,12 +89,6 @@ pub fn caption(prepared: &PreparedScene<'_>, text: &str) -> String {
 /// The same from a scene.
 pub fn scene_caption(scene: &Scene, text: &str) -> String {
     format!("{}. {text}", scene.title.trim_end_matches('.'))
-}
-
-/// The provenance of the reduced model.
-pub(crate) fn reduced_provenance(positions: usize) -> String {
-    let positions = count(positions, "position");
-    format!("reduced model by unit runs, at {positions}")
 }
 
 /// A coordinate's name as a symbol, where it is the name of a Greek letter.

@@ -26,18 +26,12 @@ pub struct MechanismDrawing<'a> {
     visible: Vec<bool>,
 }
 
-/// The outline of a body.
-enum Outline {
-    /// A small block that slides.
-    Block(Vec<Vec2>),
-    /// A plate through three or more points.
-    Plate(Vec<Vec2>),
-    /// A bar through points of one line.
-    Bar(Vec<Vec2>),
-}
-
 fn vector([x, y]: [f64; 2]) -> Vec2 {
     vec2(x, y)
+}
+
+fn array(at: Vec2) -> [f64; 2] {
+    [at.x, at.y]
 }
 
 impl<'a> MechanismDrawing<'a> {
@@ -47,8 +41,8 @@ impl<'a> MechanismDrawing<'a> {
             let axis = axis_of(joint.kind)?;
             let [one, two] = joint.bodies.map(|b| b.0);
             let travel_along = |body_poses: &Vec<BodyPose>| {
-                let [a, b] = [(one, joint.points[0]), (two, joint.points[1])]
-                    .map(|(body, at)| vector(point_position(body_poses, body, at)));
+                let at = |body, k: usize| point_position(body_poses, body, joint.points[k]);
+                let [a, b] = [at(one, 0), at(two, 1)].map(vector);
                 axis.rotate(body_poses[one].1).dot(b - a)
             };
             let limits = extent(positions.iter().map(travel_along));
@@ -133,39 +127,6 @@ impl<'a> MechanismDrawing<'a> {
         }
     }
 
-    fn outline(&self, body: usize) -> Outline {
-        let mut points: Vec<Vec2> = Vec::new();
-        for (_, p) in &self.scene.points[body] {
-            if !points.contains(p) {
-                points.push(*p);
-            }
-        }
-        if let (&[at], Some(axis)) = (points.as_slice(), self.slide_axis(body)) {
-            let half = 0.045 * self.size;
-            let (along, across) = (axis * (1.6 * half), axis.perp() * half);
-            let [behind, before] = [at - along, at + along];
-            return Outline::Block(vec![
-                behind - across,
-                before - across,
-                before + across,
-                behind + across,
-            ]);
-        }
-        let sum = points.iter().fold(Vec2::ZERO, |sum, p| sum + *p);
-        let middle = sum * (1.0 / points.len().max(1) as f64);
-        let offsets = points.iter().map(|p| *p - middle);
-        let farthest = offsets.max_by(|a, b| a.norm().total_cmp(&b.norm()));
-        let line = farthest.unwrap_or(Vec2::ZERO);
-        let off_line = |p: &Vec2| line.cross(*p - middle).abs() > 1e-6 * line.norm().powi(2);
-        if points.len() > 2 && points.iter().any(off_line) {
-            points.sort_by(|a, b| (*a - middle).angle().total_cmp(&(*b - middle).angle()));
-            Outline::Plate(points)
-        } else {
-            points.sort_by(|a, b| line.dot(*a).total_cmp(&line.dot(*b)));
-            Outline::Bar(points)
-        }
-    }
-
     /// The axis of a body's prismatic joint, in its frame.
     fn slide_axis(&self, body: usize) -> Option<Vec2> {
         let joints = self.scene.mechanism.joints.iter().enumerate();
@@ -189,11 +150,11 @@ struct DrawnPosition<'a> {
 }
 
 impl DrawnPosition<'_> {
-    fn point(&self, body: BodyId, at: Vec2) -> [f64; 2] {
-        point_position(self.body_poses, body.0, at)
+    fn point(&self, body: BodyId, at: Vec2) -> Vec2 {
+        vector(point_position(self.body_poses, body.0, at))
     }
 
-    fn points(&self, bodies: [BodyId; 2], points: [Vec2; 2]) -> [[f64; 2]; 2] {
+    fn points(&self, bodies: [BodyId; 2], points: [Vec2; 2]) -> [Vec2; 2] {
         [0, 1].map(|i| self.point(bodies[i], points[i]))
     }
 
@@ -205,8 +166,9 @@ impl DrawnPosition<'_> {
         Pen::new(color, width).lightness(self.lightness)
     }
 
-    fn line(&mut self, points: &[[f64; 2]], pen: Pen) {
-        self.shapes.push(Shape::line(points.to_vec(), pen));
+    fn line(&mut self, points: &[Vec2], pen: Pen) {
+        let points = points.iter().copied().map(array);
+        self.shapes.push(Shape::line(points.collect(), pen));
     }
 
     /// Draws what lies behind the bodies: pitch circles, tracks, slots and cylinders.
@@ -233,9 +195,9 @@ impl DrawnPosition<'_> {
                 JointKind::Slot { axis } if is_first => self.track(joint, axis, *travel),
                 JointKind::Prismatic { axes } if drawing.is_cylinder(j) => {
                     let min_travel = travel.map_or(0.0, |[low, _]| 0.85 * low);
-                    let end = vector(at[0]) + axes[0].rotate(self.rotation(one)) * min_travel;
+                    let end = at[0] + axes[0].rotate(self.rotation(one)) * min_travel;
                     self.line(&at, self.pen(drawing.color(two), 5.0));
-                    self.line(&[at[0], [end.x, end.y]], self.pen(drawing.color(one), 12.0));
+                    self.line(&[at[0], end], self.pen(drawing.color(one), 12.0));
                 }
                 JointKind::Prismatic { axes }
                     if is_first || !joint.bodies.iter().any(|b| drawing.is_ground(*b)) =>
@@ -252,40 +214,34 @@ impl DrawnPosition<'_> {
                 | JointKind::Coupling(_) => {}
             }
         }
-        for actuator in mechanism
-            .actuators
-            .iter()
-            .filter(|a| drawing.is_visible(a.bodies))
-        {
+        let actuators = mechanism.actuators.iter();
+        for actuator in actuators.filter(|a| drawing.is_visible(a.bodies)) {
             if let ActuatorKind::Length(points) = actuator.kind {
                 let [a, b] = self.points(actuator.bodies, points);
-                let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
                 self.line(&[a, b], self.pen(Paint::Grey, 4.0));
-                self.line(&[a, middle], self.pen(Paint::Grey, 11.0));
+                self.line(&[a, (a + b) * 0.5], self.pen(Paint::Grey, 11.0));
             }
         }
     }
 
     /// A disc, with a line that shows how it rotates unless it is fixed.
-    fn disc(&mut self, body: BodyId, at: [f64; 2], radius: f64) {
+    fn disc(&mut self, body: BodyId, at: Vec2, radius: f64) {
         let color = self.drawing.color(body);
-        self.shapes.push(circle(at, radius, self.pen(color, 2.5)));
+        self.line(&circle(at, radius), self.pen(color, 2.5));
         if !self.drawing.is_ground(body) {
-            let rim = vector(at) + self.rotation(body) * radius;
-            self.line(&[at, [rim.x, rim.y]], self.pen(color, 2.0));
+            let rim = at + self.rotation(body) * radius;
+            self.line(&[at, rim], self.pen(color, 2.0));
         }
     }
 
     /// The straight line on the first body along which the joint's second point goes.
     fn track(&mut self, joint: &Joint, axis: Vec2, travel: Option<[f64; 2]>) {
         let one = joint.bodies[0];
-        let start = vector(self.point(one, joint.points[0]));
+        let start = self.point(one, joint.points[0]);
         let direction = axis.rotate(self.rotation(one));
         let [low, high] = travel.unwrap_or([0.0; 2]);
         let margin = 0.25 * self.drawing.size;
-        let [from, to] = [low - margin, high + margin]
-            .map(|s| start + direction * s)
-            .map(|p| [p.x, p.y]);
+        let [from, to] = [low - margin, high + margin].map(|s| start + direction * s);
         let radius = match joint.kind {
             JointKind::Rack { radius, .. } | JointKind::Rolling { radius, .. } => Some(radius),
             _ => None,
@@ -300,7 +256,7 @@ impl DrawnPosition<'_> {
         } else if self.lightness == 0.0 {
             // The hatching is on the right of the track: away from the disc.
             let is_left = radius.is_some_and(|radius| radius < 0.0);
-            let (from, to) = if is_left { (to, from) } else { (from, to) };
+            let [from, to] = if is_left { [to, from] } else { [from, to] }.map(array);
             self.shapes.push(Shape::GroundLine { from, to });
         }
     }
@@ -311,13 +267,7 @@ impl DrawnPosition<'_> {
             if self.drawing.is_ground(BodyId(b)) || !self.drawing.visible[b] {
                 continue;
             }
-            let pen = |width| self.pen(self.drawing.color(BodyId(b)), width);
-            let at = |points: Vec<Vec2>| points.iter().map(|p| self.point(BodyId(b), *p)).collect();
-            let shape = match self.drawing.outline(b) {
-                Outline::Block(corners) => Shape::area(at(corners), pen(3.0), 0.35),
-                Outline::Plate(corners) => Shape::area(at(corners), pen(4.0), 0.15),
-                Outline::Bar(ends) => Shape::line(at(ends), pen(6.0)),
-            };
+            let shape = self.body_shape(b);
             self.shapes.push(match self.lightness == 0.0 {
                 true => shape.named(body.name.clone()),
                 false => shape,
@@ -325,17 +275,49 @@ impl DrawnPosition<'_> {
         }
     }
 
+    /// A small block that slides, a plate through three or more points, or a bar through points of one line.
+    fn body_shape(&self, body: usize) -> Shape {
+        let (drawing, id) = (self.drawing, BodyId(body));
+        let pen = |width| self.pen(drawing.color(id), width);
+        let at = |points: &[Vec2]| points.iter().map(|p| array(self.point(id, *p))).collect();
+        let mut points: Vec<Vec2> = Vec::new();
+        for (_, p) in &drawing.scene.points[body] {
+            if !points.contains(p) {
+                points.push(*p);
+            }
+        }
+        if let (&[middle], Some(axis)) = (points.as_slice(), drawing.slide_axis(body)) {
+            let half = 0.045 * drawing.size;
+            let (along, across) = (axis * (1.6 * half), axis.perp() * half);
+            let [behind, before] = [middle - along, middle + along];
+            let right = [behind - across, before - across];
+            let corners = [right, [before + across, behind + across]].concat();
+            return Shape::area(at(&corners), pen(3.0), 0.35);
+        }
+        let sum = points.iter().fold(Vec2::ZERO, |sum, p| sum + *p);
+        let middle = sum * (1.0 / points.len().max(1) as f64);
+        let offsets = points.iter().map(|p| *p - middle);
+        let farthest = offsets.max_by(|a, b| a.norm().total_cmp(&b.norm()));
+        let line = farthest.unwrap_or(Vec2::ZERO);
+        let off_line = |p: &Vec2| line.cross(*p - middle).abs() > 1e-6 * line.norm().powi(2);
+        if points.len() > 2 && points.iter().any(off_line) {
+            points.sort_by(|a, b| (*a - middle).angle().total_cmp(&(*b - middle).angle()));
+            Shape::area(at(&points), pen(4.0), 0.15)
+        } else {
+            points.sort_by(|a, b| line.dot(*a).total_cmp(&line.dot(*b)));
+            Shape::line(at(&points), pen(6.0))
+        }
+    }
+
     fn draw_joints(&mut self) {
         let (drawing, lightness) = (self.drawing, self.lightness);
         let named = lightness == 0.0;
+        let pin = |at: Vec2| Shape::pin(array(at), Paint::Ink, lightness);
         // Joints at one point share a label.
-        let mut labels: Vec<([f64; 2], Vec<&Joint>, TextPlacement)> = Vec::new();
-        let mut label = |at: [f64; 2], joint, side: TextPlacement| {
-            let distance = |other: [f64; 2]| (vector(other) - vector(at)).norm();
-            match labels
-                .iter_mut()
-                .find(|l| distance(l.0) < 0.02 * drawing.size)
-            {
+        let mut labels: Vec<(Vec2, Vec<&Joint>, TextPlacement)> = Vec::new();
+        let mut label = |at: Vec2, joint, side: TextPlacement| {
+            let is_near = |other: Vec2| (other - at).norm() < 0.02 * drawing.size;
+            match labels.iter_mut().find(|l| is_near(l.0)) {
                 Some((_, joints, _)) => joints.push(joint),
                 None => labels.push((at, vec![joint], side)),
             }
@@ -346,25 +328,21 @@ impl DrawnPosition<'_> {
             let ends = self.points(joint.bodies, joint.points);
             match joint.kind {
                 JointKind::Revolute if on_ground && named => {
-                    self.shapes.push(Shape::GroundPin { at: ends[0] });
+                    let at = array(ends[0]);
+                    self.shapes.push(Shape::GroundPin { at });
                     label(ends[0], joint, TextPlacement::AboveLeft);
                 }
                 JointKind::Revolute if on_ground => {}
                 JointKind::Revolute => {
-                    self.shapes.push(Shape::pin(ends[0], Paint::Ink, lightness));
+                    self.shapes.push(pin(ends[0]));
                     if named {
                         label(ends[0], joint, TextPlacement::AboveRight);
                     }
                 }
-                JointKind::Slot { .. } => {
-                    self.shapes.push(Shape::pin(ends[1], Paint::Ink, lightness));
-                }
-                JointKind::Distance { .. } => {
-                    let pins = ends.map(|at| Shape::pin(at, Paint::Ink, lightness));
-                    self.shapes.extend(pins);
-                }
+                JointKind::Slot { .. } => self.shapes.push(pin(ends[1])),
+                JointKind::Distance { .. } => self.shapes.extend(ends.map(pin)),
                 JointKind::Weld { .. } => self.shapes.push(Shape::Disc {
-                    at: ends[0],
+                    at: array(ends[0]),
                     radius_px: 6.0,
                     pen: self.pen(Paint::Ink, 2.0),
                     filled: true,
@@ -373,10 +351,10 @@ impl DrawnPosition<'_> {
                 _ => {}
             }
         }
-        let texts = labels.into_iter();
-        let texts =
-            texts.map(|(at, joints, side)| Shape::text(at, drawing.common_name(&joints), side));
-        self.shapes.extend(texts);
+        for (at, joints, side) in labels {
+            let name = drawing.common_name(&joints);
+            self.shapes.push(Shape::text(array(at), name, side));
+        }
     }
 
     /// Springs and dampers between points.
@@ -386,7 +364,7 @@ impl DrawnPosition<'_> {
         for load in &self.drawing.scene.loads {
             match load.kind {
                 LoadKind::Spring { bodies, points, .. } => {
-                    let [a, b] = self.points(bodies, points).map(vector);
+                    let [a, b] = self.points(bodies, points);
                     self.line(&spring_outline(a, b, half_width), pen);
                 }
                 LoadKind::Damper { bodies, points } => {
@@ -408,16 +386,16 @@ fn axis_of(kind: JointKind) -> Option<Vec2> {
     }
 }
 
-fn circle([x, y]: [f64; 2], radius: f64, pen: Pen) -> Shape {
+fn circle(at: Vec2, radius: f64) -> Vec<Vec2> {
     let corner = |k: usize| {
         let (sin, cos) = (TAU * k as f64 / CIRCLE_POINTS as f64).sin_cos();
-        [x + radius * cos, y + radius * sin]
+        vec2(at.x + radius * cos, at.y + radius * sin)
     };
-    Shape::line((0..=CIRCLE_POINTS).map(corner).collect(), pen)
+    (0..=CIRCLE_POINTS).map(corner).collect()
 }
 
 /// A zigzag between two points.
-fn spring_outline(a: Vec2, b: Vec2, half: f64) -> Vec<[f64; 2]> {
+fn spring_outline(a: Vec2, b: Vec2, half: f64) -> Vec<Vec2> {
     let gap = b - a;
     if gap.norm() == 0.0 {
         return Vec::new();
@@ -431,5 +409,5 @@ fn spring_outline(a: Vec2, b: Vec2, half: f64) -> Vec<[f64; 2]> {
     let mut points = vec![a, a + gap * 0.15];
     points.extend((0..2 * SPRING_COILS).map(zigzag_point));
     points.extend([a + gap * 0.85, b]);
-    points.into_iter().map(|p| [p.x, p.y]).collect()
+    points
 }

@@ -2,15 +2,27 @@
 
 mod captions;
 mod mechanism_drawing;
-mod outcome;
 mod provenance;
 
 pub(crate) use captions::{
     add_note, coordinate_axis, indeterminate_note, inner_range, range_caption,
-    reaction_figure_count, reduced_provenance, separating_note,
+    reaction_figure_count, separating_note,
 };
 pub use captions::{caption, chart, coordinate_label, figure, scene_caption, symbol};
 pub use mechanism_drawing::MechanismDrawing;
-pub use outcome::Outcome;
 pub(crate) use provenance::signed_gif;
 pub use provenance::{provenance_line, signed_png};
+
+use dwell_findings::Finding;
+use dwell_report::Files;
+
+/// The result of an analysis, in memory: nothing is written until the caller writes the files.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Outcome {
+    /// Text to print.
+    pub summary: String,
+    /// Files to write, relative to the output folder.
+    pub files: Files,
+    /// Results of checks.
+    pub findings: Vec<Finding>,
+}

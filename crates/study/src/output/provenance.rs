@@ -19,10 +19,9 @@ fn line(scene: &Scene, hash: &str) -> String {
 /// The same with a short hash, and the method.
 fn signature(scene: &Scene, method_text: &str) -> String {
     let line = line(scene, &scene.hash()[..SHORT_HASH]);
-    if method_text.is_empty() {
-        line
-    } else {
-        format!("{line} · {method_text}")
+    match method_text {
+        "" => line,
+        method_text => format!("{line} · {method_text}"),
     }
 }
 

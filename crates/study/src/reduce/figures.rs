@@ -7,9 +7,10 @@
 //! F is the magnitude that the scene gives; for a damper, friction or a separating force, the force or moment itself.
 
 use crate::models::PreparedScene;
+use crate::number_format::count;
 use crate::output::{
     add_note, chart, coordinate_label, figure, inner_range, range_caption, reaction_figure_count,
-    reduced_provenance, symbol,
+    symbol,
 };
 use crate::reduce::compute::{ReducedCurves, UnitLoadCurves};
 use dwell_kinetostatics::Coefficients;
@@ -18,47 +19,54 @@ use dwell_report::{Axis, Figure, Panel, Series};
 /// Maximum number of reactions in a figure; more would not be distinguishable.
 const MAX_CURVES: usize = 6;
 
-fn points(curves: &ReducedCurves, of: impl Fn(&Coefficients) -> f64) -> Vec<[f64; 2]> {
-    let pairs = curves.q.iter().zip(&curves.coefficients);
-    pairs.map(|(q, at)| [q.to_degrees(), of(at)]).collect()
+/// What the figures share: the scene with its model, and the coordinates.
+struct RangeFigures<'a> {
+    prepared: &'a PreparedScene<'a>,
+    q: &'a [f64],
 }
 
-/// Curves over the range; next to a limit position they may leave the chart.
-fn panel(
-    prepared: &PreparedScene<'_>,
-    title: &str,
-    label: &str,
-    unit: &str,
-    series: Vec<Series>,
-) -> Panel {
-    let mut y = Axis::new(label, unit);
-    y.range = inner_range(prepared, &series);
-    let x = Axis::degrees(coordinate_label(prepared));
-    chart(title, x, y, series).into()
+impl RangeFigures<'_> {
+    /// A curve over the range.
+    fn line(&self, name: &str, values: impl IntoIterator<Item = f64>) -> Series {
+        let points = self.q.iter().zip(values);
+        Series::line(name, points.map(|(q, v)| [q.to_degrees(), v]).collect())
+    }
+
+    /// Curves over the range; next to a limit position they may leave the chart.
+    fn panel(&self, title: &str, label: &str, unit: &str, series: Vec<Series>) -> Panel {
+        let mut y = Axis::new(label, unit);
+        y.range = inner_range(self.prepared, &series);
+        let x = Axis::degrees(coordinate_label(self.prepared));
+        chart(title, x, y, series).into()
+    }
+
+    fn figure(
+        &self,
+        name: impl Into<String>,
+        title: impl Into<String>,
+        text: &str,
+        panels: Vec<Panel>,
+    ) -> Figure {
+        let text = range_caption(self.prepared, text);
+        let positions = count(self.q.len(), "position");
+        let provenance = format!("reduced model by unit runs, at {positions}");
+        let scene = self.prepared.scene;
+        figure(scene, name, title, &text, panels, provenance)
+    }
 }
 
 /// m and ½m′.
 pub fn reduced(prepared: &PreparedScene<'_>, curves: &ReducedCurves) -> Figure {
-    let inertia = vec![Series::line("", points(curves, |c| c.m))];
-    let derivative = vec![Series::line("", points(curves, |c| c.half_dm))];
+    let (q, at) = (&curves.q, &curves.coefficients);
+    let range = RangeFigures { prepared, q };
+    let inertia = vec![range.line("", at.iter().map(|c| c.m))];
+    let inertia = range.panel("m (generalised inertia)", "m", "kg m²", inertia);
+    let derivative = vec![range.line("", at.iter().map(|c| c.half_dm))];
+    let title = "½m′ (half its derivative)";
+    let derivative = range.panel(title, "½m′", "kg m²/rad", derivative);
     let text = "m is the actuator force at unit acceleration and zero speed, ½m′ at unit speed and zero acceleration.";
-    figure(
-        prepared.scene,
-        "reduced",
-        "Reduced inertia and half its derivative",
-        &range_caption(prepared, text),
-        vec![
-            panel(prepared, "m (generalised inertia)", "m", "kg m²", inertia),
-            panel(
-                prepared,
-                "½m′ (half its derivative)",
-                "½m′",
-                "kg m²/rad",
-                derivative,
-            ),
-        ],
-        reduced_provenance(curves.q.len()),
-    )
+    let title = "Reduced inertia and half its derivative";
+    range.figure("reduced", title, text, vec![inertia, derivative])
 }
 
 /// a and b of the requested reactions, separately for forces and moments, a few per figure; and a note if
@@ -90,22 +98,21 @@ fn coefficient_figure(
     unit: &str,
     index: usize,
 ) -> Figure {
+    let q = &curves.q;
+    let range = RangeFigures { prepared, q };
     let reactions = prepared.reaction_units();
-    let q = symbol(prepared.coordinate_name());
+    let name = symbol(prepared.coordinate_name());
     let lines = |of: fn(&Coefficients, usize) -> f64| {
         let line = |&k: &usize| {
-            let name = if group.len() > 1 {
-                &*reactions[k].0
-            } else {
-                ""
-            };
-            Series::line(name, points(curves, |at| of(at, k)))
+            let name = if group.len() > 1 { &reactions[k].0 } else { "" };
+            range.line(name, curves.coefficients.iter().map(|at| of(at, k)))
         };
         group.iter().map(line).collect()
     };
-    let (a, b) = (lines(|c, k| c.a[k]), lines(|c, k| c.b[k]));
-    let a_title = format!("a: coefficient of the acceleration of {q}");
-    let b_title = format!("b: coefficient of the squared speed of {q}");
+    let title = format!("a: coefficient of the acceleration of {name}");
+    let a = range.panel(&title, "a", unit, lines(|c, k| c.a[k]));
+    let title = format!("b: coefficient of the squared speed of {name}");
+    let b = range.panel(&title, "b", unit, lines(|c, k| c.b[k]));
     let title = match group {
         [k] => format!("Reduced parameters of the reaction {}", reactions[*k].0),
         _ => "Reduced parameters of the reactions".to_owned(),
@@ -116,17 +123,7 @@ fn coefficient_figure(
     };
     let text =
         "Reaction = a q̈ + b q̇²: the force or moment of the joint's first body on its second.";
-    figure(
-        prepared.scene,
-        name,
-        title,
-        &range_caption(prepared, text),
-        vec![
-            panel(prepared, &a_title, "a", unit, a),
-            panel(prepared, &b_title, "b", unit, b),
-        ],
-        reduced_provenance(curves.q.len()),
-    )
+    range.figure(name, title, text, vec![a, b])
 }
 
 /// w of the loads by their units, and V.
@@ -135,10 +132,7 @@ pub(crate) fn unit_loads(
     prepared: &PreparedScene<'_>,
     q: &[f64],
 ) -> Figure {
-    let line = |name: &str, values: &mut dyn Iterator<Item = f64>| {
-        let points = q.iter().zip(values).map(|(q, v)| [q.to_degrees(), v]);
-        Series::line(name, points.collect())
-    };
+    let range = RangeFigures { prepared, q };
     let mut panels = Vec::new();
     let unit_of = |l: usize| curves.unit(l);
     let mut unit_names: Vec<&str> = curves.working().map(unit_of).collect();
@@ -147,33 +141,17 @@ pub(crate) fn unit_loads(
     for unit in unit_names {
         let of_unit: Vec<usize> = curves.working().filter(|&l| unit_of(l) == unit).collect();
         for members in of_unit.chunks(MAX_CURVES) {
-            let curve = |&l: &usize| {
-                let mut values = curves.rows.iter().map(|row| row[l][0]);
-                line(&curves.loads[l].name, &mut values)
-            };
+            let curve =
+                |&l: &usize| range.line(&curves.loads[l].name, curves.rows.iter().map(|r| r[l][0]));
             let title = "w: generalised force per unit of each load";
             let unit = if unit.is_empty() { "1" } else { unit };
-            panels.push(panel(
-                prepared,
-                title,
-                "w",
-                unit,
-                members.iter().map(curve).collect(),
-            ));
+            panels.push(range.panel(title, "w", unit, members.iter().map(curve).collect()));
         }
     }
     if curves.conservative {
-        let series = vec![line("", &mut curves.potential.iter().copied())];
-        panels.push(panel(prepared, "V: potential energy", "V", "J", series));
+        let series = vec![range.line("", curves.potential.iter().copied())];
+        panels.push(range.panel("V: potential energy", "V", "J", series));
     }
     let text = "m q̈ + ½m′ q̇² = Σ w F, with F the magnitude of each load; for a damper, its force or moment.";
-    let (scene, text) = (prepared.scene, range_caption(prepared, text));
-    figure(
-        scene,
-        "unit-loads",
-        "Reduced loads",
-        &text,
-        panels,
-        reduced_provenance(q.len()),
-    )
+    range.figure("unit-loads", "Reduced loads", text, panels)
 }

@@ -2,7 +2,7 @@
 
 use super::figures;
 use crate::explain::StudyError;
-use crate::models::indeterminate_reactions;
+use crate::models::requested_reactions;
 use crate::number_format::digits;
 use crate::output::{Outcome, indeterminate_note, separating_note, signed_png};
 use crate::ranges::extent;
@@ -20,16 +20,11 @@ use dwell_scene::Scene;
 /// built.
 pub fn reduce(scene: &Scene, table: Option<TableRequest>) -> Result<Outcome, StudyError> {
     let reduction = compute_reduction(scene)?;
-    let Reduction {
-        prepared,
-        curves,
-        unit_loads,
-        ..
-    } = &reduction;
+    let (prepared, curves) = (&reduction.prepared, &reduction.curves);
     let mut figures: Vec<Figure> = vec![figures::reduced(prepared, curves)];
     let (coefficients, note) = figures::coefficients(prepared, curves);
     figures.extend(coefficients);
-    if let Some(unit_loads) = unit_loads
+    if let Some(unit_loads) = &reduction.unit_loads
         && unit_loads.working().next().is_some()
     {
         figures.push(figures::unit_loads(unit_loads, prepared, &curves.q));
@@ -69,9 +64,7 @@ fn describe_rounding(errors: &RoundingErrors) -> String {
 
 /// The printed summary.
 pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
-    let Reduction {
-        prepared, curves, ..
-    } = reduction;
+    let (prepared, curves) = (&reduction.prepared, &reduction.curves);
     let extent_of = |pick: fn(&Coefficients) -> f64| extent(curves.coefficients.iter().map(pick));
     let m = extent_of(|c| c.m);
     let [m_min, m_max] = m.map(|m| digits(m, 9));
@@ -91,8 +84,7 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
     }
     let scene = prepared.scene;
     summary += &separating_note(scene);
-    let indeterminate = indeterminate_reactions(scene, prepared.model.model().plan());
-    let requested = scene.requests.reactions.iter();
-    let names = requested.filter(|r| indeterminate.contains(r));
+    let [_, indeterminate] = requested_reactions(scene, prepared.model.model().plan());
+    let names = indeterminate.iter();
     summary + &indeterminate_note(names.map(|&r| scene.mechanism.reaction_name(r)))
 }

@@ -3,19 +3,18 @@
 use crate::explain::StudyError;
 use crate::number_format::{count, digits, number};
 use crate::output::{Outcome, signed_png};
+use crate::sweep::compute::Row;
 use crate::sweep::figure::figure;
-use crate::sweep::output::{ParameterSweep, PreparedSweep};
+use crate::sweep::output::PreparedSweep;
 use crate::sweep::spread::Spread;
-use crate::sweep::store::Row;
-use dwell_report::TableExport as _;
-use dwell_report::{Column, Table, TableFormat};
+use dwell_report::{Column, TableExport as _, TableFormat};
 use std::path::Path;
 
 /// Maximum number of messages in a summary.
 const MAX_LISTED: usize = 3;
 
 /// The origin of the rows, and the number of missing ones.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy)]
 pub(crate) struct Counts {
     pub(crate) existing: usize,
     pub(crate) imported: usize,
@@ -25,25 +24,22 @@ pub(crate) struct Counts {
 
 pub(crate) fn report_sweep(
     prepared: &PreparedSweep<'_>,
-    sweep: &ParameterSweep<'_>,
     path: &Path,
     rows: &[Row],
     counts: Counts,
 ) -> Result<Outcome, StudyError> {
     let mut outcome = Outcome {
-        summary: summary(prepared, sweep, path, rows, counts),
+        summary: summary(prepared, path, rows, counts),
         ..Outcome::default()
     };
+    let (scene, sweep) = (prepared.scene, prepared.sweep);
     // A shard is incomplete: tables and figures are written when all shards are together.
     if sweep.shard.is_some() {
         return Ok(outcome);
     }
-    let scene = prepared.scene;
     let name = |rest: &str| format!("{}-sweep{rest}", scene.name);
-    let formats = sweep
-        .export
-        .map_or(TableFormat::ALL.to_vec(), |only| vec![only]);
-    for format in formats {
+    let only = sweep.export;
+    for format in only.map_or(TableFormat::ALL.to_vec(), |only| vec![only]) {
         let bytes = match format {
             TableFormat::Csv => csv(prepared, rows)?.into_bytes(),
             TableFormat::Npz => npz(prepared, rows)?,
@@ -63,18 +59,9 @@ pub(crate) fn report_sweep(
     Ok(outcome)
 }
 
-/// Inputs and results.
-fn table(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Table {
-    let row = |row: &Row| [row.inputs.as_slice(), &row.result.values].concat();
-    Table {
-        columns: prepared.requested.columns(&prepared.design),
-        rows: rows.iter().map(row).collect(),
-    }
-}
-
 /// The table as arrays, with the index of each row and whether it has a message.
 fn npz(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Result<Vec<u8>, StudyError> {
-    let mut table = table(prepared, rows);
+    let mut table = prepared.requested.table(&prepared.design, rows);
     table.columns.insert(0, Column::new("index", ""));
     table.columns.push(Column::new("has_message", ""));
     for (cells, row) in table.rows.iter_mut().zip(rows) {
@@ -86,7 +73,7 @@ fn npz(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Result<Vec<u8>, StudyError
 
 /// The table with the index of each row before it and its message behind it.
 fn csv(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Result<String, StudyError> {
-    let numbers = table(prepared, rows).csv()?;
+    let numbers = prepared.requested.table(&prepared.design, rows).csv()?;
     let mut lines = numbers.lines();
     let mut text = format!("index,{},message\n", lines.next().unwrap_or_default());
     // One line per row.
@@ -101,13 +88,7 @@ fn csv(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Result<String, StudyError>
 }
 
 /// The printed summary.
-fn summary(
-    prepared: &PreparedSweep<'_>,
-    sweep: &ParameterSweep<'_>,
-    path: &Path,
-    rows: &[Row],
-    counts: Counts,
-) -> String {
+fn summary(prepared: &PreparedSweep<'_>, path: &Path, rows: &[Row], counts: Counts) -> String {
     let design = &prepared.design;
     let points = count_u64(design.points, "point");
     let mut text = format!("{}: {points}", prepared.scene.title);
@@ -115,7 +96,7 @@ fn summary(
         let samples = count_u64(design.samples, "sample");
         text += &format!(", {samples} with seed {}", design.seed);
     }
-    if let Some(shard) = sweep.shard {
+    if let Some(shard) = prepared.sweep.shard {
         let points = rows.len() + counts.missing;
         text += &format!(", of which shard {shard} has {points}");
     }
@@ -135,11 +116,9 @@ fn summary(
         text += &format!("  {} not computed yet\n", count(counts.missing, "point"));
     }
     for (k, heading) in prepared.results.iter().enumerate() {
-        let values = rows.iter().map(|row| row.result.values[k]);
-        let spread = Spread::of(values);
-        text += &spread.map_or(String::new(), |s| {
-            spread_text(heading, &s, design.is_random())
-        });
+        if let Some(spread) = Spread::of(rows.iter().map(|row| row.result.values[k])) {
+            text += &spread_text(heading, &spread, design.is_random());
+        }
     }
     text + &failures(rows) + &prepared.requested.notes
 }
@@ -162,10 +141,8 @@ fn spread_text(heading: &str, spread: &Spread, random: bool) -> String {
 
 /// The number of failed points, and the first messages.
 fn failures(rows: &[Row]) -> String {
-    let failed = rows
-        .iter()
-        .filter_map(|r| Some((r.index, r.result.message.as_deref()?)));
-    let failed: Vec<(u64, &str)> = failed.collect();
+    let failed = |row: &'_ Row| Some((row.index, row.result.message.clone()?));
+    let failed: Vec<(u64, String)> = rows.iter().filter_map(failed).collect();
     if failed.is_empty() {
         return String::new();
     }

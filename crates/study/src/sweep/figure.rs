@@ -2,10 +2,9 @@
 
 use crate::number_format::{count, number};
 use crate::output::{self, scene_caption};
-use crate::sweep::compute::{Axis as SweepAxis, SweepQuantity};
+use crate::sweep::compute::{Axis as SweepAxis, Row, SweepQuantity};
 use crate::sweep::output::PreparedSweep;
 use crate::sweep::spread::Spread;
-use crate::sweep::store::Row;
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Series, Stroke};
 
 /// Maximum number of charts on the page, and of curves in a chart.
@@ -33,15 +32,22 @@ pub(crate) fn figure(
     let design = &prepared.design;
     let is_listed = |k: &usize| !design.axes[*k].is_random() && design.axes[*k].count() > 1;
     let listed: Vec<usize> = (0..design.axes.len()).filter(is_listed).collect();
-    let (charts, caption) = match (listed.as_slice(), design.is_random()) {
+    let quantities = prepared.requested.quantities.iter().enumerate();
+    let of_each = |chart: &dyn Fn(usize, &SweepQuantity) -> Option<Chart>| {
+        let charts = quantities.filter_map(|(k, quantity)| chart(k, quantity));
+        charts.collect()
+    };
+    let (charts, caption): (Vec<Chart>, _) = match (listed.as_slice(), design.is_random()) {
         ([], false) => return Err("a single point has no curve"),
-        ([], true) => (histograms(prepared, rows), HISTOGRAM),
-        (&[abscissa], true) => (bands(prepared, rows, abscissa), BAND),
+        ([], true) => (of_each(&|k, of| histogram(rows, k, of)), HISTOGRAM),
+        (&[abscissa], true) => (
+            of_each(&|k, of| band(&design.axes, rows, abscissa, k, of)),
+            BAND,
+        ),
         (&[abscissa], false) => (curves(prepared, rows, abscissa, None), ""),
         (&[parameter, abscissa], false) => (curves(prepared, rows, abscissa, Some(parameter)), ""),
         _ => return Err("more than two numbers vary over lists, or two together with random ones"),
     };
-    let charts: Vec<Chart> = charts.into_iter().flatten().collect();
     if charts.is_empty() {
         return Err("no result has a value");
     }
@@ -107,28 +113,30 @@ fn chart_groups(quantities: &[SweepQuantity]) -> Vec<ChartGroup<'_>> {
     all
 }
 
+/// Results, each with its title and its axis label.
+const TITLES: [(&str, &str, &str); 11] = [
+    ("m", "Generalised inertia m", "m"),
+    ("m.min", "Smallest m", "m"),
+    ("m.max", "Largest m", "m"),
+    ("half_dm", "½m′", "½m′"),
+    ("half_dm.min", "Smallest ½m′", "½m′"),
+    ("half_dm.max", "Largest ½m′", "½m′"),
+    ("range", "Range of the coordinate", "q"),
+    ("range.lower", "Lower end of the range", "q"),
+    ("range.upper", "Upper end of the range", "q"),
+    ("period", "Period of the free motion", "T"),
+    ("energy", "Energy of the free motion", "E"),
+];
+
 /// Title and axis label of a result, or of results that share a chart.
 fn title_and_label(name: &str) -> (String, &str) {
-    let (title, label) = match name {
-        "m" => ("Generalised inertia m", "m"),
-        "m.min" => ("Smallest m", "m"),
-        "m.max" => ("Largest m", "m"),
-        "half_dm" => ("½m′", "½m′"),
-        "half_dm.min" => ("Smallest ½m′", "½m′"),
-        "half_dm.max" => ("Largest ½m′", "½m′"),
-        "range" => ("Range of the coordinate", "q"),
-        "range.lower" => ("Lower end of the range", "q"),
-        "range.upper" => ("Upper end of the range", "q"),
-        "period" => ("Period of the free motion", "T"),
-        "energy" => ("Energy of the free motion", "E"),
-        other => {
-            return match other.strip_suffix(".max_abs") {
-                Some(what) => (format!("Largest |{what}|"), what),
-                None => (other.to_owned(), other),
-            };
-        }
-    };
-    (title.to_owned(), label)
+    if let Some((_, title, label)) = TITLES.iter().find(|(of, ..)| *of == name) {
+        return ((*title).to_owned(), label);
+    }
+    match name.strip_suffix(".max_abs") {
+        Some(what) => (format!("Largest |{what}|"), what),
+        None => (name.to_owned(), name),
+    }
 }
 
 /// A unit as a reader writes it.
@@ -154,13 +162,10 @@ fn chosen_values(rows: &[Row], axis: usize) -> Vec<f64> {
     let mut values: Vec<f64> = rows.iter().map(|row| row.inputs[axis]).collect();
     values.sort_by(f64::total_cmp);
     values.dedup();
-    let step = values
-        .len()
-        .saturating_sub(1)
-        .div_ceil(MAX_CURVES - 1)
-        .max(1);
+    let last = values.len().saturating_sub(1);
+    let step = last.div_ceil(MAX_CURVES - 1).max(1);
     let mut chosen: Vec<f64> = values.iter().copied().step_by(step).collect();
-    if !(values.len().saturating_sub(1)).is_multiple_of(step) {
+    if !last.is_multiple_of(step) {
         chosen.extend(values.last());
     }
     chosen
@@ -172,25 +177,24 @@ fn curves(
     rows: &[Row],
     abscissa: usize,
     parameter: Option<usize>,
-) -> Vec<Option<Chart>> {
+) -> Vec<Chart> {
     let axes = &prepared.design.axes;
     let line = |index: usize, of: &dyn Fn(&Row) -> bool| {
         let points = rows.iter().filter(|row| of(row));
         sorted(points.map(|row| [row.inputs[abscissa], row.result.values[index]]))
     };
     let one = |group: &ChartGroup<'_>| {
+        let members = group.members.iter();
         let mut series = Vec::new();
         match parameter {
-            None => series.extend(
-                group
-                    .members
-                    .iter()
-                    .map(|&(index, member)| Series::line(member, line(index, &|_| true))),
-            ),
+            None => series.extend(members.map(|&(index, member)| {
+                let points = line(index, &|_| true);
+                Series::line(member, points)
+            })),
             Some(parameter) => {
                 let unit = unit_text(&axes[parameter].unit);
                 for (k, value) in chosen_values(rows, parameter).into_iter().enumerate() {
-                    series.extend(group.members.iter().map(|&(index, member)| {
+                    series.extend(members.clone().map(|&(index, member)| {
                         let name = format!("{} {unit} {member}", number(value));
                         let points = line(index, &|row| row.inputs[parameter] == value);
                         let stroke = match member {
@@ -210,7 +214,7 @@ fn curves(
         Some(chart)
     };
     let groups = chart_groups(&prepared.requested.quantities);
-    groups.iter().map(one).collect()
+    groups.iter().filter_map(one).collect()
 }
 
 fn sorted(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
@@ -219,79 +223,77 @@ fn sorted(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
     points
 }
 
-/// Mean and limits of the samples over one axis.
-fn bands(prepared: &PreparedSweep<'_>, rows: &[Row], abscissa: usize) -> Vec<Option<Chart>> {
-    let axis = &prepared.design.axes[abscissa];
+/// Mean and limits of the samples of a result over one axis.
+fn band(
+    axes: &[SweepAxis],
+    rows: &[Row],
+    abscissa: usize,
+    index: usize,
+    quantity: &SweepQuantity,
+) -> Option<Chart> {
     let mut by_value: Vec<&Row> = rows.iter().collect();
     by_value.sort_by(|a, b| a.inputs[abscissa].total_cmp(&b.inputs[abscissa]));
-    let one = |(index, quantity): (usize, &SweepQuantity)| {
-        let groups = by_value.chunk_by(|a, b| a.inputs[abscissa] == b.inputs[abscissa]);
-        let spread = |group: &[&Row]| {
-            let values = group.iter().map(|row| row.result.values[index]);
-            Some((group[0].inputs[abscissa], Spread::of(values)?))
-        };
-        let spreads: Vec<(f64, Spread)> = groups.filter_map(spread).collect();
-        let line = |name: &str, of: &dyn Fn(&Spread) -> f64| {
-            let points = spreads.iter().map(|(x, spread)| [*x, of(spread)]);
-            Series::line(name, points.collect()).color(Paint::Palette(0))
-        };
-        let series = vec![
-            line("mean", &|s| s.mean),
-            line("97.5 %", &|s| s.quantiles[1]).stroke(Stroke::Dashed),
-            line("2.5 %", &|s| s.quantiles[0]).stroke(Stroke::Dashed),
-        ];
-        chart(&quantity.name, quantity.unit, axis_of(axis), series)
+    let groups = by_value.chunk_by(|a, b| a.inputs[abscissa] == b.inputs[abscissa]);
+    let spread = |group: &[&Row]| {
+        let values = group.iter().map(|row| row.result.values[index]);
+        Some((group[0].inputs[abscissa], Spread::of(values)?))
     };
-    let quantities = prepared.requested.quantities.iter().enumerate();
-    quantities.map(one).collect()
+    let spreads: Vec<(f64, Spread)> = groups.filter_map(spread).collect();
+    let line = |name: &str, of: &dyn Fn(&Spread) -> f64| {
+        let points = spreads.iter().map(|(x, spread)| [*x, of(spread)]);
+        Series::line(name, points.collect()).color(Paint::Palette(0))
+    };
+    let series = vec![
+        line("mean", &|s| s.mean),
+        line("97.5 %", &|s| s.quantiles[1]).stroke(Stroke::Dashed),
+        line("2.5 %", &|s| s.quantiles[0]).stroke(Stroke::Dashed),
+    ];
+    let x = axis_of(&axes[abscissa]);
+    chart(&quantity.name, quantity.unit, x, series)
 }
 
-/// Histograms of the results.
-fn histograms(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Vec<Option<Chart>> {
-    let one = |(index, quantity): (usize, &SweepQuantity)| {
-        let values = || rows.iter().map(|row| row.result.values[index]);
-        let spread = Spread::of(values())?;
-        let width = spread.max - spread.min;
-        // A result that does not depend on the inputs varies by rounding only.
-        if width <= 1e-12 * spread.max.abs().max(spread.min.abs()) {
-            return None;
-        }
-        let numbers = values().filter(|v| v.is_finite());
-        let total = numbers.clone().count();
-        // Rice's rule.
-        let bins = ((2.0 * (total as f64).cbrt()) as usize).clamp(BIN_COUNTS[0], BIN_COUNTS[1]);
-        let mut counts = vec![0_usize; bins];
-        for value in numbers {
-            let bin = (value - spread.min) / width * bins as f64;
-            counts[(bin as usize).min(bins - 1)] += 1;
-        }
-        let edge = |k: usize| spread.min + width * k as f64 / bins as f64;
-        let mut points = vec![[edge(0), 0.0]];
-        for (k, &count) in counts.iter().enumerate() {
-            let share = 100.0 * count as f64 / total as f64;
-            points.extend([[edge(k), share], [edge(k + 1), share]]);
-        }
-        points.push([edge(bins), 0.0]);
-        let [from, to] = spread.quantiles;
-        let (title, label) = title_and_label(&quantity.name);
-        let x = Axis::new(label, unit_text(quantity.unit));
-        let bars = Series::line("", points).stroke(Stroke::Filled);
-        let mut chart = output::chart(title, x, Axis::new("samples", "%"), vec![bars]);
-        chart.marks = vec![
-            Mark::Band {
-                from,
-                to,
-                label: String::new(),
-            },
-            Mark::Vertical {
-                at: spread.mean,
-                label: format!("mean {}", number(spread.mean).replace('-', "−")),
-            },
-        ];
-        Some(chart)
-    };
-    let quantities = prepared.requested.quantities.iter().enumerate();
-    quantities.map(one).collect()
+/// The histogram of a result.
+fn histogram(rows: &[Row], index: usize, quantity: &SweepQuantity) -> Option<Chart> {
+    let values = || rows.iter().map(|row| row.result.values[index]);
+    let spread = Spread::of(values())?;
+    let width = spread.max - spread.min;
+    // A result that does not depend on the inputs varies by rounding only.
+    if width <= 1e-12 * spread.max.abs().max(spread.min.abs()) {
+        return None;
+    }
+    let numbers = values().filter(|v| v.is_finite());
+    let total = numbers.clone().count();
+    // Rice's rule.
+    let bins = ((2.0 * (total as f64).cbrt()) as usize).clamp(BIN_COUNTS[0], BIN_COUNTS[1]);
+    let mut counts = vec![0_usize; bins];
+    for value in numbers {
+        let bin = (value - spread.min) / width * bins as f64;
+        counts[(bin as usize).min(bins - 1)] += 1;
+    }
+    let edge = |k: usize| spread.min + width * k as f64 / bins as f64;
+    let mut points = vec![[edge(0), 0.0]];
+    for (k, &count) in counts.iter().enumerate() {
+        let share = 100.0 * count as f64 / total as f64;
+        points.extend([[edge(k), share], [edge(k + 1), share]]);
+    }
+    points.push([edge(bins), 0.0]);
+    let ([from, to], mean) = (spread.quantiles, number(spread.mean).replace('-', "−"));
+    let (title, label) = title_and_label(&quantity.name);
+    let x = Axis::new(label, unit_text(quantity.unit));
+    let bars = Series::line("", points).stroke(Stroke::Filled);
+    let mut chart = output::chart(title, x, Axis::new("samples", "%"), vec![bars]);
+    chart.marks = vec![
+        Mark::Band {
+            from,
+            to,
+            label: String::new(),
+        },
+        Mark::Vertical {
+            at: spread.mean,
+            label: format!("mean {mean}"),
+        },
+    ];
+    Some(chart)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ mod export;
 #[cfg(feature = "output")]
 mod figure;
 #[cfg(feature = "output")]
-mod output;
+pub(crate) mod output;
 #[cfg(feature = "output")]
 mod spread;
 #[cfg(feature = "output")]
@@ -16,5 +16,3 @@ mod store;
 mod tests;
 
 pub use compute::{Shard, compute_sweep};
-#[cfg(feature = "output")]
-pub use output::{ParameterSweep, sweep};

@@ -10,8 +10,8 @@ use super::export;
 use crate::explain::{StudyError, SweepError};
 use crate::output::Outcome;
 use crate::progress::{Progress, Step};
-use crate::sweep::compute::{Axis, Design, RequestedQuantities, Shard, VariationKind};
-use crate::sweep::store::{Row, SCENE_TEXT, SHARD, Store, StudyIdentity};
+use crate::sweep::compute::{Axis, Design, RequestedQuantities, Row, Shard, VariationKind};
+use crate::sweep::store::{SCENE_TEXT, SHARD, Store, StudyIdentity};
 use dwell_report::{Column, TableFormat};
 use dwell_scene::Scene;
 use rayon::prelude::*;
@@ -50,6 +50,7 @@ pub struct ParameterSweep<'a> {
 /// A validated sweep, ready to compute.
 pub(crate) struct PreparedSweep<'a> {
     pub(crate) scene: &'a Scene,
+    pub(crate) sweep: &'a ParameterSweep<'a>,
     pub(crate) design: Design,
     pub(crate) requested: RequestedQuantities,
     pub(crate) study: StudyIdentity,
@@ -58,13 +59,12 @@ pub(crate) struct PreparedSweep<'a> {
 }
 
 impl<'a> PreparedSweep<'a> {
-    fn new(scene: &'a Scene, sweep: &ParameterSweep<'_>) -> Result<Self, StudyError> {
+    fn new(scene: &'a Scene, sweep: &'a ParameterSweep<'_>) -> Result<Self, StudyError> {
         let design = Design::new(scene, sweep.vary, sweep.samples, sweep.seed)?;
         let requested = RequestedQuantities::new(scene, sweep.requests)?;
-        let headings = |columns: &[Column]| columns.iter().map(heading).collect::<Vec<String>>();
         let columns = requested.columns(&design);
-        let (inputs, results) = columns.split_at(design.axes.len());
-        let (inputs, results) = (headings(inputs), headings(results));
+        let mut inputs: Vec<String> = columns.iter().map(heading).collect();
+        let results = inputs.split_off(design.axes.len());
         let columns = columns.len();
         let refuse = |message: String| Err(SweepError::Design(message).into());
         if columns > MAX_COLUMNS {
@@ -72,14 +72,12 @@ impl<'a> PreparedSweep<'a> {
             return refuse(format!("{columns} columns {fault}"));
         }
         if let (Some(shard), Some(_)) = (sweep.shard, sweep.export) {
-            return refuse(format!(
-                "an export gathers all shards: leave --shard {shard} out"
-            ));
+            let message = "an export gathers all shards: leave --shard";
+            return refuse(format!("{message} {shard} out"));
         }
         let exact: Vec<String> = design.axes.iter().map(exact_text).collect();
-        let shard = sweep
-            .shard
-            .map_or(WHOLE_STUDY.to_owned(), |s| s.to_string());
+        let shard = sweep.shard.map(|shard| shard.to_string());
+        let shard = shard.unwrap_or_else(|| WHOLE_STUDY.to_owned());
         // A study without random axes has no seed.
         let seed = match design.is_random() {
             true => design.seed.to_string(),
@@ -99,6 +97,7 @@ impl<'a> PreparedSweep<'a> {
         ];
         Ok(Self {
             scene,
+            sweep,
             design,
             requested,
             study,
@@ -113,17 +112,8 @@ impl<'a> PreparedSweep<'a> {
             let of = study.iter_mut().filter(|(key, _)| *key == SHARD);
             of.for_each(|(_, value)| shard.clone_into(value));
         }
-        Store::open(path, &study, [&self.inputs, &self.results])
-    }
-
-    /// Computes one point.
-    fn row(&self, index: u64) -> Row {
-        let (inputs, result) = self.requested.point(self.scene, &self.design, index);
-        Row {
-            index,
-            inputs,
-            result,
-        }
+        let headings: [&[String]; 2] = [&self.inputs, &self.results];
+        Store::open(path, &study, headings).map_err(|e| e.with_path(path))
     }
 }
 
@@ -177,7 +167,7 @@ pub fn sweep(
         computed,
         missing: all().count().saturating_sub(rows.len()),
     };
-    export::report_sweep(&prepared, sweep, &path, &rows, counts)
+    export::report_sweep(&prepared, &path, &rows, counts)
 }
 
 /// Computes points on all cores; a single writer stores them as they arrive.
@@ -187,10 +177,12 @@ fn compute(
     pending: &[u64],
     progress: Progress<'_>,
 ) -> Result<(), StudyError> {
+    let (requested, design) = (&prepared.requested, &prepared.design);
     write_from(store, |sender| {
         pending.par_iter().try_for_each_with(sender, |sender, &k| {
+            let row = requested.point(prepared.scene, design, k);
             // If the writer has failed, nothing more is computed.
-            sender.send(prepared.row(k)).ok()?;
+            sender.send(row).ok()?;
             progress(Step {
                 total: pending.len(),
                 done: "points",

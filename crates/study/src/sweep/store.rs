@@ -5,7 +5,7 @@
 //! file systems, where the write-ahead log does not.
 
 use crate::explain::SweepError;
-use crate::sweep::compute::PointResult;
+use crate::sweep::compute::{PointResult, Row};
 use rusqlite::types::Value;
 use rusqlite::{Connection, ErrorCode, params_from_iter};
 use std::collections::HashMap;
@@ -28,16 +28,7 @@ pub(crate) const SCENE_TEXT: &str = "scene_text";
 /// The identity of a study, by key, in the order in which differences are reported.
 pub(crate) type StudyIdentity = Vec<(&'static str, String)>;
 
-/// A finished point.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Row {
-    pub(crate) index: u64,
-    pub(crate) inputs: Vec<f64>,
-    pub(crate) result: PointResult,
-}
-
 /// An open file.
-#[derive(Debug)]
 pub(crate) struct Store {
     path: PathBuf,
     connection: Connection,
@@ -54,17 +45,9 @@ impl Store {
     /// Opens the file of a study, or creates it. `headings` are those of the inputs and of the results.
     ///
     /// # Errors
-    /// [`SweepError::DifferentStudy`] if it holds another study; [`SweepError::Store`] if it is not a sweep store, cannot
+    /// [`StoreFault::Differs`] if it holds another study; [`StoreFault::Reason`] if it is not a sweep store, cannot
     /// be read or written, or another process has it open.
     pub(crate) fn open(
-        path: &Path,
-        study: &StudyIdentity,
-        headings: [&[String]; 2],
-    ) -> Result<Self, SweepError> {
-        Self::try_open(path, study, headings).map_err(|e| e.with_path(path))
-    }
-
-    fn try_open(
         path: &Path,
         study: &StudyIdentity,
         headings: [&[String]; 2],
@@ -128,13 +111,9 @@ impl Store {
         text: &str,
         read: impl FnMut(&rusqlite::Row<'_>) -> rusqlite::Result<T>,
     ) -> Result<Vec<T>, SweepError> {
-        let all = || -> rusqlite::Result<Vec<T>> {
-            self.connection
-                .prepare(text)?
-                .query_map((), read)?
-                .collect()
-        };
-        all().map_err(|e| StoreFault::from(e).with_path(&self.path))
+        let statement = self.connection.prepare(text);
+        let all = statement.and_then(|mut statement| statement.query_map((), read)?.collect());
+        all.map_err(|e| StoreFault::from(e).with_path(&self.path))
     }
 
     /// Writes rows as they arrive, until the channel closes; each is on disk after at most 0.2 s.
@@ -169,12 +148,9 @@ impl Store {
 
 fn cells(row: Row) -> Vec<Value> {
     // SQLite has no NaN: it is stored as NULL.
-    let real = |v: f64| {
-        if v.is_nan() {
-            Value::Null
-        } else {
-            Value::Real(v)
-        }
+    let real = |v: f64| match v.is_nan() {
+        true => Value::Null,
+        false => Value::Real(v),
     };
     // An index is far below SQLite's largest integer.
     let mut cells = vec![Value::Integer(row.index as i64)];
@@ -197,14 +173,10 @@ fn create(
     for (key, value) in study {
         transaction.execute("INSERT INTO study VALUES (?, ?)", (key, value))?;
     }
-    let columns = headings.concat();
-    let columns: Vec<String> = columns
-        .iter()
-        .map(|name| format!("{} REAL", quoted(name)))
-        .collect();
-    let columns = columns.join(", ");
+    let column = |name: &String| format!("{} REAL, ", quoted(name));
+    let columns: String = headings.concat().iter().map(column).collect();
     transaction.execute_batch(&format!(
-        "CREATE TABLE points (\"index\" INTEGER PRIMARY KEY, {columns}, \"message\" TEXT);"
+        "CREATE TABLE points (\"index\" INTEGER PRIMARY KEY, {columns}\"message\" TEXT);"
     ))?;
     transaction.pragma_update(None, "application_id", APPLICATION)?;
     transaction.pragma_update(None, "user_version", VERSION)?;
@@ -243,14 +215,13 @@ fn shortened(value: &str) -> String {
 }
 
 /// An error of the store, to which the caller adds the path.
-#[derive(Debug)]
-enum StoreFault {
+pub(crate) enum StoreFault {
     Reason(String),
     Differs(String),
 }
 
 impl StoreFault {
-    fn with_path(self, path: &Path) -> SweepError {
+    pub(crate) fn with_path(self, path: &Path) -> SweepError {
         let path = path.to_owned();
         match self {
             Self::Reason(reason) => SweepError::Store { path, reason },

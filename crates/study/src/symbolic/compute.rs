@@ -3,7 +3,7 @@
 use crate::explain::{
     Labels, StudyError, body_names_or_mechanism, joint_labels, not_one_actuator, scene_error,
 };
-use crate::models::{indeterminate_reactions, reduced_model};
+use crate::models::{reduced_model, requested_reactions};
 use crate::symbolic::closed_form_check::ClosedFormCheck;
 use dwell_findings::Finding;
 use dwell_geometry::Reaction;
@@ -46,10 +46,8 @@ fn full_reduced_model(scene: &Scene) -> Result<ExactModel, StudyError> {
 
 fn find_reaction(scene: &Scene, name: &str) -> Result<Reaction, StudyError> {
     let all = scene.mechanism.reactions();
-    let names: Vec<String> = all
-        .iter()
-        .map(|&r| scene.mechanism.reaction_name(r))
-        .collect();
+    let names = all.iter().map(|&r| scene.mechanism.reaction_name(r));
+    let names: Vec<String> = names.collect();
     let found = names.iter().position(|other| other == name);
     found.map(|k| all[k]).ok_or_else(|| {
         let message = format!("there is no reaction `{name}`");
@@ -76,15 +74,17 @@ fn explain_symbolic(scene: &Scene, error: &SymbolicError) -> StudyError {
              of any mechanism with one degree of freedom",
             joint_labels(joints, "closes the group"),
         ),
-        SymbolicError::Reaction(reaction) => scene_error(
-            scene,
-            format!(
-                "`{}` is statically indeterminate",
-                scene.mechanism.reaction_name(*reaction)
-            ),
-            "redundant constraints share the load: name another reaction",
-            joint_labels(&[reaction.joint], "redundant"),
-        ),
+        SymbolicError::Reaction(reaction) => {
+            let name = scene.mechanism.reaction_name(*reaction);
+            let message = format!("`{name}` is statically indeterminate");
+            let help = "redundant constraints share the load: name another reaction";
+            scene_error(
+                scene,
+                message,
+                help,
+                joint_labels(&[reaction.joint], "redundant"),
+            )
+        }
         SymbolicError::Position(error) => scene_error(scene, error.to_string(), "", Labels::new()),
     }
 }
@@ -98,11 +98,7 @@ pub fn compute_closed_form(
     let plan = exact.model().plan();
     let reaction = match reaction {
         Some(name) => Some(find_reaction(scene, name)?),
-        None => {
-            let indeterminate = indeterminate_reactions(scene, plan);
-            let mut requested = scene.requests.reactions.iter();
-            requested.find(|r| !indeterminate.contains(r)).copied()
-        }
+        None => requested_reactions(scene, plan)[0].first().copied(),
     };
     let explain = |e: SymbolicError| explain_symbolic(scene, &e);
     let symbolic = Symbolic::new(&scene.mechanism, &scene.masses, plan).map_err(explain)?;

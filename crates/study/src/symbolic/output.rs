@@ -47,9 +47,8 @@ pub fn symbolic(
             (extension, form.code(language, &name, &about))
         }
     };
-    outcome
-        .files
-        .add(format!("{}-symbolic.{extension}", scene.name), text);
+    let file = format!("{}-symbolic.{extension}", scene.name);
+    outcome.files.add(file, text);
     Ok(outcome)
 }
 
@@ -88,13 +87,8 @@ pub(crate) fn summary(scene: &Scene, form: &ClosedForm, findings: &[Finding]) ->
 pub(crate) fn document(scene: &Scene, form: &ClosedForm) -> String {
     let of = &form.coordinate;
     let constant = |c: &Constant| {
-        let latex = format!("${}$", c.latex);
-        vec![
-            latex,
-            digits(c.value, 12),
-            c.unit.to_owned(),
-            c.meaning.clone(),
-        ]
+        let (latex, value) = (format!("${}$", c.latex), digits(c.value, 12));
+        vec![latex, value, c.unit.to_owned(), c.meaning.clone()]
     };
     let mut blocks = vec![
         Block::Text(format!(

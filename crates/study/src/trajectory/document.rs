@@ -3,10 +3,10 @@
 use crate::number_format::{count, number};
 use crate::output::{indeterminate_note, provenance_line};
 use crate::trajectory::compute::{
-    Analysis, Quantity, SectionedLink, Trajectory, TrajectoryResults,
+    Analysis, Column, ComputedTrajectory, Quantity, SectionedLink, Trajectory, TrajectoryResults,
+    selected_columns,
 };
-use crate::trajectory::extrema::{ColumnExtrema, extrema};
-use dwell_kinetostatics::Distribution;
+use dwell_kinetostatics::{Distribution, Section};
 use dwell_report::{Block, Document as Page, Figure};
 use dwell_scene::Scene;
 
@@ -22,24 +22,22 @@ pub(crate) struct Document<'a> {
     scene: &'a Scene,
     results: &'a TrajectoryResults,
     trajectory: &'a Trajectory<'a>,
-    analysis: Analysis,
-    selected: &'a [usize],
+    selected: Vec<usize>,
     extrema: Vec<ColumnExtrema>,
     /// Name and unit of the abscissa: time, or the swept coordinate.
     abscissa: (&'a str, &'static str),
+    /// `at` the abscissa, with its unit, as the heading of a column.
+    at: String,
     abscissa_values: Vec<f64>,
 }
 
 impl<'a> Document<'a> {
-    pub(crate) fn new(
-        scene: &'a Scene,
-        results: &'a TrajectoryResults,
-        trajectory: &'a Trajectory<'a>,
-        analysis: Analysis,
-        selected: &'a [usize],
-    ) -> Self {
+    pub(crate) fn new(scene: &'a Scene, computed: &'a ComputedTrajectory<'a>) -> Self {
+        let (trajectory, results) = (&computed.trajectory, &computed.results);
         let columns = &results.columns;
+        let selected = selected_columns(scene, columns);
         let abscissa = results.abscissa(trajectory);
+        let (name, unit) = (&columns[abscissa].name, columns[abscissa].unit);
         // The abscissa itself is not a result, nor is the time.
         let is_result = |&k: &usize| k != abscissa && columns[k].quantity != Quantity::Time;
         let listed: Vec<usize> = selected.iter().copied().filter(is_result).collect();
@@ -47,38 +45,33 @@ impl<'a> Document<'a> {
             scene,
             results,
             trajectory,
-            analysis,
             selected,
             extrema: extrema(columns, &listed, &results.rows),
-            abscissa: (&columns[abscissa].name, columns[abscissa].unit),
+            abscissa: (name, unit),
+            at: format!("at {name} [{unit}]"),
             abscissa_values: results.rows.iter().map(|row| row[abscissa]).collect(),
         }
     }
 
     /// The extrema as CSV, each with the value of the abscissa where it occurs.
     pub(crate) fn extrema_csv(&self) -> String {
-        let (abscissa, unit) = self.abscissa;
-        let at = format!("at {abscissa} [{unit}]");
+        let at = &self.at;
         let mut text = format!("quantity,unit,min,min {at},max,max {at}\n");
-        for ColumnExtrema {
-            name,
-            unit,
-            min,
-            max,
-        } in &self.extrema
-        {
-            let [at_min, at_max] = [min, max].map(|(_, row)| self.abscissa_values[*row]);
+        for of in &self.extrema {
             // Names of a scene hold neither commas nor quotes.
-            let (min, max) = (min.0, max.0);
-            text += &format!("{name},{unit},{min:?},{at_min:?},{max:?},{at_max:?}\n");
+            text += &format!("{},{}", of.name, of.unit);
+            for (value, row) in [of.min, of.max] {
+                text += &format!(",{value:?},{:?}", self.abscissa_values[row]);
+            }
+            text.push('\n');
         }
         text
     }
 
     /// The extrema as a text table.
     fn extrema_table(&self) -> Block {
-        let (abscissa, unit) = self.abscissa;
-        let at = format!("at {abscissa} [{unit}]");
+        let at = &self.at;
+        let header = ["quantity", "unit", "min", at, "max", at];
         let row = |of: &ColumnExtrema| {
             let cells = [of.min, of.max].map(|(v, row)| [v, self.abscissa_values[row]].map(number));
             let mut row = vec![of.name.clone(), of.unit.to_owned()];
@@ -86,11 +79,14 @@ impl<'a> Document<'a> {
             row
         };
         Block::Table {
-            header: ["quantity", "unit", "min", &at, "max", &at]
-                .map(str::to_owned)
-                .into(),
+            header: header.map(str::to_owned).into(),
             rows: self.extrema.iter().map(row).collect(),
         }
+    }
+
+    fn title(&self) -> String {
+        let analysis = self.trajectory.analysis.name();
+        format!("{}: {analysis}", self.scene.title)
     }
 
     fn first_line(&self) -> String {
@@ -99,11 +95,8 @@ impl<'a> Document<'a> {
         if reached != points {
             all = format!("{reached} of {all}");
         }
-        let (title, analysis) = (&self.scene.title, self.analysis.name());
-        format!(
-            "{title}: {analysis}, {all} over {}",
-            self.trajectory.description
-        )
+        let over = &self.trajectory.description;
+        format!("{}, {all} over {over}", self.title())
     }
 
     /// What is printed.
@@ -112,13 +105,11 @@ impl<'a> Document<'a> {
         text += &self.largest_values();
         let (abscissa, unit) = self.abscissa;
         for (link, row, section) in self.bending_moments() {
-            let body = self.scene.mechanism.body_name(link.request.body);
-            let [from, to] = &link.request.names;
+            let (link, from) = (&link.name, &link.request.names[0]);
             let [bending, station, at] =
                 [section.bending, section.station, self.abscissa_values[row]].map(number);
             text += &format!(
-                "  bending moment of {body} from {from} to {to}: {bending} N m, {station} m from {from}, at \
-                 {abscissa} = {at} {unit}\n"
+                "  bending moment of {link}: {bending} N m, {station} m from {from}, at {abscissa} = {at} {unit}\n"
             );
         }
         text += &self.power_balance_text();
@@ -129,26 +120,19 @@ impl<'a> Document<'a> {
     /// The lines about the largest values of each unit.
     fn largest_values(&self) -> String {
         let mut text = String::new();
-        let is_interesting = |unit: &str| match self.analysis {
+        let is_interesting = |unit: &str| match self.trajectory.analysis {
             Analysis::Kinematics => matches!(unit, "rad/s" | "m/s" | "rad/s2" | "m/s2"),
             _ => matches!(unit, "N" | "N m" | "W"),
         };
         let (abscissa, abscissa_unit) = self.abscissa;
         let mut listed: Vec<(&str, f64)> = Vec::new();
-        for ColumnExtrema {
-            name,
-            unit,
-            min,
-            max,
-        } in &self.extrema
-        {
-            let is_lower = min.0.abs() > max.0.abs();
-            let (value, row) = if is_lower { *min } else { *max };
+        for of in &self.extrema {
+            let (name, unit) = (&of.name, of.unit);
+            let is_lower = of.min.0.abs() > of.max.0.abs();
+            let (value, row) = if is_lower { of.min } else { of.max };
             let size = value.abs();
-            let mut of_unit = listed
-                .iter()
-                .filter(|(u, _)| u == unit)
-                .map(|(_, v)| v.abs());
+            let of_unit = listed.iter().filter(|(u, _)| *u == unit);
+            let mut of_unit = of_unit.map(|(_, v)| v.abs());
             let is_enough = of_unit.clone().count() == MAX_LISTED;
             let largest = of_unit.clone().next().unwrap_or(0.0);
             // The same under another name: a pin belongs to two bodies.
@@ -171,9 +155,7 @@ impl<'a> Document<'a> {
     }
 
     /// The links whose internal forces are computed, with the position and the section of the largest bending moment.
-    fn bending_moments(
-        &self,
-    ) -> impl Iterator<Item = (&SectionedLink, usize, dwell_kinetostatics::Section)> {
+    fn bending_moments(&self) -> impl Iterator<Item = (&SectionedLink, usize, Section)> {
         let links = self.results.sectioned_links.iter();
         links.filter_map(|link| {
             let (row, _) = link.max_bending_sections.as_ref()?;
@@ -193,7 +175,7 @@ impl<'a> Document<'a> {
             ),
             _ => String::new(),
         };
-        let indeterminate = match self.analysis {
+        let indeterminate = match self.trajectory.analysis {
             Analysis::Kinematics => String::new(),
             _ => indeterminate_note(self.results.indeterminate.iter().cloned()),
         };
@@ -209,7 +191,7 @@ impl<'a> Document<'a> {
 
     fn power_balance_text(&self) -> String {
         use Analysis::{FreeMotion, Kinetostatics};
-        if !matches!(self.analysis, Kinetostatics | FreeMotion) {
+        if !matches!(self.trajectory.analysis, Kinetostatics | FreeMotion) {
             return String::new();
         }
         let residual = self.results.power_residual;
@@ -249,9 +231,8 @@ impl<'a> Document<'a> {
         ));
         let row = |&k: &usize| {
             let column = &self.results.columns[k];
-            [&column.name, column.unit, &column.meaning]
-                .map(str::to_owned)
-                .into()
+            let cells = [&column.name, column.unit, &column.meaning];
+            cells.map(str::to_owned).into()
         };
         blocks.push(Block::Table {
             header: ["column", "unit", "meaning"].map(str::to_owned).into(),
@@ -260,7 +241,7 @@ impl<'a> Document<'a> {
         let provenance = provenance_line(self.scene);
         let method = &self.trajectory.method_text;
         blocks.push(Block::Text(format!("{provenance} · {method}")));
-        let title = format!("{}: {}", self.scene.title, self.analysis.name());
+        let title = self.title();
         Page { title, blocks }.markdown()
     }
 
@@ -268,28 +249,21 @@ impl<'a> Document<'a> {
         if self.results.sectioned_links.is_empty() {
             return Vec::new();
         }
-        let (abscissa, unit) = self.abscissa;
-        let row = |(link, row, peak): (&SectionedLink, usize, dwell_kinetostatics::Section)| {
-            let [from, to] = &link.request.names;
-            let body = self.scene.mechanism.body_name(link.request.body);
+        let row = |(link, row, peak): (&SectionedLink, usize, Section)| {
             let distribution = match link.distribution {
                 Distribution::UniformBar => "uniform bar",
                 Distribution::Lumped => "lumped at the centre of mass",
             };
-            vec![
-                format!("{body} from {from} to {to}"),
-                number(peak.bending),
-                number(peak.station),
-                number(self.abscissa_values[row]),
-                distribution.to_owned(),
-            ]
+            let [bending, station, at] =
+                [peak.bending, peak.station, self.abscissa_values[row]].map(number);
+            let (link, distribution) = (link.name.clone(), distribution.to_owned());
+            vec![link, bending, station, at, distribution]
         };
-        let at = format!("at {abscissa} [{unit}]");
         let header = [
             "link",
             "bending moment [N m]",
             "station [m]",
-            &at,
+            &self.at,
             "mass distribution",
         ];
         vec![
@@ -305,4 +279,47 @@ impl<'a> Document<'a> {
             },
         ]
     }
+}
+
+/// The minimum and maximum of a column, and where they occur.
+struct ColumnExtrema {
+    name: String,
+    unit: &'static str,
+    /// Smallest and largest value, each with its row.
+    min: (f64, usize),
+    max: (f64, usize),
+}
+
+impl ColumnExtrema {
+    fn max_abs(&self) -> f64 {
+        self.min.0.abs().max(self.max.0.abs())
+    }
+}
+
+/// The extrema of some columns, grouped by unit, largest absolute value first.
+fn extrema(columns: &[Column], selected: &[usize], rows: &[Vec<f64>]) -> Vec<ColumnExtrema> {
+    let entry = |&k: &usize| {
+        // Empty cells are skipped.
+        let values = || {
+            let rows = rows.iter().enumerate().map(|(i, row)| (row[k], i));
+            rows.filter(|(value, _)| !value.is_nan())
+        };
+        // Of equal values the first.
+        let min = values().reduce(|a, b| if b.0 < a.0 { b } else { a })?;
+        let max = values().reduce(|a, b| if b.0 > a.0 { b } else { a })?;
+        Some(ColumnExtrema {
+            name: columns[k].name.clone(),
+            unit: columns[k].unit,
+            min,
+            max,
+        })
+    };
+    let mut all: Vec<ColumnExtrema> = selected.iter().filter_map(entry).collect();
+    let units: Vec<&str> = all.iter().map(|entry| entry.unit).collect();
+    let unit_order = |p: &ColumnExtrema| units.iter().position(|u| *u == p.unit);
+    all.sort_by(|a, b| {
+        let by_unit = unit_order(a).cmp(&unit_order(b));
+        by_unit.then(b.max_abs().total_cmp(&a.max_abs()))
+    });
+    all
 }

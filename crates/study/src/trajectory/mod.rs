@@ -5,16 +5,6 @@ pub mod compute;
 #[cfg(feature = "output")]
 mod document;
 #[cfg(feature = "output")]
-mod extrema;
-#[cfg(feature = "output")]
 mod figures;
 #[cfg(feature = "output")]
-mod output;
-#[cfg(feature = "output")]
-mod written_results;
-
-pub use compute::{Analysis, compute_trajectory};
-#[cfg(feature = "output")]
-pub(crate) use output::report;
-#[cfg(feature = "output")]
-pub use output::{TrajectoryOutcome, analyse_trajectory};
+pub(crate) mod output;

@@ -4,11 +4,8 @@ use super::{document, figures};
 use crate::explain::StudyError;
 use crate::output::{Outcome, signed_gif, signed_png};
 use crate::progress::{Progress, Step};
-use crate::trajectory::compute::{
-    Analysis, ComputedTrajectory, compute_trajectory, selected_columns,
-};
-use dwell_report::TableExport as _;
-use dwell_report::{Figure, Files, ReportError, TableFormat};
+use crate::trajectory::compute::{Analysis, ComputedTrajectory, compute_trajectory};
+use dwell_report::{Figure, Files, ReportError, TableExport as _, TableFormat};
 use dwell_scene::Scene;
 use rayon::prelude::*;
 
@@ -33,12 +30,11 @@ pub fn analyse_trajectory(
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
     let computed = compute_trajectory(scene, analysis, points, progress)?;
-    let mut outcome = report(scene, &computed, analysis, progress)?;
+    let mut outcome = report(scene, &computed, progress)?;
     outcome.summary += &computed.notes;
-    let early_stop = computed.early_stop;
     Ok(TrajectoryOutcome {
         outcome,
-        early_stop,
+        early_stop: computed.early_stop,
     })
 }
 
@@ -46,15 +42,14 @@ pub fn analyse_trajectory(
 pub(crate) fn report(
     scene: &Scene,
     computed: &ComputedTrajectory<'_>,
-    analysis: Analysis,
     progress: Progress<'_>,
 ) -> Result<Outcome, StudyError> {
     let (trajectory, results) = (&computed.trajectory, &computed.results);
-    let selected = selected_columns(scene, &results.columns);
-    let name = |rest: &str| format!("{}-{}{rest}", scene.name, analysis.name());
+    let analysis = trajectory.analysis.name();
+    let name = |rest: &str| format!("{}-{analysis}{rest}", scene.name);
     let mut files = Files::new();
     files.add_table(&name(""), &computed.table, &TableFormat::ALL)?;
-    let document = document::Document::new(scene, results, trajectory, analysis, &selected);
+    let document = document::Document::new(scene, computed);
     files.add(name("-extrema.csv"), document.extrema_csv());
     for link in &results.sectioned_links {
         let of = link.file_name(scene.mechanism.body_name(link.request.body));
@@ -62,7 +57,7 @@ pub(crate) fn report(
         files.add(file(""), link.table().csv()?);
         files.add(file("-envelope"), link.envelope_table().csv()?);
     }
-    let (figures, left_out) = figures::trajectory_figures(scene, computed, analysis);
+    let (figures, left_out) = figures::trajectory_figures(scene, computed);
     let total = trajectory.progress_steps() + figures.len() + 1;
     let file = |figure: &Figure| name(&format!("-{}.png", figure.name));
     let drawn = figures.par_iter().map(|figure| {

@@ -170,7 +170,7 @@ fn rename_quantities(value: &mut Value, scene: &Scene) -> String {
             };
             let rename = |(name, value): (String, Value)| match current_name(scene, &name) {
                 Some(current) => {
-                    notes.insert(former_names::note(&name, &[&current]));
+                    notes.insert(former_names::note(&name, [&current]));
                     (current, value)
                 }
                 None => (name, value),

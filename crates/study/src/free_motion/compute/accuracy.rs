@@ -80,13 +80,8 @@ impl FreeMotionProblem<'_> {
         let method_text = format!("{}{suffix}, tolerance {tolerance}", method.name());
         let how = format!("{method_text}, {reason}; {} runs", found.runs);
         let (motion, difference) = (found.motion, &found.difference);
-        Ok(ComputedMotion::to_accuracy(
-            motion,
-            method_text,
-            accuracy,
-            &how,
-            difference,
-        ))
+        let found = ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, difference);
+        Ok(found)
     }
 
     /// The first candidate that reaches the accuracy, or else the one that comes nearest to it.
@@ -188,11 +183,9 @@ impl FreeMotionProblem<'_> {
         let difference = self.difference(&motion, &delayed).ok()?;
         let method_text = "quadrature".to_owned();
         let points = orbit.points;
-        let how =
-            format!("{method_text} (conservative, periodic motion), {points} quadrature points");
-        let computed =
-            ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, &difference);
-        Some(computed)
+        let how = format!("quadrature (conservative, periodic motion), {points} quadrature points");
+        let found = ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, &difference);
+        Some(found)
     }
 }
 
@@ -205,13 +198,11 @@ impl ComputedMotion {
         how: &str,
         difference: &Difference,
     ) -> Self {
+        let (coordinate, energy) = (difference.coordinate, difference.energy);
+        let (required, reactions) = (two_digits(accuracy), difference.reactions);
         let remarks = format!(
-            "  accuracy {}: {how}\n  estimated errors over the whole motion: {:.1e} in the coordinates, {:.1e} of the \
-             largest kinetic energy, {:.1e} of the largest reaction\n",
-            two_digits(accuracy),
-            difference.coordinate,
-            difference.energy,
-            difference.reactions
+            "  accuracy {required}: {how}\n  estimated errors over the whole motion: {coordinate:.1e} in the coordinates, \
+             {energy:.1e} of the largest kinetic energy, {reactions:.1e} of the largest reaction\n"
         );
         Self {
             motion,
@@ -224,11 +215,8 @@ impl ComputedMotion {
 
 /// The interval of the coordinate that a motion of one degree of freedom visits.
 fn visited_range(motion: &SegmentedMotion) -> [f64; 2] {
-    extent(
-        motion
-            .steps()
-            .filter_map(|(_, point)| point.y.first().copied()),
-    )
+    let steps = motion.steps();
+    extent(steps.filter_map(|(_, point)| point.y.first().copied()))
 }
 
 /// Whether a motion reached its end.

@@ -40,10 +40,8 @@ impl FreeMotionProblem<'_> {
                 format!("libration between {name} = {a} and {b} {unit}{}", period())
             }
             Ok(MotionClass::Asymptotic { to }) => {
-                format!(
-                    "asymptotic to {name} = {} {unit} (separatrix)",
-                    digits(to, 10)
-                )
+                let to = digits(to, 10);
+                format!("asymptotic to {name} = {to} {unit} (separatrix)")
             }
             _ => return String::new(),
         };
@@ -78,15 +76,13 @@ impl FreeMotionProblem<'_> {
         for change in &motion.chart_changes {
             text += &format!("  {change}\n");
         }
-        let statistics = motion.statistics;
+        let cost = motion.statistics;
+        text += &format!("  {} steps, {} rejected, ", cost.steps, cost.rejected_steps);
         text += &format!(
-            "  {} steps, {} rejected, {} evaluations, {} Jacobians, {} factorisations\n",
-            statistics.steps,
-            statistics.rejected_steps,
-            statistics.evaluations,
-            statistics.jacobians,
-            statistics.factorisations,
+            "{} evaluations, {} Jacobians, ",
+            cost.evaluations, cost.jacobians
         );
+        text += &format!("{} factorisations\n", cost.factorisations);
         text + &self.describe_motion_class() + &self.describe_energy_balance(motion)
     }
 

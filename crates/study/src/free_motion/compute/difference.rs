@@ -9,7 +9,6 @@ use dwell_dynamics::DynamicsError;
 const COMPARED_SAMPLES: usize = 64;
 
 /// The largest differences of two computations at their common sample times.
-#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Difference {
     /// Of the free coordinates: rad, or for lengths relative to the largest change.
     pub(crate) coordinate: f64,

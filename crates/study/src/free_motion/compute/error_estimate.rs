@@ -46,23 +46,21 @@ impl FreeMotionProblem<'_> {
             "at the end".to_owned()
         };
         let kinetic = samples.iter().map(|s| s.extra_values[0]);
-        let errors = self
-            .error_texts(&pairs, kinetic.fold(0.0, f64::max))
-            .concat();
+        let errors = self.error_texts(&pairs, kinetic.fold(0.0, f64::max));
         Ok(format!(
             "  estimated error {at}:{errors} from a second run at {refinement}\n"
         ))
     }
 
     /// The error of each free coordinate, and of the energy balance if anything moves.
-    fn error_texts(&self, pairs: &[SamplePair<'_>], max_kinetic: f64) -> Vec<String> {
+    fn error_texts(&self, pairs: &[SamplePair<'_>], max_kinetic: f64) -> String {
         let error_of = |of: &dyn Fn(&TrajectorySample) -> f64, rounding: f64| {
-            let (one, two): (Vec<f64>, Vec<f64>) =
-                pairs.iter().map(|(a, b)| (of(a), of(b))).unzip();
+            let values = pairs.iter().map(|(a, b)| (of(a), of(b)));
+            let (one, two): (Vec<f64>, Vec<f64>) = values.unzip();
             estimate::of_motion(&one, &two, rounding)
         };
         let ends = pairs.first().zip(pairs.last());
-        let mut texts = Vec::new();
+        let mut text = String::new();
         for &i in self.machine.free() {
             let [start, end] = ends.map_or([0.0; 2], |((first, _), (last, _))| {
                 [first.coordinate(i), last.coordinate(i)]
@@ -72,14 +70,14 @@ impl FreeMotionProblem<'_> {
             let error = error_of(&|s| s.coordinate(i), rounding);
             let unit = coordinate_unit(self.output_model.plan().is_angle(i));
             let name = &self.loaded_scene.mechanism.actuators[i].name;
-            texts.push(format!(" {error:.1e} {unit} in {name},"));
+            text += &format!(" {error:.1e} {unit} in {name},");
         }
         if max_kinetic > 0.0 {
             let rounding = 4.0 * f64::EPSILON * max_kinetic;
             let error = error_of(&|s| self.energy_balance(s), rounding) / max_kinetic;
-            texts.push(format!(" {error:.1e} of the largest kinetic energy,"));
+            text += &format!(" {error:.1e} of the largest kinetic energy,");
         }
-        texts
+        text
     }
 
     /// The relative rounding error of the initial speed, from that of the only coordinate's inertia.

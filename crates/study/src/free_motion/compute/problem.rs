@@ -6,7 +6,7 @@ use crate::models::{build_machine, loaded_model};
 use crate::number_format::digits;
 use crate::trajectory::compute::check_variables;
 use dwell_dynamics::atlas::{
-    Atlas, AtlasError, ChartChangeReason, ContinuedMotion, MachineDescription,
+    Atlas, AtlasError, ChartChange, ChartChangeReason, ContinuedMotion, MachineDescription,
 };
 use dwell_dynamics::{
     DynamicsError, Event, EventKind, Machine, OdeState, Options, Orbit, ReducedState, solve,
@@ -106,22 +106,18 @@ impl<'a> FreeMotionProblem<'a> {
     /// Lines of the summary about chart changes and change points.
     fn describe_changes(&self, atlas: &Atlas<'_>, continued: &ContinuedMotion) -> Vec<String> {
         let name = |chart: usize| &atlas.charts()[chart].name;
-        let listed = continued.changes.iter().take(MAX_LISTED);
-        let mut descriptions: Vec<String> = listed
-            .map(|change| match change.reason {
-                ChartChangeReason::CrossesChangePoint { .. } => {
-                    format!("t = {} s: change point crossed", digits(change.t, 6))
-                }
+        let describe = |change: &ChartChange| {
+            let what = match change.reason {
+                ChartChangeReason::CrossesChangePoint { .. } => "change point crossed".to_owned(),
                 ChartChangeReason::CoordinateFold { .. } | ChartChangeReason::SolutionEnds => {
-                    format!(
-                        "t = {} s: coordinate changed from {} (at its dead point) to {}",
-                        digits(change.t, 6),
-                        name(change.from),
-                        name(change.to)
-                    )
+                    let [from, to] = [change.from, change.to].map(name);
+                    format!("coordinate changed from {from} (at its dead point) to {to}")
                 }
-            })
-            .collect();
+            };
+            format!("t = {} s: {what}", digits(change.t, 6))
+        };
+        let listed = continued.changes.iter().take(MAX_LISTED);
+        let mut descriptions: Vec<String> = listed.map(describe).collect();
         if continued.changes.len() > MAX_LISTED {
             let more = continued.changes.len() - MAX_LISTED;
             descriptions.push(format!("and {more} more changes"));
@@ -155,14 +151,10 @@ impl<'a> FreeMotionProblem<'a> {
 
     /// The initial state of its machine.
     pub fn initial_state(&self) -> OdeState {
-        let (q, q_dot) = (
-            &self.spec.initial_coordinates,
-            &self.spec.initial_velocities,
-        );
-        OdeState {
-            t: 0.0,
-            y: self.machine.initial_state(q, q_dot),
-        }
+        let spec = self.spec;
+        let (q, q_dot) = (&spec.initial_coordinates, &spec.initial_velocities);
+        let y = self.machine.initial_state(q, q_dot);
+        OdeState { t: 0.0, y }
     }
 
     /// The duration of the motion, s.

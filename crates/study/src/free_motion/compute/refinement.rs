@@ -98,9 +98,8 @@ impl FreeMotionProblem<'_> {
                 return Ok(None);
             };
             let difference = self.difference(&kept, &motion);
-            let difference = difference
-                .map_err(|e| self.explain(&e))?
-                .scaled(SAFETY_FACTOR);
+            let difference = difference.map_err(|e| self.explain(&e))?;
+            let difference = difference.scaled(SAFETY_FACTOR);
             (tolerance, kept) = (next, motion);
             runs += 1;
             let largest = difference.largest();

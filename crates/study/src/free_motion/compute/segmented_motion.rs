@@ -44,23 +44,18 @@ impl SegmentedMotion {
 
     /// The events that happened, each with the chart of its segment.
     pub fn occurrences(&self) -> impl Iterator<Item = (usize, &EventOccurrence)> {
-        self.segments
-            .iter()
-            .flat_map(|(chart, solution)| solution.event_occurrences.iter().map(|o| (*chart, o)))
+        let segments = self.segments.iter();
+        segments.flat_map(|(chart, s)| s.event_occurrences.iter().map(|o| (*chart, o)))
     }
 
     /// The time at which it ends, s.
     pub fn end_time(&self) -> f64 {
-        let last = self
-            .segments
-            .last()
-            .and_then(|(_, solution)| solution.steps.last());
+        let last = self.segments.last().and_then(|(_, s)| s.steps.last());
         last.map_or(0.0, |state| state.t)
     }
 
     pub(crate) fn steps(&self) -> impl Iterator<Item = (usize, &OdeState)> {
-        self.segments
-            .iter()
-            .flat_map(|(chart, solution)| solution.steps.iter().map(|p| (*chart, p)))
+        let segments = self.segments.iter();
+        segments.flat_map(|(chart, s)| s.steps.iter().map(|state| (*chart, state)))
     }
 }

@@ -4,7 +4,7 @@ use crate::explain::{StudyError, missing_section_label, scene_error};
 use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem};
 use crate::models::{SolverSettings, with_drive_loads};
 use crate::progress::Progress;
-use crate::trajectory::compute::{Analysis, ComputedTrajectory, compute_along};
+use crate::trajectory::compute::{ComputedTrajectory, compute_along};
 use dwell_dynamics::{EventOccurrence, Options};
 use dwell_findings::Table;
 use dwell_scene::{Scene, SceneLocation};
@@ -27,17 +27,6 @@ pub enum MotionSolver {
         /// Sample interval, s; `None` for a thousandth of the duration.
         sample_interval: Option<f64>,
     },
-}
-
-impl MotionSolver {
-    fn sample_interval(&self) -> Option<f64> {
-        match self {
-            Self::Settings(settings) => settings.sample_interval,
-            Self::Accuracy {
-                sample_interval, ..
-            } => *sample_interval,
-        }
-    }
 }
 
 /// A free motion, up to where it ended.
@@ -82,11 +71,10 @@ pub fn compute_free_motion(
     if let Some(error) = motion.failure.as_ref().filter(|_| motion.end_time() == 0.0) {
         return Err(problem.explain(error));
     }
-    let trajectory = problem
-        .trajectory(&integrated)
-        .map_err(|e| problem.explain(&e))?;
-    let (model, analysis) = (&problem.output_model, Analysis::FreeMotion);
-    let mut computed = compute_along(&loaded_scene, model, trajectory, analysis, progress)?;
+    let trajectory = problem.trajectory(&integrated);
+    let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
+    let (model, notes) = (&problem.output_model, String::new());
+    let mut computed = compute_along(&loaded_scene, model, trajectory, notes, progress)?;
     let shortfall = problem.shortfall(scene, &integrated);
     computed.early_stop = shortfall.or(computed.early_stop);
     let mut summary = problem.summary(motion, &integrated.method_text, duration);
@@ -113,8 +101,13 @@ impl FreeMotionProblem<'_> {
         solver: &MotionSolver,
         duration: f64,
     ) -> Result<ComputedMotion, StudyError> {
-        let interval = solver.sample_interval();
-        let interval = interval.unwrap_or(duration / DEFAULT_SAMPLES);
+        let (MotionSolver::Settings(SolverSettings {
+            sample_interval, ..
+        })
+        | MotionSolver::Accuracy {
+            sample_interval, ..
+        }) = solver;
+        let interval = sample_interval.unwrap_or(duration / DEFAULT_SAMPLES);
         let interval = interval.max(duration / MAX_SAMPLES);
         let settings = match solver {
             MotionSolver::Settings(settings) => settings,
@@ -144,15 +137,11 @@ impl FreeMotionProblem<'_> {
             return Some(self.explain(error));
         }
         let [requested, error] = integrated.accuracy?;
-        (error > requested).then(|| {
-            scene_error(
-                scene,
-                format!(
-                    "an accuracy of {requested:e} is not reached: the estimated error is {error:.1e}"
-                ),
-                "the results are written with the error above; require that accuracy, or a shorter motion",
-                [(SceneLocation::Duration, "the error grows with the duration")],
-            )
-        })
+        let message = format!(
+            "an accuracy of {requested:e} is not reached: the estimated error is {error:.1e}"
+        );
+        let help = "the results are written with the error above; require that accuracy, or a shorter motion";
+        let place = (SceneLocation::Duration, "the error grows with the duration");
+        (error > requested).then(|| scene_error(scene, message, help, [place]))
     }
 }

@@ -4,9 +4,9 @@ use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMo
 use crate::models::{drive_states, source_name};
 use crate::number_format::coordinate_unit;
 use crate::trajectory::compute::{
-    BALANCE, ExtraColumn, FreeTrajectory, KINETIC, POTENTIAL, Trajectory, TrajectorySample,
+    self, BALANCE, FreeTrajectory, KINETIC, POTENTIAL, Quantity, Trajectory, TrajectorySample,
 };
-use dwell_dynamics::{DynamicsError, EventOccurrence, Machine, MachineState, OdeState};
+use dwell_dynamics::{DynamicsError, EventOccurrence};
 use dwell_findings::{Column, Table};
 use dwell_geometry::body_states::CoordinateFunction;
 
@@ -35,20 +35,37 @@ impl FreeMotionProblem<'_> {
         motion: &SegmentedMotion,
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let mut initial_balance: Option<f64> = None;
+        let loads = self.loaded_scene.loads.len();
         let mut samples = Vec::new();
         for (segment, (chart, solution)) in motion.segments.iter().enumerate() {
             let machine = self.machine(motion, *chart);
+            let first_work = machine.work_offset();
             let mut workspace = machine.workspace();
             for (k, point) in solution.samples.iter().enumerate() {
                 if machine.is_in_fit_window(&point.y) {
                     continue;
                 }
                 let state = machine.evaluate(point.t, &point.y, &mut workspace)?;
+                let [kinetic, potential] = state.energy();
+                let works = &point.y[first_work..];
+                let sum = kinetic + potential - works.iter().sum::<f64>();
+                let initial = *initial_balance.get_or_insert(sum);
+                let mut extra_values = vec![kinetic, potential];
+                extra_values.extend(works);
+                extra_values.push(sum - initial);
+                extra_values.extend(&point.y[2 * machine.free().len()..first_work]);
+                let (drives, magnitudes) = (loads - machine.drives()..loads, state.magnitudes());
                 let actuator_coordinates = motion.actuator_coordinates.get(segment);
-                let mut sample = self.sample(machine, point, &state, &mut initial_balance);
-                sample.chart = *chart;
-                sample.actuator_coordinate = actuator_coordinates.and_then(|s| s.get(k)).copied();
-                samples.push(sample);
+                samples.push(TrajectorySample {
+                    t: point.t,
+                    q: state.q().to_vec(),
+                    q_dot: state.q_dot().to_vec(),
+                    q_ddot: state.q_ddot().to_vec(),
+                    chart: *chart,
+                    actuator_coordinate: actuator_coordinates.and_then(|s| s.get(k)).copied(),
+                    drive_magnitudes: drives.map(|load| (load, magnitudes[load])).collect(),
+                    extra_values,
+                });
             }
         }
         if let [only] = samples.as_slice() {
@@ -58,48 +75,13 @@ impl FreeMotionProblem<'_> {
         Ok(samples)
     }
 
-    fn sample(
-        &self,
-        machine: &Machine,
-        point: &OdeState,
-        state: &MachineState<'_>,
-        initial_balance: &mut Option<f64>,
-    ) -> TrajectorySample {
-        let first = machine.work_offset();
-        let [kinetic, potential] = state.energy();
-        let works = &point.y[first..];
-        let sum = kinetic + potential - works.iter().sum::<f64>();
-        let initial = *initial_balance.get_or_insert(sum);
-        let mut extra_values = vec![kinetic, potential];
-        extra_values.extend(works);
-        extra_values.push(sum - initial);
-        extra_values.extend(&point.y[2 * machine.free().len()..first]);
-        let count = self.loaded_scene.loads.len();
-        let drives = count - machine.drives()..count;
-        let magnitudes = state.magnitudes();
-        TrajectorySample {
-            t: point.t,
-            q: state.q().to_vec(),
-            q_dot: state.q_dot().to_vec(),
-            q_ddot: state.q_ddot().to_vec(),
-            drive_magnitudes: drives.map(|load| (load, magnitudes[load])).collect(),
-            extra_values,
-            ..TrajectorySample::default()
-        }
-    }
-
     /// The error of the energy balance at a sample, J.
     pub(crate) fn energy_balance(&self, sample: &TrajectorySample) -> f64 {
         sample.extra_values[2 + self.machine.nonconservative_sources().len()]
     }
 
     /// The columns of [`TrajectorySample::extra_values`].
-    fn extra_columns(&self) -> Vec<ExtraColumn> {
-        let column = |(name, unit, meaning)| ExtraColumn {
-            name,
-            unit,
-            meaning,
-        };
+    fn extra_columns(&self) -> Vec<compute::Column> {
         let kinetic = "kinetic energy of all bodies and rotors";
         let potential = "potential energy of gravity, springs and constant forces";
         let balance =
@@ -108,18 +90,21 @@ impl FreeMotionProblem<'_> {
             (KINETIC.to_owned(), "J", kinetic),
             (POTENTIAL.to_owned(), "J", potential),
         ];
-        all.extend(
-            self.machine
-                .nonconservative_sources()
-                .iter()
-                .map(|&source| {
-                    let name = source_name(self.loaded_scene, source);
-                    (format!("{name}.work"), "J", "work since t = 0")
-                }),
-        );
+        let sources = self.machine.nonconservative_sources().iter();
+        all.extend(sources.map(|&source| {
+            let name = source_name(self.loaded_scene, source);
+            (format!("{name}.work"), "J", "work since t = 0")
+        }));
         all.push((BALANCE.to_owned(), "J", balance));
         all.extend(drive_states(self.loaded_scene));
-        all.into_iter().map(column).collect()
+        let column = |(k, (name, unit, meaning)): (usize, (String, _, &str))| compute::Column {
+            name,
+            former: None,
+            unit,
+            quantity: Quantity::Extra(k),
+            meaning: meaning.to_owned(),
+        };
+        all.into_iter().enumerate().map(column).collect()
     }
 
     /// The time of each event, and the actuator coordinates and speeds then.
@@ -127,10 +112,8 @@ impl FreeMotionProblem<'_> {
         let mut columns = vec![Column::new("t", "s"), Column::new("event", "")];
         let mechanism = &self.loaded_scene.mechanism;
         for actuator in &mechanism.actuators {
-            let (name, unit) = (
-                &actuator.name,
-                coordinate_unit(actuator.coordinate().is_angle()),
-            );
+            let name = &actuator.name;
+            let unit = coordinate_unit(actuator.coordinate().is_angle());
             columns.push(Column::new(name, unit));
             columns.push(Column::new(format!("{name}.velocity"), format!("{unit}/s")));
         }

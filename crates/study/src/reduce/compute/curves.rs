@@ -53,16 +53,12 @@ impl RoundingErrors {
                 .reduction_rounding_errors(q, at, &mut workspace, &mut errors)
                 .map_err(|e| explain_position(prepared.scene, model.plan(), &e))?;
             let parts = flat(&errors).into_iter().zip(&scales);
-            Ok(parts
-                .map(|(error, &scale)| relative(error, scale))
-                .collect())
+            let parts = parts.map(|(error, &scale)| relative(error, scale));
+            Ok(parts.collect())
         };
-        let all = curves
-            .q
-            .par_iter()
-            .zip(&curves.coefficients)
-            .map(relative_errors);
-        let all: Vec<Vec<f64>> = all.collect::<Result<_, StudyError>>()?;
+        let all = curves.q.par_iter().zip(&curves.coefficients);
+        let all = all.map(relative_errors).collect::<Result<_, StudyError>>();
+        let all: Vec<Vec<f64>> = all?;
         let largest = |some: &[f64]| some.iter().copied().fold(0.0, f64::max);
         let max_of = |part: std::ops::Range<usize>| {
             let parts = all.iter().map(|row| largest(&row[part.clone()]));

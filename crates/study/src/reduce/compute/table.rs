@@ -1,11 +1,11 @@
 //! `dwell reduce --table-accuracy`: the whole reduced model as an interpolation table, usable without the mechanism.
 
-use crate::explain::{self, StudyError, explain_motion, not_one_actuator, scene_error};
-use crate::models::{PreparedScene, loaded_determinate_model};
+use crate::explain::{self, StudyError, explain_motion, scene_error};
+use crate::models::{PreparedScene, exact_model, loaded_determinate_model};
 use crate::number_format::number;
 use dwell_geometry::{ActuatorId, Plan, Range};
 use dwell_kinetostatics::table::Labels;
-use dwell_kinetostatics::{ExactModel, TableDomain, TableError, TableQuantity, TabulatedModel};
+use dwell_kinetostatics::{TableDomain, TableError, TableQuantity, TabulatedModel};
 use dwell_scene::{Scene, SceneLocation};
 use std::f64::consts::TAU;
 
@@ -35,8 +35,7 @@ pub fn tabulate(
     request: &TableRequest,
 ) -> Result<Tabulation, StudyError> {
     let scene = prepared.scene;
-    let exact =
-        ExactModel::new(loaded_determinate_model(scene)?).ok_or_else(|| not_one_actuator(scene))?;
+    let exact = exact_model(scene, loaded_determinate_model(scene)?)?;
     let plan = exact.model().plan();
     // Without a period the curves cover one revolution, and so does the table.
     let si = |written: f64| scene.to_si(written, plan.is_angle(0));
@@ -69,9 +68,7 @@ pub fn tabulate(
     };
     let cheaper = match request.required {
         true => String::new(),
-        false => {
-            format!("{rows} (cheaper than building a table); use the table between rows\n")
-        }
+        false => format!("{rows} (cheaper than building a table); use the table between rows\n"),
     };
     let text = table.to_text(&labels);
     let text = text.map_err(|e| scene_error(scene, e.to_string(), "", explain::Labels::new()))?;
@@ -90,14 +87,10 @@ fn describe_table(scene: &Scene, table: &TabulatedModel) -> String {
         None => interval_text(scene, from, to),
     };
     let parts = ["m and ½m′", "a and b", "w and c"];
-    let counts = table
-        .cells()
-        .into_iter()
-        .zip(parts)
-        .filter(|(cells, _)| *cells > 0);
-    let cells: Vec<String> = counts
-        .map(|(cells, of)| format!("{cells} of {of}"))
-        .collect();
+    let counts = table.cells().into_iter().zip(parts);
+    let counts = counts.filter(|(cells, _)| *cells > 0);
+    let cells = counts.map(|(cells, of)| format!("{cells} of {of}"));
+    let cells: Vec<String> = cells.collect();
     let [inertia, all] = table.bytes().map(|bytes| bytes.div_ceil(1024));
     format!(
         "  table {kind}: cells {}; {inertia} kB for m and ½m′, {all} kB in all; error at most {:.1e} of the largest value of each\n",
@@ -132,13 +125,14 @@ fn explain_table_error(
             ),
             "require less accuracy; next to change points and limit positions the model itself loses digits",
         ),
-        TableError::NotPeriodic { what } => (
-            format!(
-                "no table: {} is not periodic over a revolution",
-                coefficient_name(what, labels)
-            ),
-            "a load that depends on the number of revolutions needs an interval: give --from and --to",
-        ),
+        TableError::NotPeriodic { what } => {
+            let what = coefficient_name(what, labels);
+            let help = "a load that depends on the number of revolutions needs an interval: give --from and --to";
+            (
+                format!("no table: {what} is not periodic over a revolution"),
+                help,
+            )
+        }
         TableError::NotSmooth { .. } => (
             error.to_string(),
             "require less accuracy, or a smaller part of the range with --from and --to, away from limit positions",
@@ -160,11 +154,8 @@ fn explain_table_error(
             "require less accuracy, such as --table-accuracy 1e-9",
         ),
     };
-    let place = (
-        SceneLocation::Actuator(ActuatorId(0)),
-        "over this coordinate",
-    );
-    scene_error(scene, message, help, [place])
+    let place = SceneLocation::Actuator(ActuatorId(0));
+    scene_error(scene, message, help, [(place, "over this coordinate")])
 }
 
 /// The name of a coefficient, with the names of the scene.
@@ -176,11 +167,8 @@ fn coefficient_name(entry: TableQuantity, labels: &Labels) -> String {
         TableQuantity::B { reaction } => format!("b of {}", name(reactions, reaction)),
         TableQuantity::W { load } => format!("w of {}", name(loads, load)),
         TableQuantity::C { load, reaction } => {
-            format!(
-                "c of {} and {}",
-                name(reactions, reaction),
-                name(loads, load)
-            )
+            let (reaction, load) = (name(reactions, reaction), name(loads, load));
+            format!("c of {reaction} and {load}")
         }
         _ => entry.to_string(),
     }

@@ -10,7 +10,7 @@ const FORMS: &str = "write PATH=FROM:TO:COUNT, PATH=A,B,C, PATH~normal(MEAN,SD),
                      PATH±TOLERANCE or PATH±PERCENT%";
 
 /// A number of the scene and how it varies, in the scene's own unit.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub(crate) struct Axis {
     pub(crate) path: String,
     pub(crate) unit: String,
@@ -18,7 +18,7 @@ pub(crate) struct Axis {
 }
 
 /// How a number varies.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub(crate) enum VariationKind {
     /// Equally spaced values, both ends included.
     Grid { from: f64, to: f64, count: u64 },
@@ -36,37 +36,29 @@ impl Axis {
     /// # Errors
     /// [`SweepError::Axis`].
     pub(crate) fn parse(scene: &Scene, given: &str) -> Result<Self, SweepError> {
-        let refuse = |reason: String, help: &str| SweepError::Axis {
+        Self::read(scene, given).map_err(|Fault(reason, help)| SweepError::Axis {
             given: given.to_owned(),
             reason,
-            help: help.to_owned(),
-        };
-        let separators = ["=", "~", "±", "+-"];
-        let found = separators
-            .into_iter()
-            .filter_map(|s| Some((given.find(s)?, s)));
+            help,
+        })
+    }
+
+    fn read(scene: &Scene, given: &str) -> Result<Self, Fault> {
+        let separators = ["=", "~", "±", "+-"].into_iter();
+        let found = separators.filter_map(|s| Some((given.find(s)?, s)));
         let Some((at, separator)) = found.min_by_key(|(at, _)| *at) else {
-            return Err(refuse("does not define a variation".to_owned(), FORMS));
+            return Err(fault("does not define a variation", FORMS));
         };
         let (path, variation) = (given[..at].trim(), given[at + separator.len()..].trim());
         let nominal = scene.value(path);
-        let nominal = nominal.map_err(|e| refuse(e.message, &e.help.unwrap_or_default()))?;
-        let number = |text: &str| -> Result<f64, SweepError> {
-            let text = text.trim();
-            let not_a_number = |_| refuse(format!("`{text}` is not a number"), FORMS);
-            let value: f64 = text.parse().map_err(not_a_number)?;
-            match value.is_finite() {
-                true => Ok(value),
-                false => Err(refuse(format!("{value} is not finite"), FORMS)),
-            }
-        };
+        let nominal = nominal.map_err(|e| Fault(e.message, e.help.unwrap_or_default()))?;
         let kind = match separator {
-            "=" if variation.contains(':') => grid(variation, &number, &refuse)?,
+            "=" if variation.contains(':') => grid(variation)?,
             "=" => {
                 VariationKind::Listed(variation.split(',').map(number).collect::<Result<_, _>>()?)
             }
-            "~" => random(variation, &number, &refuse)?,
-            _ => tolerance(nominal, variation, &number, &refuse)?,
+            "~" => random(variation)?,
+            _ => tolerance(nominal, variation)?,
         };
         Ok(Self {
             path: path.to_owned(),
@@ -113,75 +105,88 @@ impl Axis {
     }
 }
 
-type Number<'a> = &'a dyn Fn(&str) -> Result<f64, SweepError>;
+/// What is wrong with an axis, and what to try.
+struct Fault(String, String);
 
-type Refuse<'a> = &'a dyn Fn(String, &str) -> SweepError;
+fn fault(reason: impl Into<String>, help: &str) -> Fault {
+    Fault(reason.into(), help.to_owned())
+}
 
-type Parsed = Result<VariationKind, SweepError>;
+type Parsed = Result<VariationKind, Fault>;
+
+fn number(text: &str) -> Result<f64, Fault> {
+    let text = text.trim();
+    let not_a_number = |_| fault(format!("`{text}` is not a number"), FORMS);
+    let value: f64 = text.parse().map_err(not_a_number)?;
+    match value.is_finite() {
+        true => Ok(value),
+        false => Err(fault(format!("{value} is not finite"), FORMS)),
+    }
+}
 
 /// `FROM:TO:COUNT`, the ends among them.
-fn grid(variation: &str, number: Number<'_>, refuse: Refuse<'_>) -> Parsed {
+fn grid(variation: &str) -> Parsed {
     let parts: Vec<&str> = variation.split(':').collect();
     let [from, to, count] = parts.as_slice() else {
-        return Err(refuse(format!("`{variation}` is not FROM:TO:COUNT"), FORMS));
+        return Err(fault(format!("`{variation}` is not FROM:TO:COUNT"), FORMS));
     };
     let (from, to) = (number(from)?, number(to)?);
     let count: u64 = count.trim().parse().map_err(|_| {
         let reason = format!("`{}` is not a count of values", count.trim());
-        refuse(reason, "a whole number of 2 or more, the ends among them")
+        fault(reason, "a whole number of 2 or more, the ends among them")
     })?;
     if !(2..=MAX_VALUES).contains(&count) {
-        return Err(refuse(
+        return Err(fault(
             format!("{count} values from {from} to {to}"),
             "a grid has from 2 to a million values, the ends among them; a single one is written PATH=VALUE",
         ));
     }
     if from == to {
         let reason = format!("the range from {from} to {to} is empty");
-        return Err(refuse(reason, "a single value is written PATH=VALUE"));
+        return Err(fault(reason, "a single value is written PATH=VALUE"));
     }
     Ok(VariationKind::Grid { from, to, count })
 }
 
 /// `normal(MEAN,SD)` or `uniform(FROM,TO)`.
-fn random(variation: &str, number: Number<'_>, refuse: Refuse<'_>) -> Parsed {
+fn random(variation: &str) -> Parsed {
     let inner = variation.strip_suffix(')');
     let inner = inner.and_then(|variation| variation.split_once('('));
     let known = |name: &str| matches!(name, "normal" | "uniform");
     let Some((name, inner)) = inner.filter(|(name, _)| known(name.trim())) else {
         let reason = format!("`{variation}` is not a distribution");
-        return Err(refuse(reason, "use normal(MEAN,SD) or uniform(FROM,TO)"));
+        return Err(fault(reason, "use normal(MEAN,SD) or uniform(FROM,TO)"));
     };
     let parts: Vec<&str> = inner.split(',').collect();
     let [first, second] = parts.as_slice() else {
         let reason = format!("`{variation}` does not have two numbers");
-        return Err(refuse(reason, FORMS));
+        return Err(fault(reason, FORMS));
     };
     let (from, to) = (number(first)?, number(second)?);
     if name.trim() == "normal" {
         let (mean, deviation) = (from, to);
         if deviation <= 0.0 {
             let reason = format!("a standard deviation of {deviation} is not above zero");
-            return Err(refuse(reason, FORMS));
+            return Err(fault(reason, FORMS));
         }
         return Ok(VariationKind::Normal { mean, deviation });
     }
     if from >= to {
         let reason = format!("the range from {from} to {to} is empty");
-        return Err(refuse(reason, "give the smaller end first"));
+        return Err(fault(reason, "give the smaller end first"));
     }
     Ok(VariationKind::Uniform { from, to })
 }
 
 /// Uniform within a tolerance of the scene's value, in its unit or in percent of it.
-fn tolerance(nominal: f64, variation: &str, number: Number<'_>, refuse: Refuse<'_>) -> Parsed {
+fn tolerance(nominal: f64, variation: &str) -> Parsed {
     let width = match variation.strip_suffix('%') {
         Some(percent) => number(percent)? / 100.0 * nominal.abs(),
         None => number(variation)?,
     };
     if width <= 0.0 {
         let help = "a tolerance is above zero; a percentage needs a value that is not zero";
-        return Err(refuse(format!("a tolerance of {width}"), help));
+        return Err(fault(format!("a tolerance of {width}"), help));
     }
     Ok(VariationKind::Uniform {
         from: nominal - width,

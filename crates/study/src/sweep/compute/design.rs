@@ -10,7 +10,7 @@ const MAX_POINTS: u64 = 20_000_000;
 
 /// The points of a sweep: every combination of listed values, the first axis varying slowest, and for each the
 /// same random samples, so that combinations compare without noise.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub(crate) struct Design {
     pub(crate) axes: Vec<Axis>,
     /// 1 if nothing is random.

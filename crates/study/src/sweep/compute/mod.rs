@@ -9,8 +9,8 @@ mod table;
 pub(crate) use axis::Axis;
 pub(crate) use design::Design;
 pub use design::Shard;
-pub(crate) use point::{PointResult, RequestedQuantities};
+pub(crate) use point::{RequestedQuantities, Row};
 pub(crate) use random::{normal, uniform};
 pub use table::{ComputedSweep, compute_sweep};
 #[cfg(feature = "output")]
-pub(crate) use {axis::VariationKind, point::SweepQuantity};
+pub(crate) use {axis::VariationKind, point::PointResult, point::SweepQuantity};

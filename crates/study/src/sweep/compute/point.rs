@@ -1,15 +1,13 @@
 //! One point of a sweep: the scene with its input values, and the results.
 
-use crate::explain::{
-    StudyError, SweepError, explain_machine, explain_motion, explain_position, not_one_actuator,
-};
+use crate::explain::{StudyError, SweepError, explain_machine, explain_motion, explain_position};
 use crate::former_names;
-use crate::models::{compile_model, initial_reduced_state, with_loads};
+use crate::models::{compile_model, exact_model, initial_reduced_state, with_loads};
 use crate::number_format::{coordinate_unit, force_unit};
 use crate::ranges::extent;
-use crate::trajectory::compute::{Analysis, is_prefix_of, peak_forces, swept_range};
+use crate::trajectory::compute::{Analysis, default_limits, is_prefix_of, peak_forces};
 use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Orbit, ReducedState};
-use dwell_kinetostatics::{ExactModel, Model, ReducedModel};
+use dwell_kinetostatics::{Model, ReducedModel};
 use dwell_scene::Scene;
 
 /// Intervals of the range at which m and ½m′ are evaluated: those of `dwell reduce`.
@@ -31,7 +29,7 @@ enum ResultKind {
 }
 
 /// A result by its name and unit.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub(crate) struct SweepQuantity {
     pub(crate) name: String,
     /// The name it had before it was renamed, which a request may still use.
@@ -56,7 +54,7 @@ impl SweepQuantity {
 }
 
 /// The results to compute at every point.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(crate) struct RequestedQuantities {
     pub(crate) quantities: Vec<SweepQuantity>,
     /// A line for each request that uses a former name.
@@ -64,10 +62,17 @@ pub(crate) struct RequestedQuantities {
 }
 
 /// The results of a point: a value for each quantity, NaN where there is none, and the reason.
-#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PointResult {
     pub(crate) values: Vec<f64>,
     pub(crate) message: Option<String>,
+}
+
+/// A finished point.
+pub(crate) struct Row {
+    #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for the store"))]
+    pub(crate) index: u64,
+    pub(crate) inputs: Vec<f64>,
+    pub(crate) result: PointResult,
 }
 
 impl RequestedQuantities {
@@ -88,10 +93,9 @@ impl RequestedQuantities {
             let message = "this scene has no results to sweep: add a [prescribed] motion or a [coordinate-sweep]";
             return Err(SweepError::Design(message.to_owned()).into());
         }
-        let notes = requests.iter().filter_map(|request| {
+        let notes = requests.iter().map(|request| {
             let renamed = quantities.iter().filter(|q| q.matches_former(request));
-            let current: Vec<&str> = renamed.map(|q| q.name.as_str()).collect();
-            (!current.is_empty()).then(|| former_names::note(request, &current))
+            former_names::note(request, renamed.map(|q| &q.name))
         });
         let notes = notes.collect();
         if !requests.is_empty() {
@@ -148,7 +152,7 @@ impl RequestedQuantities {
             match peak_forces(scene, &with_loads(scene, model)?, analysis) {
                 Ok(peaks) => {
                     set(ResultKind::Reaction, Ok(peaks.reactions));
-                    set(ResultKind::ActuatorForce, Ok(peaks.actuator_forces));
+                    set(ResultKind::ActuatorForce, Ok(peaks.tau));
                 }
                 Err(error) => set(ResultKind::Reaction, Err(error)),
             }
@@ -252,10 +256,9 @@ fn orbit(scene: &Scene, start: ReducedState, model: &Model) -> Result<Orbit, Stu
 
 /// The smallest and the largest m, and the smallest and the largest ½m′, over the range.
 fn inertia_extrema(scene: &Scene, model: &Model) -> Result<Vec<f64>, StudyError> {
-    let exact = ExactModel::new(model.without_reactions());
-    let exact = exact.ok_or_else(|| not_one_actuator(scene))?;
+    let exact = exact_model(scene, model.without_reactions())?;
     let mut workspace = exact.workspace();
-    let [from, to] = swept_range(scene, model.plan());
+    let ([from, to], ..) = default_limits(scene, model.plan());
     let (mut m, mut half_dm) = (Vec::new(), Vec::new());
     for k in 0..=INTERVALS {
         let fraction = k as f64 / INTERVALS as f64;

@@ -1,7 +1,7 @@
 //! A whole sweep in memory.
 
 use crate::explain::StudyError;
-use crate::sweep::compute::{Design, PointResult, RequestedQuantities};
+use crate::sweep::compute::{Design, RequestedQuantities, Row};
 use dwell_findings::{Column, Table};
 use dwell_scene::Scene;
 use rayon::prelude::*;
@@ -32,18 +32,11 @@ pub fn compute_sweep(
 ) -> Result<ComputedSweep, StudyError> {
     let design = Design::new(scene, vary, samples, seed)?;
     let requested = RequestedQuantities::new(scene, requests)?;
-    let point = |k: u64| -> (Vec<f64>, Option<String>) {
-        let (inputs, PointResult { values, message }) = requested.point(scene, &design, k);
-        ([inputs, values].concat(), message)
-    };
-    let points: Vec<_> = (0..design.points).into_par_iter().map(point).collect();
-    let (rows, messages) = points.into_iter().unzip();
+    let points = (0..design.points).into_par_iter();
+    let rows: Vec<Row> = points.map(|k| requested.point(scene, &design, k)).collect();
     Ok(ComputedSweep {
-        table: Table {
-            columns: requested.columns(&design),
-            rows,
-        },
-        messages,
+        table: requested.table(&design, &rows),
+        messages: rows.into_iter().map(|row| row.result.message).collect(),
         notes: requested.notes,
     })
 }
@@ -56,12 +49,25 @@ impl RequestedQuantities {
         inputs.chain(results).collect()
     }
 
-    /// The inputs and the results of point `k`.
-    pub(crate) fn point(&self, scene: &Scene, design: &Design, k: u64) -> (Vec<f64>, PointResult) {
-        let inputs = design.values(k);
+    /// Inputs and results.
+    pub(crate) fn table(&self, design: &Design, rows: &[Row]) -> Table {
+        let row = |row: &Row| [row.inputs.as_slice(), &row.result.values].concat();
+        Table {
+            columns: self.columns(design),
+            rows: rows.iter().map(row).collect(),
+        }
+    }
+
+    /// Computes the point of an index.
+    pub(crate) fn point(&self, scene: &Scene, design: &Design, index: u64) -> Row {
+        let inputs = design.values(index);
         let paths = design.axes.iter().map(|axis| axis.path.as_str());
         let values: Vec<(&str, f64)> = paths.zip(inputs.iter().copied()).collect();
         let result = self.evaluate(scene, &values);
-        (inputs, result)
+        Row {
+            index,
+            inputs,
+            result,
+        }
     }
 }

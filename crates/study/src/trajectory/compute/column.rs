@@ -35,22 +35,12 @@ pub(crate) enum Quantity {
     ForceDirection(JointId),
     /// Force x, y and moment on the frame.
     ShakingForce(usize),
-    Power(PowerTerm),
+    /// Of the power balance: actuators, loads, rate of the kinetic energy, residual; and the kinetic energy.
+    Power(usize),
     LoadForce(usize),
     LoadPower(usize),
-    /// A column of a free motion's integration, by its index among the
-    /// [`ExtraColumn`](super::ExtraColumn)s.
+    /// A value of a free motion's integration.
     Extra(usize),
-}
-
-/// A term of the power balance.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum PowerTerm {
-    Actuators,
-    Loads,
-    KineticRate,
-    Residual,
-    KineticEnergy,
 }
 
 /// A column.

@@ -1,7 +1,8 @@
 //! The columns of a trajectory table, each with its unit and meaning.
 
 use crate::former_names::former_column;
-use crate::trajectory::compute::{Column, PowerTerm, Quantity, dyads};
+use crate::number_format::force_unit;
+use crate::trajectory::compute::{Column, Quantity, dyads};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{
     ActuatorKind, BodyId, Component, Coordinate, JointId, JointKind, Plan, Reaction,
@@ -13,6 +14,19 @@ use std::collections::HashSet;
 const ANGLE: [&str; 3] = ["rad", "rad/s", "rad/s2"];
 const LENGTH: [&str; 3] = ["m", "m/s", "m/s2"];
 const DERIVATIVE_SUFFIXES: [&str; 3] = ["", ".velocity", ".acceleration"];
+const BODY_ANGLE: [(&str, &str); 3] = [
+    (
+        "angle",
+        "angle of the body frame from the ground frame, unwrapped along the trajectory",
+    ),
+    ("angular_velocity", "angular velocity"),
+    ("angular_acceleration", "angular acceleration"),
+];
+
+/// The units of a coordinate, its velocity and its acceleration.
+fn units(is_angle: bool) -> [&'static str; 3] {
+    if is_angle { ANGLE } else { LENGTH }
+}
 
 /// Every column of a scene, whatever the analysis; with the time if `timed`.
 pub(crate) fn all_columns(scene: &Scene, model: &Model, timed: bool) -> Vec<Column> {
@@ -81,30 +95,24 @@ impl Columns<'_> {
         let mechanism = &self.scene.mechanism;
         for (i, actuator) in mechanism.actuators.iter().enumerate() {
             let [one, two] = actuator.bodies.map(|b| mechanism.body_name(b));
-            let (units, unit, meaning, force) = match actuator.kind {
+            let (meaning, force) = match actuator.kind {
                 ActuatorKind::Angle => (
-                    ANGLE,
-                    "N m",
                     format!("angle of {two} from {one}"),
                     format!("moment of {one} on {two}"),
                 ),
                 ActuatorKind::Travel(joint) => (
-                    LENGTH,
-                    "N",
                     format!("travel of {}", mechanism.joints[joint.0].name),
                     format!("force of {one} on {two} along the travel"),
                 ),
                 ActuatorKind::Length(_) => (
-                    LENGTH,
-                    "N",
                     format!("distance of points of {one} and {two}"),
                     "force between the points; positive pushes them apart".to_owned(),
                 ),
             };
-            debug_assert_eq!(self.plan.is_angle(i), unit == "N m");
+            let (name, is_angle) = (&actuator.name, self.plan.is_angle(i));
             let coordinate = |order| Quantity::ActuatorCoordinate(i, order);
-            self.add_with_derivatives(&actuator.name, units, coordinate, &meaning);
-            let name = format!("{}.actuator_force", actuator.name);
+            self.add_with_derivatives(name, units(is_angle), coordinate, &meaning);
+            let (name, unit) = (format!("{name}.actuator_force"), force_unit(is_angle));
             self.add(name, unit, Quantity::ActuatorForce(i), force);
         }
     }
@@ -112,12 +120,7 @@ impl Columns<'_> {
     fn coordinates(&mut self) {
         let scene = self.scene;
         for named in &scene.coordinates {
-            let units = if named.coordinate.is_angle() {
-                ANGLE
-            } else {
-                LENGTH
-            };
-            self.measured(&named.name, named.coordinate, units, "");
+            self.measured(&named.name, named.coordinate, "");
         }
         for (j, joint) in scene.mechanism.joints.iter().enumerate() {
             let [one, two] = joint.bodies.map(|b| scene.mechanism.body_name(b));
@@ -125,13 +128,14 @@ impl Columns<'_> {
                 "position of the point of {two} from that of {one}, along the axis in {one}"
             );
             let name = format!("{}.travel", joint.name);
-            self.measured(&name, Coordinate::Travel(JointId(j)), LENGTH, &meaning);
+            self.measured(&name, Coordinate::Travel(JointId(j)), &meaning);
         }
     }
 
-    fn measured(&mut self, name: &str, of: Coordinate, units: [&'static str; 3], meaning: &str) {
+    fn measured(&mut self, name: &str, of: Coordinate, meaning: &str) {
         if let Some(measured) = CoordinateFunction::find(&self.scene.mechanism, of) {
-            self.add_with_derivatives(name, units, |k| Quantity::Measured(measured, k), meaning);
+            let quantity = |order| Quantity::Measured(measured, order);
+            self.add_with_derivatives(name, units(of.is_angle()), quantity, meaning);
         }
     }
 
@@ -143,17 +147,7 @@ impl Columns<'_> {
                 continue;
             }
             let (id, name) = (BodyId(b), &body.name);
-            for (order, (word, meaning)) in [
-                (
-                    "angle",
-                    "angle of the body frame from the ground frame, unwrapped along the trajectory",
-                ),
-                ("angular_velocity", "angular velocity"),
-                ("angular_acceleration", "angular acceleration"),
-            ]
-            .into_iter()
-            .enumerate()
-            {
+            for (order, (word, meaning)) in BODY_ANGLE.into_iter().enumerate() {
                 let quantity = Quantity::BodyAngle(id, order);
                 self.add(format!("{name}.{word}"), ANGLE[order], quantity, meaning);
             }
@@ -237,23 +231,18 @@ impl Columns<'_> {
         for (j, joint) in mechanism.joints.iter().enumerate() {
             let id = JointId(j);
             let [one, two] = joint.bodies.map(|b| mechanism.body_name(b));
-            let index = |reaction| reactions.iter().position(|&r| r == reaction);
-            for &component in mechanism.components(id) {
-                let reaction = Reaction {
-                    joint: id,
-                    component,
-                };
-                // Statically indeterminate reactions are no results.
-                if let Some(k) = index(reaction).filter(|&k| plan.is_determinate(k)) {
-                    let meaning = reaction_meaning(joint.kind, component, one, two);
-                    let name = mechanism.reaction_name(reaction);
-                    self.add(name, component.unit(), Quantity::Reaction(k), meaning);
-                }
+            let of_joint = reactions.iter().enumerate().filter(|(_, r)| r.joint == id);
+            // Statically indeterminate reactions are no results.
+            let (determinate, others): (Vec<_>, Vec<_>) =
+                of_joint.partition(|&(k, _)| plan.is_determinate(k));
+            for (k, &reaction) in determinate {
+                let meaning = reaction_meaning(joint.kind, reaction.component, one, two);
+                let name = mechanism.reaction_name(reaction);
+                let unit = reaction.component.unit();
+                self.add(name, unit, Quantity::Reaction(k), meaning);
             }
             self.separating_force(id);
-            let is_force = |r: &Reaction| r.joint == id && r.component != Component::Moment;
-            let mut all = reactions.iter().enumerate();
-            if !all.all(|(k, r)| !is_force(r) || plan.is_determinate(k)) {
+            if others.iter().any(|(_, r)| r.component != Component::Moment) {
                 continue;
             }
             if matches!(joint.kind, Revolute | Weld { .. }) {
@@ -317,12 +306,8 @@ impl Columns<'_> {
                 )),
             };
             if let Some((unit, meaning)) = description {
-                let quantity = if unit == "N" {
-                    "load_force"
-                } else {
-                    "load_moment"
-                };
-                let name = format!("{}.{quantity}", load.name);
+                let kind = if unit == "N" { "force" } else { "moment" };
+                let name = format!("{}.load_{kind}", load.name);
                 self.add(name, unit, Quantity::LoadForce(k), meaning);
             }
             let meaning = "power of the load on all bodies";
@@ -345,29 +330,20 @@ impl Columns<'_> {
         for (k, (name, unit)) in components.into_iter().enumerate() {
             self.add(name, unit, Quantity::ShakingForce(k), &*meaning);
         }
-        for (name, term, meaning) in [
-            ("actuators", PowerTerm::Actuators, "power of the actuators"),
-            ("loads", PowerTerm::Loads, "power of the loads"),
+        let powers = [
+            ("power.actuators", "power of the actuators"),
+            ("power.loads", "power of the loads"),
+            ("power.kinetic", "rate of the kinetic energy"),
             (
-                "kinetic",
-                PowerTerm::KineticRate,
-                "rate of the kinetic energy",
-            ),
-            (
-                "residual",
-                PowerTerm::Residual,
+                "power.residual",
                 "actuators + loads − dE/dt: rounding error",
             ),
-        ] {
-            self.add(format!("power.{name}"), "W", Quantity::Power(term), meaning);
+            ("energy.kinetic_bodies", "kinetic energy of the bodies"),
+        ];
+        for (k, (name, meaning)) in powers.into_iter().enumerate() {
+            let unit = if k < 4 { "W" } else { "J" };
+            self.add(name, unit, Quantity::Power(k), meaning);
         }
-        let (name, meaning) = ("energy.kinetic_bodies", "kinetic energy of the bodies");
-        self.add(
-            name,
-            "J",
-            Quantity::Power(PowerTerm::KineticEnergy),
-            meaning,
-        );
     }
 }
 

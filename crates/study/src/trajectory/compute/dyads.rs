@@ -12,33 +12,28 @@ pub(crate) struct Dyad {
 
 /// The line of a body at the pin of a dyad, in its frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Line {
-    /// From the inner pin to the outer one.
-    Bar(BodyId, Vec2),
-    /// At right angles to the axis of its slide.
-    Normal(BodyId, Vec2),
+struct Line {
+    body: BodyId,
+    along: Vec2,
+    /// Whether it is at right angles to the axis of its slide; otherwise it goes from the inner pin to the outer one.
+    is_normal: bool,
 }
 
 impl Dyad {
     /// The angle between the two lines, from 0 to π rad.
     pub(crate) fn angle(&self, states: &BodyStates) -> f64 {
-        let [a, b] = self.lines.map(|line| {
-            let (Line::Bar(body, along) | Line::Normal(body, along)) = line;
-            along.rotate(states.body(body).rotation)
-        });
+        let along = |line: Line| line.along.rotate(states.body(line.body).rotation);
+        let [a, b] = self.lines.map(along);
         a.cross(b).abs().atan2(a.dot(b))
     }
 
     /// Its two bodies.
     pub(crate) fn bodies(&self) -> [BodyId; 2] {
-        self.lines.map(|line| match line {
-            Line::Bar(body, _) | Line::Normal(body, _) => body,
-        })
+        self.lines.map(|line| line.body)
     }
 
     pub(crate) fn meaning(&self) -> &'static str {
-        let slides = self.lines.iter().any(|l| matches!(l, Line::Normal(..)));
-        match slides {
+        match self.lines.iter().any(|line| line.is_normal) {
             false => "transmission angle between the lines of the two bodies at their pin",
             true => {
                 "transmission angle between the rod and the normal of the guide; the pressure angle is 90° minus it"
@@ -94,19 +89,20 @@ fn dyad(mechanism: &Mechanism, levels: &[Option<usize>], pin: JointId) -> Option
     let line = |body: BodyId| {
         let at = |joint: &Joint| joint.points[usize::from(joint.bodies[1] == body)];
         let joint = outer(body)?;
-        match joint.kind {
-            JointKind::Revolute => {
-                let along = at(joint) - at(pin);
-                (along != Vec2::ZERO).then_some(Line::Bar(body, along))
-            }
+        let (along, is_normal) = match joint.kind {
+            JointKind::Revolute => (at(joint) - at(pin), false),
             JointKind::Prismatic { axes } => {
-                let axis = axes[usize::from(joint.bodies[1] == body)];
-                Some(Line::Normal(body, axis.perp()))
+                (axes[usize::from(joint.bodies[1] == body)].perp(), true)
             }
-            _ => None,
-        }
+            _ => return None,
+        };
+        (is_normal || along != Vec2::ZERO).then_some(Line {
+            body,
+            along,
+            is_normal,
+        })
     };
     let lines = [line(one)?, line(two)?];
-    let two_slides = lines.iter().all(|l| matches!(l, Line::Normal(..)));
+    let two_slides = lines.iter().all(|line| line.is_normal);
     (!two_slides).then_some(Dyad { lines })
 }

@@ -5,9 +5,9 @@ use crate::explain::{
     non_finite_coupling_error, scene_error,
 };
 use crate::number_format::{coordinate_unit, digits, number};
-use crate::trajectory::compute::{Trajectory, TrajectoryFault, TrajectorySample, table_of};
+use crate::trajectory::compute::{Trajectory, TrajectorySample, table_of};
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{Plan, PositionError};
+use dwell_geometry::{BodyId, JointId, Plan, PositionError};
 use dwell_kinetostatics::{KinetostaticsError, LoadKind, Signal};
 use dwell_scene::{Scene, SceneLocation};
 use std::f64::consts::TAU;
@@ -33,8 +33,10 @@ pub(crate) fn unreachable_error(plan: &Plan, previous: f64, q: f64) -> Option<Po
 pub(crate) enum StopCause {
     /// There is no pose, or a load is undefined.
     NoSolution(KinetostaticsError),
-    /// There is a pose, but the trajectory is invalid there.
-    Fault(TrajectoryFault),
+    /// The table of a load does not cover this value of its argument.
+    OffTable { load: usize, value: f64 },
+    /// A coupling function is discontinuous between two neighbouring values of its variable.
+    Discontinuity { joint: JointId, between: [f64; 2] },
 }
 
 impl<E: Into<KinetostaticsError>> From<E> for StopCause {
@@ -44,23 +46,24 @@ impl<E: Into<KinetostaticsError>> From<E> for StopCause {
 }
 
 /// Where a trajectory ends.
-#[derive(Debug)]
-pub(crate) struct EarlyStop {
+pub(crate) struct EarlyStop<'a> {
+    plan: &'a Plan,
+    trajectory: &'a Trajectory<'a>,
     /// Why.
-    pub(crate) cause: StopCause,
+    cause: StopCause,
     /// The last position that can be reached; the first one if not even that can be.
-    pub(crate) last_reached: TrajectorySample,
+    last_reached: TrajectorySample,
     /// A position a little beyond it that cannot be reached.
     first_failed: TrajectorySample,
     /// Whether at least the first position can be reached.
     pub(crate) has_begun: bool,
 }
 
-impl EarlyStop {
+impl<'a> EarlyStop<'a> {
     /// Finds the end between two completed fractions, the first of which is reached.
     pub(crate) fn find(
-        plan: &Plan,
-        trajectory: &Trajectory<'_>,
+        plan: &'a Plan,
+        trajectory: &'a Trajectory<'_>,
         [reached, beyond]: [f64; 2],
         cause: StopCause,
     ) -> Self {
@@ -82,6 +85,8 @@ impl EarlyStop {
         }
         let failed = (high + CAUSE_OFFSET * (beyond - reached)).min(beyond);
         Self {
+            plan,
+            trajectory,
             cause,
             last_reached: trajectory.sample_at(low),
             first_failed: trajectory.sample_at(failed),
@@ -90,58 +95,45 @@ impl EarlyStop {
     }
 
     /// The error message, with its locations in the scene.
-    pub(crate) fn explain(
-        &self,
-        scene: &Scene,
-        plan: &Plan,
-        trajectory: &Trajectory<'_>,
-    ) -> StudyError {
-        let position = describe_sample(scene, plan, trajectory, &self.last_reached);
+    pub(crate) fn explain(&self, scene: &Scene) -> StudyError {
+        let position = self.describe_position(scene);
         let when = match self.has_begun {
             true => format!("soon after {position}"),
             false => format!("at the first position, {position}"),
         };
         match self.cause {
             StopCause::NoSolution(KinetostaticsError::Position(error)) => {
-                let location = trajectory.location;
-                self.explain_limit(scene, plan, location, &position, &error)
+                self.explain_limit(scene, &position, &error)
             }
             StopCause::NoSolution(error) => explain_load(scene, error, &when),
-            StopCause::Fault(TrajectoryFault::OffTable { load, value }) => {
-                off_table_error(scene, load, value, &when)
-            }
-            StopCause::Fault(TrajectoryFault::Discontinuity { joint, between }) => {
+            StopCause::OffTable { load, value } => off_table_error(scene, load, value, &when),
+            StopCause::Discontinuity { joint, between } => {
                 let name = &scene.mechanism.joints[joint.0].name;
                 let x = jump_location(between[0], between[1]);
                 let message = format!(
                     "the function of coupling `{name}` is discontinuous {when}, at x = {x}"
                 );
-                let place = (
+                let (place, jumps) = (
                     SceneLocation::CouplingLaw(joint),
                     format!("jumps at x = {x}"),
                 );
-                scene_error(scene, message, CONTINUITY_HELP, [place])
+                scene_error(scene, message, CONTINUITY_HELP, [(place, jumps)])
             }
         }
     }
 
     /// The error where the trajectory cannot go on. One arm for each cause, so longer than a screen.
-    fn explain_limit(
-        &self,
-        scene: &Scene,
-        plan: &Plan,
-        location: SceneLocation,
-        position: &str,
-        error: &PositionError,
-    ) -> StudyError {
+    fn explain_limit(&self, scene: &Scene, position: &str, error: &PositionError) -> StudyError {
+        let plan = self.plan;
         if let Some(relation) = non_finite_coupling(&scene.mechanism, &self.first_failed.q) {
             let at = if self.has_begun { "soon after" } else { "at" };
             return non_finite_coupling_error(scene, relation, &format!("{at} {position}"));
         }
         if !self.has_begun {
-            return explain_first_position(scene, plan, location, position, error);
+            return self.explain_first_position(scene, position, error);
         }
-        let beyond = (location, "continues beyond it".to_owned());
+        let beyond = self.trajectory.location(scene);
+        let beyond = (beyond, "continues beyond it".to_owned());
         // Beyond the range on a side where no limit was found.
         if let PositionError::OutOfRange { q, to, .. } = *error
             && plan.range_limits()[usize::from(q > to)].is_none()
@@ -187,6 +179,49 @@ impl EarlyStop {
             labels,
         )
     }
+
+    /// The error where not even the first position can be reached.
+    fn explain_first_position(
+        &self,
+        scene: &Scene,
+        position: &str,
+        error: &PositionError,
+    ) -> StudyError {
+        let plan = self.plan;
+        let joints = error.group().map(|g| plan.group_joints(g));
+        let mut labels = joint_labels(&joints.unwrap_or_default(), "cannot be joined there");
+        labels.push((self.trajectory.location(scene), "starts there".to_owned()));
+        let range = plan.range().limits().map(|(from, to)| {
+            let unit = coordinate_unit(plan.is_angle(0));
+            let [from, to] = [from, to].map(number);
+            match plan.range_limits() {
+                [Some(_), Some(_)] => format!(", outside the range of {from} to {to} {unit}"),
+                _ => format!("; the range was searched from {from} to {to} {unit} only"),
+            }
+        });
+        let range = range.unwrap_or_default();
+        let message = format!("the first position cannot be reached: {position}{range}");
+        let help = "start within the range; `dwell check` shows it";
+        scene_error(scene, message, help, labels)
+    }
+
+    /// The actuator coordinates of the last position, and the time unless it is a sweep.
+    fn describe_position(&self, scene: &Scene) -> String {
+        let at = &self.last_reached;
+        let one = |(i, q): (usize, &f64)| {
+            let (name, value) = (&scene.mechanism.actuators[i].name, digits(*q, 8));
+            match self.plan.is_angle(i) {
+                true => format!("{name} = {value} rad ({}°)", number(q.to_degrees())),
+                false => format!("{name} = {value} m"),
+            }
+        };
+        let all: Vec<_> = at.q.iter().enumerate().map(one).collect();
+        let all = all.join(", ");
+        match self.trajectory.swept_actuator() {
+            Some(_) => all,
+            None => format!("t = {} s, {all}", digits(at.t, 6)),
+        }
+    }
 }
 
 /// The error where a load or the equations of motion are undefined.
@@ -221,31 +256,6 @@ fn explain_load(scene: &Scene, error: KinetostaticsError, when: &str) -> StudyEr
         ),
     };
     scene_error(scene, message, help, [place])
-}
-
-/// The error where not even the first position can be reached.
-fn explain_first_position(
-    scene: &Scene,
-    plan: &Plan,
-    location: SceneLocation,
-    position: &str,
-    error: &PositionError,
-) -> StudyError {
-    let joints = error.group().map(|g| plan.group_joints(g));
-    let mut labels = joint_labels(&joints.unwrap_or_default(), "cannot be joined there");
-    labels.push((location, "starts there".to_owned()));
-    let range = plan.range().limits().map(|(from, to)| {
-        let unit = coordinate_unit(plan.is_angle(0));
-        let [from, to] = [from, to].map(number);
-        match plan.range_limits() {
-            [Some(_), Some(_)] => format!(", outside the range of {from} to {to} {unit}"),
-            _ => format!("; the range was searched from {from} to {to} {unit} only"),
-        }
-    });
-    let range = range.unwrap_or_default();
-    let message = format!("the first position cannot be reached: {position}{range}");
-    let help = "start within the range; `dwell check` shows it";
-    scene_error(scene, message, help, labels)
 }
 
 /// Help for a discontinuous function.
@@ -290,38 +300,12 @@ fn off_table_error(scene: &Scene, load: usize, value: f64, when: &str) -> StudyE
         ),
         false => "extend the table, or write an expression".to_owned(),
     };
-    scene_error(
-        scene,
-        format!(
-            "the table of load `{}` covers {name} {table_range}, but {name} is {} {when}",
-            load_name(scene, load),
-            value_text(value)
-        ),
-        help,
-        [(SceneLocation::Magnitude(load), table_range)],
-    )
-}
-
-/// The actuator coordinates, and the time unless it is a sweep.
-fn describe_sample(
-    scene: &Scene,
-    plan: &Plan,
-    trajectory: &Trajectory<'_>,
-    at: &TrajectorySample,
-) -> String {
-    let one = |(i, q): (usize, &f64)| {
-        let (name, value) = (&scene.mechanism.actuators[i].name, digits(*q, 8));
-        match plan.is_angle(i) {
-            true => format!("{name} = {value} rad ({}°)", number(q.to_degrees())),
-            false => format!("{name} = {value} m"),
-        }
-    };
-    let all: Vec<_> = at.q.iter().enumerate().map(one).collect();
-    let all = all.join(", ");
-    match trajectory.swept_actuator() {
-        Some(_) => all,
-        None => format!("t = {} s, {all}", digits(at.t, 6)),
-    }
+    let (load_name, value) = (load_name(scene, load), value_text(value));
+    let message = format!(
+        "the table of load `{load_name}` covers {name} {table_range}, but {name} is {value} {when}"
+    );
+    let place = (SceneLocation::Magnitude(load), table_range);
+    scene_error(scene, message, help, [place])
 }
 
 /// The first group with a body whose angular velocity diverges at unit speed of the actuators.
@@ -331,10 +315,6 @@ fn diverging_group(plan: &Plan, q: &[f64]) -> Option<usize> {
     plan.velocities(&pose, &vec![1.0; q.len()], &mut motion);
     let mut states = BodyStates::new(plan);
     states.fill(plan, &pose, &motion);
-    (0..plan.group_methods().len()).find(|&g| {
-        let bodies = plan.group_bodies(g);
-        bodies
-            .iter()
-            .any(|&b| states.body(b).angular_velocity.abs() > DIVERGING_RATIO)
-    })
+    let diverges = |b: &BodyId| states.body(*b).angular_velocity.abs() > DIVERGING_RATIO;
+    (0..plan.group_methods().len()).find(|&g| plan.group_bodies(g).iter().any(diverges))
 }

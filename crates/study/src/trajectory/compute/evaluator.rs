@@ -3,7 +3,7 @@
 use crate::bodies::BodyPose;
 use crate::explain::{StudyError, explain_model};
 use crate::trajectory::compute::{
-    Analysis, PowerTerm, Quantity, SpeedScale, StopCause, TrajectoryMonitor, TrajectorySample,
+    Analysis, Quantity, SpeedScale, StopCause, TrajectoryMonitor, TrajectorySample,
 };
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{BodyId, Motion, Plan, Pose, Vec2};
@@ -47,9 +47,7 @@ impl<'a> ForceEvaluator<'a> {
         t: f64,
     ) -> Result<Option<EvaluatedState<'_>>, StopCause> {
         let (model, workspace, results) = (self.model, &mut self.workspace, &mut self.results);
-        let TrajectorySample {
-            q, q_dot, q_ddot, ..
-        } = sample;
+        let (q, q_dot, q_ddot) = (&sample.q, &sample.q_dot, &sample.q_ddot);
         let state = match self.analysis {
             Analysis::Kinematics => {
                 model.plan().positions(q, &mut self.pose)?;
@@ -65,10 +63,8 @@ impl<'a> ForceEvaluator<'a> {
             }
         };
         self.pose.clone_from(state.pose());
-        match self.monitor.off_table(t, state.bodies()) {
-            Some(fault) => Err(StopCause::Fault(fault)),
-            None => Ok(Some(state)),
-        }
+        self.monitor.check_tables(t, state.bodies())?;
+        Ok(Some(state))
     }
 
     /// Computes the states of the bodies at the velocities of the sample; fails where a coupling jumps.
@@ -77,8 +73,7 @@ impl<'a> ForceEvaluator<'a> {
         plan.velocities(pose, &sample.q_dot, &mut self.motion_buffer);
         plan.accelerations(pose, &sample.q_ddot, &mut self.motion_buffer);
         self.body_states.fill(plan, pose, &self.motion_buffer);
-        let fault = self.monitor.discontinuity(&self.body_states);
-        fault.map_or(Ok(()), |fault| Err(StopCause::Fault(fault)))
+        self.monitor.check_couplings(&self.body_states)
     }
 }
 
@@ -248,11 +243,11 @@ impl<'a> PositionEvaluator<'a> {
             Quantity::ForceDirection(joint) => joint_forces[joint.0].angle(),
             Quantity::ShakingForce(2) => self.position.shaking_wrench.moment,
             Quantity::ShakingForce(axis) => component(self.position.shaking_wrench.force, axis),
-            Quantity::Power(PowerTerm::Actuators) => balance.actuators,
-            Quantity::Power(PowerTerm::Loads) => balance.loads,
-            Quantity::Power(PowerTerm::KineticRate) => balance.kinetic_energy_rate,
-            Quantity::Power(PowerTerm::Residual) => balance.residual(),
-            Quantity::Power(PowerTerm::KineticEnergy) => balance.kinetic_energy,
+            Quantity::Power(0) => balance.actuators,
+            Quantity::Power(1) => balance.loads,
+            Quantity::Power(2) => balance.kinetic_energy_rate,
+            Quantity::Power(3) => balance.residual(),
+            Quantity::Power(_) => balance.kinetic_energy,
             Quantity::LoadForce(k) => self.load_force(k),
             Quantity::LoadPower(k) => self.position.load_powers[k],
             Quantity::Extra(k) => sample.extra_values[k],

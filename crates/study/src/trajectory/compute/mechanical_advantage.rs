@@ -2,7 +2,7 @@
 //! they are undefined: NaN here, an empty cell in a table.
 
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{BodyId, Vec2};
+use dwell_geometry::{BodyId, Vec2, vec2};
 
 /// A speed below this fraction of the fastest body's is rounding: advantages beyond 1e9 and poles
 /// farther away than 1e9 sizes are undefined.
@@ -64,10 +64,8 @@ impl SpeedScale {
     /// The point of a body that has no acceleration: a + α ẑ×r − ω² r = 0.
     pub(crate) fn acceleration_pole(&self, states: &BodyStates, body: BodyId) -> Vec2 {
         let state = states.body(body);
-        let (square, angular_acceleration) = (
-            state.angular_velocity * state.angular_velocity,
-            state.angular_acceleration,
-        );
+        let square = state.angular_velocity * state.angular_velocity;
+        let angular_acceleration = state.angular_acceleration;
         let rotation = acceleration_factor(state.angular_velocity, angular_acceleration);
         if rotation * self.length <= MIN_SPEED_RATIO * self.acceleration {
             return NO_POLE;
@@ -78,10 +76,7 @@ impl SpeedScale {
     }
 }
 
-const NO_POLE: Vec2 = Vec2 {
-    x: f64::NAN,
-    y: f64::NAN,
-};
+const NO_POLE: Vec2 = vec2(f64::NAN, f64::NAN);
 
 /// Acceleration per distance from the acceleration pole: √(ω⁴ + α²), 1/s².
 fn acceleration_factor(angular_velocity: f64, angular_acceleration: f64) -> f64 {

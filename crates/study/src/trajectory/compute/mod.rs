@@ -9,7 +9,6 @@ mod evaluator;
 mod mechanical_advantage;
 mod monitor;
 mod peak_forces;
-mod pruning;
 mod results;
 mod rounding_error;
 mod sectioned_link;
@@ -17,7 +16,7 @@ mod selection;
 mod trajectory;
 
 pub use analysis::Analysis;
-pub(crate) use column::{Column, PowerTerm, Quantity, is_prefix_of};
+pub(crate) use column::{Column, Quantity, is_prefix_of};
 pub(crate) use columns::all_columns;
 pub(crate) use dyads::{Dyad, dyads};
 pub(crate) use early_stop::{
@@ -25,16 +24,17 @@ pub(crate) use early_stop::{
 };
 pub(crate) use evaluator::{ForceEvaluator, PositionEvaluator};
 pub(crate) use mechanical_advantage::SpeedScale;
-pub(crate) use monitor::{TrajectoryFault, TrajectoryMonitor, table_of};
+pub(crate) use monitor::{TrajectoryMonitor, table_of};
 pub(crate) use peak_forces::peak_forces;
-pub(crate) use pruning::{prune_model, requested_bodies};
 pub(crate) use results::compute_along;
 pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
 pub(crate) use rounding_error::RoundingError;
 pub use sectioned_link::SectionedLink;
-pub(crate) use selection::{check_variables, is_requested, selected_columns};
+pub(crate) use selection::{
+    check_variables, is_requested, prune_model, requested_bodies, selected_columns,
+};
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
-    BALANCE, ExtraColumn, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, TrajectorySample,
-    swept_range,
+    BALANCE, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, TrajectorySample,
+    default_limits,
 };

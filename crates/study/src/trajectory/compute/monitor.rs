@@ -2,20 +2,12 @@
 //! coupling function is discontinuous between two positions.
 
 use crate::explain::couplings;
+use crate::trajectory::compute::StopCause;
 use dwell_geometry::JointId;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_kinetostatics::{Magnitude, Signal};
 use dwell_laws::{Law, Spline};
 use dwell_scene::Scene;
-
-/// Why a trajectory ends although the mechanism can be assembled.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum TrajectoryFault {
-    /// The table of a load does not cover this value of its argument.
-    OffTable { load: usize, value: f64 },
-    /// A coupling function is discontinuous between two neighbouring values of its variable.
-    Discontinuity { joint: JointId, between: [f64; 2] },
-}
 
 /// The table of a load and its argument.
 struct MonitoredTable<'a> {
@@ -78,31 +70,35 @@ impl<'a> TrajectoryMonitor<'a> {
         }
     }
 
-    /// The first load whose table does not cover the state of the bodies at time `t` (s).
-    pub(crate) fn off_table(&self, t: f64, states: &BodyStates) -> Option<TrajectoryFault> {
-        self.tables.iter().find_map(|table| {
+    /// Fails at the first load whose table does not cover the state of the bodies at time `t` (s).
+    pub(crate) fn check_tables(&self, t: f64, states: &BodyStates) -> Result<(), StopCause> {
+        for table in &self.tables {
+            let (load, [first, last]) = (table.load, table.spline.range());
             let value = match table.argument {
                 None => t,
                 Some((measured, order)) => states.coordinate(measured)[order],
             };
-            let [first, last] = table.spline.range();
             // Angles and lengths computed from the pose carry a few roundings.
             let tolerance = RANGE_TOLERANCE * (last - first);
-            let inside = value >= first - tolerance && value <= last + tolerance;
-            let load = table.load;
-            (!inside).then_some(TrajectoryFault::OffTable { load, value })
-        })
+            if !(value >= first - tolerance && value <= last + tolerance) {
+                return Err(StopCause::OffTable { load, value });
+            }
+        }
+        Ok(())
     }
 
-    /// The first coupling whose function is discontinuous since the position before.
-    pub(crate) fn discontinuity(&mut self, states: &BodyStates) -> Option<TrajectoryFault> {
-        self.couplings.iter_mut().find_map(|coupling| {
+    /// Fails at the first coupling whose function is discontinuous since the position before.
+    pub(crate) fn check_couplings(&mut self, states: &BodyStates) -> Result<(), StopCause> {
+        for coupling in &mut self.couplings {
             let now = states.coordinate(coupling.variable)[0];
-            let previous = coupling.previous.replace(now)?;
-            let between = coupling.law.discontinuity(previous, now)?;
-            let joint = coupling.joint;
-            Some(TrajectoryFault::Discontinuity { joint, between })
-        })
+            let previous = coupling.previous.replace(now);
+            let jump = previous.and_then(|previous| coupling.law.discontinuity(previous, now));
+            if let Some(between) = jump {
+                let joint = coupling.joint;
+                return Err(StopCause::Discontinuity { joint, between });
+            }
+        }
+        Ok(())
     }
 }
 

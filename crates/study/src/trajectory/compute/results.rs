@@ -5,7 +5,7 @@ use crate::explain::StudyError;
 use crate::models::loaded_model;
 use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
-    Analysis, Column, EarlyStop, POSITIONS_PER_STEP, PositionEvaluator, Quantity, RoundingError,
+    Analysis, Column, POSITIONS_PER_STEP, PositionEvaluator, Quantity, RoundingError,
     SectionedLink, Trajectory, TrajectorySample, all_columns, check_variables, is_requested,
     prune_model, selected_columns,
 };
@@ -21,6 +21,8 @@ pub struct TrajectoryResults {
     pub(crate) columns: Vec<Column>,
     /// By position: a value for each column.
     pub(crate) rows: Vec<Vec<f64>>,
+    /// By column, of those that unwrap: the last angle, its rate and its time.
+    last_angles: Vec<Option<[f64; 3]>>,
     /// By position and body.
     pub body_poses: Vec<Vec<BodyPose>>,
     /// The links whose internal forces are requested.
@@ -41,14 +43,16 @@ impl TrajectoryResults {
             Analysis::Kinematics => &[],
             _ => scene.requests.sections.as_slice(),
         };
+        let links = sections.iter().map(|link| SectionedLink::new(scene, link));
         let reactions = model.reactions().iter().enumerate();
         let indeterminate = reactions.filter(|&(k, _)| !model.plan().is_determinate(k));
         let names = indeterminate.map(|(_, r)| scene.mechanism.reaction_name(*r));
         Self {
+            last_angles: vec![None; columns.len()],
             columns,
             rows: Vec::new(),
             body_poses: Vec::new(),
-            sectioned_links: sections.iter().map(SectionedLink::new).collect(),
+            sectioned_links: links.collect(),
             power_residual: 0.0,
             rounding_error: None,
             indeterminate: names.collect(),
@@ -56,20 +60,13 @@ impl TrajectoryResults {
         }
     }
 
-    /// Name, unit and meaning of every column of the analysis.
-    pub fn columns(&self) -> impl Iterator<Item = (&str, &str, &str)> {
-        let columns = self.columns.iter();
-        columns.map(|c| (c.name.as_str(), c.unit, c.meaning.as_str()))
-    }
-
     /// Some columns as a table.
     fn table(&self, selected: &[usize]) -> Table {
         let columns = selected.iter().map(|&k| &self.columns[k]);
+        let columns = columns.map(|c| findings::Column::new(&c.name, c.unit));
         let row = |row: &Vec<f64>| selected.iter().map(|&k| row[k]).collect();
         Table {
-            columns: columns
-                .map(|c| findings::Column::new(&c.name, c.unit))
-                .collect(),
+            columns: columns.collect(),
             rows: self.rows.iter().map(row).collect(),
         }
     }
@@ -80,18 +77,17 @@ impl TrajectoryResults {
         k: usize,
         evaluator: &PositionEvaluator<'_>,
         sample: &TrajectorySample,
-        unwrapper: &mut AngleUnwrapper,
     ) {
-        let value = |(i, column): (usize, &Column)| {
+        let value = |(column, last): (&Column, &mut Option<[f64; 3]>)| {
             let value = evaluator.value(column.quantity, sample);
             if !column.unwraps() {
                 return value;
             }
             let speed = evaluator.angular_velocity(column.quantity);
-            unwrapper.unwrap_angle(i, value, speed, sample.t)
+            unwrap_angle(last, value, speed, sample.t)
         };
-        self.rows
-            .push(self.columns.iter().enumerate().map(value).collect());
+        let columns = self.columns.iter().zip(&mut self.last_angles);
+        self.rows.push(columns.map(value).collect());
         self.body_poses.push(evaluator.body_poses());
         let position = &evaluator.position;
         let links = self.sectioned_links.iter_mut().zip(&position.link_forces);
@@ -106,50 +102,34 @@ impl TrajectoryResults {
     }
 }
 
-/// Unwraps angles: adds the revolutions that bring a value nearest to the one extrapolated by the velocities.
-struct AngleUnwrapper {
-    last: Vec<Option<(f64, f64, f64)>>,
-}
-
-impl AngleUnwrapper {
-    fn unwrap_angle(&mut self, k: usize, value: f64, speed: f64, t: f64) -> f64 {
-        let unwrapped = self.last[k].map_or(value, |(previous, previous_speed, previous_time)| {
-            let expected = previous + 0.5 * (previous_speed + speed) * (t - previous_time);
-            value + TAU * ((expected - value) / TAU).round()
-        });
-        self.last[k] = Some((unwrapped, speed, t));
-        unwrapped
-    }
+/// Unwraps an angle: adds the revolutions that bring it nearest to the one extrapolated by the velocities.
+fn unwrap_angle(last: &mut Option<[f64; 3]>, value: f64, speed: f64, t: f64) -> f64 {
+    let unwrapped = last.map_or(value, |[previous, previous_speed, previous_time]| {
+        let expected = previous + 0.5 * (previous_speed + speed) * (t - previous_time);
+        value + TAU * ((expected - value) / TAU).round()
+    });
+    *last = Some([unwrapped, speed, t]);
+    unwrapped
 }
 
 /// The columns of an analysis along a trajectory, of the bodies that `model` places.
-fn computed_columns(
-    scene: &Scene,
-    model: &Model,
-    trajectory: &Trajectory<'_>,
-    analysis: Analysis,
-) -> Vec<Column> {
+fn computed_columns(scene: &Scene, model: &Model, trajectory: &Trajectory<'_>) -> Vec<Column> {
     let modelled = model.plan().placed_bodies();
     let is_modelled = |column: &Column| {
         let bodies = column.quantity.bodies(scene, model.reactions());
         bodies.iter().all(|b| modelled[b.0])
     };
+    let free_motion = trajectory.free_motion();
+    // In a free motion only prescribed actuators exert a force.
     let is_exerted = |column: &Column| match column.quantity {
-        Quantity::ActuatorForce(i) => trajectory.exerts_force(i),
+        Quantity::ActuatorForce(i) => free_motion.is_none_or(|motion| motion.prescribed[i]),
         _ => true,
     };
-    let extra = trajectory.extra_columns().iter().enumerate();
-    let extra = extra.map(|(k, extra)| Column {
-        name: extra.name.clone(),
-        former: None,
-        unit: extra.unit,
-        quantity: Quantity::Extra(k),
-        meaning: extra.meaning.to_owned(),
-    });
-    all_columns(scene, model, trajectory.is_timed(analysis))
+    let extra = free_motion.map(|motion| motion.extra_columns.clone());
+    all_columns(scene, model, trajectory.is_timed())
         .into_iter()
-        .chain(extra)
-        .filter(|c| c.is_computed_by(analysis) && is_modelled(c) && is_exerted(c))
+        .chain(extra.unwrap_or_default())
+        .filter(|c| c.is_computed_by(trajectory.analysis) && is_modelled(c) && is_exerted(c))
         .filter(|c| !c.is_optional() || is_requested(scene, c))
         .collect()
 }
@@ -183,8 +163,7 @@ pub fn compute_trajectory<'a>(
     let model = loaded_model(scene)?;
     let notes = check_variables(scene, &model)?;
     let trajectory = Trajectory::new(scene, model.plan(), analysis, points)?;
-    let computed = compute_along(scene, &model, trajectory, analysis, progress)?;
-    Ok(ComputedTrajectory { notes, ..computed })
+    compute_along(scene, &model, trajectory, notes, progress)
 }
 
 /// Evaluates a scene along a trajectory.
@@ -193,32 +172,15 @@ pub fn compute_trajectory<'a>(
 /// [`StudyError`] where not even the first position can be reached.
 pub(crate) fn compute_along<'a>(
     scene: &Scene,
-    model: &Model,
+    full_model: &Model,
     trajectory: Trajectory<'a>,
-    analysis: Analysis,
+    notes: String,
     progress: Progress<'_>,
 ) -> Result<ComputedTrajectory<'a>, StudyError> {
-    let (results, early_stop) = evaluate(scene, model, &trajectory, analysis, progress)?;
-    Ok(ComputedTrajectory {
-        table: results.table(&selected_columns(scene, &results.columns)),
-        early_stop: early_stop.map(|stop| stop.explain(scene, model.plan(), &trajectory)),
-        trajectory,
-        results,
-        notes: String::new(),
-    })
-}
-
-fn evaluate(
-    scene: &Scene,
-    full_model: &Model,
-    trajectory: &Trajectory<'_>,
-    analysis: Analysis,
-    progress: Progress<'_>,
-) -> Result<(TrajectoryResults, Option<EarlyStop>), StudyError> {
     // The trajectory ends where the whole mechanism does, however much of it is modelled.
-    let plan: &Plan = full_model.plan();
+    let (plan, analysis): (&Plan, Analysis) = (full_model.plan(), trajectory.analysis);
     let model = &prune_model(scene, full_model);
-    let columns = computed_columns(scene, model, trajectory, analysis);
+    let columns = computed_columns(scene, model, &trajectory);
     trajectory.check_laws(scene)?;
     let charts = match trajectory.charts() {
         [] => std::slice::from_ref(model),
@@ -227,17 +189,14 @@ fn evaluate(
     let evaluators = charts.iter();
     let evaluators = evaluators.map(|chart| PositionEvaluator::new(scene, plan, chart, analysis));
     let mut evaluators = evaluators.collect::<Result<Vec<_>, _>>()?;
-    let mut unwrapper = AngleUnwrapper {
-        last: vec![None; columns.len()],
-    };
     let mut results = TrajectoryResults::new(scene, model, columns, analysis);
     let mut rounding_error = matches!(analysis, Analysis::Statics | Analysis::Kinetostatics)
         .then(|| RoundingError::new(scene, model, trajectory.points));
     let early_stop = trajectory.follow(plan, |k, sample| {
         let evaluator = &mut evaluators[sample.chart];
-        let t = trajectory.load_time(sample, analysis);
+        let t = trajectory.load_time(sample);
         evaluator.evaluate(sample, t)?;
-        results.add_position(k, evaluator, sample, &mut unwrapper);
+        results.add_position(k, evaluator, sample);
         if let Some(rounding_error) = &mut rounding_error {
             let rest = vec![0.0; sample.q.len()];
             let at = match analysis {
@@ -254,9 +213,17 @@ fn evaluate(
         }
         Ok(())
     });
-    if let Some(stop) = early_stop.as_ref().filter(|stop| !stop.has_begun) {
-        return Err(stop.explain(scene, plan, trajectory));
+    let has_begun = early_stop.as_ref().is_none_or(|stop| stop.has_begun);
+    let mut early_stop = early_stop.map(|stop| stop.explain(scene));
+    if let Some(error) = early_stop.take_if(|_| !has_begun) {
+        return Err(error);
     }
     results.rounding_error = rounding_error.map(|error| error.max_relative());
-    Ok((results, early_stop))
+    Ok(ComputedTrajectory {
+        table: results.table(&selected_columns(scene, &results.columns)),
+        early_stop,
+        trajectory,
+        results,
+        notes,
+    })
 }

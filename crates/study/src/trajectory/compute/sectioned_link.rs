@@ -2,7 +2,7 @@
 
 use dwell_findings::{Column, Table};
 use dwell_kinetostatics::{Distribution, LinkForces, Section};
-use dwell_scene::SectionRequest as Request;
+use dwell_scene::{Scene, SectionRequest as Request};
 
 /// Intervals along a link.
 const INTERVALS: usize = 100;
@@ -13,6 +13,8 @@ const COMPONENTS: [(&str, &str); 3] = [("axial", "N"), ("shear", "N"), ("bending
 pub struct SectionedLink {
     /// The body and the two points.
     pub request: Request,
+    /// `body from … to …`.
+    pub name: String,
     /// How its mass is distributed.
     pub distribution: Distribution,
     /// The position of the largest bending moment, and the sections there.
@@ -23,8 +25,10 @@ pub struct SectionedLink {
 }
 
 impl SectionedLink {
-    pub(crate) fn new(request: &Request) -> Self {
+    pub(crate) fn new(scene: &Scene, request: &Request) -> Self {
+        let (body, [from, to]) = (scene.mechanism.body_name(request.body), &request.names);
         Self {
+            name: format!("{body} from {from} to {to}"),
             request: request.clone(),
             distribution: Distribution::Lumped,
             max_bending_sections: None,
@@ -46,11 +50,8 @@ impl SectionedLink {
         }
         for (station, extremes) in &mut self.envelope {
             // On both sides of a concentrated load.
-            let [before, after] = [
-                forces.section_before(*station),
-                forces.section_after(*station),
-            ];
-            for section in [before, after] {
+            let at = *station;
+            for section in [forces.section_before(at), forces.section_after(at)] {
                 let values = [section.axial, section.shear, section.bending];
                 for ([min, max], value) in extremes.iter_mut().zip(values) {
                     *min = min.min(value);

@@ -1,8 +1,11 @@
-//! The columns that a scene requests.
+//! The columns that a scene requests, and the groups that they, inertia and loads need: a trajectory analysis models no
+//! others.
 
 use crate::explain::{StudyError, scene_error};
 use crate::former_names;
+use crate::models::requested_reaction_bodies;
 use crate::trajectory::compute::{Column, Quantity, all_columns, is_prefix_of};
+use dwell_geometry::{BodyId, JointId};
 use dwell_kinetostatics::Model;
 use dwell_scene::{Scene, SceneLocation, choices};
 
@@ -19,10 +22,7 @@ pub(crate) fn check_variables(scene: &Scene, model: &Model) -> Result<String, St
     for (k, name) in variables.iter().enumerate() {
         if columns.iter().any(|c| c.matches(name)) {
             let renamed = columns.iter().filter(|c| c.matches_former(name));
-            let current: Vec<&str> = renamed.map(|c| c.name.as_str()).collect();
-            if !current.is_empty() {
-                notes += &former_names::note(name, &current);
-            }
+            notes += &former_names::note(name, renamed.map(|c| &c.name));
             continue;
         }
         if let Some(error) = indeterminate_error(scene, model, k, name) {
@@ -40,21 +40,15 @@ pub(crate) fn check_variables(scene: &Scene, model: &Model) -> Result<String, St
 fn indeterminate_error(scene: &Scene, model: &Model, k: usize, name: &str) -> Option<StudyError> {
     let mechanism = &scene.mechanism;
     let joint = name.split('.').next();
-    let is_of_joint = |j: dwell_geometry::JointId| Some(&*mechanism.joints[j.0].name) == joint;
+    let is_of_joint = |j: JointId| Some(&*mechanism.joints[j.0].name) == joint;
     let mut reactions = model.reactions().iter().enumerate();
     let is_indeterminate = |r| !model.plan().is_determinate(r);
-    reactions
-        .any(|(r, reaction)| is_of_joint(reaction.joint) && is_indeterminate(r))
-        .then(|| {
-            scene_error(
-                scene,
-                format!(
-                    "`{name}` is statically indeterminate: redundant constraints share the load"
-                ),
-                "`dwell check` lists such reactions; remove one of the redundant joints",
-                [(SceneLocation::Variable(k), "indeterminate")],
-            )
-        })
+    let is_meant = reactions.any(|(r, of)| is_of_joint(of.joint) && is_indeterminate(r));
+    let message =
+        format!("`{name}` is statically indeterminate: redundant constraints share the load");
+    let help = "`dwell check` lists such reactions; remove one of the redundant joints";
+    let place = (SceneLocation::Variable(k), "indeterminate");
+    is_meant.then(|| scene_error(scene, message, help, [place]))
 }
 
 /// Names that may have been meant: columns and their prefixes; otherwise those with the same first word,
@@ -95,4 +89,32 @@ pub(crate) fn selected_columns(scene: &Scene, columns: &[Column]) -> Vec<usize> 
     };
     let all = 0..columns.len();
     all.filter(|&k| is_selected(&columns[k])).collect()
+}
+
+/// The bodies that the requests of a scene need; `None` if no `variables` are named, so that every
+/// column is computed.
+pub(crate) fn requested_bodies(scene: &Scene, model: &Model) -> Option<Vec<BodyId>> {
+    let requests = &scene.requests;
+    let names = requests.variables.as_ref()?;
+    let mut bodies: Vec<BodyId> = requests.paths.iter().map(|p| p.body).collect();
+    bodies.extend(requests.dwell.iter().map(|d| d.body));
+    bodies.extend(requests.sections.iter().map(|s| s.body));
+    // A scene that names no reactions requests all of them.
+    if requests.reactions.len() < scene.mechanism.reactions().len() {
+        bodies.extend(requested_reaction_bodies(scene));
+    }
+    for column in all_columns(scene, model, true) {
+        if names.iter().any(|name| column.matches(name)) {
+            bodies.extend(column.quantity.bodies(scene, model.reactions()));
+        }
+    }
+    Some(bodies)
+}
+
+/// The model without the groups that nothing needs.
+pub(crate) fn prune_model(scene: &Scene, model: &Model) -> Model {
+    match requested_bodies(scene, model) {
+        None => model.clone(),
+        Some(bodies) => model.clone().pruned_for(&bodies),
+    }
 }

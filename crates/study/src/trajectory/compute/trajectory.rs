@@ -3,7 +3,7 @@
 use crate::explain::{StudyError, actuator_labels, scene_error};
 use crate::number_format::{coordinate_unit, count, digits};
 use crate::trajectory::compute::{
-    Analysis, CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
+    Analysis, CONTINUITY_HELP, Column, EarlyStop, StopCause, jump_location, unreachable_error,
 };
 use dwell_geometry::{ActuatorId, Plan, Range};
 use dwell_kinetostatics::Model;
@@ -34,7 +34,7 @@ pub(crate) struct TrajectorySample {
     pub(crate) actuator_coordinate: Option<[f64; 3]>,
     /// Of a free motion: (load, magnitude) of each drive.
     pub(crate) drive_magnitudes: Vec<(usize, f64)>,
-    /// Of a free motion: the values of its [`ExtraColumn`]s.
+    /// Of a free motion: the values that only its integration yields, such as energies.
     pub(crate) extra_values: Vec<f64>,
 }
 
@@ -46,51 +46,36 @@ impl TrajectorySample {
     }
 }
 
-/// A column that only the integration of a free motion yields, such as an energy.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ExtraColumn {
-    pub(crate) name: String,
-    pub(crate) unit: &'static str,
-    pub(crate) meaning: &'static str,
-}
-
 /// A trajectory of the actuator coordinates, as a function of the completed fraction (0 to 1).
-#[derive(Debug, Clone)]
 pub struct Trajectory<'a> {
     kind: TrajectoryKind<'a>,
+    /// The analysis that follows it.
+    pub(crate) analysis: Analysis,
     /// Number of positions, both ends included.
     pub points: usize,
     /// Description for summaries.
     pub description: String,
     /// The method that computed its positions, for captions.
     pub method_text: String,
-    /// Where the scene defines it.
-    pub location: SceneLocation,
     /// Whether its start and its end are next to a limit position.
     pub ends_at_limit_position: [bool; 2],
     /// Period of the pose in the coordinate of the only actuator, rad.
     pub period: Option<f64>,
 }
 
-#[derive(Debug, Clone)]
 enum TrajectoryKind<'a> {
     Prescribed(&'a PrescribedMotion),
     Free(FreeTrajectory),
-    Swept {
-        actuator: usize,
-        from: f64,
-        to: f64,
-        fixed_coordinates: Vec<f64>,
-        speed: f64,
-    },
+    /// A sweep, and from where to where.
+    Swept(CoordinateSweep, [f64; 2]),
 }
 
 /// A free motion, sampled.
-#[derive(Debug, Clone)]
 pub(crate) struct FreeTrajectory {
     /// Two samples or more.
     pub(crate) samples: Vec<TrajectorySample>,
-    pub(crate) extra_columns: Vec<ExtraColumn>,
+    /// The columns of [`TrajectorySample::extra_values`].
+    pub(crate) extra_columns: Vec<Column>,
     /// By actuator: whether its coordinate is prescribed.
     pub(crate) prescribed: Vec<bool>,
     /// By chart: the model in its coordinate.
@@ -98,7 +83,7 @@ pub(crate) struct FreeTrajectory {
 }
 
 /// The limits of a sweep: from where to where, whether these are next to a limit position, and what it sweeps.
-type SweepLimits = ([f64; 2], [bool; 2], &'static str);
+pub(crate) type SweepLimits = ([f64; 2], [bool; 2], &'static str);
 
 impl<'a> Trajectory<'a> {
     /// The trajectory that an analysis of a scene follows, at `points` positions if given.
@@ -118,13 +103,8 @@ impl<'a> Trajectory<'a> {
         let duration = digits(prescribed.duration, 6);
         let description = format!("the prescribed motion of {duration} s");
         let kind = TrajectoryKind::Prescribed(prescribed);
-        Ok(Self::at_positions(
-            kind,
-            plan,
-            points,
-            description,
-            SceneLocation::Prescribed,
-        ))
+        let trajectory = Self::at_positions(kind, plan, analysis, points, description);
+        Ok(trajectory)
     }
 
     /// The sweep of a scene; or else over the range of its only actuator.
@@ -134,21 +114,18 @@ impl<'a> Trajectory<'a> {
         analysis: Analysis,
         points: Option<usize>,
     ) -> Result<Self, StudyError> {
-        let (sweep, location) = match &scene.sweep {
-            Some(sweep) => (sweep.clone(), SceneLocation::CoordinateSweep),
+        let sweep = match &scene.sweep {
+            Some(sweep) => sweep.clone(),
             None if plan.actuators() != 1 || analysis == Analysis::Kinetostatics => {
                 return Err(no_trajectory_error(scene, analysis));
             }
-            None => {
-                let sweep = CoordinateSweep {
-                    actuator: ActuatorId(0),
-                    range: None,
-                    fixed_coordinates: plan.assembly_coordinates().to_vec(),
-                    points: DEFAULT_POINTS,
-                    speed: 1.0,
-                };
-                (sweep, SceneLocation::Whole)
-            }
+            None => CoordinateSweep {
+                actuator: ActuatorId(0),
+                range: None,
+                fixed_coordinates: plan.assembly_coordinates().to_vec(),
+                points: DEFAULT_POINTS,
+                speed: 1.0,
+            },
         };
         let actuator = sweep.actuator.0;
         let start = sweep.fixed_coordinates[actuator];
@@ -162,45 +139,37 @@ impl<'a> Trajectory<'a> {
         let unit = coordinate_unit(plan.is_angle(actuator));
         let [first, last] = [from, to].map(|q| digits(q, 6));
         let description = format!("{what} of {name} from {first} to {last} {unit}");
-        let kind = TrajectoryKind::Swept {
-            actuator,
-            from,
-            to,
-            fixed_coordinates: sweep.fixed_coordinates,
-            speed: sweep.speed,
-        };
         let points = points.unwrap_or(sweep.points);
+        let kind = TrajectoryKind::Swept(sweep, [from, to]);
         Ok(Self {
             ends_at_limit_position,
-            ..Self::at_positions(kind, plan, points, description, location)
+            ..Self::at_positions(kind, plan, analysis, points, description)
         })
     }
 
     /// A computed free motion.
     pub(crate) fn of_free_motion(plan: &Plan, motion: FreeTrajectory) -> Self {
-        let (points, last) = (
-            motion.samples.len(),
-            motion.samples.last().map_or(0.0, |s| s.t),
-        );
-        let description = format!("a free motion of {} s", digits(last, 6));
+        let (points, last) = (motion.samples.len(), motion.samples.last());
+        let duration = digits(last.map_or(0.0, |s| s.t), 6);
+        let description = format!("a free motion of {duration} s");
         let kind = TrajectoryKind::Free(motion);
-        Self::at_positions(kind, plan, points, description, SceneLocation::Motion)
+        Self::at_positions(kind, plan, Analysis::FreeMotion, points, description)
     }
 
     fn at_positions(
         kind: TrajectoryKind<'a>,
         plan: &Plan,
+        analysis: Analysis,
         points: usize,
         description: String,
-        location: SceneLocation,
     ) -> Self {
         let points = points.max(2);
         Self {
             kind,
+            analysis,
             points,
             description,
             method_text: format!("the mechanism at {}", count(points, "position")),
-            location,
             ends_at_limit_position: [false; 2],
             period: plan.range().period(),
         }
@@ -211,10 +180,20 @@ impl<'a> Trajectory<'a> {
         self.points.div_ceil(POSITIONS_PER_STEP)
     }
 
-    fn free_motion(&self) -> Option<&FreeTrajectory> {
+    /// Where the scene defines it.
+    pub(crate) fn location(&self, scene: &Scene) -> SceneLocation {
+        match &self.kind {
+            TrajectoryKind::Prescribed(_) => SceneLocation::Prescribed,
+            TrajectoryKind::Free(_) => SceneLocation::Motion,
+            TrajectoryKind::Swept(..) if scene.sweep.is_some() => SceneLocation::CoordinateSweep,
+            TrajectoryKind::Swept(..) => SceneLocation::Whole,
+        }
+    }
+
+    pub(crate) fn free_motion(&self) -> Option<&FreeTrajectory> {
         match &self.kind {
             TrajectoryKind::Free(motion) => Some(motion),
-            TrajectoryKind::Prescribed(_) | TrajectoryKind::Swept { .. } => None,
+            TrajectoryKind::Prescribed(_) | TrajectoryKind::Swept(..) => None,
         }
     }
 
@@ -223,46 +202,30 @@ impl<'a> Trajectory<'a> {
         self.free_motion().map_or(&[], |motion| &motion.charts)
     }
 
-    /// Whether an actuator exerts a force: in a free motion only prescribed ones do.
-    pub(crate) fn exerts_force(&self, actuator: usize) -> bool {
-        self.free_motion()
-            .is_none_or(|motion| motion.prescribed[actuator])
-    }
-
-    /// The columns that its integration adds.
-    pub(crate) fn extra_columns(&self) -> &[ExtraColumn] {
-        self.free_motion()
-            .map_or(&[], |motion| &motion.extra_columns)
-    }
-
     /// The swept actuator; `None` if the trajectory is a motion in time.
     pub(crate) fn swept_actuator(&self) -> Option<usize> {
         match &self.kind {
             TrajectoryKind::Prescribed(_) | TrajectoryKind::Free(_) => None,
-            TrajectoryKind::Swept { actuator, .. } => Some(*actuator),
+            TrajectoryKind::Swept(sweep, _) => Some(sweep.actuator.0),
         }
     }
 
     /// Whether its tables have a time: a static sweep has none.
-    pub(crate) fn is_timed(&self, analysis: Analysis) -> bool {
-        self.swept_actuator().is_none() || analysis != Analysis::Statics
+    pub(crate) fn is_timed(&self) -> bool {
+        self.swept_actuator().is_none() || self.analysis != Analysis::Statics
     }
 
     /// The time at which the loads of a sample are evaluated: without time, at t = 0.
-    pub(crate) fn load_time(&self, sample: &TrajectorySample, analysis: Analysis) -> f64 {
-        if self.is_timed(analysis) {
-            sample.t
-        } else {
-            0.0
-        }
+    pub(crate) fn load_time(&self, sample: &TrajectorySample) -> f64 {
+        if self.is_timed() { sample.t } else { 0.0 }
     }
 
     /// Visits one position after another until a visit fails. Returns where and why it ends early, if it does.
-    pub(crate) fn follow(
-        &self,
-        plan: &Plan,
+    pub(crate) fn follow<'s>(
+        &'s self,
+        plan: &'s Plan,
         mut visit: impl FnMut(usize, &TrajectorySample) -> Result<(), StopCause>,
-    ) -> Option<EarlyStop> {
+    ) -> Option<EarlyStop<'s>> {
         let in_own_coordinate = plan.actuators() == 1 && self.charts().is_empty();
         let mut previous: Option<f64> = None;
         for k in 0..self.points {
@@ -347,24 +310,18 @@ impl<'a> Trajectory<'a> {
                 let k = (fraction * last as f64).round() as usize;
                 samples[k.min(last)].clone()
             }
-            TrajectoryKind::Swept {
-                actuator,
-                from,
-                to,
-                fixed_coordinates,
-                speed,
-            } => {
-                let zeros = vec![0.0; fixed_coordinates.len()];
+            TrajectoryKind::Swept(sweep, [from, to]) => {
+                let (q, actuator) = (sweep.fixed_coordinates.clone(), sweep.actuator.0);
                 let mut sample = TrajectorySample {
-                    t: fraction * (to - from).abs() / speed,
-                    q: fixed_coordinates.clone(),
-                    q_dot: zeros.clone(),
-                    q_ddot: zeros,
+                    t: fraction * (to - from).abs() / sweep.speed,
+                    q_dot: vec![0.0; q.len()],
+                    q_ddot: vec![0.0; q.len()],
+                    q,
                     ..TrajectorySample::default()
                 };
                 // Exact at both ends.
-                sample.q[*actuator] = from * (1.0 - fraction) + to * fraction;
-                sample.q_dot[*actuator] = speed.copysign(to - from);
+                sample.q[actuator] = from * (1.0 - fraction) + to * fraction;
+                sample.q_dot[actuator] = sweep.speed.copysign(to - from);
                 sample
             }
         }
@@ -376,17 +333,12 @@ impl<'a> Trajectory<'a> {
     }
 }
 
-/// The limits of the default sweep over the range of the only actuator, rad or m.
-pub(crate) fn swept_range(scene: &Scene, plan: &Plan) -> [f64; 2] {
-    default_limits(scene, plan).0
-}
-
 fn one_revolution(start: f64) -> SweepLimits {
     ([start, start + TAU], [false; 2], "one revolution")
 }
 
 /// The default sweep over the range of the only actuator.
-fn default_limits(scene: &Scene, plan: &Plan) -> SweepLimits {
+pub(crate) fn default_limits(scene: &Scene, plan: &Plan) -> SweepLimits {
     let start = plan.assembly_coordinates()[0];
     let half_stroke = DEFAULT_STROKE * scene.mechanism.size();
     match plan.range() {

@@ -4,6 +4,7 @@ use crate::output::{add_note, chart, figure, reaction_figure_count, symbol};
 use crate::trajectory::compute::{Analysis, Column, Quantity, SectionedLink};
 use crate::trajectory::figures::{FigureContext, MAX_CURVES};
 use dwell_geometry::JointId;
+use dwell_kinetostatics::Section;
 use dwell_report::{Axis, Figure, Paint, Panel, Series, Stroke};
 
 impl FigureContext<'_> {
@@ -21,19 +22,15 @@ impl FigureContext<'_> {
         };
         let panels: Vec<Panel> = kinds.into_iter().filter_map(chart).collect();
         let text = "Required actuator forces: the force or moment of the first body on the second.";
-        self.figure_of_some("actuator-forces", "Actuator forces", text, panels)
+        (!panels.is_empty())
+            .then(|| self.figure("actuator-forces", "Actuator forces", text, panels))
     }
 
     /// Joint forces by their magnitudes, or their only component; then the moments. With a note if not all are
     /// drawn.
     pub(crate) fn reactions(&self) -> (Vec<Figure>, Option<String>) {
-        let is_requested = |joint: JointId| {
-            self.scene
-                .requests
-                .reactions
-                .iter()
-                .any(|r| r.joint == joint)
-        };
+        let requested = &self.scene.requests.reactions;
+        let is_requested = |joint: JointId| requested.iter().any(|r| r.joint == joint);
         let forces = self.columns_where(
             |c| matches!(c.quantity, Quantity::ForceMagnitude(joint) if is_requested(joint)),
         );
@@ -50,12 +47,9 @@ impl FigureContext<'_> {
             self.labelled(&columns, "")
         };
         let mut panels: Vec<Panel> = Vec::new();
+        let magnitudes = self.labelled(&forces, ".magnitude");
         for (title, label, curves) in [
-            (
-                "Magnitudes of joint forces",
-                "force",
-                self.labelled(&forces, ".magnitude"),
-            ),
+            ("Magnitudes of joint forces", "force", magnitudes),
             ("Joint forces of fixed direction", "force", single("N")),
             ("Couples", "couple", single("N m")),
         ] {
@@ -90,18 +84,16 @@ impl FigureContext<'_> {
             return None;
         }
         let force = [("x".to_owned(), fx), ("y".to_owned(), fy)];
-        let moment = [("moment".to_owned(), m)];
-        let charts = vec![
-            self.chart("", "force", &force),
-            self.chart("", "moment", &moment),
-        ];
+        let force = self.chart("", "force", &force);
+        let moment = self.chart("", "moment", &[("moment".to_owned(), m)]);
         let text =
             "Resultant of joint, actuator and load forces on the frame; moment about its origin.";
         let title = match self.analysis {
             Analysis::Kinetostatics | Analysis::FreeMotion => "Shaking force and moment",
             _ => "Force and moment on the frame",
         };
-        Some(self.figure("shaking-force", title, text, vec![charts.into()]))
+        let panels = vec![vec![force, moment].into()];
+        Some(self.figure("shaking-force", title, text, panels))
     }
 
     pub(crate) fn power(&self) -> Option<Figure> {
@@ -128,32 +120,28 @@ impl FigureContext<'_> {
     pub(crate) fn internal_forces(&self, link: &SectionedLink) -> Option<Figure> {
         let (row, sections) = link.max_bending_sections.as_ref()?;
         let body = self.scene.mechanism.body_name(link.request.body);
-        let [from, to] = &link.request.names;
+        let from = &link.request.names[0];
         let chart = |i: usize, label: &str, unit: &str| {
-            let at_maximum = sections.iter();
-            let at_maximum =
-                at_maximum.map(|s| [s.station * 1e3, [s.axial, s.shear, s.bending][i]]);
+            let at = |s: &Section| [s.station * 1e3, [s.axial, s.shear, s.bending][i]];
             let bound = |name: &str, side: usize| {
                 let edge = link.envelope.iter().map(|(s, e)| [s * 1e3, e[i][side]]);
                 let line = Series::line(name, edge.collect());
                 line.stroke(Stroke::Dashed).color(Paint::Grey)
             };
-            let largest = Series::line("largest", at_maximum.collect()).stroke(Stroke::Filled);
+            let largest =
+                Series::line("largest", sections.iter().map(at).collect()).stroke(Stroke::Filled);
             let x = Axis::new(format!("distance from {from}"), "mm");
             let series = vec![largest, bound("envelope", 0), bound("", 1)];
             chart("", x, Axis::new(label, unit), series)
         };
-        let charts = vec![
-            chart(0, "axial force", "N"),
-            chart(1, "shear force", "N"),
-            chart(2, "bending moment", "N m"),
-        ];
+        let (axial, shear) = (chart(0, "axial force", "N"), chart(1, "shear force", "N"));
+        let charts = vec![axial, shear, chart(2, "bending moment", "N m")];
         let text = format!(
             "At {}, where the bending moment is largest; dashed: smallest and largest values over the whole trajectory.",
             self.describe_position(*row),
         );
         let name = format!("internal-forces-{}", link.file_name(body));
-        let title = format!("Internal forces of {body} from {from} to {to}");
+        let title = format!("Internal forces of {}", link.name);
         let (panels, method) = (vec![charts.into()], &self.method_text);
         Some(figure(self.scene, name, title, &text, panels, method))
     }

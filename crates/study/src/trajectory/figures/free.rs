@@ -15,15 +15,14 @@ impl FigureContext<'_> {
         for (i, actuator) in self.scene.mechanism.actuators.iter().enumerate().take(3) {
             let name = symbol(&actuator.name);
             for (order, label) in [(0, name.clone()), (1, format!("d{name}/dt"))] {
-                let column = self
-                    .results
-                    .column_index(Quantity::ActuatorCoordinate(i, order));
+                let quantity = Quantity::ActuatorCoordinate(i, order);
+                let column = self.results.column_index(quantity);
                 let curve = column.map(|k| [(label.clone(), k)]);
                 panels.extend(curve.map(|curve| self.chart("", &label, &curve).into()));
             }
         }
         let title = "Coordinates and their speeds";
-        self.figure_of_some("coordinates", title, "Over time.", panels)
+        (!panels.is_empty()).then(|| self.figure("coordinates", title, "Over time.", panels))
     }
 
     /// Kinetic and potential energy, work of nonconservative loads, and the error of the balance.
@@ -70,7 +69,7 @@ impl FigureContext<'_> {
             Some(chart("", coordinate_axis(&name, angle), y, vec![line]).into())
         };
         let panels: Vec<Panel> = actuators.take(4).filter_map(panel).collect();
-        let text = "Speed over coordinate.";
-        self.figure_of_some("phase-portrait", "Phase portrait", text, panels)
+        let (title, text) = ("Phase portrait", "Speed over coordinate.");
+        (!panels.is_empty()).then(|| self.figure("phase-portrait", title, text, panels))
     }
 }

@@ -9,7 +9,7 @@ use crate::number_format::digits;
 use crate::output::{MechanismDrawing, chart, coordinate_axis, figure, symbol};
 use crate::ranges::extent;
 use crate::trajectory::compute::{
-    Analysis, Column, ComputedTrajectory, Quantity, TrajectoryResults, is_requested,
+    Analysis, Column, ComputedTrajectory, Quantity, Trajectory, TrajectoryResults,
 };
 use dwell_report::{
     Animation, Axis, Chart, Drawing, Figure, Paint, Panel, Pen, Scale, Series, Shape, Stroke,
@@ -47,9 +47,8 @@ pub(crate) struct FigureContext<'a> {
 pub(crate) fn trajectory_figures(
     scene: &Scene,
     computed: &ComputedTrajectory<'_>,
-    analysis: Analysis,
 ) -> (Vec<Figure>, Option<String>) {
-    let context = FigureContext::new(scene, computed, analysis);
+    let context = FigureContext::new(scene, computed);
     let mut figures = vec![context.mechanism(last_drawn(computed))];
     figures.extend(context.angles());
     figures.extend(context.paths());
@@ -70,7 +69,7 @@ pub(crate) fn trajectory_figures(
 
 /// The animation of the mechanism, with the requested paths.
 pub(crate) fn animation(scene: &Scene, computed: &ComputedTrajectory<'_>) -> Animation {
-    let context = FigureContext::new(scene, computed, Analysis::Kinematics);
+    let context = FigureContext::new(scene, computed);
     let results = context.results;
     let drawing = MechanismDrawing::new(scene, &results.body_poses).with_visible(&results.modelled);
     let last = last_drawn(computed);
@@ -122,7 +121,7 @@ fn is_closed(body_poses: &[Vec<BodyPose>]) -> bool {
 }
 
 impl<'a> FigureContext<'a> {
-    fn new(scene: &'a Scene, computed: &'a ComputedTrajectory<'_>, analysis: Analysis) -> Self {
+    fn new(scene: &'a Scene, computed: &'a ComputedTrajectory<'_>) -> Self {
         let (trajectory, results) = (&computed.trajectory, &computed.results);
         let abscissa = results.abscissa(trajectory);
         let values = results.rows.iter().map(|row| row[abscissa]);
@@ -132,17 +131,15 @@ impl<'a> FigureContext<'a> {
                 let swept = &scene.mechanism.actuators[actuator];
                 let is_angle = swept.coordinate().is_angle();
                 let drawn = values.map(|q| if is_angle { q.to_degrees() } else { q });
-                (
-                    coordinate_axis(&symbol(&swept.name), is_angle),
-                    drawn.collect(),
-                )
+                let axis = coordinate_axis(&symbol(&swept.name), is_angle);
+                (axis, drawn.collect())
             }
         };
         let [start, end] = trajectory.ends_at_limit_position;
         Self {
             scene,
             results,
-            analysis,
+            analysis: trajectory.analysis,
             method_text: trajectory.method_text.clone(),
             x,
             abscissa_values,
@@ -175,17 +172,6 @@ impl<'a> FigureContext<'a> {
         };
         let text = format!("{text}{limit_note}");
         figure(self.scene, name, title, &text, panels, &self.method_text)
-    }
-
-    /// The same if there is a panel.
-    fn figure_of_some(
-        &self,
-        name: &str,
-        title: &str,
-        text: &str,
-        panels: Vec<Panel>,
-    ) -> Option<Figure> {
-        (!panels.is_empty()).then(|| self.figure(name, title, text, panels))
     }
 
     /// A curve over the trajectory; angles in degrees.
@@ -241,11 +227,6 @@ impl<'a> FigureContext<'a> {
             .then(|| [inner[0] - margin, inner[1] + margin])
     }
 
-    /// Whether a column is requested by name.
-    fn is_requested(&self, column: &Column) -> bool {
-        is_requested(self.scene, column)
-    }
-
     /// The indices of the columns that satisfy a condition.
     fn columns_where(&self, holds: impl Fn(&Column) -> bool) -> Vec<usize> {
         let columns = self.results.columns.iter().enumerate();
@@ -295,10 +276,10 @@ impl<'a> FigureContext<'a> {
         }
         let unmodelled = match self.results.unmodelled_bodies(self.scene) {
             none if none.is_empty() => String::new(),
-            bodies => format!(
-                " Not modelled, as no result depends on them: {}.",
-                bodies.join(", ")
-            ),
+            bodies => {
+                let bodies = bodies.join(", ");
+                format!(" Not modelled, as no result depends on them: {bodies}.")
+            }
         };
         let text = format!(
             "Drawn in full at {}, lighter further on.{unmodelled}",
@@ -317,5 +298,26 @@ fn plane(title: String, shapes: Vec<Shape>) -> Drawing {
         x: Axis::new("x", "m"),
         y: Axis::new("y", "m"),
         shapes,
+    }
+}
+
+impl TrajectoryResults {
+    /// The bodies that are not modelled, because nothing needs them.
+    pub(crate) fn unmodelled_bodies(&self, scene: &Scene) -> Vec<String> {
+        let bodies = scene.mechanism.bodies.iter().zip(&self.modelled);
+        let unmodelled = bodies.filter(|(_, modelled)| !**modelled);
+        unmodelled.map(|(body, _)| body.name.clone()).collect()
+    }
+
+    /// The index of the column of a quantity.
+    pub(crate) fn column_index(&self, quantity: Quantity) -> Option<usize> {
+        self.columns.iter().position(|c| c.quantity == quantity)
+    }
+
+    /// The index of the column of the abscissa: time, or the swept coordinate.
+    pub(crate) fn abscissa(&self, trajectory: &Trajectory<'_>) -> usize {
+        let swept = trajectory.swept_actuator();
+        let quantity = swept.map_or(Quantity::Time, |a| Quantity::ActuatorCoordinate(a, 0));
+        self.column_index(quantity).unwrap_or(0)
     }
 }

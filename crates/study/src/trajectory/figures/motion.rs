@@ -1,6 +1,6 @@
 //! Angles, paths and travels, with their speeds and accelerations.
 
-use crate::trajectory::compute::{Analysis, Quantity};
+use crate::trajectory::compute::{Analysis, Quantity, is_requested};
 use crate::trajectory::figures::{FigureContext, MAX_BODIES, MAX_CURVES};
 use dwell_geometry::BodyId;
 use dwell_report::{Chart, Figure, Mark};
@@ -21,7 +21,7 @@ impl FigureContext<'_> {
         let all: Vec<BodyId> = bodies.filter(rotates).collect();
         let is_requested = |body: &BodyId| {
             let mut columns = (0..3).filter_map(|order| angle(*body, order));
-            columns.any(|k| self.is_requested(&self.results.columns[k]))
+            columns.any(|k| is_requested(self.scene, &self.results.columns[k]))
         };
         let all = self.distinct_bodies(&all, angle);
         let requested: Vec<BodyId> = all.iter().copied().filter(is_requested).collect();

@@ -1,8 +1,11 @@
-//! Finds a scene value by the period of the free motion.
+//! `dwell calibrate`: the scene value that gives a required period of the free motion.
 
 use crate::explain::{StudyError, explain_motion, missing_section_label, scene_error};
 use crate::models::{initial_reduced_state, reduced_model};
 use crate::number_format::{digits, number};
+use crate::ranges::extent;
+#[cfg(feature = "output")]
+use crate::{models::PreparedScene, output::Outcome};
 use dwell_dynamics::Orbit;
 use dwell_numerics::root;
 use dwell_scene::{Scene, SceneLocation};
@@ -79,12 +82,9 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationR
     let residual = |value: f64| -> Result<f64, StudyError> { Ok(period_with(value)? - period) };
     let value = root::find(residual, a, b)?.ok_or_else(|| {
         let [period, a, b] = [period, a, b].map(number);
-        refuse(
-            format!(
-                "the period is discontinuous at {period} s, between {a} and {b} {unit} of `{path}`"
-            ),
-            "the mechanism changes its assembly mode there",
-        )
+        let between = format!("between {a} and {b} {unit} of `{path}`");
+        let message = format!("the period is discontinuous at {period} s, {between}");
+        refuse(message, "the mechanism changes its assembly mode there")
     })?;
     Ok(result(value))
 }
@@ -93,10 +93,8 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationR
 struct BracketSearch {
     /// Two values whose periods bracket the required one.
     bracket: Option<(f64, f64)>,
-    /// The smallest and the largest value that have a period.
-    values: [f64; 2],
-    /// The shortest and the longest period found, s.
-    periods: [f64; 2],
+    /// The values that have a period, each with its period, s.
+    found: Vec<[f64; 2]>,
     /// Whether a trial value had no period.
     left_range: bool,
 }
@@ -104,8 +102,9 @@ struct BracketSearch {
 impl BracketSearch {
     /// The values tried and their periods, and what to try instead.
     fn describe(&self, unit: &str) -> (String, &'static str) {
-        let [from, to] = self.values.map(|v| digits(v, 3));
-        let periods = match self.periods.map(number) {
+        let extent_of = |k: usize| extent(self.found.iter().map(|found| found[k]));
+        let [from, to] = extent_of(0).map(|v| digits(v, 3));
+        let periods = match extent_of(1).map(number) {
             [shortest, longest] if shortest == longest => format!("the period stays {shortest} s"),
             [shortest, longest] => format!("it gives periods from {shortest} to {longest} s"),
         };
@@ -126,8 +125,7 @@ impl BracketSearch {
     ) -> Self {
         let mut search = Self {
             bracket: None,
-            values: [current; 2],
-            periods: [current_period; 2],
+            found: vec![[current, current_period]],
             left_range: false,
         };
         // Whether a value has a period; sets the bracket if the required period is passed.
@@ -139,8 +137,7 @@ impl BracketSearch {
             if (period - target_period) * (current_period - target_period) <= 0.0 {
                 search.bracket = Some((last, next));
             }
-            search.values = [search.values[0].min(next), search.values[1].max(next)];
-            search.periods = [search.periods[0].min(period), search.periods[1].max(period)];
+            search.found.push([next, period]);
             true
         };
         let mut outermost = [Some(current), Some(current)];
@@ -188,4 +185,41 @@ fn period_of(scene: &Scene) -> Result<f64, StudyError> {
     let orbit = Orbit::new(&exact, start);
     let orbit = orbit.map_err(|e| explain_motion(scene, exact.model().plan(), &e))?;
     Ok(orbit.period)
+}
+
+/// `dwell calibrate`, with the path and the period of the scene's `[calibration]` where none is given.
+///
+/// # Errors
+/// As [`find_value`]; when neither the caller nor the scene gives path and period; when a length is
+/// driven or there are loads.
+#[cfg(feature = "output")]
+pub fn calibrate(
+    scene: &Scene,
+    path: Option<&str>,
+    period: Option<f64>,
+) -> Result<Outcome, StudyError> {
+    PreparedScene::for_driven_angle(scene, true)?;
+    let section = scene.calibration.as_ref();
+    let path = path.or(section.map(|c| c.path.as_str()));
+    let period = period.or(section.map(|c| c.period));
+    let (Some(path), Some(period)) = (path, period) else {
+        return Err(scene_error(
+            scene,
+            "the value to calibrate or the required period is not given",
+            "give --parameter BODY.inertia and --period SECONDS, or a [calibration] in the scene",
+            missing_section_label("calibration"),
+        ));
+    };
+    let result = find_value(scene, path, period)?;
+    let (title, unit) = (&scene.title, &result.unit);
+    let [value, period, current] =
+        [result.value, result.period, result.current].map(|v| digits(v, 12));
+    let current_period = digits(result.current_period, 13);
+    Ok(Outcome {
+        summary: format!(
+            "{title}: {path} = {value} {unit} gives the period {period} s\n  the scene has {current} {unit}, which gives \
+             {current_period} s\n"
+        ),
+        ..Outcome::default()
+    })
 }
