@@ -310,7 +310,11 @@ impl StepLoop<'_, '_> {
             let control = observer(at, &now, &mut dense)?;
             at.t = now.t;
             at.y.copy_from_slice(&now.y);
-            let end = self.end.is_some_and(|end| at.t >= end);
+            // It stops within a rounding of where it is to stop.
+            let rounding = 8.0 * f64::EPSILON * at.t.abs();
+            let is_last = matches!(reason, OdeSolverStopReason::TstopReached)
+                && self.end.is_some_and(|end| at.t >= end - rounding);
+            let end = is_last || self.end.is_some_and(|end| at.t >= end);
             if control == StepControl::Stop || end {
                 return Ok(());
             }

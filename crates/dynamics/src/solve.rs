@@ -229,7 +229,10 @@ impl<O: Observed> SolutionRecorder<'_, '_, O> {
             while let t = state.start_time + sample_interval * state.sample_count as f64
                 && t <= until
             {
-                solution.samples.push(state_at(t, now, dense)?);
+                // Between two integrations lie a few roundings of time, in which nothing happens.
+                let mut sample = state_at(t.max(before.t), now, dense)?;
+                sample.t = t;
+                solution.samples.push(sample);
                 state.sample_count += 1;
             }
         }

@@ -91,9 +91,8 @@ impl<'f> TimePieces<'f> {
         let Some(smooth) = &mut self.smooth else {
             return Ok(f64::INFINITY);
         };
-        while self.ahead.front().is_some_and(|piece| piece.to <= t) {
-            self.ahead.pop_front();
-        }
+        // An integrator stops within a rounding of where it is to stop.
+        let reached = t + 8.0 * f64::EPSILON * t.abs();
         let mut latest = f64::INFINITY;
         let mut k = 0;
         loop {
@@ -107,8 +106,8 @@ impl<'f> TimePieces<'f> {
             if piece.from >= latest {
                 return Ok(latest);
             }
-            if piece.to <= t {
-                self.ahead.pop_front();
+            if piece.to <= reached {
+                self.ahead.remove(k);
                 continue;
             }
             let reach = t + WIDTHS_PER_STEP * piece.width;

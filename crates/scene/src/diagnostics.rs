@@ -30,6 +30,7 @@ pub(crate) struct Diagnostics {
     suppressed: Cell<usize>,
     /// Former names that the file uses: the name, what it is called now, where it stands.
     renamed: RefCell<Vec<(String, String, Span)>>,
+    other_warnings: RefCell<Vec<SceneWarning>>,
     /// Where the things of the scene are written.
     spans: RefCell<SceneSpans>,
 }
@@ -41,6 +42,7 @@ impl Diagnostics {
             found: RefCell::default(),
             suppressed: Cell::new(0),
             renamed: RefCell::default(),
+            other_warnings: RefCell::default(),
             spans: RefCell::default(),
         }
     }
@@ -113,6 +115,12 @@ impl Diagnostics {
         self.renamed.borrow_mut().push(renamed);
     }
 
+    /// Warns of something that is read but may not be meant.
+    pub(crate) fn warn(&self, message: String, label: &str, span: Span) {
+        let warning = SceneWarning::at(&self.source, message, label, span);
+        self.other_warnings.borrow_mut().push(warning);
+    }
+
     /// The former name that stands at `span`, if one does.
     pub(crate) fn former_name_at(&self, span: &Span) -> Option<String> {
         let renamed = self.renamed.borrow();
@@ -120,7 +128,7 @@ impl Diagnostics {
         found.map(|(former, ..)| former.clone())
     }
 
-    /// One warning for each former name, at its first use, in the order of the file.
+    /// One warning for each former name, at its first use, in the order of the file; then the others.
     pub(crate) fn warnings(&self) -> Vec<SceneWarning> {
         let mut renamed = self.renamed.borrow_mut();
         renamed.sort_by_key(|(.., span)| span.start);
@@ -131,7 +139,8 @@ impl Diagnostics {
         let warning = |(former, current, span): &(String, String, Span)| {
             SceneWarning::renamed(&self.source, former, current, span.clone())
         };
-        first.map(warning).collect()
+        let other = self.other_warnings.take();
+        first.map(warning).chain(other).collect()
     }
 
     /// How many there are: a part of the file was read well if its reading did not change this.

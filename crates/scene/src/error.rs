@@ -34,14 +34,14 @@ pub struct SceneError {
     pub related: Vec<SceneError>,
 }
 
-/// What a scene should change, though it is read: it uses a former name. Plain data; nobody prints it.
+/// What a scene should change, though it is read: it uses a former name, or something that may not be meant. Plain data.
 #[derive(Debug, Clone, thiserror::Error, Diagnostic)]
 #[error("{message}")]
 #[diagnostic(severity(Warning))]
 pub struct SceneWarning {
     /// What is written, and what to write instead.
     pub message: String,
-    /// The byte range of the text where the former name first stands.
+    /// The byte range of the text that it is about.
     #[label(collection)]
     pub labels: Vec<LabeledSpan>,
     /// The text the label points into; none where the line is too long to be shown.
@@ -58,7 +58,11 @@ impl SceneWarning {
         span: Range<usize>,
     ) -> Self {
         let message = format!("`{former}` is now called `{current}`");
-        let label = (span, "former name".to_owned());
+        Self::at(source, message, "former name", span)
+    }
+
+    pub(crate) fn at(source: &Source, message: String, label: &str, span: Range<usize>) -> Self {
+        let label = (span, label.to_owned());
         let located = SceneError::with_labels(source, message, None, [label]);
         Self {
             message: located.message,

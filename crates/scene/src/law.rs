@@ -5,7 +5,10 @@ use crate::keys;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::Unit;
 use crate::value::{NumberRule, SignRule, Value};
-use dwell_laws::{Law, LawError, Polynomial, Profile, Rise, Shape, Sinusoid, Spline};
+use crate::wording::{list, shorten};
+use dwell_laws::{
+    Interpolation, Law, LawError, Polynomial, Profile, Rise, Shape, Sinusoid, Spline,
+};
 
 /// What a law is a function of, and of which quantity.
 pub(crate) struct LawDomain<'r> {
@@ -17,6 +20,8 @@ pub(crate) struct LawDomain<'r> {
     pub(crate) y_unit: &'r Unit,
     /// The value a motion starts from, SI.
     pub(crate) start_value: f64,
+    /// How the curve goes between the points of a table.
+    pub(crate) interpolation: Interpolation,
     /// The variable is a time that runs from 0 to this, s.
     pub(crate) end_time: Option<f64>,
 }
@@ -37,9 +42,68 @@ pub(crate) fn law(entry: &Entry<'_>, owner: &str, domain: &LawDomain<'_>) -> Opt
     }
 }
 
-/// The curve through the rows of a table. Points that are too close for a curve are found only here.
-pub(crate) fn spline(value: Value<'_>, what: &str, rows: &[[f64; 2]]) -> Option<Spline> {
-    built(Spline::through(rows), value, what)
+/// The curve through the rows of a table. Points that are too close for a curve are found only here. A spline that goes far
+/// beyond its points is warned of: between data that change abruptly it swings.
+pub(crate) fn curve(
+    value: Value<'_>,
+    what: &str,
+    rows: &[[f64; 2]],
+    interpolation: Interpolation,
+) -> Option<Spline> {
+    let curve = built(Spline::interpolating(rows, interpolation), value, what)?;
+    if let Some([x, y, beyond]) = curve.overshoot().filter(|[_, _, b]| *b > MAX_OVERSHOOT) {
+        let message = format!(
+            "the spline of {what} goes beyond its points by {:.0} % of their range: {} at {} (SI units)",
+            100.0 * beyond,
+            short(y),
+            short(x),
+        );
+        let help = "`interpolation = \"monotone\"` never goes beyond neighbouring points";
+        value
+            .log()
+            .warn(format!("{message}; {help}"), "these points", value.span());
+    }
+    Some(curve)
+}
+
+/// A number to four digits.
+fn short(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
+}
+
+/// How far a spline may go beyond the range of its points without a warning, as a part of that range.
+const MAX_OVERSHOOT: f64 = 0.05;
+
+/// The interpolation that a table asks for; none where it names no such one.
+pub(crate) fn interpolation(
+    fields: &TableReader<'_>,
+    absent: Interpolation,
+) -> Option<Interpolation> {
+    let Some(entry) = fields.get("interpolation") else {
+        return Some(absent);
+    };
+    let what = &fields.what;
+    let word = entry
+        .value
+        .string(format_args!("the interpolation of {what}"))?;
+    let found = Interpolation::ALL.iter().find(|(name, _)| *name == word);
+    if found.is_none() {
+        let names = list(Interpolation::ALL.iter().map(|(name, _)| *name)).unwrap_or_default();
+        let message = format!(
+            "there is no interpolation `{}`, which {what} asks for",
+            shorten(word)
+        );
+        return entry
+            .value
+            .reject(message, "unknown", format!("there are {names}"));
+    }
+    if fields.get("table").is_none() {
+        let message = format!("{what} has an `interpolation` but no table");
+        return entry
+            .value
+            .reject(message, "of what?", "leave it out, or give a `table`");
+    }
+    found.map(|(_, interpolation)| *interpolation)
 }
 
 fn built<T>(result: Result<T, LawError>, value: Value<'_>, what: &str) -> Option<T> {
@@ -51,7 +115,7 @@ fn built<T>(result: Result<T, LawError>, value: Value<'_>, what: &str) -> Option
 
 fn table(value: Value<'_>, what: &str, domain: &LawDomain<'_>) -> Option<Law> {
     let rows = value.rows([domain.x_unit, domain.y_unit], what)?;
-    let law = spline(value, what, &rows)?;
+    let law = curve(value, what, &rows, domain.interpolation)?;
     if let Some(end) = domain.end_time {
         let [first, last] = law.range();
         if first > 0.0 || last < end {

@@ -5,14 +5,14 @@ use crate::coordinates::ParsedCoordinates;
 use crate::expression::expression;
 use crate::joints::Joints;
 use crate::keys;
-use crate::law::spline;
+use crate::law::{curve, interpolation};
 use crate::table_reader::{Entry, TableReader};
 use crate::units::SI;
 use crate::value::{NumberRule, SignRule, Value};
 use crate::wording::shorten;
 use dwell_geometry::Coordinate;
 use dwell_kinetostatics::{Magnitude, Signal};
-use dwell_laws::{Expression, Law};
+use dwell_laws::{Expression, Interpolation, Law};
 use toml::de::DeValue;
 
 /// What the loads, the drives and the events of a scene can name.
@@ -117,7 +117,9 @@ impl Magnitudes {
         if rule.sign == SignRule::NotNegative && rows.iter().any(|[_, y]| *y < 0.0) {
             return table.reject(format!("{name} goes below zero"), "negative", rule.why);
         }
-        let law = spline(table, &name, &rows)?;
+        // Data of a load jump and have corners more often than not: it never goes beyond them.
+        let interpolation = interpolation(&fields, Interpolation::Monotone)?;
+        let law = curve(table, &name, &rows, interpolation)?;
         Some(Magnitude::Law(signal, Law::Spline(law)))
     }
 

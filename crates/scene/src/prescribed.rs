@@ -3,7 +3,7 @@
 use crate::coordinates::ParsedActuator;
 use crate::diagnostics::Span;
 use crate::keys::{TableSchema, table};
-use crate::law::{LawDomain, law};
+use crate::law::{LawDomain, interpolation, law};
 use crate::scene::{CoordinateSweep, PrescribedMotion};
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
@@ -11,7 +11,7 @@ use crate::units::SI;
 use crate::value::{NumberRule, SignRule, Value};
 use crate::wording::{list, shorten};
 use dwell_geometry::ActuatorId;
-use dwell_laws::Law;
+use dwell_laws::{Interpolation, Law};
 
 /// Positions or times, where the scene does not give their number.
 const DEFAULT_POINTS: usize = 361;
@@ -128,6 +128,7 @@ pub(crate) fn law_of(
         x_unit: &SI,
         y_unit: actuator.unit(fields.units()),
         start_value: start,
+        interpolation: interpolation(&fields, Interpolation::Spline)?,
         end_time: Some(end),
     };
     law(chosen, &fields.what, &domain)

@@ -45,6 +45,12 @@ pub fn of_motion(first: &[f64], second: &[f64], rounding: f64) -> f64 {
     SAFETY_FACTOR * differences.fold(0.0, f64::max) + rounding
 }
 
+/// The largest error of a quantity over a motion, as [`of_motion`] finds it at the end.
+pub fn over_motion(first: &[f64], second: &[f64], rounding: f64) -> f64 {
+    let differences = first.iter().zip(second).map(|(a, b)| (a - b).abs());
+    SAFETY_FACTOR * differences.fold(0.0, f64::max) + rounding
+}
+
 /// The rounding error of a value, from the same value in double-double; `size` is the magnitude of its terms.
 pub fn of_value(value: f64, finer: DoubleDouble, size: f64) -> f64 {
     (DoubleDouble::from_f64(value) - finer).hi.abs()

@@ -68,7 +68,7 @@ struct Cell {
 }
 
 /// What is found about a cell.
-enum Verdict {
+enum Examined {
     /// The source that bounds its width, if one does.
     Smooth(Option<usize>),
     Halve(usize),
@@ -135,7 +135,7 @@ impl<'f> Scan<'f> {
         })
     }
 
-    fn examine(&self, cell: &mut Cell) -> Verdict {
+    fn examine(&self, cell: &mut Cell) -> Examined {
         let over = Interval::checked(cell.from, cell.to);
         let is_short = over.width() <= self.min_width;
         for (e, (source, pieces)) in self.features.expressions.iter().enumerate() {
@@ -155,7 +155,7 @@ impl<'f> Scan<'f> {
                         };
                         sides[switch.op][switch.function] = Some(side);
                     }
-                    Decision::Unknown => return Verdict::Halve(*source),
+                    Decision::Unknown => return Examined::Halve(*source),
                     Decision::Root { level, values } => {
                         let between = bracket(pieces, switch, level, over, values);
                         let sides = match switch.at_integers {
@@ -163,7 +163,7 @@ impl<'f> Scan<'f> {
                             true => [level, level - 1.0],
                             false => values.map(f64::signum),
                         };
-                        return Verdict::SwitchAt {
+                        return Examined::SwitchAt {
                             expression: e,
                             switch: *switch,
                             between,
@@ -176,17 +176,24 @@ impl<'f> Scan<'f> {
         let mut narrowest = None;
         for (e, (source, pieces)) in self.features.expressions.iter().enumerate() {
             for (&term, &scale) in pieces.terms.iter().zip(&self.scales[e]) {
-                let [_, _, second] = pieces.enclose(term, over, &cell.sides[e]).entries;
-                let deviation = second.width() * over.width() * over.width() / 16.0;
+                let [value, slope, second] = pieces.enclose(term, over, &cell.sides[e]).entries;
+                // From a parabola, a line or a constant: where an exponential overflows, only the value is bounded.
+                let w = over.width();
+                let deviations = [
+                    second.width() * w * w / 16.0,
+                    slope.width() * w / 4.0,
+                    value.width(),
+                ];
+                let deviation = deviations.into_iter().fold(f64::INFINITY, f64::min);
                 if !(deviation <= SMOOTHNESS * scale || is_short) {
-                    return Verdict::Halve(*source);
+                    return Examined::Halve(*source);
                 }
                 if deviation > 0.02 * SMOOTHNESS * scale {
                     narrowest = Some(*source);
                 }
             }
         }
-        Verdict::Smooth(narrowest)
+        Examined::Smooth(narrowest)
     }
 
     /// The piece of a smooth cell, with the laws that are smooth over shorter lengths.
@@ -284,11 +291,11 @@ impl Scan<'_> {
                 continue;
             }
             match self.examine(&mut cell) {
-                Verdict::Smooth(source) => {
+                Examined::Smooth(source) => {
                     let piece = self.piece(&cell, source);
                     return Ok(Some((piece, cell.sides)));
                 }
-                Verdict::Halve(source) => {
+                Examined::Halve(source) => {
                     last = source;
                     let middle = 0.5 * (cell.from + cell.to);
                     let first = Cell {
@@ -299,7 +306,7 @@ impl Scan<'_> {
                     cell.from = middle;
                     self.open.extend([cell, first]);
                 }
-                Verdict::SwitchAt {
+                Examined::SwitchAt {
                     expression,
                     switch,
                     between: [before, behind],

@@ -109,6 +109,21 @@ fn narrow_smooth_features_are_resolved() {
     }
 }
 
+/// A step of a logistic function, whose exponential overflows on one side.
+#[test]
+fn steep_steps_are_resolved() {
+    let features = features("4/(1 + exp(-(t - 0.7)/1e-4))");
+    let pieces = features.scan(0.0, 3.0);
+    let pieces: Vec<Piece> = pieces.map(|p| p.expect("pieces")).collect();
+    let on = pieces.iter().filter(|p| (p.from - 0.7).abs() < 1e-4);
+    let narrow: Vec<f64> = on.map(|p| p.width).collect();
+    assert!(
+        narrow.len() > 3 && narrow.iter().all(|w| *w < 1e-4),
+        "{narrow:?}"
+    );
+    assert!(pieces.len() < 300, "{}", pieces.len());
+}
+
 #[test]
 fn laws_end_their_pieces_at_their_corners() {
     let rise = crate::Rise {

@@ -3,11 +3,12 @@
 use super::Joints;
 use crate::coordinates::{ParsedCoordinates, is_same};
 use crate::keys::table;
-use crate::law::{LawDomain, law};
+use crate::law::{LawDomain, interpolation, law};
 use crate::spans::SceneLocation;
 use crate::table_reader::TableReader;
 use crate::wording::list;
 use dwell_geometry::{BodyId, Coordinate, Coupling, Joint, JointId, JointKind, Vec2};
+use dwell_laws::Interpolation;
 
 impl Joints<'_> {
     /// Reads the couplings, once the coordinates are known.
@@ -51,6 +52,7 @@ impl Joints<'_> {
             x_unit: units.coordinate_unit(independent.is_angle()),
             y_unit: units.coordinate_unit(dependent.is_angle()),
             start_value: start,
+            interpolation: interpolation(fields, Interpolation::Spline)?,
             end_time: None,
         };
         let law = law(chosen, what, &domain)?;

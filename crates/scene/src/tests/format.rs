@@ -224,6 +224,11 @@ fn tables_of_examples(table: &TableSchema) -> Vec<(String, String)> {
                 let rise = table.keys.iter().find(|k| k.name == "cycloidal");
                 parts.extend(rise.map(written));
             }
+            // Only a table is interpolated.
+            _ if wanted.name == "interpolation" => {
+                let rows = table.keys.iter().find(|k| k.name == "table");
+                parts.extend(rows.map(written));
+            }
             (_, Some(key)) => parts.push(written(key)),
         }
         parts.push(written(wanted));

@@ -7,7 +7,7 @@ use dwell_kinetostatics::{
     Drive, DriveKind, Friction, FrictionContact, Guide, Load, LoadKind, Magnitude, Motor, Signal,
     SpeedController,
 };
-use dwell_laws::{Expression, Law, Sinusoid, Spline};
+use dwell_laws::{Expression, Interpolation, Law, Sinusoid, Spline};
 use std::f64::consts::{PI, TAU};
 
 const GROUND: BodyId = BodyId(0);
@@ -129,7 +129,9 @@ fn loads_and_friction() {
 
 #[test]
 fn drives() {
-    let table = |rows: &[[f64; 2]]| Law::Spline(Spline::through(rows).unwrap());
+    let table = |rows: &[[f64; 2]]| {
+        Law::Spline(Spline::interpolating(rows, Interpolation::Monotone).unwrap())
+    };
     let engine = Magnitude::Law(Signal::Value(PHI), table(&[[0.0, 2.0], [TAU, 1.0]]));
     let voltage = Expression::parse("12 - 2*t", &["t"]).unwrap();
     let voltage = Magnitude::Expression(voltage, vec![Signal::Time]);

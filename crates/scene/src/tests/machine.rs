@@ -8,7 +8,7 @@ use dwell_geometry::{
     vec2,
 };
 use dwell_kinetostatics::{Load, LoadKind, Magnitude, Signal};
-use dwell_laws::{Expression, Law, Polynomial, Profile, Rise, Shape, Spline};
+use dwell_laws::{Expression, Interpolation, Law, Polynomial, Profile, Rise, Shape, Spline};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 // The bodies in the order of the file.
@@ -287,8 +287,9 @@ fn defaults_of_motions_and_sweeps() {
 fn loads() {
     let scene = machine();
     let down = vec2(0.0, -1.0);
-    let couple = Spline::through(&[[0.0, 1.0], [FRAC_PI_2, 2.0], [PI, 1.5]]).unwrap();
-    let torsion = Spline::through(&[[0.0, 10.0], [2.0, 20.0]]).unwrap();
+    let monotone = |rows: &[[f64; 2]]| Spline::interpolating(rows, Interpolation::Monotone);
+    let couple = monotone(&[[0.0, 1.0], [FRAC_PI_2, 2.0], [PI, 1.5]]).unwrap();
+    let torsion = monotone(&[[0.0, 10.0], [2.0, 20.0]]).unwrap();
     let follow = "100*max(0, sin(phi)) + 2*lift.velocity";
     let follow = Expression::parse(follow, &["phi", "lift.velocity"]).unwrap();
     let grease = Expression::parse("0.1 + 0.05*exp(-t)", &["t"]).unwrap();
@@ -379,7 +380,8 @@ fn loads() {
 fn a_table_of_a_speed() {
     let text = changed(MACHINE, "of = \"phi\"", "of = \"lift.velocity\"");
     let scene = parse(&text).unwrap();
-    let spline = Spline::through(&[[0.0, 1.0], [0.09, 2.0], [0.18, 1.5]]).unwrap();
+    let rows = [[0.0, 1.0], [0.09, 2.0], [0.18, 1.5]];
+    let spline = Spline::interpolating(&rows, Interpolation::Monotone).unwrap();
     let expected = Magnitude::Law(Signal::Velocity(LIFT), Law::Spline(spline));
     assert_eq!(scene.loads[4].magnitude, expected);
 }

@@ -17,6 +17,12 @@ pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> Stud
         DynamicsError::Load(load) => explain_load(scene, *load),
         DynamicsError::LimitPosition { t, q } => explain_limit_position(scene, plan, *t, *q),
         DynamicsError::NoInertia { q, .. } => explain_no_inertia(scene, *q),
+        DynamicsError::VariesTooFast {
+            source_index,
+            width,
+            t,
+            max_steps,
+        } => explain_fast(scene, *source_index, [*width, *t], *max_steps),
         other => {
             let (message, help, at, label) = describe(scene, other);
             scene_error(scene, message, help, [(at, label)])
@@ -177,6 +183,26 @@ fn explain_no_inertia(scene: &Scene, q: f64) -> StudyError {
     let bodies = moving.take(8).map(|b| SceneLocation::Body(BodyId(b)));
     let help = "give mass and inertia to the moving bodies";
     scene_error(scene, message, help, labels(bodies, "no mass or inertia"))
+}
+
+/// Explains a function of time that cannot be followed.
+fn explain_fast(
+    scene: &Scene,
+    source: usize,
+    [width, t]: [f64; 2],
+    max_steps: usize,
+) -> StudyError {
+    let (what, place) = match scene.loads.get(source) {
+        Some(load) => (format!("load `{}`", load.name), SceneLocation::Load(source)),
+        None => ("a prescribed motion".to_owned(), SceneLocation::Motion),
+    };
+    let message = format!(
+        "{what} varies within {} s near t = {} s: to follow it takes more than the {max_steps} steps allowed",
+        digits(width, 2),
+        digits(t, 6),
+    );
+    let help = "shorten the motion; or give --max-step, with which it is followed only as far as steps of that length see it";
+    scene_error(scene, message, help, [(place, "varies too fast")])
 }
 
 /// Explains a load that is undefined.

@@ -209,6 +209,7 @@ impl ComputedMotion {
             method_text,
             remarks,
             accuracy: Some([accuracy, difference.largest()]),
+            inaccuracy: None,
         }
     }
 }

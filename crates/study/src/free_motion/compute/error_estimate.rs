@@ -4,24 +4,30 @@ use crate::estimate;
 use crate::explain::StudyError;
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::number_format::{coordinate_unit, digits};
+use crate::ranges::extent;
 use crate::trajectory::compute::TrajectorySample;
 use dwell_dynamics::Options;
 use dwell_scene::Scene;
+
+/// An error of this part of a coordinate's change, or of the largest kinetic energy, is no result: its second digit
+/// is wrong.
+const LARGE_ERROR: f64 = 0.01;
 
 /// A sample of each of two runs at the same time.
 type SamplePair<'a> = (&'a TrajectorySample, &'a TrajectorySample);
 
 impl FreeMotionProblem<'_> {
-    /// The line of the summary about the error at the end of a motion.
+    /// The line of the summary about the error of a motion; and why it is no result, if the error is large, or holds for
+    /// a part of the motion only.
     pub(crate) fn estimate_error(
         &self,
         scene: &Scene,
         motion: &SegmentedMotion,
         options: &Options,
-    ) -> Result<String, StudyError> {
+    ) -> Result<(String, Option<String>), StudyError> {
         let duration = motion.end_time();
         if duration == 0.0 {
-            return Ok(String::new());
+            return Ok((String::new(), None));
         }
         let samples = self.samples(motion).map_err(|e| self.explain(&e))?;
         let finer = estimate::comparison_options(options);
@@ -36,48 +42,66 @@ impl FreeMotionProblem<'_> {
         let pairs = samples.iter().zip(second.iter().flatten());
         let pairs: Vec<SamplePair<'_>> = pairs.take_while(|(a, b)| a.t == b.t).collect();
         let Some((last, _)) = pairs.last() else {
-            return Ok(format!(
-                "  no error estimate: a second run, at {refinement}, fails\n"
-            ));
+            let text = format!("  no error estimate: a second run, at {refinement}, fails\n");
+            let inaccuracy = "its error cannot be estimated: a second run fails".to_owned();
+            return Ok((text, Some(inaccuracy)));
         };
-        let at = if last.t < duration {
-            format!("at t = {} s", digits(last.t, 6))
-        } else {
-            "at the end".to_owned()
+        // An event may end one of the runs a sample earlier.
+        let is_whole = pairs.len() + 2 > samples.len();
+        let until = digits(last.t, 6);
+        let part = match is_whole {
+            true => "over the whole motion".to_owned(),
+            false => format!("until t = {until} s"),
         };
         let kinetic = samples.iter().map(|s| s.extra_values[0]);
-        let errors = self.error_texts(&pairs, kinetic.fold(0.0, f64::max));
-        Ok(format!(
-            "  estimated error {at}:{errors} from a second run at {refinement}\n"
-        ))
+        let (errors, large) = self.errors(&pairs, kinetic.fold(0.0, f64::max), options.atol);
+        let text = format!("  estimated error {part}:{errors} from a second run at {refinement}\n");
+        let ends = (!is_whole).then(|| {
+            format!("its error is known until t = {until} s only, where a second run ends")
+        });
+        Ok((text, large.or(ends)))
     }
 
-    /// The error of each free coordinate, and of the energy balance if anything moves.
-    fn error_texts(&self, pairs: &[SamplePair<'_>], max_kinetic: f64) -> String {
+    /// The error of each free coordinate, and of the energy balance if anything moves; and the first that is large.
+    fn errors(
+        &self,
+        pairs: &[SamplePair<'_>],
+        max_kinetic: f64,
+        atol: f64,
+    ) -> (String, Option<String>) {
         let error_of = |of: &dyn Fn(&TrajectorySample) -> f64, rounding: f64| {
             let values = pairs.iter().map(|(a, b)| (of(a), of(b)));
             let (one, two): (Vec<f64>, Vec<f64>) = values.unzip();
-            estimate::of_motion(&one, &two, rounding)
+            estimate::over_motion(&one, &two, rounding)
         };
-        let ends = pairs.first().zip(pairs.last());
-        let mut text = String::new();
+        let (mut text, mut large) = (String::new(), None);
         for &i in self.machine.free() {
-            let [start, end] = ends.map_or([0.0; 2], |((first, _), (last, _))| {
-                [first.coordinate(i), last.coordinate(i)]
-            });
-            let unknown = self.initial_speed_error(i) * (end - start).abs();
-            let rounding = 4.0 * f64::EPSILON * end.abs() + unknown;
+            let [from, to] = extent(pairs.iter().map(|(a, _)| a.coordinate(i)));
+            let unknown = self.initial_speed_error(i) * (to - from);
+            let rounding = 4.0 * f64::EPSILON * from.abs().max(to.abs()) + unknown;
             let error = error_of(&|s| s.coordinate(i), rounding);
             let unit = coordinate_unit(self.output_model.plan().is_angle(i));
             let name = &self.loaded_scene.mechanism.actuators[i].name;
             text += &format!(" {error:.1e} {unit} in {name},");
+            // What hardly moves may have an error as large as its tolerance.
+            if error > LARGE_ERROR * (to - from) + 100.0 * atol {
+                let change = digits(to - from, 3);
+                large.get_or_insert_with(|| {
+                    format!("the estimated error of {name} is {error:.1e} {unit}, and it moves by {change} {unit}")
+                });
+            }
         }
         if max_kinetic > 0.0 {
             let rounding = 4.0 * f64::EPSILON * max_kinetic;
             let error = error_of(&|s| self.energy_balance(s), rounding) / max_kinetic;
             text += &format!(" {error:.1e} of the largest kinetic energy,");
+            if error > LARGE_ERROR && max_kinetic > f64::MIN_POSITIVE {
+                large.get_or_insert_with(|| {
+                    format!("the estimated error of the energy is {error:.1e} of the largest kinetic energy")
+                });
+            }
         }
-        text
+        (text, large)
     }
 
     /// The relative rounding error of the initial speed, from that of the only coordinate's inertia.

@@ -12,6 +12,8 @@ pub(crate) struct ComputedMotion {
     pub(crate) remarks: String,
     /// The required accuracy and the estimated error, if an accuracy was required.
     pub(crate) accuracy: Option<[f64; 2]>,
+    /// Why it is no result although nothing failed, if so.
+    pub(crate) inaccuracy: Option<String>,
 }
 
 /// A free motion as a sequence of segments, each in one chart.

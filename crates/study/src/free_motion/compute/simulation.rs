@@ -122,11 +122,12 @@ impl FreeMotionProblem<'_> {
             ..Options::new(settings.method, settings.rtol)
         };
         let motion = self.solve(scene, duration, &options)?;
-        let error = self.estimate_error(scene, &motion, &options)?;
+        let (error, inaccuracy) = self.estimate_error(scene, &motion, &options)?;
         Ok(ComputedMotion {
             method_text: settings.describe(),
             remarks: self.method_hint(&motion, settings) + &error,
             accuracy: None,
+            inaccuracy,
             motion,
         })
     }
@@ -135,6 +136,12 @@ impl FreeMotionProblem<'_> {
     fn shortfall(&self, scene: &Scene, integrated: &ComputedMotion) -> Option<StudyError> {
         if let Some(error) = &integrated.motion.failure {
             return Some(self.explain(error));
+        }
+        if let Some(inaccuracy) = &integrated.inaccuracy {
+            let message = format!("the motion is not resolved: {inaccuracy}");
+            let help = "use a smaller --rtol, or --accuracy; what is chaotic is known for a shorter time only";
+            let place = (SceneLocation::Duration, "over this time");
+            return Some(scene_error(scene, message, help, [place]));
         }
         let [requested, error] = integrated.accuracy?;
         let message = format!(
