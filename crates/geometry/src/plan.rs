@@ -197,6 +197,25 @@ pub(crate) enum GroupKind {
     Factored(FactoredGroup),
 }
 
+impl GroupKind {
+    /// How a group is placed that is not a closed form throughout.
+    pub(crate) fn placement_method(&self) -> Option<PlacementMethod> {
+        match self {
+            Self::RrrDyad(_) | Self::GuidedPoint(_) => None,
+            Self::Factored(factored_group) => Some(factored_group.method),
+        }
+    }
+
+    /// Chooses the sign of the root in a closed form or a construction.
+    pub(crate) fn set_root_sign(&mut self, root_sign: f64) {
+        match self {
+            Self::RrrDyad(dyad) => dyad.branch = root_sign,
+            Self::GuidedPoint(guided) => guided.branch = root_sign,
+            Self::Factored(factored_group) => factored_group.root_sign = root_sign,
+        }
+    }
+}
+
 /// Two bodies pinned to each other and to known points: a triangle.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RrrDyad {
@@ -260,11 +279,7 @@ pub(crate) struct FactoredGroup {
 impl FactoredGroup {
     /// Room for its factors: those of a tall matrix keep a factor for each column beside it.
     pub(crate) fn factor_len(&self) -> usize {
-        let heads = if self.rows > self.columns {
-            self.columns
-        } else {
-            0
-        };
+        let heads = usize::from(self.is_overdetermined()) * self.columns;
         self.rows * self.columns + heads
     }
 }

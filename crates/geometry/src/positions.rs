@@ -215,7 +215,8 @@ impl Plan {
         initial_iterate: InitialIterate,
     ) -> Result<(), PositionError> {
         let assur = &self.groups[group];
-        if matches!(&assur.kind, GroupKind::Factored(s) if matches!(s.method, PlacementMethod::Newton | PlacementMethod::GearTrain))
+        if let Some(PlacementMethod::Newton | PlacementMethod::GearTrain) =
+            assur.kind.placement_method()
         {
             return Ok(());
         }

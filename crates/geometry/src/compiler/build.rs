@@ -149,12 +149,9 @@ impl Plan {
         let counts_revolutions =
             has_class(&|frame| self.revolution_counted[frame] && !by_carrier(frame));
         let counts_by_carrier = has_class(&by_carrier);
-        let uses_stored_poses = match &kind {
-            GroupKind::Factored(factored_group) => match factored_group.method {
-                PlacementMethod::Newton => true,
-                PlacementMethod::Linear | PlacementMethod::GearTrain => false,
-                _ => counts_revolutions,
-            },
+        let uses_stored_poses = match kind.placement_method() {
+            Some(PlacementMethod::Newton) => true,
+            Some(PlacementMethod::Linear | PlacementMethod::GearTrain) => false,
             _ => counts_revolutions,
         };
         AssurGroup {

@@ -72,7 +72,11 @@ pub(crate) fn order_groups(
     let redundant = |&e: &usize| of_equation[e] == UNMATCHED;
     let redundant: Vec<usize> = (0..equations.len()).filter(redundant).collect();
     if !redundant.is_empty() && !allow_redundant {
-        return Err(problem.over_constrained(redundant.iter().map(|&e| equations[e])));
+        let owners = redundant.iter().map(|&e| match equations[e] {
+            Equation::Loop(l) => problem.lowered.pairs[problem.loops[l].pair].owner,
+            Equation::Coupling(r) => problem.couplings[r].owner,
+        });
+        return Err(Lowered::over_constrained(&owners.collect::<Vec<_>>()));
     }
     if !undetermined.is_empty() {
         return Err(problem.under_actuated(&undetermined));
@@ -84,17 +88,11 @@ pub(crate) fn order_groups(
     }
     let groups = strong_components(&of_equation, &before, &of_unknown);
     let groups = absorb_redundant(groups, &redundant, &dependencies, &of_unknown);
-    let as_unknown = |u: usize| match u.checked_sub(classes) {
-        None => Unknown::ClassAngle(u + 1),
-        Some(slide) => Unknown::SlideTravel(slide),
-    };
     let group = |members: Vec<usize>| {
         let rows = members.len();
-        let matched = members
-            .iter()
-            .map(|&e| of_equation[e])
-            .filter(|&u| u != UNMATCHED);
-        let mut unknowns: Vec<Unknown> = matched.map(as_unknown).collect();
+        let matched = members.iter().map(|&e| of_equation[e]);
+        let matched = matched.filter(|&u| u != UNMATCHED);
+        let mut unknowns: Vec<Unknown> = matched.map(|u| problem.unknown(u)).collect();
         unknowns.sort_unstable();
         let (mut loops, mut couplings) = (Vec::new(), Vec::new());
         for e in members {
@@ -117,28 +115,11 @@ pub(crate) fn order_groups(
 }
 
 impl PositionProblem<'_> {
-    /// The error of equations without an unknown of their own.
-    fn over_constrained(
-        &self,
-        redundant: impl ExactSizeIterator<Item = Equation>,
-    ) -> StructureError {
-        let redundant_count = redundant.len();
-        let owners = redundant.map(|equation| match equation {
-            Equation::Loop(l) => self.lowered.pairs[self.loops[l].pair].owner,
-            Equation::Coupling(r) => self.couplings[r].owner,
-        });
-        let (joints, actuators) = Lowered::owners(owners);
-        StructureError::OverConstrained {
-            redundant_count,
-            joints,
-            actuators,
-        }
-    }
-
     /// The error of unknowns that no equation determines.
     fn under_actuated(&self, undetermined: &[usize]) -> StructureError {
         let actuators = self.lowered.actuated_coordinates.len();
-        let bodies = undetermined.iter().flat_map(|&u| self.bodies_of(u));
+        let unknowns = undetermined.iter().map(|&u| self.unknown(u));
+        let bodies = unknowns.flat_map(|u| bodies_of(self.frames, self.tree, u));
         StructureError::UnderActuated {
             degrees_of_freedom: actuators + undetermined.len(),
             actuators,
@@ -217,24 +198,25 @@ impl PositionProblem<'_> {
         (found, cancelled)
     }
 
-    /// The bodies whose position depends on an unknown.
-    fn bodies_of(&self, u: usize) -> Vec<usize> {
-        let classes = self.frames.orientation_classes - 1;
-        if u < classes {
-            self.frames.class_bodies[u + 1].clone()
-        } else {
-            bodies_of_slide(self.tree, u - classes)
+    /// An unknown by its number: classes first (class c is number c − 1), then slides.
+    fn unknown(&self, u: usize) -> Unknown {
+        match u.checked_sub(self.frames.orientation_classes - 1) {
+            None => Unknown::ClassAngle(u + 1),
+            Some(slide) => Unknown::SlideTravel(slide),
         }
     }
 }
 
-/// The bodies that a slide connects with their parents.
-pub(crate) fn bodies_of_slide(tree: &Tree, slide: usize) -> Vec<usize> {
-    let tree_joints = tree.joints.iter();
-    tree_joints
-        .filter(|c| c.slide.is_some_and(|(s, _)| s == slide))
-        .map(|c| c.body)
-        .collect()
+/// The bodies whose angles an unknown determines, or that a slide connects with their parents.
+pub(crate) fn bodies_of(frames: &Frames, tree: &Tree, unknown: Unknown) -> Vec<usize> {
+    match unknown {
+        Unknown::ClassAngle(class) => frames.class_bodies[class].clone(),
+        Unknown::SlideTravel(slide) => {
+            let slides = tree.joints.iter();
+            let slides = slides.filter(|c| c.slide.is_some_and(|(s, _)| s == slide));
+            slides.map(|c| c.body).collect()
+        }
+    }
 }
 
 /// Adds each redundant equation to the group of everything that it depends on.
