@@ -109,10 +109,9 @@ impl Plan {
             rotate_frame(actuated, pose);
         }
         for r in self.groups[g].group.couplings.clone() {
-            if self.couplings[r].constant_from_assembly {
+            if self.lowered.couplings[r].constant_from_assembly {
                 let residual = self.couplings[r].value(&pose.angle, &pose.slide_travel);
                 self.couplings[r].dependent.constant -= residual;
-                self.couplings[r].constant_from_assembly = false;
             }
         }
     }

@@ -174,7 +174,7 @@ impl ConstraintRows {
                 ConstraintTerm::RelativeAngle(angle_columns) if !counts_revolutions => {
                     ConstraintRow::periodic_angle(angle_columns, 0.0)
                 }
-                term => ConstraintRow::single(term),
+                term => ConstraintRow::single(term, 0.0),
             });
         }
         let reactions = mechanism.reactions();

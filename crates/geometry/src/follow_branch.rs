@@ -260,18 +260,14 @@ impl Plan {
             }
             for &unknown in &assur.group.unknowns {
                 match unknown {
-                    Unknown::ClassAngle(c) if self.revolution_counted[self.class_frame(c)] => {
-                        let f = self.class_frame(c);
-                        self.set_class_angle(
-                            c,
-                            from.angle[f] + motion.angular_velocity[f] * step,
-                            pose,
-                        );
-                    }
                     Unknown::ClassAngle(c) => {
                         let f = self.class_frame(c);
-                        let by = Vec2::from_angle(motion.angular_velocity[f] * step);
-                        pose.rotation[f] = from.rotation[f].rotate(by);
+                        let by = motion.angular_velocity[f] * step;
+                        if self.revolution_counted[f] {
+                            self.set_class_angle(c, from.angle[f] + by, pose);
+                        } else {
+                            pose.rotation[f] = from.rotation[f].rotate(Vec2::from_angle(by));
+                        }
                     }
                     Unknown::SlideTravel(s) => {
                         pose.slide_travel[s] =

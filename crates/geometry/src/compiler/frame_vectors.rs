@@ -5,7 +5,7 @@ use super::build::actuated_frames;
 use crate::plan::{ActuatedFrame, AssurGroup, GroupKind, LoopClosure, MovingBody, Step};
 use crate::plane::Vec2;
 use crate::structure::frames::Frames;
-use crate::structure::groups::{Group, Unknown};
+use crate::structure::groups::Group;
 use crate::structure::tree::{FrameVector, LoopJoint, Tree};
 use std::collections::HashMap;
 
@@ -36,11 +36,9 @@ impl FrameVectorTable {
         table.rotate_frames(actuated_frames(all_actuated_frames, |class| class == 0));
         for (g, group) in groups.iter().enumerate() {
             table.steps.push(Step::SolveGroup(g));
-            for &unknown in &group.unknowns {
-                if let Unknown::ClassAngle(class) = unknown {
-                    table.known_at[class_frames[class]] = table.steps.len();
-                    table.rotate_frames(actuated_frames(all_actuated_frames, |c| c == class));
-                }
+            for class in group.classes() {
+                table.known_at[class_frames[class]] = table.steps.len();
+                table.rotate_frames(actuated_frames(all_actuated_frames, |c| c == class));
             }
         }
         table

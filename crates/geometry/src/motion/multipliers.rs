@@ -129,10 +129,8 @@ impl Plan {
         } = balance;
         let multiplier = multipliers[coupling];
         let in_group = |frame: usize| {
-            assur.group.unknowns.iter().any(|u| match *u {
-                Unknown::ClassAngle(c) => self.class_frame(c) == frame,
-                Unknown::SlideTravel(_) => false,
-            })
+            let mut classes = assur.group.classes();
+            classes.any(|class| self.class_frame(class) == frame)
         };
         self.coupling(coupling).for_each_derivative(
             &pose.angle,

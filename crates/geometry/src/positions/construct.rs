@@ -116,10 +116,8 @@ impl Plan {
         let Group {
             unknowns, loops, ..
         } = &self.groups[group].group;
-        for &unknown in unknowns {
-            if let Unknown::ClassAngle(class) = unknown {
-                self.set_class_angle(class, T::from_f64(0.0), pose);
-            }
+        for class in self.groups[group].group.classes() {
+            self.set_class_angle(class, T::from_f64(0.0), pose);
         }
         self.rotate_group(group, pose);
         self.residual(group, pose);

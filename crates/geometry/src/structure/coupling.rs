@@ -27,8 +27,6 @@ pub struct CouplingEquation {
     pub dependent: LinearForm,
     /// The law and its argument, where there is one.
     pub law: Option<(Law, LinearForm)>,
-    /// Whether its constant is to be set at assembly.
-    pub constant_from_assembly: bool,
     /// Whether it is in rad rather than in m.
     pub angular: bool,
 }
@@ -110,7 +108,6 @@ impl CouplingEquation {
             law: lowered_coupling.law.as_ref().map(|(law, independent)| {
                 (law.clone(), LinearForm::new(independent, frames, tree))
             }),
-            constant_from_assembly: lowered_coupling.constant_from_assembly,
             angular: lowered_coupling.angular,
         };
         lowered.couplings.iter().map(compile).collect()

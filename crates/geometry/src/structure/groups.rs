@@ -32,6 +32,26 @@ pub struct Group {
     pub rows: usize,
 }
 
+impl Group {
+    /// Whether the angle of a class is among the unknowns.
+    pub(crate) fn contains_class(&self, class: usize) -> bool {
+        self.unknowns.contains(&Unknown::ClassAngle(class))
+    }
+
+    /// The classes whose angles are unknowns.
+    pub(crate) fn classes(&self) -> impl Iterator<Item = usize> {
+        self.unknowns.iter().filter_map(|u| match *u {
+            Unknown::ClassAngle(class) => Some(class),
+            Unknown::SlideTravel(_) => None,
+        })
+    }
+
+    /// Whether all unknowns are angles.
+    pub(crate) fn is_rotational(&self) -> bool {
+        self.classes().count() == self.unknowns.len()
+    }
+}
+
 /// An equation, or one of a loop's two.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Equation {
@@ -147,55 +167,50 @@ impl PositionProblem<'_> {
         }
         for (r, coupling) in self.couplings.iter().enumerate() {
             equations.push(Equation::Coupling(r));
-            let classes: Vec<usize> = coupling
-                .classes(self.frames)
-                .iter()
-                .map(|c| c - 1)
-                .collect();
-            let named = coupling
-                .frames()
-                .map(|f| self.frames.frames[f].orientation_class);
-            let named = named.filter(|&c| c > 0).map(|c| c - 1);
+            let classes = coupling.classes(self.frames);
+            let mut classes: Vec<usize> = classes.iter().map(|c| c - 1).collect();
+            let named = self.class_unknowns(coupling.frames());
             evaluated_with.push(named.filter(|c| !classes.contains(c)).collect());
-            let slides = coupling.slides().into_iter();
-            let slides = slides.filter(|&s| self.actuated_slides[s].is_none());
-            let slides = slides.map(|s| self.frames.orientation_classes - 1 + s);
-            dependencies.push(classes.into_iter().chain(slides).collect());
+            classes.extend(self.slide_unknowns(coupling.slides()));
+            dependencies.push(classes);
         }
         (equations, dependencies, evaluated_with)
     }
 
     fn unknowns_of(&self, one: &LoopJoint) -> (Vec<usize>, Vec<usize>) {
-        let class = |frame: usize| self.frames.frames[frame].orientation_class;
-        let rotating = one.vectors.iter().map(|a| a.frame);
-        let sliding = one.slides.iter().map(|(_, a)| a.frame);
-        let mut found: Vec<usize> = rotating
-            .chain(sliding)
-            .chain(one.axis.iter().map(|a| a.frame))
-            .map(class)
-            .filter(|&c| c > 0)
-            .map(|c| c - 1)
-            .collect();
+        let vectors = one.vectors.iter().chain(one.slides.iter().map(|(_, a)| a));
+        let frames = || vectors.clone().chain(&one.axis).map(|a| a.frame);
+        let mut found: Vec<usize> = self.class_unknowns(frames()).collect();
         found.sort_unstable();
         found.dedup();
         // A common rotation does not change the distance from the axis: a loop of one class alone cannot determine
         // its angle.
-        let all_one_class = one.axis.is_some_and(|axis| {
-            let same = |frame: usize| class(frame) == class(axis.frame);
-            one.vectors.iter().all(|a| same(a.frame))
-                && one.slides.iter().all(|(_, a)| same(a.frame))
-        });
+        let class = |frame: usize| self.frames.frames[frame].orientation_class;
+        let all_one_class =
+            (one.axis).is_some_and(|axis| frames().all(|frame| class(frame) == class(axis.frame)));
         let mut cancelled = Vec::new();
         if all_one_class {
             std::mem::swap(&mut found, &mut cancelled);
         }
-        let slides = one.slides.iter().map(|&(s, _)| s);
-        found.extend(
-            slides
-                .filter(|&s| self.actuated_slides[s].is_none())
-                .map(|s| self.frames.orientation_classes - 1 + s),
-        );
+        found.extend(self.slide_unknowns(one.slides.iter().map(|&(s, _)| s)));
         (found, cancelled)
+    }
+
+    /// The unknowns, by number, that are the angles of some frames.
+    fn class_unknowns(&self, frames: impl Iterator<Item = usize>) -> impl Iterator<Item = usize> {
+        let classes = frames.map(|f| self.frames.frames[f].orientation_class);
+        classes.filter(|&c| c > 0).map(|c| c - 1)
+    }
+
+    /// The unknowns, by number, among the travels of some slides.
+    fn slide_unknowns(
+        &self,
+        slides: impl IntoIterator<Item = usize>,
+    ) -> impl Iterator<Item = usize> {
+        let free = slides
+            .into_iter()
+            .filter(|&s| self.actuated_slides[s].is_none());
+        free.map(|s| self.frames.orientation_classes - 1 + s)
     }
 
     /// An unknown by its number: classes first (class c is number c − 1), then slides.
@@ -256,7 +271,8 @@ fn absorb_redundant(
     // The whole depends on nothing outside it, so it can come where its first part does.
     let mut order: Vec<Vec<usize>> = Vec::new();
     let mut position: Vec<Option<usize>> = vec![None; dependencies.len()];
-    for group in groups {
+    // An equation that depends on no unknown at all is a group of its own.
+    for group in groups.into_iter().chain(redundant.iter().map(|&e| vec![e])) {
         match joins[group[0]] {
             UNMATCHED => order.push(group),
             join => match position[join] {
@@ -266,16 +282,6 @@ fn absorb_redundant(
                     order.push(group);
                 }
             },
-        }
-    }
-    for &e in redundant {
-        match position[joins[e]] {
-            Some(at) => order[at].push(e),
-            // An equation that depends on no unknown at all: a group of its own.
-            None => {
-                position[joins[e]] = Some(order.len());
-                order.push(vec![e]);
-            }
         }
     }
     order
