@@ -312,7 +312,7 @@ impl<T: Scalar> Separation<T> {
 impl Plan {
     /// The slope of the law by which a joint couples two coordinates, at a pose; none if it couples none by a law.
     pub fn coupling_slope<T: Scalar>(&self, joint: JointId, pose: &Pose<T>) -> Option<T> {
-        let coupling = self.coupling(self.joint_parts(joint).1?);
+        let coupling = &self.couplings[self.joint_parts(joint).1?];
         coupling.law.as_ref()?;
         Some(coupling.slope(&pose.angle, &pose.slide_travel))
     }

@@ -53,11 +53,8 @@ impl FrameVectorTable {
     }
 
     fn index(&mut self, vector: FrameVector) -> usize {
-        let key = (
-            vector.frame,
-            vector.local.x.to_bits(),
-            vector.local.y.to_bits(),
-        );
+        let FrameVector { frame, local } = vector;
+        let key = (frame, local.x.to_bits(), local.y.to_bits());
         *self.index_of.entry(key).or_insert_with(|| {
             self.vectors.push(vector);
             self.vectors.len() - 1
@@ -122,9 +119,8 @@ impl FrameVectorTable {
                 waiting[self.known_at[vector.frame]].push(Step::RotateVector(i, vector));
             }
         }
-        let actuated = slides.iter().enumerate();
-        let actuated =
-            actuated.filter_map(|(s, by)| by.map(|actuator| Step::SetSlide(s, actuator)));
+        let set_slide = |(s, by): (usize, &Option<usize>)| Some(Step::SetSlide(s, (*by)?));
+        let actuated = slides.iter().enumerate().filter_map(set_slide);
         // Vectors on the ground are never rotated.
         let rotations = waiting.into_iter().skip(1);
         let both = self.steps.into_iter().zip(rotations);

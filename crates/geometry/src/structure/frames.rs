@@ -94,21 +94,7 @@ impl Frames {
     /// that others fix already, unless it is a slide or a weld that fixes the same angle.
     pub(crate) fn find(lowered: &Lowered) -> Result<Self, StructureError> {
         let (n, neighbours) = (lowered.bodies, angular_neighbours(lowered));
-        let ground_orientation = Orientation {
-            frame: 0,
-            offset: Vec2::IDENTITY,
-        };
-        let mut found = Self {
-            frames: vec![Frame {
-                rotation_source: RotationSource::Ground,
-                orientation_class: 0,
-            }],
-            orientations: vec![ground_orientation; n],
-            angular_constraints: Vec::new(),
-            redundant_pairs: Vec::new(),
-            orientation_classes: 1,
-            class_bodies: Vec::new(),
-        };
+        let mut found = Self::of_ground(n);
         let mut reached = vec![false; n];
         let (mut visited, mut conflicting) = (HashSet::new(), Vec::new());
         for first_body in std::iter::once(lowered.ground).chain(0..n) {
@@ -153,6 +139,25 @@ impl Frames {
             found.class_bodies[found.frames[orientation.frame].orientation_class].push(body);
         }
         Ok(found)
+    }
+
+    /// All bodies in the ground's frame.
+    fn of_ground(bodies: usize) -> Self {
+        let ground_orientation = Orientation {
+            frame: 0,
+            offset: Vec2::IDENTITY,
+        };
+        Self {
+            frames: vec![Frame {
+                rotation_source: RotationSource::Ground,
+                orientation_class: 0,
+            }],
+            orientations: vec![ground_orientation; bodies],
+            angular_constraints: Vec::new(),
+            redundant_pairs: Vec::new(),
+            orientation_classes: 1,
+            class_bodies: Vec::new(),
+        }
     }
 
     /// The orientation of a body by its constraint to one whose orientation is known.
