@@ -159,14 +159,14 @@ impl Plan {
         }
         let group_modes = self.distinguish_modes(g, &in_order(&order), initial_guess);
         self.group_modes.push(group_modes);
-        let first = order.first().copied();
-        first
-            .map(|first| modes.swap_remove(first))
-            .ok_or_else(|| AssemblyError::NoAssembly {
+        match order.first() {
+            Some(&first) => Ok(modes.swap_remove(first)),
+            None => Err(AssemblyError::NoAssembly {
                 bodies: self.group_bodies(g),
                 joints: self.group_joints(g),
                 gap: f64::NAN,
-            })
+            }),
+        }
     }
 
     pub(crate) fn assembly_error(&self, g: usize, error: PositionError) -> AssemblyError {

@@ -276,16 +276,13 @@ impl Plan {
         self.set_unknowns(g, &nearer, pose);
         let closed = self.group_positions(g, pose).is_ok();
         let reached = self.unknown_values(g, pose);
-        let same = reached
-            .iter()
-            .zip(&nearer)
-            .zip(unknowns)
-            .all(|((a, b), u)| match u {
-                Unknown::ClassAngle(_) => {
-                    (a.0 - b.0).norm() < SAME_MODE && (a.1 - b.1).abs() < SAME_MODE
-                }
-                Unknown::SlideTravel(_) => true,
-            });
+        let mut both = reached.iter().zip(&nearer).zip(unknowns);
+        let same = both.all(|((a, b), u)| match u {
+            Unknown::ClassAngle(_) => {
+                (a.0 - b.0).norm() < SAME_MODE && (a.1 - b.1).abs() < SAME_MODE
+            }
+            Unknown::SlideTravel(_) => true,
+        });
         if !(closed && same) {
             self.set_unknowns(g, &found, pose);
             // It closed there a moment ago.
@@ -299,7 +296,8 @@ impl Plan {
             Unknown::ClassAngle(c) => {
                 let class_frame = self.class_frame(c);
                 // An angle whose revolutions are not counted adds nothing to its direction.
-                let angle = if self.revolution_counted[class_frame] {
+                let counted = self.revolution_counted[class_frame];
+                let angle = if counted {
                     pose.angle[class_frame]
                 } else {
                     0.0
