@@ -9,7 +9,7 @@ use crate::error::{AssemblyError, PositionError};
 use crate::plan::{GroupKind, PlacementMethod, Plan, Pose};
 use crate::positions::{InitialIterate, rotate_frame};
 use crate::structure::groups::Unknown;
-use crate::structure::lower::{LoweredCoordinate, PairKind};
+use crate::structure::lower::LoweredCoordinate;
 use std::f64::consts::TAU;
 
 impl Plan {
@@ -27,18 +27,11 @@ impl Plan {
             self.positions_before(g, &mut pose)
                 .map_err(|e| self.assembly_error(g, e))?;
             self.start_group(g, initial_guess, &mut pose);
-            let modes = match &self.groups[g].kind {
-                GroupKind::Factored(factored_group)
-                    if factored_group.method == PlacementMethod::Newton =>
-                {
+            let modes = match self.groups[g].kind.placement_method() {
+                Some(PlacementMethod::Newton) => {
                     self.modes_by_newton(g, initial_guess, &mut pose)?
                 }
-                GroupKind::Factored(factored_group)
-                    if matches!(
-                        factored_group.method,
-                        PlacementMethod::Linear | PlacementMethod::GearTrain
-                    ) =>
-                {
+                Some(PlacementMethod::Linear | PlacementMethod::GearTrain) => {
                     vec![self.closed_form_mode(g, 1.0, &mut pose)?]
                 }
                 _ => vec![
@@ -47,13 +40,9 @@ impl Plan {
                 ],
             };
             let mode = self.select_mode(g, modes, initial_guess)?;
-            match &mut self.groups[g].kind {
-                GroupKind::RrrDyad(dyad) => dyad.branch = mode.root_sign,
-                GroupKind::GuidedPoint(guided) => guided.branch = mode.root_sign,
-                GroupKind::Factored(factored_group) => {
-                    (factored_group.branch, factored_group.root_sign) =
-                        (mode.branch, mode.root_sign);
-                }
+            self.groups[g].kind.set_root_sign(mode.root_sign);
+            if let GroupKind::Factored(factored_group) = &mut self.groups[g].kind {
+                factored_group.branch = mode.branch;
             }
             self.set_unknowns(g, &mode.values, &mut pose);
             self.group_positions(g, &mut pose)
@@ -120,10 +109,9 @@ impl Plan {
             rotate_frame(actuated, pose);
         }
         for r in self.groups[g].group.couplings.clone() {
-            if self.couplings[r].constant_from_assembly {
+            if self.lowered.couplings[r].constant_from_assembly {
                 let residual = self.couplings[r].value(&pose.angle, &pose.slide_travel);
                 self.couplings[r].dependent.constant -= residual;
-                self.couplings[r].constant_from_assembly = false;
             }
         }
     }
@@ -135,49 +123,10 @@ impl Plan {
         root_sign: f64,
         pose: &mut Pose<f64>,
     ) -> Result<AssemblyMode, AssemblyError> {
-        match &mut self.groups[g].kind {
-            GroupKind::RrrDyad(dyad) => dyad.branch = root_sign,
-            GroupKind::GuidedPoint(guided) => guided.branch = root_sign,
-            GroupKind::Factored(factored_group) => factored_group.root_sign = root_sign,
-        }
+        self.groups[g].kind.set_root_sign(root_sign);
         self.group_positions(g, pose)
             .map_err(|e| self.assembly_error(g, e))?;
-        let branch = match &self.groups[g].kind {
-            GroupKind::Factored(factored_group) => self.determinant_sign(factored_group, pose),
-            _ => root_sign,
-        };
-        Ok(AssemblyMode {
-            values: self.unknown_values(g, pose),
-            branch,
-            root_sign,
-            travels: self.slide_travels(g, pose),
-            has_negative_length: self.has_negative_length(g, pose),
-        })
-    }
-
-    /// Whether a length of a group is negative: its line is measured from the far end.
-    pub(crate) fn has_negative_length(&self, g: usize, pose: &Pose<f64>) -> bool {
-        let is_length = |pair: usize| {
-            matches!(
-                self.lowered.pairs[pair].kind,
-                PairKind::Prismatic {
-                    travel_is_length: true,
-                    ..
-                }
-            )
-        };
-        let group = &self.groups[g].group;
-        let travels = group.loops.iter().any(|&l| {
-            let closure = &self.loop_closures[l];
-            closure.axis.is_some() && is_length(closure.pair) && pose.closure_travel[l] < 0.0
-        });
-        let slides = group.unknowns.iter().any(|u| match *u {
-            Unknown::SlideTravel(s) => {
-                is_length(self.tree.slide_pairs[s]) && pose.slide_travel[s] < 0.0
-            }
-            Unknown::ClassAngle(_) => false,
-        });
-        travels || slides
+        Ok(self.found_mode(g, root_sign, pose))
     }
 
     /// The assembly mode nearest to the initial guess.
@@ -191,10 +140,8 @@ impl Plan {
         if modes.iter().any(|mode| !mode.has_negative_length) {
             modes.retain(|mode| !mode.has_negative_length);
         }
-        let distances: Vec<f64> = modes
-            .iter()
-            .map(|mode| self.distance_to_guess(g, mode, initial_guess))
-            .collect();
+        let distance = |mode: &AssemblyMode| self.distance_to_guess(g, mode, initial_guess);
+        let distances: Vec<f64> = modes.iter().map(distance).collect();
         let min_distance = distances.iter().copied().fold(f64::INFINITY, f64::min);
         let mut order: Vec<usize> = (0..modes.len()).collect();
         order.sort_by(|&a, &b| distances[a].total_cmp(&distances[b]));
@@ -212,14 +159,14 @@ impl Plan {
         }
         let group_modes = self.distinguish_modes(g, &in_order(&order), initial_guess);
         self.group_modes.push(group_modes);
-        let first = order.first().copied();
-        first
-            .map(|first| modes.swap_remove(first))
-            .ok_or_else(|| AssemblyError::NoAssembly {
+        match order.first() {
+            Some(&first) => Ok(modes.swap_remove(first)),
+            None => Err(AssemblyError::NoAssembly {
                 bodies: self.group_bodies(g),
                 joints: self.group_joints(g),
                 gap: f64::NAN,
-            })
+            }),
+        }
     }
 
     pub(crate) fn assembly_error(&self, g: usize, error: PositionError) -> AssemblyError {
@@ -229,22 +176,21 @@ impl Plan {
         } else {
             (Vec::new(), Vec::new())
         };
-        match error {
-            PositionError::Singular { .. } => AssemblyError::SingularAssembly { bodies, joints },
-            PositionError::NoAssembly { gap, .. }
-            | PositionError::NotConverged { residual: gap, .. } => AssemblyError::NoAssembly {
-                bodies,
-                joints,
-                gap,
-            },
+        let gap = match error {
+            PositionError::Singular { .. } => {
+                return AssemblyError::SingularAssembly { bodies, joints };
+            }
+            PositionError::NoAssembly { gap, .. } => gap,
+            PositionError::NotConverged { residual, .. } => residual,
             PositionError::OtherBranch { .. }
             | PositionError::OutOfRange { .. }
             | PositionError::NotFinite { .. }
-            | PositionError::LanesDiverge { .. } => AssemblyError::NoAssembly {
-                bodies,
-                joints,
-                gap: f64::NAN,
-            },
+            | PositionError::LanesDiverge { .. } => f64::NAN,
+        };
+        AssemblyError::NoAssembly {
+            bodies,
+            joints,
+            gap,
         }
     }
 }

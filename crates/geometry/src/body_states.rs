@@ -293,34 +293,28 @@ impl<T: Scalar> Separation<T> {
     /// The distance with its two derivatives, m, m/s, m/s²; those to the right where it is zero.
     fn length_derivatives(&self) -> [T; 3] {
         let Some(along) = self.direction else {
-            return self.coincident_derivatives();
+            // |v t + ½ a t²| just after t = 0.
+            let speed = self.velocity.dot(self.velocity).sqrt();
+            let acceleration = if speed.value() > 0.0 {
+                self.velocity.dot(self.acceleration) / speed
+            } else {
+                self.acceleration.dot(self.acceleration).sqrt()
+            };
+            return [self.length, speed, acceleration];
         };
         let across = along.cross(self.velocity);
         let velocity = along.dot(self.velocity);
         let acceleration = along.dot(self.acceleration) + across * across / self.length;
         [self.length, velocity, acceleration]
     }
-
-    /// |v t + ½ a t²| just after t = 0.
-    fn coincident_derivatives(&self) -> [T; 3] {
-        let speed = self.velocity.dot(self.velocity).sqrt();
-        let acceleration = if speed.value() > 0.0 {
-            self.velocity.dot(self.acceleration) / speed
-        } else {
-            self.acceleration.dot(self.acceleration).sqrt()
-        };
-        [self.length, speed, acceleration]
-    }
 }
 
 impl Plan {
     /// The slope of the law by which a joint couples two coordinates, at a pose; none if it couples none by a law.
     pub fn coupling_slope<T: Scalar>(&self, joint: JointId, pose: &Pose<T>) -> Option<T> {
-        let coupling = self.joint_parts(joint).1?;
-        self.coupling(coupling).law.is_some().then(|| {
-            self.coupling(coupling)
-                .slope(&pose.angle, &pose.slide_travel)
-        })
+        let coupling = &self.couplings[self.joint_parts(joint).1?];
+        coupling.law.as_ref()?;
+        Some(coupling.slope(&pose.angle, &pose.slide_travel))
     }
 }
 

@@ -103,12 +103,9 @@ impl Plan {
         error: AssemblyError,
     ) -> Result<Self, AssemblyError> {
         let reactions = mechanism.reactions();
-        let mut redundant_joints: Vec<JointId> = reactions
-            .iter()
-            .zip(&found.determinate)
-            .filter(|(_, determinate)| !**determinate)
-            .map(|(r, _)| r.joint)
-            .collect();
+        let by_reaction = reactions.iter().zip(&found.determinate);
+        let redundant = by_reaction.filter(|(_, determinate)| !**determinate);
+        let mut redundant_joints: Vec<JointId> = redundant.map(|(r, _)| r.joint).collect();
         redundant_joints.dedup();
         let actuators: Vec<_> = (0..mechanism.actuators.len())
             .filter(|a| !found.determinate[reactions.len() + a])
@@ -235,22 +232,13 @@ fn check(
         }
         Coordinate::Travel(joint) => travels(joint),
     };
-    let related = |kind: JointKind| match kind {
-        JointKind::Coupling(r) => r < mechanism.couplings.len(),
-        JointKind::Revolute
-        | JointKind::Prismatic { .. }
-        | JointKind::Slot { .. }
-        | JointKind::Weld { .. }
-        | JointKind::Gear { .. }
-        | JointKind::Rack { .. }
-        | JointKind::Rolling { .. }
-        | JointKind::Distance { .. } => true,
-    };
+    let count = mechanism.couplings.len();
+    let is_unrelated = |kind| matches!(kind, JointKind::Coupling(r) if r >= count);
     let reason = if mechanism.ground >= bodies
         || !body_pairs.all(|e| e.iter().all(|b| b.0 < bodies))
     {
         "it refers to a body that does not exist"
-    } else if !mechanism.joints.iter().all(|j| related(j.kind))
+    } else if mechanism.joints.iter().any(|j| is_unrelated(j.kind))
         || !couplings.all(|r| measurable(r.dependent) && measurable(r.independent))
         || actuators.any(|a| matches!(a.kind, ActuatorKind::Travel(joint) if !travels(joint)))
         || (configuration.branch_hints.iter().zip(&mechanism.joints))

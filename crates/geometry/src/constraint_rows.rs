@@ -134,14 +134,8 @@ impl ConstraintRows {
         if ground >= bodies {
             return Err(ConstraintRowsError::NoGround { ground, bodies });
         }
-        let mut columns = 0;
-        let mut column = |b: usize| {
-            (b != ground).then(|| {
-                columns += 3;
-                columns - 3
-            })
-        };
-        let body_columns: Vec<_> = (0..bodies).map(&mut column).collect();
+        let column = |b: usize| (b != ground).then(|| 3 * (b - usize::from(b > ground)));
+        let body_columns: Vec<_> = (0..bodies).map(column).collect();
         let writer = RowWriter {
             mechanism,
             columns: &body_columns,
@@ -174,7 +168,7 @@ impl ConstraintRows {
                 ConstraintTerm::RelativeAngle(angle_columns) if !counts_revolutions => {
                     ConstraintRow::periodic_angle(angle_columns, 0.0)
                 }
-                term => ConstraintRow::single(term),
+                term => ConstraintRow::single(term, 0.0),
             });
         }
         let reactions = mechanism.reactions();
@@ -185,7 +179,7 @@ impl ConstraintRows {
             rows,
             angular: angular.collect(),
             body_columns,
-            columns,
+            columns: 3 * (bodies - 1),
             counts_revolutions,
         })
     }

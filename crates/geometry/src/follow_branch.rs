@@ -3,7 +3,7 @@
 
 use crate::error::AssemblyError;
 use crate::plan::range::{Range, RangeLimit};
-use crate::plan::stored_poses::StoredPose;
+use crate::plan::stored_poses::{StoredPose, StoredPoses};
 use crate::plan::{AssurGroup, GroupKind, PlacementMethod, Plan, Pose};
 use crate::plane::{Vec2, vec2};
 use crate::positions::{InitialIterate, STEPS_PER_REVOLUTION};
@@ -204,11 +204,8 @@ impl Plan {
         let new_margins = self.determinant_margins(&pose)?;
         let clear =
             |(a, b): (&Dual, &Dual)| a.v + a.d * clearance > 0.0 && b.v - b.d * clearance > 0.0;
-        margins
-            .iter()
-            .zip(&new_margins)
-            .all(clear)
-            .then_some((pose, new_margins))
+        let is_clear = margins.iter().zip(&new_margins).all(clear);
+        is_clear.then_some((pose, new_margins))
     }
 
     /// The pose at `q` near another one, if every correction is small beside its prediction.
@@ -222,13 +219,8 @@ impl Plan {
             let GroupKind::Factored(factored_group) = &assur.kind else {
                 continue;
             };
-            if self
-                .factor_jacobian(g, factored_group, &mut pose)
-                .ok()?
-                .determinant_sign
-                * factored_group.branch
-                <= 0.0
-            {
+            let outcome = self.factor_jacobian(g, factored_group, &mut pose).ok()?;
+            if outcome.determinant_sign * factored_group.branch <= 0.0 {
                 return None;
             }
             if factored_group.method != PlacementMethod::Newton {
@@ -263,24 +255,19 @@ impl Plan {
         let mut motion = self.motion();
         self.velocities(from, &[1.0], &mut motion);
         for assur in &self.groups {
-            if !matches!(&assur.kind, GroupKind::Factored(s) if s.method == PlacementMethod::Newton)
-            {
+            if assur.kind.placement_method() != Some(PlacementMethod::Newton) {
                 continue;
             }
             for &unknown in &assur.group.unknowns {
                 match unknown {
-                    Unknown::ClassAngle(c) if self.revolution_counted[self.class_frame(c)] => {
-                        let f = self.class_frame(c);
-                        self.set_class_angle(
-                            c,
-                            from.angle[f] + motion.angular_velocity[f] * step,
-                            pose,
-                        );
-                    }
                     Unknown::ClassAngle(c) => {
                         let f = self.class_frame(c);
-                        let by = Vec2::from_angle(motion.angular_velocity[f] * step);
-                        pose.rotation[f] = from.rotation[f].rotate(by);
+                        let by = motion.angular_velocity[f] * step;
+                        if self.revolution_counted[f] {
+                            self.set_class_angle(c, from.angle[f] + by, pose);
+                        } else {
+                            pose.rotation[f] = from.rotation[f].rotate(Vec2::from_angle(by));
+                        }
                     }
                     Unknown::SlideTravel(s) => {
                         pose.slide_travel[s] =
@@ -311,57 +298,53 @@ impl Plan {
     }
 
     fn store_poses(&mut self, poses: &[Pose<f64>]) {
-        let mut motion = self.motion();
-        let mut all: Vec<Vec<StoredPose>> = vec![Vec::new(); self.groups.len()];
-        let mut gains: Vec<Vec<f64>> = vec![Vec::new(); self.groups.len()];
         if !self.groups.iter().any(|g| g.uses_stored_poses) {
             return;
         }
+        let mut motion = self.motion();
+        let mut all = vec![StoredPoses::default(); self.groups.len()];
         for pose in poses {
             self.velocities(pose, &[1.0], &mut motion);
-            for (assur, stored_poses) in self.groups.iter().zip(&mut all) {
+            for (assur, stored) in self.groups.iter().zip(&mut all) {
                 if !assur.uses_stored_poses {
                     continue;
                 }
-                let mut stored_pose = StoredPose {
+                let value_and_slope = |unknown: &Unknown| match *unknown {
+                    Unknown::ClassAngle(c) => {
+                        let f = self.class_frame(c);
+                        let counted = self.revolution_counted[f];
+                        let angle = vec2(pose.angle[f], 0.0);
+                        let value = if counted { angle } else { pose.rotation[f] };
+                        (value, motion.angular_velocity[f])
+                    }
+                    Unknown::SlideTravel(s) => {
+                        (vec2(pose.slide_travel[s], 0.0), motion.slide_velocity[s])
+                    }
+                };
+                let unknowns = assur.group.unknowns.iter();
+                let (values, slopes) = unknowns.map(value_and_slope).unzip();
+                stored.poses.push(StoredPose {
                     q: pose.q[0],
-                    ..StoredPose::default()
-                };
-                for &unknown in &assur.group.unknowns {
-                    let (value, slope) = match unknown {
-                        Unknown::ClassAngle(c) => {
-                            let f = self.class_frame(c);
-                            let counted = self.revolution_counted[f];
-                            let angle = vec2(pose.angle[f], 0.0);
-                            let value = if counted { angle } else { pose.rotation[f] };
-                            (value, motion.angular_velocity[f])
-                        }
-                        Unknown::SlideTravel(s) => {
-                            (vec2(pose.slide_travel[s], 0.0), motion.slide_velocity[s])
-                        }
-                    };
-                    stored_pose.values.push(value);
-                    stored_pose.slopes.push(slope);
-                }
-                stored_poses.push(stored_pose);
+                    values,
+                    slopes,
+                });
             }
         }
-        for ((stored_poses, gains), assur) in all.iter_mut().zip(&mut gains).zip(&self.groups) {
-            if let (Some(first), Some(last)) = (stored_poses.first(), stored_poses.last()) {
+        let gain = |(unknown, (first, last)): (&Unknown, (&Vec2, &Vec2))| match *unknown {
+            Unknown::ClassAngle(c) if self.revolution_counted[self.class_frame(c)] => {
+                last.x - first.x
+            }
+            Unknown::ClassAngle(_) | Unknown::SlideTravel(_) => 0.0,
+        };
+        for (stored, assur) in all.iter_mut().zip(&self.groups) {
+            if let (Some(first), Some(last)) = (stored.poses.first(), stored.poses.last()) {
                 let first_and_last = first.values.iter().zip(&last.values);
-                let counted = |u: &Unknown| match *u {
-                    Unknown::ClassAngle(c) => self.revolution_counted[self.class_frame(c)],
-                    Unknown::SlideTravel(_) => false,
-                };
-                *gains = first_and_last
-                    .zip(&assur.group.unknowns)
-                    .map(|((a, b), u)| if counted(u) { b.x - a.x } else { 0.0 })
-                    .collect();
+                let unknowns = assur.group.unknowns.iter();
+                stored.gain_per_period = unknowns.zip(first_and_last).map(gain).collect();
             }
         }
-        for ((assur, list), gains) in self.groups.iter_mut().zip(all).zip(gains) {
-            assur.stored_poses.poses = list;
-            assur.stored_poses.gain_per_period = gains;
+        for (assur, stored) in self.groups.iter_mut().zip(all) {
+            assur.stored_poses = stored;
         }
     }
 }

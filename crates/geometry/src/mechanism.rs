@@ -218,29 +218,24 @@ pub enum Component {
 impl Component {
     /// The name used in scenes and tables.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::X => "x",
-            Self::Y => "y",
-            Self::Normal => "normal",
-            Self::Moment => "moment",
-            Self::Tooth => "tooth",
-            Self::Tangent => "tangent",
-            Self::Axial => "axial",
-            Self::Force => "force",
-        }
+        self.name_and_unit().0
     }
 
     /// Unit of the reaction.
     pub fn unit(self) -> &'static str {
+        self.name_and_unit().1
+    }
+
+    fn name_and_unit(self) -> (&'static str, &'static str) {
         match self {
-            Self::Moment => "N m",
-            Self::X
-            | Self::Y
-            | Self::Normal
-            | Self::Tooth
-            | Self::Tangent
-            | Self::Axial
-            | Self::Force => "N",
+            Self::X => ("x", "N"),
+            Self::Y => ("y", "N"),
+            Self::Normal => ("normal", "N"),
+            Self::Moment => ("moment", "N m"),
+            Self::Tooth => ("tooth", "N"),
+            Self::Tangent => ("tangent", "N"),
+            Self::Axial => ("axial", "N"),
+            Self::Force => ("force", "N"),
         }
     }
 }
@@ -259,14 +254,8 @@ impl JointKind {
     /// The coordinate of such a joint by which an approximate value can select an assembly mode, if there is one.
     pub fn branch_hint(self) -> Option<BranchHint> {
         match self {
-            Self::Prismatic { .. } | Self::Slot { .. } => Some(BranchHint::Travel),
             Self::Distance { .. } => Some(BranchHint::Direction),
-            Self::Revolute
-            | Self::Weld { .. }
-            | Self::Gear { .. }
-            | Self::Rack { .. }
-            | Self::Rolling { .. }
-            | Self::Coupling(_) => None,
+            other => other.travel_axis().map(|_| BranchHint::Travel),
         }
     }
 
@@ -286,18 +275,10 @@ impl JointKind {
         }
     }
 
-    /// Whether its two points coincide in every position.
+    /// Whether its two points coincide in every position: by a force in every direction.
     pub(crate) fn holds_points_together(self) -> bool {
-        match self {
-            Self::Revolute | Self::Weld { .. } => true,
-            Self::Prismatic { .. }
-            | Self::Slot { .. }
-            | Self::Gear { .. }
-            | Self::Rack { .. }
-            | Self::Rolling { .. }
-            | Self::Distance { .. }
-            | Self::Coupling(_) => false,
-        }
+        self.components(&[])
+            .starts_with(&[Component::X, Component::Y])
     }
 
     /// The components of the reaction, in the order of the constraint rows.

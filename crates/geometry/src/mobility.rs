@@ -10,6 +10,7 @@ use crate::constraint_rows::ConstraintRows;
 use crate::mechanism::{BodyId, Mechanism};
 use crate::plan::AssemblyConfiguration;
 use crate::plane::{Vec2, vec2};
+use faer::linalg::solvers::Svd;
 use faer::{Mat, MatRef};
 
 /// Degrees of freedom and redundant constraints of a mechanism.
@@ -78,20 +79,12 @@ struct DenseConstraints {
 /// Finds the mobility of a mechanism near its assembly; none where it is too large for dense matrices
 /// or its rows cannot be written.
 pub fn mobility(mechanism: &Mechanism, configuration: &AssemblyConfiguration) -> Option<Mobility> {
-    let rows = ConstraintRows::new(mechanism).ok()?;
-    if rows.columns() == 0 || rows.columns() > MAX_COLUMNS {
+    let mut constraints = DenseConstraints::new(mechanism, RANK_TOLERANCE)?;
+    if constraints.rows.columns() == 0 || constraints.rows.columns() > MAX_COLUMNS {
         return None;
     }
-    let joint_rows = rows.len() - mechanism.actuators.len();
-    let mut prescribed_values = vec![0.0; rows.len()];
-    prescribed_values[joint_rows..].copy_from_slice(&configuration.q);
-    let mut constraints = DenseConstraints {
-        size: mechanism.size(),
-        joint_rows,
-        prescribed_values,
-        rank_tolerance: RANK_TOLERANCE,
-        rows,
-    };
+    let joint_rows = constraints.joint_rows;
+    constraints.prescribed_values[joint_rows..].copy_from_slice(&configuration.q);
     let (x, gap) = constraints.assemble(mechanism, configuration);
     let closed = gap <= CLOSED * constraints.size;
     let mut found = constraints.analyse(mechanism, &x);
@@ -108,26 +101,43 @@ pub fn mobility(mechanism: &Mechanism, configuration: &AssemblyConfiguration) ->
 /// The mobility at one position, which may be singular: there may be more degrees of freedom than elsewhere, and fewer
 /// determinate reactions. None where the rows cannot be written.
 pub fn mobility_at(mechanism: &Mechanism, states: &BodyStates) -> Option<Mobility> {
-    let rows = ConstraintRows::new(mechanism).ok()?;
-    let mut x = vec![0.0; rows.columns()];
+    let constraints = DenseConstraints::new(mechanism, LOOSE_RANK_TOLERANCE)?;
+    let mut x = vec![0.0; constraints.rows.columns()];
     for b in (0..mechanism.bodies.len()).map(BodyId) {
-        if let Some(c) = rows.column(b) {
+        if let Some(c) = constraints.rows.column(b) {
             let origin = states.point(b, Vec2::ZERO).position;
             (x[c], x[c + 1]) = (origin.x, origin.y);
             x[c + 2] = states.body(b).rotation.angle();
         }
     }
-    let constraints = DenseConstraints {
-        size: mechanism.size(),
-        joint_rows: rows.len() - mechanism.actuators.len(),
-        prescribed_values: vec![0.0; rows.len()],
-        rank_tolerance: LOOSE_RANK_TOLERANCE,
-        rows,
-    };
     Some(constraints.analyse(mechanism, &x))
 }
 
 impl DenseConstraints {
+    fn new(mechanism: &Mechanism, rank_tolerance: f64) -> Option<Self> {
+        let rows = ConstraintRows::new(mechanism).ok()?;
+        Some(Self {
+            size: mechanism.size(),
+            joint_rows: rows.len() - mechanism.actuators.len(),
+            prescribed_values: vec![0.0; rows.len()],
+            rank_tolerance,
+            rows,
+        })
+    }
+
+    /// The unit of a column: lengths are over the size.
+    fn unit(&self, column: usize) -> f64 {
+        if column % 3 == 2 { 1.0 } else { self.size }
+    }
+
+    fn rank(&self, svd: &Svd<f64>) -> usize {
+        let values = svd.S().column_vector();
+        let largest = if values.nrows() > 0 { values[0] } else { 0.0 };
+        (0..values.nrows())
+            .filter(|&k| values[k] > self.rank_tolerance * largest)
+            .count()
+    }
+
     /// A configuration near the approximate angles that closes all rows, or comes nearest, and its residual, m.
     fn assemble(
         &mut self,
@@ -225,8 +235,7 @@ impl DenseConstraints {
                 1.0
             };
             for (j, step) in step.iter().enumerate() {
-                let unit = if j % 3 == 2 { 1.0 } else { self.size };
-                x[j] += step * damp * unit;
+                x[j] += step * damp * self.unit(j);
             }
             let next = self.largest_residual(x, count);
             if next.is_nan() {
@@ -244,15 +253,11 @@ impl DenseConstraints {
     fn other_configuration(&self, x: &[f64]) -> Option<Vec<f64>> {
         let jacobian = self.jacobian(x);
         let svd = jacobian.subrows(0, self.joint_rows).svd().ok()?;
-        let (rank, v) = (
-            numerical_rank(&svd.S().column_vector(), self.rank_tolerance),
-            svd.V(),
-        );
+        let (rank, v) = (self.rank(&svd), svd.V());
         let mut other = x.to_vec();
         for k in rank..v.ncols() {
             for (j, value) in other.iter_mut().enumerate() {
-                let unit = if j % 3 == 2 { 1.0 } else { self.size };
-                *value += 0.2 * unit * v[(j, k)] / (1.0 + 0.3 * k as f64);
+                *value += 0.2 * self.unit(j) * v[(j, k)] / (1.0 + 0.3 * k as f64);
             }
         }
         let gap = self.close_rows(&mut other, self.joint_rows);
@@ -273,10 +278,10 @@ impl DenseConstraints {
             gap: None,
         };
         if let Ok(svd) = all.subrows(0, self.joint_rows).svd() {
-            found.rank = numerical_rank(&svd.S().column_vector(), self.rank_tolerance);
+            found.rank = self.rank(&svd);
         }
         if let Ok(svd) = all.svd() {
-            let rank = numerical_rank(&svd.S().column_vector(), self.rank_tolerance);
+            let rank = self.rank(&svd);
             found.redundant_count = self.rows.len() - rank;
             let part = |m: MatRef<'_, f64>, i: usize| -> f64 {
                 (rank..m.ncols()).map(|k| m[(i, k)] * m[(i, k)]).sum()
@@ -304,8 +309,7 @@ impl DenseConstraints {
         let angular = self.rows.angular();
         Mat::from_fn(m, n, |i, j| {
             let row = if angular[i] { 1.0 } else { 1.0 / self.size };
-            let column = if j % 3 == 2 { 1.0 } else { self.size };
-            flat[i * n + j] * row * column
+            flat[i * n + j] * row * self.unit(j)
         })
     }
 
@@ -330,11 +334,4 @@ impl DenseConstraints {
         });
         largest * self.size
     }
-}
-
-fn numerical_rank(values: &faer::ColRef<'_, f64>, tolerance: f64) -> usize {
-    let largest = if values.nrows() > 0 { values[0] } else { 0.0 };
-    (0..values.nrows())
-        .filter(|&k| values[k] > tolerance * largest)
-        .count()
 }

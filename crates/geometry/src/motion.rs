@@ -155,13 +155,13 @@ impl Plan {
             }
         }
         for &r in &assur.group.couplings {
-            let rate = self.coupling(r).rate(
+            let rate = self.couplings[r].rate(
                 &pose.angle,
                 &pose.slide_travel,
                 &motion.angular_velocity,
                 &motion.slide_velocity,
             );
-            workspace[row] = -rate * assur.coupling_weight::<T>(self.coupling(r));
+            workspace[row] = -rate * assur.coupling_weight::<T>(&self.couplings[r]);
             row += 1;
         }
         factored_group.solve(pose, &mut workspace[..row]);
@@ -208,13 +208,13 @@ impl Plan {
             }
         }
         for &r in &assur.group.couplings {
-            let value = self.coupling(r).acceleration(
+            let value = self.couplings[r].acceleration(
                 &pose.angle,
                 &pose.slide_travel,
                 (&motion.angular_velocity, &motion.slide_velocity),
                 (&motion.angular_acceleration, &motion.slide_acceleration),
             );
-            workspace[row] = -value * assur.coupling_weight::<T>(self.coupling(r));
+            workspace[row] = -value * assur.coupling_weight::<T>(&self.couplings[r]);
             row += 1;
         }
         factored_group.solve(pose, &mut workspace[..row]);

@@ -39,12 +39,14 @@ pub struct Plan {
     pub(crate) tree: Tree,
     pub(crate) frame_vectors: Vec<FrameVector>,
     pub(crate) moving_bodies: Vec<MovingBody>,
-    pub(crate) loop_closures: Vec<LoopClosure>,
-    pub(crate) couplings: Vec<CouplingEquation>,
+    /// The loops.
+    pub loop_closures: Vec<LoopClosure>,
+    /// The couplings between angles and travels.
+    pub couplings: Vec<CouplingEquation>,
     pub(crate) groups: Vec<AssurGroup>,
     pub(crate) steps: Vec<Step>,
     /// By kinematic pair: whether it is in the tree or closes a loop.
-    pub(crate) pair_roles: Vec<PairRole>,
+    pub pair_roles: Vec<PairRole>,
     /// By group: the step that solves it.
     pub(crate) solve_steps: Vec<usize>,
     /// By class: the frame whose angle is the unknown (the ground's for class 0).
@@ -58,8 +60,8 @@ pub struct Plan {
     /// By frame of a line of centres: the carrier's frame, with which its revolutions are counted, and its constant angle
     /// from that, rad.
     pub(crate) carrier_phases: HashMap<usize, (usize, f64)>,
-    /// By slide: the actuator that drives it.
-    pub(crate) actuated_slides: Vec<Option<usize>>,
+    /// By slide: the actuator that drives it, if any.
+    pub actuated_slides: Vec<Option<usize>>,
     /// By actuator: whether it drives an angle rather than a length.
     pub(crate) angular: Vec<bool>,
     /// [`Mechanism::size`](crate::mechanism::Mechanism::size), m: a step of a driven length is a part of it.
@@ -73,7 +75,7 @@ pub struct Plan {
     /// By reaction of the mechanism: whether the loads determine it; empty where they determine all.
     pub(crate) determinate: Vec<bool>,
     /// By group: its assembly modes at the start.
-    pub(crate) group_modes: Vec<GroupModes>,
+    pub group_modes: Vec<GroupModes>,
 }
 
 /// The assembly modes of a group at the start.
@@ -197,6 +199,25 @@ pub(crate) enum GroupKind {
     Factored(FactoredGroup),
 }
 
+impl GroupKind {
+    /// How a group is placed that is not a closed form throughout.
+    pub(crate) fn placement_method(&self) -> Option<PlacementMethod> {
+        match self {
+            Self::RrrDyad(_) | Self::GuidedPoint(_) => None,
+            Self::Factored(factored_group) => Some(factored_group.method),
+        }
+    }
+
+    /// Chooses the sign of the root in a closed form or a construction.
+    pub(crate) fn set_root_sign(&mut self, root_sign: f64) {
+        match self {
+            Self::RrrDyad(dyad) => dyad.branch = root_sign,
+            Self::GuidedPoint(guided) => guided.branch = root_sign,
+            Self::Factored(factored_group) => factored_group.root_sign = root_sign,
+        }
+    }
+}
+
 /// Two bodies pinned to each other and to known points: a triangle.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RrrDyad {
@@ -260,11 +281,7 @@ pub(crate) struct FactoredGroup {
 impl FactoredGroup {
     /// Room for its factors: those of a tall matrix keep a factor for each column beside it.
     pub(crate) fn factor_len(&self) -> usize {
-        let heads = if self.rows > self.columns {
-            self.columns
-        } else {
-            0
-        };
+        let heads = usize::from(self.is_overdetermined()) * self.columns;
         self.rows * self.columns + heads
     }
 }
@@ -391,11 +408,6 @@ impl Plan {
         &self.moving_bodies
     }
 
-    /// The loops, by index.
-    pub fn loop_closures(&self) -> &[LoopClosure] {
-        &self.loop_closures
-    }
-
     /// The orientations of the bodies.
     pub fn frames(&self) -> &Frames {
         &self.frames
@@ -404,11 +416,6 @@ impl Plan {
     /// The spanning tree of joints.
     pub fn tree(&self) -> &Tree {
         &self.tree
-    }
-
-    /// A coupling between angles and travels, by index.
-    pub fn coupling(&self, index: usize) -> &CouplingEquation {
-        &self.couplings[index]
     }
 
     /// The kinematic pairs (pins, slides and welds) that the mechanism is lowered to; those of joints come first.
@@ -425,11 +432,6 @@ impl Plan {
     /// redundant joints are not: of all forces that balance the loads, the smallest are given.
     pub fn is_determinate(&self, reaction: usize) -> bool {
         self.determinate.get(reaction).copied().unwrap_or(true)
-    }
-
-    /// What a kinematic pair does in the plan.
-    pub fn pair_role(&self, pair: usize) -> PairRole {
-        self.pair_roles[pair]
     }
 
     /// By an actuator that drives a length: its slide.
@@ -459,20 +461,5 @@ impl Plan {
             let slope = self.couplings[coupling].slope(&pose.angle, &pose.slide_travel);
             add_terms(sum, -slope);
         }
-    }
-
-    /// By slide: the actuator that drives it, if any.
-    pub fn actuated_slides(&self) -> &[Option<usize>] {
-        &self.actuated_slides
-    }
-
-    /// Number of couplings.
-    pub fn couplings(&self) -> usize {
-        self.couplings.len()
-    }
-
-    /// The assembly modes of each group.
-    pub fn group_modes(&self) -> &[GroupModes] {
-        &self.group_modes
     }
 }

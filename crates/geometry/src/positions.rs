@@ -215,7 +215,8 @@ impl Plan {
         initial_iterate: InitialIterate,
     ) -> Result<(), PositionError> {
         let assur = &self.groups[group];
-        if matches!(&assur.kind, GroupKind::Factored(s) if matches!(s.method, PlacementMethod::Newton | PlacementMethod::GearTrain))
+        if let Some(PlacementMethod::Newton | PlacementMethod::GearTrain) =
+            assur.kind.placement_method()
         {
             return Ok(());
         }
@@ -282,7 +283,7 @@ impl Plan {
         for (moving_body, tree_joint) in self.moving_bodies.iter().zip(&self.tree.joints) {
             let mut joint_origin = match moving_body.parent {
                 Some(parent) => joint_origins[parent],
-                None => self.ground_origin().cast(),
+                None => self.tree.joint_origins[self.lowered.ground].cast(),
             };
             joint_origin += match moving_body.joint_vector {
                 Some(vector) => pose.vector[vector],
@@ -293,10 +294,6 @@ impl Plan {
             }
             joint_origins.push(joint_origin);
         }
-    }
-
-    fn ground_origin(&self) -> Vec2 {
-        self.tree.joint_origins[self.lowered.ground]
     }
 }
 

@@ -15,4 +15,16 @@ impl FactorOutcome {
         determinant_sign: 0.0,
         pivot_ratio: 0.0,
     };
+
+    /// The outcome by the sizes of the smallest and the largest pivot.
+    pub(crate) fn new(determinant_sign: f64, min_pivot: f64, max_pivot: f64) -> Self {
+        Self {
+            determinant_sign,
+            pivot_ratio: if max_pivot > 0.0 {
+                min_pivot / max_pivot
+            } else {
+                0.0
+            },
+        }
+    }
 }

@@ -71,14 +71,7 @@ pub(crate) fn eliminate<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> FactorO
             }
         }
     }
-    FactorOutcome {
-        determinant_sign: sign,
-        pivot_ratio: if max_pivot > 0.0 {
-            min_pivot / max_pivot
-        } else {
-            0.0
-        },
-    }
+    FactorOutcome::new(sign, min_pivot, max_pivot)
 }
 
 /// Solves A x = b in place.
@@ -93,6 +86,12 @@ pub fn solve<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
             b[i] -= change;
         }
     }
+    solve_upper(a, n, b);
+}
+
+/// Solves U x = b in place, with U above and on the diagonal of `a`.
+#[inline]
+pub(crate) fn solve_upper<T: Scalar>(a: &[T], n: usize, b: &mut [T]) {
     for i in (0..n).rev() {
         for j in i + 1..n {
             let change = a[i * n + j] * b[j];
@@ -102,9 +101,9 @@ pub fn solve<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
     }
 }
 
-/// Solves Aᵀ x = b in place.
-pub fn solve_transposed<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
-    let n = pivots.len();
+/// Solves Uᵀ x = b in place, with U above and on the diagonal of `a`.
+#[inline]
+pub(crate) fn solve_upper_transposed<T: Scalar>(a: &[T], n: usize, b: &mut [T]) {
     for i in 0..n {
         for j in 0..i {
             let change = a[j * n + i] * b[j];
@@ -112,6 +111,12 @@ pub fn solve_transposed<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
         }
         b[i] = b[i] / a[i * n + i];
     }
+}
+
+/// Solves Aᵀ x = b in place.
+pub fn solve_transposed<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
+    let n = pivots.len();
+    solve_upper_transposed(a, n, b);
     for i in (0..n).rev() {
         for j in i + 1..n {
             let change = a[j * n + i] * b[j];

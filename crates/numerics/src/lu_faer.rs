@@ -39,13 +39,10 @@ pub(crate) fn factor(a: &mut [f64], pivots: &mut [usize]) -> FactorOutcome {
         place[rows[from]] = from;
         place[rows[k]] = k;
     }
-    let mut factored = FactorOutcome {
-        determinant_sign: if info.transposition_count.is_multiple_of(2) {
-            1.0
-        } else {
-            -1.0
-        },
-        pivot_ratio: 0.0,
+    let mut sign = if info.transposition_count.is_multiple_of(2) {
+        1.0
+    } else {
+        -1.0
     };
     let (mut min_pivot, mut max_pivot) = (f64::INFINITY, 0.0_f64);
     for k in 0..n {
@@ -53,16 +50,11 @@ pub(crate) fn factor(a: &mut [f64], pivots: &mut [usize]) -> FactorOutcome {
         if !pivot.is_finite() {
             return FactorOutcome::SINGULAR;
         }
-        factored.determinant_sign *= if pivot == 0.0 { 0.0 } else { pivot.signum() };
+        sign *= if pivot == 0.0 { 0.0 } else { pivot.signum() };
         min_pivot = min_pivot.min(pivot.abs());
         max_pivot = max_pivot.max(pivot.abs());
     }
-    factored.pivot_ratio = if max_pivot > 0.0 {
-        min_pivot / max_pivot
-    } else {
-        0.0
-    };
-    factored
+    FactorOutcome::new(sign, min_pivot, max_pivot)
 }
 
 #[cfg(test)]

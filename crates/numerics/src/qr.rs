@@ -2,6 +2,7 @@
 //! solutions of Aᵀ x = b.
 
 use crate::factor_outcome::FactorOutcome;
+use crate::lu;
 use crate::scalar::Scalar;
 
 /// Factors the row-major m × n matrix `a` (m > n) in place: R above, the reflections' vectors below
@@ -48,15 +49,8 @@ pub fn factor<T: Scalar>(a: &mut [T], heads: &mut [T], m: usize) -> FactorOutcom
         a[k * n + k] = alpha;
         heads[k] = head;
     }
-    FactorOutcome {
-        // The matrix is not square: it has no determinant.
-        determinant_sign: 1.0,
-        pivot_ratio: if max_pivot > 0.0 {
-            min_pivot / max_pivot
-        } else {
-            0.0
-        },
-    }
+    // The matrix is not square: it has no determinant.
+    FactorOutcome::new(1.0, min_pivot, max_pivot)
 }
 
 /// Applies the k-th reflection to `b`.
@@ -84,25 +78,13 @@ pub fn solve<T: Scalar>(a: &[T], heads: &[T], m: usize, b: &mut [T]) {
     for k in 0..n {
         apply_reflector(a, heads, m, k, b);
     }
-    for i in (0..n).rev() {
-        for j in i + 1..n {
-            let change = a[i * n + j] * b[j];
-            b[i] -= change;
-        }
-        b[i] = b[i] / a[i * n + i];
-    }
+    lu::solve_upper(a, n, b);
 }
 
 /// The smallest solution of Aᵀ x = b: `b` holds n entries of b, and then m of x.
 pub fn solve_transposed<T: Scalar>(a: &[T], heads: &[T], m: usize, b: &mut [T]) {
     let n = heads.len();
-    for i in 0..n {
-        for j in 0..i {
-            let change = a[j * n + i] * b[j];
-            b[i] -= change;
-        }
-        b[i] = b[i] / a[i * n + i];
-    }
+    lu::solve_upper_transposed(a, n, b);
     b[n..m].fill(T::from_f64(0.0));
     for k in (0..n).rev() {
         apply_reflector(a, heads, m, k, b);

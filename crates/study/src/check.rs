@@ -166,7 +166,7 @@ fn describe_groups(mechanism: &Mechanism, plan: &Plan) -> String {
         let (joints, unknowns) = (list_or(joints, "its actuator"), count(size, "unknown"));
         let (number, bodies) = (g + 1, group_bodies(mechanism, plan, g));
         text += &format!("    {number}. {bodies} closed by {joints}: {unknowns}, {kind}\n");
-        let found = &plan.group_modes()[g];
+        let found = &plan.group_modes[g];
         let is_ambiguous = found.modes.len() > 1;
         for (k, mode) in found.modes.iter().enumerate().filter(|_| is_ambiguous) {
             let label = match k {

@@ -15,7 +15,7 @@ impl PositionFormulas<'_> {
         unknown: Unknown,
         coupling: usize,
     ) -> Result<(), SymbolicError> {
-        let row = self.plan.coupling(coupling).clone();
+        let row = self.plan.couplings[coupling].clone();
         if row.law.is_some() {
             return Err(self.unsupported(group, "a coupling is given by a law"));
         }

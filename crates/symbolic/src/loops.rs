@@ -85,7 +85,7 @@ impl LoopEquation {
     /// The loop that a loop joint closes.
     pub(crate) fn of(mechanism: &Mechanism, plan: &Plan, closure: usize) -> Self {
         let (tree, frames) = (plan.tree(), plan.frames());
-        let loop_joint = plan.loop_closures()[closure].pair;
+        let loop_joint = plan.loop_closures[closure].pair;
         let pair = &plan.pairs()[loop_joint];
         let mut loop_equation = Self {
             loop_joint,

@@ -79,11 +79,11 @@ impl<'a> PositionFormulas<'a> {
             plan,
             symbols,
             q: symbol(&q),
-            loops: (0..plan.loop_closures().len())
+            loops: (0..plan.loop_closures.len())
                 .map(|c| LoopEquation::of(mechanism, plan, c))
                 .collect(),
-            loop_symbols: vec![LoopSymbols::default(); plan.loop_closures().len()],
-            solved_couplings: vec![None; plan.couplings()],
+            loop_symbols: vec![LoopSymbols::default(); plan.loop_closures.len()],
+            solved_couplings: vec![None; plan.couplings.len()],
             joint_origins: vec![None; bodies],
             mass_centres: vec![None; bodies],
             angles: vec![None; plan.frames().frames.len()],
@@ -94,7 +94,7 @@ impl<'a> PositionFormulas<'a> {
             rotation: pose.rotation,
             slide_travel: pose.slide_travel,
         };
-        for (slide, actuator_index) in plan.actuated_slides().iter().enumerate() {
+        for (slide, actuator_index) in plan.actuated_slides.iter().enumerate() {
             if actuator_index.is_some() {
                 positions.travels[slide] = Some(positions.q.clone());
             }

@@ -66,7 +66,7 @@ impl PositionFormulas<'_> {
         }
         let travel = |pair| format!("travel of {}", pair_name(self.mechanism, self.plan, pair));
         for (slide, variable) in self.travels.iter().enumerate() {
-            let actuator = self.plan.actuated_slides()[slide];
+            let actuator = self.plan.actuated_slides[slide];
             if let (Some(code), None) = (variable.as_ref().and_then(symbol_name), actuator) {
                 let meaning = travel(self.plan.tree().slide_pairs[slide]);
                 add(code, "m", meaning, QuantityOrigin::Slide(slide));

@@ -46,7 +46,7 @@ impl Atlas<'_> {
         if current.machine.model.frictions().len() > 0 {
             return Err(ChangePointFitError::Friction);
         }
-        if plan.couplings() > 0 {
+        if !plan.couplings.is_empty() {
             return Err(ChangePointFitError::Couplings);
         }
         let is_angle = current.coordinate.is_angle();

@@ -134,12 +134,8 @@ impl Plan {
             });
             each.sum()
         };
-        let angles = group
-            .group
-            .unknowns
-            .iter()
-            .zip(&mode.values)
-            .map(angle_deviation);
+        let values = group.group.unknowns.iter().zip(&mode.values);
+        let angles = values.map(angle_deviation);
         let travel_deviations = mode.travels.iter().filter_map(|&(pair, travel)| {
             let deviation = (travel - initial_guess.travels[pair]?) / group.size;
             Some(deviation * deviation)

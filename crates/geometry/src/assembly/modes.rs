@@ -6,6 +6,7 @@ use crate::error::{AssemblyError, PositionError};
 use crate::plan::{GroupKind, Plan, Pose};
 use crate::plane::Vec2;
 use crate::structure::groups::Unknown;
+use crate::structure::lower::PairKind;
 use dwell_numerics::qr;
 use std::f64::consts::TAU;
 
@@ -35,32 +36,6 @@ pub(crate) const SAME_MODE: f64 = 1e-6;
 const MAX_SETTLING_STEPS: usize = 12;
 const SETTLED: f64 = 1e-3;
 
-/// Starts of some unknowns: all combinations of the trials, or as many scattered ones as are allowed.
-#[derive(Clone, Copy)]
-struct Trials {
-    starts: usize,
-    scattered: bool,
-}
-
-impl Trials {
-    fn new(unknowns: usize, max: usize) -> Self {
-        let count = u32::try_from(unknowns).ok();
-        let all = count.and_then(|n| TRIALS.checked_pow(n));
-        let scattered = all.is_none_or(|all| all > max);
-        Self {
-            starts: all.map_or(max, |all| all.min(max)),
-            scattered,
-        }
-    }
-
-    fn trial(self, start: usize) -> Trial {
-        Trial {
-            remainder: start as u64,
-            scattered: self.scattered,
-        }
-    }
-}
-
 /// The angles of one start, one after the other.
 struct Trial {
     remainder: u64,
@@ -68,6 +43,17 @@ struct Trial {
 }
 
 impl Trial {
+    /// Starts of some unknowns: all combinations of the angles, or as many scattered ones as are allowed.
+    fn starts(unknowns: usize, max: usize) -> impl Iterator<Item = Self> {
+        let count = u32::try_from(unknowns).ok();
+        let all = count.and_then(|n| TRIALS.checked_pow(n));
+        let scattered = all.is_none_or(|all| all > max);
+        (0..all.map_or(max, |all| all.min(max))).map(move |start| Self {
+            remainder: start as u64,
+            scattered,
+        })
+    }
+
     fn next_angle(&mut self) -> f64 {
         let trials = TRIALS as u64;
         let k = if self.scattered {
@@ -106,22 +92,21 @@ impl Plan {
             .iter()
             .zip(&hints)
             .filter(|(u, hint)| matches!(u, Unknown::ClassAngle(_)) && hint.is_none());
-        let hinted_trials = Trials::new(unhinted.count(), MAX_HINTED_STARTS);
-        let unhinted_trials = Trials::new(unknowns.len(), MAX_STARTS);
+        let hinted_trials = Trial::starts(unhinted.count(), MAX_HINTED_STARTS);
+        let unhinted_trials = Trial::starts(unknowns.len(), MAX_STARTS);
+        let hinted_trials = hinted_trials.map(|trial| (true, trial));
+        let unhinted_trials = unhinted_trials.map(|trial| (false, trial));
         let mut modes: Vec<AssemblyMode> = Vec::new();
         let mut refused = None;
-        for start in 0..hinted_trials.starts + unhinted_trials.starts {
-            if start < hinted_trials.starts {
-                self.set_trial(g, Some(&hints), hinted_trials.trial(start), pose);
+        for (hinted, trial) in hinted_trials.chain(unhinted_trials) {
+            self.set_trial(g, hinted.then_some(hints.as_slice()), trial, pose);
+            if hinted {
                 self.fit_unhinted(g, &hints, pose);
-            } else {
-                let trial = unhinted_trials.trial(start - hinted_trials.starts);
-                self.set_trial(g, None, trial, pose);
             }
             match self.group_positions(g, pose) {
                 Ok(()) => {
                     self.count_revolutions_near(g, &hints, pose);
-                    let mode = self.found_mode(g, pose);
+                    let mode = self.found_mode(g, 1.0, pose);
                     // Of one pose with different revolution counts, the first comes from the hints.
                     if modes.iter().all(|other| self.modes_differ(g, other, &mode)) {
                         modes.push(mode);
@@ -175,19 +160,27 @@ impl Plan {
     }
 
     /// The assembly mode in which a group has just been solved.
-    fn found_mode(&self, g: usize, pose: &Pose<f64>) -> AssemblyMode {
+    pub(crate) fn found_mode(&self, g: usize, root_sign: f64, pose: &Pose<f64>) -> AssemblyMode {
         let branch = match &self.groups[g].kind {
             GroupKind::Factored(factored_group) if !factored_group.is_overdetermined() => {
                 self.determinant_sign(factored_group, pose)
             }
-            _ => 1.0,
+            _ => root_sign,
         };
+        let travels = self.slide_travels(g, pose);
+        let is_length = |pair: usize| match self.lowered.pairs[pair].kind {
+            PairKind::Prismatic {
+                travel_is_length, ..
+            } => travel_is_length,
+            PairKind::Revolute | PairKind::Rigid(_) => false,
+        };
+        let mut lengths = travels.iter().filter(|(pair, _)| is_length(*pair));
         AssemblyMode {
             values: self.unknown_values(g, pose),
-            travels: self.slide_travels(g, pose),
             branch,
-            root_sign: 1.0,
-            has_negative_length: self.has_negative_length(g, pose),
+            root_sign,
+            has_negative_length: lengths.any(|(_, length)| *length < 0.0),
+            travels,
         }
     }
 
@@ -283,16 +276,13 @@ impl Plan {
         self.set_unknowns(g, &nearer, pose);
         let closed = self.group_positions(g, pose).is_ok();
         let reached = self.unknown_values(g, pose);
-        let same = reached
-            .iter()
-            .zip(&nearer)
-            .zip(unknowns)
-            .all(|((a, b), u)| match u {
-                Unknown::ClassAngle(_) => {
-                    (a.0 - b.0).norm() < SAME_MODE && (a.1 - b.1).abs() < SAME_MODE
-                }
-                Unknown::SlideTravel(_) => true,
-            });
+        let mut both = reached.iter().zip(&nearer).zip(unknowns);
+        let same = both.all(|((a, b), u)| match u {
+            Unknown::ClassAngle(_) => {
+                (a.0 - b.0).norm() < SAME_MODE && (a.1 - b.1).abs() < SAME_MODE
+            }
+            Unknown::SlideTravel(_) => true,
+        });
         if !(closed && same) {
             self.set_unknowns(g, &found, pose);
             // It closed there a moment ago.
@@ -306,7 +296,8 @@ impl Plan {
             Unknown::ClassAngle(c) => {
                 let class_frame = self.class_frame(c);
                 // An angle whose revolutions are not counted adds nothing to its direction.
-                let angle = if self.revolution_counted[class_frame] {
+                let counted = self.revolution_counted[class_frame];
+                let angle = if counted {
                     pose.angle[class_frame]
                 } else {
                     0.0

@@ -121,10 +121,7 @@ impl Plan {
         lu: usize,
         pivots: usize,
     ) -> AssurGroup {
-        let in_group = |frame: usize| {
-            let class = self.frames.frames[frame].orientation_class;
-            class > 0 && group.unknowns.contains(&Unknown::ClassAngle(class))
-        };
+        let in_group = |frame: usize| self.is_unknown_in(&group, frame);
         let kind = self
             .closed_form(&group)
             .unwrap_or_else(|| self.factored_group(&group, lu, pivots));
@@ -133,34 +130,22 @@ impl Plan {
             RotationSource::Actuated { .. } => true,
             RotationSource::Unknown => !in_group(frame),
         };
-        let known_terms = group
-            .loops
-            .iter()
-            .map(|&l| self.known_terms(l, is_moved_before));
+        let loops = group.loops.iter();
+        let known_terms = loops.map(|&l| self.known_terms(l, is_moved_before));
         let known_terms = known_terms.collect();
         let size = self.group_size(&group);
-        let has_class = |with: &dyn Fn(usize) -> bool| {
-            group.unknowns.iter().any(|u| match u {
-                Unknown::ClassAngle(c) => with(self.class_frames[*c]),
-                Unknown::SlideTravel(_) => false,
-            })
-        };
-        let by_carrier = |frame: usize| self.carrier_phases.contains_key(&frame);
+        let class_frames = || group.classes().map(|c| self.class_frames[c]);
+        let by_carrier = |frame: &usize| self.carrier_phases.contains_key(frame);
         let counts_revolutions =
-            has_class(&|frame| self.revolution_counted[frame] && !by_carrier(frame));
-        let counts_by_carrier = has_class(&by_carrier);
-        let uses_stored_poses = match &kind {
-            GroupKind::Factored(factored_group) => match factored_group.method {
-                PlacementMethod::Newton => true,
-                PlacementMethod::Linear | PlacementMethod::GearTrain => false,
-                _ => counts_revolutions,
-            },
+            class_frames().any(|f| self.revolution_counted[f] && !by_carrier(&f));
+        let counts_by_carrier = class_frames().any(|f| by_carrier(&f));
+        let uses_stored_poses = match kind.placement_method() {
+            Some(PlacementMethod::Newton) => true,
+            Some(PlacementMethod::Linear | PlacementMethod::GearTrain) => false,
             _ => counts_revolutions,
         };
         AssurGroup {
-            actuated_frames: actuated_frames(all_actuated_frames, |class| {
-                group.unknowns.contains(&Unknown::ClassAngle(class))
-            }),
+            actuated_frames: actuated_frames(all_actuated_frames, |c| group.contains_class(c)),
             group,
             kind,
             known_terms,
@@ -171,6 +156,12 @@ impl Plan {
             uses_stored_poses,
             pruned: false,
         }
+    }
+
+    /// Whether the rotation of a frame depends on an unknown of a group.
+    fn is_unknown_in(&self, group: &Group, frame: usize) -> bool {
+        let class = self.frames.frames[frame].orientation_class;
+        class > 0 && group.contains_class(class)
     }
 
     /// The terms of a loop on frames that earlier groups or actuators move.
@@ -200,17 +191,13 @@ impl Plan {
 
     /// The two closed forms whose motion and forces are closed forms too.
     fn closed_form(&self, group: &Group) -> Option<GroupKind> {
-        let is_angle = |u: &Unknown| matches!(u, Unknown::ClassAngle(_));
         let (&[first], true) = (group.loops.as_slice(), group.couplings.is_empty()) else {
             return None;
         };
-        if !group.unknowns.iter().all(is_angle) || group.rows != group.unknowns.len() {
+        if !group.is_rotational() || group.rows != group.unknowns.len() {
             return None;
         }
-        let in_group = |frame: usize| {
-            let class = self.frames.frames[frame].orientation_class;
-            class > 0 && group.unknowns.contains(&Unknown::ClassAngle(class))
-        };
+        let in_group = |frame: usize| self.is_unknown_in(group, frame);
         let closure = &self.loop_closures[first];
         let is_class_frame =
             |frame: usize| self.frames.frames[frame].rotation_source == RotationSource::Unknown;
@@ -258,13 +245,10 @@ impl Plan {
 
     /// How the positions of a group that is not a closed form throughout are found.
     fn placement_method(&self, group: &Group) -> PlacementMethod {
-        let class = |c: usize| group.unknowns.contains(&Unknown::ClassAngle(c));
+        let class = |c: usize| group.contains_class(c);
         let slide = |s: usize| group.unknowns.contains(&Unknown::SlideTravel(s));
-        let has_angle = group
-            .unknowns
-            .iter()
-            .any(|u| matches!(u, Unknown::ClassAngle(_)));
         let linear = |&r: &usize| self.couplings[r].linear_in(&self.frames, class, slide);
+        let has_angle = group.classes().next().is_some();
         if (!has_angle || group.loops.is_empty()) && group.couplings.iter().all(linear) {
             return PlacementMethod::Linear;
         }
@@ -273,8 +257,7 @@ impl Plan {
             let axis = self.loop_closures[l].axis;
             axis.is_some_and(|(_, frame)| self.carrier_phases.contains_key(&frame))
         };
-        let is_angle = |u: &Unknown| matches!(u, Unknown::ClassAngle(_));
-        if group.unknowns.iter().all(is_angle)
+        if group.is_rotational()
             && group.loops.iter().all(follows_carrier)
             && group.couplings.iter().all(linear)
         {

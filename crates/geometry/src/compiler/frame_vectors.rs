@@ -5,7 +5,7 @@ use super::build::actuated_frames;
 use crate::plan::{ActuatedFrame, AssurGroup, GroupKind, LoopClosure, MovingBody, Step};
 use crate::plane::Vec2;
 use crate::structure::frames::Frames;
-use crate::structure::groups::{Group, Unknown};
+use crate::structure::groups::Group;
 use crate::structure::tree::{FrameVector, LoopJoint, Tree};
 use std::collections::HashMap;
 
@@ -36,11 +36,9 @@ impl FrameVectorTable {
         table.rotate_frames(actuated_frames(all_actuated_frames, |class| class == 0));
         for (g, group) in groups.iter().enumerate() {
             table.steps.push(Step::SolveGroup(g));
-            for &unknown in &group.unknowns {
-                if let Unknown::ClassAngle(class) = unknown {
-                    table.known_at[class_frames[class]] = table.steps.len();
-                    table.rotate_frames(actuated_frames(all_actuated_frames, |c| c == class));
-                }
+            for class in group.classes() {
+                table.known_at[class_frames[class]] = table.steps.len();
+                table.rotate_frames(actuated_frames(all_actuated_frames, |c| c == class));
             }
         }
         table
@@ -55,11 +53,8 @@ impl FrameVectorTable {
     }
 
     fn index(&mut self, vector: FrameVector) -> usize {
-        let key = (
-            vector.frame,
-            vector.local.x.to_bits(),
-            vector.local.y.to_bits(),
-        );
+        let FrameVector { frame, local } = vector;
+        let key = (frame, local.x.to_bits(), local.y.to_bits());
         *self.index_of.entry(key).or_insert_with(|| {
             self.vectors.push(vector);
             self.vectors.len() - 1
@@ -124,9 +119,8 @@ impl FrameVectorTable {
                 waiting[self.known_at[vector.frame]].push(Step::RotateVector(i, vector));
             }
         }
-        let actuated = slides.iter().enumerate();
-        let actuated =
-            actuated.filter_map(|(s, by)| by.map(|actuator| Step::SetSlide(s, actuator)));
+        let set_slide = |(s, by): (usize, &Option<usize>)| Some(Step::SetSlide(s, (*by)?));
+        let actuated = slides.iter().enumerate().filter_map(set_slide);
         // Vectors on the ground are never rotated.
         let rotations = waiting.into_iter().skip(1);
         let both = self.steps.into_iter().zip(rotations);

@@ -28,12 +28,12 @@ impl RowWriter<'_> {
     ) -> Result<Vec<ConstraintRow>, ConstraintRowsError> {
         let points = self.body_points(joint.bodies, joint.points);
         let columns = points.map(|e| e.column);
-        let along =
-            |axis: Vec2| ConstraintRow::single(ConstraintTerm::BodyFixedComponent(points, axis));
-        let coincide = || {
-            [vec2(1.0, 0.0), vec2(0.0, 1.0)]
-                .map(|u| ConstraintRow::single(ConstraintTerm::GroundFixedComponent(points, u)))
+        let component = |u: Vec2, constant: f64| {
+            ConstraintRow::single(ConstraintTerm::BodyFixedComponent(points, u), constant)
         };
+        let coincide =
+            |u| ConstraintRow::single(ConstraintTerm::GroundFixedComponent(points, u), 0.0);
+        let (x, y) = (vec2(1.0, 0.0), vec2(0.0, 1.0));
         let unrolled = |axis: Vec2, radius: f64| {
             let terms = vec![
                 (1.0, ConstraintTerm::BodyFixedComponent(points, axis)),
@@ -42,18 +42,17 @@ impl RowWriter<'_> {
             ConstraintRow::sum(terms, 0.0)
         };
         Ok(match joint.kind {
-            JointKind::Revolute => coincide().into(),
+            JointKind::Revolute => vec![coincide(x), coincide(y)],
             JointKind::Prismatic {
                 axes: [first, second],
             } => vec![
-                along(first.perp()),
+                component(first.perp(), 0.0),
                 ConstraintRow::periodic_angle(columns, first.angle() - second.angle()),
             ],
-            JointKind::Slot { axis } => vec![along(axis.perp())],
+            JointKind::Slot { axis } => vec![component(axis.perp(), 0.0)],
             JointKind::Weld { angle } => {
-                let mut rows = Vec::from(coincide());
-                rows.push(ConstraintRow::periodic_angle(columns, angle));
-                rows
+                let angle = ConstraintRow::periodic_angle(columns, angle);
+                vec![coincide(x), coincide(y), angle]
             }
             JointKind::Gear { radii, internal } => vec![ConstraintRow::Gear(Gear::new(
                 self.mechanism,
@@ -64,16 +63,12 @@ impl RowWriter<'_> {
                 self.columns,
             ))],
             JointKind::Rack { axis, radius } => vec![unrolled(axis, radius)],
-            JointKind::Rolling { axis, radius } => vec![
-                ConstraintRow::sum(
-                    vec![(1.0, ConstraintTerm::BodyFixedComponent(points, axis.perp()))],
-                    radius,
-                ),
-                unrolled(axis, radius),
-            ],
+            JointKind::Rolling { axis, radius } => {
+                vec![component(axis.perp(), radius), unrolled(axis, radius)]
+            }
             JointKind::Distance { length } => {
-                vec![ConstraintRow::sum(
-                    vec![(1.0, ConstraintTerm::Distance(points))],
+                vec![ConstraintRow::single(
+                    ConstraintTerm::Distance(points),
                     length,
                 )]
             }
@@ -142,10 +137,8 @@ impl RowWriter<'_> {
     }
 
     pub(super) fn missing_body(&self, bodies: [BodyId; 2]) -> Option<usize> {
-        bodies
-            .into_iter()
-            .map(|b| b.0)
-            .find(|&b| b >= self.columns.len())
+        let mut bodies = bodies.into_iter().map(|b| b.0);
+        bodies.find(|&b| b >= self.columns.len())
     }
 }
 

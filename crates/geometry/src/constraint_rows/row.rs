@@ -29,8 +29,9 @@ fn wrap_angle(angle: f64) -> f64 {
 }
 
 impl ConstraintRow {
-    pub(super) fn single(term: ConstraintTerm) -> Self {
-        Self::sum(vec![(1.0, term)], 0.0)
+    /// term − constant.
+    pub(super) fn single(term: ConstraintTerm, constant: f64) -> Self {
+        Self::sum(vec![(1.0, term)], constant)
     }
 
     pub(super) fn sum(terms: Vec<(f64, ConstraintTerm)>, constant: f64) -> Self {

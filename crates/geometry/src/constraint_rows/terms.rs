@@ -51,13 +51,9 @@ impl<'a> BodyCoordinates<'a> {
     }
 
     fn gap(&self, points: [BodyPoint; 2]) -> Gap {
-        let offsets =
-            points.map(|body_point| body_point.point.rotate(self.rotation(body_point.column)));
-        let origins = points.map(|body_point| {
-            body_point
-                .column
-                .map_or(Vec2::ZERO, |c| vec2(self.x[c], self.x[c + 1]))
-        });
+        let offsets = points.map(|p| p.point.rotate(self.rotation(p.column)));
+        let origin = |c: usize| vec2(self.x[c], self.x[c + 1]);
+        let origins = points.map(|p| p.column.map_or(Vec2::ZERO, origin));
         Gap {
             offsets,
             // Origins first: two frames may stand far away, and close to each other.
@@ -69,21 +65,6 @@ impl<'a> BodyCoordinates<'a> {
 /// A body's angle, or its rate, out of coordinates or speeds.
 pub(super) fn angle_of(column: Column, x: &[f64]) -> f64 {
     column.map_or(0.0, |c| x[c + 2])
-}
-
-/// ḋ, and the part of d̈ that comes from the bodies' ω² alone.
-fn gap_velocity_terms(points: [BodyPoint; 2], offsets: [Vec2; 2], x_dot: &[f64]) -> (Vec2, Vec2) {
-    let of = |i: usize| {
-        points[i].column.map_or((Vec2::ZERO, Vec2::ZERO), |c| {
-            let omega = x_dot[c + 2];
-            (
-                vec2(x_dot[c], x_dot[c + 1]) + offsets[i].perp() * omega,
-                -offsets[i] * (omega * omega),
-            )
-        })
-    };
-    let (one, two) = (of(0), of(1));
-    (two.0 - one.0, two.1 - one.1)
 }
 
 impl ConstraintTerm {
@@ -122,11 +103,8 @@ impl ConstraintTerm {
                 let Gap { offsets, d } = at.gap(points);
                 // The first body's vector reaches to P2, not to P1, because u turns with it.
                 let offsets_to_second = [offsets[0] + d, offsets[1]];
-                pair(
-                    points,
-                    offsets_to_second,
-                    u.rotate(at.rotation(points[0].column)),
-                );
+                let u = u.rotate(at.rotation(points[0].column));
+                pair(points, offsets_to_second, u);
             }
             Self::Distance(points) => {
                 let Gap { offsets, d } = at.gap(points);
@@ -150,10 +128,18 @@ impl ConstraintTerm {
 
     /// The second derivative along x + s ẋ at s = 0.
     pub(super) fn velocity_product(&self, at: &BodyCoordinates<'_>, x_dot: &[f64]) -> f64 {
+        // d, ḋ, and the part of d̈ that comes from the bodies' ω² alone.
         let gap_motion = |points: [BodyPoint; 2]| {
             let Gap { offsets, d } = at.gap(points);
-            let (velocity, centripetal) = gap_velocity_terms(points, offsets, x_dot);
-            (d, velocity, centripetal)
+            let [one, two] = [0, 1].map(|i| match points[i].column {
+                None => (Vec2::ZERO, Vec2::ZERO),
+                Some(c) => {
+                    let omega = x_dot[c + 2];
+                    let velocity = vec2(x_dot[c], x_dot[c + 1]) + offsets[i].perp() * omega;
+                    (velocity, -offsets[i] * (omega * omega))
+                }
+            });
+            (d, two.0 - one.0, two.1 - one.1)
         };
         match *self {
             Self::RelativeAngle(_) => 0.0,

@@ -106,7 +106,7 @@ impl Plan {
             }
             for &r in &assur.group.couplings {
                 balance.coupling_multiplier[r][n] =
-                    balance.workspace[row] * assur.coupling_weight::<T>(self.coupling(r));
+                    balance.workspace[row] * assur.coupling_weight::<T>(&self.couplings[r]);
                 row += 1;
             }
         }
@@ -129,12 +129,10 @@ impl Plan {
         } = balance;
         let multiplier = multipliers[coupling];
         let in_group = |frame: usize| {
-            assur.group.unknowns.iter().any(|u| match *u {
-                Unknown::ClassAngle(c) => self.class_frame(c) == frame,
-                Unknown::SlideTravel(_) => false,
-            })
+            let mut classes = assur.group.classes();
+            classes.any(|class| self.class_frame(class) == frame)
         };
-        self.coupling(coupling).for_each_derivative(
+        self.couplings[coupling].for_each_derivative(
             &pose.angle,
             &pose.slide_travel,
             |frame, by| {

@@ -2,9 +2,9 @@
 
 use super::{AssurGroup, GroupKind, PlacementMethod, Plan};
 
-use crate::mechanism::{ActuatorId, BodyId, JointId};
-use crate::structure::groups::{self, Group, Unknown};
-use crate::structure::lower::{Lowered, Owner};
+use crate::mechanism::{BodyId, JointId};
+use crate::structure::groups::{self, Group};
+use crate::structure::lower::Lowered;
 
 impl Plan {
     /// For each group in the order of solution: its number of unknowns and how it is solved.
@@ -39,34 +39,20 @@ impl Plan {
 
     /// The bodies whose positions a group determines.
     pub fn group_bodies(&self, group: usize) -> Vec<BodyId> {
-        self.bodies_of(&self.groups[group].group)
+        let unknowns = self.groups[group].group.unknowns.iter();
+        let bodies = unknowns.flat_map(|&u| groups::bodies_of(&self.frames, &self.tree, u));
+        self.lowered.mechanism_bodies(bodies)
     }
 
     /// The joints whose loops and couplings a group closes.
     pub fn group_joints(&self, group: usize) -> Vec<JointId> {
-        self.group_owners(group).0
-    }
-
-    pub(crate) fn group_owners(&self, group: usize) -> (Vec<JointId>, Vec<ActuatorId>) {
         let Group {
             loops, couplings, ..
         } = &self.groups[group].group;
         let pairs = loops.iter().map(|&l| self.loop_closures[l].pair);
-        let owners: Vec<Owner> = pairs
+        let owners = pairs
             .map(|b| self.lowered.pairs[b].owner)
-            .chain(couplings.iter().map(|&r| self.couplings[r].owner))
-            .collect();
-        Lowered::owners(owners)
-    }
-
-    pub(crate) fn bodies_of(&self, group: &Group) -> Vec<BodyId> {
-        let mut bodies = Vec::new();
-        for &unknown in &group.unknowns {
-            match unknown {
-                Unknown::ClassAngle(c) => bodies.extend(&self.frames.class_bodies[c]),
-                Unknown::SlideTravel(s) => bodies.extend(groups::bodies_of_slide(&self.tree, s)),
-            }
-        }
-        self.lowered.mechanism_bodies(bodies)
+            .chain(couplings.iter().map(|&r| self.couplings[r].owner));
+        Lowered::owners(owners).0
     }
 }

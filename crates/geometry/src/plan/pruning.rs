@@ -50,10 +50,8 @@ impl Plan {
                 coupling.frames().for_each(|f| self.mark(f, &mut classes));
                 coupling.slides().into_iter().for_each(|s| slides[s] = true);
             }
-            for unknown in &assur.group.unknowns {
-                if let Unknown::ClassAngle(c) = *unknown
-                    && let Some(&(carrier, _)) = self.carrier_phases.get(&self.class_frame(c))
-                {
+            for class in assur.group.classes() {
+                if let Some(&(carrier, _)) = self.carrier_phases.get(&self.class_frame(class)) {
                     self.mark(carrier, &mut classes);
                 }
             }
@@ -72,10 +70,8 @@ impl Plan {
         let mut known = vec![true; self.frames.orientation_classes];
         for (assur, &needed) in self.groups.iter_mut().zip(needed) {
             assur.pruned = !needed;
-            for unknown in &assur.group.unknowns {
-                if let Unknown::ClassAngle(c) = *unknown {
-                    known[c] = needed;
-                }
+            for class in assur.group.classes() {
+                known[class] = needed;
             }
         }
         let frames = &self.frames.frames;

@@ -125,15 +125,9 @@ pub(super) fn guided_point_positions<T: Scalar>(
         // n·D = −n₀·w with n₀, w constant in the turning frame.
         let kappa = -constant_direction.dot(local);
         let square = known.dot(known);
+        let size = |l| square.lane(l);
         let missing = || kappa.value().abs() - square.value().sqrt();
-        let half_chord = branch
-            * checked_sqrt(
-                square - kappa * kappa,
-                |l| square.lane(l),
-                group,
-                q,
-                missing,
-            )?;
+        let half_chord = branch * checked_sqrt(square - kappa * kappa, size, group, q, missing)?;
         let direction = (known * kappa + known.perp() * half_chord) * (T::from_f64(1.0) / square);
         // axis·D = reach.
         pose.closure_travel[guided.closure] = half_chord + local.cross(constant_direction);
@@ -150,15 +144,9 @@ pub(super) fn guided_point_positions<T: Scalar>(
         };
         let kappa = -normal.dot(known);
         let square = length * length;
+        let size = |l| square.lane(l);
         let missing = || kappa.value().abs() - length.value();
-        let half_chord = branch
-            * checked_sqrt(
-                square - kappa * kappa,
-                |l| square.lane(l),
-                group,
-                q,
-                missing,
-            )?;
+        let half_chord = branch * checked_sqrt(square - kappa * kappa, size, group, q, missing)?;
         let vector = normal * kappa - along * half_chord;
         pose.closure_travel[guided.closure] = along.dot(known) - half_chord;
         pose.vector[guided.found_vector] = vector;

@@ -1,12 +1,12 @@
 //! Groups whose positions are constructions: the triangle of a dyad, a line that meets a circle, gears
 //! on their carriers. Velocities, accelerations and multipliers come from the factors of their Jacobian.
 
-use super::closed_forms::{checked_sqrt, singular_tolerance};
+use super::closed_forms::checked_sqrt;
 use crate::error::PositionError;
 use crate::plan::{FactoredGroup, LoopClosure, PlacementMethod, Plan, Pose};
 use crate::plane::Vec2;
 use crate::structure::groups::{Group, Unknown};
-use dwell_numerics::{FactorOutcome, Scalar, lu};
+use dwell_numerics::{FactorOutcome, Scalar};
 
 impl Plan {
     /// The positions of a dyad of one loop in closed form.
@@ -116,10 +116,8 @@ impl Plan {
         let Group {
             unknowns, loops, ..
         } = &self.groups[group].group;
-        for &unknown in unknowns {
-            if let Unknown::ClassAngle(class) = unknown {
-                self.set_class_angle(class, T::from_f64(0.0), pose);
-            }
+        for class in self.groups[group].group.classes() {
+            self.set_class_angle(class, T::from_f64(0.0), pose);
         }
         self.rotate_group(group, pose);
         self.residual(group, pose);
@@ -142,17 +140,7 @@ impl Plan {
                 *entry = T::from_f64(of(line_frame) - of(carrier));
             }
         }
-        let outcome = lu::factor(
-            &mut pose.lu[factored_group.lu_offset..factored_group.lu_offset + n * n],
-            &mut pose.pivots[factored_group.pivots_offset..factored_group.pivots_offset + n],
-        );
-        if outcome.pivot_ratio <= singular_tolerance::<T>() {
-            return Err(PositionError::Singular {
-                group,
-                q: pose.q.first().map_or(0.0, |q| q.value()),
-                relative_determinant: outcome.pivot_ratio,
-            });
-        }
+        factored_group.factor(group, pose)?;
         self.apply_newton_step(group, factored_group, pose);
         self.rotate_group(group, pose);
         self.factor_jacobian(group, factored_group, pose)

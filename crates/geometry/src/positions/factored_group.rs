@@ -6,8 +6,10 @@ use super::{InitialIterate, rotate_frame};
 use crate::error::PositionError;
 use crate::plan::{FactoredGroup, GroupKind, LoopClosure, PlacementMethod, Plan, Pose};
 use crate::plane::{Vec2, vec2};
+use crate::structure::coupling::LinearForm;
 use crate::structure::groups::{Group, Unknown};
 use dwell_numerics::{FactorOutcome, Scalar, lu, qr};
+use std::ops::Range;
 
 /// Newton's correction (rad, or relative to the group's size) after which its square is rounding.
 const CONVERGED: f64 = 1e-9;
@@ -18,6 +20,16 @@ const MAX_NEWTON_STEPS: usize = 30;
 const REDUNDANT_RESIDUAL: f64 = 1e-9;
 
 impl FactoredGroup {
+    /// Where its factors are in [`Pose::lu`].
+    pub(crate) fn lu_range(&self) -> Range<usize> {
+        self.lu_offset..self.lu_offset + self.factor_len()
+    }
+
+    /// Where its row exchanges are in [`Pose::pivots`].
+    fn pivots_range(&self) -> Range<usize> {
+        self.pivots_offset..self.pivots_offset + self.columns
+    }
+
     /// Whether some equations are redundant: more rows than columns.
     pub(crate) fn is_overdetermined(&self) -> bool {
         self.rows > self.columns
@@ -33,33 +45,47 @@ impl FactoredGroup {
 
     /// Solves J x = b in place: x is in the first entries (least squares for a tall group).
     pub(crate) fn solve<T: Scalar>(&self, pose: &Pose<T>, b: &mut [T]) {
-        let (m, n) = (self.rows, self.columns);
+        let (m, n, lu) = (self.rows, self.columns, &pose.lu[self.lu_range()]);
         if self.is_overdetermined() {
-            let (a, heads) = pose.lu[self.lu_offset..self.lu_offset + m * n + n].split_at(m * n);
+            let (a, heads) = lu.split_at(m * n);
             qr::solve(a, heads, m, b);
         } else {
-            let pivots = &pose.pivots[self.pivots_offset..self.pivots_offset + n];
-            lu::solve(
-                &pose.lu[self.lu_offset..self.lu_offset + n * n],
-                pivots,
-                &mut b[..n],
-            );
+            lu::solve(lu, &pose.pivots[self.pivots_range()], &mut b[..n]);
         }
     }
 
     /// Solves Jᵀ x = b in place (the smallest x for a tall group).
     pub(crate) fn solve_transposed<T: Scalar>(&self, pose: &Pose<T>, b: &mut [T]) {
-        let (m, n) = (self.rows, self.columns);
+        let (m, n, lu) = (self.rows, self.columns, &pose.lu[self.lu_range()]);
         if self.is_overdetermined() {
-            let (a, heads) = pose.lu[self.lu_offset..self.lu_offset + m * n + n].split_at(m * n);
+            let (a, heads) = lu.split_at(m * n);
             qr::solve_transposed(a, heads, m, b);
         } else {
-            let pivots = &pose.pivots[self.pivots_offset..self.pivots_offset + n];
-            lu::solve_transposed(
-                &pose.lu[self.lu_offset..self.lu_offset + n * n],
-                pivots,
-                &mut b[..n],
-            );
+            lu::solve_transposed(lu, &pose.pivots[self.pivots_range()], &mut b[..n]);
+        }
+    }
+
+    /// Factors the Jacobian of a group that is assembled in the pose.
+    pub(crate) fn factor<T: Scalar>(
+        &self,
+        group: usize,
+        pose: &mut Pose<T>,
+    ) -> Result<FactorOutcome, PositionError> {
+        let (m, n, lu) = (self.rows, self.columns, &mut pose.lu[self.lu_range()]);
+        let outcome = if self.is_overdetermined() {
+            let (a, heads) = lu.split_at_mut(m * n);
+            qr::factor(a, heads, m)
+        } else {
+            lu::factor(lu, &mut pose.pivots[self.pivots_range()])
+        };
+        if outcome.pivot_ratio > singular_tolerance::<T>() {
+            Ok(outcome)
+        } else {
+            Err(PositionError::Singular {
+                group,
+                q: pose.q.first().map_or(0.0, |q| q.value()),
+                relative_determinant: outcome.pivot_ratio,
+            })
         }
     }
 }
@@ -129,8 +155,7 @@ impl Plan {
         factored_group: &FactoredGroup,
         pose: &Pose<T>,
     ) -> f64 {
-        let pivots = &pose.pivots
-            [factored_group.pivots_offset..factored_group.pivots_offset + factored_group.columns];
+        let pivots = &pose.pivots[factored_group.pivots_range()];
         let swaps = pivots.iter().enumerate().filter(|(k, p)| k != *p).count();
         let sign = if swaps % 2 == 0 { 1.0 } else { -1.0 };
         let n = factored_group.columns;
@@ -341,27 +366,7 @@ impl Plan {
         pose: &mut Pose<T>,
     ) -> Result<FactorOutcome, PositionError> {
         self.assemble_jacobian(group, factored_group, pose);
-        let (m, n) = (factored_group.rows, factored_group.columns);
-        let outcome = if factored_group.is_overdetermined() {
-            let (a, heads) = pose.lu
-                [factored_group.lu_offset..factored_group.lu_offset + m * n + n]
-                .split_at_mut(m * n);
-            qr::factor(a, heads, m)
-        } else {
-            lu::factor(
-                &mut pose.lu[factored_group.lu_offset..factored_group.lu_offset + n * n],
-                &mut pose.pivots[factored_group.pivots_offset..factored_group.pivots_offset + n],
-            )
-        };
-        if outcome.pivot_ratio > singular_tolerance::<T>() {
-            Ok(outcome)
-        } else {
-            Err(PositionError::Singular {
-                group,
-                q: pose.q.first().map_or(0.0, |q| q.value()),
-                relative_determinant: outcome.pivot_ratio,
-            })
-        }
+        factored_group.factor(group, pose)
     }
 
     pub(crate) fn assemble_jacobian<T: Scalar>(
@@ -406,17 +411,11 @@ impl Plan {
             let coupling = &self.couplings[r];
             let weight = assur.coupling_weight::<T>(coupling);
             for (column, &unknown) in unknowns.iter().enumerate() {
-                let entry = match unknown {
-                    Unknown::ClassAngle(class) => coupling.class_derivative(
-                        &self.frames,
-                        class,
-                        &pose.angle,
-                        &pose.slide_travel,
-                    ),
-                    Unknown::SlideTravel(slide) => {
-                        coupling.slide_derivative(slide, &pose.angle, &pose.slide_travel)
-                    }
+                let factor = |form: &LinearForm| match unknown {
+                    Unknown::ClassAngle(class) => form.class_factor(&self.frames, class),
+                    Unknown::SlideTravel(slide) => form.slide_factor(slide),
                 };
+                let entry = coupling.derivative(factor, &pose.angle, &pose.slide_travel);
                 pose.lu[row + column] = entry * weight * unit_of(unknown);
             }
             row += n;

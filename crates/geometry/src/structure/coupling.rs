@@ -27,8 +27,6 @@ pub struct CouplingEquation {
     pub dependent: LinearForm,
     /// The law and its argument, where there is one.
     pub law: Option<(Law, LinearForm)>,
-    /// Whether its constant is to be set at assembly.
-    pub constant_from_assembly: bool,
     /// Whether it is in rad rather than in m.
     pub angular: bool,
 }
@@ -58,7 +56,16 @@ impl LinearForm {
     }
 
     fn value<T: Scalar>(&self, angle: &[T], slide: &[T]) -> T {
-        let mut sum = T::from_f64(self.constant);
+        self.add_terms(self.constant, angle, slide)
+    }
+
+    /// Its rate, from the rates of frames and slides (velocities or accelerations).
+    fn rate<T: Scalar>(&self, angular_rate: &[T], slide_rate: &[T]) -> T {
+        self.add_terms(0.0, angular_rate, slide_rate)
+    }
+
+    fn add_terms<T: Scalar>(&self, to: f64, angle: &[T], slide: &[T]) -> T {
+        let mut sum = T::from_f64(to);
         for &(f, factor) in &self.angles {
             sum += T::from_f64(factor) * angle[f];
         }
@@ -68,33 +75,22 @@ impl LinearForm {
         sum
     }
 
-    /// Its rate, from the rates of frames and slides (velocities or accelerations).
-    fn rate<T: Scalar>(&self, angular_rate: &[T], slide: &[T]) -> T {
-        let mut sum = T::from_f64(0.0);
-        for &(f, factor) in &self.angles {
-            sum += T::from_f64(factor) * angular_rate[f];
-        }
-        for &(s, factor) in &self.slides {
-            sum += T::from_f64(factor) * slide[s];
-        }
-        sum
+    /// The sum of the factors of a class's frames.
+    pub(crate) fn class_factor(&self, frames: &Frames, class: usize) -> f64 {
+        factor_of(&self.angles, |f| {
+            frames.frames[f].orientation_class == class
+        })
     }
 
-    fn class_factor(&self, frames: &Frames, class: usize) -> f64 {
-        let angles = self.angles.iter();
-        angles
-            .filter(|(f, _)| frames.frames[*f].orientation_class == class)
-            .map(|(_, factor)| factor)
-            .sum()
+    /// The factor of a slide.
+    pub(crate) fn slide_factor(&self, slide: usize) -> f64 {
+        factor_of(&self.slides, |s| s == slide)
     }
+}
 
-    fn slide_factor(&self, slide: usize) -> f64 {
-        let slides = self.slides.iter();
-        slides
-            .filter(|(s, _)| *s == slide)
-            .map(|(_, factor)| factor)
-            .sum()
-    }
+fn factor_of(terms: &[(usize, f64)], picks: impl Fn(usize) -> bool) -> f64 {
+    let picked = terms.iter().filter(|(i, _)| picks(*i));
+    picked.map(|(_, factor)| factor).sum()
 }
 
 fn add(list: &mut Vec<(usize, f64)>, index: usize, factor: f64) {
@@ -112,7 +108,6 @@ impl CouplingEquation {
             law: lowered_coupling.law.as_ref().map(|(law, independent)| {
                 (law.clone(), LinearForm::new(independent, frames, tree))
             }),
-            constant_from_assembly: lowered_coupling.constant_from_assembly,
             angular: lowered_coupling.angular,
         };
         lowered.couplings.iter().map(compile).collect()
@@ -129,9 +124,8 @@ impl CouplingEquation {
             .forms()
             .flat_map(|form| {
                 let class = |&(f, _): &(usize, f64)| frames.frames[f].orientation_class;
-                let of: Vec<usize> = form.angles.iter().map(class).collect();
-                of.into_iter()
-                    .filter(|&c| c > 0 && form.class_factor(frames, c) != 0.0)
+                let named = form.angles.iter().map(class);
+                named.filter(|&c| c > 0 && form.class_factor(frames, c) != 0.0)
             })
             .collect();
         classes.sort_unstable();
@@ -176,12 +170,8 @@ impl CouplingEquation {
     pub(crate) fn value<T: Scalar>(&self, angle: &[T], slide: &[T]) -> T {
         let mut value = self.dependent.value(angle, slide);
         if let Some((law, independent)) = &self.law {
-            value -= independent.value(angle, slide).compose(&law_derivatives(
-                law,
-                independent,
-                angle,
-                slide,
-            ));
+            let x = independent.value(angle, slide);
+            value -= x.compose(&law.eval(x.value()));
         }
         value
     }
@@ -192,7 +182,7 @@ impl CouplingEquation {
             return (T::from_f64(0.0), T::from_f64(0.0));
         };
         let x = independent.value(angle, slide);
-        let [_, d, dd, ddd] = law_derivatives(law, independent, angle, slide);
+        let [_, d, dd, ddd] = law.eval(x.value());
         (
             x.compose(&[d, dd, ddd, 0.0]),
             x.compose(&[dd, ddd, 0.0, 0.0]),
@@ -214,7 +204,7 @@ impl CouplingEquation {
     ) -> T {
         let mut rate = self.dependent.rate(angular_rate, slide_rate);
         if let Some((_, independent)) = &self.law {
-            rate -= self.slopes(angle, slide).0 * independent.rate(angular_rate, slide_rate);
+            rate -= self.slope(angle, slide) * independent.rate(angular_rate, slide_rate);
         }
         rate
     }
@@ -244,7 +234,7 @@ impl CouplingEquation {
         mut add_angle: impl FnMut(usize, T),
         mut add_travel: impl FnMut(usize, T),
     ) {
-        let minus_slope = -self.slopes(angle, travel).0;
+        let minus_slope = -self.slope(angle, travel);
         for (form, factor_of_form) in self.forms().zip([T::from_f64(1.0), minus_slope]) {
             for &(f, factor) in &form.angles {
                 add_angle(f, factor_of_form * T::from_f64(factor));
@@ -255,38 +245,17 @@ impl CouplingEquation {
         }
     }
 
-    /// ∂Φ/∂ of a class's angle.
-    pub(crate) fn class_derivative<T: Scalar>(
+    /// ∂Φ/∂ of an unknown, by its factor in each of the sums.
+    pub(crate) fn derivative<T: Scalar>(
         &self,
-        frames: &Frames,
-        class: usize,
+        factor: impl Fn(&LinearForm) -> f64,
         angle: &[T],
         slide: &[T],
     ) -> T {
-        let mut value = T::from_f64(self.dependent.class_factor(frames, class));
+        let mut value = T::from_f64(factor(&self.dependent));
         if let Some((_, independent)) = &self.law {
-            value -=
-                self.slopes(angle, slide).0 * T::from_f64(independent.class_factor(frames, class));
+            value -= self.slope(angle, slide) * T::from_f64(factor(independent));
         }
         value
     }
-
-    /// ∂Φ/∂ of a slide's travel.
-    pub(crate) fn slide_derivative<T: Scalar>(&self, one: usize, angle: &[T], slide: &[T]) -> T {
-        let mut value = T::from_f64(self.dependent.slide_factor(one));
-        if let Some((_, independent)) = &self.law {
-            value -= self.slopes(angle, slide).0 * T::from_f64(independent.slide_factor(one));
-        }
-        value
-    }
-}
-
-/// The law and its derivatives at the value of its argument.
-fn law_derivatives<T: Scalar>(
-    law: &Law,
-    independent: &LinearForm,
-    angle: &[T],
-    slide: &[T],
-) -> [f64; 4] {
-    law.eval(independent.value(angle, slide).value())
 }

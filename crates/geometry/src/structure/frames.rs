@@ -6,6 +6,7 @@ use crate::error::StructureError;
 use crate::mechanism::ActuatorId;
 use crate::plane::Vec2;
 use crate::structure::lower::{ActuatedCoordinate, KinematicPair, Lowered, Owner, PairKind};
+use std::collections::HashSet;
 
 /// What determines the rotation of a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +45,7 @@ pub struct Orientation {
 }
 
 /// What fixes the angle between two bodies of one class.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum AngularConstraintSource {
     /// A slide or a weld, by its moment: index of the pair.
     Pair(usize),
@@ -93,23 +94,9 @@ impl Frames {
     /// that others fix already, unless it is a slide or a weld that fixes the same angle.
     pub(crate) fn find(lowered: &Lowered) -> Result<Self, StructureError> {
         let (n, neighbours) = (lowered.bodies, angular_neighbours(lowered));
-        let ground_orientation = Orientation {
-            frame: 0,
-            offset: Vec2::IDENTITY,
-        };
-        let mut found = Self {
-            frames: vec![Frame {
-                rotation_source: RotationSource::Ground,
-                orientation_class: 0,
-            }],
-            orientations: vec![ground_orientation; n],
-            angular_constraints: Vec::new(),
-            redundant_pairs: Vec::new(),
-            orientation_classes: 1,
-            class_bodies: Vec::new(),
-        };
+        let mut found = Self::of_ground(n);
         let mut reached = vec![false; n];
-        let mut visited = VisitedConstraints::new(lowered);
+        let (mut visited, mut conflicting) = (HashSet::new(), Vec::new());
         for first_body in std::iter::once(lowered.ground).chain(0..n) {
             if std::mem::replace(&mut reached[first_body], true) {
                 continue;
@@ -125,7 +112,7 @@ impl Frames {
             let mut queue = vec![first_body];
             while let Some(body) = queue.pop() {
                 for &(other, source, other_is_first) in &neighbours[body] {
-                    if !visited.is_first_visit(source) {
+                    if !visited.insert(source) {
                         continue;
                     }
                     let constraint = AngularConstraint {
@@ -135,7 +122,7 @@ impl Frames {
                         body_is_first: other_is_first,
                     };
                     if std::mem::replace(&mut reached[other], true) {
-                        found.add_redundant(lowered, constraint, &mut visited);
+                        conflicting.extend(found.add_redundant(lowered, constraint));
                         continue;
                     }
                     found.orientations[other] = found.constrained_orientation(lowered, constraint);
@@ -144,12 +131,33 @@ impl Frames {
                 }
             }
         }
-        visited.finish()?;
+        if !conflicting.is_empty() {
+            return Err(Lowered::over_constrained(&conflicting));
+        }
         found.class_bodies = vec![Vec::new(); found.orientation_classes];
         for (body, orientation) in found.orientations.iter().enumerate() {
             found.class_bodies[found.frames[orientation.frame].orientation_class].push(body);
         }
         Ok(found)
+    }
+
+    /// All bodies in the ground's frame.
+    fn of_ground(bodies: usize) -> Self {
+        let ground_orientation = Orientation {
+            frame: 0,
+            offset: Vec2::IDENTITY,
+        };
+        Self {
+            frames: vec![Frame {
+                rotation_source: RotationSource::Ground,
+                orientation_class: 0,
+            }],
+            orientations: vec![ground_orientation; bodies],
+            angular_constraints: Vec::new(),
+            redundant_pairs: Vec::new(),
+            orientation_classes: 1,
+            class_bodies: Vec::new(),
+        }
     }
 
     /// The orientation of a body by its constraint to one whose orientation is known.
@@ -183,13 +191,8 @@ impl Frames {
         }
     }
 
-    /// Notes a constraint between two bodies whose angle is fixed already.
-    fn add_redundant(
-        &mut self,
-        lowered: &Lowered,
-        constraint: AngularConstraint,
-        visited: &mut VisitedConstraints,
-    ) {
+    /// Notes a constraint between two bodies whose angle is fixed already; returns its owner if it contradicts others.
+    fn add_redundant(&mut self, lowered: &Lowered, constraint: AngularConstraint) -> Option<Owner> {
         let reference = self.orientations[constraint.reference_body];
         let orientation = self.orientations[constraint.body];
         if let AngularConstraintSource::Pair(b) = constraint.source
@@ -199,13 +202,13 @@ impl Frames {
             let required = offset_across(&lowered.pairs[b], reference.offset, is_first);
             if (required - orientation.offset).norm() < SAME_ANGLE {
                 self.redundant_pairs.push(b);
-                return;
+                return None;
             }
         }
-        visited.conflicting.push(match constraint.source {
+        Some(match constraint.source {
             AngularConstraintSource::Pair(b) => lowered.pairs[b].owner,
             AngularConstraintSource::Actuator(a) => Owner::Actuator(a),
-        });
+        })
     }
 }
 
@@ -244,44 +247,5 @@ fn offset_across(pair: &KinematicPair, offset: Vec2, other_is_first: bool) -> Ve
         }
         PairKind::Rigid(angle) if other_is_first => offset.rotate_inverse(angle),
         PairKind::Rigid(angle) => offset.rotate(angle),
-    }
-}
-
-/// The constraints visited so far, and the owners of those that contradict others.
-struct VisitedConstraints {
-    pairs: Vec<bool>,
-    actuators: Vec<bool>,
-    conflicting: Vec<Owner>,
-}
-
-impl VisitedConstraints {
-    fn new(lowered: &Lowered) -> Self {
-        Self {
-            pairs: vec![false; lowered.pairs.len()],
-            actuators: vec![false; lowered.actuated_coordinates.len()],
-            conflicting: Vec::new(),
-        }
-    }
-
-    /// Whether the constraint is visited for the first time.
-    fn is_first_visit(&mut self, source: AngularConstraintSource) -> bool {
-        let visited = match source {
-            AngularConstraintSource::Pair(b) => &mut self.pairs[b],
-            AngularConstraintSource::Actuator(a) => &mut self.actuators[a.0],
-        };
-        !std::mem::replace(visited, true)
-    }
-
-    fn finish(self) -> Result<(), StructureError> {
-        if self.conflicting.is_empty() {
-            return Ok(());
-        }
-        let redundant_count = self.conflicting.len();
-        let (joints, actuators) = Lowered::owners(self.conflicting);
-        Err(StructureError::OverConstrained {
-            redundant_count,
-            joints,
-            actuators,
-        })
     }
 }

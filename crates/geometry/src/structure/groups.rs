@@ -32,6 +32,26 @@ pub struct Group {
     pub rows: usize,
 }
 
+impl Group {
+    /// Whether the angle of a class is among the unknowns.
+    pub(crate) fn contains_class(&self, class: usize) -> bool {
+        self.unknowns.contains(&Unknown::ClassAngle(class))
+    }
+
+    /// The classes whose angles are unknowns.
+    pub(crate) fn classes(&self) -> impl Iterator<Item = usize> {
+        self.unknowns.iter().filter_map(|u| match *u {
+            Unknown::ClassAngle(class) => Some(class),
+            Unknown::SlideTravel(_) => None,
+        })
+    }
+
+    /// Whether all unknowns are angles.
+    pub(crate) fn is_rotational(&self) -> bool {
+        self.classes().count() == self.unknowns.len()
+    }
+}
+
 /// An equation, or one of a loop's two.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Equation {
@@ -72,7 +92,11 @@ pub(crate) fn order_groups(
     let redundant = |&e: &usize| of_equation[e] == UNMATCHED;
     let redundant: Vec<usize> = (0..equations.len()).filter(redundant).collect();
     if !redundant.is_empty() && !allow_redundant {
-        return Err(problem.over_constrained(redundant.iter().map(|&e| equations[e])));
+        let owners = redundant.iter().map(|&e| match equations[e] {
+            Equation::Loop(l) => problem.lowered.pairs[problem.loops[l].pair].owner,
+            Equation::Coupling(r) => problem.couplings[r].owner,
+        });
+        return Err(Lowered::over_constrained(&owners.collect::<Vec<_>>()));
     }
     if !undetermined.is_empty() {
         return Err(problem.under_actuated(&undetermined));
@@ -84,17 +108,11 @@ pub(crate) fn order_groups(
     }
     let groups = strong_components(&of_equation, &before, &of_unknown);
     let groups = absorb_redundant(groups, &redundant, &dependencies, &of_unknown);
-    let as_unknown = |u: usize| match u.checked_sub(classes) {
-        None => Unknown::ClassAngle(u + 1),
-        Some(slide) => Unknown::SlideTravel(slide),
-    };
     let group = |members: Vec<usize>| {
         let rows = members.len();
-        let matched = members
-            .iter()
-            .map(|&e| of_equation[e])
-            .filter(|&u| u != UNMATCHED);
-        let mut unknowns: Vec<Unknown> = matched.map(as_unknown).collect();
+        let matched = members.iter().map(|&e| of_equation[e]);
+        let matched = matched.filter(|&u| u != UNMATCHED);
+        let mut unknowns: Vec<Unknown> = matched.map(|u| problem.unknown(u)).collect();
         unknowns.sort_unstable();
         let (mut loops, mut couplings) = (Vec::new(), Vec::new());
         for e in members {
@@ -117,28 +135,11 @@ pub(crate) fn order_groups(
 }
 
 impl PositionProblem<'_> {
-    /// The error of equations without an unknown of their own.
-    fn over_constrained(
-        &self,
-        redundant: impl ExactSizeIterator<Item = Equation>,
-    ) -> StructureError {
-        let redundant_count = redundant.len();
-        let owners = redundant.map(|equation| match equation {
-            Equation::Loop(l) => self.lowered.pairs[self.loops[l].pair].owner,
-            Equation::Coupling(r) => self.couplings[r].owner,
-        });
-        let (joints, actuators) = Lowered::owners(owners);
-        StructureError::OverConstrained {
-            redundant_count,
-            joints,
-            actuators,
-        }
-    }
-
     /// The error of unknowns that no equation determines.
     fn under_actuated(&self, undetermined: &[usize]) -> StructureError {
         let actuators = self.lowered.actuated_coordinates.len();
-        let bodies = undetermined.iter().flat_map(|&u| self.bodies_of(u));
+        let unknowns = undetermined.iter().map(|&u| self.unknown(u));
+        let bodies = unknowns.flat_map(|u| bodies_of(self.frames, self.tree, u));
         StructureError::UnderActuated {
             degrees_of_freedom: actuators + undetermined.len(),
             actuators,
@@ -166,75 +167,71 @@ impl PositionProblem<'_> {
         }
         for (r, coupling) in self.couplings.iter().enumerate() {
             equations.push(Equation::Coupling(r));
-            let classes: Vec<usize> = coupling
-                .classes(self.frames)
-                .iter()
-                .map(|c| c - 1)
-                .collect();
-            let named = coupling
-                .frames()
-                .map(|f| self.frames.frames[f].orientation_class);
-            let named = named.filter(|&c| c > 0).map(|c| c - 1);
+            let classes = coupling.classes(self.frames);
+            let mut classes: Vec<usize> = classes.iter().map(|c| c - 1).collect();
+            let named = self.class_unknowns(coupling.frames());
             evaluated_with.push(named.filter(|c| !classes.contains(c)).collect());
-            let slides = coupling.slides().into_iter();
-            let slides = slides.filter(|&s| self.actuated_slides[s].is_none());
-            let slides = slides.map(|s| self.frames.orientation_classes - 1 + s);
-            dependencies.push(classes.into_iter().chain(slides).collect());
+            classes.extend(self.slide_unknowns(coupling.slides()));
+            dependencies.push(classes);
         }
         (equations, dependencies, evaluated_with)
     }
 
     fn unknowns_of(&self, one: &LoopJoint) -> (Vec<usize>, Vec<usize>) {
-        let class = |frame: usize| self.frames.frames[frame].orientation_class;
-        let rotating = one.vectors.iter().map(|a| a.frame);
-        let sliding = one.slides.iter().map(|(_, a)| a.frame);
-        let mut found: Vec<usize> = rotating
-            .chain(sliding)
-            .chain(one.axis.iter().map(|a| a.frame))
-            .map(class)
-            .filter(|&c| c > 0)
-            .map(|c| c - 1)
-            .collect();
+        let vectors = one.vectors.iter().chain(one.slides.iter().map(|(_, a)| a));
+        let frames = || vectors.clone().chain(&one.axis).map(|a| a.frame);
+        let mut found: Vec<usize> = self.class_unknowns(frames()).collect();
         found.sort_unstable();
         found.dedup();
         // A common rotation does not change the distance from the axis: a loop of one class alone cannot determine
         // its angle.
-        let all_one_class = one.axis.is_some_and(|axis| {
-            let same = |frame: usize| class(frame) == class(axis.frame);
-            one.vectors.iter().all(|a| same(a.frame))
-                && one.slides.iter().all(|(_, a)| same(a.frame))
-        });
+        let class = |frame: usize| self.frames.frames[frame].orientation_class;
+        let all_one_class =
+            (one.axis).is_some_and(|axis| frames().all(|frame| class(frame) == class(axis.frame)));
         let mut cancelled = Vec::new();
         if all_one_class {
             std::mem::swap(&mut found, &mut cancelled);
         }
-        let slides = one.slides.iter().map(|&(s, _)| s);
-        found.extend(
-            slides
-                .filter(|&s| self.actuated_slides[s].is_none())
-                .map(|s| self.frames.orientation_classes - 1 + s),
-        );
+        found.extend(self.slide_unknowns(one.slides.iter().map(|&(s, _)| s)));
         (found, cancelled)
     }
 
-    /// The bodies whose position depends on an unknown.
-    fn bodies_of(&self, u: usize) -> Vec<usize> {
-        let classes = self.frames.orientation_classes - 1;
-        if u < classes {
-            self.frames.class_bodies[u + 1].clone()
-        } else {
-            bodies_of_slide(self.tree, u - classes)
+    /// The unknowns, by number, that are the angles of some frames.
+    fn class_unknowns(&self, frames: impl Iterator<Item = usize>) -> impl Iterator<Item = usize> {
+        let classes = frames.map(|f| self.frames.frames[f].orientation_class);
+        classes.filter(|&c| c > 0).map(|c| c - 1)
+    }
+
+    /// The unknowns, by number, among the travels of some slides.
+    fn slide_unknowns(
+        &self,
+        slides: impl IntoIterator<Item = usize>,
+    ) -> impl Iterator<Item = usize> {
+        let free = slides
+            .into_iter()
+            .filter(|&s| self.actuated_slides[s].is_none());
+        free.map(|s| self.frames.orientation_classes - 1 + s)
+    }
+
+    /// An unknown by its number: classes first (class c is number c − 1), then slides.
+    fn unknown(&self, u: usize) -> Unknown {
+        match u.checked_sub(self.frames.orientation_classes - 1) {
+            None => Unknown::ClassAngle(u + 1),
+            Some(slide) => Unknown::SlideTravel(slide),
         }
     }
 }
 
-/// The bodies that a slide connects with their parents.
-pub(crate) fn bodies_of_slide(tree: &Tree, slide: usize) -> Vec<usize> {
-    let tree_joints = tree.joints.iter();
-    tree_joints
-        .filter(|c| c.slide.is_some_and(|(s, _)| s == slide))
-        .map(|c| c.body)
-        .collect()
+/// The bodies whose angles an unknown determines, or that a slide connects with their parents.
+pub(crate) fn bodies_of(frames: &Frames, tree: &Tree, unknown: Unknown) -> Vec<usize> {
+    match unknown {
+        Unknown::ClassAngle(class) => frames.class_bodies[class].clone(),
+        Unknown::SlideTravel(slide) => {
+            let slides = tree.joints.iter();
+            let slides = slides.filter(|c| c.slide.is_some_and(|(s, _)| s == slide));
+            slides.map(|c| c.body).collect()
+        }
+    }
 }
 
 /// Adds each redundant equation to the group of everything that it depends on.
@@ -274,7 +271,8 @@ fn absorb_redundant(
     // The whole depends on nothing outside it, so it can come where its first part does.
     let mut order: Vec<Vec<usize>> = Vec::new();
     let mut position: Vec<Option<usize>> = vec![None; dependencies.len()];
-    for group in groups {
+    // An equation that depends on no unknown at all is a group of its own.
+    for group in groups.into_iter().chain(redundant.iter().map(|&e| vec![e])) {
         match joins[group[0]] {
             UNMATCHED => order.push(group),
             join => match position[join] {
@@ -284,16 +282,6 @@ fn absorb_redundant(
                     order.push(group);
                 }
             },
-        }
-    }
-    for &e in redundant {
-        match position[joins[e]] {
-            Some(at) => order[at].push(e),
-            // An equation that depends on no unknown at all: a group of its own.
-            None => {
-                position[joins[e]] = Some(order.len());
-                order.push(vec![e]);
-            }
         }
     }
     order

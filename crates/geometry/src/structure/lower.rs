@@ -3,9 +3,8 @@
 //! a block that slides on one body and is pinned to the other; a length is a line pinned to one
 //! point on which a block slides that is pinned to the other.
 
-use crate::mechanism::{
-    ActuatorId, ActuatorKind, BodyId, Coordinate, Coupling, JointId, JointKind, Mechanism,
-};
+use crate::error::StructureError;
+use crate::mechanism::{ActuatorId, BodyId, Coordinate, Coupling, JointId, JointKind, Mechanism};
 use crate::plane::Vec2;
 use dwell_laws::Law;
 
@@ -75,6 +74,20 @@ pub(crate) struct LoweredCoupling {
     pub(crate) line_of_centres: Option<(usize, usize, f64)>,
 }
 
+impl LoweredCoupling {
+    /// Σ dependent = 0, between lengths.
+    fn linear(owner: Owner, dependent: LinearTerms) -> Self {
+        Self {
+            owner,
+            dependent,
+            law: None,
+            constant_from_assembly: false,
+            angular: false,
+            line_of_centres: None,
+        }
+    }
+}
+
 /// What an actuator drives.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum ActuatedCoordinate {
@@ -123,23 +136,13 @@ impl Lowered {
             if let JointKind::Coupling(r) = joint.kind
                 && let Some(coupling) = mechanism.couplings.get(r)
             {
-                let lowered_coupling = lowered.lower_coupling(JointId(j), coupling);
-                lowered.joint_parts[j].1 = Some(lowered_coupling);
+                lowered.joint_parts[j].1 = Some(lowered.couplings.len());
+                lowered.lower_coupling(Owner::Joint(JointId(j)), coupling);
             }
         }
         for (i, actuator) in mechanism.actuators.iter().enumerate() {
             let owner = Owner::Actuator(ActuatorId(i));
-            let bodies = actuator.bodies.map(|b| b.0);
-            let coordinate = match actuator.kind {
-                ActuatorKind::Angle => ActuatedCoordinate::Angle(bodies),
-                ActuatorKind::Travel(joint) => {
-                    ActuatedCoordinate::Travel(lowered.travel_pair(joint))
-                }
-                ActuatorKind::Length(points) => {
-                    let (pair, _) = lowered.add_line(owner, bodies, points, true);
-                    ActuatedCoordinate::Travel(pair)
-                }
-            };
+            let coordinate = lowered.lower_coordinate(owner, actuator.coordinate());
             lowered.actuated_coordinates.push(coordinate);
         }
         lowered
@@ -181,11 +184,12 @@ impl Lowered {
                     (LoweredCoordinate::Angle(bodies[1]), radii[1]),
                     (LoweredCoordinate::Angle(line), -(one + radii[1])),
                 ];
-                self.add_linear_coupling(owner, dependent, true);
                 let carrier = carrier(mechanism, id, radii[0] + radii[1]);
-                if let Some(coupling) = self.couplings.last_mut() {
-                    coupling.line_of_centres = carrier.map(|(body, phase)| (line, body, phase));
-                }
+                self.couplings.push(LoweredCoupling {
+                    constant_from_assembly: true,
+                    line_of_centres: carrier.map(|(body, phase)| (line, body, phase)),
+                    ..LoweredCoupling::linear(owner, dependent)
+                });
             }
             JointKind::Rack { axis, radius } => {
                 // The pinion's centre slides along the rack on a block, and across it on another.
@@ -219,35 +223,36 @@ impl Lowered {
         (Some(first), has_coupling.then_some(first_coupling))
     }
 
-    fn lower_coupling(&mut self, joint: JointId, coupling: &Coupling) -> usize {
-        let owner = Owner::Joint(joint);
+    fn lower_coupling(&mut self, owner: Owner, coupling: &Coupling) {
         let dependent = self.linear_terms(owner, coupling.dependent);
         let independent = self.linear_terms(owner, coupling.independent);
         self.couplings.push(LoweredCoupling {
-            owner,
-            dependent,
             law: Some((coupling.law.clone(), independent)),
-            constant_from_assembly: false,
             angular: coupling.dependent.is_angle(),
-            line_of_centres: None,
+            ..LoweredCoupling::linear(owner, dependent)
         });
-        self.couplings.len() - 1
+    }
+
+    /// A coordinate as an angle between bodies, or as the travel of a pair.
+    fn lower_coordinate(&mut self, owner: Owner, coordinate: Coordinate) -> ActuatedCoordinate {
+        match coordinate {
+            Coordinate::Angle(bodies) => ActuatedCoordinate::Angle(bodies.map(|b| b.0)),
+            Coordinate::Travel(joint) => ActuatedCoordinate::Travel(self.travel_pair(joint)),
+            Coordinate::Length { bodies, points } => {
+                let (pair, _) = self.add_line(owner, bodies.map(|b| b.0), points, true);
+                ActuatedCoordinate::Travel(pair)
+            }
+        }
     }
 
     /// A coordinate as a sum of lowered coordinates.
     fn linear_terms(&mut self, owner: Owner, coordinate: Coordinate) -> LinearTerms {
-        match coordinate {
-            Coordinate::Angle([first, second]) => vec![
-                (LoweredCoordinate::Angle(second.0), 1.0),
-                (LoweredCoordinate::Angle(first.0), -1.0),
+        match self.lower_coordinate(owner, coordinate) {
+            ActuatedCoordinate::Angle([first, second]) => vec![
+                (LoweredCoordinate::Angle(second), 1.0),
+                (LoweredCoordinate::Angle(first), -1.0),
             ],
-            Coordinate::Travel(joint) => {
-                vec![(LoweredCoordinate::Travel(self.travel_pair(joint)), 1.0)]
-            }
-            Coordinate::Length { bodies, points } => {
-                let (pair, _) = self.add_line(owner, bodies.map(|b| b.0), points, true);
-                vec![(LoweredCoordinate::Travel(pair), 1.0)]
-            }
+            ActuatedCoordinate::Travel(pair) => vec![(LoweredCoordinate::Travel(pair), 1.0)],
         }
     }
 
@@ -304,22 +309,6 @@ impl Lowered {
         (pair, line)
     }
 
-    fn add_linear_coupling(
-        &mut self,
-        owner: Owner,
-        dependent: LinearTerms,
-        constant_from_assembly: bool,
-    ) {
-        self.couplings.push(LoweredCoupling {
-            owner,
-            dependent,
-            law: None,
-            constant_from_assembly,
-            angular: false,
-            line_of_centres: None,
-        });
-    }
-
     /// Travel + r (θ₂ − θ₁) = 0.
     fn add_rolling_coupling(&mut self, owner: Owner, pair: usize, bodies: [usize; 2], radius: f64) {
         let dependent = vec![
@@ -327,7 +316,8 @@ impl Lowered {
             (LoweredCoordinate::Angle(bodies[1]), radius),
             (LoweredCoordinate::Angle(bodies[0]), -radius),
         ];
-        self.add_linear_coupling(owner, dependent, false);
+        self.couplings
+            .push(LoweredCoupling::linear(owner, dependent));
     }
 
     /// Makes the travel of a pair a coordinate.
@@ -378,6 +368,16 @@ impl Lowered {
         actuators.sort_unstable();
         actuators.dedup();
         (joints, actuators)
+    }
+
+    /// The error of equations too many, by the owner of each.
+    pub(crate) fn over_constrained(redundant: &[Owner]) -> StructureError {
+        let (joints, actuators) = Self::owners(redundant.iter().copied());
+        StructureError::OverConstrained {
+            redundant_count: redundant.len(),
+            joints,
+            actuators,
+        }
     }
 }
 

@@ -270,7 +270,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         closure: usize,
     ) -> [Vec2<T>; N] {
         let multiplier = self.balance.loop_multiplier[closure];
-        match model.plan.loop_closures()[closure].axis {
+        match model.plan.loop_closures[closure].axis {
             None => multiplier,
             Some((axis, _)) => {
                 let normal = pose.vector[axis].perp();
@@ -316,7 +316,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
                     Some(moment_arm) => moment_arm.cast().rotate(pose.rotation[end.frame]),
                     None => Vec2::zero(),
                 };
-                if let (true, Some((axis, _))) = (sign > 0.0, model.plan.loop_closures()[c].axis) {
+                if let (true, Some((axis, _))) = (sign > 0.0, model.plan.loop_closures[c].axis) {
                     // The force acts at the second body's point on both.
                     moment_arm += pose.vector[axis] * pose.closure_travel[c];
                 }
@@ -325,7 +325,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
                 add(&mut self.joint_moments[end.body], moment);
             }
         }
-        for r in 0..model.plan.couplings() {
+        for r in 0..model.plan.couplings.len() {
             let multiplier = self.balance.coupling_multiplier[r];
             model
                 .plan

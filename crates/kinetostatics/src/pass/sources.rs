@@ -82,7 +82,7 @@ pub(crate) struct ReactionSources {
 impl ReactionSources {
     pub(crate) fn compile(mechanism: &Mechanism, plan: &Plan, reactions: &[Reaction]) -> Self {
         let tree = plan.tree();
-        let loop_joint_ends = plan.loop_closures().iter().map(|closure| {
+        let loop_joint_ends = plan.loop_closures.iter().map(|closure| {
             let pair = &plan.pairs()[closure.pair];
             [0, 1].map(|i| {
                 let body = pair.bodies[i];
@@ -179,9 +179,9 @@ impl ReactionSources {
             (Component::Axial, _) => in_frame(kinematic_pair.bodies[1], Vec2::IDENTITY),
             _ => ForceDirection::X(1.0),
         };
-        match plan.pair_role(pair) {
+        match plan.pair_roles[pair] {
             PairRole::TreeJoint(moving_body) => self.tree_joint_force(moving_body, direction),
-            PairRole::LoopJoint(closure) => match plan.loop_closures()[closure].axis {
+            PairRole::LoopJoint(closure) => match plan.loop_closures[closure].axis {
                 Some(_) => ReactionSource::Normal(closure),
                 None => ReactionSource::LoopJoint(closure, direction),
             },
