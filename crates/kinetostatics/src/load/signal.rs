@@ -1,21 +1,10 @@
 //! The signals that magnitudes depend on, and magnitudes as laws and expressions of them.
 
-use super::{MAX_FUNCTION_SIGNALS, Magnitude, Signal};
+use super::function::first_order;
+use super::{CompiledSignal, MAX_FUNCTION_SIGNALS, Magnitude, Signal};
 use dwell_geometry::Mechanism;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
-use dwell_laws::Expression;
 use dwell_numerics::Scalar;
-
-/// A [`Signal`] of a certain mechanism, ready to be evaluated.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum CompiledSignal {
-    /// Time, s.
-    Time,
-    /// A coordinate, rad or m.
-    Value(CoordinateFunction),
-    /// Its speed, rad/s or m/s.
-    Velocity(CoordinateFunction),
-}
 
 impl CompiledSignal {
     fn eval<T: Scalar>(self, t: f64, states: &BodyStates<T>) -> T {
@@ -53,7 +42,8 @@ impl Magnitude {
             (Self::Law(_, law), &[x, ..]) => x.compose(&law.eval(x.value())),
             (Self::Law(..), []) => T::from_f64(f64::NAN),
             (Self::Expression(expression, _), numbers) => {
-                eval_expression(expression, numbers, values)
+                let slope = |i| expression.derivatives_wrt(values, i)[1];
+                first_order(expression.eval(values), slope, numbers, values)
             }
             (Self::Function(function, _), numbers) => function.eval(numbers, values),
             (Self::Friction(_) | Self::Separating(_) | Self::External(_), _) => T::from_f64(0.0),
@@ -75,19 +65,6 @@ impl<T: Scalar> SignalWorkspace<T> {
             values: vec![0.0; max_signals],
         }
     }
-}
-
-/// An expression in any kind of number: its value, plus its gradient times what each variable holds beside its
-/// plain value. That is exact to first order, as a dual number is.
-fn eval_expression<T: Scalar>(expression: &Expression, numbers: &[T], values: &[f64]) -> T {
-    let mut sum = T::from_f64(expression.eval(values));
-    if T::HAS_DERIVATIVES {
-        for (i, &number) in numbers.iter().enumerate() {
-            let rest = number - T::from_f64(values[i]);
-            sum += rest * T::from_f64(expression.derivatives_wrt(values, i)[1]);
-        }
-    }
-    sum
 }
 
 /// The signals of a magnitude.
