@@ -87,12 +87,8 @@ impl CompiledLoads {
                 out.magnitude[i] = T::from_f64(0.0);
                 continue;
             }
-            let (signals, workspace) = (&self.compiled_signals[i], &mut out.signal_workspace);
-            let magnitude = load.magnitude.eval_at_state(t, signals, states, workspace);
-            if !magnitude.value().is_finite() {
-                return Err(KinetostaticsError::MagnitudeNotFinite { load: i });
-            }
-            out.magnitude[i] = magnitude;
+            let workspace = &mut out.signal_workspace;
+            out.magnitude[i] = self.eval_magnitude(i, &load.magnitude, t, states, workspace)?;
         }
         Ok(())
     }

@@ -1,7 +1,8 @@
 //! The signals that magnitudes depend on, and magnitudes as laws and expressions of them.
 
 use super::function::first_order;
-use super::{CompiledSignal, MAX_FUNCTION_SIGNALS, Magnitude, Signal};
+use super::{CompiledLoads, CompiledSignal, MAX_FUNCTION_SIGNALS, Magnitude, Signal};
+use crate::error::{KinetostaticsError, Result};
 use dwell_geometry::Mechanism;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_numerics::Scalar;
@@ -16,24 +17,29 @@ impl CompiledSignal {
     }
 }
 
-impl Magnitude {
-    /// The magnitude at time `t` (s) and these states of the bodies.
-    pub(crate) fn eval_at_state<T: Scalar>(
+impl CompiledLoads {
+    /// A magnitude of the signals of a load at time `t` (s) and these states of the bodies.
+    pub(crate) fn eval_magnitude<T: Scalar>(
         &self,
+        load: usize,
+        magnitude: &Magnitude,
         t: f64,
-        signals: &[CompiledSignal],
         states: &BodyStates<T>,
-        workspace: &mut SignalWorkspace<T>,
-    ) -> T {
-        let SignalWorkspace { numbers, values } = workspace;
+        SignalWorkspace { numbers, values }: &mut SignalWorkspace<T>,
+    ) -> Result<T> {
+        let signals = &self.compiled_signals[load];
         let slots = numbers.iter_mut().zip(values.iter_mut()).zip(signals);
         for ((number, value), signal) in slots {
             *number = signal.eval(t, states);
             *value = number.value();
         }
-        self.eval(&numbers[..signals.len()], &values[..signals.len()])
+        let found = magnitude.eval(&numbers[..signals.len()], &values[..signals.len()]);
+        let not_finite = KinetostaticsError::MagnitudeNotFinite { load };
+        found.value().is_finite().then_some(found).ok_or(not_finite)
     }
+}
 
+impl Magnitude {
     /// The magnitude where its [signals](Self::signals) are `numbers`, with plain `values`. Friction, separating
     /// forces and external magnitudes are zero.
     pub fn eval<T: Scalar>(&self, numbers: &[T], values: &[f64]) -> T {

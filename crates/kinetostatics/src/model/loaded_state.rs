@@ -1,8 +1,7 @@
 //! The loads, and inverse dynamics under them.
 
-use super::workspace::LoadWorkspace;
-use super::{EvaluatedState, KinematicState};
-use crate::error::{KinetostaticsError, Result};
+use super::{EvaluatedState, KinematicState, Workspace};
+use crate::error::Result;
 use crate::friction;
 use crate::load::{AppliedWrench, ForceSource, Magnitude};
 use crate::pass::InverseDynamics;
@@ -56,28 +55,24 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
 
     /// Sets the magnitude of a load of [`Magnitude::External`], in the unit of its kind.
     pub fn set_magnitude(&mut self, load: usize, magnitude: T) {
-        self.0.workspace.load_workspace.loads.magnitude[load] = magnitude;
+        self.0.workspace.loads.magnitude[load] = magnitude;
     }
 
     /// A magnitude of the signals of a load of [`Magnitude::External`], such as the voltage of a motor, at time `t` (s).
     ///
     /// # Errors
-    /// [`KinetostaticsError::MagnitudeNotFinite`] where it has no finite value.
+    /// [`KinetostaticsError::MagnitudeNotFinite`](crate::KinetostaticsError::MagnitudeNotFinite) where it has no finite value.
     pub fn eval_magnitude(&mut self, load: usize, magnitude: &Magnitude, t: f64) -> Result<T> {
-        let LoadWorkspace { states, loads, .. } = &mut self.0.workspace.load_workspace;
-        let signals = &self.0.model.loads.compiled_signals[load];
-        let value = magnitude.eval_at_state(t, signals, states, &mut loads.signal_workspace);
-        if value.value().is_finite() {
-            Ok(value)
-        } else {
-            Err(KinetostaticsError::MagnitudeNotFinite { load })
-        }
+        let Workspace { states, loads, .. } = &mut *self.0.workspace;
+        let workspace = &mut loads.signal_workspace;
+        let compiled = &self.0.model.loads;
+        compiled.eval_magnitude(load, magnitude, t, states, workspace)
     }
 
     /// The wrenches of the loads, without inverse dynamics.
     ///
     /// # Errors
-    /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
+    /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where the two points of a load coincide.
     pub fn wrenches(mut self) -> Result<ForceState<'a, T>> {
         self.0.update_wrenches()?;
         Ok(ForceState(self.0))
@@ -87,7 +82,7 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
     /// friction and separating forces.
     ///
     /// # Errors
-    /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
+    /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where the two points of a load coincide.
     #[inline]
     pub fn inverse_dynamics(
         mut self,
@@ -102,7 +97,7 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
     /// friction and separating forces: Jᵀ[λ; τ] = M ẍ + h − f.
     ///
     /// # Errors
-    /// [`KinetostaticsError`] where a load has no direction, or friction jams the mechanism.
+    /// [`KinetostaticsError`](crate::KinetostaticsError) where a load has no direction, or friction jams the mechanism.
     pub fn evaluate(
         self,
         q_ddot: &[T],
@@ -111,10 +106,9 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
         let mut state = self.inverse_dynamics(q_ddot, result)?;
         state.0.fill_bodies();
         if !state.model.dependent_loads.is_empty() {
-            let loaded = &mut state.0.workspace.load_workspace;
-            let mut responses = std::mem::take(&mut loaded.friction_responses);
+            let mut responses = std::mem::take(&mut state.0.workspace.friction_responses);
             let solved = state.solve_prescribed_friction(&mut responses, &result.reactions);
-            state.0.workspace.load_workspace.friction_responses = responses;
+            state.0.workspace.friction_responses = responses;
             solved?;
             state.0.loaded_pass(q_ddot, result)?;
         }
@@ -126,15 +120,15 @@ impl<T: Scalar> ForceState<'_, T> {
     /// The magnitudes of the loads, in the units of their kinds.
     #[inline]
     pub fn magnitudes(&self) -> &[T] {
-        &self.0.workspace.load_workspace.loads.magnitude
+        &self.0.workspace.loads.magnitude
     }
 
     /// Sets magnitudes of loads of [`Magnitude::External`], and the wrenches anew.
     ///
     /// # Errors
-    /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
+    /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where the two points of a load coincide.
     pub fn set_magnitudes(&mut self, magnitudes: impl Iterator<Item = (usize, T)>) -> Result<()> {
-        let loads = &mut self.0.workspace.load_workspace.loads;
+        let loads = &mut self.0.workspace.loads;
         for (load, magnitude) in magnitudes {
             loads.magnitude[load] = magnitude;
         }
@@ -143,7 +137,7 @@ impl<T: Scalar> ForceState<'_, T> {
 
     /// The power of a load, W.
     pub fn load_power(&self, load: usize) -> T {
-        let LoadWorkspace { states, loads, .. } = &self.0.workspace.load_workspace;
+        let Workspace { states, loads, .. } = &*self.0.workspace;
         let mut sum = T::from_f64(0.0);
         for wrench in &loads.wrenches {
             if wrench.source == ForceSource::Load(load) {
@@ -155,7 +149,7 @@ impl<T: Scalar> ForceState<'_, T> {
 
     /// The wrenches of the loads on the bodies.
     pub fn wrenches(&self) -> &[AppliedWrench<T>] {
-        &self.0.workspace.load_workspace.loads.wrenches
+        &self.0.workspace.loads.wrenches
     }
 
     /// The motion of frames and slides.
@@ -166,7 +160,7 @@ impl<T: Scalar> ForceState<'_, T> {
     /// The states of the bodies with the accelerations of the inverse dynamics.
     pub fn bodies(&mut self) -> &BodyStates<T> {
         self.0.fill_bodies();
-        &self.0.workspace.load_workspace.states
+        &self.0.workspace.states
     }
 
     /// The states of the bodies with the motion that `set` stores, accelerations included.
@@ -181,22 +175,19 @@ impl<T: Scalar> ForceState<'_, T> {
     /// become the magnitudes of their loads, and the loads' wrenches are updated.
     ///
     /// # Errors
-    /// [`KinetostaticsError::SelfLocking`] where there is no unique solution.
+    /// [`KinetostaticsError::SelfLocking`](crate::KinetostaticsError::SelfLocking) where there is no unique solution.
     pub fn solve_friction(
         &mut self,
         frictionless: &[T],
         responses: &[InverseDynamics<T>],
     ) -> Result<()> {
-        let LoadWorkspace {
-            states,
-            loads,
-            friction_workspace: solution,
-            ..
-        } = &mut self.0.workspace.load_workspace;
-        let dependent_loads = &self.0.model.dependent_loads;
+        let KinematicState { model, workspace } = &mut self.0;
+        let dependent_loads = &model.dependent_loads;
+        let solution = &mut workspace.friction_workspace;
+        let states = &workspace.states;
         friction::solve(dependent_loads, states, frictionless, responses, solution)?;
         for (dependent, force) in dependent_loads.iter().zip(&solution.force) {
-            loads.magnitude[dependent.load] = *force;
+            workspace.loads.magnitude[dependent.load] = *force;
         }
         self.0.update_wrenches()
     }

@@ -59,7 +59,7 @@ impl EvaluatedState<'_> {
     pub fn power_balance(&self) -> PowerBalance {
         let states = self.bodies();
         let mut sum = PowerBalance::default();
-        let q_dot = &self.workspace.load_workspace.q_dot;
+        let q_dot = &self.workspace.q_dot;
         for (tau, q_dot) in self.inverse_dynamics().tau.iter().zip(q_dot) {
             sum.actuators += tau * q_dot;
             sum.scale += (tau * q_dot).abs();
