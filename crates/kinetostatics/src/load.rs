@@ -17,6 +17,7 @@ pub use friction::{Friction, FrictionContact};
 pub use function::{MAX_FUNCTION_SIGNALS, MagnitudeFunction};
 pub use separating::{Mesh, PitchLines, PressureAngle};
 pub use state::LoadState;
+pub(crate) use wrench::on_two_bodies;
 pub use wrench::{AppliedWrench, ForceSource};
 
 use dwell_geometry::body_states::CoordinateFunction;

@@ -3,7 +3,7 @@
 use super::{LoadedState, Model, Workspace};
 use crate::error::Result;
 
-use crate::pass::{AtRest, GivenMotion, InertialBody, InverseDynamics, UnitAcceleration};
+use crate::pass::{AtRest, GivenMotion, InverseDynamics, UnitAcceleration};
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{BodyId, Motion, Pose, PositionError};
 use dwell_numerics::Scalar;
@@ -193,16 +193,10 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
 impl KinematicState<'_> {
     /// Kinetic energy ½ Σ m v² + I ω², J.
     pub fn kinetic_energy(&self) -> f64 {
-        let states = &self.workspace.states;
-        let energy = |body: &InertialBody| {
-            let id = BodyId(body.body);
-            let velocity = states.point(id, self.model.masses[id.0].center).velocity;
-            let angular_velocity = states.body(id).angular_velocity;
-            0.5 * (body.mass * velocity.dot(velocity)
-                + body.inertia * angular_velocity * angular_velocity)
-        };
-        let bodies = self.model.pass_model.inertial_bodies.iter();
-        bodies.map(energy).sum()
+        let terms = self.model.inertia_terms(&self.workspace.states);
+        terms
+            .map(|[of_mass, of_inertia, ..]| 0.5 * (of_mass + of_inertia))
+            .sum()
     }
 
     /// The potential energy of a load, J; none if it is not [conservative](crate::Load::is_conservative). That of gravity
