@@ -194,7 +194,7 @@ impl Model {
         self.pass_model.plan.positions(q, pose)?;
         self.pass_model.plan.velocities(pose, q_dot, motion);
         self.pass_model.plan.accelerations(pose, q_ddot, motion);
-        pass.evaluate(&self.pass_model, pose, GivenMotion(motion));
+        pass.evaluate(&self.pass_model, pose, GivenMotion(motion), None);
         result.read_from(&self.pass_model, pose, pass);
         Ok(())
     }

@@ -116,10 +116,6 @@ impl ExactModel {
     pub fn model(&self) -> &Model {
         &self.model
     }
-
-    pub(crate) fn inertia_model(&self) -> &Model {
-        &self.inertia_model
-    }
 }
 
 impl Model {
@@ -149,7 +145,7 @@ impl Model {
         self.plan().positions(&[q], pose)?;
         self.plan().velocities(pose, &[one], motion);
         self.plan().accelerations(pose, &[zero], motion);
-        unit.evaluate(&self.pass_model, pose, UnitMotions(motion));
+        unit.evaluate(&self.pass_model, pose, UnitMotions(motion), None);
         [out.half_dm, out.m] = unit.tau(&self.pass_model, 0);
         for (k, (a, b)) in out.a.iter_mut().zip(&mut out.b).enumerate() {
             [*b, *a] = unit.reaction(&self.pass_model, pose, k);

@@ -143,7 +143,12 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
         let (model, workspace) = (&self.model.pass_model, &mut *self.workspace);
         workspace.set_unit_velocities(&model.plan, &[i]);
         let Workspace { pose, pass, .. } = workspace;
-        pass.evaluate(model, pose, UnitAcceleration(&workspace.virtual_motion));
+        pass.evaluate(
+            model,
+            pose,
+            UnitAcceleration(&workspace.virtual_motion),
+            None,
+        );
         result.read_from(model, pose, pass);
     }
 
@@ -175,7 +180,9 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
             workspace.set_unit_velocities(&model.plan, coordinates);
             let (pose, motion) = (&workspace.pose, &mut workspace.virtual_motion);
             model.plan.accelerations(pose, &rest, motion);
-            workspace.pass.evaluate(model, pose, GivenMotion(motion));
+            workspace
+                .pass
+                .evaluate(model, pose, GivenMotion(motion), None);
             result.read_from(model, pose, &workspace.pass);
         };
         if i == j {

@@ -51,19 +51,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         }
     }
 
-    /// Inertia forces, then multipliers, then (where requested reactions need them) the forces and moments in the
-    /// joints of the tree.
-    #[inline(always)]
-    pub(crate) fn evaluate(
-        &mut self,
-        model: &PassModel,
-        pose: &Pose<T>,
-        accelerations: impl AccelerationInput<T, N>,
-    ) {
-        self.evaluate_with(model, pose, accelerations, None);
-    }
-
-    /// As [`RecursivePass::evaluate`], with the loads' forces and moments on every body.
+    /// [`RecursivePass::evaluate`] with the loads' forces and moments on every body.
     // Not inlined, so that an evaluation without loads does not contain it.
     #[inline(never)]
     pub(crate) fn evaluate_loaded(
@@ -73,11 +61,13 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         accelerations: impl AccelerationInput<T, N>,
         loads: &mut LoadState<T>,
     ) {
-        self.evaluate_with(model, pose, accelerations, Some(loads));
+        self.evaluate(model, pose, accelerations, Some(loads));
     }
 
+    /// Inertia forces, then multipliers, then (where requested reactions need them) the forces and moments in the
+    /// joints of the tree.
     #[inline(always)]
-    fn evaluate_with(
+    pub(crate) fn evaluate(
         &mut self,
         model: &PassModel,
         pose: &Pose<T>,
@@ -103,7 +93,11 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
                     subtract(couple, moment);
                 }
             }
-            self.transfer_joint_moments(model);
+            // Each couple is transferred to the body against which the constrained body is held.
+            for constraint in model.plan.frames().angular_constraints.iter().rev() {
+                let couple = self.joint_moments[constraint.body];
+                add(&mut self.joint_moments[constraint.reference_body], couple);
+            }
         }
     }
 
@@ -280,7 +274,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
     }
 
     /// The couples that prismatic joints and actuators exert, where they are needed: each body's moment balance
-    /// about its origin, before [`Self::transfer_joint_moments`].
+    /// about its origin, before they are transferred.
     // Long because it is inlined whole, and each part needs the same sources.
     #[inline(always)]
     pub(crate) fn accumulate_joint_moments(
@@ -327,12 +321,11 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         }
         for r in 0..model.plan.couplings() {
             let multiplier = self.balance.coupling_multiplier[r];
-            model
-                .plan
-                .coupling_angle_derivatives(r, pose, |body, factor| {
-                    let more = map_array(multiplier, |m| -(factor * m));
-                    add(&mut self.joint_moments[body], more);
-                });
+            let add_moment = |body: usize, factor: T| {
+                let more = map_array(multiplier, |m| -(factor * m));
+                add(&mut self.joint_moments[body], more);
+            };
+            model.plan.coupling_angle_derivatives(r, pose, add_moment);
         }
         for (i, body) in moving_bodies.iter().enumerate() {
             let force = self.joint_forces[i];
@@ -356,15 +349,6 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
                     add(&mut self.joint_moments[on], more);
                 }
             }
-        }
-    }
-
-    /// Transfers each couple to the body against which the constrained body is held.
-    #[inline(always)]
-    pub(crate) fn transfer_joint_moments(&mut self, model: &PassModel) {
-        for constraint in model.plan.frames().angular_constraints.iter().rev() {
-            let couple = self.joint_moments[constraint.body];
-            add(&mut self.joint_moments[constraint.reference_body], couple);
         }
     }
 

@@ -108,12 +108,12 @@ impl ExactModel {
     /// All coefficients at many coordinates `q` (rad or m), on all threads; `out` is resized, and keeps
     /// its storage from one batch to the next. Where there is no pose, [`Batch::errors`] says so.
     pub fn reduce_batch(&self, q: &[f64], out: &mut Batch) {
-        self.model().reduce_batch(q, out);
+        self.model.reduce_batch(q, out);
     }
 
     /// m and ½m′ alone at many coordinates, as [`ExactModel::reduce_batch`] does.
     pub fn inertia_batch(&self, q: &[f64], out: &mut Batch) {
-        self.inertia_model().reduce_batch(q, out);
+        self.inertia_model.reduce_batch(q, out);
     }
 }
 
