@@ -5,7 +5,7 @@ use super::{CompiledSignal, Load, LoadKind, LoadState, Magnitude, find_couple_po
 use crate::error::{KinetostaticsError, LoadError, Result};
 use crate::mass::Mass;
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{BodyId, Mechanism, Plan, PositionError, Vec2};
+use dwell_geometry::{BodyId, JointId, Mechanism, Plan, PositionError, Vec2};
 use dwell_numerics::Scalar;
 
 /// The loads of a model.
@@ -225,12 +225,16 @@ fn validate_load(mechanism: &Mechanism, load: &Load) -> Result<(), &'static str>
             "its points and free value must be finite, its direction a unit vector, its free length not negative",
         );
     }
+    let joint = |id: JointId| {
+        let found = mechanism.joints.get(id.0);
+        found.ok_or("its joint does not exist")
+    };
     match load.magnitude {
         Magnitude::Constant(value) if !value.is_finite() => {
             Err("its magnitude is not a finite number")
         }
-        Magnitude::Friction(friction) => friction.validate(mechanism, load.kind),
-        Magnitude::Separating(teeth) => teeth.validate(mechanism, load.kind),
+        Magnitude::Friction(friction) => friction.validate(joint(friction.joint)?, load.kind),
+        Magnitude::Separating(teeth) => teeth.validate(joint(teeth.joint)?, load.kind),
         Magnitude::Constant(_)
         | Magnitude::Law(..)
         | Magnitude::Expression(..)

@@ -8,7 +8,7 @@
 
 use super::{Load, LoadKind, Magnitude};
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{BodyId, Component, Joint, JointId, JointKind, Mechanism, Reaction, Vec2};
+use dwell_geometry::{BodyId, Component, Joint, JointId, JointKind, Reaction, Vec2};
 use dwell_numerics::Scalar;
 
 /// The teeth of two gears, or of a rack and its pinion, in mesh.
@@ -63,15 +63,8 @@ impl PressureAngle {
         }
     }
 
-    /// Why it does not fit a load of this kind in this mechanism.
-    pub(super) fn validate(
-        &self,
-        mechanism: &Mechanism,
-        kind: LoadKind,
-    ) -> Result<(), &'static str> {
-        let Some(joint) = mechanism.joints.get(self.joint.0) else {
-            return Err("its joint does not exist");
-        };
+    /// Why it does not fit a load of this kind on its joint.
+    pub(super) fn validate(&self, joint: &Joint, kind: LoadKind) -> Result<(), &'static str> {
         if !(self.angle > 0.0 && self.angle <= Self::MAX) {
             return Err("its pressure angle must be above 0 and at most 45°");
         }

@@ -54,12 +54,11 @@ pub(super) fn inertial_bodies(
     masses: &[Mass],
 ) -> Vec<InertialBody> {
     let inertial_body = |(i, body): (usize, &MovingBody)| {
-        let Mass {
-            mass,
-            inertia,
-            center,
-        } = masses.get(body.body).copied().unwrap_or_default();
-        let vector = plan.tree().vector_to(plan.frames(), body.body, center);
+        let given = masses.get(body.body).copied().unwrap_or_default();
+        let (mass, inertia) = (given.mass, given.inertia);
+        let vector = plan
+            .tree()
+            .vector_to(plan.frames(), body.body, given.center);
         let offset = Some(vector.local).filter(|&local| local != Vec2::ZERO && mass > 0.0);
         (mass > 0.0 || inertia > 0.0).then(|| InertialBody {
             moving_body: i,

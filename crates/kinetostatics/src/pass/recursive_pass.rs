@@ -238,7 +238,8 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         let sources = &model.reaction_sources;
         for (c, ends) in sources.loop_joint_ends.iter().enumerate() {
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
-                if let (true, Some(body)) = (sources.end_force_needed(end), end.moving_body) {
+                let needed = |&body: &usize| sources.joint_force_needed[body];
+                if let Some(body) = end.moving_body.filter(needed) {
                     let force = self.loop_joint_force(model, pose, c);
                     let more = map_array(force, |f| f * T::from_f64(sign));
                     add(&mut self.joint_forces[body], more);
@@ -306,10 +307,8 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
                 if !needed[end.body] {
                     continue;
                 }
-                let mut moment_arm = match end.moment_arm {
-                    Some(moment_arm) => moment_arm.cast().rotate(pose.rotation[end.frame]),
-                    None => Vec2::zero(),
-                };
+                let turned = |arm: Vec2| arm.cast().rotate(pose.rotation[end.frame]);
+                let mut moment_arm = end.moment_arm.map_or(Vec2::zero(), turned);
                 if let (true, Some((axis, _))) = (sign > 0.0, model.plan.loop_closures()[c].axis) {
                     // The force acts at the second body's point on both.
                     moment_arm += pose.vector[axis] * pose.closure_travel[c];

@@ -137,12 +137,6 @@ impl ReactionSources {
         (self.joint_force_needed, self.joint_moment_needed) = (force_needed, moment_needed);
     }
 
-    /// Whether the force of the joint that carries a loop joint's end is needed.
-    pub(crate) fn end_force_needed(&self, end: &LoopJointEnd) -> bool {
-        end.moving_body
-            .is_some_and(|body| self.joint_force_needed[body])
-    }
-
     fn source_of(&self, mechanism: &Mechanism, plan: &Plan, reaction: Reaction) -> ReactionSource {
         let Reaction { joint, component } = reaction;
         let (pair, coupling) = plan.joint_parts(joint);

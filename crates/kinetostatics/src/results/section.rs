@@ -106,11 +106,8 @@ impl FreeBodyForces {
         } else {
             let center = state.moment_arm(mass.center);
             let force = (gravity - state.acceleration_at(center)) * mass.mass;
-            found.add_force(
-                center - start,
-                force,
-                -mass.inertia * state.angular_acceleration,
-            );
+            let couple = -mass.inertia * state.angular_acceleration;
+            found.add_force(center - start, force, couple);
         }
         Some(found)
     }
@@ -188,11 +185,8 @@ impl LinkForces {
 
     fn cut(&self, station: f64, after: bool) -> Section {
         let s = station.clamp(0.0, self.length);
-        let reached = if after {
-            s + self.station_tolerance()
-        } else {
-            s - self.station_tolerance()
-        };
+        let side = if after { 1.0 } else { -1.0 };
+        let reached = s + side * self.station_tolerance();
         let (mut force, mut bending) = (Vec2::ZERO, 0.0);
         let normal = self.along.perp();
         for &(at, applied, couple) in &self.point_forces {
@@ -202,16 +196,12 @@ impl LinkForces {
                 bending -= (at - s) * applied.dot(normal) + couple;
             }
         }
-        if let Some(Bar {
-            density,
-            start_acceleration: start,
-            acceleration_slope: growth,
-        }) = self.bar
-        {
+        if let Some(bar) = self.bar {
+            let (start, growth) = (bar.start_acceleration, bar.acceleration_slope);
             // Of the part before the cut: ∫ a dm and ∫ (σ − s) u×a dm.
-            force += (start * s + growth * (0.5 * s * s)) * density;
+            force += (start * s + growth * (0.5 * s * s)) * bar.density;
             let moment = 0.5 * s * s * start.dot(normal) + s * s * s / 6.0 * growth.dot(normal);
-            bending -= density * moment;
+            bending -= bar.density * moment;
         }
         Section {
             station: s,
