@@ -10,7 +10,7 @@ mod workspace;
 
 pub use evaluated_state::EvaluatedState;
 pub use kinematic_state::KinematicState;
-pub use loaded_state::{ForceState, LoadedState};
+pub use loaded_state::{ForceState, LoadedState, StateWithLoads};
 pub use workspace::Workspace;
 
 use crate::error::ModelError;

@@ -13,8 +13,8 @@ use std::ops::Deref;
 /// Everything is known: the accelerations of the bodies, all loads with friction, actuator forces and reactions.
 #[derive(Debug)]
 pub struct EvaluatedState<'a, T = f64> {
-    state: KinematicState<'a, T>,
-    result: &'a InverseDynamics<T>,
+    pub(super) state: KinematicState<'a, T>,
+    pub(super) result: &'a InverseDynamics<T>,
 }
 
 /// To read only: other accelerations would not fit the forces.
@@ -49,10 +49,6 @@ impl Model {
 }
 
 impl<'a, T: Scalar> EvaluatedState<'a, T> {
-    pub(super) fn new(state: KinematicState<'a, T>, result: &'a InverseDynamics<T>) -> Self {
-        Self { state, result }
-    }
-
     /// The positions and velocities alone, for what else is to be evaluated there.
     pub fn into_kinematic_state(self) -> KinematicState<'a, T> {
         self.state

@@ -1,5 +1,6 @@
 //! Positions and velocities.
 
+use super::loaded_state::StateWithLoads;
 use super::{LoadedState, Model, Workspace};
 use crate::error::Result;
 
@@ -134,7 +135,7 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     pub fn apply_loads(self, t: f64) -> Result<LoadedState<'a, T>> {
         let Workspace { states, loads, .. } = &mut *self.workspace;
         self.model.loads.update_magnitudes(t, states, loads)?;
-        Ok(LoadedState::new(self))
+        Ok(StateWithLoads(self))
     }
 
     /// Column i of the mass matrix, and a_k,i: q̈ᵢ = 1 (per s²) and nothing else.

@@ -34,8 +34,8 @@ impl Model {
         let reactions = self.mechanism.reactions();
         let is_indeterminate = |load: &Load| {
             let tooth_force = load.pressure_angle().map(|teeth| teeth.tooth_force());
-            let mut found = (0..reactions.len()).filter(|&k| Some(reactions[k]) == tooth_force);
-            found.any(|k| !self.pass_model.plan.is_determinate(k))
+            let is_tooth_force = |k: usize| Some(reactions[k]) == tooth_force;
+            (0..reactions.len()).any(|k| is_tooth_force(k) && !self.plan().is_determinate(k))
         };
         match self.loads().iter().position(is_indeterminate) {
             Some(load) => Err(LoadError {

@@ -10,16 +10,18 @@ use dwell_geometry::body_states::BodyStates;
 use dwell_numerics::Scalar;
 use std::ops::{Deref, DerefMut};
 
+/// A state whose loads are known: their magnitudes alone, or their wrenches, too.
+#[derive(Debug)]
+pub struct StateWithLoads<'a, T, const WRENCHES: bool>(pub(super) KinematicState<'a, T>);
+
 /// The magnitudes of the loads are known; friction and separating forces are still zero, and so are external
 /// magnitudes until they are set.
-#[derive(Debug)]
-pub struct LoadedState<'a, T = f64>(KinematicState<'a, T>);
+pub type LoadedState<'a, T = f64> = StateWithLoads<'a, T, false>;
 
 /// The wrenches of the loads are known, and the accelerations of the mechanism where inverse dynamics led here.
-#[derive(Debug)]
-pub struct ForceState<'a, T = f64>(KinematicState<'a, T>);
+pub type ForceState<'a, T = f64> = StateWithLoads<'a, T, true>;
 
-impl<'a, T> Deref for LoadedState<'a, T> {
+impl<'a, T, const WRENCHES: bool> Deref for StateWithLoads<'a, T, WRENCHES> {
     type Target = KinematicState<'a, T>;
 
     fn deref(&self) -> &Self::Target {
@@ -27,32 +29,13 @@ impl<'a, T> Deref for LoadedState<'a, T> {
     }
 }
 
-impl<T> DerefMut for LoadedState<'_, T> {
-    fn deref_mut(&mut self) -> &mut Self::Target {
-        &mut self.0
-    }
-}
-
-impl<'a, T> Deref for ForceState<'a, T> {
-    type Target = KinematicState<'a, T>;
-
-    fn deref(&self) -> &Self::Target {
-        &self.0
-    }
-}
-
-impl<T> DerefMut for ForceState<'_, T> {
+impl<T, const WRENCHES: bool> DerefMut for StateWithLoads<'_, T, WRENCHES> {
     fn deref_mut(&mut self) -> &mut Self::Target {
         &mut self.0
     }
 }
 
 impl<'a, T: Scalar> LoadedState<'a, T> {
-    #[inline]
-    pub(super) fn new(state: KinematicState<'a, T>) -> Self {
-        Self(state)
-    }
-
     /// Sets the magnitude of a load of [`Magnitude::External`], in the unit of its kind.
     pub fn set_magnitude(&mut self, load: usize, magnitude: T) {
         self.0.workspace.loads.magnitude[load] = magnitude;
@@ -75,7 +58,7 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
     /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where the two points of a load coincide.
     pub fn wrenches(mut self) -> Result<ForceState<'a, T>> {
         self.0.update_wrenches()?;
-        Ok(ForceState(self.0))
+        Ok(StateWithLoads(self.0))
     }
 
     /// The actuator forces and reactions of inertia and all loads with these accelerations (rad/s² or m/s²), without
@@ -90,7 +73,7 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
         result: &mut InverseDynamics<T>,
     ) -> Result<ForceState<'a, T>> {
         self.0.loaded_pass(q_ddot, result)?;
-        Ok(ForceState(self.0))
+        Ok(StateWithLoads(self.0))
     }
 
     /// The actuator forces and reactions of inertia and all loads with these accelerations (rad/s² or m/s²), with
@@ -112,7 +95,10 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
             solved?;
             state.0.loaded_pass(q_ddot, result)?;
         }
-        Ok(EvaluatedState::new(state.0, result))
+        Ok(EvaluatedState {
+            state: state.0,
+            result,
+        })
     }
 }
 

@@ -47,10 +47,8 @@ impl<'a> Piecewise<dyn SlopeSampler + 'a> for IntegratedCurve {
         for (&q, exact) in q.iter().zip(sampler.sample_many(q)?) {
             let tabulated = self.eval(q)?;
             let pairs = tabulated.into_iter().zip(exact);
-            raise_to(
-                max_errors,
-                pairs.map(|(tabulated, exact)| tabulated - exact),
-            );
+            let errors = pairs.map(|(tabulated, exact)| tabulated - exact);
+            raise_to(max_errors, errors);
         }
         Ok(())
     }
@@ -72,10 +70,8 @@ impl<'a> Piecewise<ColumnSampler<'a>> for PiecewiseColumns {
             sampler(q, &mut exact)?;
             self.eval(q, &mut tabulated, &mut [])?;
             let pairs = tabulated.iter().zip(&exact);
-            raise_to(
-                max_errors,
-                pairs.map(|(tabulated, exact)| tabulated - exact.v),
-            );
+            let errors = pairs.map(|(tabulated, exact)| tabulated - exact.v);
+            raise_to(max_errors, errors);
         }
         Ok(())
     }
