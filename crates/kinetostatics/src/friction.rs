@@ -89,10 +89,8 @@ impl FrictionContact {
         };
         let signs = ends.map(|end| T::from_f64(if end.value() < 0.0 { -1.0 } else { 1.0 }));
         let sum = ends[0] * signs[0] + ends[1] * signs[1];
-        (
-            sum,
-            [half * (signs[0] + signs[1]), lever * (signs[0] - signs[1])],
-        )
+        let slopes = [half * (signs[0] + signs[1]), lever * (signs[0] - signs[1])];
+        (sum, slopes)
     }
 }
 

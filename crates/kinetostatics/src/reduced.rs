@@ -20,6 +20,9 @@ use crate::pass::UnitMotions;
 use dwell_geometry::{PositionError, Range};
 use dwell_numerics::{Dual, Scalar};
 
+/// A result that fails with a [`PositionError`].
+type Result<T = ()> = std::result::Result<T, PositionError>;
+
 /// The coefficients of the reduced model at one coordinate.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Coefficients<T = f64> {
@@ -63,28 +66,19 @@ pub trait ReducedModel: Sync {
     ///
     /// # Errors
     /// [`PositionError`] when there is no pose at `q`.
-    fn inertia(&self, q: f64, work: &mut Self::Workspace) -> Result<(f64, f64), PositionError>;
+    fn inertia(&self, q: f64, work: &mut Self::Workspace) -> Result<(f64, f64)>;
 
     /// m, ½m′ and ½m″ at `q` (rad).
     ///
     /// # Errors
     /// [`PositionError`] when there is no pose at `q`.
-    fn inertia_derivatives(
-        &self,
-        q: f64,
-        work: &mut Self::Workspace,
-    ) -> Result<Inertia, PositionError>;
+    fn inertia_derivatives(&self, q: f64, work: &mut Self::Workspace) -> Result<Inertia>;
 
     /// All coefficients at `q` (rad).
     ///
     /// # Errors
     /// [`PositionError`] when there is no pose at `q`.
-    fn coefficients(
-        &self,
-        q: f64,
-        work: &mut Self::Workspace,
-        out: &mut Coefficients,
-    ) -> Result<(), PositionError>;
+    fn coefficients(&self, q: f64, work: &mut Self::Workspace, out: &mut Coefficients) -> Result;
 }
 
 /// Working memory of the exact reduced model: one for values, one for derivatives.
@@ -134,7 +128,7 @@ impl Model {
         q: T,
         workspace: &mut Workspace<T>,
         out: &mut Coefficients<T>,
-    ) -> Result<(), PositionError> {
+    ) -> Result {
         let Workspace {
             pose,
             motion,
@@ -182,21 +176,17 @@ impl ReducedModel for ExactModel {
         self.model.plan().range()
     }
 
-    fn inertia(&self, q: f64, workspace: &mut ExactWorkspace) -> Result<(f64, f64), PositionError> {
+    fn inertia(&self, q: f64, workspace: &mut ExactWorkspace) -> Result<(f64, f64)> {
         let mut out = Coefficients::default();
-        self.inertia_model
-            .reduce(q, &mut workspace.real, &mut out)?;
+        let model = &self.inertia_model;
+        model.reduce(q, &mut workspace.real, &mut out)?;
         Ok((out.m, out.half_dm))
     }
 
-    fn inertia_derivatives(
-        &self,
-        q: f64,
-        workspace: &mut ExactWorkspace,
-    ) -> Result<Inertia, PositionError> {
+    fn inertia_derivatives(&self, q: f64, workspace: &mut ExactWorkspace) -> Result<Inertia> {
         let mut out = Coefficients::default();
-        self.inertia_model
-            .reduce(Dual::variable(q), &mut workspace.dual, &mut out)?;
+        let model = &self.inertia_model;
+        model.reduce(Dual::variable(q), &mut workspace.dual, &mut out)?;
         Ok(Inertia {
             m: out.m.v,
             half_dm: out.half_dm.v,
@@ -209,7 +199,7 @@ impl ReducedModel for ExactModel {
         q: f64,
         workspace: &mut ExactWorkspace,
         out: &mut Coefficients,
-    ) -> Result<(), PositionError> {
+    ) -> Result {
         self.model.reduce(q, &mut workspace.real, out)
     }
 }

@@ -25,7 +25,6 @@ use crate::error::KinetostaticsError;
 use crate::reduced::{Coefficients, ExactModel, Inertia, ReducedModel};
 use dwell_geometry::{PositionError, Range};
 use dwell_numerics::Dual;
-use piecewise::Grid;
 use sampler::ModelSampler;
 use std::fmt;
 use thiserror::Error;
@@ -239,8 +238,7 @@ impl TabulatedModel {
 
     /// Its domain, rad or m; of a mechanism that turns fully, one period.
     pub fn domain(&self) -> [f64; 2] {
-        let Grid { from, length, .. } = self.inertia.grid;
-        [from, from + length]
+        self.inertia.grid.domain()
     }
 
     /// The error bound of each coefficient: m, ½m′, then a and b of all reactions, w and c of all loads.

@@ -46,18 +46,16 @@ impl Friction {
             );
         }
         // Coulomb friction acts on no other pairs of a joint and a load.
-        let fits = match self.contact {
-            FrictionContact::Pin { .. } => {
-                let bodies = joint.bodies;
-                joint.kind == JointKind::Revolute && kind == LoadKind::Torque { bodies }
+        let fits = match (self.contact, joint.kind, kind) {
+            (FrictionContact::Pin { .. }, JointKind::Revolute, LoadKind::Torque { bodies }) => {
+                bodies == joint.bodies
             }
-            FrictionContact::Guide { .. } => {
-                let slides = matches!(
-                    joint.kind,
-                    JointKind::Prismatic { .. } | JointKind::Slot { .. }
-                );
-                slides && matches!(kind, LoadKind::SlideForce(g) if g.bodies == joint.bodies)
-            }
+            (
+                FrictionContact::Guide { .. },
+                JointKind::Prismatic { .. } | JointKind::Slot { .. },
+                LoadKind::SlideForce(guide),
+            ) => guide.bodies == joint.bodies,
+            _ => false,
         };
         let misfit = "its joint is no revolute joint, prismatic joint or slot between its bodies";
         fits.then_some(()).ok_or(misfit)

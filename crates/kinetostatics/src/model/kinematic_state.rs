@@ -43,11 +43,12 @@ impl Model {
         let Workspace { pose, motion, .. } = &mut *workspace;
         self.plan().positions(q, pose)?;
         self.plan().velocities(pose, q_dot, motion);
-        Ok(KinematicState::new(self, q_dot, workspace))
+        Ok(self.given_kinematic_state(q_dot, workspace, |_, _| ()))
     }
 
     /// Positions and velocities that `set` stores as pose and motion, where they come from elsewhere than
     /// the coordinates: of a change-point fit.
+    #[inline]
     pub fn given_kinematic_state<'a, T: Scalar>(
         &'a self,
         q_dot: &[T],
@@ -55,19 +56,17 @@ impl Model {
         set: impl FnOnce(&mut Pose<T>, &mut Motion<T>),
     ) -> KinematicState<'a, T> {
         set(&mut workspace.pose, &mut workspace.motion);
-        KinematicState::new(self, q_dot, workspace)
+        workspace.q_dot.copy_from_slice(q_dot);
+        let mut state = KinematicState {
+            model: self,
+            workspace,
+        };
+        state.fill_bodies();
+        state
     }
 }
 
 impl<'a, T: Scalar> KinematicState<'a, T> {
-    #[inline]
-    fn new(model: &'a Model, q_dot: &[T], workspace: &'a mut Workspace<T>) -> Self {
-        workspace.q_dot.copy_from_slice(q_dot);
-        let mut state = Self { model, workspace };
-        state.fill_bodies();
-        state
-    }
-
     /// The states of the bodies from pose and motion.
     #[inline]
     pub(super) fn fill_bodies(&mut self) {
@@ -81,23 +80,6 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     pub(super) fn update_wrenches(&mut self) -> Result<()> {
         let Workspace { states, loads, .. } = &mut *self.workspace;
         self.model.loads.update_wrenches(states, loads)
-    }
-
-    /// Inverse dynamics under all loads with the magnitudes that they have.
-    #[inline]
-    pub(super) fn loaded_pass(
-        &mut self,
-        q_ddot: &[T],
-        result: &mut InverseDynamics<T>,
-    ) -> Result<()> {
-        self.update_wrenches()?;
-        let (model, workspace) = (&self.model.pass_model, &mut *self.workspace);
-        let Workspace { pose, motion, .. } = workspace;
-        model.plan.accelerations(pose, q_ddot, motion);
-        let pass = &mut workspace.pass;
-        pass.evaluate_loaded(model, pose, GivenMotion(motion), &mut workspace.loads);
-        result.read_from(model, pose, pass);
-        Ok(())
     }
 
     /// The pose.

@@ -4,7 +4,7 @@ use super::{EvaluatedState, KinematicState, Workspace};
 use crate::error::Result;
 use crate::friction;
 use crate::load::{AppliedWrench, ForceSource, Magnitude};
-use crate::pass::InverseDynamics;
+use crate::pass::{GivenMotion, InverseDynamics};
 use dwell_geometry::Motion;
 use dwell_geometry::body_states::BodyStates;
 use dwell_numerics::Scalar;
@@ -72,7 +72,13 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
         q_ddot: &[T],
         result: &mut InverseDynamics<T>,
     ) -> Result<ForceState<'a, T>> {
-        self.0.loaded_pass(q_ddot, result)?;
+        self.0.update_wrenches()?;
+        let (model, workspace) = (&self.0.model.pass_model, &mut *self.0.workspace);
+        let Workspace { pose, motion, .. } = workspace;
+        model.plan.accelerations(pose, q_ddot, motion);
+        let pass = &mut workspace.pass;
+        pass.evaluate_loaded(model, pose, GivenMotion(motion), &mut workspace.loads);
+        result.read_from(model, pose, pass);
         Ok(StateWithLoads(self.0))
     }
 
@@ -93,7 +99,7 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
             let solved = state.solve_prescribed_friction(&mut responses, &result.reactions);
             state.0.workspace.friction_responses = responses;
             solved?;
-            state.0.loaded_pass(q_ddot, result)?;
+            state = LoadedState::inverse_dynamics(StateWithLoads(state.0), q_ddot, result)?;
         }
         Ok(EvaluatedState {
             state: state.0,

@@ -116,10 +116,8 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
             *moment = map_array(rates, |rate| rate * T::from_f64(inertia));
         }
         for (i, accelerated) in model.accelerated_bodies.iter().enumerate() {
-            let mut acceleration = match accelerated.parent {
-                Some(parent) => self.origin_acceleration[parent],
-                None => [Vec2::zero(); N],
-            };
+            let of_parent = |parent: usize| self.origin_acceleration[parent];
+            let mut acceleration = accelerated.parent.map_or([Vec2::zero(); N], of_parent);
             if let Some((vector, frame)) = accelerated.joint_vector {
                 let more = accelerations.vector_acceleration(frame, pose.vector[vector]);
                 add(&mut acceleration, more);

@@ -65,8 +65,7 @@ impl TableBuilder {
 
     /// The domain of the tables, rad or m.
     pub fn domain(&self) -> [f64; 2] {
-        let Grid { from, length, .. } = self.grid;
-        [from, from + length]
+        self.grid.domain()
     }
 
     /// The period, rad, if there is one.

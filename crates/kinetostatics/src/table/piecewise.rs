@@ -36,10 +36,8 @@ const ROUND_TO_NEAREST: f64 = 6_755_399_441_055_744.0;
 fn cell_and_offset(part: f64) -> (usize, f64) {
     let middle = part - 0.5;
     let cell = middle + ROUND_TO_NEAREST;
-    (
-        cell.to_bits() as u32 as usize,
-        2.0 * (middle - (cell - ROUND_TO_NEAREST)),
-    )
+    let x = 2.0 * (middle - (cell - ROUND_TO_NEAREST));
+    (cell.to_bits() as u32 as usize, x)
 }
 
 /// Equal cells over a domain.
@@ -88,6 +86,11 @@ impl Grid {
         Self::new(self.from, self.length, self.revolutions, cells)
     }
 
+    /// The domain, rad or m.
+    pub(super) fn domain(&self) -> [f64; 2] {
+        [self.from, self.from + self.length]
+    }
+
     /// Half the width of a cell.
     pub(super) fn half(&self) -> f64 {
         0.5 * self.length / self.cells as f64
@@ -95,12 +98,10 @@ impl Grid {
 
     /// The coordinate at `x` from −1 to 1 of a cell; neighbours have the same number at their common end.
     pub(super) fn coordinate(&self, cell: usize, x: f64) -> f64 {
-        let part = cell as f64 + 0.5 * (x + 1.0);
-        let part = if self.revolutions > 0 && part >= self.cells as f64 {
-            0.0
-        } else {
-            part
-        };
+        let mut part = cell as f64 + 0.5 * (x + 1.0);
+        if self.revolutions > 0 && part >= self.cells as f64 {
+            part = 0.0;
+        }
         self.from + self.length * (part / self.cells as f64)
     }
 

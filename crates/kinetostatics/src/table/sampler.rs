@@ -36,10 +36,8 @@ impl SlopeSampler for InertiaSampler<'_> {
             return Err(error.into());
         }
         let Batch { m, half_dm, .. } = &self.batch;
-        Ok(m.iter()
-            .zip(half_dm)
-            .map(|(&m, &slope)| [m, slope])
-            .collect())
+        let pairs = m.iter().zip(half_dm);
+        Ok(pairs.map(|(&m, &slope)| [m, slope]).collect())
     }
 }
 
