@@ -200,9 +200,7 @@ pub(crate) fn solve<T: Scalar>(
     responses: &[InverseDynamics<T>],
     workspace: &mut FrictionWorkspace<T>,
 ) -> Result<()> {
-    let load = dependent_loads
-        .first()
-        .map_or(0, |dependent| dependent.load);
+    let load = dependent_loads.first().map_or(0, |first| first.load);
     let self_locking = KinetostaticsError::SelfLocking { load };
     for (dependent, factor) in dependent_loads.iter().zip(&mut workspace.friction_factor) {
         *factor = dependent.factor(states);

@@ -8,15 +8,14 @@ mod friction;
 mod function;
 mod separating;
 mod signal;
-mod state;
 mod wrench;
 
 pub(crate) use compiled::CompiledLoads;
+pub use compiled::LoadState;
 pub(crate) use couple_points::find_couple_points;
 pub use friction::{Friction, FrictionContact};
 pub use function::{MAX_FUNCTION_SIGNALS, MagnitudeFunction};
 pub use separating::{Mesh, PitchLines, PressureAngle};
-pub use state::LoadState;
 pub(crate) use wrench::on_two_bodies;
 pub use wrench::{AppliedWrench, ForceSource};
 

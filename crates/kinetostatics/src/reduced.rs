@@ -15,13 +15,11 @@ mod batch;
 
 pub use batch::Batch;
 
+use crate::error::PositionResult;
 use crate::model::{Model, Workspace};
 use crate::pass::UnitMotions;
-use dwell_geometry::{PositionError, Range};
+use dwell_geometry::Range;
 use dwell_numerics::{Dual, Scalar};
-
-/// A result that fails with a [`PositionError`].
-type Result<T = ()> = std::result::Result<T, PositionError>;
 
 /// The coefficients of the reduced model at one coordinate.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -65,20 +63,25 @@ pub trait ReducedModel: Sync {
     /// m and ½m′ at `q` (rad).
     ///
     /// # Errors
-    /// [`PositionError`] when there is no pose at `q`.
-    fn inertia(&self, q: f64, work: &mut Self::Workspace) -> Result<(f64, f64)>;
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
+    fn inertia(&self, q: f64, work: &mut Self::Workspace) -> PositionResult<(f64, f64)>;
 
     /// m, ½m′ and ½m″ at `q` (rad).
     ///
     /// # Errors
-    /// [`PositionError`] when there is no pose at `q`.
-    fn inertia_derivatives(&self, q: f64, work: &mut Self::Workspace) -> Result<Inertia>;
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
+    fn inertia_derivatives(&self, q: f64, work: &mut Self::Workspace) -> PositionResult<Inertia>;
 
     /// All coefficients at `q` (rad).
     ///
     /// # Errors
-    /// [`PositionError`] when there is no pose at `q`.
-    fn coefficients(&self, q: f64, work: &mut Self::Workspace, out: &mut Coefficients) -> Result;
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
+    fn coefficients(
+        &self,
+        q: f64,
+        work: &mut Self::Workspace,
+        out: &mut Coefficients,
+    ) -> PositionResult;
 }
 
 /// Working memory of the exact reduced model: one for values, one for derivatives.
@@ -119,7 +122,7 @@ impl Model {
     /// are pass 1's velocities: both passes cost one pose, one velocity and one acceleration stage.
     ///
     /// # Errors
-    /// [`PositionError`] when there is no pose at `q`.
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
     // The whole evaluation is inlined: one pose takes a tenth less time, and a batch becomes one function that is
     // compiled for the processor's registers.
     #[inline(always)]
@@ -128,7 +131,7 @@ impl Model {
         q: T,
         workspace: &mut Workspace<T>,
         out: &mut Coefficients<T>,
-    ) -> Result {
+    ) -> PositionResult {
         let Workspace {
             pose,
             motion,
@@ -176,14 +179,18 @@ impl ReducedModel for ExactModel {
         self.model.plan().range()
     }
 
-    fn inertia(&self, q: f64, workspace: &mut ExactWorkspace) -> Result<(f64, f64)> {
+    fn inertia(&self, q: f64, workspace: &mut ExactWorkspace) -> PositionResult<(f64, f64)> {
         let mut out = Coefficients::default();
         let model = &self.inertia_model;
         model.reduce(q, &mut workspace.real, &mut out)?;
         Ok((out.m, out.half_dm))
     }
 
-    fn inertia_derivatives(&self, q: f64, workspace: &mut ExactWorkspace) -> Result<Inertia> {
+    fn inertia_derivatives(
+        &self,
+        q: f64,
+        workspace: &mut ExactWorkspace,
+    ) -> PositionResult<Inertia> {
         let mut out = Coefficients::default();
         let model = &self.inertia_model;
         model.reduce(Dual::variable(q), &mut workspace.dual, &mut out)?;
@@ -199,7 +206,7 @@ impl ReducedModel for ExactModel {
         q: f64,
         workspace: &mut ExactWorkspace,
         out: &mut Coefficients,
-    ) -> Result {
+    ) -> PositionResult {
         self.model.reduce(q, &mut workspace.real, out)
     }
 }

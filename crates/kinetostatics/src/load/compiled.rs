@@ -1,7 +1,7 @@
 //! The loads of a model: checked, and evaluated at a state of motion.
 
 use super::signal::{SignalWorkspace, compile_signals};
-use super::{CompiledSignal, Load, LoadKind, LoadState, Magnitude, find_couple_points};
+use super::{AppliedWrench, CompiledSignal, Load, LoadKind, Magnitude, find_couple_points};
 use crate::error::{KinetostaticsError, LoadError, Result};
 use crate::mass::Mass;
 use dwell_geometry::body_states::BodyStates;
@@ -18,6 +18,35 @@ pub(crate) struct CompiledLoads {
     pub(super) couple_points: Vec<[Vec2; 2]>,
     /// The bodies that have weight, with mass and centre.
     pub(super) weighted_bodies: Vec<(BodyId, Mass)>,
+}
+
+/// The loads at one state of motion: working memory, and what it holds afterwards.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadState<T = f64> {
+    /// By load: its magnitude F, in the unit of its kind.
+    pub magnitude: Vec<T>,
+    /// The wrenches of the loads on the bodies, in the order of the loads.
+    pub wrenches: Vec<AppliedWrench<T>>,
+    /// The acceleration of gravity of all such loads together, m/s².
+    pub gravity: Vec2<T>,
+    /// By body: the sum of the forces on it, N, and their moment about its origin, N·m.
+    pub(crate) force: Vec<Vec2<T>>,
+    pub(crate) moment: Vec<T>,
+    /// By moving body: the forces on it and on all that it carries, N.
+    pub(crate) subtree_force: Vec<Vec2<T>>,
+    pub(crate) signal_workspace: SignalWorkspace<T>,
+}
+
+impl<T: Scalar> LoadState<T> {
+    /// Sums the wrenches on each body.
+    fn sum_by_body(&mut self) {
+        self.force.fill(Vec2::zero());
+        self.moment.fill(T::from_f64(0.0));
+        for wrench in &self.wrenches {
+            self.force[wrench.body.0] += wrench.force;
+            self.moment[wrench.body.0] += wrench.moment();
+        }
+    }
 }
 
 impl CompiledLoads {

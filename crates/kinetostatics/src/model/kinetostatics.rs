@@ -48,10 +48,8 @@ impl Model {
 
     /// The compiled signals of a load's magnitude, in the order of its [signals](crate::Magnitude::signals).
     pub fn compiled_signals(&self, load: usize) -> &[CompiledSignal] {
-        self.loads
-            .compiled_signals
-            .get(load)
-            .map_or(&[], Vec::as_slice)
+        let signals = self.loads.compiled_signals.get(load);
+        signals.map_or(&[], Vec::as_slice)
     }
 
     /// The loads, in their order.

@@ -94,7 +94,9 @@ impl TableBuilder {
             Ok(rows.map(|at| at.to_vec()).collect())
         };
         let sizing = self.size(&quantities, &scale, &mut values)?;
-        self.build(&quantities, &sizing, sampler)
+        self.build(&quantities, &sizing, sampler, |grid, sampler| {
+            IntegratedCurve::new(grid, sampler)
+        })
     }
 
     /// Columns side by side; `same_kind` compares the kinds of two quantities.
@@ -122,7 +124,10 @@ impl TableBuilder {
             q.iter().map(&mut row).collect()
         };
         let sizing = self.size(quantities, &scale, &mut values)?;
-        self.build(quantities, &sizing, sampler)
+        let width = quantities.len();
+        self.build(quantities, &sizing, sampler, |grid, sampler| {
+            PiecewiseColumns::new(grid, width, sampler)
+        })
     }
 
     /// The error bounds, in the order in which the parts were built.
@@ -148,9 +153,11 @@ impl TableBuilder {
         quantities: &[TableQuantity],
         sizing: &Sizing,
         sampler: &mut S,
+        build: impl Fn(Grid, &mut S) -> Result<P>,
     ) -> Result<P> {
+        let Self { grid, accuracy, .. } = *self;
         let (part, errors) =
-            bound::build_to_accuracy(self.grid, quantities, sizing, self.accuracy, sampler)?;
+            bound::build_to_accuracy(grid, quantities, sizing, accuracy, sampler, build)?;
         let scaled = quantities.iter().zip(&sizing.scales).zip(errors);
         let bounds = scaled.map(|((&quantity, &scale), error)| Bound {
             quantity,

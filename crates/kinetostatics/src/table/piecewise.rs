@@ -8,6 +8,7 @@
 
 use super::Result;
 use super::build::{ColumnSampler, SlopeSampler};
+use crate::error::PositionResult;
 use crate::reduced::Inertia;
 use dwell_geometry::PositionError;
 use dwell_numerics::{Dual, Scalar};
@@ -107,7 +108,7 @@ impl Grid {
 
     /// The cell of a coordinate, and the position in it from −1 to 1.
     #[inline]
-    pub(super) fn locate(&self, q: f64) -> Result<(usize, f64), PositionError> {
+    pub(super) fn locate(&self, q: f64) -> PositionResult<(usize, f64)> {
         let part = (q - self.from) * self.per_cell;
         if part >= 0.0 && part < self.cells as f64 {
             Ok(cell_and_offset(part))
@@ -118,7 +119,7 @@ impl Grid {
 
     /// The same of a coordinate in any kind of number.
     #[inline]
-    fn locate_scalar<T: Scalar>(&self, q: T) -> Result<(usize, T), PositionError> {
+    fn locate_scalar<T: Scalar>(&self, q: T) -> PositionResult<(usize, T)> {
         let (cell, x) = self.locate(q.value())?;
         // The position in a cell is linear in q: only its slope remains.
         let x = q.compose(&[x, 2.0 * self.per_cell, 0.0, 0.0]);
@@ -127,7 +128,7 @@ impl Grid {
 
     /// The same for a coordinate outside the domain by whole periods or rounding; else an error.
     #[inline]
-    fn locate_wrapped(&self, q: f64) -> Result<(usize, f64), PositionError> {
+    fn locate_wrapped(&self, q: f64) -> PositionResult<(usize, f64)> {
         let periods = (q * self.per_period - 0.5 + ROUND_TO_NEAREST) - ROUND_TO_NEAREST;
         let part =
             (((q - periods * self.coarse) - periods * self.fine) - self.from) * self.per_cell;
@@ -280,7 +281,7 @@ impl IntegratedCurve {
     /// # Errors
     /// [`PositionError`] outside the table.
     #[inline]
-    pub fn eval<T: Scalar>(&self, q: T) -> Result<[T; 2], PositionError> {
+    pub fn eval<T: Scalar>(&self, q: T) -> PositionResult<[T; 2]> {
         let (cell, x) = self.grid.locate_scalar(q)?;
         Ok(eval_cell(&self.cells[cell], x))
     }
@@ -290,7 +291,7 @@ impl IntegratedCurve {
     /// # Errors
     /// [`PositionError`] outside the table.
     #[inline]
-    pub fn derivatives(&self, q: f64) -> Result<Inertia, PositionError> {
+    pub fn derivatives(&self, q: f64) -> PositionResult<Inertia> {
         let (cell, x) = self.grid.locate(q)?;
         let cell = &self.cells[cell];
         let [m, half_dm] = eval_cell(cell, x);
@@ -384,12 +385,7 @@ impl PiecewiseColumns {
     /// # Errors
     /// [`PositionError`] outside the table.
     #[inline]
-    pub fn eval<T: Scalar>(
-        &self,
-        q: T,
-        left: &mut [T],
-        right: &mut [T],
-    ) -> Result<(), PositionError> {
+    pub fn eval<T: Scalar>(&self, q: T, left: &mut [T], right: &mut [T]) -> PositionResult {
         let (cell, x) = self.grid.locate_scalar(q)?;
         let size = TERMS * self.width;
         if size == 0 {
