@@ -3,7 +3,6 @@
 //! This file describes them; the files below it compile and evaluate them.
 
 mod compiled;
-mod couple_points;
 mod friction;
 mod function;
 mod separating;
@@ -12,12 +11,11 @@ mod wrench;
 
 pub(crate) use compiled::CompiledLoads;
 pub use compiled::LoadState;
-pub(crate) use couple_points::find_couple_points;
 pub use friction::{Friction, FrictionContact};
 pub use function::{MAX_FUNCTION_SIGNALS, MagnitudeFunction};
 pub use separating::{Mesh, PitchLines, PressureAngle};
-pub(crate) use wrench::on_two_bodies;
 pub use wrench::{AppliedWrench, ForceSource};
+pub(crate) use wrench::{find_couple_points, on_two_bodies};
 
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, Coordinate, Mechanism, Vec2};

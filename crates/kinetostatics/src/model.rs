@@ -234,8 +234,6 @@ impl Model {
 /// Refuses a reaction that no joint of the mechanism has.
 fn require_reactions(mechanism: &Mechanism, reactions: &[Reaction]) -> Result<(), ModelError> {
     let unknown = |r: &&Reaction| !mechanism.components(r.joint).contains(&r.component);
-    match reactions.iter().find(unknown) {
-        Some(reaction) => Err(ModelError::Reaction(*reaction)),
-        None => Ok(()),
-    }
+    let found = reactions.iter().find(unknown);
+    found.map_or(Ok(()), |reaction| Err(ModelError::Reaction(*reaction)))
 }

@@ -199,11 +199,8 @@ impl CompiledLoads {
                 let stretch = states.separation(bodies, points).length - free;
                 Some(0.5 * f * stretch * stretch)
             }
-            LoadKind::TorsionSpring {
-                bodies,
-                free_angle: free,
-            } => {
-                let twist = states.angle(bodies)[0] - free;
+            LoadKind::TorsionSpring { bodies, free_angle } => {
+                let twist = states.angle(bodies)[0] - free_angle;
                 Some(0.5 * f * twist * twist)
             }
             LoadKind::Force {

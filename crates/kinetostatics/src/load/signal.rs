@@ -7,16 +7,6 @@ use dwell_geometry::Mechanism;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_numerics::Scalar;
 
-impl CompiledSignal {
-    fn eval<T: Scalar>(self, t: f64, states: &BodyStates<T>) -> T {
-        match self {
-            Self::Time => T::from_f64(t),
-            Self::Value(measured) => states.coordinate(measured)[0],
-            Self::Velocity(measured) => states.coordinate(measured)[1],
-        }
-    }
-}
-
 impl CompiledLoads {
     /// A magnitude of the signals of a load at time `t` (s) and these states of the bodies.
     pub(crate) fn eval_magnitude<T: Scalar>(
@@ -30,7 +20,11 @@ impl CompiledLoads {
         let signals = &self.compiled_signals[load];
         let slots = numbers.iter_mut().zip(values.iter_mut()).zip(signals);
         for ((number, value), signal) in slots {
-            *number = signal.eval(t, states);
+            *number = match *signal {
+                Signal::Time => T::from_f64(t),
+                Signal::Value(measured) => states.coordinate(measured)[0],
+                Signal::Velocity(measured) => states.coordinate(measured)[1],
+            };
             *value = number.value();
         }
         let found = magnitude.eval(&numbers[..signals.len()], &values[..signals.len()]);

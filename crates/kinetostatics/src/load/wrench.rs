@@ -3,7 +3,7 @@
 use super::{CompiledLoads, Guide, LoadKind, LoadState, Mesh};
 use crate::mass::Mass;
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{ActuatorId, BodyId, JointId, Vec2};
+use dwell_geometry::{ActuatorId, BodyId, Joint, JointId, JointKind, Mechanism, Plan, Vec2};
 use dwell_numerics::Scalar;
 
 /// The cause of a wrench on a body.
@@ -192,5 +192,24 @@ impl CompiledLoads {
         };
         out.wrenches.extend(on_both);
         Some(())
+    }
+}
+
+/// The points of two bodies at which a couple between them acts: those of a joint between them, of a revolute one
+/// if there is one; else the origins of the bodies.
+pub(crate) fn find_couple_points(
+    mechanism: &Mechanism,
+    plan: &Plan,
+    bodies: [BodyId; 2],
+) -> [Vec2; 2] {
+    let joints = || {
+        let between = |j: &&Joint| j.bodies == bodies || j.bodies == [bodies[1], bodies[0]];
+        mechanism.joints.iter().filter(between)
+    };
+    let pin = joints().find(|j| j.kind == JointKind::Revolute);
+    match pin.or_else(|| joints().next()) {
+        Some(joint) if joint.bodies == bodies => joint.points,
+        Some(joint) => [joint.points[1], joint.points[0]],
+        None => bodies.map(|b| plan.tree().joint_origins[b.0]),
     }
 }

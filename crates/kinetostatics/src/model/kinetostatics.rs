@@ -37,13 +37,9 @@ impl Model {
             let is_tooth_force = |k: usize| Some(reactions[k]) == tooth_force;
             (0..reactions.len()).any(|k| is_tooth_force(k) && !self.plan().is_determinate(k))
         };
-        match self.loads().iter().position(is_indeterminate) {
-            Some(load) => Err(LoadError {
-                load,
-                what: "its tooth force is statically indeterminate (redundant constraints share the load), so its separating force has no value",
-            }),
-            None => Ok(()),
-        }
+        let what = "its tooth force is statically indeterminate (redundant constraints share the load), so its separating force has no value";
+        let found = self.loads().iter().position(is_indeterminate);
+        found.map_or(Ok(()), |load| Err(LoadError { load, what }))
     }
 
     /// The compiled signals of a load's magnitude, in the order of its [signals](crate::Magnitude::signals).

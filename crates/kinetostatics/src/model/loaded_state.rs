@@ -101,10 +101,8 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
             solved?;
             state = LoadedState::inverse_dynamics(StateWithLoads(state.0), q_ddot, result)?;
         }
-        Ok(EvaluatedState {
-            state: state.0,
-            result,
-        })
+        let state = state.0;
+        Ok(EvaluatedState { state, result })
     }
 }
 

@@ -1,9 +1,8 @@
 //! Internal forces of a link: the action of one part on the other at a cut across a straight line.
 
 use super::FreeBodyForces;
-use crate::load::{AppliedWrench, ForceSource, LoadKind};
+use crate::load::{AppliedWrench, ForceSource, Load, LoadKind};
 use crate::mass::Mass;
-use crate::model::Model;
 use crate::model::stages::EvaluatedState;
 use dwell_geometry::{BodyId, Vec2};
 
@@ -89,8 +88,13 @@ impl FreeBodyForces {
             bar: None,
         };
         // Weight is distributed as the mass is.
+        let is_gravity = |load: &Load| matches!(load.kind, LoadKind::Gravity { .. });
+        let is_weight = |source| match source {
+            ForceSource::Load(load) => model.loads().get(load).is_some_and(is_gravity),
+            ForceSource::Joint(_) | ForceSource::Actuator(_) => false,
+        };
         for wrench in wrenches.iter().filter(|wrench| wrench.body == body) {
-            if !model.is_weight(wrench.source) {
+            if !is_weight(wrench.source) {
                 found.add_force(wrench.moment_arm - start, wrench.force, wrench.couple);
             }
         }
@@ -110,16 +114,6 @@ impl FreeBodyForces {
             found.add_force(center - start, force, couple);
         }
         Some(found)
-    }
-}
-
-impl Model {
-    fn is_weight(&self, source: ForceSource) -> bool {
-        let ForceSource::Load(load) = source else {
-            return false;
-        };
-        let kind = self.loads().get(load).map(|load| load.kind);
-        matches!(kind, Some(LoadKind::Gravity { .. }))
     }
 }
 

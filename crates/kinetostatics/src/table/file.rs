@@ -247,10 +247,8 @@ impl<'a> Reader<'a> {
     }
 
     fn line_error(&self, expected: &'static str) -> FileError {
-        FileError::Line {
-            line: self.line,
-            expected,
-        }
+        let line = self.line;
+        FileError::Line { line, expected }
     }
 
     /// The rest of the next line after its keyword.

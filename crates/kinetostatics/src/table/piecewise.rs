@@ -403,10 +403,7 @@ impl PiecewiseColumns {
 
     /// How many cells they have; none where there are no columns.
     pub fn cells(&self) -> usize {
-        match self.width {
-            0 => 0,
-            _ => self.grid.cells,
-        }
+        if self.width > 0 { self.grid.cells } else { 0 }
     }
 
     /// Bytes in memory.
