@@ -57,10 +57,8 @@ impl Model {
     ) -> KinematicState<'a, T> {
         set(&mut workspace.pose, &mut workspace.motion);
         workspace.q_dot.copy_from_slice(q_dot);
-        let mut state = KinematicState {
-            model: self,
-            workspace,
-        };
+        let model = self;
+        let mut state = KinematicState { model, workspace };
         state.fill_bodies();
         state
     }

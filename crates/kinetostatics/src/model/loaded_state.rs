@@ -129,10 +129,9 @@ impl<T: Scalar> ForceState<'_, T> {
     pub fn load_power(&self, load: usize) -> T {
         let Workspace { states, loads, .. } = &*self.0.workspace;
         let mut sum = T::from_f64(0.0);
-        for wrench in &loads.wrenches {
-            if wrench.source == ForceSource::Load(load) {
-                sum += wrench.power(states);
-            }
+        let source = ForceSource::Load(load);
+        for wrench in loads.wrenches.iter().filter(|w| w.source == source) {
+            sum += wrench.power(states);
         }
         sum
     }

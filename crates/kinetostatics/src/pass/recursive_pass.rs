@@ -104,7 +104,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
     /// Accelerations of the origins, and each body's own inertia force and its moment about its
     /// origin: Σ m r×a = I α + (Σ m r)×(the origin's acceleration).
     #[inline(always)]
-    pub(crate) fn forward_pass(
+    fn forward_pass(
         &mut self,
         model: &PassModel,
         pose: &Pose<T>,
@@ -145,7 +145,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
 
     /// Carries the inertia forces down the tree: moments on the frames, forces along the slides.
     #[inline(always)]
-    pub(crate) fn backward_pass(&mut self, model: &PassModel, pose: &Pose<T>) {
+    fn backward_pass(&mut self, model: &PassModel, pose: &Pose<T>) {
         let ForceBalance {
             moment,
             slide_force,
@@ -208,7 +208,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
 
     /// Stores each body's own inertia force: the first part of what its joint must exert on it.
     #[inline(always)]
-    pub(crate) fn store_inertia_forces(
+    fn store_inertia_forces(
         &mut self,
         model: &PassModel,
         pose: &Pose<T>,
@@ -232,7 +232,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
     /// The force that each joint of the tree exerts on the body it carries, where that is needed: the inertia
     /// forces of all bodies that it carries, less the forces of the loop joints on them.
     #[inline(always)]
-    pub(crate) fn accumulate_joint_forces(&mut self, model: &PassModel, pose: &Pose<T>) {
+    fn accumulate_joint_forces(&mut self, model: &PassModel, pose: &Pose<T>) {
         let sources = &model.reaction_sources;
         for (c, ends) in sources.loop_joint_ends.iter().enumerate() {
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
@@ -256,12 +256,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
 
     /// The force of a loop joint's first body on its second, in ground axes.
     #[inline(always)]
-    pub(crate) fn loop_joint_force(
-        &self,
-        model: &PassModel,
-        pose: &Pose<T>,
-        closure: usize,
-    ) -> [Vec2<T>; N] {
+    fn loop_joint_force(&self, model: &PassModel, pose: &Pose<T>, closure: usize) -> [Vec2<T>; N] {
         let multiplier = self.balance.loop_multiplier[closure];
         match model.plan.loop_closures()[closure].axis {
             None => multiplier,
@@ -276,7 +271,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
     /// about its origin, before they are transferred.
     // Long because it is inlined whole, and each part needs the same sources.
     #[inline(always)]
-    pub(crate) fn accumulate_joint_moments(
+    fn accumulate_joint_moments(
         &mut self,
         model: &PassModel,
         pose: &Pose<T>,

@@ -211,8 +211,6 @@ fn require_periodic(
     let difference = |k: usize| max(k, &|here, later| (here - later).abs());
     let scales = scale(&largest);
     let mut aperiodic = all.filter(|&k| difference(k) > PERIODICITY_TOLERANCE * scales[k]);
-    match aperiodic.next().map(|k| quantities[k]) {
-        Some(what) => Err(TableError::NotPeriodic { what }),
-        None => Ok(()),
-    }
+    let found = aperiodic.next().map(|k| quantities[k]);
+    found.map_or(Ok(()), |what| Err(TableError::NotPeriodic { what }))
 }
