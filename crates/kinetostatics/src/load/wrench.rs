@@ -78,17 +78,22 @@ impl CompiledLoads {
         out: &mut LoadState<T>,
     ) -> Option<()> {
         let (source, zero) = (ForceSource::Load(i), T::from_f64(0.0));
-        let arms = |bodies: [BodyId; 2], points: [Vec2; 2]| {
+        let moment_arms_at = |bodies: [BodyId; 2], points: [Vec2; 2]| {
             [0, 1].map(|i| states.body(bodies[i]).moment_arm(points[i]))
         };
         let forces = |bodies, moment_arms, force: Vec2<T>| {
             on_two_bodies(source, bodies, moment_arms, [(-force, zero), (force, zero)])
         };
         // Between two points: equal and opposite forces along the line.
-        let along = |bodies, points, force| forces(bodies, arms(bodies, points), force);
+        let along = |bodies, points, force| forces(bodies, moment_arms_at(bodies, points), force);
         let couples = |bodies, couple: T| {
             let actions = [(Vec2::zero(), -couple), (Vec2::zero(), couple)];
-            on_two_bodies(source, bodies, arms(bodies, self.couple_points[i]), actions)
+            on_two_bodies(
+                source,
+                bodies,
+                moment_arms_at(bodies, self.couple_points[i]),
+                actions,
+            )
         };
         let on_both = match kind {
             LoadKind::Gravity { direction } => {
@@ -173,7 +178,7 @@ impl CompiledLoads {
             LoadKind::SeparatingForce(mesh) => {
                 let Mesh { bodies, points, .. } = mesh;
                 let [pitch_point, away] = mesh.pitch_point(states)?;
-                let [first, second] = arms(bodies, points);
+                let [first, second] = moment_arms_at(bodies, points);
                 let between = states.separation(bodies, points).gap + pitch_point;
                 forces(bodies, [first + between, second + pitch_point], away * f)
             }
@@ -185,7 +190,7 @@ impl CompiledLoads {
                     _ => f,
                 };
                 let force = guide.axis.cast().rotate(states.body(bodies[0]).rotation) * f;
-                let [first, second] = arms(bodies, points);
+                let [first, second] = moment_arms_at(bodies, points);
                 let gap = states.separation(bodies, points).gap;
                 forces(bodies, [first + gap, second], force)
             }

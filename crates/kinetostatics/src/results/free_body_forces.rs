@@ -187,9 +187,9 @@ fn opposite_wrenches(
     states: &BodyStates,
     wrenches: &mut Vec<AppliedWrench>,
 ) {
-    let arms = bodies.map(|body| at - states.body(body).joint_origin);
+    let moment_arms = bodies.map(|body| at - states.body(body).joint_origin);
     let actions = [(-force, -couple), (force, couple)];
-    wrenches.extend(on_two_bodies(source, bodies, arms, actions));
+    wrenches.extend(on_two_bodies(source, bodies, moment_arms, actions));
 }
 
 /// A generalised force along a coordinate: a couple, a force along an axis at the second body's point, or a force along
@@ -224,8 +224,8 @@ fn coordinate_wrenches(
             (bodies, points, [(-force, 0.0), (force, 0.0)])
         }
     };
-    let arms = [0, 1].map(|i| states.body(bodies[i]).moment_arm(points[i]));
-    wrenches.extend(on_two_bodies(source, bodies, arms, actions));
+    let moment_arms = [0, 1].map(|i| states.body(bodies[i]).moment_arm(points[i]));
+    wrenches.extend(on_two_bodies(source, bodies, moment_arms, actions));
 }
 
 #[cfg(test)]
