@@ -88,12 +88,8 @@ impl CompiledLoads {
         let along = |bodies, points, force| forces(bodies, moment_arms_at(bodies, points), force);
         let couples = |bodies, couple: T| {
             let actions = [(Vec2::zero(), -couple), (Vec2::zero(), couple)];
-            on_two_bodies(
-                source,
-                bodies,
-                moment_arms_at(bodies, self.couple_points[i]),
-                actions,
-            )
+            let moment_arms = moment_arms_at(bodies, self.couple_points[i]);
+            on_two_bodies(source, bodies, moment_arms, actions)
         };
         let on_both = match kind {
             LoadKind::Gravity { direction } => {
