@@ -60,11 +60,24 @@ pub fn integrate(
 ) -> Result<Termination> {
     options.check()?;
     check_interval(start, end)?;
-    let features = system.time_features().filter(|f| !f.is_empty());
-    let Some(features) = features else {
-        return integrate_smooth(system, start, end, options, None, observer);
-    };
-    let mut pieces = TimePieces::new(&features, start.t, end, options)?;
+    match system.time_features().filter(|f| !f.is_empty()) {
+        None => integrate_smooth(system, start, end, options, None, observer),
+        Some(features) => {
+            let mut pieces = TimePieces::new(&features, start.t, end, options)?;
+            integrate_segments(system, start, end, options, &mut pieces, observer)
+        }
+    }
+}
+
+/// Integrates from switch to switch.
+fn integrate_segments(
+    system: &mut dyn OdeSystem,
+    start: &OdeState,
+    end: Option<f64>,
+    options: &Options,
+    pieces: &mut TimePieces<'_>,
+    observer: StepObserver<'_>,
+) -> Result<Termination> {
     let stopped = Cell::new(false);
     let mut watched = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
         let control = observer(before, now, dense)?;
@@ -73,56 +86,39 @@ pub fn integrate(
     };
     let mut whole: Option<Termination> = None;
     let mut from = start.clone();
-    loop {
-        let segment = match pieces.next_segment() {
-            Ok(segment) => segment,
-            Err(error) => return ended_by(error, whole),
-        };
-        let to = match segment {
-            Some((begins, segment)) => {
-                from.t = from.t.max(begins);
-                // The end itself, however a switch there is rounded.
-                segment.restart.then_some(segment.to).or(end)
-            }
-            None if whole.is_none() => end,
-            None => break,
-        };
+    let mut remaining = *options;
+    while let Some((begins, segment)) = pieces.next_segment()? {
+        from.t = from.t.max(begins);
+        // The end itself, however a switch there is rounded.
+        let to = segment.restart.then_some(segment.to).or(end);
         if to.is_some_and(|to| to <= from.t) {
             continue;
         }
-        let mut limited = *options;
-        let steps = whole.as_ref().map_or(0, |w| w.statistics.steps);
-        limited.max_steps = options.max_steps.saturating_sub(steps);
-        let part = integrate_smooth(system, &from, to, &limited, Some(&mut pieces), &mut watched);
-        let part = match part {
+        let part = integrate_smooth(system, &from, to, &remaining, Some(pieces), &mut watched);
+        let part = match (part, &mut whole) {
+            (Ok(part), _) => part,
             // Between two switches lies less than a rounding of time.
-            Err(DynamicsError::DurationTooShort) if whole.is_some() => continue,
-            Err(error) => return ended_by(error, whole),
-            Ok(part) => part,
+            (Err(DynamicsError::DurationTooShort), Some(_)) => continue,
+            (Err(error), None) => return Err(error),
+            (Err(error), Some(before)) => {
+                before.error = Some(error);
+                break;
+            }
         };
         from.clone_from(&part.state);
-        let failed = part.error.is_some();
-        whole = Some(match whole {
-            None => part,
-            Some(before) => Termination {
-                statistics: before.statistics.plus(part.statistics),
-                ..part
-            },
+        remaining.max_steps = remaining.max_steps.saturating_sub(part.statistics.steps);
+        let before = whole
+            .as_ref()
+            .map_or_else(Statistics::default, |before| before.statistics);
+        let last = whole.insert(Termination {
+            statistics: before.plus(part.statistics),
+            ..part
         });
-        if stopped.get() || failed {
+        if stopped.get() || last.error.is_some() {
             break;
         }
     }
     whole.ok_or(DynamicsError::DurationTooShort)
-}
-
-/// What was integrated before an error, if anything was.
-fn ended_by(error: DynamicsError, whole: Option<Termination>) -> Result<Termination> {
-    let Some(mut whole) = whole else {
-        return Err(error);
-    };
-    whole.error = Some(error);
-    Ok(whole)
 }
 
 /// Integrates while nothing switches in time; `pieces` limits the steps.
@@ -270,6 +266,7 @@ impl StepLoop<'_, '_> {
         }
     }
 
+    // Long because every step is checked for all that can go wrong in it.
     fn take_steps<'a, E, S>(
         &mut self,
         solver: &mut S,
@@ -310,18 +307,14 @@ impl StepLoop<'_, '_> {
             let control = observer(at, &now, &mut dense)?;
             at.t = now.t;
             at.y.copy_from_slice(&now.y);
+            let is_at_stop = matches!(reason, OdeSolverStopReason::TstopReached);
             // It stops within a rounding of where it is to stop.
-            let rounding = 8.0 * f64::EPSILON * at.t.abs();
-            let is_last = matches!(reason, OdeSolverStopReason::TstopReached)
-                && self.end.is_some_and(|end| at.t >= end - rounding);
-            let end = is_last || self.end.is_some_and(|end| at.t >= end);
-            if control == StepControl::Stop || end {
+            let rounding = f64::from(u8::from(is_at_stop)) * 8.0 * f64::EPSILON * at.t.abs();
+            let is_end = self.end.is_some_and(|end| at.t >= end - rounding);
+            if control == StepControl::Stop || is_end {
                 return Ok(());
             }
-            if matches!(reason, OdeSolverStopReason::TstopReached)
-                || self.options.max_step.is_some()
-                || self.pieces.is_some()
-            {
+            if is_at_stop || self.options.max_step.is_some() || self.pieces.is_some() {
                 let stop = self.stop_time(at.t)?;
                 set_stop_time(solver, stop).map_err(|e| cause(at.t, e))?;
             }

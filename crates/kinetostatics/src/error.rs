@@ -6,6 +6,9 @@ use thiserror::Error;
 /// A result that fails with a [`KinetostaticsError`] unless another error is named.
 pub type Result<T, E = KinetostaticsError> = std::result::Result<T, E>;
 
+/// A result that fails with a [`PositionError`]: there is no pose.
+pub type PositionResult<T = ()> = std::result::Result<T, PositionError>;
+
 /// Why a model cannot be built.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ModelError {

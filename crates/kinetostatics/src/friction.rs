@@ -14,7 +14,7 @@
 //! the same state has two accelerations, or none.
 
 use crate::error::{KinetostaticsError, Result};
-use crate::load::{Friction, FrictionContact, Load, LoadKind, Magnitude, PressureAngle};
+use crate::load::{Friction, FrictionContact, Load, LoadKind};
 use crate::pass::InverseDynamics;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{Mechanism, Reaction};
@@ -89,10 +89,8 @@ impl FrictionContact {
         };
         let signs = ends.map(|end| T::from_f64(if end.value() < 0.0 { -1.0 } else { 1.0 }));
         let sum = ends[0] * signs[0] + ends[1] * signs[1];
-        (
-            sum,
-            [half * (signs[0] + signs[1]), lever * (signs[0] - signs[1])],
-        )
+        let slopes = [half * (signs[0] + signs[1]), lever * (signs[0] - signs[1])];
+        (sum, slopes)
     }
 }
 
@@ -133,23 +131,22 @@ impl DependentLoad {
             for (index, required) in indices.iter_mut().zip(required_reactions(mechanism, one)) {
                 *index = reactions.iter().position(|r| *r == required);
             }
-            let law = match one.magnitude {
-                Magnitude::Friction(friction) => ReactionLaw::Friction {
+            let law = if let Some(friction) = one.friction() {
+                // The surfaces slide along the coordinate of the load.
+                let coordinate = match one.kind {
+                    LoadKind::SlideForce(guide) => guide.travel(),
+                    LoadKind::Torque { bodies } => CoordinateFunction::Angle(bodies),
+                    _ => return None,
+                };
+                ReactionLaw::Friction {
                     friction,
-                    coordinate: sliding_coordinate(one.kind)?,
-                },
-                // Without its tooth force it is in a model that computes nothing on which it could act.
-                Magnitude::Separating(PressureAngle { angle, .. }) => {
-                    indices[0]?;
-                    ReactionLaw::Separating {
-                        tangent: angle.tan(),
-                    }
+                    coordinate,
                 }
-                Magnitude::Constant(_)
-                | Magnitude::Law(..)
-                | Magnitude::Expression(..)
-                | Magnitude::Function(..)
-                | Magnitude::External(_) => return None,
+            } else {
+                let tangent = one.pressure_angle()?.angle.tan();
+                // Without its tooth force it is in a model that computes nothing on which it could act.
+                indices[0]?;
+                ReactionLaw::Separating { tangent }
             };
             Some(Self {
                 load,
@@ -183,34 +180,12 @@ impl DependentLoad {
     }
 }
 
-/// The coordinate along which the surfaces of a friction slide; none for loads that are no friction.
-fn sliding_coordinate(kind: LoadKind) -> Option<CoordinateFunction> {
-    match kind {
-        LoadKind::SlideForce(guide) => Some(guide.travel()),
-        LoadKind::Torque { bodies } => Some(CoordinateFunction::Angle(bodies)),
-        LoadKind::Gravity { .. }
-        | LoadKind::Force { .. }
-        | LoadKind::Spring { .. }
-        | LoadKind::TorsionSpring { .. }
-        | LoadKind::Damper { .. }
-        | LoadKind::RotationalDamper { .. }
-        | LoadKind::PointToPointForce { .. }
-        | LoadKind::SlideDamper(_)
-        | LoadKind::SeparatingForce(_) => None,
-    }
-}
-
 /// The reactions on which the magnitude of a load depends.
 pub(crate) fn required_reactions(mechanism: &Mechanism, load: &Load) -> Vec<Reaction> {
-    match load.magnitude {
-        Magnitude::Friction(friction) => friction.required_reactions(mechanism),
-        Magnitude::Separating(teeth) => vec![teeth.tooth_force()],
-        Magnitude::Constant(_)
-        | Magnitude::Law(..)
-        | Magnitude::Expression(..)
-        | Magnitude::Function(..)
-        | Magnitude::External(_) => Vec::new(),
-    }
+    let friction = load.friction().into_iter();
+    let tooth_force = load.pressure_angle().map(|teeth| teeth.tooth_force());
+    let of_friction = friction.flat_map(|friction| friction.required_reactions(mechanism));
+    of_friction.chain(tooth_force).collect()
 }
 
 /// Solves (1): `frictionless` are the reactions without these loads, `responses[j]` what a unit of load j adds to
@@ -225,9 +200,7 @@ pub(crate) fn solve<T: Scalar>(
     responses: &[InverseDynamics<T>],
     workspace: &mut FrictionWorkspace<T>,
 ) -> Result<()> {
-    let load = dependent_loads
-        .first()
-        .map_or(0, |dependent| dependent.load);
+    let load = dependent_loads.first().map_or(0, |first| first.load);
     let self_locking = KinetostaticsError::SelfLocking { load };
     for (dependent, factor) in dependent_loads.iter().zip(&mut workspace.friction_factor) {
         *factor = dependent.factor(states);

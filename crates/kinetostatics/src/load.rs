@@ -3,22 +3,19 @@
 //! This file describes them; the files below it compile and evaluate them.
 
 mod compiled;
-mod couple_points;
 mod friction;
 mod function;
 mod separating;
 mod signal;
-mod state;
 mod wrench;
 
 pub(crate) use compiled::CompiledLoads;
-pub(crate) use couple_points::find_couple_points;
+pub use compiled::LoadState;
 pub use friction::{Friction, FrictionContact};
 pub use function::{MAX_FUNCTION_SIGNALS, MagnitudeFunction};
 pub use separating::{Mesh, PitchLines, PressureAngle};
-pub use signal::CompiledSignal;
-pub use state::LoadState;
 pub use wrench::{AppliedWrench, ForceSource};
+pub(crate) use wrench::{find_couple_points, on_two_bodies};
 
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, Coordinate, Mechanism, Vec2};
@@ -116,6 +113,23 @@ pub struct Guide {
 }
 
 impl LoadKind {
+    /// The bodies it acts on; none of gravity, which acts on all that have mass.
+    pub(crate) fn bodies(&self) -> &[BodyId] {
+        match self {
+            Self::Gravity { .. } => &[],
+            Self::Force { body, .. } => std::slice::from_ref(body),
+            Self::Torque { bodies }
+            | Self::Spring { bodies, .. }
+            | Self::TorsionSpring { bodies, .. }
+            | Self::Damper { bodies, .. }
+            | Self::RotationalDamper { bodies }
+            | Self::PointToPointForce { bodies, .. }
+            | Self::SlideForce(Guide { bodies, .. })
+            | Self::SlideDamper(Guide { bodies, .. })
+            | Self::SeparatingForce(Mesh { bodies, .. }) => bodies,
+        }
+    }
+
     /// A couple or force along a coordinate, positive in the direction in which the coordinate grows; none if the
     /// mechanism has no such coordinate.
     pub fn along(mechanism: &Mechanism, coordinate: Coordinate) -> Option<Self> {
@@ -188,120 +202,75 @@ impl Magnitude {
 
 /// A quantity that a magnitude can depend on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Signal {
+pub enum Signal<C = Coordinate> {
     /// Time, s.
     Time,
     /// A coordinate, rad or m.
-    Value(Coordinate),
+    Value(C),
     /// Its speed, rad/s or m/s.
-    Velocity(Coordinate),
+    Velocity(C),
 }
+
+/// A [`Signal`] of a certain mechanism, ready to be evaluated.
+pub type CompiledSignal = Signal<CoordinateFunction>;
 
 impl Load {
     /// Whether it has a potential energy: gravity, springs and forces of constant direction, where the magnitude is
     /// constant; and the separating force of teeth, which does no work.
     pub fn is_conservative(&self) -> bool {
-        let has_potential = match self.kind {
-            LoadKind::Force { body_fixed, .. } => !body_fixed,
-            LoadKind::Gravity { .. } | LoadKind::Spring { .. } | LoadKind::TorsionSpring { .. } => {
-                true
-            }
-            LoadKind::SeparatingForce(_) => return true,
-            LoadKind::Torque { .. }
-            | LoadKind::Damper { .. }
-            | LoadKind::RotationalDamper { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_) => false,
-        };
-        has_potential && matches!(self.magnitude, Magnitude::Constant(_))
+        let has_potential = matches!(
+            self.kind,
+            LoadKind::Gravity { .. }
+                | LoadKind::Spring { .. }
+                | LoadKind::TorsionSpring { .. }
+                | LoadKind::Force {
+                    body_fixed: false,
+                    ..
+                }
+        );
+        !self.does_work() || has_potential && matches!(self.magnitude, Magnitude::Constant(_))
     }
 
     /// Whether it can do work in some motion: all but the separating force of teeth.
     pub fn does_work(&self) -> bool {
-        match self.kind {
-            LoadKind::SeparatingForce(_) => false,
-            LoadKind::Gravity { .. }
-            | LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::Spring { .. }
-            | LoadKind::TorsionSpring { .. }
-            | LoadKind::Damper { .. }
-            | LoadKind::RotationalDamper { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_) => true,
-        }
+        !matches!(self.kind, LoadKind::SeparatingForce(_))
     }
 
     /// The friction that makes its magnitude, if it is one.
     pub fn friction(&self) -> Option<Friction> {
-        match self.magnitude {
-            Magnitude::Friction(friction) => Some(friction),
-            Magnitude::Constant(_)
-            | Magnitude::Law(..)
-            | Magnitude::Expression(..)
-            | Magnitude::Function(..)
-            | Magnitude::Separating(_)
-            | Magnitude::External(_) => None,
-        }
+        let Magnitude::Friction(friction) = self.magnitude else {
+            return None;
+        };
+        Some(friction)
     }
 
     /// The pressure angle that makes its magnitude, if it is the separating force of teeth.
     pub fn pressure_angle(&self) -> Option<PressureAngle> {
-        match self.magnitude {
-            Magnitude::Separating(teeth) => Some(teeth),
-            Magnitude::Constant(_)
-            | Magnitude::Law(..)
-            | Magnitude::Expression(..)
-            | Magnitude::Function(..)
-            | Magnitude::Friction(_)
-            | Magnitude::External(_) => None,
-        }
+        let Magnitude::Separating(teeth) = self.magnitude else {
+            return None;
+        };
+        Some(teeth)
     }
 
     /// The pairs of bodies on whose relative angle it depends, with whole revolutions: those of a torsional spring
     /// and those of its magnitude's signals.
     pub fn angle_pairs(&self) -> Vec<[BodyId; 2]> {
-        let spring_pair = match self.kind {
-            LoadKind::TorsionSpring { bodies, .. } => Some(bodies),
-            LoadKind::Gravity { .. }
-            | LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::Spring { .. }
-            | LoadKind::Damper { .. }
-            | LoadKind::RotationalDamper { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_)
-            | LoadKind::SeparatingForce(_) => None,
-        };
-        let signals = self.magnitude.signals().iter();
-        let signal_pairs = signals.filter_map(|signal| match *signal {
-            Signal::Value(Coordinate::Angle(pair)) => Some(pair),
-            Signal::Value(Coordinate::Travel(_) | Coordinate::Length { .. })
-            | Signal::Velocity(_)
-            | Signal::Time => None,
-        });
-        spring_pair.into_iter().chain(signal_pairs).collect()
+        let mut pairs = Vec::new();
+        if let LoadKind::TorsionSpring { bodies, .. } = self.kind {
+            pairs.push(bodies);
+        }
+        for signal in self.magnitude.signals() {
+            if let Signal::Value(Coordinate::Angle(bodies)) = *signal {
+                pairs.push(bodies);
+            }
+        }
+        pairs
     }
 
     /// The bodies it acts on and those whose motion its magnitude depends on. Gravity acts on those
     /// with mass, which are needed anyway.
     pub fn bodies(&self, mechanism: &Mechanism) -> Vec<BodyId> {
-        let mut bodies = match self.kind {
-            LoadKind::Gravity { .. } => Vec::new(),
-            LoadKind::Force { body, .. } => vec![body],
-            LoadKind::Torque { bodies }
-            | LoadKind::Spring { bodies, .. }
-            | LoadKind::TorsionSpring { bodies, .. }
-            | LoadKind::Damper { bodies, .. }
-            | LoadKind::PointToPointForce { bodies, .. }
-            | LoadKind::RotationalDamper { bodies }
-            | LoadKind::SlideForce(Guide { bodies, .. })
-            | LoadKind::SlideDamper(Guide { bodies, .. })
-            | LoadKind::SeparatingForce(Mesh { bodies, .. }) => bodies.to_vec(),
-        };
+        let mut bodies = self.kind.bodies().to_vec();
         for signal in self.magnitude.signals() {
             let (Signal::Value(coordinate) | Signal::Velocity(coordinate)) = *signal else {
                 continue;

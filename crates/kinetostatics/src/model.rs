@@ -10,7 +10,7 @@ mod workspace;
 
 pub use evaluated_state::EvaluatedState;
 pub use kinematic_state::KinematicState;
-pub use loaded_state::{ForceState, LoadedState};
+pub use loaded_state::{ForceState, LoadedState, StateWithLoads};
 pub use workspace::Workspace;
 
 use crate::error::ModelError;
@@ -194,7 +194,7 @@ impl Model {
         self.pass_model.plan.positions(q, pose)?;
         self.pass_model.plan.velocities(pose, q_dot, motion);
         self.pass_model.plan.accelerations(pose, q_ddot, motion);
-        pass.evaluate(&self.pass_model, pose, GivenMotion(motion));
+        pass.evaluate(&self.pass_model, pose, GivenMotion(motion), None);
         result.read_from(&self.pass_model, pose, pass);
         Ok(())
     }
@@ -203,24 +203,37 @@ impl Model {
     /// acceleration of one coordinate, m and ½m′.
     pub fn inertia_sums<T: Scalar>(&self, states: &BodyStates<T>) -> [T; 2] {
         let (mut energy, mut power) = (T::from_f64(0.0), T::from_f64(0.0));
-        for body in &self.pass_model.inertial_bodies {
-            let id = BodyId(body.body);
-            let center = states.point(id, self.masses[id.0].center);
-            let body_state = states.body(id);
-            let (w, a) = (body_state.angular_velocity, body_state.angular_acceleration);
-            let (mass, inertia) = (T::from_f64(body.mass), T::from_f64(body.inertia));
-            energy += mass * center.velocity.dot(center.velocity) + inertia * w * w;
-            power += mass * center.velocity.dot(center.acceleration) + inertia * w * a;
+        for [of_mass, of_inertia, power_of_mass, power_of_inertia] in self.inertia_terms(states) {
+            energy += of_mass + of_inertia;
+            power += power_of_mass + power_of_inertia;
         }
         [energy, power]
+    }
+
+    /// By body with inertia: m v², I ω², m v·a and I ω α.
+    pub(crate) fn inertia_terms<T: Scalar>(
+        &self,
+        states: &BodyStates<T>,
+    ) -> impl Iterator<Item = [T; 4]> {
+        self.pass_model.inertial_bodies.iter().map(|body| {
+            let id = BodyId(body.body);
+            let center = states.point(id, self.masses[id.0].center);
+            let state = states.body(id);
+            let (v, w) = (center.velocity, state.angular_velocity);
+            let (mass, inertia) = (T::from_f64(body.mass), T::from_f64(body.inertia));
+            [
+                mass * v.dot(v),
+                inertia * w * w,
+                mass * v.dot(center.acceleration),
+                inertia * w * state.angular_acceleration,
+            ]
+        })
     }
 }
 
 /// Refuses a reaction that no joint of the mechanism has.
 fn require_reactions(mechanism: &Mechanism, reactions: &[Reaction]) -> Result<(), ModelError> {
     let unknown = |r: &&Reaction| !mechanism.components(r.joint).contains(&r.component);
-    match reactions.iter().find(unknown) {
-        Some(reaction) => Err(ModelError::Reaction(*reaction)),
-        None => Ok(()),
-    }
+    let found = reactions.iter().find(unknown);
+    found.map_or(Ok(()), |reaction| Err(ModelError::Reaction(*reaction)))
 }

@@ -7,13 +7,12 @@
 mod acceleration;
 mod bodies;
 mod recursive_pass;
-mod result;
 mod sources;
 
 pub(crate) use acceleration::{AtRest, GivenMotion, UnitAcceleration, UnitMotions};
 pub(crate) use bodies::{AcceleratedBody, InertialBody};
+pub use recursive_pass::InverseDynamics;
 pub(crate) use recursive_pass::RecursivePass;
-pub use result::InverseDynamics;
 pub(crate) use sources::ReactionSources;
 
 use crate::mass::Mass;

@@ -15,9 +15,10 @@ mod batch;
 
 pub use batch::Batch;
 
+use crate::error::PositionResult;
 use crate::model::{Model, Workspace};
 use crate::pass::UnitMotions;
-use dwell_geometry::{PositionError, Range};
+use dwell_geometry::Range;
 use dwell_numerics::{Dual, Scalar};
 
 /// The coefficients of the reduced model at one coordinate.
@@ -62,29 +63,25 @@ pub trait ReducedModel: Sync {
     /// m and ½m′ at `q` (rad).
     ///
     /// # Errors
-    /// [`PositionError`] when there is no pose at `q`.
-    fn inertia(&self, q: f64, work: &mut Self::Workspace) -> Result<(f64, f64), PositionError>;
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
+    fn inertia(&self, q: f64, work: &mut Self::Workspace) -> PositionResult<(f64, f64)>;
 
     /// m, ½m′ and ½m″ at `q` (rad).
     ///
     /// # Errors
-    /// [`PositionError`] when there is no pose at `q`.
-    fn inertia_derivatives(
-        &self,
-        q: f64,
-        work: &mut Self::Workspace,
-    ) -> Result<Inertia, PositionError>;
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
+    fn inertia_derivatives(&self, q: f64, work: &mut Self::Workspace) -> PositionResult<Inertia>;
 
     /// All coefficients at `q` (rad).
     ///
     /// # Errors
-    /// [`PositionError`] when there is no pose at `q`.
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
     fn coefficients(
         &self,
         q: f64,
         work: &mut Self::Workspace,
         out: &mut Coefficients,
-    ) -> Result<(), PositionError>;
+    ) -> PositionResult;
 }
 
 /// Working memory of the exact reduced model: one for values, one for derivatives.
@@ -116,10 +113,6 @@ impl ExactModel {
     pub fn model(&self) -> &Model {
         &self.model
     }
-
-    pub(crate) fn inertia_model(&self) -> &Model {
-        &self.inertia_model
-    }
 }
 
 impl Model {
@@ -129,7 +122,7 @@ impl Model {
     /// are pass 1's velocities: both passes cost one pose, one velocity and one acceleration stage.
     ///
     /// # Errors
-    /// [`PositionError`] when there is no pose at `q`.
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
     // The whole evaluation is inlined: one pose takes a tenth less time, and a batch becomes one function that is
     // compiled for the processor's registers.
     #[inline(always)]
@@ -138,7 +131,7 @@ impl Model {
         q: T,
         workspace: &mut Workspace<T>,
         out: &mut Coefficients<T>,
-    ) -> Result<(), PositionError> {
+    ) -> PositionResult {
         let Workspace {
             pose,
             motion,
@@ -149,7 +142,7 @@ impl Model {
         self.plan().positions(&[q], pose)?;
         self.plan().velocities(pose, &[one], motion);
         self.plan().accelerations(pose, &[zero], motion);
-        unit.evaluate(&self.pass_model, pose, UnitMotions(motion));
+        unit.evaluate(&self.pass_model, pose, UnitMotions(motion), None);
         [out.half_dm, out.m] = unit.tau(&self.pass_model, 0);
         for (k, (a, b)) in out.a.iter_mut().zip(&mut out.b).enumerate() {
             [*b, *a] = unit.reaction(&self.pass_model, pose, k);
@@ -186,10 +179,10 @@ impl ReducedModel for ExactModel {
         self.model.plan().range()
     }
 
-    fn inertia(&self, q: f64, workspace: &mut ExactWorkspace) -> Result<(f64, f64), PositionError> {
+    fn inertia(&self, q: f64, workspace: &mut ExactWorkspace) -> PositionResult<(f64, f64)> {
         let mut out = Coefficients::default();
-        self.inertia_model
-            .reduce(q, &mut workspace.real, &mut out)?;
+        let model = &self.inertia_model;
+        model.reduce(q, &mut workspace.real, &mut out)?;
         Ok((out.m, out.half_dm))
     }
 
@@ -197,10 +190,10 @@ impl ReducedModel for ExactModel {
         &self,
         q: f64,
         workspace: &mut ExactWorkspace,
-    ) -> Result<Inertia, PositionError> {
+    ) -> PositionResult<Inertia> {
         let mut out = Coefficients::default();
-        self.inertia_model
-            .reduce(Dual::variable(q), &mut workspace.dual, &mut out)?;
+        let model = &self.inertia_model;
+        model.reduce(Dual::variable(q), &mut workspace.dual, &mut out)?;
         Ok(Inertia {
             m: out.m.v,
             half_dm: out.half_dm.v,
@@ -213,7 +206,7 @@ impl ReducedModel for ExactModel {
         q: f64,
         workspace: &mut ExactWorkspace,
         out: &mut Coefficients,
-    ) -> Result<(), PositionError> {
+    ) -> PositionResult {
         self.model.reduce(q, &mut workspace.real, out)
     }
 }

@@ -21,11 +21,10 @@ pub use file::{FileError, Labels};
 pub use piecewise::{IntegratedCurve, PiecewiseColumns};
 pub use sampler::InertiaSampler;
 
-use crate::error::KinetostaticsError;
+use crate::error::{KinetostaticsError, PositionResult};
 use crate::reduced::{Coefficients, ExactModel, Inertia, ReducedModel};
 use dwell_geometry::{PositionError, Range};
 use dwell_numerics::Dual;
-use piecewise::Grid;
 use sampler::ModelSampler;
 use std::fmt;
 use thiserror::Error;
@@ -239,8 +238,7 @@ impl TabulatedModel {
 
     /// Its domain, rad or m; of a mechanism that turns fully, one period.
     pub fn domain(&self) -> [f64; 2] {
-        let Grid { from, length, .. } = self.inertia.grid;
-        [from, from + length]
+        self.inertia.grid.domain()
     }
 
     /// The error bound of each coefficient: m, ½m′, then a and b of all reactions, w and c of all loads.
@@ -279,11 +277,7 @@ impl TabulatedModel {
     ///
     /// # Errors
     /// [`PositionError`] outside the table.
-    pub fn unit_load_responses(
-        &self,
-        q: f64,
-        out: &mut UnitLoadResponses,
-    ) -> Result<(), PositionError> {
+    pub fn unit_load_responses(&self, q: f64, out: &mut UnitLoadResponses) -> PositionResult {
         self.loads.eval(q, &mut out.w, &mut out.c)
     }
 }
@@ -307,20 +301,15 @@ impl ReducedModel for TabulatedModel {
     }
 
     #[inline]
-    fn inertia(&self, q: f64, (): &mut ()) -> Result<(f64, f64), PositionError> {
+    fn inertia(&self, q: f64, (): &mut ()) -> PositionResult<(f64, f64)> {
         self.inertia.eval(q).map(<(f64, f64)>::from)
     }
 
-    fn inertia_derivatives(&self, q: f64, (): &mut ()) -> Result<Inertia, PositionError> {
+    fn inertia_derivatives(&self, q: f64, (): &mut ()) -> PositionResult<Inertia> {
         self.inertia.derivatives(q)
     }
 
-    fn coefficients(
-        &self,
-        q: f64,
-        (): &mut (),
-        out: &mut Coefficients,
-    ) -> Result<(), PositionError> {
+    fn coefficients(&self, q: f64, (): &mut (), out: &mut Coefficients) -> PositionResult {
         [out.m, out.half_dm] = self.inertia.eval(q)?;
         self.reactions.eval(q, &mut out.a, &mut out.b)
     }

@@ -1,15 +1,11 @@
 //! The loads of a model: checked, and evaluated at a state of motion.
 
 use super::signal::{SignalWorkspace, compile_signals};
-use super::wrench::load_ends;
-use super::{
-    AppliedWrench, CompiledSignal, ForceSource, Load, LoadKind, LoadState, Magnitude,
-    find_couple_points,
-};
+use super::{AppliedWrench, CompiledSignal, Load, LoadKind, Magnitude, find_couple_points};
 use crate::error::{KinetostaticsError, LoadError, Result};
 use crate::mass::Mass;
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{BodyId, Mechanism, Plan, PositionError, Vec2};
+use dwell_geometry::{BodyId, JointId, Mechanism, Plan, PositionError, Vec2};
 use dwell_numerics::Scalar;
 
 /// The loads of a model.
@@ -19,9 +15,38 @@ pub(crate) struct CompiledLoads {
     /// By load: what its magnitude depends on.
     pub(crate) compiled_signals: Vec<Vec<CompiledSignal>>,
     /// By load: where a couple between two bodies acts on each.
-    couple_points: Vec<[Vec2; 2]>,
+    pub(super) couple_points: Vec<[Vec2; 2]>,
     /// The bodies that have weight, with mass and centre.
-    weighted_bodies: Vec<(BodyId, Mass)>,
+    pub(super) weighted_bodies: Vec<(BodyId, Mass)>,
+}
+
+/// The loads at one state of motion: working memory, and what it holds afterwards.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadState<T = f64> {
+    /// By load: its magnitude F, in the unit of its kind.
+    pub magnitude: Vec<T>,
+    /// The wrenches of the loads on the bodies, in the order of the loads.
+    pub wrenches: Vec<AppliedWrench<T>>,
+    /// The acceleration of gravity of all such loads together, m/s².
+    pub gravity: Vec2<T>,
+    /// By body: the sum of the forces on it, N, and their moment about its origin, N·m.
+    pub(crate) force: Vec<Vec2<T>>,
+    pub(crate) moment: Vec<T>,
+    /// By moving body: the forces on it and on all that it carries, N.
+    pub(crate) subtree_force: Vec<Vec2<T>>,
+    pub(crate) signal_workspace: SignalWorkspace<T>,
+}
+
+impl<T: Scalar> LoadState<T> {
+    /// Sums the wrenches on each body.
+    fn sum_by_body(&mut self) {
+        self.force.fill(Vec2::zero());
+        self.moment.fill(T::from_f64(0.0));
+        for wrench in &self.wrenches {
+            self.force[wrench.body.0] += wrench.force;
+            self.moment[wrench.body.0] += wrench.moment();
+        }
+    }
 }
 
 impl CompiledLoads {
@@ -37,18 +62,9 @@ impl CompiledLoads {
             validate_load(mechanism, load).map_err(wrong)?;
             signals.push(compile_signals(mechanism, &load.magnitude).map_err(wrong)?);
         }
-        let couple_points = loads.iter().map(|load| match load.kind {
-            LoadKind::Torque { bodies }
-            | LoadKind::TorsionSpring { bodies, .. }
-            | LoadKind::RotationalDamper { bodies } => find_couple_points(mechanism, plan, bodies),
-            LoadKind::Gravity { .. }
-            | LoadKind::Force { .. }
-            | LoadKind::Spring { .. }
-            | LoadKind::Damper { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_)
-            | LoadKind::SeparatingForce(_) => [Vec2::ZERO; 2],
+        let couple_points = loads.iter().map(|load| match *load.kind.bodies() {
+            [one, two] => find_couple_points(mechanism, plan, [one, two]),
+            _ => [Vec2::ZERO; 2],
         });
         let couple_points = couple_points.collect();
         let weight = |body: BodyId| {
@@ -69,16 +85,7 @@ impl CompiledLoads {
         let bodies = plan.frames().orientations.len();
         let wrench_counts = self.loads.iter().map(|load| match load.kind {
             LoadKind::Gravity { .. } => self.weighted_bodies.len(),
-            LoadKind::Force { .. } => 1,
-            LoadKind::Torque { .. }
-            | LoadKind::Spring { .. }
-            | LoadKind::TorsionSpring { .. }
-            | LoadKind::Damper { .. }
-            | LoadKind::RotationalDamper { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_)
-            | LoadKind::SeparatingForce(_) => 2,
+            kind => kind.bodies().len(),
         });
         let signal_counts = self.compiled_signals.iter().map(Vec::len);
         LoadState {
@@ -109,12 +116,8 @@ impl CompiledLoads {
                 out.magnitude[i] = T::from_f64(0.0);
                 continue;
             }
-            let (signals, workspace) = (&self.compiled_signals[i], &mut out.signal_workspace);
-            let magnitude = load.magnitude.eval_at_state(t, signals, states, workspace);
-            if !magnitude.value().is_finite() {
-                return Err(KinetostaticsError::MagnitudeNotFinite { load: i });
-            }
-            out.magnitude[i] = magnitude;
+            let workspace = &mut out.signal_workspace;
+            out.magnitude[i] = self.eval_magnitude(i, &load.magnitude, t, states, workspace)?;
         }
         Ok(())
     }
@@ -128,7 +131,8 @@ impl CompiledLoads {
         out.wrenches.clear();
         out.gravity = Vec2::zero();
         for (i, load) in self.loads.iter().enumerate() {
-            self.add_wrenches(i, load.kind, out.magnitude[i], states, out)?;
+            self.add_wrenches(i, load.kind, out.magnitude[i], states, out)
+                .ok_or(KinetostaticsError::NoDirection { load: i })?;
         }
         out.sum_by_body();
         Ok(())
@@ -158,45 +162,9 @@ impl CompiledLoads {
             | LoadKind::SlideForce(_)
             | LoadKind::SeparatingForce(_)) => (kind, 1.0),
         };
-        self.add_wrenches(load, kind, T::from_f64(sign), states, out)?;
+        self.add_wrenches(load, kind, T::from_f64(sign), states, out)
+            .ok_or(KinetostaticsError::NoDirection { load })?;
         out.sum_by_body();
-        Ok(())
-    }
-
-    fn add_wrenches<T: Scalar>(
-        &self,
-        i: usize,
-        kind: LoadKind,
-        f: T,
-        states: &BodyStates<T>,
-        out: &mut LoadState<T>,
-    ) -> Result<()> {
-        if let LoadKind::Gravity { direction } = kind {
-            let pull = direction.cast() * f;
-            out.gravity += pull;
-            for &(body, Mass { mass, center, .. }) in &self.weighted_bodies {
-                out.wrenches.push(AppliedWrench {
-                    source: ForceSource::Load(i),
-                    body,
-                    force: pull * T::from_f64(mass),
-                    moment_arm: states.body(body).moment_arm(center),
-                    couple: T::from_f64(0.0),
-                });
-            }
-            return Ok(());
-        }
-        let [first, second] = load_ends(kind, f, states, self.couple_points[i])
-            .ok_or(KinetostaticsError::NoDirection { load: i })?
-            .map(|end| {
-                end.map(|(body, force, moment_arm, couple)| AppliedWrench {
-                    source: ForceSource::Load(i),
-                    body,
-                    force,
-                    moment_arm,
-                    couple,
-                })
-            });
-        out.wrenches.extend(first.into_iter().chain(second));
         Ok(())
     }
 
@@ -231,11 +199,8 @@ impl CompiledLoads {
                 let stretch = states.separation(bodies, points).length - free;
                 Some(0.5 * f * stretch * stretch)
             }
-            LoadKind::TorsionSpring {
-                bodies,
-                free_angle: free,
-            } => {
-                let twist = states.angle(bodies)[0] - free;
+            LoadKind::TorsionSpring { bodies, free_angle } => {
+                let twist = states.angle(bodies)[0] - free_angle;
                 Some(0.5 * f * twist * twist)
             }
             LoadKind::Force {
@@ -254,40 +219,31 @@ impl CompiledLoads {
 
 /// Refuses a load that does not fit the mechanism.
 fn validate_load(mechanism: &Mechanism, load: &Load) -> Result<(), &'static str> {
-    let there = |bodies: &[BodyId]| bodies.iter().all(|b| b.0 < mechanism.bodies.len());
+    let there = |body: &BodyId| body.0 < mechanism.bodies.len();
     // A unit vector to rounding, from any way of normalising it.
     let unit = |v: Vec2| (v.norm() - 1.0).abs() < 1e-9;
     let finite = |points: &[Vec2]| points.iter().all(|p| p.is_finite());
-    let (bodies, sound): (&[BodyId], bool) = match &load.kind {
-        LoadKind::Gravity { direction } => (&[], unit(*direction)),
+    let sound = match &load.kind {
+        LoadKind::Gravity { direction } => unit(*direction),
         LoadKind::Force {
-            body,
-            point,
-            direction,
-            ..
-        } => (
-            std::slice::from_ref(body),
-            unit(*direction) && point.is_finite(),
-        ),
-        LoadKind::Torque { bodies } | LoadKind::RotationalDamper { bodies } => (bodies, true),
+            point, direction, ..
+        } => unit(*direction) && point.is_finite(),
+        LoadKind::Torque { .. } | LoadKind::RotationalDamper { .. } => true,
         LoadKind::Spring {
-            bodies,
             points,
             free_length: free,
-        } => (bodies, finite(points) && free.is_finite() && *free >= 0.0),
-        LoadKind::TorsionSpring {
-            bodies,
-            free_angle: free,
-        } => (bodies, free.is_finite()),
-        LoadKind::Damper { bodies, points } | LoadKind::PointToPointForce { bodies, points } => {
-            (bodies, finite(points))
+            ..
+        } => finite(points) && free.is_finite() && *free >= 0.0,
+        LoadKind::TorsionSpring { free_angle, .. } => free_angle.is_finite(),
+        LoadKind::Damper { points, .. } | LoadKind::PointToPointForce { points, .. } => {
+            finite(points)
         }
         LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
-            (&guide.bodies, finite(&guide.points) && unit(guide.axis))
+            finite(&guide.points) && unit(guide.axis)
         }
-        LoadKind::SeparatingForce(mesh) => (&mesh.bodies, mesh.is_valid()),
+        LoadKind::SeparatingForce(mesh) => mesh.is_valid(),
     };
-    if !there(bodies) {
+    if !load.kind.bodies().iter().all(there) {
         return Err("it acts on a body that does not exist");
     }
     if !sound {
@@ -295,12 +251,16 @@ fn validate_load(mechanism: &Mechanism, load: &Load) -> Result<(), &'static str>
             "its points and free value must be finite, its direction a unit vector, its free length not negative",
         );
     }
+    let joint = |id: JointId| {
+        let found = mechanism.joints.get(id.0);
+        found.ok_or("its joint does not exist")
+    };
     match load.magnitude {
         Magnitude::Constant(value) if !value.is_finite() => {
             Err("its magnitude is not a finite number")
         }
-        Magnitude::Friction(friction) => friction.validate(mechanism, load.kind),
-        Magnitude::Separating(teeth) => teeth.validate(mechanism, load.kind),
+        Magnitude::Friction(friction) => friction.validate(joint(friction.joint)?, load.kind),
+        Magnitude::Separating(teeth) => teeth.validate(joint(teeth.joint)?, load.kind),
         Magnitude::Constant(_)
         | Magnitude::Law(..)
         | Magnitude::Expression(..)

@@ -1,7 +1,7 @@
 //! The friction of a joint, as a magnitude of a load.
 
 use super::LoadKind;
-use dwell_geometry::{Component, JointId, JointKind, Mechanism, Reaction};
+use dwell_geometry::{Component, Joint, JointId, JointKind, Mechanism, Reaction};
 
 /// Coulomb friction in a joint, regularised around zero speed. The load must be a [`LoadKind::Torque`] on the bodies of
 /// a revolute joint or a [`LoadKind::SlideForce`] on those of a prismatic joint or slot.
@@ -34,15 +34,8 @@ pub enum FrictionContact {
 }
 
 impl Friction {
-    /// Why it does not fit a load of this kind in this mechanism.
-    pub(super) fn validate(
-        &self,
-        mechanism: &Mechanism,
-        kind: LoadKind,
-    ) -> Result<(), &'static str> {
-        let Some(joint) = mechanism.joints.get(self.joint.0) else {
-            return Err("its joint does not exist");
-        };
+    /// Why it does not fit a load of this kind on its joint.
+    pub(super) fn validate(&self, joint: &Joint, kind: LoadKind) -> Result<(), &'static str> {
         let (FrictionContact::Pin { radius: size } | FrictionContact::Guide { length: size }) =
             self.contact;
         let mut sizes = [self.coefficient, size].into_iter();
@@ -53,18 +46,16 @@ impl Friction {
             );
         }
         // Coulomb friction acts on no other pairs of a joint and a load.
-        let fits = match self.contact {
-            FrictionContact::Pin { .. } => {
-                let bodies = joint.bodies;
-                joint.kind == JointKind::Revolute && kind == LoadKind::Torque { bodies }
+        let fits = match (self.contact, joint.kind, kind) {
+            (FrictionContact::Pin { .. }, JointKind::Revolute, LoadKind::Torque { bodies }) => {
+                bodies == joint.bodies
             }
-            FrictionContact::Guide { .. } => {
-                let slides = matches!(
-                    joint.kind,
-                    JointKind::Prismatic { .. } | JointKind::Slot { .. }
-                );
-                slides && matches!(kind, LoadKind::SlideForce(g) if g.bodies == joint.bodies)
-            }
+            (
+                FrictionContact::Guide { .. },
+                JointKind::Prismatic { .. } | JointKind::Slot { .. },
+                LoadKind::SlideForce(guide),
+            ) => guide.bodies == joint.bodies,
+            _ => false,
         };
         let misfit = "its joint is no revolute joint, prismatic joint or slot between its bodies";
         fits.then_some(()).ok_or(misfit)

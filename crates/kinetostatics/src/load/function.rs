@@ -31,27 +31,40 @@ impl MagnitudeFunction {
         (self.0)(signals)
     }
 
-    /// The value in any kind of number, exact to first order in what each signal holds beside its plain value.
+    /// The value in any kind of number, with derivatives by central differences.
     pub(super) fn eval<T: Scalar>(&self, numbers: &[T], values: &[f64]) -> T {
-        let mut sum = T::from_f64(self.value(values));
-        if T::HAS_DERIVATIVES {
+        let slope = |i: usize| {
             let mut near = [0.0; MAX_FUNCTION_SIGNALS];
             let Some(near) = near.get_mut(..values.len()) else {
-                return T::from_f64(f64::NAN);
+                return f64::NAN;
             };
-            for (i, &number) in numbers.iter().enumerate() {
-                let step = STEP * values[i].abs().max(1.0);
-                let mut at = |x: f64| {
-                    near.copy_from_slice(values);
-                    near[i] = x;
-                    self.value(near)
-                };
-                let slope = (at(values[i] + step) - at(values[i] - step)) / (2.0 * step);
-                sum += (number - T::from_f64(values[i])) * T::from_f64(slope);
-            }
-        }
-        sum
+            let step = STEP * values[i].abs().max(1.0);
+            let mut at = |x: f64| {
+                near.copy_from_slice(values);
+                near[i] = x;
+                self.value(near)
+            };
+            (at(values[i] + step) - at(values[i] - step)) / (2.0 * step)
+        };
+        first_order(self.value(values), slope, numbers, values)
     }
+}
+
+/// A function in any kind of number: its value, plus its slopes times what each variable holds beside its plain
+/// value. That is exact to first order, as a dual number is.
+pub(super) fn first_order<T: Scalar>(
+    value: f64,
+    slope: impl Fn(usize) -> f64,
+    numbers: &[T],
+    values: &[f64],
+) -> T {
+    let mut sum = T::from_f64(value);
+    if T::HAS_DERIVATIVES {
+        for (i, &number) in numbers.iter().enumerate() {
+            sum += (number - T::from_f64(values[i])) * T::from_f64(slope(i));
+        }
+    }
+    sum
 }
 
 impl fmt::Debug for MagnitudeFunction {

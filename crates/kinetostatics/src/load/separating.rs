@@ -8,7 +8,7 @@
 
 use super::{Load, LoadKind, Magnitude};
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{BodyId, Component, Joint, JointId, JointKind, Mechanism, Reaction, Vec2};
+use dwell_geometry::{BodyId, Component, Joint, JointId, JointKind, Reaction, Vec2};
 use dwell_numerics::Scalar;
 
 /// The teeth of two gears, or of a rack and its pinion, in mesh.
@@ -63,15 +63,8 @@ impl PressureAngle {
         }
     }
 
-    /// Why it does not fit a load of this kind in this mechanism.
-    pub(super) fn validate(
-        &self,
-        mechanism: &Mechanism,
-        kind: LoadKind,
-    ) -> Result<(), &'static str> {
-        let Some(joint) = mechanism.joints.get(self.joint.0) else {
-            return Err("its joint does not exist");
-        };
+    /// Why it does not fit a load of this kind on its joint.
+    pub(super) fn validate(&self, joint: &Joint, kind: LoadKind) -> Result<(), &'static str> {
         if !(self.angle > 0.0 && self.angle <= Self::MAX) {
             return Err("its pressure angle must be above 0 and at most 45°");
         }
@@ -118,7 +111,7 @@ impl Mesh {
 
     /// From the second body's centre to the pitch point, m, and the unit vector along which the teeth of the first
     /// body push the second away; none where the centres of two gears coincide.
-    pub(super) fn pitch_point<T: Scalar>(&self, states: &BodyStates<T>) -> Option<[Vec2<T>; 2]> {
+    pub(crate) fn pitch_point<T: Scalar>(&self, states: &BodyStates<T>) -> Option<[Vec2<T>; 2]> {
         let Self { bodies, points, .. } = *self;
         match self.pitch {
             PitchLines::Circles { radii, internal } => {

@@ -1,50 +1,39 @@
 //! The signals that magnitudes depend on, and magnitudes as laws and expressions of them.
 
-use super::{MAX_FUNCTION_SIGNALS, Magnitude, Signal};
+use super::function::first_order;
+use super::{CompiledLoads, CompiledSignal, MAX_FUNCTION_SIGNALS, Magnitude, Signal};
+use crate::error::{KinetostaticsError, Result};
 use dwell_geometry::Mechanism;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
-use dwell_laws::Expression;
 use dwell_numerics::Scalar;
 
-/// A [`Signal`] of a certain mechanism, ready to be evaluated.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum CompiledSignal {
-    /// Time, s.
-    Time,
-    /// A coordinate, rad or m.
-    Value(CoordinateFunction),
-    /// Its speed, rad/s or m/s.
-    Velocity(CoordinateFunction),
-}
-
-impl CompiledSignal {
-    fn eval<T: Scalar>(self, t: f64, states: &BodyStates<T>) -> T {
-        match self {
-            Self::Time => T::from_f64(t),
-            Self::Value(measured) => states.coordinate(measured)[0],
-            Self::Velocity(measured) => states.coordinate(measured)[1],
+impl CompiledLoads {
+    /// A magnitude of the signals of a load at time `t` (s) and these states of the bodies.
+    pub(crate) fn eval_magnitude<T: Scalar>(
+        &self,
+        load: usize,
+        magnitude: &Magnitude,
+        t: f64,
+        states: &BodyStates<T>,
+        SignalWorkspace { numbers, values }: &mut SignalWorkspace<T>,
+    ) -> Result<T> {
+        let signals = &self.compiled_signals[load];
+        let slots = numbers.iter_mut().zip(values.iter_mut()).zip(signals);
+        for ((number, value), signal) in slots {
+            *number = match *signal {
+                Signal::Time => T::from_f64(t),
+                Signal::Value(measured) => states.coordinate(measured)[0],
+                Signal::Velocity(measured) => states.coordinate(measured)[1],
+            };
+            *value = number.value();
         }
+        let found = magnitude.eval(&numbers[..signals.len()], &values[..signals.len()]);
+        let not_finite = KinetostaticsError::MagnitudeNotFinite { load };
+        found.value().is_finite().then_some(found).ok_or(not_finite)
     }
 }
 
 impl Magnitude {
-    /// The magnitude at time `t` (s) and these states of the bodies.
-    pub(crate) fn eval_at_state<T: Scalar>(
-        &self,
-        t: f64,
-        signals: &[CompiledSignal],
-        states: &BodyStates<T>,
-        workspace: &mut SignalWorkspace<T>,
-    ) -> T {
-        let SignalWorkspace { numbers, values } = workspace;
-        let slots = numbers.iter_mut().zip(values.iter_mut()).zip(signals);
-        for ((number, value), signal) in slots {
-            *number = signal.eval(t, states);
-            *value = number.value();
-        }
-        self.eval(&numbers[..signals.len()], &values[..signals.len()])
-    }
-
     /// The magnitude where its [signals](Self::signals) are `numbers`, with plain `values`. Friction, separating
     /// forces and external magnitudes are zero.
     pub fn eval<T: Scalar>(&self, numbers: &[T], values: &[f64]) -> T {
@@ -52,8 +41,13 @@ impl Magnitude {
             (Self::Constant(value), _) => T::from_f64(*value),
             (Self::Law(_, law), &[x, ..]) => x.compose(&law.eval(x.value())),
             (Self::Law(..), []) => T::from_f64(f64::NAN),
-            (Self::Expression(expression, _), numbers) => {
-                eval_expression(expression, numbers, values)
+            (Self::Expression(expression, signals), numbers) => {
+                let slope = |i: usize| match signals.get(i) {
+                    // Nothing varies with time but time, and an exponential of it that overflows has no slope.
+                    Some(Signal::Time) => 0.0,
+                    _ => expression.derivatives_wrt(values, i)[1],
+                };
+                first_order(expression.eval(values), slope, numbers, values)
             }
             (Self::Function(function, _), numbers) => function.eval(numbers, values),
             (Self::Friction(_) | Self::Separating(_) | Self::External(_), _) => T::from_f64(0.0),
@@ -75,19 +69,6 @@ impl<T: Scalar> SignalWorkspace<T> {
             values: vec![0.0; max_signals],
         }
     }
-}
-
-/// An expression in any kind of number: its value, plus its gradient times what each variable holds beside its
-/// plain value. That is exact to first order, as a dual number is.
-fn eval_expression<T: Scalar>(expression: &Expression, numbers: &[T], values: &[f64]) -> T {
-    let mut sum = T::from_f64(expression.eval(values));
-    if T::HAS_DERIVATIVES {
-        for (i, &number) in numbers.iter().enumerate() {
-            let rest = number - T::from_f64(values[i]);
-            sum += rest * T::from_f64(expression.derivatives_wrt(values, i)[1]);
-        }
-    }
-    sum
 }
 
 /// The signals of a magnitude.

@@ -1,8 +1,9 @@
 //! Forces and couples on bodies, and those of a load at its two ends.
 
-use super::{Guide, LoadKind, Mesh};
+use super::{CompiledLoads, Guide, LoadKind, LoadState, Mesh};
+use crate::mass::Mass;
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{ActuatorId, BodyId, JointId, Vec2};
+use dwell_geometry::{ActuatorId, BodyId, Joint, JointId, JointKind, Mechanism, Plan, Vec2};
 use dwell_numerics::Scalar;
 
 /// The cause of a wrench on a body.
@@ -49,132 +50,167 @@ impl<T: Scalar> AppliedWrench<T> {
     }
 }
 
-pub(super) type LoadEnd<T> = Option<(BodyId, Vec2<T>, Vec2<T>, T)>;
+/// The wrenches on two bodies, each with its moment arm, force and couple.
+pub(crate) fn on_two_bodies<T: Scalar>(
+    source: ForceSource,
+    bodies: [BodyId; 2],
+    moment_arms: [Vec2<T>; 2],
+    actions: [(Vec2<T>, T); 2],
+) -> [AppliedWrench<T>; 2] {
+    [0, 1].map(|i| AppliedWrench {
+        source,
+        body: bodies[i],
+        force: actions[i].0,
+        moment_arm: moment_arms[i],
+        couple: actions[i].1,
+    })
+}
 
-/// The body, force, arm and couple at each end of a load of magnitude `f`; none where it has no
-/// direction.
-// Long because it has one arm for each kind of load.
-pub(super) fn load_ends<T: Scalar>(
-    kind: LoadKind,
-    f: T,
-    states: &BodyStates<T>,
-    couple_points: [Vec2; 2],
-) -> Option<[LoadEnd<T>; 2]> {
-    let zero = T::from_f64(0.0);
-    let couples = |bodies: [BodyId; 2], couple: T| {
-        let end = |i: usize, couple| {
-            let moment_arm = states.body(bodies[i]).moment_arm(couple_points[i]);
-            Some((bodies[i], Vec2::zero(), moment_arm, couple))
+impl CompiledLoads {
+    /// Adds the wrenches of the `i`th load, taken as of this kind and magnitude `f`; none where it has no direction.
+    // Long because it has one arm for each kind of load.
+    pub(super) fn add_wrenches<T: Scalar>(
+        &self,
+        i: usize,
+        kind: LoadKind,
+        f: T,
+        states: &BodyStates<T>,
+        out: &mut LoadState<T>,
+    ) -> Option<()> {
+        let (source, zero) = (ForceSource::Load(i), T::from_f64(0.0));
+        let moment_arms_at = |bodies: [BodyId; 2], points: [Vec2; 2]| {
+            [0, 1].map(|i| states.body(bodies[i]).moment_arm(points[i]))
         };
-        Some([end(0, -couple), end(1, couple)])
-    };
-    // Between two points: equal and opposite forces along the line.
-    let along = |bodies: [BodyId; 2], points: [Vec2; 2], force: Vec2<T>| {
-        let end = |i: usize, force| {
-            let moment_arm = states.body(bodies[i]).moment_arm(points[i]);
-            Some((bodies[i], force, moment_arm, zero))
+        let forces = |bodies, moment_arms, force: Vec2<T>| {
+            on_two_bodies(source, bodies, moment_arms, [(-force, zero), (force, zero)])
         };
-        Some([end(0, -force), end(1, force)])
-    };
-    match kind {
-        LoadKind::Gravity { .. } => Some([None, None]),
-        LoadKind::Force {
-            body,
-            point,
-            direction,
-            body_fixed: follows,
-        } => {
-            let state = states.body(body);
-            let mut unit = direction.cast();
-            if follows {
-                unit = unit.rotate(state.rotation);
+        // Between two points: equal and opposite forces along the line.
+        let along = |bodies, points, force| forces(bodies, moment_arms_at(bodies, points), force);
+        let couples = |bodies, couple: T| {
+            let actions = [(Vec2::zero(), -couple), (Vec2::zero(), couple)];
+            let moment_arms = moment_arms_at(bodies, self.couple_points[i]);
+            on_two_bodies(source, bodies, moment_arms, actions)
+        };
+        let on_both = match kind {
+            LoadKind::Gravity { direction } => {
+                let pull = direction.cast() * f;
+                out.gravity += pull;
+                let weight = |&(body, Mass { mass, center, .. }): &(BodyId, Mass)| AppliedWrench {
+                    source,
+                    body,
+                    force: pull * T::from_f64(mass),
+                    moment_arm: states.body(body).moment_arm(center),
+                    couple: zero,
+                };
+                out.wrenches.extend(self.weighted_bodies.iter().map(weight));
+                return Some(());
             }
-            Some([Some((body, unit * f, state.moment_arm(point), zero)), None])
-        }
-        LoadKind::Torque { bodies } => couples(bodies, f),
-        LoadKind::Spring {
-            bodies,
-            points,
-            free_length: free,
-        } => {
-            let between = states.separation(bodies, points);
-            // −k (P₂ − P₁) + k free e: the first part is smooth where the points meet.
-            let mut force = -(between.gap * f);
-            if free != 0.0 {
-                match between.direction {
-                    Some(direction) => force += direction * (f * T::from_f64(free)),
-                    None if f.value() == 0.0 => {}
-                    None => return None,
+            LoadKind::Force {
+                body,
+                point,
+                direction,
+                body_fixed,
+            } => {
+                let state = states.body(body);
+                let mut unit = direction.cast();
+                if body_fixed {
+                    unit = unit.rotate(state.rotation);
                 }
+                out.wrenches.push(AppliedWrench {
+                    source,
+                    body,
+                    force: unit * f,
+                    moment_arm: state.moment_arm(point),
+                    couple: zero,
+                });
+                return Some(());
             }
-            along(bodies, points, force)
-        }
-        LoadKind::TorsionSpring {
-            bodies,
-            free_angle: free,
-        } => couples(bodies, -(f * (states.angle(bodies)[0] - T::from_f64(free)))),
-        LoadKind::Damper { bodies, points } => {
-            let between = states.separation(bodies, points);
-            let velocity = between.velocity;
-            let still =
-                f.value() == 0.0 || (velocity.x.value() == 0.0 && velocity.y.value() == 0.0);
-            let force = match between.direction {
-                Some(e) => -(e * (e.dot(velocity) * f)),
-                None if still => Vec2::zero(),
-                None => return None,
-            };
-            along(bodies, points, force)
-        }
-        LoadKind::RotationalDamper { bodies } => couples(bodies, -(f * states.angle(bodies)[1])),
-        LoadKind::PointToPointForce { bodies, points } => {
-            match states.separation(bodies, points).direction {
-                Some(e) => along(bodies, points, e * f),
-                None if f.value() == 0.0 => along(bodies, points, Vec2::zero()),
-                None => None,
+            LoadKind::Torque { bodies } => couples(bodies, f),
+            LoadKind::Spring {
+                bodies,
+                points,
+                free_length: free,
+            } => {
+                let between = states.separation(bodies, points);
+                // −k (P₂ − P₁) + k free e: the first part is smooth where the points meet.
+                let mut force = -(between.gap * f);
+                if free != 0.0 {
+                    match between.direction {
+                        Some(direction) => force += direction * (f * T::from_f64(free)),
+                        None if f.value() == 0.0 => {}
+                        None => return None,
+                    }
+                }
+                along(bodies, points, force)
             }
-        }
-        LoadKind::SeparatingForce(mesh) => separating_force_ends(mesh, f, states),
-        LoadKind::SlideForce(guide) => Some(slide_force_ends(guide, f, states)),
-        LoadKind::SlideDamper(guide) => {
-            let [_, velocity, _] = states.coordinate(guide.travel());
-            Some(slide_force_ends(guide, -(f * velocity), states))
-        }
+            LoadKind::TorsionSpring { bodies, free_angle } => {
+                let twist = states.angle(bodies)[0] - T::from_f64(free_angle);
+                couples(bodies, -(f * twist))
+            }
+            LoadKind::Damper { bodies, points } => {
+                let between = states.separation(bodies, points);
+                let velocity = between.velocity;
+                let still =
+                    f.value() == 0.0 || (velocity.x.value() == 0.0 && velocity.y.value() == 0.0);
+                let force = match between.direction {
+                    Some(e) => -(e * (e.dot(velocity) * f)),
+                    None if still => Vec2::zero(),
+                    None => return None,
+                };
+                along(bodies, points, force)
+            }
+            LoadKind::RotationalDamper { bodies } => {
+                couples(bodies, -(f * states.angle(bodies)[1]))
+            }
+            LoadKind::PointToPointForce { bodies, points } => {
+                let force = match states.separation(bodies, points).direction {
+                    Some(e) => e * f,
+                    None if f.value() == 0.0 => Vec2::zero(),
+                    None => return None,
+                };
+                along(bodies, points, force)
+            }
+            // On both bodies at the pitch point.
+            LoadKind::SeparatingForce(mesh) => {
+                let Mesh { bodies, points, .. } = mesh;
+                let [pitch_point, away] = mesh.pitch_point(states)?;
+                let [first, second] = moment_arms_at(bodies, points);
+                let between = states.separation(bodies, points).gap + pitch_point;
+                forces(bodies, [first + between, second + pitch_point], away * f)
+            }
+            // Along the guide, on both bodies at the second body's point.
+            LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
+                let Guide { bodies, points, .. } = guide;
+                let f = match kind {
+                    LoadKind::SlideDamper(_) => -(f * states.coordinate(guide.travel())[1]),
+                    _ => f,
+                };
+                let force = guide.axis.cast().rotate(states.body(bodies[0]).rotation) * f;
+                let [first, second] = moment_arms_at(bodies, points);
+                let gap = states.separation(bodies, points).gap;
+                forces(bodies, [first + gap, second], force)
+            }
+        };
+        out.wrenches.extend(on_both);
+        Some(())
     }
 }
 
-/// A force along a guide, on both bodies at the second body's point.
-fn slide_force_ends<T: Scalar>(guide: Guide, f: T, states: &BodyStates<T>) -> [LoadEnd<T>; 2] {
-    let Guide {
-        bodies,
-        points,
-        axis,
-    } = guide;
-    let force = axis.cast().rotate(states.body(bodies[0]).rotation) * f;
-    let on_first =
-        states.body(bodies[0]).moment_arm(points[0]) + states.separation(bodies, points).gap;
-    let on_second = states.body(bodies[1]).moment_arm(points[1]);
-    let zero = T::from_f64(0.0);
-    [
-        Some((bodies[0], -force, on_first, zero)),
-        Some((bodies[1], force, on_second, zero)),
-    ]
-}
-
-/// A force that separates teeth, on both bodies at the pitch point.
-fn separating_force_ends<T: Scalar>(
-    mesh: Mesh,
-    f: T,
-    states: &BodyStates<T>,
-) -> Option<[LoadEnd<T>; 2]> {
-    let Mesh { bodies, points, .. } = mesh;
-    let [pitch_point, away] = mesh.pitch_point(states)?;
-    let force = away * f;
-    let on_second = states.body(bodies[1]).moment_arm(points[1]) + pitch_point;
-    let between = states.separation(bodies, points).gap + pitch_point;
-    let on_first = states.body(bodies[0]).moment_arm(points[0]) + between;
-    let zero = T::from_f64(0.0);
-    Some([
-        Some((bodies[0], -force, on_first, zero)),
-        Some((bodies[1], force, on_second, zero)),
-    ])
+/// The points of two bodies at which a couple between them acts: those of a joint between them, of a revolute one
+/// if there is one; else the origins of the bodies.
+pub(crate) fn find_couple_points(
+    mechanism: &Mechanism,
+    plan: &Plan,
+    bodies: [BodyId; 2],
+) -> [Vec2; 2] {
+    let joints = || {
+        let between = |j: &&Joint| j.bodies == bodies || j.bodies == [bodies[1], bodies[0]];
+        mechanism.joints.iter().filter(between)
+    };
+    let pin = joints().find(|j| j.kind == JointKind::Revolute);
+    match pin.or_else(|| joints().next()) {
+        Some(joint) if joint.bodies == bodies => joint.points,
+        Some(joint) => [joint.points[1], joint.points[0]],
+        None => bodies.map(|b| plan.tree().joint_origins[b.0]),
+    }
 }

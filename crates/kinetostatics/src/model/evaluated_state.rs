@@ -13,8 +13,8 @@ use std::ops::Deref;
 /// Everything is known: the accelerations of the bodies, all loads with friction, actuator forces and reactions.
 #[derive(Debug)]
 pub struct EvaluatedState<'a, T = f64> {
-    state: KinematicState<'a, T>,
-    result: &'a InverseDynamics<T>,
+    pub(super) state: KinematicState<'a, T>,
+    pub(super) result: &'a InverseDynamics<T>,
 }
 
 /// To read only: other accelerations would not fit the forces.
@@ -41,7 +41,7 @@ impl Model {
         set: impl FnOnce(&mut Pose<T>, &mut Motion<T>),
     ) -> Result<EvaluatedState<'a, T>> {
         let mut state = self.given_kinematic_state(q_dot, workspace, set);
-        let loads = &mut state.workspace.load_workspace.loads;
+        let loads = &mut state.workspace.loads;
         loads.magnitude.copy_from_slice(magnitudes);
         state.update_wrenches()?;
         Ok(EvaluatedState { state, result })
@@ -49,10 +49,6 @@ impl Model {
 }
 
 impl<'a, T: Scalar> EvaluatedState<'a, T> {
-    pub(super) fn new(state: KinematicState<'a, T>, result: &'a InverseDynamics<T>) -> Self {
-        Self { state, result }
-    }
-
     /// The positions and velocities alone, for what else is to be evaluated there.
     pub fn into_kinematic_state(self) -> KinematicState<'a, T> {
         self.state
@@ -65,12 +61,12 @@ impl<'a, T: Scalar> EvaluatedState<'a, T> {
 
     /// The states of the bodies.
     pub fn bodies(&self) -> &BodyStates<T> {
-        &self.workspace.load_workspace.states
+        &self.workspace.states
     }
 
     /// The loads: their magnitudes and wrenches.
     pub fn loads(&self) -> &LoadState<T> {
-        &self.workspace.load_workspace.loads
+        &self.workspace.loads
     }
 
     /// The actuator forces and reactions.
@@ -83,21 +79,15 @@ impl EvaluatedState<'_> {
     /// Each load's generalised force by virtual work: `forces[load × actuators + i]` is the
     /// sum of F·∂v/∂q̇ᵢ + M ∂ω/∂q̇ᵢ over its wrenches, N·m (or N if the coordinate is a length).
     pub fn generalised_forces(&mut self, forces: &mut [f64]) {
-        let Workspace {
-            pose,
-            load_workspace: loaded,
-            ..
-        } = &mut *self.state.workspace;
+        let workspace = &mut *self.state.workspace;
         let plan = self.state.model.plan();
         forces.fill(0.0);
         let n = plan.actuators();
         for i in 0..n {
-            loaded.unit_velocity.fill(0.0);
-            loaded.unit_velocity[i] = 1.0;
-            plan.velocities(pose, &loaded.unit_velocity, &mut loaded.virtual_motion);
-            let states = &mut loaded.virtual_states;
-            states.fill(plan, pose, &loaded.virtual_motion);
-            for wrench in &loaded.loads.wrenches {
+            workspace.set_unit_velocities(plan, &[i]);
+            let states = &mut workspace.virtual_states;
+            states.fill(plan, &workspace.pose, &workspace.virtual_motion);
+            for wrench in &workspace.loads.wrenches {
                 if let ForceSource::Load(load) = wrench.source {
                     forces[load * n + i] += wrench.power(states);
                 }

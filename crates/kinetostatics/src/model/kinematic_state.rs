@@ -1,10 +1,10 @@
 //! Positions and velocities.
 
-use super::workspace::LoadWorkspace;
+use super::loaded_state::StateWithLoads;
 use super::{LoadedState, Model, Workspace};
 use crate::error::Result;
 
-use crate::pass::{AtRest, GivenMotion, InertialBody, InverseDynamics, UnitAcceleration};
+use crate::pass::{AtRest, GivenMotion, InverseDynamics, UnitAcceleration};
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{BodyId, Motion, Pose, PositionError};
 use dwell_numerics::Scalar;
@@ -43,11 +43,12 @@ impl Model {
         let Workspace { pose, motion, .. } = &mut *workspace;
         self.plan().positions(q, pose)?;
         self.plan().velocities(pose, q_dot, motion);
-        Ok(KinematicState::new(self, q_dot, workspace))
+        Ok(self.given_kinematic_state(q_dot, workspace, |_, _| ()))
     }
 
     /// Positions and velocities that `set` stores as pose and motion, where they come from elsewhere than
     /// the coordinates: of a change-point fit.
+    #[inline]
     pub fn given_kinematic_state<'a, T: Scalar>(
         &'a self,
         q_dot: &[T],
@@ -55,58 +56,28 @@ impl Model {
         set: impl FnOnce(&mut Pose<T>, &mut Motion<T>),
     ) -> KinematicState<'a, T> {
         set(&mut workspace.pose, &mut workspace.motion);
-        KinematicState::new(self, q_dot, workspace)
+        workspace.q_dot.copy_from_slice(q_dot);
+        let model = self;
+        let mut state = KinematicState { model, workspace };
+        state.fill_bodies();
+        state
     }
 }
 
 impl<'a, T: Scalar> KinematicState<'a, T> {
-    #[inline]
-    fn new(model: &'a Model, q_dot: &[T], workspace: &'a mut Workspace<T>) -> Self {
-        workspace.load_workspace.q_dot.copy_from_slice(q_dot);
-        let mut state = Self { model, workspace };
-        state.fill_bodies();
-        state
-    }
-
     /// The states of the bodies from pose and motion.
     #[inline]
     pub(super) fn fill_bodies(&mut self) {
-        let Workspace {
-            pose,
-            motion,
-            load_workspace: loaded,
-            ..
-        } = &mut *self.workspace;
-        loaded.states.fill(self.model.plan(), pose, motion);
+        let workspace = &mut *self.workspace;
+        let states = &mut workspace.states;
+        states.fill(self.model.plan(), &workspace.pose, &workspace.motion);
     }
 
     /// The wrenches of the loads from their magnitudes.
     #[inline]
     pub(super) fn update_wrenches(&mut self) -> Result<()> {
-        let LoadWorkspace { states, loads, .. } = &mut self.workspace.load_workspace;
+        let Workspace { states, loads, .. } = &mut *self.workspace;
         self.model.loads.update_wrenches(states, loads)
-    }
-
-    /// Inverse dynamics under all loads with the magnitudes that they have.
-    #[inline]
-    pub(super) fn loaded_pass(
-        &mut self,
-        q_ddot: &[T],
-        result: &mut InverseDynamics<T>,
-    ) -> Result<()> {
-        self.update_wrenches()?;
-        let Workspace {
-            pose,
-            motion,
-            pass,
-            load_workspace: loaded,
-            ..
-        } = &mut *self.workspace;
-        let model = &self.model.pass_model;
-        model.plan.accelerations(pose, q_ddot, motion);
-        pass.evaluate_loaded(model, pose, GivenMotion(motion), &mut loaded.loads);
-        result.read_from(model, pose, pass);
-        Ok(())
     }
 
     /// The pose.
@@ -117,14 +88,14 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     /// The value and the velocity of a coordinate of the mechanism, rad or m, per s.
     #[inline]
     pub fn coordinate(&self, coordinate: CoordinateFunction) -> [T; 2] {
-        let states = &self.workspace.load_workspace.states;
+        let states = &self.workspace.states;
         let [value, velocity, _] = states.coordinate(coordinate);
         [value, velocity]
     }
 
     /// Whether the whole revolutions of a body are counted.
     pub fn counts_revolutions(&self, body: BodyId) -> bool {
-        let states = &self.workspace.load_workspace.states;
+        let states = &self.workspace.states;
         states.body(body).angle.is_some()
     }
 
@@ -133,7 +104,7 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
         let Workspace { pose, motion, .. } = &mut *self.workspace;
         self.model.plan().accelerations(pose, q_ddot, motion);
         self.fill_bodies();
-        &self.workspace.load_workspace.states
+        &self.workspace.states
     }
 
     /// The magnitudes of the loads at time `t` (s).
@@ -142,26 +113,23 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     /// [`KinetostaticsError::MagnitudeNotFinite`](crate::KinetostaticsError::MagnitudeNotFinite) where a load has no finite magnitude.
     #[inline]
     pub fn apply_loads(self, t: f64) -> Result<LoadedState<'a, T>> {
-        let LoadWorkspace { states, loads, .. } = &mut self.workspace.load_workspace;
+        let Workspace { states, loads, .. } = &mut *self.workspace;
         self.model.loads.update_magnitudes(t, states, loads)?;
-        Ok(LoadedState::new(self))
+        Ok(StateWithLoads(self))
     }
 
     /// Column i of the mass matrix, and a_k,i: q̈ᵢ = 1 (per s²) and nothing else.
     #[inline]
     pub fn mass_matrix_column(&mut self, i: usize, result: &mut InverseDynamics<T>) {
-        let Workspace {
+        let (model, workspace) = (&self.model.pass_model, &mut *self.workspace);
+        workspace.set_unit_velocities(&model.plan, &[i]);
+        let Workspace { pose, pass, .. } = workspace;
+        pass.evaluate(
+            model,
             pose,
-            pass,
-            load_workspace: loaded,
-            ..
-        } = &mut *self.workspace;
-        let model = &self.model.pass_model;
-        let motion = &mut loaded.virtual_motion;
-        loaded.unit_velocity.fill(T::from_f64(0.0));
-        loaded.unit_velocity[i] = T::from_f64(1.0);
-        model.plan.velocities(pose, &loaded.unit_velocity, motion);
-        pass.evaluate(model, pose, UnitAcceleration(motion));
+            UnitAcceleration(&workspace.virtual_motion),
+            None,
+        );
         result.read_from(model, pose, pass);
     }
 
@@ -175,17 +143,10 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
         load: usize,
         result: &mut InverseDynamics<T>,
     ) -> Result<()> {
-        let Workspace {
-            pose,
-            pass,
-            load_workspace: loaded,
-            ..
-        } = &mut *self.workspace;
-        let model = &self.model.pass_model;
-        let single = &mut loaded.single_load;
-        self.model
-            .loads
-            .unit_wrenches(load, &loaded.states, single)?;
+        let (model, workspace) = (&self.model.pass_model, &mut *self.workspace);
+        let (loads, single) = (&self.model.loads, &mut workspace.single_load);
+        loads.unit_wrenches(load, &workspace.states, single)?;
+        let Workspace { pose, pass, .. } = workspace;
         pass.evaluate_loaded(model, pose, AtRest, single);
         result.read_from(model, pose, pass);
         Ok(())
@@ -194,24 +155,16 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     /// The Christoffel terms of the velocities i and j, for q̇ᵢ q̇ⱼ = 1 per s²: with i = j, the pass at
     /// unit velocity; else the pass at both unit velocities less those at each of them.
     pub fn christoffel_terms(&mut self, [i, j]: [usize; 2], result: &mut InverseDynamics<T>) {
-        let Workspace {
-            pose,
-            pass,
-            load_workspace: loaded,
-            ..
-        } = &mut *self.workspace;
-        let model = &self.model.pass_model;
+        let (model, workspace) = (&self.model.pass_model, &mut *self.workspace);
         let rest = vec![T::from_f64(0.0); model.plan.actuators()];
         let mut at = |coordinates: &[usize], result: &mut InverseDynamics<T>| {
-            let motion = &mut loaded.virtual_motion;
-            loaded.unit_velocity.fill(T::from_f64(0.0));
-            for &k in coordinates {
-                loaded.unit_velocity[k] = T::from_f64(1.0);
-            }
-            model.plan.velocities(pose, &loaded.unit_velocity, motion);
+            workspace.set_unit_velocities(&model.plan, coordinates);
+            let (pose, motion) = (&workspace.pose, &mut workspace.virtual_motion);
             model.plan.accelerations(pose, &rest, motion);
-            pass.evaluate(model, pose, GivenMotion(motion));
-            result.read_from(model, pose, pass);
+            workspace
+                .pass
+                .evaluate(model, pose, GivenMotion(motion), None);
+            result.read_from(model, pose, &workspace.pass);
         };
         if i == j {
             return at(&[i], result);
@@ -228,22 +181,16 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
 impl KinematicState<'_> {
     /// Kinetic energy ½ Σ m v² + I ω², J.
     pub fn kinetic_energy(&self) -> f64 {
-        let states = &self.workspace.load_workspace.states;
-        let energy = |body: &InertialBody| {
-            let id = BodyId(body.body);
-            let velocity = states.point(id, self.model.masses[id.0].center).velocity;
-            let angular_velocity = states.body(id).angular_velocity;
-            0.5 * (body.mass * velocity.dot(velocity)
-                + body.inertia * angular_velocity * angular_velocity)
-        };
-        let bodies = self.model.pass_model.inertial_bodies.iter();
-        bodies.map(energy).sum()
+        let terms = self.model.inertia_terms(&self.workspace.states);
+        terms
+            .map(|[of_mass, of_inertia, ..]| 0.5 * (of_mass + of_inertia))
+            .sum()
     }
 
     /// The potential energy of a load, J; none if it is not [conservative](crate::Load::is_conservative). That of gravity
     /// and of forces is zero at the ground's origin.
     pub fn potential_energy(&self, load: usize) -> Option<f64> {
-        let states = &self.workspace.load_workspace.states;
+        let states = &self.workspace.states;
         self.model.loads.potential_energy(load, states)
     }
 }

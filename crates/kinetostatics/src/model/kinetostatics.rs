@@ -34,24 +34,18 @@ impl Model {
         let reactions = self.mechanism.reactions();
         let is_indeterminate = |load: &Load| {
             let tooth_force = load.pressure_angle().map(|teeth| teeth.tooth_force());
-            let mut found = (0..reactions.len()).filter(|&k| Some(reactions[k]) == tooth_force);
-            found.any(|k| !self.pass_model.plan.is_determinate(k))
+            let is_tooth_force = |k: usize| Some(reactions[k]) == tooth_force;
+            (0..reactions.len()).any(|k| is_tooth_force(k) && !self.plan().is_determinate(k))
         };
-        match self.loads().iter().position(is_indeterminate) {
-            Some(load) => Err(LoadError {
-                load,
-                what: "its tooth force is statically indeterminate (redundant constraints share the load), so its separating force has no value",
-            }),
-            None => Ok(()),
-        }
+        let what = "its tooth force is statically indeterminate (redundant constraints share the load), so its separating force has no value";
+        let found = self.loads().iter().position(is_indeterminate);
+        found.map_or(Ok(()), |load| Err(LoadError { load, what }))
     }
 
     /// The compiled signals of a load's magnitude, in the order of its [signals](crate::Magnitude::signals).
     pub fn compiled_signals(&self, load: usize) -> &[CompiledSignal] {
-        self.loads
-            .compiled_signals
-            .get(load)
-            .map_or(&[], Vec::as_slice)
+        let signals = self.loads.compiled_signals.get(load);
+        signals.map_or(&[], Vec::as_slice)
     }
 
     /// The loads, in their order.

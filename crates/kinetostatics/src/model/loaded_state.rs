@@ -1,26 +1,27 @@
 //! The loads, and inverse dynamics under them.
 
-use super::workspace::LoadWorkspace;
-use super::{EvaluatedState, KinematicState};
-use crate::error::{KinetostaticsError, Result};
+use super::{EvaluatedState, KinematicState, Workspace};
+use crate::error::Result;
 use crate::friction;
 use crate::load::{AppliedWrench, ForceSource, Magnitude};
-use crate::pass::InverseDynamics;
+use crate::pass::{GivenMotion, InverseDynamics};
 use dwell_geometry::Motion;
 use dwell_geometry::body_states::BodyStates;
 use dwell_numerics::Scalar;
 use std::ops::{Deref, DerefMut};
 
+/// A state whose loads are known: their magnitudes alone, or their wrenches, too.
+#[derive(Debug)]
+pub struct StateWithLoads<'a, T, const WRENCHES: bool>(pub(super) KinematicState<'a, T>);
+
 /// The magnitudes of the loads are known; friction and separating forces are still zero, and so are external
 /// magnitudes until they are set.
-#[derive(Debug)]
-pub struct LoadedState<'a, T = f64>(KinematicState<'a, T>);
+pub type LoadedState<'a, T = f64> = StateWithLoads<'a, T, false>;
 
 /// The wrenches of the loads are known, and the accelerations of the mechanism where inverse dynamics led here.
-#[derive(Debug)]
-pub struct ForceState<'a, T = f64>(KinematicState<'a, T>);
+pub type ForceState<'a, T = f64> = StateWithLoads<'a, T, true>;
 
-impl<'a, T> Deref for LoadedState<'a, T> {
+impl<'a, T, const WRENCHES: bool> Deref for StateWithLoads<'a, T, WRENCHES> {
     type Target = KinematicState<'a, T>;
 
     fn deref(&self) -> &Self::Target {
@@ -28,81 +29,64 @@ impl<'a, T> Deref for LoadedState<'a, T> {
     }
 }
 
-impl<T> DerefMut for LoadedState<'_, T> {
-    fn deref_mut(&mut self) -> &mut Self::Target {
-        &mut self.0
-    }
-}
-
-impl<'a, T> Deref for ForceState<'a, T> {
-    type Target = KinematicState<'a, T>;
-
-    fn deref(&self) -> &Self::Target {
-        &self.0
-    }
-}
-
-impl<T> DerefMut for ForceState<'_, T> {
+impl<T, const WRENCHES: bool> DerefMut for StateWithLoads<'_, T, WRENCHES> {
     fn deref_mut(&mut self) -> &mut Self::Target {
         &mut self.0
     }
 }
 
 impl<'a, T: Scalar> LoadedState<'a, T> {
-    #[inline]
-    pub(super) fn new(state: KinematicState<'a, T>) -> Self {
-        Self(state)
-    }
-
     /// Sets the magnitude of a load of [`Magnitude::External`], in the unit of its kind.
     pub fn set_magnitude(&mut self, load: usize, magnitude: T) {
-        self.0.workspace.load_workspace.loads.magnitude[load] = magnitude;
+        self.0.workspace.loads.magnitude[load] = magnitude;
     }
 
     /// A magnitude of the signals of a load of [`Magnitude::External`], such as the voltage of a motor, at time `t` (s).
     ///
     /// # Errors
-    /// [`KinetostaticsError::MagnitudeNotFinite`] where it has no finite value.
+    /// [`KinetostaticsError::MagnitudeNotFinite`](crate::KinetostaticsError::MagnitudeNotFinite) where it has no finite value.
     pub fn eval_magnitude(&mut self, load: usize, magnitude: &Magnitude, t: f64) -> Result<T> {
-        let LoadWorkspace { states, loads, .. } = &mut self.0.workspace.load_workspace;
-        let signals = &self.0.model.loads.compiled_signals[load];
-        let value = magnitude.eval_at_state(t, signals, states, &mut loads.signal_workspace);
-        if value.value().is_finite() {
-            Ok(value)
-        } else {
-            Err(KinetostaticsError::MagnitudeNotFinite { load })
-        }
+        let Workspace { states, loads, .. } = &mut *self.0.workspace;
+        let workspace = &mut loads.signal_workspace;
+        let compiled = &self.0.model.loads;
+        compiled.eval_magnitude(load, magnitude, t, states, workspace)
     }
 
     /// The wrenches of the loads, without inverse dynamics.
     ///
     /// # Errors
-    /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
+    /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where the two points of a load coincide.
     pub fn wrenches(mut self) -> Result<ForceState<'a, T>> {
         self.0.update_wrenches()?;
-        Ok(ForceState(self.0))
+        Ok(StateWithLoads(self.0))
     }
 
     /// The actuator forces and reactions of inertia and all loads with these accelerations (rad/s² or m/s²), without
     /// friction and separating forces.
     ///
     /// # Errors
-    /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
+    /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where the two points of a load coincide.
     #[inline]
     pub fn inverse_dynamics(
         mut self,
         q_ddot: &[T],
         result: &mut InverseDynamics<T>,
     ) -> Result<ForceState<'a, T>> {
-        self.0.loaded_pass(q_ddot, result)?;
-        Ok(ForceState(self.0))
+        self.0.update_wrenches()?;
+        let (model, workspace) = (&self.0.model.pass_model, &mut *self.0.workspace);
+        let Workspace { pose, motion, .. } = workspace;
+        model.plan.accelerations(pose, q_ddot, motion);
+        let pass = &mut workspace.pass;
+        pass.evaluate_loaded(model, pose, GivenMotion(motion), &mut workspace.loads);
+        result.read_from(model, pose, pass);
+        Ok(StateWithLoads(self.0))
     }
 
     /// The actuator forces and reactions of inertia and all loads with these accelerations (rad/s² or m/s²), with
     /// friction and separating forces: Jᵀ[λ; τ] = M ẍ + h − f.
     ///
     /// # Errors
-    /// [`KinetostaticsError`] where a load has no direction, or friction jams the mechanism.
+    /// [`KinetostaticsError`](crate::KinetostaticsError) where a load has no direction, or friction jams the mechanism.
     pub fn evaluate(
         self,
         q_ddot: &[T],
@@ -111,14 +95,14 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
         let mut state = self.inverse_dynamics(q_ddot, result)?;
         state.0.fill_bodies();
         if !state.model.dependent_loads.is_empty() {
-            let loaded = &mut state.0.workspace.load_workspace;
-            let mut responses = std::mem::take(&mut loaded.friction_responses);
+            let mut responses = std::mem::take(&mut state.0.workspace.friction_responses);
             let solved = state.solve_prescribed_friction(&mut responses, &result.reactions);
-            state.0.workspace.load_workspace.friction_responses = responses;
+            state.0.workspace.friction_responses = responses;
             solved?;
-            state.0.loaded_pass(q_ddot, result)?;
+            state = LoadedState::inverse_dynamics(StateWithLoads(state.0), q_ddot, result)?;
         }
-        Ok(EvaluatedState::new(state.0, result))
+        let state = state.0;
+        Ok(EvaluatedState { state, result })
     }
 }
 
@@ -126,15 +110,15 @@ impl<T: Scalar> ForceState<'_, T> {
     /// The magnitudes of the loads, in the units of their kinds.
     #[inline]
     pub fn magnitudes(&self) -> &[T] {
-        &self.0.workspace.load_workspace.loads.magnitude
+        &self.0.workspace.loads.magnitude
     }
 
     /// Sets magnitudes of loads of [`Magnitude::External`], and the wrenches anew.
     ///
     /// # Errors
-    /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
+    /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where the two points of a load coincide.
     pub fn set_magnitudes(&mut self, magnitudes: impl Iterator<Item = (usize, T)>) -> Result<()> {
-        let loads = &mut self.0.workspace.load_workspace.loads;
+        let loads = &mut self.0.workspace.loads;
         for (load, magnitude) in magnitudes {
             loads.magnitude[load] = magnitude;
         }
@@ -143,19 +127,18 @@ impl<T: Scalar> ForceState<'_, T> {
 
     /// The power of a load, W.
     pub fn load_power(&self, load: usize) -> T {
-        let LoadWorkspace { states, loads, .. } = &self.0.workspace.load_workspace;
+        let Workspace { states, loads, .. } = &*self.0.workspace;
         let mut sum = T::from_f64(0.0);
-        for wrench in &loads.wrenches {
-            if wrench.source == ForceSource::Load(load) {
-                sum += wrench.power(states);
-            }
+        let source = ForceSource::Load(load);
+        for wrench in loads.wrenches.iter().filter(|w| w.source == source) {
+            sum += wrench.power(states);
         }
         sum
     }
 
     /// The wrenches of the loads on the bodies.
     pub fn wrenches(&self) -> &[AppliedWrench<T>] {
-        &self.0.workspace.load_workspace.loads.wrenches
+        &self.0.workspace.loads.wrenches
     }
 
     /// The motion of frames and slides.
@@ -166,7 +149,7 @@ impl<T: Scalar> ForceState<'_, T> {
     /// The states of the bodies with the accelerations of the inverse dynamics.
     pub fn bodies(&mut self) -> &BodyStates<T> {
         self.0.fill_bodies();
-        &self.0.workspace.load_workspace.states
+        &self.0.workspace.states
     }
 
     /// The states of the bodies with the motion that `set` stores, accelerations included.
@@ -181,22 +164,19 @@ impl<T: Scalar> ForceState<'_, T> {
     /// become the magnitudes of their loads, and the loads' wrenches are updated.
     ///
     /// # Errors
-    /// [`KinetostaticsError::SelfLocking`] where there is no unique solution.
+    /// [`KinetostaticsError::SelfLocking`](crate::KinetostaticsError::SelfLocking) where there is no unique solution.
     pub fn solve_friction(
         &mut self,
         frictionless: &[T],
         responses: &[InverseDynamics<T>],
     ) -> Result<()> {
-        let LoadWorkspace {
-            states,
-            loads,
-            friction_workspace: solution,
-            ..
-        } = &mut self.0.workspace.load_workspace;
-        let dependent_loads = &self.0.model.dependent_loads;
+        let KinematicState { model, workspace } = &mut self.0;
+        let dependent_loads = &model.dependent_loads;
+        let solution = &mut workspace.friction_workspace;
+        let states = &workspace.states;
         friction::solve(dependent_loads, states, frictionless, responses, solution)?;
         for (dependent, force) in dependent_loads.iter().zip(&solution.force) {
-            loads.magnitude[dependent.load] = *force;
+            workspace.loads.magnitude[dependent.load] = *force;
         }
         self.0.update_wrenches()
     }

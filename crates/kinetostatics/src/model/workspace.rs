@@ -5,7 +5,7 @@ use crate::friction::FrictionWorkspace;
 use crate::load::LoadState;
 use crate::pass::{InverseDynamics, RecursivePass};
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{Motion, Pose};
+use dwell_geometry::{Motion, Plan, Pose};
 use dwell_numerics::Scalar;
 
 /// Working memory for evaluations of a model in one thread. What it holds is read through the [stages](super::stages)
@@ -16,12 +16,7 @@ pub struct Workspace<T> {
     pub(crate) motion: Motion<T>,
     pub(crate) unit_passes: RecursivePass<T, 2>,
     pub(crate) pass: RecursivePass<T, 1>,
-    pub(crate) load_workspace: LoadWorkspace<T>,
-}
-
-/// Working memory of an evaluation with loads: the states of all bodies and loads.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct LoadWorkspace<T> {
+    /// For an evaluation with loads: the states of all bodies and loads.
     pub(crate) states: BodyStates<T>,
     pub(crate) loads: LoadState<T>,
     pub(crate) q_dot: Vec<T>,
@@ -47,17 +42,27 @@ impl Model {
             motion: plan.motion(),
             unit_passes: RecursivePass::new(&self.pass_model),
             pass: RecursivePass::new(&self.pass_model),
-            load_workspace: LoadWorkspace {
-                states: BodyStates::new(plan),
-                loads: self.loads.state(plan),
-                single_load: self.loads.state(plan),
-                friction_workspace: FrictionWorkspace::new(dependent_loads),
-                friction_responses: vec![self.result_buffer(); dependent_loads],
-                q_dot: rest.clone(),
-                virtual_motion: plan.motion(),
-                virtual_states: BodyStates::new(plan),
-                unit_velocity: rest,
-            },
+            states: BodyStates::new(plan),
+            loads: self.loads.state(plan),
+            single_load: self.loads.state(plan),
+            friction_workspace: FrictionWorkspace::new(dependent_loads),
+            friction_responses: vec![self.result_buffer(); dependent_loads],
+            q_dot: rest.clone(),
+            virtual_motion: plan.motion(),
+            virtual_states: BodyStates::new(plan),
+            unit_velocity: rest,
         }
+    }
+}
+
+impl<T: Scalar> Workspace<T> {
+    /// The virtual motion at the pose, at unit velocity of these coordinates.
+    #[inline]
+    pub(super) fn set_unit_velocities(&mut self, plan: &Plan, coordinates: &[usize]) {
+        self.unit_velocity.fill(T::from_f64(0.0));
+        for &i in coordinates {
+            self.unit_velocity[i] = T::from_f64(1.0);
+        }
+        plan.velocities(&self.pose, &self.unit_velocity, &mut self.virtual_motion);
     }
 }

@@ -88,10 +88,8 @@ impl<T: Scalar> AccelerationInput<T, 1> for GivenMotion<'_, T> {
 impl<T: Scalar> AccelerationInput<T, 2> for UnitMotions<'_, T> {
     #[inline(always)]
     fn angular_acceleration(self, frame: usize) -> [T; 2] {
-        [
-            self.0.angular_acceleration[frame],
-            self.0.angular_velocity[frame],
-        ]
+        let [first] = GivenMotion(self.0).angular_acceleration(frame);
+        [first, self.0.angular_velocity[frame]]
     }
 
     #[inline(always)]

@@ -54,12 +54,11 @@ pub(super) fn inertial_bodies(
     masses: &[Mass],
 ) -> Vec<InertialBody> {
     let inertial_body = |(i, body): (usize, &MovingBody)| {
-        let Mass {
-            mass,
-            inertia,
-            center,
-        } = masses.get(body.body).copied().unwrap_or_default();
-        let vector = plan.tree().vector_to(plan.frames(), body.body, center);
+        let given = masses.get(body.body).copied().unwrap_or_default();
+        let (mass, inertia) = (given.mass, given.inertia);
+        let vector = plan
+            .tree()
+            .vector_to(plan.frames(), body.body, given.center);
         let offset = Some(vector.local).filter(|&local| local != Vec2::ZERO && mass > 0.0);
         (mass > 0.0 || inertia > 0.0).then(|| InertialBody {
             moving_body: i,
@@ -84,13 +83,12 @@ pub(super) fn accelerated_bodies(
     inertial_bodies: &[InertialBody],
 ) -> Vec<AcceleratedBody> {
     let moving_bodies = plan.moving_bodies();
-    let mut mass = vec![0.0; moving_bodies.len()];
-    let mut first_moments = vec![None; moving_bodies.len()];
+    // By moving body: mass and first moment.
+    let mut own = vec![(0.0, None); moving_bodies.len()];
     for body in inertial_bodies {
-        mass[body.moving_body] = body.mass;
-        first_moments[body.moving_body] = body.first_moment;
+        own[body.moving_body] = (body.mass, body.first_moment);
     }
-    let mut has_subtree_mass: Vec<bool> = mass.iter().map(|&m| m > 0.0).collect();
+    let mut has_subtree_mass: Vec<bool> = own.iter().map(|&(mass, _)| mass > 0.0).collect();
     for (i, body) in moving_bodies.iter().enumerate().rev() {
         if let (true, Some(parent)) = (has_subtree_mass[i], body.parent) {
             has_subtree_mass[parent] = true;
@@ -107,8 +105,8 @@ pub(super) fn accelerated_bodies(
                 parent: body.parent.and_then(|parent| index[parent]),
                 joint_vector: body.joint_vector.map(|vector| (vector, body.parent_frame)),
                 slide: body.slide,
-                mass: mass[i],
-                first_moment: first_moments[i],
+                mass: own[i].0,
+                first_moment: own[i].1,
             });
         }
     }

@@ -51,19 +51,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         }
     }
 
-    /// Inertia forces, then multipliers, then (where requested reactions need them) the forces and moments in the
-    /// joints of the tree.
-    #[inline(always)]
-    pub(crate) fn evaluate(
-        &mut self,
-        model: &PassModel,
-        pose: &Pose<T>,
-        accelerations: impl AccelerationInput<T, N>,
-    ) {
-        self.evaluate_with(model, pose, accelerations, None);
-    }
-
-    /// As [`RecursivePass::evaluate`], with the loads' forces and moments on every body.
+    /// [`RecursivePass::evaluate`] with the loads' forces and moments on every body.
     // Not inlined, so that an evaluation without loads does not contain it.
     #[inline(never)]
     pub(crate) fn evaluate_loaded(
@@ -73,11 +61,13 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         accelerations: impl AccelerationInput<T, N>,
         loads: &mut LoadState<T>,
     ) {
-        self.evaluate_with(model, pose, accelerations, Some(loads));
+        self.evaluate(model, pose, accelerations, Some(loads));
     }
 
+    /// Inertia forces, then multipliers, then (where requested reactions need them) the forces and moments in the
+    /// joints of the tree.
     #[inline(always)]
-    fn evaluate_with(
+    pub(crate) fn evaluate(
         &mut self,
         model: &PassModel,
         pose: &Pose<T>,
@@ -103,14 +93,18 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
                     subtract(couple, moment);
                 }
             }
-            self.transfer_joint_moments(model);
+            // Each couple is transferred to the body against which the constrained body is held.
+            for constraint in model.plan.frames().angular_constraints.iter().rev() {
+                let couple = self.joint_moments[constraint.body];
+                add(&mut self.joint_moments[constraint.reference_body], couple);
+            }
         }
     }
 
     /// Accelerations of the origins, and each body's own inertia force and its moment about its
     /// origin: Σ m r×a = I α + (Σ m r)×(the origin's acceleration).
     #[inline(always)]
-    pub(crate) fn forward_pass(
+    fn forward_pass(
         &mut self,
         model: &PassModel,
         pose: &Pose<T>,
@@ -122,10 +116,8 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
             *moment = map_array(rates, |rate| rate * T::from_f64(inertia));
         }
         for (i, accelerated) in model.accelerated_bodies.iter().enumerate() {
-            let mut acceleration = match accelerated.parent {
-                Some(parent) => self.origin_acceleration[parent],
-                None => [Vec2::zero(); N],
-            };
+            let of_parent = |parent: usize| self.origin_acceleration[parent];
+            let mut acceleration = accelerated.parent.map_or([Vec2::zero(); N], of_parent);
             if let Some((vector, frame)) = accelerated.joint_vector {
                 let more = accelerations.vector_acceleration(frame, pose.vector[vector]);
                 add(&mut acceleration, more);
@@ -153,7 +145,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
 
     /// Carries the inertia forces down the tree: moments on the frames, forces along the slides.
     #[inline(always)]
-    pub(crate) fn backward_pass(&mut self, model: &PassModel, pose: &Pose<T>) {
+    fn backward_pass(&mut self, model: &PassModel, pose: &Pose<T>) {
         let ForceBalance {
             moment,
             slide_force,
@@ -216,7 +208,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
 
     /// Stores each body's own inertia force: the first part of what its joint must exert on it.
     #[inline(always)]
-    pub(crate) fn store_inertia_forces(
+    fn store_inertia_forces(
         &mut self,
         model: &PassModel,
         pose: &Pose<T>,
@@ -240,11 +232,12 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
     /// The force that each joint of the tree exerts on the body it carries, where that is needed: the inertia
     /// forces of all bodies that it carries, less the forces of the loop joints on them.
     #[inline(always)]
-    pub(crate) fn accumulate_joint_forces(&mut self, model: &PassModel, pose: &Pose<T>) {
+    fn accumulate_joint_forces(&mut self, model: &PassModel, pose: &Pose<T>) {
         let sources = &model.reaction_sources;
         for (c, ends) in sources.loop_joint_ends.iter().enumerate() {
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
-                if let (true, Some(body)) = (sources.end_force_needed(end), end.moving_body) {
+                let needed = |&body: &usize| sources.joint_force_needed[body];
+                if let Some(body) = end.moving_body.filter(needed) {
                     let force = self.loop_joint_force(model, pose, c);
                     let more = map_array(force, |f| f * T::from_f64(sign));
                     add(&mut self.joint_forces[body], more);
@@ -263,12 +256,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
 
     /// The force of a loop joint's first body on its second, in ground axes.
     #[inline(always)]
-    pub(crate) fn loop_joint_force(
-        &self,
-        model: &PassModel,
-        pose: &Pose<T>,
-        closure: usize,
-    ) -> [Vec2<T>; N] {
+    fn loop_joint_force(&self, model: &PassModel, pose: &Pose<T>, closure: usize) -> [Vec2<T>; N] {
         let multiplier = self.balance.loop_multiplier[closure];
         match model.plan.loop_closures[closure].axis {
             None => multiplier,
@@ -280,10 +268,10 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
     }
 
     /// The couples that prismatic joints and actuators exert, where they are needed: each body's moment balance
-    /// about its origin, before [`Self::transfer_joint_moments`].
+    /// about its origin, before they are transferred.
     // Long because it is inlined whole, and each part needs the same sources.
     #[inline(always)]
-    pub(crate) fn accumulate_joint_moments(
+    fn accumulate_joint_moments(
         &mut self,
         model: &PassModel,
         pose: &Pose<T>,
@@ -312,10 +300,8 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
                 if !needed[end.body] {
                     continue;
                 }
-                let mut moment_arm = match end.moment_arm {
-                    Some(moment_arm) => moment_arm.cast().rotate(pose.rotation[end.frame]),
-                    None => Vec2::zero(),
-                };
+                let turned = |arm: Vec2| arm.cast().rotate(pose.rotation[end.frame]);
+                let mut moment_arm = end.moment_arm.map_or(Vec2::zero(), turned);
                 if let (true, Some((axis, _))) = (sign > 0.0, model.plan.loop_closures[c].axis) {
                     // The force acts at the second body's point on both.
                     moment_arm += pose.vector[axis] * pose.closure_travel[c];
@@ -327,12 +313,11 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         }
         for r in 0..model.plan.couplings.len() {
             let multiplier = self.balance.coupling_multiplier[r];
-            model
-                .plan
-                .coupling_angle_derivatives(r, pose, |body, factor| {
-                    let more = map_array(multiplier, |m| -(factor * m));
-                    add(&mut self.joint_moments[body], more);
-                });
+            let add_moment = |body: usize, factor: T| {
+                let more = map_array(multiplier, |m| -(factor * m));
+                add(&mut self.joint_moments[body], more);
+            };
+            model.plan.coupling_angle_derivatives(r, pose, add_moment);
         }
         for (i, body) in moving_bodies.iter().enumerate() {
             let force = self.joint_forces[i];
@@ -359,15 +344,6 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         }
     }
 
-    /// Transfers each couple to the body against which the constrained body is held.
-    #[inline(always)]
-    pub(crate) fn transfer_joint_moments(&mut self, model: &PassModel) {
-        for constraint in model.plan.frames().angular_constraints.iter().rev() {
-            let couple = self.joint_moments[constraint.body];
-            add(&mut self.joint_moments[constraint.reference_body], couple);
-        }
-    }
-
     /// An actuator's force on its second body: the sum of the moments on the frames that it turns.
     #[inline(always)]
     pub(crate) fn tau(&self, model: &PassModel, actuator: usize) -> [T; N] {
@@ -380,5 +356,41 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
             add(&mut sum, more);
         }
         sum
+    }
+}
+
+/// The actuators' actions and the requested reactions in one state of motion.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct InverseDynamics<T> {
+    /// By actuator: its force on its second body, N·m; of a length, N, positive when it pushes apart.
+    pub tau: Vec<T>,
+    /// By requested reaction: N or N·m.
+    pub reactions: Vec<T>,
+}
+
+impl<T: Scalar> InverseDynamics<T> {
+    /// Adds a multiple of other results of the same model.
+    pub fn add_scaled(&mut self, other: &Self, factor: T) {
+        for (sum, more) in self.reactions.iter_mut().zip(&other.reactions) {
+            *sum += *more * factor;
+        }
+        for (sum, more) in self.tau.iter_mut().zip(&other.tau) {
+            *sum += *more * factor;
+        }
+    }
+
+    /// Copies them from a pass.
+    pub(crate) fn read_from(
+        &mut self,
+        model: &PassModel,
+        pose: &Pose<T>,
+        pass: &RecursivePass<T, 1>,
+    ) {
+        for (i, tau) in self.tau.iter_mut().enumerate() {
+            *tau = pass.tau(model, i)[0];
+        }
+        for (k, value) in self.reactions.iter_mut().enumerate() {
+            *value = pass.reaction(model, pose, k)[0];
+        }
     }
 }

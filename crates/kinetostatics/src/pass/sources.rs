@@ -22,10 +22,8 @@ pub(crate) struct LoopJointEnd {
 /// A direction along which a force is requested.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum ForceDirection {
-    /// The ground's x or y axis, times a sign.
-    X(f64),
-    Y(f64),
-    /// A constant vector in a frame.
+    /// A constant vector in the ground's frame, and in a frame that turns.
+    Ground(Vec2),
     Frame(usize, Vec2),
 }
 
@@ -34,8 +32,7 @@ impl ForceDirection {
     #[inline(always)]
     fn component<T: Scalar, const N: usize>(self, forces: &[Vec2<T>; N], pose: &Pose<T>) -> [T; N] {
         let direction = match self {
-            Self::X(sign) => vec2(T::from_f64(sign), T::from_f64(0.0)),
-            Self::Y(sign) => vec2(T::from_f64(0.0), T::from_f64(sign)),
+            Self::Ground(direction) => direction.cast(),
             Self::Frame(frame, local) => local.cast().rotate(pose.rotation[frame]),
         };
         map_array(*forces, |force| force.dot(direction))
@@ -140,12 +137,6 @@ impl ReactionSources {
         (self.joint_force_needed, self.joint_moment_needed) = (force_needed, moment_needed);
     }
 
-    /// Whether the force of the joint that carries a loop joint's end is needed.
-    pub(crate) fn end_force_needed(&self, end: &LoopJointEnd) -> bool {
-        end.moving_body
-            .is_some_and(|body| self.joint_force_needed[body])
-    }
-
     fn source_of(&self, mechanism: &Mechanism, plan: &Plan, reaction: Reaction) -> ReactionSource {
         let Reaction { joint, component } = reaction;
         let (pair, coupling) = plan.joint_parts(joint);
@@ -166,38 +157,32 @@ impl ReactionSources {
     /// A component of the force in a kinematic pair.
     fn pair_force(&self, plan: &Plan, pair: usize, component: Component) -> ReactionSource {
         let kinematic_pair = &plan.pairs()[pair];
+        let role = plan.pair_roles[pair];
+        // On a moving body, as the action of its joint's first body.
+        let sign = match role {
+            PairRole::TreeJoint(moving_body) if !self.child_is_second[moving_body] => -1.0,
+            PairRole::TreeJoint(_) | PairRole::LoopJoint(_) => 1.0,
+        };
         let in_frame = |body: usize, local: Vec2| {
             let attitude = plan.frames().orientations[body];
-            ForceDirection::Frame(attitude.frame, local.rotate(attitude.offset))
+            ForceDirection::Frame(attitude.frame, local.rotate(attitude.offset) * sign)
         };
         let direction = match (component, kinematic_pair.kind) {
-            (Component::Y, _) => ForceDirection::Y(1.0),
+            (Component::Y, _) => ForceDirection::Ground(vec2(0.0, sign)),
             (Component::Normal, PairKind::Prismatic { axes, .. }) => {
                 in_frame(kinematic_pair.bodies[0], axes[0].perp())
             }
             // The line of a distance is the x axis of its second body.
             (Component::Axial, _) => in_frame(kinematic_pair.bodies[1], Vec2::IDENTITY),
-            _ => ForceDirection::X(1.0),
+            _ => ForceDirection::Ground(vec2(sign, 0.0)),
         };
-        match plan.pair_roles[pair] {
-            PairRole::TreeJoint(moving_body) => self.tree_joint_force(moving_body, direction),
+        match role {
+            PairRole::TreeJoint(moving_body) => ReactionSource::TreeJoint(moving_body, direction),
             PairRole::LoopJoint(closure) => match plan.loop_closures[closure].axis {
                 Some(_) => ReactionSource::Normal(closure),
                 None => ReactionSource::LoopJoint(closure, direction),
             },
         }
-    }
-
-    /// A component of the force on a moving body, as the action of its joint's first body.
-    fn tree_joint_force(&self, moving_body: usize, direction: ForceDirection) -> ReactionSource {
-        let is_second = self.child_is_second[moving_body];
-        let sign = if is_second { 1.0 } else { -1.0 };
-        let signed = match direction {
-            ForceDirection::X(_) => ForceDirection::X(sign),
-            ForceDirection::Y(_) => ForceDirection::Y(sign),
-            ForceDirection::Frame(frame, local) => ForceDirection::Frame(frame, local * sign),
-        };
-        ReactionSource::TreeJoint(moving_body, signed)
     }
 }
 

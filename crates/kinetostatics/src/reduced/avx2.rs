@@ -9,9 +9,8 @@
 //! with another, so each number has the bits of a scalar evaluation.
 #![allow(unsafe_code, reason = "the gain measured above")]
 
-use super::batch::{BatchSlice, LANES, LaneScalar};
+use super::batch::{BatchErrors, BatchSlice, LANES, LaneScalar};
 use crate::model::Model;
-use dwell_geometry::PositionError;
 use dwell_numerics::{Lanes, Scalar, sin_cos};
 use std::arch::x86_64::{
     __m256d, _mm256_add_pd, _mm256_div_pd, _mm256_loadu_pd, _mm256_mul_pd, _mm256_set1_pd,
@@ -25,7 +24,7 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 pub(crate) fn reduce<'a>(
     model: &Model,
     slice: BatchSlice<'a>,
-) -> Result<Vec<(usize, PositionError)>, BatchSlice<'a>> {
+) -> Result<BatchErrors, BatchSlice<'a>> {
     if model.plan().is_dyadic() && is_x86_feature_detected!("avx2") {
         // Sound: AVX2 has just been detected.
         Ok(unsafe { reduce_with_avx2(model, slice) })
@@ -36,7 +35,7 @@ pub(crate) fn reduce<'a>(
 
 /// What is inlined here is compiled for AVX2, and nothing else is: so the whole evaluation is.
 #[target_feature(enable = "avx2")]
-fn reduce_with_avx2(model: &Model, slice: BatchSlice<'_>) -> Vec<(usize, PositionError)> {
+fn reduce_with_avx2(model: &Model, slice: BatchSlice<'_>) -> BatchErrors {
     model.reduce_block::<Avx2Lanes>(slice)
 }
 

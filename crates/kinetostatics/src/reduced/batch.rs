@@ -29,6 +29,9 @@ pub struct Batch {
     pub errors: Vec<(usize, PositionError)>,
 }
 
+/// The coordinates without a pose, by index, each with the reason.
+pub(crate) type BatchErrors = Vec<(usize, PositionError)>;
+
 impl Batch {
     /// The coefficients at the `i`th coordinate; NaN where there is no pose.
     pub fn coefficients(&self, i: usize) -> Coefficients {
@@ -58,22 +61,19 @@ pub(crate) struct BatchSlice<'a> {
 }
 
 impl<'a> BatchSlice<'a> {
-    fn split_at(self, at: usize, reactions: usize) -> [Self; 2] {
-        let (q0, q1) = self.q.split_at(at);
-        let (m0, m1) = self.m.split_at_mut(at);
-        let (half_dm0, half_dm1) = self.half_dm.split_at_mut(at);
-        let (a0, a1) = self.a.split_at_mut(at * reactions);
-        let (b0, b1) = self.b.split_at_mut(at * reactions);
-        let part = |first, q, m, half_dm, a, b| Self {
-            first,
-            q,
-            m,
-            half_dm,
-            a,
-            b,
+    /// Takes off what follows the first `at` coordinates.
+    fn split_off(&mut self, at: usize, reactions: usize) -> Self {
+        let after = |values: &mut &'a mut [f64], at| -> &'a mut [f64] {
+            values.split_off_mut(at..).unwrap_or_default()
         };
-        let first = part(self.first, q0, m0, half_dm0, a0, b0);
-        [first, part(self.first + at, q1, m1, half_dm1, a1, b1)]
+        Self {
+            first: self.first + at,
+            q: self.q.split_off(at..).unwrap_or_default(),
+            m: after(&mut self.m, at),
+            half_dm: after(&mut self.half_dm, at),
+            a: after(&mut self.a, at * reactions),
+            b: after(&mut self.b, at * reactions),
+        }
     }
 }
 
@@ -96,24 +96,18 @@ impl LaneScalar for Lanes<LANES> {
 }
 
 /// Working memory with a buffer for the results.
-struct ReductionWorkspace<T>(Workspace<T>, Coefficients<T>);
-
-impl<T: Scalar> ReductionWorkspace<T> {
-    fn new(model: &Model) -> Self {
-        Self(model.workspace(), model.coefficient_buffer())
-    }
-}
+type ReductionWorkspace<T> = (Workspace<T>, Coefficients<T>);
 
 impl ExactModel {
     /// All coefficients at many coordinates `q` (rad or m), on all threads; `out` is resized, and keeps
     /// its storage from one batch to the next. Where there is no pose, [`Batch::errors`] says so.
     pub fn reduce_batch(&self, q: &[f64], out: &mut Batch) {
-        self.model().reduce_batch(q, out);
+        self.model.reduce_batch(q, out);
     }
 
     /// m and ½m′ alone at many coordinates, as [`ExactModel::reduce_batch`] does.
     pub fn inertia_batch(&self, q: &[f64], out: &mut Batch) {
-        self.inertia_model().reduce_batch(q, out);
+        self.inertia_model.reduce_batch(q, out);
     }
 }
 
@@ -145,27 +139,27 @@ impl Model {
         out.errors = self.reduce_in_parallel(slice, MIN_BLOCK.max(q.len().div_ceil(blocks)));
     }
 
+    fn reduction_workspace<T: Scalar>(&self) -> ReductionWorkspace<T> {
+        (self.workspace(), self.coefficient_buffer())
+    }
+
     /// Divides the batch in halves among the threads, down to a block.
-    fn reduce_in_parallel(
-        &self,
-        slice: BatchSlice<'_>,
-        block: usize,
-    ) -> Vec<(usize, PositionError)> {
+    fn reduce_in_parallel(&self, mut slice: BatchSlice<'_>, block: usize) -> BatchErrors {
         let blocks = slice.q.len().div_ceil(block);
         if blocks < 2 {
             return self.reduce_simd(slice);
         }
-        let [one, two] = slice.split_at(blocks / 2 * block, self.reactions().len());
+        let rest = slice.split_off(blocks / 2 * block, self.reactions().len());
         let (mut errors, more) = rayon::join(
-            || self.reduce_in_parallel(one, block),
-            || self.reduce_in_parallel(two, block),
+            || self.reduce_in_parallel(slice, block),
+            || self.reduce_in_parallel(rest, block),
         );
         errors.extend(more);
         errors
     }
 
     /// In the widest registers that the processor has.
-    fn reduce_simd(&self, slice: BatchSlice<'_>) -> Vec<(usize, PositionError)> {
+    fn reduce_simd(&self, slice: BatchSlice<'_>) -> BatchErrors {
         #[cfg(target_arch = "x86_64")]
         let slice = match super::avx2::reduce(self, slice) {
             Ok(errors) => return errors,
@@ -176,10 +170,7 @@ impl Model {
 
     /// Four poses at a time; singly those that remain or whose computations diverge.
     #[inline(always)]
-    pub(crate) fn reduce_block<S: LaneScalar>(
-        &self,
-        mut slice: BatchSlice<'_>,
-    ) -> Vec<(usize, PositionError)> {
+    pub(crate) fn reduce_block<S: LaneScalar>(&self, mut slice: BatchSlice<'_>) -> BatchErrors {
         // For several poses at once, and for single ones where they diverge; few blocks need both.
         let mut lanes: Option<ReductionWorkspace<S>> = None;
         let in_lanes = self.plan().supports_lanes();
@@ -188,12 +179,12 @@ impl Model {
         let mut at = 0;
         while at < slice.q.len() {
             let together = in_lanes && {
-                let workspace = lanes.get_or_insert_with(|| ReductionWorkspace::new(self));
+                let workspace = lanes.get_or_insert_with(|| self.reduction_workspace());
                 self.reduce_lanes(&mut slice, at, workspace)
             };
             let next = slice.q.len().min(at + LANES);
             if !together {
-                let workspace = scalar.get_or_insert_with(|| ReductionWorkspace::new(self));
+                let workspace = scalar.get_or_insert_with(|| self.reduction_workspace());
                 self.reduce_scalar(&mut slice, at..next, workspace, &mut errors);
             }
             at = next;
@@ -212,7 +203,7 @@ impl Model {
         let Some(&q) = slice.q[at..].first_chunk() else {
             return false;
         };
-        let ReductionWorkspace(model_workspace, out) = workspace;
+        let (model_workspace, out) = workspace;
         if self.reduce(S::from_array(q), model_workspace, out).is_err() {
             return false;
         }
@@ -236,9 +227,9 @@ impl Model {
         slice: &mut BatchSlice<'_>,
         indices: Range<usize>,
         workspace: &mut ReductionWorkspace<f64>,
-        errors: &mut Vec<(usize, PositionError)>,
+        errors: &mut BatchErrors,
     ) {
-        let ReductionWorkspace(model_workspace, out) = workspace;
+        let (model_workspace, out) = workspace;
         let reactions = out.a.len();
         for i in indices {
             match self.reduce(slice.q[i], model_workspace, out) {

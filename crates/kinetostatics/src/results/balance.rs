@@ -59,7 +59,7 @@ impl EvaluatedState<'_> {
     pub fn power_balance(&self) -> PowerBalance {
         let states = self.bodies();
         let mut sum = PowerBalance::default();
-        let q_dot = &self.workspace.load_workspace.q_dot;
+        let q_dot = &self.workspace.q_dot;
         for (tau, q_dot) in self.inverse_dynamics().tau.iter().zip(q_dot) {
             sum.actuators += tau * q_dot;
             sum.scale += (tau * q_dot).abs();
@@ -69,15 +69,11 @@ impl EvaluatedState<'_> {
             sum.loads += power;
             sum.scale += power.abs();
         }
-        for body in &self.model.pass_model.inertial_bodies {
-            let id = BodyId(body.body);
-            let center = states.point(id, self.model.masses[id.0].center);
-            let state = states.body(id);
-            let (w, a) = (state.angular_velocity, state.angular_acceleration);
-            let [v, v_dot] = [center.velocity, center.acceleration];
-            let terms = [body.mass * v.dot(v_dot), body.inertia * w * a];
-            sum.kinetic_energy += 0.5 * (body.mass * v.dot(v) + body.inertia * w * w);
-            for term in terms {
+        for [of_mass, of_inertia, power_of_mass, power_of_inertia] in
+            self.model.inertia_terms(states)
+        {
+            sum.kinetic_energy += 0.5 * (of_mass + of_inertia);
+            for term in [power_of_mass, power_of_inertia] {
                 sum.kinetic_energy_rate += term;
                 sum.scale += term.abs();
             }

@@ -2,11 +2,11 @@
 //! evaluation.
 
 use crate::error::ModelError;
-use crate::load::{AppliedWrench, ForceSource, find_couple_points};
+use crate::load::{AppliedWrench, ForceSource, Mesh, find_couple_points, on_two_bodies};
 use crate::model::Model;
 use crate::model::stages::EvaluatedState;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
-use dwell_geometry::{ActuatorId, BodyId, Joint, JointId, JointKind, Reaction, Vec2};
+use dwell_geometry::{ActuatorId, BodyId, Joint, JointId, JointKind, Reaction, Vec2, vec2};
 
 /// Converts reactions and actuator forces into forces and couples on the bodies.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,34 +51,28 @@ impl FreeBodyForces {
         };
         let mut joints = Vec::with_capacity(mechanism.joints.len());
         for (j, joint) in mechanism.joints.iter().enumerate() {
+            let id = JointId(j);
             let mut reaction_indices = [0; 3];
-            for (index, &component) in reaction_indices
-                .iter_mut()
-                .zip(mechanism.components(JointId(j)))
-            {
+            let components = mechanism.components(id).iter();
+            for (index, &component) in reaction_indices.iter_mut().zip(components) {
                 let reaction = Reaction {
-                    joint: JointId(j),
+                    joint: id,
                     component,
                 };
                 let found = model.reactions().iter().position(|&r| r == reaction);
                 *index = found.ok_or(ModelError::Reaction(reaction))?;
             }
-            let coupling = match joint.kind {
-                JointKind::Coupling(r) => mechanism.couplings.get(r).and_then(|coupling| {
-                    Some(CouplingCoordinates {
-                        dependent: coordinate(coupling.dependent)?,
-                        independent: coordinate(coupling.independent)?,
-                    })
-                }),
-                JointKind::Revolute
-                | JointKind::Prismatic { .. }
-                | JointKind::Slot { .. }
-                | JointKind::Weld { .. }
-                | JointKind::Gear { .. }
-                | JointKind::Rack { .. }
-                | JointKind::Rolling { .. }
-                | JointKind::Distance { .. } => None,
+            let law = if let JointKind::Coupling(r) = joint.kind {
+                mechanism.couplings.get(r)
+            } else {
+                None
             };
+            let coupling = law.and_then(|law| {
+                Some(CouplingCoordinates {
+                    dependent: coordinate(law.dependent)?,
+                    independent: coordinate(law.independent)?,
+                })
+            });
             joints.push(JointEntry {
                 joint: joint.clone(),
                 reaction_indices,
@@ -105,29 +99,20 @@ impl FreeBodyForces {
                     // In a pruned group the law has not been evaluated.
                     continue;
                 }
-                let plan = state.model().plan();
-                let slope = plan.coupling_slope(JointId(j), state.pose());
-                coupling_wrenches(
-                    coupling,
-                    value(0),
-                    slope.unwrap_or(0.0),
-                    source,
-                    states,
-                    wrenches,
-                );
+                let slope = state
+                    .model()
+                    .plan()
+                    .coupling_slope(JointId(j), state.pose());
+                let slope = slope.unwrap_or(0.0);
+                coupling_wrenches(coupling, value(0), slope, source, states, wrenches);
             } else {
                 joint_wrenches(&entry.joint, value, source, states, wrenches);
             }
         }
         for (i, (&coordinate, &tau)) in self.actuators.iter().zip(&result.tau).enumerate() {
+            let source = ForceSource::Actuator(ActuatorId(i));
             if let Some(coordinate) = coordinate {
-                coordinate_wrenches(
-                    coordinate,
-                    tau,
-                    ForceSource::Actuator(ActuatorId(i)),
-                    states,
-                    wrenches,
-                );
+                coordinate_wrenches(coordinate, tau, source, states, wrenches);
             }
         }
         wrenches.extend_from_slice(&state.loads().wrenches);
@@ -137,18 +122,15 @@ impl FreeBodyForces {
 /// The wrenches of a coupling, dependent = law(independent): −λ times the law's slope acts along the independent
 /// coordinate.
 fn coupling_wrenches(
-    CouplingCoordinates {
-        dependent: of,
-        independent: other,
-    }: &CouplingCoordinates,
+    coupling: &CouplingCoordinates,
     lambda: f64,
     slope: f64,
     by: ForceSource,
     states: &BodyStates,
     acts: &mut Vec<AppliedWrench>,
 ) {
-    coordinate_wrenches(*of, lambda, by, states, acts);
-    coordinate_wrenches(*other, -lambda * slope, by, states, acts);
+    coordinate_wrenches(coupling.dependent, lambda, by, states, acts);
+    coordinate_wrenches(coupling.independent, -lambda * slope, by, states, acts);
 }
 
 /// The wrenches of a joint on its two bodies.
@@ -163,36 +145,16 @@ fn joint_wrenches(
     let Joint { bodies, points, .. } = *joint;
     let [one, two] = bodies.map(|b| states.body(b));
     let second = two.joint_origin + two.moment_arm(points[1]);
-    let toward = || states.separation(bodies, points).direction;
     let axis_of = |axis: Vec2| axis.rotate(one.rotation);
     // The point where the force on the second body acts, that force, and the couple on it.
     let (at, force, couple) = match joint.kind {
-        JointKind::Revolute => (
-            second,
-            Vec2 {
-                x: value(0),
-                y: value(1),
-            },
-            0.0,
-        ),
-        JointKind::Weld { .. } => (
-            second,
-            Vec2 {
-                x: value(0),
-                y: value(1),
-            },
-            value(2),
-        ),
+        JointKind::Revolute => (second, vec2(value(0), value(1)), 0.0),
+        JointKind::Weld { .. } => (second, vec2(value(0), value(1)), value(2)),
         JointKind::Prismatic { axes } => (second, axis_of(axes[0]).perp() * value(0), value(1)),
         JointKind::Slot { axis } => (second, axis_of(axis).perp() * value(0), 0.0),
-        JointKind::Gear { radii, internal } => {
-            let u = toward().unwrap_or(Vec2::ZERO);
-            // From the second's centre to the pitch point; a ring reaches over the other's centre.
-            let to_pitch_point = if internal && radii[0] > radii[1] {
-                u * radii[1]
-            } else {
-                u * -radii[1]
-            };
+        JointKind::Gear { radii, .. } => {
+            let found = Mesh::of(joint).and_then(|mesh| mesh.pitch_point(states));
+            let [to_pitch_point, _] = found.unwrap_or([Vec2::ZERO; 2]);
             let tangent = to_pitch_point.perp() * (1.0 / radii[1]);
             (second + to_pitch_point, tangent * value(0), 0.0)
         }
@@ -206,14 +168,8 @@ fn joint_wrenches(
             (second - t.perp() * radius, force, 0.0)
         }
         JointKind::Distance { .. } => {
-            coordinate_wrenches(
-                (CoordinateFunction::Length { bodies, points }, points),
-                value(0),
-                source,
-                states,
-                wrenches,
-            );
-            return;
+            let length = (CoordinateFunction::Length { bodies, points }, points);
+            return coordinate_wrenches(length, value(0), source, states, wrenches);
         }
         JointKind::Coupling(_) => return,
     };
@@ -231,15 +187,9 @@ fn opposite_wrenches(
     states: &BodyStates,
     wrenches: &mut Vec<AppliedWrench>,
 ) {
-    for (body, sign) in bodies.into_iter().zip([-1.0, 1.0]) {
-        wrenches.push(AppliedWrench {
-            source,
-            body,
-            force: force * sign,
-            moment_arm: at - states.body(body).joint_origin,
-            couple: couple * sign,
-        });
-    }
+    let moment_arms = bodies.map(|body| at - states.body(body).joint_origin);
+    let actions = [(-force, -couple), (force, couple)];
+    wrenches.extend(on_two_bodies(source, bodies, moment_arms, actions));
 }
 
 /// A generalised force along a coordinate: a couple, a force along an axis at the second body's point, or a force along
@@ -251,7 +201,7 @@ fn coordinate_wrenches(
     states: &BodyStates,
     wrenches: &mut Vec<AppliedWrench>,
 ) {
-    match coordinate {
+    let (bodies, points, actions) = match coordinate {
         CoordinateFunction::Travel {
             bodies,
             points,
@@ -260,43 +210,29 @@ fn coordinate_wrenches(
             let [one, two] = bodies.map(|b| states.body(b));
             let force = axis.rotate(one.rotation) * value;
             let at = two.joint_origin + two.moment_arm(points[1]);
-            opposite_wrenches(bodies, at, force, 0.0, source, states, wrenches);
+            return opposite_wrenches(bodies, at, force, 0.0, source, states, wrenches);
         }
-        CoordinateFunction::Angle(bodies) => {
-            for i in 0..2 {
-                wrenches.push(AppliedWrench {
-                    source,
-                    body: bodies[i],
-                    force: Vec2::ZERO,
-                    moment_arm: states.body(bodies[i]).moment_arm(couple_points[i]),
-                    couple: if i == 0 { -value } else { value },
-                });
-            }
-        }
+        CoordinateFunction::Angle(bodies) => (
+            bodies,
+            couple_points,
+            [(Vec2::ZERO, -value), (Vec2::ZERO, value)],
+        ),
         CoordinateFunction::Length { bodies, points } => {
             // A length of zero has no pose, so that it is not evaluated here.
             let direction = states.separation(bodies, points).direction;
             let force = direction.unwrap_or(Vec2::ZERO) * value;
-            for (i, sign) in [(0, -1.0), (1, 1.0)] {
-                wrenches.push(AppliedWrench {
-                    source,
-                    body: bodies[i],
-                    force: force * sign,
-                    moment_arm: states.body(bodies[i]).moment_arm(points[i]),
-                    couple: 0.0,
-                });
-            }
+            (bodies, points, [(-force, 0.0), (force, 0.0)])
         }
-    }
+    };
+    let moment_arms = [0, 1].map(|i| states.body(bodies[i]).moment_arm(points[i]));
+    wrenches.extend(on_two_bodies(source, bodies, moment_arms, actions));
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
-    use dwell_geometry::{
-        Actuator, ActuatorKind, AssemblyConfiguration, Body, Mechanism, Plan, vec2,
-    };
+    use dwell_geometry::{Actuator, ActuatorKind, AssemblyConfiguration, Body, Mechanism, Plan};
 
     const GROUND: BodyId = BodyId(0);
     const ONE: BodyId = BodyId(1);

@@ -1,9 +1,8 @@
 //! Internal forces of a link: the action of one part on the other at a cut across a straight line.
 
 use super::FreeBodyForces;
-use crate::load::{AppliedWrench, ForceSource, LoadKind};
+use crate::load::{AppliedWrench, ForceSource, Load, LoadKind};
 use crate::mass::Mass;
-use crate::model::Model;
 use crate::model::stages::EvaluatedState;
 use dwell_geometry::{BodyId, Vec2};
 
@@ -89,8 +88,13 @@ impl FreeBodyForces {
             bar: None,
         };
         // Weight is distributed as the mass is.
+        let is_gravity = |load: &Load| matches!(load.kind, LoadKind::Gravity { .. });
+        let is_weight = |source| match source {
+            ForceSource::Load(load) => model.loads().get(load).is_some_and(is_gravity),
+            ForceSource::Joint(_) | ForceSource::Actuator(_) => false,
+        };
         for wrench in wrenches.iter().filter(|wrench| wrench.body == body) {
-            if !model.is_weight(wrench.source) {
+            if !is_weight(wrench.source) {
                 found.add_force(wrench.moment_arm - start, wrench.force, wrench.couple);
             }
         }
@@ -106,23 +110,10 @@ impl FreeBodyForces {
         } else {
             let center = state.moment_arm(mass.center);
             let force = (gravity - state.acceleration_at(center)) * mass.mass;
-            found.add_force(
-                center - start,
-                force,
-                -mass.inertia * state.angular_acceleration,
-            );
+            let couple = -mass.inertia * state.angular_acceleration;
+            found.add_force(center - start, force, couple);
         }
         Some(found)
-    }
-}
-
-impl Model {
-    fn is_weight(&self, source: ForceSource) -> bool {
-        let ForceSource::Load(load) = source else {
-            return false;
-        };
-        let kind = self.loads().get(load).map(|load| load.kind);
-        matches!(kind, Some(LoadKind::Gravity { .. }))
     }
 }
 
@@ -188,11 +179,8 @@ impl LinkForces {
 
     fn cut(&self, station: f64, after: bool) -> Section {
         let s = station.clamp(0.0, self.length);
-        let reached = if after {
-            s + self.station_tolerance()
-        } else {
-            s - self.station_tolerance()
-        };
+        let side = if after { 1.0 } else { -1.0 };
+        let reached = s + side * self.station_tolerance();
         let (mut force, mut bending) = (Vec2::ZERO, 0.0);
         let normal = self.along.perp();
         for &(at, applied, couple) in &self.point_forces {
@@ -202,16 +190,12 @@ impl LinkForces {
                 bending -= (at - s) * applied.dot(normal) + couple;
             }
         }
-        if let Some(Bar {
-            density,
-            start_acceleration: start,
-            acceleration_slope: growth,
-        }) = self.bar
-        {
+        if let Some(bar) = self.bar {
+            let (start, growth) = (bar.start_acceleration, bar.acceleration_slope);
             // Of the part before the cut: ∫ a dm and ∫ (σ − s) u×a dm.
-            force += (start * s + growth * (0.5 * s * s)) * density;
+            force += (start * s + growth * (0.5 * s * s)) * bar.density;
             let moment = 0.5 * s * s * start.dot(normal) + s * s * s / 6.0 * growth.dot(normal);
-            bending -= density * moment;
+            bending -= bar.density * moment;
         }
         Section {
             station: s,

@@ -24,20 +24,13 @@ const MAX_ATTEMPTS: usize = 10;
 /// A table is built again with fewer cells if its bound is below this part of the accuracy.
 const OVERSIZED: f64 = 0.05;
 
-/// A part of a table that can be built with any number of cells and compared with its sampler.
-pub(super) trait Piecewise<S: ?Sized>: Sized {
-    /// Builds it on a grid.
-    fn build(grid: Grid, width: usize, source: &mut S) -> Result<Self>;
-
+/// A part of a table that can be compared with its sampler.
+pub(super) trait Piecewise<S: ?Sized> {
     /// Raises `max_errors` to its errors at some coordinates where these are larger.
     fn raise_errors(&self, q: &[f64], source: &mut S, most: &mut [f64]) -> Result<()>;
 }
 
 impl<'a> Piecewise<dyn SlopeSampler + 'a> for IntegratedCurve {
-    fn build(grid: Grid, _: usize, sampler: &mut (dyn SlopeSampler + 'a)) -> Result<Self> {
-        Self::new(grid, sampler)
-    }
-
     fn raise_errors(
         &self,
         q: &[f64],
@@ -47,20 +40,14 @@ impl<'a> Piecewise<dyn SlopeSampler + 'a> for IntegratedCurve {
         for (&q, exact) in q.iter().zip(sampler.sample_many(q)?) {
             let tabulated = self.eval(q)?;
             let pairs = tabulated.into_iter().zip(exact);
-            raise_to(
-                max_errors,
-                pairs.map(|(tabulated, exact)| tabulated - exact),
-            );
+            let errors = pairs.map(|(tabulated, exact)| tabulated - exact);
+            raise_to(max_errors, errors);
         }
         Ok(())
     }
 }
 
 impl<'a> Piecewise<ColumnSampler<'a>> for PiecewiseColumns {
-    fn build(grid: Grid, width: usize, sampler: &mut ColumnSampler<'a>) -> Result<Self> {
-        Self::new(grid, width, sampler)
-    }
-
     fn raise_errors(
         &self,
         q: &[f64],
@@ -72,10 +59,8 @@ impl<'a> Piecewise<ColumnSampler<'a>> for PiecewiseColumns {
             sampler(q, &mut exact)?;
             self.eval(q, &mut tabulated, &mut [])?;
             let pairs = tabulated.iter().zip(&exact);
-            raise_to(
-                max_errors,
-                pairs.map(|(tabulated, exact)| tabulated - exact.v),
-            );
+            let errors = pairs.map(|(tabulated, exact)| tabulated - exact.v);
+            raise_to(max_errors, errors);
         }
         Ok(())
     }
@@ -97,6 +82,7 @@ pub(super) fn build_to_accuracy<S: ?Sized, P: Piecewise<S>>(
     sizing: &Sizing,
     accuracy: f64,
     sampler: &mut S,
+    build: impl Fn(Grid, &mut S) -> Result<P>,
 ) -> Result<(P, Vec<f64>)> {
     let mut cells = sizing.cells;
     let mut best: Option<(P, Vec<f64>, usize)> = None;
@@ -106,7 +92,7 @@ pub(super) fn build_to_accuracy<S: ?Sized, P: Piecewise<S>>(
             break;
         }
         let grid = grid.with_cells(cells);
-        let piecewise = P::build(grid, quantities.len(), sampler)?;
+        let piecewise = build(grid, sampler)?;
         let bounds = bounds(&piecewise, grid, sizing, sampler)?;
         let largest = largest_bound(&bounds, quantities);
         if largest.0 < smallest.0 {

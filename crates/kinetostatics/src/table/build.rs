@@ -65,8 +65,7 @@ impl TableBuilder {
 
     /// The domain of the tables, rad or m.
     pub fn domain(&self) -> [f64; 2] {
-        let Grid { from, length, .. } = self.grid;
-        [from, from + length]
+        self.grid.domain()
     }
 
     /// The period, rad, if there is one.
@@ -95,7 +94,9 @@ impl TableBuilder {
             Ok(rows.map(|at| at.to_vec()).collect())
         };
         let sizing = self.size(&quantities, &scale, &mut values)?;
-        self.build(&quantities, &sizing, sampler)
+        self.build(&quantities, &sizing, sampler, |grid, sampler| {
+            IntegratedCurve::new(grid, sampler)
+        })
     }
 
     /// Columns side by side; `same_kind` compares the kinds of two quantities.
@@ -123,7 +124,10 @@ impl TableBuilder {
             q.iter().map(&mut row).collect()
         };
         let sizing = self.size(quantities, &scale, &mut values)?;
-        self.build(quantities, &sizing, sampler)
+        let width = quantities.len();
+        self.build(quantities, &sizing, sampler, |grid, sampler| {
+            PiecewiseColumns::new(grid, width, sampler)
+        })
     }
 
     /// The error bounds, in the order in which the parts were built.
@@ -149,9 +153,11 @@ impl TableBuilder {
         quantities: &[TableQuantity],
         sizing: &Sizing,
         sampler: &mut S,
+        build: impl Fn(Grid, &mut S) -> Result<P>,
     ) -> Result<P> {
+        let Self { grid, accuracy, .. } = *self;
         let (part, errors) =
-            bound::build_to_accuracy(self.grid, quantities, sizing, self.accuracy, sampler)?;
+            bound::build_to_accuracy(grid, quantities, sizing, accuracy, sampler, build)?;
         let scaled = quantities.iter().zip(&sizing.scales).zip(errors);
         let bounds = scaled.map(|((&quantity, &scale), error)| Bound {
             quantity,
@@ -205,8 +211,6 @@ fn require_periodic(
     let difference = |k: usize| max(k, &|here, later| (here - later).abs());
     let scales = scale(&largest);
     let mut aperiodic = all.filter(|&k| difference(k) > PERIODICITY_TOLERANCE * scales[k]);
-    match aperiodic.next().map(|k| quantities[k]) {
-        Some(what) => Err(TableError::NotPeriodic { what }),
-        None => Ok(()),
-    }
+    let found = aperiodic.next().map(|k| quantities[k]);
+    found.map_or(Ok(()), |what| Err(TableError::NotPeriodic { what }))
 }

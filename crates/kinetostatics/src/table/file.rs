@@ -7,7 +7,7 @@ use super::piecewise::{Grid, IntegratedCurve, PiecewiseColumns, TERMS};
 use super::{Bound, TabulatedModel, table_quantities};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-use std::str::{FromStr, Lines};
+use std::str::Lines;
 use thiserror::Error;
 
 type Result<T> = std::result::Result<T, FileError>;
@@ -74,26 +74,17 @@ impl TabulatedModel {
     /// # Errors
     /// [`FileError::Labels`] for names that do not fit.
     pub fn to_text(&self, labels: &Labels) -> Result<String> {
-        let [reactions, loads] = self.counts;
         let lists = [&labels.reactions, &labels.loads];
-        let mut names = lists.into_iter().flatten();
-        let broken = |name: &String| name.contains(['\n', '\r']);
-        let fits = lists.map(Vec::len) == self.counts
-            && !names.any(broken)
-            && !broken(&labels.scene)
-            && !broken(&labels.coordinate);
-        if !fits {
+        let (scene, coordinate) = (&labels.scene, &labels.coordinate);
+        let mut names = lists.into_iter().flatten().chain([scene, coordinate]);
+        let broken = names.any(|name| name.contains(['\n', '\r']));
+        if broken || lists.map(Vec::len) != self.counts {
+            let [reactions, loads] = self.counts;
             return Err(FileError::Labels { reactions, loads });
         }
-        let Grid {
-            from,
-            length,
-            revolutions,
-            ..
-        } = self.inertia.grid;
+        let grid = &self.inertia.grid;
         let unit = if self.is_angle { "rad" } else { "m" };
         let cells = self.cells().map(|n| n as f64);
-        let (scene, coordinate) = (&labels.scene, &labels.coordinate);
         let mut text =
             format!("{MAGIC} {VERSION}\nscene {scene}\ncoordinate {unit} {coordinate}\n");
         for (keyword, list) in ["reaction", "load"].into_iter().zip(lists) {
@@ -103,8 +94,8 @@ impl TabulatedModel {
             }
         }
         write_line(&mut text, "accuracy", [self.accuracy]);
-        write_line(&mut text, "extent", [from, length]);
-        write_line(&mut text, "turns", [f64::from(revolutions)]);
+        write_line(&mut text, "extent", [grid.from, grid.length]);
+        write_line(&mut text, "turns", [f64::from(grid.revolutions)]);
         write_line(&mut text, "cells", cells);
         write_line(&mut text, "scales", self.bounds.iter().map(|b| b.scale));
         write_line(&mut text, "errors", self.bounds.iter().map(|b| b.error));
@@ -141,11 +132,8 @@ impl TabulatedModel {
         if format!("{:016x}", fnv1a_64(body.as_bytes())) != stated {
             return Err(FileError::ChecksumMismatch);
         }
-        Reader {
-            lines: body.lines(),
-            line: 0,
-        }
-        .table()
+        let (lines, line) = (body.lines(), 0);
+        Reader { lines, line }.table()
     }
 }
 
@@ -213,9 +201,7 @@ impl<'a> Reader<'a> {
         let mut cell_data = Vec::new();
         for _ in 0..cells[0] {
             let numbers = self.numbers("m", 1 + TERMS)?;
-            let mut slope = [0.0; TERMS];
-            slope.copy_from_slice(&numbers[1..]);
-            cell_data.push((numbers[0], slope));
+            cell_data.push((numbers[0], std::array::from_fn(|j| numbers[1 + j])));
         }
         let table = TabulatedModel {
             accuracy,
@@ -253,19 +239,16 @@ impl<'a> Reader<'a> {
         width: usize,
     ) -> Result<PiecewiseColumns> {
         let mut terms = Vec::new();
-        if width > 0 {
-            for _ in 0..grid.cells {
-                terms.extend(self.numbers(keyword, TERMS * width)?);
-            }
+        let cells = if width > 0 { grid.cells } else { 0 };
+        for _ in 0..cells {
+            terms.extend(self.numbers(keyword, TERMS * width)?);
         }
         Ok(PiecewiseColumns { grid, width, terms })
     }
 
     fn line_error(&self, expected: &'static str) -> FileError {
-        FileError::Line {
-            line: self.line,
-            expected,
-        }
+        let line = self.line;
+        FileError::Line { line, expected }
     }
 
     /// The rest of the next line after its keyword.
@@ -276,13 +259,13 @@ impl<'a> Reader<'a> {
         rest.ok_or_else(|| self.line_error(keyword))
     }
 
-    fn list<T: FromStr>(
+    fn list(
         &mut self,
         keyword: &'static str,
         count: usize,
-        fits: impl Fn(&T) -> bool,
+        fits: impl Fn(&f64) -> bool,
         expected: &'static str,
-    ) -> Result<Vec<T>> {
+    ) -> Result<Vec<f64>> {
         if count == 0 {
             // Without a number there is no blank either.
             self.line += 1;
@@ -290,14 +273,14 @@ impl<'a> Reader<'a> {
             return empty.then(Vec::new).ok_or_else(|| self.line_error(keyword));
         }
         let words = self.after_keyword(keyword)?.split(' ');
-        let numbers: Option<Vec<T>> = words.map(|n| n.parse().ok().filter(&fits)).collect();
+        let numbers: Option<Vec<f64>> = words.map(|n| n.parse().ok().filter(&fits)).collect();
         let complete = numbers.filter(|numbers| numbers.len() == count);
         complete.ok_or_else(|| self.line_error(expected))
     }
 
     fn numbers(&mut self, keyword: &'static str, count: usize) -> Result<Vec<f64>> {
         let expected = "finite numbers, as many as the counts say";
-        self.list(keyword, count, |n: &f64| n.is_finite(), expected)
+        self.list(keyword, count, |n| n.is_finite(), expected)
     }
 
     fn counts(&mut self, keyword: &'static str, count: usize, max: usize) -> Result<Vec<usize>> {

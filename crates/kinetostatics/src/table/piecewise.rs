@@ -8,6 +8,7 @@
 
 use super::Result;
 use super::build::{ColumnSampler, SlopeSampler};
+use crate::error::PositionResult;
 use crate::reduced::Inertia;
 use dwell_geometry::PositionError;
 use dwell_numerics::{Dual, Scalar};
@@ -36,10 +37,8 @@ const ROUND_TO_NEAREST: f64 = 6_755_399_441_055_744.0;
 fn cell_and_offset(part: f64) -> (usize, f64) {
     let middle = part - 0.5;
     let cell = middle + ROUND_TO_NEAREST;
-    (
-        cell.to_bits() as u32 as usize,
-        2.0 * (middle - (cell - ROUND_TO_NEAREST)),
-    )
+    let x = 2.0 * (middle - (cell - ROUND_TO_NEAREST));
+    (cell.to_bits() as u32 as usize, x)
 }
 
 /// Equal cells over a domain.
@@ -88,6 +87,11 @@ impl Grid {
         Self::new(self.from, self.length, self.revolutions, cells)
     }
 
+    /// The domain, rad or m.
+    pub(super) fn domain(&self) -> [f64; 2] {
+        [self.from, self.from + self.length]
+    }
+
     /// Half the width of a cell.
     pub(super) fn half(&self) -> f64 {
         0.5 * self.length / self.cells as f64
@@ -95,18 +99,16 @@ impl Grid {
 
     /// The coordinate at `x` from −1 to 1 of a cell; neighbours have the same number at their common end.
     pub(super) fn coordinate(&self, cell: usize, x: f64) -> f64 {
-        let part = cell as f64 + 0.5 * (x + 1.0);
-        let part = if self.revolutions > 0 && part >= self.cells as f64 {
-            0.0
-        } else {
-            part
-        };
+        let mut part = cell as f64 + 0.5 * (x + 1.0);
+        if self.revolutions > 0 && part >= self.cells as f64 {
+            part = 0.0;
+        }
         self.from + self.length * (part / self.cells as f64)
     }
 
     /// The cell of a coordinate, and the position in it from −1 to 1.
     #[inline]
-    pub(super) fn locate(&self, q: f64) -> Result<(usize, f64), PositionError> {
+    pub(super) fn locate(&self, q: f64) -> PositionResult<(usize, f64)> {
         let part = (q - self.from) * self.per_cell;
         if part >= 0.0 && part < self.cells as f64 {
             Ok(cell_and_offset(part))
@@ -117,7 +119,7 @@ impl Grid {
 
     /// The same of a coordinate in any kind of number.
     #[inline]
-    fn locate_scalar<T: Scalar>(&self, q: T) -> Result<(usize, T), PositionError> {
+    fn locate_scalar<T: Scalar>(&self, q: T) -> PositionResult<(usize, T)> {
         let (cell, x) = self.locate(q.value())?;
         // The position in a cell is linear in q: only its slope remains.
         let x = q.compose(&[x, 2.0 * self.per_cell, 0.0, 0.0]);
@@ -126,7 +128,7 @@ impl Grid {
 
     /// The same for a coordinate outside the domain by whole periods or rounding; else an error.
     #[inline]
-    fn locate_wrapped(&self, q: f64) -> Result<(usize, f64), PositionError> {
+    fn locate_wrapped(&self, q: f64) -> PositionResult<(usize, f64)> {
         let periods = (q * self.per_period - 0.5 + ROUND_TO_NEAREST) - ROUND_TO_NEAREST;
         let part =
             (((q - periods * self.coarse) - periods * self.fine) - self.from) * self.per_cell;
@@ -279,7 +281,7 @@ impl IntegratedCurve {
     /// # Errors
     /// [`PositionError`] outside the table.
     #[inline]
-    pub fn eval<T: Scalar>(&self, q: T) -> Result<[T; 2], PositionError> {
+    pub fn eval<T: Scalar>(&self, q: T) -> PositionResult<[T; 2]> {
         let (cell, x) = self.grid.locate_scalar(q)?;
         Ok(eval_cell(&self.cells[cell], x))
     }
@@ -289,7 +291,7 @@ impl IntegratedCurve {
     /// # Errors
     /// [`PositionError`] outside the table.
     #[inline]
-    pub fn derivatives(&self, q: f64) -> Result<Inertia, PositionError> {
+    pub fn derivatives(&self, q: f64) -> PositionResult<Inertia> {
         let (cell, x) = self.grid.locate(q)?;
         let cell = &self.cells[cell];
         let [m, half_dm] = eval_cell(cell, x);
@@ -383,12 +385,7 @@ impl PiecewiseColumns {
     /// # Errors
     /// [`PositionError`] outside the table.
     #[inline]
-    pub fn eval<T: Scalar>(
-        &self,
-        q: T,
-        left: &mut [T],
-        right: &mut [T],
-    ) -> Result<(), PositionError> {
+    pub fn eval<T: Scalar>(&self, q: T, left: &mut [T], right: &mut [T]) -> PositionResult {
         let (cell, x) = self.grid.locate_scalar(q)?;
         let size = TERMS * self.width;
         if size == 0 {
@@ -406,10 +403,7 @@ impl PiecewiseColumns {
 
     /// How many cells they have; none where there are no columns.
     pub fn cells(&self) -> usize {
-        match self.width {
-            0 => 0,
-            _ => self.grid.cells,
-        }
+        if self.width > 0 { self.grid.cells } else { 0 }
     }
 
     /// Bytes in memory.

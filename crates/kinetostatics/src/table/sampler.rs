@@ -36,10 +36,8 @@ impl SlopeSampler for InertiaSampler<'_> {
             return Err(error.into());
         }
         let Batch { m, half_dm, .. } = &self.batch;
-        Ok(m.iter()
-            .zip(half_dm)
-            .map(|(&m, &slope)| [m, slope])
-            .collect())
+        let pairs = m.iter().zip(half_dm);
+        Ok(pairs.map(|(&m, &slope)| [m, slope]).collect())
     }
 }
 
@@ -113,18 +111,14 @@ impl<'a> ModelSampler<'a> {
 pub(super) fn same_kind(exact: &ExactModel, one: TableQuantity, other: TableQuantity) -> bool {
     let reactions = exact.model().reactions();
     let unit = |k: usize| reactions.get(k).map(|r| r.component.unit());
-    match (one, other) {
-        (TableQuantity::A { reaction: j }, TableQuantity::A { reaction: k })
-        | (TableQuantity::B { reaction: j }, TableQuantity::B { reaction: k }) => {
-            unit(j) == unit(k)
+    let kind = |quantity: TableQuantity| match quantity {
+        TableQuantity::A { reaction } => (TableQuantity::A { reaction: 0 }, unit(reaction)),
+        TableQuantity::B { reaction } => (TableQuantity::B { reaction: 0 }, unit(reaction)),
+        TableQuantity::C { load, reaction } => {
+            let first = TableQuantity::C { load, reaction: 0 };
+            (first, unit(reaction))
         }
-        (
-            TableQuantity::C { load, reaction: j },
-            TableQuantity::C {
-                load: other,
-                reaction: k,
-            },
-        ) => load == other && unit(j) == unit(k),
-        (one, other) => one == other,
-    }
+        other => (other, None),
+    };
+    kind(one) == kind(other)
 }

@@ -162,7 +162,9 @@ impl Interval {
     /// A sine whose crests are at `crest` and whole periods from there.
     fn wave(self, crest: f64, f: impl Fn(f64) -> f64) -> Self {
         let slack = 4.0 * f64::EPSILON * self.magnitude();
-        if !(self.width() < TAU) {
+        // The width of everything is not a number.
+        let width = self.width();
+        if width.is_nan() || width >= TAU {
             return Self { lo: -1.0, hi: 1.0 };
         }
         let passes = |at: f64| {

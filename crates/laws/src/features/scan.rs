@@ -54,7 +54,7 @@ pub struct Scan<'f> {
     /// By expression and term: its largest value.
     scales: Vec<Vec<f64>>,
     /// The piece found last, whose end depends on what the next one says.
-    held: Option<(Piece, Vec<Vec<Sides>>)>,
+    held: Option<DecidedPiece>,
     failed: bool,
 }
 
@@ -66,6 +66,9 @@ struct Cell {
     sides: Vec<Vec<Sides>>,
     restart: bool,
 }
+
+/// A piece, and by expression and operation what is decided in it.
+type DecidedPiece = (Piece, Vec<Vec<Sides>>);
 
 /// What is found about a cell.
 enum Examined {
@@ -278,7 +281,7 @@ fn differ(one: &[Vec<Sides>], other: &[Vec<Sides>]) -> bool {
 }
 
 impl Scan<'_> {
-    fn next_piece(&mut self) -> Result<Option<(Piece, Vec<Vec<Sides>>)>, Unresolved> {
+    fn next_piece(&mut self) -> Result<Option<DecidedPiece>, Unresolved> {
         let mut last = 0;
         for _ in 0..MAX_TRIALS {
             let Some(mut cell) = self.open.pop().or_else(|| self.next_cell()) else {

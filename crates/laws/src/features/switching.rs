@@ -62,8 +62,8 @@ impl Pieces {
             starts,
             ops,
         };
-        for i in 0..pieces.ops.len() {
-            let found = pieces.switches_of(i, &operands[i]);
+        for (i, of) in operands.iter().enumerate() {
+            let found = pieces.switches_of(i, of);
             let separable = |s: &Switch| match s.right {
                 None => is_alone(s.left),
                 Some(right) => {
