@@ -1,6 +1,7 @@
 //! Computes the free motion of a scene.
 
 mod accuracy;
+mod between_samples;
 mod description;
 mod difference;
 mod error_estimate;
