@@ -21,8 +21,9 @@ use dwell_scene::Scene;
 pub fn reduce(scene: &Scene, table: Option<TableRequest>) -> Result<Outcome, StudyError> {
     let reduction = compute_reduction(scene)?;
     let (prepared, curves) = (&reduction.prepared, &reduction.curves);
-    let mut figures: Vec<Figure> = vec![figures::reduced(prepared, curves)];
-    let (coefficients, note) = figures::coefficients(prepared, curves);
+    let is_rounding = &reduction.errors.is_rounding;
+    let mut figures: Vec<Figure> = vec![figures::reduced(prepared, curves, is_rounding)];
+    let (coefficients, note) = figures::coefficients(prepared, curves, is_rounding);
     figures.extend(coefficients);
     if let Some(unit_loads) = &reduction.unit_loads
         && unit_loads.working().next().is_some()
@@ -68,7 +69,11 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
     let extent_of = |pick: fn(&Coefficients) -> f64| extent(curves.coefficients.iter().map(pick));
     let m = extent_of(|c| c.m);
     let [m_min, m_max] = m.map(|m| digits(m, 9));
-    let [h_min, h_max] = extent_of(|c| c.half_dm).map(|h| digits(h, 9));
+    let [h_min, h_max] = match reduction.errors.is_rounding[1] {
+        true => [0.0; 2],
+        false => extent_of(|c| c.half_dm),
+    }
+    .map(|h| digits(h, 9));
     let (title, count) = (&prepared.scene.title, curves.q.len());
     let name = prepared.coordinate_name();
     let mut summary = format!(

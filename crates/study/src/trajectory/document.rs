@@ -326,10 +326,8 @@ fn sorted_extrema(results: &TrajectoryResults, listed: &[usize]) -> Vec<ColumnEx
     let mut all: Vec<ColumnExtrema> = listed.iter().filter_map(entry).collect();
     let units: Vec<&str> = all.iter().map(|entry| entry.unit).collect();
     let unit_order = |p: &ColumnExtrema| units.iter().position(|u| *u == p.unit);
-    let size = |p: &ColumnExtrema| p.largest().value.abs();
-    all.sort_by(|a, b| {
-        let by_unit = unit_order(a).cmp(&unit_order(b));
-        by_unit.then(size(b).total_cmp(&size(a)))
-    });
+    // One quantity under two names differs by rounding, about 1e-16; so the last bits do not order them.
+    let size = |p: &ColumnExtrema| p.largest().value.abs().to_bits() >> 20;
+    all.sort_by_key(|of| (unit_order(of), std::cmp::Reverse(size(of))));
     all
 }

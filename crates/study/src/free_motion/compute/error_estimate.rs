@@ -1,6 +1,6 @@
 //! The estimated error of a motion, from a second run at a tenth of the tolerance.
 
-use crate::estimate;
+use crate::estimate::{self, is_rounding};
 use crate::explain::StudyError;
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::number_format::{coordinate_unit, digits};
@@ -45,15 +45,22 @@ impl FreeMotionProblem<'_> {
         } else {
             "at the end".to_owned()
         };
-        let kinetic = samples.iter().map(|s| s.extra_values[0]);
-        let errors = self.error_texts(&pairs, kinetic.fold(0.0, f64::max));
+        let [kinetic, potential] = [0, 1].map(|k| {
+            let energies = samples.iter().map(|s| s.extra_values[k].abs());
+            energies.fold(0.0, f64::max)
+        });
+        let errors = self.error_texts(&pairs, [kinetic, potential]);
         Ok(format!(
             "  estimated error {at}:{errors} from a second run at {refinement}\n"
         ))
     }
 
     /// The error of each free coordinate, and of the energy balance if anything moves.
-    fn error_texts(&self, pairs: &[SamplePair<'_>], max_kinetic: f64) -> String {
+    fn error_texts(
+        &self,
+        pairs: &[SamplePair<'_>],
+        [max_kinetic, max_potential]: [f64; 2],
+    ) -> String {
         let error_of = |of: &dyn Fn(&TrajectorySample) -> f64, rounding: f64| {
             let values = pairs.iter().map(|(a, b)| (of(a), of(b)));
             let (one, two): (Vec<f64>, Vec<f64>) = values.unzip();
@@ -72,7 +79,7 @@ impl FreeMotionProblem<'_> {
             let name = &self.loaded_scene.mechanism.actuators[i].name;
             text += &format!(" {error:.1e} {unit} in {name},");
         }
-        if max_kinetic > 0.0 {
+        if !is_rounding(max_kinetic, max_potential) {
             let rounding = 4.0 * f64::EPSILON * max_kinetic;
             let error = error_of(&|s| self.energy_balance(s), rounding) / max_kinetic;
             text += &format!(" {error:.1e} of the largest kinetic energy,");

@@ -1,6 +1,7 @@
 //! Evaluation along a trajectory: the table, and what sections and drawings need of each position.
 
 use crate::bodies::BodyPose;
+use crate::estimate::{error_scale, relative};
 use crate::explain::StudyError;
 use crate::models::loaded_model;
 use crate::progress::{Progress, Step};
@@ -23,6 +24,8 @@ pub struct TrajectoryResults {
     pub(crate) rows: Vec<Vec<f64>>,
     /// By column, of those that unwrap: the last angle, its rate and its time.
     last_angles: Vec<Option<[f64; 3]>>,
+    /// By position: the residual of the power balance, and the sum of its absolute terms, W.
+    power_terms: Vec<[f64; 2]>,
     /// By position and body.
     pub body_poses: Vec<Vec<BodyPose>>,
     /// The links whose internal forces are requested.
@@ -55,6 +58,7 @@ impl TrajectoryResults {
             last_angles: vec![None; columns.len()],
             columns,
             rows: Vec::new(),
+            power_terms: Vec::new(),
             body_poses: Vec::new(),
             sectioned_links: links.collect(),
             power_residual: 0.0,
@@ -101,10 +105,8 @@ impl TrajectoryResults {
             link.add_position(k, forces.as_ref());
         }
         let balance = &position.power_balance;
-        if balance.scale > 0.0 {
-            let residual = balance.residual().abs() / balance.scale;
-            self.power_residual = self.power_residual.max(residual);
-        }
+        self.power_terms
+            .push([balance.residual().abs(), balance.scale]);
     }
 }
 
@@ -164,6 +166,12 @@ impl TrajectoryResults {
         let columns = self.columns.iter().zip(&largest);
         let is_rounding = columns.map(|(c, &size)| scales.is_rounding(c.unit, size));
         self.is_rounding = is_rounding.collect();
+        let power = self.power_terms.iter().map(|[_, scale]| *scale);
+        let power = power.fold(scales.of("W"), f64::max);
+        let residuals = self.power_terms.iter();
+        let residuals =
+            residuals.map(|&[residual, scale]| relative(residual, error_scale(scale, power)));
+        self.power_residual = residuals.fold(0.0, f64::max);
         for k in 0..self.columns.len() {
             // A force that is only rounding has no direction.
             if let Quantity::ForceDirection(joint) = self.columns[k].quantity {
