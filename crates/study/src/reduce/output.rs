@@ -13,13 +13,18 @@ use dwell_kinetostatics::Coefficients;
 use dwell_report::{Figure, Files, TableFormat};
 use dwell_scene::Scene;
 
-/// The reduced parameters of a scene over its range, and an interpolation table if requested.
+/// The reduced parameters of a scene over its range, at `points` positions (two or more) if given, and an interpolation
+/// table if requested.
 ///
 /// # Errors
 /// [`StudyError`] when the mechanism cannot be assembled, a figure cannot be drawn or the table cannot be
 /// built.
-pub fn reduce(scene: &Scene, table: Option<TableRequest>) -> Result<Outcome, StudyError> {
-    let reduction = compute_reduction(scene)?;
+pub fn reduce(
+    scene: &Scene,
+    points: Option<usize>,
+    table: Option<TableRequest>,
+) -> Result<Outcome, StudyError> {
+    let reduction = compute_reduction(scene, points)?;
     let (prepared, curves) = (&reduction.prepared, &reduction.curves);
     let is_rounding = &reduction.errors.is_rounding;
     let mut figures: Vec<Figure> = vec![figures::reduced(prepared, curves, is_rounding)];

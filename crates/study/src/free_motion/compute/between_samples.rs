@@ -2,15 +2,18 @@
 
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::trajectory::compute::TrajectorySample;
-use dwell_dynamics::{MachineOde, Method, ObservedMachine, OdeState, Options, solve_system};
+use dwell_dynamics::{
+    Machine, MachineOde, Method, ObservedMachine, OdeState, Options, solve_system,
+};
 use dwell_geometry::body_states::CoordinateFunction;
 use std::f64::consts::TAU;
 
 /// Highest number of steps that are evaluated like samples.
 const MAX_STEPS: usize = 50_000;
-/// Tolerance and highest number of steps from the beginning of a step to a time within it.
-const TOLERANCE: f64 = 1e-12;
-const MAX_INNER_STEPS: usize = 200;
+/// Method, tolerance and highest number of steps from the beginning of a step to a time within it; the second where a
+/// stiff motion needs too many of the first.
+const METHODS: [(Method, f64, usize); 2] =
+    [(Method::Dop853, 1e-12, 200), (Method::Bdf, 1e-10, 20_000)];
 
 impl FreeMotionProblem<'_> {
     /// The motion at its steps; none if there are too many of them.
@@ -38,6 +41,34 @@ impl FreeMotionProblem<'_> {
         Some(all)
     }
 
+    /// The state at a time (s), integrated from an earlier state.
+    fn state_after(
+        &self,
+        machine: &Machine,
+        before: &OdeState,
+        t: f64,
+        &(method, tolerance, max_steps): &(Method, f64, usize),
+    ) -> Option<OdeState> {
+        let options = Options {
+            max_steps,
+            ..Options::new(method, tolerance)
+        };
+        let mut ode = MachineOde::new(machine, before.t, &before.y).ok()?;
+        let observed = ObservedMachine::new(machine, &self.output_model);
+        let part = solve_system(&mut ode, observed, before, Some(t), &options, &[]);
+        part.ok()?.completed().ok()?.steps.pop()
+    }
+
+    /// Whether a time (s) is in a step that begins or ends within the window of a change point's fit.
+    pub(crate) fn is_in_fit_window(&self, motion: &SegmentedMotion, t: f64) -> bool {
+        let is_fit = |(chart, step): (usize, &OdeState)| {
+            self.machine(motion, chart).is_in_fit_window(&step.y)
+        };
+        let before = motion.steps().filter(|(_, step)| step.t <= t).last();
+        let after = motion.steps().find(|(_, step)| step.t >= t);
+        before.is_some_and(is_fit) || after.is_some_and(is_fit)
+    }
+
     /// The motion at a time (s): from the step before, which is integrated once more up to there. None where that is
     /// not possible.
     pub(crate) fn sample_at(&self, motion: &SegmentedMotion, t: f64) -> Option<TrajectorySample> {
@@ -56,14 +87,8 @@ impl FreeMotionProblem<'_> {
         let point = match before.t == t {
             true => before.clone(),
             false => {
-                let options = Options {
-                    max_steps: MAX_INNER_STEPS,
-                    ..Options::new(Method::Dop853, TOLERANCE)
-                };
-                let mut ode = MachineOde::new(machine, before.t, &before.y).ok()?;
-                let observed = ObservedMachine::new(machine, &self.output_model);
-                let part = solve_system(&mut ode, observed, before, Some(t), &options, &[]);
-                part.ok()?.completed().ok()?.steps.pop()?
+                let mut by_each = METHODS.iter();
+                by_each.find_map(|options| self.state_after(machine, before, t, options))?
             }
         };
         if machine.is_in_fit_window(&point.y) {

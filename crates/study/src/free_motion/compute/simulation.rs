@@ -56,6 +56,16 @@ pub fn compute_free_motion(
     solver: &MotionSolver,
     progress: Progress<'_>,
 ) -> Result<FreeMotion, StudyError> {
+    compute_free_motion_at(scene, solver, None, progress)
+}
+
+/// The same with rows at wanted times (s, ascending) and at the end of the motion.
+pub(crate) fn compute_free_motion_at(
+    scene: &Scene,
+    solver: &MotionSolver,
+    times: Option<&[f64]>,
+    progress: Progress<'_>,
+) -> Result<FreeMotion, StudyError> {
     let Some(spec) = &scene.motion else {
         return Err(scene_error(
             scene,
@@ -67,12 +77,13 @@ pub fn compute_free_motion(
     let loaded_scene = with_drive_loads(scene)?;
     let problem = FreeMotionProblem::new(scene, &loaded_scene, spec)?;
     let duration = problem.duration()?;
+    times.map_or(Ok(()), |times| check_times(times, duration))?;
     let integrated = problem.integrate(scene, solver, duration)?;
     let motion = &integrated.motion;
     if let Some(error) = motion.failure.as_ref().filter(|_| motion.end_time() == 0.0) {
         return Err(problem.explain(error));
     }
-    let trajectory = problem.trajectory(&integrated);
+    let trajectory = problem.trajectory(&integrated, times);
     let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
     let (model, notes) = (&problem.output_model, String::new());
     let sample = |t: f64| problem.sample_at(motion, t);
@@ -123,6 +134,29 @@ fn check_sample_interval(interval: f64, duration: f64) -> Result<f64, StudyError
     let message = format!("a sample interval of {interval} s is {fault}");
     let help = format!(
         "from {shortest} s ({MAX_SAMPLES} samples) to {longest} s (start and end only) is allowed"
+    );
+    Err(SceneError::without_labels(message, Some(help)).into())
+}
+
+/// Refuses wanted times (s) that are not ascending, or outside a motion of this duration (s).
+fn check_times(times: &[f64], duration: f64) -> Result<(), StudyError> {
+    let pairs = times.iter().zip(times.iter().skip(1));
+    let mut unordered = pairs.filter(|(before, after)| after <= before);
+    let is_outside = |t: &&f64| **t < 0.0 || **t > duration;
+    let message = if times.is_empty() || times.len() as f64 > MAX_SAMPLES {
+        format!("{} wanted instants", times.len())
+    } else if let Some((before, after)) = unordered.next() {
+        format!("the wanted instant {after} s follows {before} s")
+    } else if let Some(t) = times.iter().find(is_outside) {
+        format!(
+            "the wanted instant {t} s is not within the motion of {} s",
+            digits(duration, 6)
+        )
+    } else {
+        return Ok(());
+    };
+    let help = format!(
+        "give from 1 to {MAX_SAMPLES} instants, each once and in ascending order, from 0 to {duration} s"
     );
     Err(SceneError::without_labels(message, Some(help)).into())
 }

@@ -11,15 +11,19 @@ use dwell_findings::{Column, Table};
 use dwell_geometry::body_states::CoordinateFunction;
 
 impl FreeMotionProblem<'_> {
-    /// A computed motion as a trajectory.
+    /// A computed motion as a trajectory, with its samples or else with wanted times (s) as rows.
     pub(crate) fn trajectory(
         &self,
         computed: &ComputedMotion,
+        times: Option<&[f64]>,
     ) -> Result<Trajectory<'static>, DynamicsError> {
         let end = computed.motion.end_time();
         let charts = computed.motion.charts.iter();
         let motion = FreeTrajectory {
-            samples: self.samples(&computed.motion)?,
+            samples: match times {
+                None => self.samples(&computed.motion)?,
+                Some(times) => self.samples_at(&computed.motion, times)?,
+            },
             extra_columns: self.extra_columns(),
             prescribed: self.spec.laws.iter().map(Option::is_some).collect(),
             charts: charts.map(|c| c.output_model.clone()).collect(),
@@ -55,6 +59,35 @@ impl FreeMotionProblem<'_> {
         }
         if let [only] = samples.as_slice() {
             // A trajectory needs two samples, even if the motion ends at its start.
+            samples.push(only.clone());
+        }
+        Ok(samples)
+    }
+
+    /// The motion at wanted times (s) up to its end, and at its end.
+    fn samples_at(
+        &self,
+        motion: &SegmentedMotion,
+        times: &[f64],
+    ) -> Result<Vec<TrajectorySample>, DynamicsError> {
+        let end = motion.end_time();
+        let wanted = times.iter().copied().filter(|&t| t < end).chain([end]);
+        let index = self.balance_index();
+        let initial = self
+            .sample_at(motion, 0.0)
+            .map_or(0.0, |s| s.extra_values[index]);
+        let mut samples = Vec::new();
+        for t in wanted {
+            let Some(mut sample) = self.sample_at(motion, t) else {
+                if self.is_in_fit_window(motion, t) {
+                    continue;
+                }
+                return Err(DynamicsError::StepTooSmall { t });
+            };
+            sample.extra_values[index] -= initial;
+            samples.push(sample);
+        }
+        if let [only] = samples.as_slice() {
             samples.push(only.clone());
         }
         Ok(samples)

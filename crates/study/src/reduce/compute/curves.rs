@@ -10,8 +10,8 @@ use dwell_kinetostatics::{Batch, Coefficients};
 use dwell_scene::Scene;
 use rayon::prelude::*;
 
-/// Intervals of the table: half a degree over a revolution.
-const POSITIONS: usize = 720;
+/// Positions of the table if their number is not given: half a degree apart over a revolution.
+const DEFAULT_POINTS: usize = 721;
 
 /// The reduced coefficients over the range.
 #[derive(Debug, Clone)]
@@ -84,13 +84,14 @@ impl RoundingErrors {
 }
 
 impl ReducedCurves {
-    /// Evaluates the model over its range.
+    /// Evaluates the model over its range, at `points` positions (two or more) if given.
     ///
     /// # Errors
     /// [`StudyError::Scene`] where a position cannot be reached.
-    pub fn new(prepared: &PreparedScene<'_>) -> Result<Self, StudyError> {
+    pub fn new(prepared: &PreparedScene<'_>, points: Option<usize>) -> Result<Self, StudyError> {
         let model = &prepared.model;
-        let q = prepared.range_positions(POSITIONS);
+        let intervals = points.unwrap_or(DEFAULT_POINTS).max(2) - 1;
+        let q = prepared.range_positions(intervals);
         let mut batch = Batch::default();
         model.reduce_batch(&q, &mut batch);
         if let Some((_, error)) = batch.errors.first() {
@@ -178,13 +179,16 @@ pub struct Reduction<'a> {
     pub errors: RoundingErrors,
 }
 
-/// Computes the reduced parameters of a scene over its range.
+/// Computes the reduced parameters of a scene over its range, at `points` positions (two or more) if given.
 ///
 /// # Errors
 /// [`StudyError`] when the mechanism cannot be assembled, or a position of the range cannot be evaluated.
-pub fn compute_reduction(scene: &Scene) -> Result<Reduction<'_>, StudyError> {
+pub fn compute_reduction(
+    scene: &Scene,
+    points: Option<usize>,
+) -> Result<Reduction<'_>, StudyError> {
     let prepared = PreparedScene::for_driven_angle(scene, false)?;
-    let curves = ReducedCurves::new(&prepared)?;
+    let curves = ReducedCurves::new(&prepared, points)?;
     let unit_loads = UnitLoadCurves::new(&prepared, &curves.q)?;
     let errors = RoundingErrors::new(&prepared, &curves)?;
     Ok(Reduction {
