@@ -5,6 +5,7 @@
 
 mod cases;
 mod former;
+mod instants;
 mod options;
 mod validate;
 
@@ -13,8 +14,8 @@ use dwell_findings::all_pass;
 use dwell_report::Files;
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{
-    Analysis, Outcome, ParameterSweep, Progress, SolverSettings, Step, StudyError, TableRequest,
-    TrajectoryOutcome,
+    Analysis, MotionSolver, Outcome, ParameterSweep, Progress, SolverSettings, Step, StudyError,
+    TableRequest, TrajectoryOutcome,
 };
 use dwell_validation::ValidationError;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -88,15 +89,17 @@ fn run_study(command: &Command, out: &Path) -> Result<TrajectoryOutcome, StudyEr
             scene,
             table_accuracy,
             accuracy,
+            points,
             from,
             to,
         } => {
+            let points = points.map(|n| n as usize);
             let tabulation = table_accuracy.or(*accuracy).map(|accuracy| TableRequest {
                 accuracy,
                 interval: from.zip(*to),
                 required: table_accuracy.is_some(),
             });
-            dwell_study::reduce(&read(scene)?, tabulation)?
+            dwell_study::reduce(&read(scene)?, points, tabulation)?
         }
         Command::Simulate {
             scene,
@@ -106,20 +109,25 @@ fn run_study(command: &Command, out: &Path) -> Result<TrajectoryOutcome, StudyEr
             max_step,
             accuracy,
             sample_interval,
+            times,
         } => {
-            let settings = SolverSettings {
-                method: *method,
-                rtol: *rtol,
-                atol: atol.unwrap_or(*rtol),
-                max_step: *max_step,
-                sample_interval: *sample_interval,
+            let solver = match *accuracy {
+                Some(accuracy) => MotionSolver::Accuracy {
+                    accuracy,
+                    sample_interval: *sample_interval,
+                },
+                None => MotionSolver::Settings(SolverSettings {
+                    method: *method,
+                    rtol: *rtol,
+                    atol: atol.unwrap_or(*rtol),
+                    max_step: *max_step,
+                    sample_interval: *sample_interval,
+                }),
             };
             let scene = read(scene)?;
-            return with_progress(|progress| match *accuracy {
-                Some(accuracy) => {
-                    dwell_study::simulate_to_accuracy(&scene, accuracy, *sample_interval, progress)
-                }
-                None => dwell_study::simulate(&scene, &settings, progress),
+            let times = times.as_deref().map(instants::read).transpose()?;
+            return with_progress(|progress| {
+                dwell_study::simulate_with(&scene, &solver, times.as_deref(), progress)
             });
         }
         Command::Cycle {

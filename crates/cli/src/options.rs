@@ -36,6 +36,9 @@ pub(crate) enum Command {
         /// Required relative accuracy over the whole range; uses exact evaluation or a table, whichever is cheaper
         #[arg(long, value_parser = parse_accuracy, value_name = "ACCURACY", allow_hyphen_values = true, conflicts_with = "table_accuracy")]
         accuracy: Option<f64>,
+        /// Number of positions, both ends included (default: 721)
+        #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1_000_000), value_name = "COUNT", allow_hyphen_values = true)]
+        points: Option<u32>,
         /// Lower end of the table, in the scene's unit (default: a full period, or the range without 2 % at each end)
         #[arg(long, requires_all = ["table_accuracy", "to"], value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
         from: Option<f64>,
@@ -68,6 +71,10 @@ pub(crate) enum Command {
         /// Time between the rows of the table, s (default: a thousandth of the duration)
         #[arg(long, value_parser = parse_time, value_name = "SECONDS", allow_hyphen_values = true)]
         sample_interval: Option<f64>,
+        /// File of the wanted instants, instead of a sample interval: one time in s on each line, in ascending order.
+        /// The last instant of the motion is a row, too
+        #[arg(long, value_name = "FILE", conflicts_with = "sample_interval")]
+        times: Option<PathBuf>,
     },
     /// Steady cycle of a driven machine, and the flywheel for a given coefficient of fluctuation
     Cycle {

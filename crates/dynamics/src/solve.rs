@@ -28,7 +28,7 @@ const ORBIT_PARTS: f64 = 64.0;
 pub struct Solution {
     /// The start and the end of each step; a terminal event ends the last one.
     pub steps: Vec<OdeState>,
-    /// Equally spaced samples, if asked for.
+    /// Equally spaced samples, if asked for; [`Solution::sample_end`] adds the end.
     pub samples: Vec<OdeState>,
     /// The events that happened, in order of time.
     pub event_occurrences: Vec<EventOccurrence>,
@@ -49,6 +49,17 @@ impl Solution {
         match self.error.take() {
             Some(error) => Err(error),
             None => Ok(self),
+        }
+    }
+
+    /// Adds the end to the samples, unless one of them is there up to rounding.
+    pub fn sample_end(&mut self) {
+        let Some(end) = self.steps.last() else {
+            return;
+        };
+        let is_there = |last: &OdeState| end.t - last.t <= 4.0 * f64::EPSILON * end.t.abs();
+        if !self.samples.last().is_some_and(is_there) {
+            self.samples.push(end.clone());
         }
     }
 }

@@ -62,6 +62,24 @@ pub(crate) fn relative(error: f64, scale: f64) -> f64 {
     if error == 0.0 { 0.0 } else { error / scale }
 }
 
+/// A quantity below this part of what its unit can be expected to hold is zero but for rounding.
+pub(crate) const ZERO_RATIO: f64 = 1e-12;
+
+/// Whether a quantity whose largest value is `size` is zero but for rounding, where `reference` is what quantities of
+/// its unit come to.
+pub(crate) fn is_rounding(size: f64, reference: f64) -> bool {
+    size <= ZERO_RATIO * reference
+}
+
+/// The scale of the relative error of a quantity: its largest value, or the reference where that is only rounding.
+pub(crate) fn error_scale(size: f64, reference: f64) -> f64 {
+    if is_rounding(size, reference) {
+        reference
+    } else {
+        size
+    }
+}
+
 /// The reduced coefficients at `q` (rad or m), and the estimated rounding error of each.
 ///
 /// # Errors

@@ -21,7 +21,7 @@
 //! phi = { angle = ["ground", "bar"] }
 //! "#;
 //! let scene = Scene::parse("pendulum.toml", text)?;
-//! let reduction = dwell_study::compute_reduction(&scene)?;
+//! let reduction = dwell_study::compute_reduction(&scene, None)?;
 //! // m = I + M r² about the pin, at every position.
 //! assert!((reduction.curves.coefficients[0].m - 1.0).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -70,7 +70,7 @@ pub use {
     check::check,
     cycle::output::cycle,
     equilibria::output::equilibria,
-    free_motion::output::{simulate, simulate_to_accuracy},
+    free_motion::output::{simulate, simulate_to_accuracy, simulate_with},
     linearise::output::linearise,
     output::Outcome,
     reduce::output::reduce,

@@ -3,6 +3,7 @@
 
 mod messages;
 mod results;
+mod rows;
 mod studies;
 mod sweep;
 mod test_dir;

@@ -1,7 +1,7 @@
 //! Writes a free motion: everything that is written of a trajectory, events and summary.
 
 use crate::explain::StudyError;
-use crate::free_motion::compute::{MotionSolver, compute_free_motion};
+use crate::free_motion::compute::{MotionSolver, compute_free_motion_at};
 use crate::models::SolverSettings;
 use crate::progress::Progress;
 use crate::trajectory::output::{TrajectoryOutcome, report};
@@ -18,7 +18,7 @@ pub fn simulate(
     settings: &SolverSettings,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
-    simulate_with(scene, &MotionSolver::Settings(*settings), progress)
+    simulate_with(scene, &MotionSolver::Settings(*settings), None, progress)
 }
 
 /// The free motion of a scene to a required accuracy, by the cheapest method that reaches it. `accuracy` bounds the
@@ -37,15 +37,20 @@ pub fn simulate_to_accuracy(
         accuracy,
         sample_interval,
     };
-    simulate_with(scene, &solver, progress)
+    simulate_with(scene, &solver, None, progress)
 }
 
-fn simulate_with(
+/// The free motion of a scene, with rows at wanted `times` (s, ascending) and at its end, or else equally spaced.
+///
+/// # Errors
+/// As [`simulate`]; [`StudyError::Scene`] for a time outside the motion.
+pub fn simulate_with(
     scene: &Scene,
     solver: &MotionSolver,
+    times: Option<&[f64]>,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
-    let motion = compute_free_motion(scene, solver, progress)?;
+    let motion = compute_free_motion_at(scene, solver, times, progress)?;
     let (scene, computed) = (&motion.loaded_scene, motion.computed);
     let mut outcome = report(scene, &computed, progress)?;
     if !motion.events.is_empty() {

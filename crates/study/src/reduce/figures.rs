@@ -55,8 +55,12 @@ impl RangeFigures<'_> {
     }
 }
 
-/// m and ½m′.
-pub fn reduced(prepared: &PreparedScene<'_>, curves: &ReducedCurves) -> Figure {
+/// m and ½m′; nothing that [`ReducedCurves::rounding`] says to be zero.
+pub fn reduced(
+    prepared: &PreparedScene<'_>,
+    curves: &ReducedCurves,
+    is_rounding: &[bool],
+) -> Figure {
     let (q, at) = (&curves.q, &curves.coefficients);
     let range = RangeFigures { prepared, q };
     let inertia = vec![range.line("", at.iter().map(|c| c.m))];
@@ -66,34 +70,47 @@ pub fn reduced(prepared: &PreparedScene<'_>, curves: &ReducedCurves) -> Figure {
     let derivative = range.panel(title, "½m′", "kg m²/rad", derivative);
     let text = "m is the actuator force at unit acceleration and zero speed, ½m′ at unit speed and zero acceleration.";
     let title = "Reduced inertia and half its derivative";
-    range.figure("reduced", title, text, vec![inertia, derivative])
+    let panels = match is_rounding[1] {
+        true => vec![inertia],
+        false => vec![inertia, derivative],
+    };
+    range.figure("reduced", title, text, panels)
 }
 
 /// a and b of the requested reactions, separately for forces and moments, a few per figure; and a note if
-/// not all are drawn.
+/// not all are drawn. Nothing that [`ReducedCurves::rounding`] says to be zero.
 pub fn coefficients(
     prepared: &PreparedScene<'_>,
     curves: &ReducedCurves,
+    is_rounding: &[bool],
 ) -> (Vec<Figure>, Option<String>) {
     let reactions = prepared.reaction_units();
     let mut pages: Vec<(Vec<usize>, &str)> = Vec::new();
     for (of, unit) in [("N", "kg m"), ("N m", "kg m²")] {
-        let of_unit = (0..reactions.len()).filter(|&k| reactions[k].1 == of);
+        let is_drawn = |k: usize| coefficients_of(is_rounding, k).contains(&false);
+        let of_unit = (0..reactions.len()).filter(|&k| reactions[k].1 == of && is_drawn(k));
         let of_unit: Vec<usize> = of_unit.collect();
         pages.extend(of_unit.chunks(MAX_CURVES).map(|some| (some.to_vec(), unit)));
     }
     let (drawn, note) = reaction_figure_count(prepared.scene, pages.len());
     let pages = pages.iter().take(drawn).enumerate();
-    let figures =
-        pages.map(|(k, (some, unit))| coefficient_figure(prepared, curves, some, unit, k));
+    let figures = pages.map(|(k, (some, unit))| {
+        coefficient_figure((prepared, curves), is_rounding, some, unit, k)
+    });
     let mut figures: Vec<Figure> = figures.collect();
     add_note(&mut figures, note.as_deref());
     (figures, note)
 }
 
+/// Of a and b of a reaction: whether it is zero but for rounding.
+fn coefficients_of(is_rounding: &[bool], reaction: usize) -> [bool; 2] {
+    let (a, b) = is_rounding[2..].split_at((is_rounding.len() - 2) / 2);
+    [a[reaction], b[reaction]]
+}
+
 fn coefficient_figure(
-    prepared: &PreparedScene<'_>,
-    curves: &ReducedCurves,
+    (prepared, curves): (&PreparedScene<'_>, &ReducedCurves),
+    is_rounding: &[bool],
     group: &[usize],
     unit: &str,
     index: usize,
@@ -102,17 +119,33 @@ fn coefficient_figure(
     let range = RangeFigures { prepared, q };
     let reactions = prepared.reaction_units();
     let name = symbol(prepared.coordinate_name());
-    let lines = |of: fn(&Coefficients, usize) -> f64| {
+    let lines = |part: usize, of: fn(&Coefficients, usize) -> f64| -> Vec<Series> {
         let line = |&k: &usize| {
             let name = if group.len() > 1 { &reactions[k].0 } else { "" };
             range.line(name, curves.coefficients.iter().map(|at| of(at, k)))
         };
-        group.iter().map(line).collect()
+        let drawn = group.iter();
+        drawn
+            .filter(|&&k| !coefficients_of(is_rounding, k)[part])
+            .map(line)
+            .collect()
     };
-    let title = format!("a: coefficient of the acceleration of {name}");
-    let a = range.panel(&title, "a", unit, lines(|c, k| c.a[k]));
-    let title = format!("b: coefficient of the squared speed of {name}");
-    let b = range.panel(&title, "b", unit, lines(|c, k| c.b[k]));
+    let title = |what: &str| format!("{what} of {name}");
+    let kinds = [
+        (
+            "a",
+            title("a: coefficient of the acceleration"),
+            lines(0, |c, k| c.a[k]),
+        ),
+        (
+            "b",
+            title("b: coefficient of the squared speed"),
+            lines(1, |c, k| c.b[k]),
+        ),
+    ];
+    let kinds = kinds.into_iter().filter(|(.., lines)| !lines.is_empty());
+    let panels = kinds.map(|(label, title, lines)| range.panel(&title, label, unit, lines));
+    let panels = panels.collect();
     let title = match group {
         [k] => format!("Reduced parameters of the reaction {}", reactions[*k].0),
         _ => "Reduced parameters of the reactions".to_owned(),
@@ -123,7 +156,7 @@ fn coefficient_figure(
     };
     let text =
         "Reaction = a q̈ + b q̇²: the force or moment of the joint's first body on its second.";
-    range.figure(name, title, text, vec![a, b])
+    range.figure(name, title, text, panels)
 }
 
 /// w of the loads by their units, and V.

@@ -13,16 +13,22 @@ use dwell_kinetostatics::Coefficients;
 use dwell_report::{Figure, Files, TableFormat};
 use dwell_scene::Scene;
 
-/// The reduced parameters of a scene over its range, and an interpolation table if requested.
+/// The reduced parameters of a scene over its range, at `points` positions (two or more) if given, and an interpolation
+/// table if requested.
 ///
 /// # Errors
 /// [`StudyError`] when the mechanism cannot be assembled, a figure cannot be drawn or the table cannot be
 /// built.
-pub fn reduce(scene: &Scene, table: Option<TableRequest>) -> Result<Outcome, StudyError> {
-    let reduction = compute_reduction(scene)?;
+pub fn reduce(
+    scene: &Scene,
+    points: Option<usize>,
+    table: Option<TableRequest>,
+) -> Result<Outcome, StudyError> {
+    let reduction = compute_reduction(scene, points)?;
     let (prepared, curves) = (&reduction.prepared, &reduction.curves);
-    let mut figures: Vec<Figure> = vec![figures::reduced(prepared, curves)];
-    let (coefficients, note) = figures::coefficients(prepared, curves);
+    let is_rounding = &reduction.errors.is_rounding;
+    let mut figures: Vec<Figure> = vec![figures::reduced(prepared, curves, is_rounding)];
+    let (coefficients, note) = figures::coefficients(prepared, curves, is_rounding);
     figures.extend(coefficients);
     if let Some(unit_loads) = &reduction.unit_loads
         && unit_loads.working().next().is_some()
@@ -68,7 +74,11 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
     let extent_of = |pick: fn(&Coefficients) -> f64| extent(curves.coefficients.iter().map(pick));
     let m = extent_of(|c| c.m);
     let [m_min, m_max] = m.map(|m| digits(m, 9));
-    let [h_min, h_max] = extent_of(|c| c.half_dm).map(|h| digits(h, 9));
+    let [h_min, h_max] = match reduction.errors.is_rounding[1] {
+        true => [0.0; 2],
+        false => extent_of(|c| c.half_dm),
+    }
+    .map(|h| digits(h, 9));
     let (title, count) = (&prepared.scene.title, curves.q.len());
     let name = prepared.coordinate_name();
     let mut summary = format!(

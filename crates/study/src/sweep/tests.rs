@@ -50,7 +50,7 @@ fn the_period_is_that_of_the_reference_and_of_calibrate() {
 fn inertia_is_that_of_reduce_and_linear_in_the_cranks() {
     let scene = case("single-dwell");
     let prepared = PreparedScene::new(&scene).expect("a model");
-    let reduced = crate::reduce::compute::ReducedCurves::new(&prepared).expect("a table");
+    let reduced = crate::reduce::compute::ReducedCurves::new(&prepared, None).expect("a table");
     let m = reduced.coefficients.iter().map(|at| at.m);
     let [min, max] = [
         m.clone().fold(f64::INFINITY, f64::min),

@@ -3,7 +3,7 @@
 use crate::number_format::{count, number};
 use crate::output::{indeterminate_note, provenance_line};
 use crate::trajectory::compute::{
-    Analysis, Column, ComputedTrajectory, Quantity, SectionedLink, Trajectory, TrajectoryResults,
+    Analysis, ComputedTrajectory, Extremum, Quantity, SectionedLink, Trajectory, TrajectoryResults,
     selected_columns,
 };
 use dwell_kinetostatics::{Distribution, Section};
@@ -16,6 +16,10 @@ const MAX_LISTED: usize = 3;
 const SAME_WITHIN: f64 = 1e-9;
 /// Largest relative residual of the power balance that is not commented on.
 const MAX_BALANCE_RESIDUAL: f64 = 1e-9;
+
+/// What the largest values are where none could be looked for between the rows.
+const LARGEST_OF_ROWS: &str =
+    "these are the largest values of the rows: the motion has too many steps to look between them";
 
 /// The results of a trajectory analysis as text.
 pub(crate) struct Document<'a> {
@@ -46,7 +50,7 @@ impl<'a> Document<'a> {
             results,
             trajectory,
             selected,
-            extrema: extrema(columns, &listed, &results.rows),
+            extrema: sorted_extrema(results, &listed),
             abscissa: (name, unit),
             at: format!("at {name} [{unit}]"),
             abscissa_values: results.rows.iter().map(|row| row[abscissa]).collect(),
@@ -60,8 +64,8 @@ impl<'a> Document<'a> {
         for of in &self.extrema {
             // Names of a scene hold neither commas nor quotes.
             text += &format!("{},{}", of.name, of.unit);
-            for (value, row) in [of.min, of.max] {
-                text += &format!(",{value:?},{:?}", self.abscissa_values[row]);
+            for Extremum { value, at } in of.ends {
+                text += &format!(",{value:?},{at:?}");
             }
             text.push('\n');
         }
@@ -73,7 +77,7 @@ impl<'a> Document<'a> {
         let at = &self.at;
         let header = ["quantity", "unit", "min", at, "max", at];
         let row = |of: &ColumnExtrema| {
-            let cells = [of.min, of.max].map(|(v, row)| [v, self.abscissa_values[row]].map(number));
+            let cells = of.ends.map(|end| [end.value, end.at].map(number));
             let mut row = vec![of.name.clone(), of.unit.to_owned()];
             row.extend(cells.into_iter().flatten());
             row
@@ -109,7 +113,7 @@ impl<'a> Document<'a> {
             let [bending, station, at] =
                 [section.bending, section.station, self.abscissa_values[row]].map(number);
             text += &format!(
-                "  bending moment of {link}: {bending} N m, {station} m from {from}, at {abscissa} = {at} {unit}\n"
+                "  bending moment of {link}: {bending} N m, {station} m from {from}, at {abscissa} = {at} {unit}, the largest of the rows\n"
             );
         }
         text += &self.power_balance_text();
@@ -128,8 +132,7 @@ impl<'a> Document<'a> {
         let mut listed: Vec<(&str, f64)> = Vec::new();
         for of in &self.extrema {
             let (name, unit) = (&of.name, of.unit);
-            let is_lower = of.min.0.abs() > of.max.0.abs();
-            let (value, row) = if is_lower { of.min } else { of.max };
+            let Extremum { value, at } = of.largest();
             let size = value.abs();
             let of_unit = listed.iter().filter(|(u, _)| *u == unit);
             let mut of_unit = of_unit.map(|(_, v)| v.abs());
@@ -137,7 +140,7 @@ impl<'a> Document<'a> {
             let largest = of_unit.clone().next().unwrap_or(0.0);
             // The same under another name: a pin belongs to two bodies.
             let is_repeated = of_unit.any(|v| (v - size).abs() <= SAME_WITHIN * size);
-            let is_negligible = size <= SAME_WITHIN * largest;
+            let is_negligible = size <= SAME_WITHIN * largest || size == 0.0;
             if !is_interesting(unit)
                 || is_enough
                 || is_repeated
@@ -147,9 +150,12 @@ impl<'a> Document<'a> {
                 continue;
             }
             listed.push((unit, value));
-            let [value, at] = [value, self.abscissa_values[row]].map(number);
+            let [value, at] = [value, at].map(number);
             text +=
                 &format!("  {name} reaches {value} {unit} at {abscissa} = {at} {abscissa_unit}\n");
+        }
+        if !text.is_empty() && !self.results.extrema.are_between_rows {
+            text += &format!("  {LARGEST_OF_ROWS}\n");
         }
         text
     }
@@ -221,6 +227,13 @@ impl<'a> Document<'a> {
             caption: String::new(),
         }));
         blocks.push(Block::Heading("Peaks".to_owned()));
+        let where_found = match self.results.extrema.are_between_rows {
+            true => "Smallest and largest values, also between the rows of the table.",
+            false => {
+                "Smallest and largest values in the rows of the table: between them there may be larger ones."
+            }
+        };
+        blocks.push(Block::Text(where_found.to_owned()));
         blocks.push(self.extrema_table());
         blocks.extend(self.internal_forces());
         blocks.push(Block::Heading("Columns".to_owned()));
@@ -285,41 +298,36 @@ impl<'a> Document<'a> {
 struct ColumnExtrema {
     name: String,
     unit: &'static str,
-    /// Smallest and largest value, each with its row.
-    min: (f64, usize),
-    max: (f64, usize),
+    /// The smallest and the largest value.
+    ends: [Extremum; 2],
 }
 
 impl ColumnExtrema {
-    fn max_abs(&self) -> f64 {
-        self.min.0.abs().max(self.max.0.abs())
+    /// The extremum of larger magnitude.
+    fn largest(&self) -> Extremum {
+        let [min, max] = self.ends;
+        if min.value.abs() > max.value.abs() {
+            min
+        } else {
+            max
+        }
     }
 }
 
 /// The extrema of some columns, grouped by unit, largest absolute value first.
-fn extrema(columns: &[Column], selected: &[usize], rows: &[Vec<f64>]) -> Vec<ColumnExtrema> {
+fn sorted_extrema(results: &TrajectoryResults, listed: &[usize]) -> Vec<ColumnExtrema> {
     let entry = |&k: &usize| {
-        // Empty cells are skipped.
-        let values = || {
-            let rows = rows.iter().enumerate().map(|(i, row)| (row[k], i));
-            rows.filter(|(value, _)| !value.is_nan())
-        };
-        // Of equal values the first.
-        let min = values().reduce(|a, b| if b.0 < a.0 { b } else { a })?;
-        let max = values().reduce(|a, b| if b.0 > a.0 { b } else { a })?;
         Some(ColumnExtrema {
-            name: columns[k].name.clone(),
-            unit: columns[k].unit,
-            min,
-            max,
+            name: results.columns[k].name.clone(),
+            unit: results.columns[k].unit,
+            ends: results.extrema.of_columns[k]?,
         })
     };
-    let mut all: Vec<ColumnExtrema> = selected.iter().filter_map(entry).collect();
+    let mut all: Vec<ColumnExtrema> = listed.iter().filter_map(entry).collect();
     let units: Vec<&str> = all.iter().map(|entry| entry.unit).collect();
     let unit_order = |p: &ColumnExtrema| units.iter().position(|u| *u == p.unit);
-    all.sort_by(|a, b| {
-        let by_unit = unit_order(a).cmp(&unit_order(b));
-        by_unit.then(b.max_abs().total_cmp(&a.max_abs()))
-    });
+    // One quantity under two names differs by rounding, about 1e-16; so the last bits do not order them.
+    let size = |p: &ColumnExtrema| p.largest().value.abs().to_bits() >> 20;
+    all.sort_by_key(|of| (unit_order(of), std::cmp::Reverse(size(of))));
     all
 }

@@ -105,7 +105,7 @@ fn check_says_which_teeth_have_a_separating_force() {
 #[test]
 fn the_reduced_model_has_its_unit_response() {
     let with = with_angle("planetary", "radii = [30, 20]");
-    let outcome = reduce(&with, None).unwrap();
+    let outcome = reduce(&with, None, None).unwrap();
     let line = "  a and b are without the separating forces inner.separating: each is |tooth force| × tan(pressure angle) at one state, and adds c times itself to a reaction\n";
     assert!(outcome.summary.contains(line), "{}", outcome.summary);
     let csv = |outcome: &dwell_study::Outcome| {
@@ -115,7 +115,7 @@ fn the_reduced_model_has_its_unit_response() {
             .unwrap();
         Table::parse(std::str::from_utf8(bytes).unwrap())
     };
-    let without = csv(&reduce(&case("planetary"), None).unwrap());
+    let without = csv(&reduce(&case("planetary"), None, None).unwrap());
     let with = csv(&outcome);
     for name in &without.names {
         assert_eq!(with.column(name), without.column(name), "{name}");

@@ -153,7 +153,7 @@ fn reduce_leaves_out_reactions_that_are_not_unique() {
     let reduced = |reactions: &str| {
         let requests = format!("[requests]\nreactions = [{reactions}]");
         let scene = scene(&text.replace("[requests]", &requests));
-        let outcome = dwell_study::reduce(&scene, None).unwrap();
+        let outcome = dwell_study::reduce(&scene, None, None).unwrap();
         let mut files = outcome.files.iter();
         let is_table = |path: &std::path::Path| path.to_str().unwrap().ends_with("-reduced.csv");
         let (_, bytes) = files.find(|(path, _)| is_table(path)).unwrap();

@@ -122,9 +122,13 @@ fn reduced_figures(
 ) -> Result<(Vec<Figure>, Option<Dwell>), ValidationError> {
     let prepared = &reduced.prepared;
     let (drawing, dwell) = figures::mechanism(prepared)?;
-    let mut figures = vec![drawing, reduce::figures::reduced(prepared, &reduced.curves)];
+    let (curves, is_rounding) = (&reduced.curves, &reduced.curves.rounding(prepared));
+    let mut figures = vec![
+        drawing,
+        reduce::figures::reduced(prepared, curves, is_rounding),
+    ];
     // The caption of the last one says which reactions are left out.
-    figures.extend(reduce::figures::coefficients(prepared, &reduced.curves).0);
+    figures.extend(reduce::figures::coefficients(prepared, curves, is_rounding).0);
     let (history, motion) = (reduced.history.as_ref(), reduced.motion.as_ref());
     figures.extend(history.map(|history| figures::history(prepared, history)));
     figures.extend(motion.map(|motion| figures::drift(prepared, motion)));

@@ -195,7 +195,7 @@ impl<'a> ReducedAnalysis<'a> {
     fn new(prepared: PreparedScene<'a>, reference: &Reference) -> Result<Self, ValidationError> {
         let scene = prepared.scene;
         let mut analysis = Self {
-            curves: ReducedCurves::new(&prepared)?,
+            curves: ReducedCurves::new(&prepared, None)?,
             prepared,
             error_curves: Vec::new(),
             motion: None,

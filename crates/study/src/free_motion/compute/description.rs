@@ -1,5 +1,6 @@
 //! The summary of a motion.
 
+use crate::estimate::is_rounding;
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::models::SolverSettings;
 use crate::number_format::{coordinate_unit, digits};
@@ -88,7 +89,8 @@ impl FreeMotionProblem<'_> {
 
     /// The error of the energy balance.
     fn describe_energy_balance(&self, motion: &SegmentedMotion) -> String {
-        let (mut initial, mut max_kinetic, mut max_difference) = (None, 0.0_f64, 0.0_f64);
+        let (mut initial, mut max_difference) = (None, 0.0_f64);
+        let (mut max_kinetic, mut max_potential) = (0.0_f64, 0.0_f64);
         let mut workspaces: Vec<Option<MachineWorkspace>> = Vec::new();
         for (chart, point) in motion.steps() {
             let machine = self.machine(motion, chart);
@@ -101,15 +103,19 @@ impl FreeMotionProblem<'_> {
             let sum = kinetic + potential - point.y[machine.work_offset()..].iter().sum::<f64>();
             let initial = *initial.get_or_insert(sum);
             max_kinetic = max_kinetic.max(kinetic);
+            max_potential = max_potential.max(potential.abs());
             max_difference = max_difference.max((sum - initial).abs());
         }
         if max_kinetic == 0.0 {
             return "  the mechanism stays at rest: no force moves it\n".to_owned();
         }
-        let relative_loss = max_difference / max_kinetic;
-        let kinetic = digits(max_kinetic, 6);
+        let (kind, largest) = match is_rounding(max_kinetic, max_potential) {
+            true => ("potential", max_potential),
+            false => ("kinetic", max_kinetic),
+        };
+        let (relative_loss, energy) = (max_difference / largest, digits(largest, 6));
         let mut text = format!(
-            "  energy balance closes to {relative_loss:.1e} of the largest kinetic energy, {kinetic} J\n"
+            "  energy balance closes to {relative_loss:.1e} of the largest {kind} energy, {energy} J\n"
         );
         if relative_loss > MAX_ENERGY_LOSS {
             text += "  this is large: use a smaller --rtol\n";

@@ -1,8 +1,8 @@
 //! The difference of two computations of one motion.
 
-use crate::estimate::relative;
+use crate::estimate::{error_scale, relative};
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
-use crate::trajectory::compute::TrajectorySample;
+use crate::trajectory::compute::{TrajectorySample, force_scales};
 use dwell_dynamics::DynamicsError;
 
 /// Samples at which reactions are compared, along the whole motion.
@@ -58,32 +58,33 @@ impl FreeMotionProblem<'_> {
             let differences = pairs.iter().map(|(a, b)| (of(a) - of(b)).abs());
             differences.fold(0.0, nan_max)
         };
+        let size = self.loaded_scene.mechanism.size();
         let mut coordinate = 0.0_f64;
         for &i in self.machine.free() {
             let value = |s: &TrajectorySample| s.coordinate(i);
             let start = first.first().map_or(0.0, value);
             let scale = match self.output_model.plan().is_angle(i) {
                 true => 1.0,
-                false => max_abs(&|s| value(s) - start),
+                false => error_scale(max_abs(&|s| value(s) - start), size),
             };
             coordinate = nan_max(coordinate, relative(max_difference(&value), scale));
         }
         let balance = |s: &TrajectorySample| self.energy_balance(s);
-        let kinetic = max_abs(&|s| s.extra_values[0]);
+        let [kinetic, potential] = [0, 1].map(|k| max_abs(&|s| s.extra_values[k]));
         let [end_one, end_two] = [one, two].map(SegmentedMotion::end_time);
         Ok(Difference {
             coordinate,
-            energy: relative(max_difference(&balance), kinetic),
-            reactions: self.reaction_difference(one, two, &pairs)?,
+            energy: relative(max_difference(&balance), error_scale(kinetic, potential)),
+            reactions: self.reaction_difference([one, two], &pairs, kinetic)?,
             end: relative((end_one - end_two).abs(), end_one.max(end_two)),
         })
     }
 
     fn reaction_difference(
         &self,
-        one: &SegmentedMotion,
-        two: &SegmentedMotion,
+        [one, two]: [&SegmentedMotion; 2],
         pairs: &[(&TrajectorySample, &TrajectorySample)],
+        kinetic: f64,
     ) -> Result<f64, DynamicsError> {
         let reactions = self.output_model.reactions();
         let mut differences = vec![0.0_f64; reactions.len()];
@@ -100,10 +101,22 @@ impl FreeMotionProblem<'_> {
                 }
             }
         }
-        let parts = differences.iter().zip(reactions).map(|(&difference, r)| {
+        let of_unit = |unit: &str| {
             let alike = sizes.iter().zip(reactions);
-            let alike = alike.filter(|(_, s)| s.component.unit() == r.component.unit());
-            let scale = alike.fold(0.0, |scale: f64, (size, _)| scale.max(*size));
+            let alike = alike.filter(|(_, s)| s.component.unit() == unit);
+            alike.fold(0.0, |scale: f64, (size, _)| scale.max(*size))
+        };
+        // Where all of a unit are zero but for rounding, their difference is that of two roundings.
+        let [force, moment] = ["N", "N m"].map(of_unit);
+        let size = self.loaded_scene.mechanism.size();
+        let references = force_scales(size, [force, moment], kinetic);
+        let force = error_scale(force, references[0]);
+        let moment = error_scale(moment, references[1]);
+        let parts = differences.iter().zip(reactions).map(|(&difference, r)| {
+            let scale = match r.component.unit() {
+                "N" => force,
+                _ => moment,
+            };
             relative(difference, scale)
         });
         Ok(parts.fold(0.0, nan_max))

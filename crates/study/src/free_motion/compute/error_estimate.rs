@@ -1,6 +1,6 @@
 //! The estimated error of a motion, from a second run at a tenth of the tolerance.
 
-use crate::estimate;
+use crate::estimate::{self, is_rounding};
 use crate::explain::StudyError;
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::number_format::{coordinate_unit, digits};
@@ -53,8 +53,11 @@ impl FreeMotionProblem<'_> {
             true => "over the whole motion".to_owned(),
             false => format!("until t = {until} s"),
         };
-        let kinetic = samples.iter().map(|s| s.extra_values[0]);
-        let (errors, large) = self.errors(&pairs, kinetic.fold(0.0, f64::max), options.atol);
+        let energies = [0, 1].map(|k| {
+            let energies = samples.iter().map(|s| s.extra_values[k].abs());
+            energies.fold(0.0, f64::max)
+        });
+        let (errors, large) = self.errors(&pairs, energies, options.atol);
         let text = format!("  estimated error {part}:{errors} from a second run at {refinement}\n");
         let ends = (!is_whole).then(|| {
             format!("its error is known until t = {until} s only, where a second run ends")
@@ -66,7 +69,7 @@ impl FreeMotionProblem<'_> {
     fn errors(
         &self,
         pairs: &[SamplePair<'_>],
-        max_kinetic: f64,
+        [max_kinetic, max_potential]: [f64; 2],
         atol: f64,
     ) -> (String, Option<String>) {
         let error_of = |of: &dyn Fn(&TrajectorySample) -> f64, rounding: f64| {
@@ -91,7 +94,7 @@ impl FreeMotionProblem<'_> {
                 });
             }
         }
-        if max_kinetic > 0.0 {
+        if !is_rounding(max_kinetic, max_potential) {
             let rounding = 4.0 * f64::EPSILON * max_kinetic;
             let error = error_of(&|s| self.energy_balance(s), rounding) / max_kinetic;
             text += &format!(" {error:.1e} of the largest kinetic energy,");

@@ -1,6 +1,7 @@
 //! Computes the free motion of a scene.
 
 mod accuracy;
+mod between_samples;
 mod description;
 mod difference;
 mod error_estimate;
@@ -14,4 +15,5 @@ pub(crate) use difference::Difference;
 pub use problem::FreeMotionProblem;
 pub(crate) use segmented_motion::ComputedMotion;
 pub use segmented_motion::SegmentedMotion;
+pub(crate) use simulation::compute_free_motion_at;
 pub use simulation::{FreeMotion, MotionSolver, compute_free_motion};

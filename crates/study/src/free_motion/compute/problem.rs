@@ -88,7 +88,10 @@ impl<'a> FreeMotionProblem<'a> {
             AtlasError::Machine(machine) => explain_machine(scene, machine),
         })?;
         let continued = atlas.solve(&start, duration, options, &events);
-        let continued = continued.map_err(|e| self.explain(&e))?;
+        let mut continued = continued.map_err(|e| self.explain(&e))?;
+        if let Some(last) = continued.segments.last_mut() {
+            last.solution.sample_end();
+        }
         let history = atlas.coordinate_history(&continued, atlas.actuator_coordinate());
         let statistics = continued.statistics();
         let chart_changes = self.describe_changes(&atlas, &continued);
@@ -96,7 +99,7 @@ impl<'a> FreeMotionProblem<'a> {
         Ok(SegmentedMotion {
             chart_changes,
             charts: atlas.charts().to_vec(),
-            actuator_coordinates: history.map_err(|e| self.explain(&e))?.samples,
+            actuator_coordinates: history.map_err(|e| self.explain(&e))?,
             failure: continued.error,
             statistics,
             segments: segments.map(|s| (s.chart, s.solution)).collect(),

@@ -1,6 +1,6 @@
 //! A free motion as a sequence of segments.
 
-use dwell_dynamics::atlas::Chart;
+use dwell_dynamics::atlas::{Chart, CoordinateHistory};
 use dwell_dynamics::{DynamicsError, EventOccurrence, OdeState, Solution, Statistics};
 
 /// A computed motion and its description.
@@ -22,8 +22,8 @@ pub struct SegmentedMotion {
     pub charts: Vec<Chart>,
     /// By segment: its chart and its solution.
     pub segments: Vec<(usize, Solution)>,
-    /// By segment and sample: the only actuator's coordinate with two derivatives.
-    pub(crate) actuator_coordinates: Vec<Vec<[f64; 3]>>,
+    /// By segment, at its steps and its samples: the only actuator's coordinate with two derivatives.
+    pub(crate) actuator_coordinates: CoordinateHistory,
     /// Lines of the summary about chart changes and change points.
     pub(crate) chart_changes: Vec<String>,
     /// Why it ended early, if it did.
@@ -32,11 +32,12 @@ pub struct SegmentedMotion {
 }
 
 impl SegmentedMotion {
-    /// A motion in the mechanism's own coordinates.
-    pub(crate) fn single_segment(solution: Solution) -> Self {
+    /// A motion in the mechanism's own coordinates, whose last instant is a sample.
+    pub(crate) fn single_segment(mut solution: Solution) -> Self {
+        solution.sample_end();
         Self {
             charts: Vec::new(),
-            actuator_coordinates: Vec::new(),
+            actuator_coordinates: CoordinateHistory::default(),
             chart_changes: Vec::new(),
             failure: solution.error.clone(),
             statistics: solution.statistics,

@@ -3,11 +3,12 @@
 use crate::explain::{StudyError, missing_section_label, scene_error};
 use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem};
 use crate::models::{SolverSettings, with_drive_loads};
+use crate::number_format::digits;
 use crate::progress::Progress;
-use crate::trajectory::compute::{ComputedTrajectory, compute_along};
+use crate::trajectory::compute::{ComputedTrajectory, MotionBetweenRows, compute_along};
 use dwell_dynamics::{EventOccurrence, Options};
 use dwell_findings::Table;
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{Scene, SceneError, SceneLocation};
 
 /// Number of samples if no sample interval is given.
 const DEFAULT_SAMPLES: f64 = 1000.0;
@@ -55,6 +56,16 @@ pub fn compute_free_motion(
     solver: &MotionSolver,
     progress: Progress<'_>,
 ) -> Result<FreeMotion, StudyError> {
+    compute_free_motion_at(scene, solver, None, progress)
+}
+
+/// The same with rows at wanted times (s, ascending) and at the end of the motion.
+pub(crate) fn compute_free_motion_at(
+    scene: &Scene,
+    solver: &MotionSolver,
+    times: Option<&[f64]>,
+    progress: Progress<'_>,
+) -> Result<FreeMotion, StudyError> {
     let Some(spec) = &scene.motion else {
         return Err(scene_error(
             scene,
@@ -66,15 +77,23 @@ pub fn compute_free_motion(
     let loaded_scene = with_drive_loads(scene)?;
     let problem = FreeMotionProblem::new(scene, &loaded_scene, spec)?;
     let duration = problem.duration()?;
+    times.map_or(Ok(()), |times| check_times(times, duration))?;
     let integrated = problem.integrate(scene, solver, duration)?;
     let motion = &integrated.motion;
     if let Some(error) = motion.failure.as_ref().filter(|_| motion.end_time() == 0.0) {
         return Err(problem.explain(error));
     }
-    let trajectory = problem.trajectory(&integrated);
+    let trajectory = problem.trajectory(&integrated, times);
     let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
     let (model, notes) = (&problem.output_model, String::new());
-    let mut computed = compute_along(&loaded_scene, model, trajectory, notes, progress)?;
+    let sample = |t: f64| problem.sample_at(motion, t);
+    let between = problem.steps_as_samples(motion);
+    let between = between.map(|further| MotionBetweenRows {
+        further,
+        sample: &sample,
+    });
+    let followed = (trajectory, between);
+    let mut computed = compute_along(&loaded_scene, model, followed, notes, progress)?;
     let shortfall = problem.shortfall(scene, &integrated);
     computed.early_stop = shortfall.or(computed.early_stop);
     let mut summary = problem.summary(motion, &integrated.method_text, duration);
@@ -94,6 +113,54 @@ pub fn compute_free_motion(
     })
 }
 
+/// Refuses a sample interval beyond the duration (s), or of more than the highest number of samples.
+fn check_sample_interval(interval: f64, duration: f64) -> Result<f64, StudyError> {
+    // What is printed with six digits can be given.
+    const PRINTED: f64 = 1e-6;
+    let shortest = duration / MAX_SAMPLES;
+    let fault = if interval > duration * (1.0 + PRINTED) {
+        let duration = digits(duration, 6);
+        format!("longer than the motion of {duration} s")
+    } else if interval < shortest * (1.0 - PRINTED) {
+        let samples = digits((duration / interval).ceil(), 6);
+        format!(
+            "too short for a motion of {} s: it would have {samples} samples",
+            digits(duration, 6)
+        )
+    } else {
+        return Ok(interval);
+    };
+    let [interval, shortest, longest] = [interval, shortest, duration].map(|t| digits(t, 6));
+    let message = format!("a sample interval of {interval} s is {fault}");
+    let help = format!(
+        "from {shortest} s ({MAX_SAMPLES} samples) to {longest} s (start and end only) is allowed"
+    );
+    Err(SceneError::without_labels(message, Some(help)).into())
+}
+
+/// Refuses wanted times (s) that are not ascending, or outside a motion of this duration (s).
+fn check_times(times: &[f64], duration: f64) -> Result<(), StudyError> {
+    let pairs = times.iter().zip(times.iter().skip(1));
+    let mut unordered = pairs.filter(|(before, after)| after <= before);
+    let is_outside = |t: &&f64| **t < 0.0 || **t > duration;
+    let message = if times.is_empty() || times.len() as f64 > MAX_SAMPLES {
+        format!("{} wanted instants", times.len())
+    } else if let Some((before, after)) = unordered.next() {
+        format!("the wanted instant {after} s follows {before} s")
+    } else if let Some(t) = times.iter().find(is_outside) {
+        format!(
+            "the wanted instant {t} s is not within the motion of {} s",
+            digits(duration, 6)
+        )
+    } else {
+        return Ok(());
+    };
+    let help = format!(
+        "give from 1 to {MAX_SAMPLES} instants, each once and in ascending order, from 0 to {duration} s"
+    );
+    Err(SceneError::without_labels(message, Some(help)).into())
+}
+
 impl FreeMotionProblem<'_> {
     fn integrate(
         &self,
@@ -107,8 +174,10 @@ impl FreeMotionProblem<'_> {
         | MotionSolver::Accuracy {
             sample_interval, ..
         }) = solver;
-        let interval = sample_interval.unwrap_or(duration / DEFAULT_SAMPLES);
-        let interval = interval.max(duration / MAX_SAMPLES);
+        let interval = match *sample_interval {
+            Some(interval) => check_sample_interval(interval, duration)?,
+            None => duration / DEFAULT_SAMPLES,
+        };
         let settings = match solver {
             MotionSolver::Settings(settings) => settings,
             MotionSolver::Accuracy { accuracy, .. } => {

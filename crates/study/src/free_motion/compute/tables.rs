@@ -6,24 +6,29 @@ use crate::number_format::coordinate_unit;
 use crate::trajectory::compute::{
     self, BALANCE, FreeTrajectory, KINETIC, POTENTIAL, Quantity, Trajectory, TrajectorySample,
 };
-use dwell_dynamics::{DynamicsError, EventOccurrence};
+use dwell_dynamics::{DynamicsError, EventOccurrence, Machine, MachineWorkspace, OdeState};
 use dwell_findings::{Column, Table};
 use dwell_geometry::body_states::CoordinateFunction;
 
 impl FreeMotionProblem<'_> {
-    /// A computed motion as a trajectory.
+    /// A computed motion as a trajectory, with its samples or else with wanted times (s) as rows.
     pub(crate) fn trajectory(
         &self,
         computed: &ComputedMotion,
+        times: Option<&[f64]>,
     ) -> Result<Trajectory<'static>, DynamicsError> {
+        let end = computed.motion.end_time();
         let charts = computed.motion.charts.iter();
         let motion = FreeTrajectory {
-            samples: self.samples(&computed.motion)?,
+            samples: match times {
+                None => self.samples(&computed.motion)?,
+                Some(times) => self.samples_at(&computed.motion, times)?,
+            },
             extra_columns: self.extra_columns(),
             prescribed: self.spec.laws.iter().map(Option::is_some).collect(),
             charts: charts.map(|c| c.output_model.clone()).collect(),
         };
-        let mut trajectory = Trajectory::of_free_motion(self.output_model.plan(), motion);
+        let mut trajectory = Trajectory::of_free_motion(self.output_model.plan(), motion, end);
         trajectory.method_text.clone_from(&computed.method_text);
         Ok(trajectory)
     }
@@ -35,37 +40,21 @@ impl FreeMotionProblem<'_> {
         motion: &SegmentedMotion,
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let mut initial_balance: Option<f64> = None;
-        let loads = self.loaded_scene.loads.len();
         let mut samples = Vec::new();
         for (segment, (chart, solution)) in motion.segments.iter().enumerate() {
             let machine = self.machine(motion, *chart);
-            let first_work = machine.work_offset();
             let mut workspace = machine.workspace();
             for (k, point) in solution.samples.iter().enumerate() {
                 if machine.is_in_fit_window(&point.y) {
                     continue;
                 }
-                let state = machine.evaluate(point.t, &point.y, &mut workspace)?;
-                let [kinetic, potential] = state.energy();
-                let works = &point.y[first_work..];
-                let sum = kinetic + potential - works.iter().sum::<f64>();
-                let initial = *initial_balance.get_or_insert(sum);
-                let mut extra_values = vec![kinetic, potential];
-                extra_values.extend(works);
-                extra_values.push(sum - initial);
-                extra_values.extend(&point.y[2 * machine.free().len()..first_work]);
-                let (drives, magnitudes) = (loads - machine.drives()..loads, state.magnitudes());
-                let actuator_coordinates = motion.actuator_coordinates.get(segment);
-                samples.push(TrajectorySample {
-                    t: point.t,
-                    q: state.q().to_vec(),
-                    q_dot: state.q_dot().to_vec(),
-                    q_ddot: state.q_ddot().to_vec(),
-                    chart: *chart,
-                    actuator_coordinate: actuator_coordinates.and_then(|s| s.get(k)).copied(),
-                    drive_magnitudes: drives.map(|load| (load, magnitudes[load])).collect(),
-                    extra_values,
-                });
+                let at = (*chart, machine, &mut workspace);
+                let mut sample = self.sample(at, point)?;
+                let coordinates = motion.actuator_coordinates.samples.get(segment);
+                sample.actuator_coordinate = coordinates.and_then(|s| s.get(k)).copied();
+                let balance = &mut sample.extra_values[self.balance_index()];
+                *balance -= *initial_balance.get_or_insert(*balance);
+                samples.push(sample);
             }
         }
         if let [only] = samples.as_slice() {
@@ -75,9 +64,72 @@ impl FreeMotionProblem<'_> {
         Ok(samples)
     }
 
+    /// The motion at wanted times (s) up to its end, and at its end.
+    fn samples_at(
+        &self,
+        motion: &SegmentedMotion,
+        times: &[f64],
+    ) -> Result<Vec<TrajectorySample>, DynamicsError> {
+        let end = motion.end_time();
+        let wanted = times.iter().copied().filter(|&t| t < end).chain([end]);
+        let index = self.balance_index();
+        let initial = self
+            .sample_at(motion, 0.0)
+            .map_or(0.0, |s| s.extra_values[index]);
+        let mut samples = Vec::new();
+        for t in wanted {
+            let Some(mut sample) = self.sample_at(motion, t) else {
+                if self.is_in_fit_window(motion, t) {
+                    continue;
+                }
+                return Err(DynamicsError::StepTooSmall { t });
+            };
+            sample.extra_values[index] -= initial;
+            samples.push(sample);
+        }
+        if let [only] = samples.as_slice() {
+            samples.push(only.clone());
+        }
+        Ok(samples)
+    }
+
+    /// A state of a machine with its accelerations, drive magnitudes and energies; without the actuator's coordinate,
+    /// and with the balance of energies and works in place of its error.
+    pub(crate) fn sample(
+        &self,
+        (chart, machine, workspace): (usize, &Machine, &mut MachineWorkspace),
+        point: &OdeState,
+    ) -> Result<TrajectorySample, DynamicsError> {
+        let loads = self.loaded_scene.loads.len();
+        let first_work = machine.work_offset();
+        let state = machine.evaluate(point.t, &point.y, workspace)?;
+        let [kinetic, potential] = state.energy();
+        let works = &point.y[first_work..];
+        let mut extra_values = vec![kinetic, potential];
+        extra_values.extend(works);
+        extra_values.push(kinetic + potential - works.iter().sum::<f64>());
+        extra_values.extend(&point.y[2 * machine.free().len()..first_work]);
+        let (drives, magnitudes) = (loads - machine.drives()..loads, state.magnitudes());
+        Ok(TrajectorySample {
+            t: point.t,
+            q: state.q().to_vec(),
+            q_dot: state.q_dot().to_vec(),
+            q_ddot: state.q_ddot().to_vec(),
+            chart,
+            actuator_coordinate: None,
+            drive_magnitudes: drives.map(|load| (load, magnitudes[load])).collect(),
+            extra_values,
+        })
+    }
+
+    /// Where the error of the energy balance is among [`TrajectorySample::extra_values`].
+    fn balance_index(&self) -> usize {
+        2 + self.machine.nonconservative_sources().len()
+    }
+
     /// The error of the energy balance at a sample, J.
     pub(crate) fn energy_balance(&self, sample: &TrajectorySample) -> f64 {
-        sample.extra_values[2 + self.machine.nonconservative_sources().len()]
+        sample.extra_values[self.balance_index()]
     }
 
     /// The columns of [`TrajectorySample::extra_values`].

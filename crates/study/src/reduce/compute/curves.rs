@@ -1,16 +1,17 @@
 //! Reduced coefficients over the range, and their rounding errors.
 
-use crate::estimate::relative;
+use crate::estimate::{is_rounding, relative};
 use crate::explain::{StudyError, explain_position};
 use crate::models::PreparedScene;
 use crate::reduce::compute::UnitLoadCurves;
+use crate::trajectory::compute::force_scales;
 use dwell_findings::{Column, Table};
 use dwell_kinetostatics::{Batch, Coefficients};
 use dwell_scene::Scene;
 use rayon::prelude::*;
 
-/// Intervals of the table: half a degree over a revolution.
-const POSITIONS: usize = 720;
+/// Positions of the table if their number is not given: half a degree apart over a revolution.
+const DEFAULT_POINTS: usize = 721;
 
 /// The reduced coefficients over the range.
 #[derive(Debug, Clone)]
@@ -28,6 +29,14 @@ pub struct RoundingErrors {
     pub(crate) rows: Vec<f64>,
     /// Over all positions: of m, of ½m′, of every a and b.
     pub max_errors: [f64; 3],
+    /// Of m, of ½m′, of every a, of every b: whether it is zero everywhere but for rounding.
+    pub is_rounding: Vec<bool>,
+}
+
+/// m, ½m′, every a, every b.
+fn flat(at: &Coefficients) -> Vec<f64> {
+    let rest = at.a.iter().chain(&at.b).copied();
+    [at.m, at.half_dm].into_iter().chain(rest).collect()
 }
 
 impl RoundingErrors {
@@ -37,28 +46,30 @@ impl RoundingErrors {
         curves: &ReducedCurves,
     ) -> Result<Self, StudyError> {
         let model = prepared.model.model();
-        let flat = |at: &Coefficients| -> Vec<f64> {
-            let rest = at.a.iter().chain(&at.b).copied();
-            [at.m, at.half_dm].into_iter().chain(rest).collect()
-        };
-        let mut scales = vec![0.0_f64; 2 + 2 * model.reactions().len()];
-        for at in &curves.coefficients {
-            for (scale, value) in scales.iter_mut().zip(flat(at)) {
-                *scale = scale.max(value.abs());
-            }
-        }
-        let relative_errors = |(&q, at): (&f64, &Coefficients)| {
+        let errors_at = |(&q, at): (&f64, &Coefficients)| {
             let (mut workspace, mut errors) = (model.workspace(), model.coefficient_buffer());
             model
                 .reduction_rounding_errors(q, at, &mut workspace, &mut errors)
                 .map_err(|e| explain_position(prepared.scene, model.plan(), &e))?;
-            let parts = flat(&errors).into_iter().zip(&scales);
-            let parts = parts.map(|(error, &scale)| relative(error, scale));
-            Ok(parts.collect())
+            Ok(flat(&errors))
         };
         let all = curves.q.par_iter().zip(&curves.coefficients);
-        let all = all.map(relative_errors).collect::<Result<_, StudyError>>();
-        let all: Vec<Vec<f64>> = all?;
+        let all = all.map(errors_at).collect::<Result<_, StudyError>>();
+        let mut all: Vec<Vec<f64>> = all?;
+        let [mut scales, references] = curves.scales(prepared);
+        let mut is_rounding = curves.rounding(prepared);
+        for (k, is_rounding) in is_rounding.iter_mut().enumerate() {
+            // Nowhere more than its error.
+            let mut both = all.iter().zip(&curves.coefficients);
+            *is_rounding |= both.all(|(errors, at)| flat(at)[k].abs() <= 4.0 * errors[k]);
+            if *is_rounding {
+                scales[k] = references[k];
+            }
+        }
+        for row in &mut all {
+            let parts = row.iter_mut().zip(&scales);
+            parts.for_each(|(error, &scale)| *error = relative(*error, scale));
+        }
         let largest = |some: &[f64]| some.iter().copied().fold(0.0, f64::max);
         let max_of = |part: std::ops::Range<usize>| {
             let parts = all.iter().map(|row| largest(&row[part.clone()]));
@@ -67,18 +78,20 @@ impl RoundingErrors {
         Ok(Self {
             rows: all.iter().map(|row| largest(row)).collect(),
             max_errors: [max_of(0..1), max_of(1..2), max_of(2..scales.len())],
+            is_rounding,
         })
     }
 }
 
 impl ReducedCurves {
-    /// Evaluates the model over its range.
+    /// Evaluates the model over its range, at `points` positions (two or more) if given.
     ///
     /// # Errors
     /// [`StudyError::Scene`] where a position cannot be reached.
-    pub fn new(prepared: &PreparedScene<'_>) -> Result<Self, StudyError> {
+    pub fn new(prepared: &PreparedScene<'_>, points: Option<usize>) -> Result<Self, StudyError> {
         let model = &prepared.model;
-        let q = prepared.range_positions(POSITIONS);
+        let intervals = points.unwrap_or(DEFAULT_POINTS).max(2) - 1;
+        let q = prepared.range_positions(intervals);
         let mut batch = Batch::default();
         model.reduce_batch(&q, &mut batch);
         if let Some((_, error)) = batch.errors.first() {
@@ -87,6 +100,40 @@ impl ReducedCurves {
         }
         let coefficients = (0..q.len()).map(|i| batch.coefficients(i)).collect();
         Ok(Self { q, coefficients })
+    }
+
+    /// Of m, of ½m′, of every a, of every b: the largest value, and what it would come to by m and the other reactions.
+    fn scales(&self, prepared: &PreparedScene<'_>) -> [Vec<f64>; 2] {
+        let reactions = prepared.model.model().reactions();
+        let mut sizes = vec![0.0_f64; 2 + 2 * reactions.len()];
+        for at in &self.coefficients {
+            for (size, value) in sizes.iter_mut().zip(flat(at)) {
+                *size = size.max(value.abs());
+            }
+        }
+        let (m, arm) = (sizes[0], prepared.scene.mechanism.size());
+        let mut references = vec![m; 2];
+        for part in sizes[2..].chunks(reactions.len().max(1)) {
+            let of_unit = |unit: &str| {
+                let alike = part.iter().zip(reactions);
+                let alike = alike.filter(|(_, r)| r.component.unit() == unit);
+                alike.fold(0.0_f64, |scale, (&size, _)| scale.max(size))
+            };
+            let [force, moment] = force_scales(arm, ["N", "N m"].map(of_unit), m);
+            references.extend(reactions.iter().map(|r| match r.component.unit() {
+                "N" => force,
+                _ => moment,
+            }));
+        }
+        [sizes, references]
+    }
+
+    /// Of m, of ½m′, of every a, of every b: whether it is zero everywhere but for rounding.
+    pub fn rounding(&self, prepared: &PreparedScene<'_>) -> Vec<bool> {
+        let [sizes, references] = self.scales(prepared);
+        let both = sizes.iter().zip(&references);
+        both.map(|(&size, &reference)| is_rounding(size, reference))
+            .collect()
     }
 
     /// The table: coordinate, m, ½m′, then a and b of each requested reaction.
@@ -132,13 +179,16 @@ pub struct Reduction<'a> {
     pub errors: RoundingErrors,
 }
 
-/// Computes the reduced parameters of a scene over its range.
+/// Computes the reduced parameters of a scene over its range, at `points` positions (two or more) if given.
 ///
 /// # Errors
 /// [`StudyError`] when the mechanism cannot be assembled, or a position of the range cannot be evaluated.
-pub fn compute_reduction(scene: &Scene) -> Result<Reduction<'_>, StudyError> {
+pub fn compute_reduction(
+    scene: &Scene,
+    points: Option<usize>,
+) -> Result<Reduction<'_>, StudyError> {
     let prepared = PreparedScene::for_driven_angle(scene, false)?;
-    let curves = ReducedCurves::new(&prepared)?;
+    let curves = ReducedCurves::new(&prepared, points)?;
     let unit_loads = UnitLoadCurves::new(&prepared, &curves.q)?;
     let errors = RoundingErrors::new(&prepared, &curves)?;
     Ok(Reduction {

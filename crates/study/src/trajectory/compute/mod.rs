@@ -6,6 +6,7 @@ mod columns;
 mod dyads;
 mod early_stop;
 mod evaluator;
+mod extrema;
 mod mechanical_advantage;
 mod monitor;
 mod peak_forces;
@@ -14,6 +15,7 @@ mod rounding_error;
 mod sectioned_link;
 mod selection;
 mod trajectory;
+mod unit_scales;
 
 pub use analysis::Analysis;
 pub(crate) use column::{Column, Quantity, is_prefix_of};
@@ -23,11 +25,12 @@ pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
 };
 pub(crate) use evaluator::{ForceEvaluator, PositionEvaluator};
+pub(crate) use extrema::{BetweenRows, Extrema, ExtremaSearch, Extremum};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryMonitor, table_of};
 pub(crate) use peak_forces::peak_forces;
-pub(crate) use results::compute_along;
 pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
+pub(crate) use results::{MotionBetweenRows, compute_along};
 pub(crate) use rounding_error::RoundingError;
 pub use sectioned_link::SectionedLink;
 pub(crate) use selection::{
@@ -38,3 +41,4 @@ pub(crate) use trajectory::{
     BALANCE, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, TrajectorySample,
     default_limits,
 };
+pub(crate) use unit_scales::{UnitScales, force_scales};

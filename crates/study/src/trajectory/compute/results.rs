@@ -1,13 +1,14 @@
 //! Evaluation along a trajectory: the table, and what sections and drawings need of each position.
 
 use crate::bodies::BodyPose;
+use crate::estimate::{error_scale, relative};
 use crate::explain::StudyError;
 use crate::models::loaded_model;
 use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
-    Analysis, Column, POSITIONS_PER_STEP, PositionEvaluator, Quantity, RoundingError,
-    SectionedLink, Trajectory, TrajectorySample, all_columns, check_variables, is_requested,
-    prune_model, selected_columns,
+    Analysis, BetweenRows, Column, Extrema, ExtremaSearch, POSITIONS_PER_STEP, PositionEvaluator,
+    Quantity, RoundingError, SectionedLink, Trajectory, TrajectorySample, UnitScales, all_columns,
+    check_variables, is_requested, prune_model, selected_columns,
 };
 use dwell_findings::{self as findings, Table};
 use dwell_geometry::Plan;
@@ -23,6 +24,8 @@ pub struct TrajectoryResults {
     pub(crate) rows: Vec<Vec<f64>>,
     /// By column, of those that unwrap: the last angle, its rate and its time.
     last_angles: Vec<Option<[f64; 3]>>,
+    /// By position: the residual of the power balance, and the sum of its absolute terms, W.
+    power_terms: Vec<[f64; 2]>,
     /// By position and body.
     pub body_poses: Vec<Vec<BodyPose>>,
     /// The links whose internal forces are requested.
@@ -35,6 +38,10 @@ pub struct TrajectoryResults {
     pub indeterminate: Vec<String>,
     /// By body: whether it is modelled; without `variables` all bodies are.
     pub modelled: Vec<bool>,
+    /// By column: whether it is zero in every row but for rounding.
+    pub(crate) is_rounding: Vec<bool>,
+    /// The extrema of the columns.
+    pub(crate) extrema: Extrema,
 }
 
 impl TrajectoryResults {
@@ -51,12 +58,15 @@ impl TrajectoryResults {
             last_angles: vec![None; columns.len()],
             columns,
             rows: Vec::new(),
+            power_terms: Vec::new(),
             body_poses: Vec::new(),
             sectioned_links: links.collect(),
             power_residual: 0.0,
             rounding_error: None,
             indeterminate: names.collect(),
             modelled: model.plan().placed_bodies(),
+            is_rounding: Vec::new(),
+            extrema: Extrema::default(),
         }
     }
 
@@ -95,10 +105,8 @@ impl TrajectoryResults {
             link.add_position(k, forces.as_ref());
         }
         let balance = &position.power_balance;
-        if balance.scale > 0.0 {
-            let residual = balance.residual().abs() / balance.scale;
-            self.power_residual = self.power_residual.max(residual);
-        }
+        self.power_terms
+            .push([balance.residual().abs(), balance.scale]);
     }
 }
 
@@ -134,6 +142,81 @@ fn computed_columns(scene: &Scene, model: &Model, trajectory: &Trajectory<'_>) -
         .collect()
 }
 
+/// A free motion between its rows: positions at other times (s), and the position at any time, if there is one.
+pub(crate) struct MotionBetweenRows<'s> {
+    pub(crate) further: Vec<(f64, TrajectorySample)>,
+    pub(crate) sample: &'s dyn Fn(f64) -> Option<TrajectorySample>,
+}
+
+impl TrajectoryResults {
+    /// Finds which columns are zero but for rounding, and the extrema of those in the tables.
+    fn find_extrema(
+        &mut self,
+        scene: &Scene,
+        trajectory: &Trajectory<'_>,
+        evaluators: &mut [PositionEvaluator<'_>],
+        motion: Option<MotionBetweenRows<'_>>,
+    ) {
+        let largest = |k: usize| {
+            let values = self.rows.iter().map(|row| row[k].abs());
+            values.filter(|v| v.is_finite()).fold(0.0, f64::max)
+        };
+        let largest: Vec<f64> = (0..self.columns.len()).map(largest).collect();
+        let scales = UnitScales::new(&self.columns, &largest, scene.mechanism.size());
+        let columns = self.columns.iter().zip(&largest);
+        let is_rounding = columns.map(|(c, &size)| scales.is_rounding(c.unit, size));
+        self.is_rounding = is_rounding.collect();
+        let power = self.power_terms.iter().map(|[_, scale]| *scale);
+        let power = power.fold(scales.of("W"), f64::max);
+        let residuals = self.power_terms.iter();
+        let residuals =
+            residuals.map(|&[residual, scale]| relative(residual, error_scale(scale, power)));
+        self.power_residual = residuals.fold(0.0, f64::max);
+        for k in 0..self.columns.len() {
+            // A force that is only rounding has no direction.
+            if let Quantity::ForceDirection(joint) = self.columns[k].quantity {
+                let magnitude = self.column_index(Quantity::ForceMagnitude(joint));
+                self.is_rounding[k] |= magnitude.is_some_and(|k| self.is_rounding[k]);
+            }
+        }
+        let selected = selected_columns(scene, &self.columns).into_iter();
+        let wanted: Vec<usize> = selected.filter(|&k| !self.is_rounding[k]).collect();
+        let at_fraction = |u: f64| Some(trajectory.sample_at(u));
+        let between = match (trajectory.free_motion(), motion) {
+            (None, _) => {
+                let fractions = (0..self.rows.len()).map(|k| trajectory.fraction_at(k));
+                Some(BetweenRows::new(
+                    fractions.collect(),
+                    Vec::new(),
+                    &at_fraction,
+                ))
+            }
+            (Some(of_rows), Some(MotionBetweenRows { further, sample })) => {
+                let times = of_rows.samples.iter().take(self.rows.len());
+                let times = times.map(|s| s.t).collect();
+                Some(BetweenRows::new(times, further, sample))
+            }
+            (Some(_), None) => None,
+        };
+        let mut search = ExtremaSearch {
+            trajectory,
+            columns: &self.columns,
+            abscissa: self.abscissa(trajectory),
+            rows: &self.rows,
+            evaluators,
+        };
+        self.extrema = match between {
+            Some(between) => search.between_rows(&wanted, &between),
+            None => search.in_rows(),
+        };
+        for (extrema, &is_rounding) in self.extrema.of_columns.iter_mut().zip(&self.is_rounding) {
+            if let Some(extrema) = extrema.as_mut().filter(|_| is_rounding) {
+                extrema.iter_mut().for_each(|extremum| extremum.value = 0.0);
+            }
+        }
+    }
+}
+
 /// An analysis along a trajectory, up to where it ended.
 pub struct ComputedTrajectory<'a> {
     /// The coordinates that it followed.
@@ -163,17 +246,17 @@ pub fn compute_trajectory<'a>(
     let model = loaded_model(scene)?;
     let notes = check_variables(scene, &model)?;
     let trajectory = Trajectory::new(scene, model.plan(), analysis, points)?;
-    compute_along(scene, &model, trajectory, notes, progress)
+    compute_along(scene, &model, (trajectory, None), notes, progress)
 }
 
-/// Evaluates a scene along a trajectory.
+/// Evaluates a scene along a trajectory; of a free motion also with what is known between its rows.
 ///
 /// # Errors
 /// [`StudyError`] where not even the first position can be reached.
 pub(crate) fn compute_along<'a>(
     scene: &Scene,
     full_model: &Model,
-    trajectory: Trajectory<'a>,
+    (trajectory, between): (Trajectory<'a>, Option<MotionBetweenRows<'_>>),
     notes: String,
     progress: Progress<'_>,
 ) -> Result<ComputedTrajectory<'a>, StudyError> {
@@ -218,6 +301,7 @@ pub(crate) fn compute_along<'a>(
     if let Some(error) = early_stop.take_if(|_| !has_begun) {
         return Err(error);
     }
+    results.find_extrema(scene, &trajectory, &mut evaluators, between);
     results.rounding_error = rounding_error.map(|error| error.max_relative());
     Ok(ComputedTrajectory {
         table: results.table(&selected_columns(scene, &results.columns)),

@@ -1,6 +1,7 @@
 //! Rounding error of a trajectory analysis: some positions are evaluated again in 32-digit arithmetic.
 
-use crate::estimate::relative;
+use crate::estimate::{error_scale, relative};
+use crate::trajectory::compute::force_scales;
 use dwell_kinetostatics::{InverseDynamics, Model, Workspace};
 use dwell_numerics::DoubleDouble;
 use dwell_scene::Scene;
@@ -17,6 +18,8 @@ pub(crate) struct RoundingError {
     is_force: [Vec<bool>; 2],
     /// The largest error and the largest value, of moments and of forces.
     maxima: [[f64; 2]; 2],
+    /// Size of the mechanism, m.
+    size: f64,
 }
 
 impl RoundingError {
@@ -33,6 +36,7 @@ impl RoundingError {
                 reactions.map(|r| r.component.unit() == "N").collect(),
             ],
             maxima: [[0.0; 2]; 2],
+            size: scene.mechanism.size(),
         }
     }
 
@@ -68,7 +72,10 @@ impl RoundingError {
 
     /// The largest error, relative to the largest value of its unit.
     pub(crate) fn max_relative(&self) -> f64 {
-        let [moments, forces] = self.maxima.map(|[error, value]| relative(error, value));
+        let [[moment_error, moment], [force_error, force]] = self.maxima;
+        let references = force_scales(self.size, [force, moment], 0.0);
+        let forces = relative(force_error, error_scale(force, references[0]));
+        let moments = relative(moment_error, error_scale(moment, references[1]));
         moments.max(forces)
     }
 }

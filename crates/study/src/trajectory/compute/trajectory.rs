@@ -147,10 +147,9 @@ impl<'a> Trajectory<'a> {
         })
     }
 
-    /// A computed free motion.
-    pub(crate) fn of_free_motion(plan: &Plan, motion: FreeTrajectory) -> Self {
-        let (points, last) = (motion.samples.len(), motion.samples.last());
-        let duration = digits(last.map_or(0.0, |s| s.t), 6);
+    /// A computed free motion that ended at `end` (s).
+    pub(crate) fn of_free_motion(plan: &Plan, motion: FreeTrajectory, end: f64) -> Self {
+        let (points, duration) = (motion.samples.len(), digits(end, 6));
         let description = format!("a free motion of {duration} s");
         let kind = TrajectoryKind::Free(motion);
         Self::at_positions(kind, plan, Analysis::FreeMotion, points, description)

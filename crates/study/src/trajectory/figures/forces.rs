@@ -18,6 +18,7 @@ impl FigureContext<'_> {
             let indices = self.columns_where(|c| is_force(c) && c.unit == unit);
             let mut curves = self.labelled(&indices, ".actuator_force");
             curves.iter_mut().for_each(|(name, _)| *name = symbol(name));
+            curves.retain(|(_, k)| !self.is_zero(*k));
             Some(self.chart_of_some(title, label, &curves)?.into())
         };
         let panels: Vec<Panel> = kinds.into_iter().filter_map(chart).collect();
@@ -53,6 +54,10 @@ impl FigureContext<'_> {
             ("Joint forces of fixed direction", "force", single("N")),
             ("Couples", "couple", single("N m")),
         ] {
+            let curves: Vec<(String, usize)> = curves
+                .into_iter()
+                .filter(|(_, k)| !self.is_zero(*k))
+                .collect();
             // Evenly distributed, so that no chart has a single curve left over.
             let count = curves.len().div_ceil(MAX_CURVES).max(1);
             for some in curves.chunks(curves.len().div_ceil(count).max(1)) {
@@ -84,15 +89,23 @@ impl FigureContext<'_> {
             return None;
         }
         let force = [("x".to_owned(), fx), ("y".to_owned(), fy)];
-        let force = self.chart("", "force", &force);
-        let moment = self.chart("", "moment", &[("moment".to_owned(), m)]);
+        let kinds = [
+            ("force", &force[..]),
+            ("moment", &[("moment".to_owned(), m)]),
+        ];
+        let drawn = kinds
+            .into_iter()
+            .filter(|(_, curves)| self.is_any_nonzero(curves));
+        let charts: Vec<_> = drawn
+            .map(|(label, curves)| self.chart("", label, curves))
+            .collect();
         let text =
             "Resultant of joint, actuator and load forces on the frame; moment about its origin.";
         let title = match self.analysis {
             Analysis::Kinetostatics | Analysis::FreeMotion => "Shaking force and moment",
             _ => "Force and moment on the frame",
         };
-        let panels = vec![vec![force, moment].into()];
+        let panels = vec![charts.into()];
         Some(self.figure("shaking-force", title, text, panels))
     }
 

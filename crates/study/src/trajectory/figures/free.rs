@@ -40,8 +40,18 @@ impl FigureContext<'_> {
         let works = works.chunks(MAX_CURVES);
         charts.extend(works.map(|some| self.chart("Work done", "work", some)));
         let balance = [("balance".to_owned(), balance)];
-        charts.push(self.chart("Kinetic + potential − work", "change", &balance));
-        let text = "Work: that of nonconservative loads and drives. The last panel is the error of the integration.";
+        let has_error = self.is_any_nonzero(&balance);
+        if has_error {
+            charts.push(self.chart("Kinetic + potential − work", "change", &balance));
+        }
+        let text = match has_error {
+            true => {
+                "Work: that of nonconservative loads and drives. The last panel is the error of the integration."
+            }
+            false => {
+                "Work: that of nonconservative loads and drives. Their balance is met to rounding."
+            }
+        };
         let panels = charts.into_iter().map(Panel::from).collect();
         Some(self.figure("energies", "Energies", text, panels))
     }

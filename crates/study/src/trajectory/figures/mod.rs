@@ -207,9 +207,10 @@ impl<'a> FigureContext<'a> {
         chart(title, self.x.clone(), y, series)
     }
 
-    /// A chart of some columns, if there are any.
+    /// A chart of some columns, if any of them is more than rounding.
     fn chart_of_some(&self, title: &str, label: &str, curves: &[(String, usize)]) -> Option<Chart> {
-        (!curves.is_empty()).then(|| self.chart(title, label, curves))
+        self.is_any_nonzero(curves)
+            .then(|| self.chart(title, label, curves))
     }
 
     /// The vertical range to show if curves grow without bound towards a limit position.
@@ -233,9 +234,14 @@ impl<'a> FigureContext<'a> {
         columns.filter(|(_, c)| holds(c)).map(|(k, _)| k).collect()
     }
 
-    /// Whether a column is zero at every position.
+    /// Whether a column is zero at every position, but for rounding.
     fn is_zero(&self, k: usize) -> bool {
-        self.results.rows.iter().all(|row| row[k] == 0.0)
+        self.results.is_rounding[k]
+    }
+
+    /// Whether any of some curves is more than rounding.
+    fn is_any_nonzero(&self, curves: &[(String, usize)]) -> bool {
+        curves.iter().any(|(_, k)| !self.is_zero(*k))
     }
 
     /// The columns of these indices, named without a suffix.

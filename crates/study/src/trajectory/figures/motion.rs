@@ -83,9 +83,9 @@ impl FigureContext<'_> {
             let title = format!("Point {body}.{}", path.name);
             let name = format!("path-{body}-{}", path.name);
             let text = "Components in the ground's axes.";
-            self.figure(name, title, text, vec![charts.into()])
+            (!charts.is_empty()).then(|| self.figure(name, title, text, vec![charts.into()]))
         };
-        self.scene.requests.paths.iter().map(one).collect()
+        self.scene.requests.paths.iter().filter_map(one).collect()
     }
 
     /// Lengths and travels: of actuators, named coordinates and joints.

@@ -1,0 +1,323 @@
+//! The smallest and the largest value of each column along a trajectory, also where they are between two rows.
+//!
+//! A column is looked at in the rows and at further positions between them: of a free motion at its steps, which follow
+//! whatever the motion does. About a local extremum there, three positions enclose one of the column. It is found by
+//! parabolas and golden sections, each of whose points is evaluated like a row.
+
+use crate::trajectory::compute::{
+    BALANCE, Column, PositionEvaluator, Quantity, Trajectory, TrajectorySample,
+};
+use std::f64::consts::TAU;
+
+/// Positions that a trajectory is looked at in at least.
+const MIN_POSITIONS: usize = 720;
+/// Highest number of local extrema of a column that are found exactly; of all columns together.
+const MAX_REFINED: usize = 3;
+const MAX_REFINED_OF_ALL: usize = 1500;
+/// Highest number of evaluations for one extremum.
+const MAX_EVALUATIONS: usize = 40;
+/// Width of the interval, relative to the first, at which an extremum is found, and the relative gain that is none.
+const WIDTH: f64 = 1e-7;
+const NO_GAIN: f64 = 1e-13;
+/// Extrema that differ relatively by less than this are the same: the first one counts.
+const SAME: f64 = 1e-12;
+/// Part of the first or last interval at which a value tells whether the extremum is the end itself.
+const NEXT_TO_END: f64 = 1e-3;
+/// The part of an interval that a golden section cuts off.
+const GOLDEN: f64 = 0.381_966_011_250_105;
+
+/// A value of a column, and the abscissa where it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Extremum {
+    pub(crate) value: f64,
+    pub(crate) at: f64,
+}
+
+/// The extrema of all columns.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Extrema {
+    /// By column: the smallest and the largest value, if it has any.
+    pub(crate) of_columns: Vec<Option<[Extremum; 2]>>,
+    /// Whether they are those of the trajectory; otherwise those of its rows.
+    pub(crate) are_between_rows: bool,
+}
+
+/// A trajectory at any position.
+pub(crate) struct BetweenRows<'s> {
+    /// The parameter of each row: a time, or a completed fraction.
+    pub(crate) parameters: Vec<f64>,
+    /// Further positions, in the order of their parameters.
+    pub(crate) further: Vec<(f64, TrajectorySample)>,
+    /// The position at a parameter; none where it cannot be computed.
+    pub(crate) sample: &'s dyn Fn(f64) -> Option<TrajectorySample>,
+}
+
+/// A position: its parameter, and the value of a column.
+type Point = [f64; 2];
+
+impl<'s> BetweenRows<'s> {
+    /// Of a trajectory that is known at some further positions; others are added where these and the rows are far
+    /// apart.
+    pub(crate) fn new(
+        parameters: Vec<f64>,
+        further: Vec<(f64, TrajectorySample)>,
+        sample: &'s dyn Fn(f64) -> Option<TrajectorySample>,
+    ) -> Self {
+        let mut known: Vec<f64> = further.iter().map(|(u, _)| *u).collect();
+        known.extend(&parameters);
+        known.sort_by(f64::total_cmp);
+        let ends = known.first().zip(known.last());
+        let longest = ends.map_or(0.0, |(first, last)| (last - first) / MIN_POSITIONS as f64);
+        let mut all = further;
+        for pair in known.windows(2) {
+            let (from, length) = (pair[0], pair[1] - pair[0]);
+            // Up to rounding, as many rows as that are enough.
+            let parts = (length / longest * (1.0 - 1e-9)).ceil();
+            if length > 0.0 && parts > 1.0 {
+                let between = (1..parts as usize).map(|k| from + length * k as f64 / parts);
+                all.extend(between.filter_map(|u| Some((u, sample(u)?))));
+            }
+        }
+        all.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        Self {
+            parameters,
+            further: all,
+            sample,
+        }
+    }
+}
+
+/// What is searched.
+pub(crate) struct ExtremaSearch<'a, 'e> {
+    pub(crate) trajectory: &'a Trajectory<'a>,
+    pub(crate) columns: &'a [Column],
+    /// The index of the abscissa's column.
+    pub(crate) abscissa: usize,
+    pub(crate) rows: &'a [Vec<f64>],
+    pub(crate) evaluators: &'a mut [PositionEvaluator<'e>],
+}
+
+impl ExtremaSearch<'_, '_> {
+    /// The extrema in the rows.
+    pub(crate) fn in_rows(&self) -> Extrema {
+        let extremum = |k: usize, sign: f64| {
+            let values = self.rows.iter().filter(|row| !row[k].is_nan());
+            // Of equal values the first.
+            let row = values.reduce(|a, b| if sign * b[k] > sign * a[k] { b } else { a })?;
+            Some(Extremum {
+                value: row[k],
+                at: row[self.abscissa],
+            })
+        };
+        let both = |k| Some([extremum(k, -1.0)?, extremum(k, 1.0)?]);
+        Extrema {
+            of_columns: (0..self.columns.len()).map(both).collect(),
+            are_between_rows: false,
+        }
+    }
+
+    /// The extrema of some columns along the whole trajectory; of the others in the rows.
+    pub(crate) fn between_rows(&mut self, wanted: &[usize], between: &BetweenRows<'_>) -> Extrema {
+        let mut extrema = self.in_rows();
+        let is_searched = |&k: &usize| is_continuous(&self.columns[k]);
+        let wanted: Vec<usize> = wanted.iter().copied().filter(is_searched).collect();
+        let further: Vec<(f64, Vec<f64>)> = between
+            .further
+            .iter()
+            .filter_map(|(u, sample)| Some((*u, self.evaluate(&wanted, sample)?)))
+            .collect();
+        let refined = (MAX_REFINED_OF_ALL / wanted.len().max(1)).clamp(1, MAX_REFINED);
+        for (i, &k) in wanted.iter().enumerate() {
+            let Some(ends) = &mut extrema.of_columns[k] else {
+                continue;
+            };
+            let [lowest, highest] = *ends;
+            let rows = between.parameters.iter().zip(self.rows);
+            let mut points: Vec<Point> = rows.map(|(&u, row)| [u, row[k]]).collect();
+            // An angle's revolutions are counted from row to row.
+            if !self.columns[k].unwraps() {
+                points.extend(further.iter().map(|(u, values)| [*u, values[i]]));
+                points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+            }
+            points.dedup_by_key(|point| point[0]);
+            for (extremum, (sign, from)) in ends.iter_mut().zip([(-1.0, lowest), (1.0, highest)]) {
+                let better = self.search(k, sign, (&points, refined), between.sample);
+                let beats = |found: &Extremum| {
+                    sign * (found.value - from.value) > NO_GAIN * from.value.abs()
+                };
+                if let Some(found) = better.filter(beats) {
+                    *extremum = found;
+                }
+            }
+        }
+        extrema.are_between_rows = true;
+        extrema
+    }
+
+    /// Some columns at a position.
+    fn evaluate(&mut self, columns: &[usize], sample: &TrajectorySample) -> Option<Vec<f64>> {
+        let evaluator = self.evaluators.get_mut(sample.chart)?;
+        let t = self.trajectory.load_time(sample);
+        evaluator.evaluate(sample, t).ok()?;
+        let values = columns.iter();
+        let values = values.map(|&k| evaluator.value(self.columns[k].quantity, sample));
+        Some(values.collect())
+    }
+
+    /// The largest value times `sign` of a column; `points` are some of its values.
+    fn search(
+        &mut self,
+        k: usize,
+        sign: f64,
+        (points, refined): (&[Point], usize),
+        sample: &dyn Fn(f64) -> Option<TrajectorySample>,
+    ) -> Option<Extremum> {
+        let points: Vec<Point> = points.iter().map(|[u, v]| [*u, sign * v]).collect();
+        let values = points.iter().filter(|point| !point[1].is_nan());
+        let largest = *values.reduce(|a, b| if b[1] > a[1] { b } else { a })?;
+        let scale = points.iter().map(|[_, v]| v.abs()).fold(0.0, f64::max);
+        let mut found: Vec<Point> = vec![largest];
+        let unwraps = self.columns[k].unwraps();
+        for (near, bracket) in promising(&points, largest[1], refined) {
+            let mut value = |u: f64| {
+                let [mut value] = self.evaluate(&[k], &sample(u)?)?[..] else {
+                    return None;
+                };
+                if unwraps {
+                    value += TAU * ((sign * near - value) / TAU).round();
+                }
+                Some(sign * value).filter(|value| value.is_finite())
+            };
+            found.extend(climb(&mut value, bracket, scale));
+        }
+        let best = found
+            .iter()
+            .map(|[_, v]| *v)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let is_best = |point: &&Point| point[1] >= best - SAME * scale;
+        let first = found.iter().filter(is_best);
+        let [u, value] = *first.min_by(|a, b| a[0].total_cmp(&b[0]))?;
+        let [at] = self.evaluate(&[self.abscissa], &sample(u)?)?[..] else {
+            return None;
+        };
+        Some(Extremum {
+            value: sign * value,
+            at,
+        })
+    }
+}
+
+/// Whether a column has its extrema between rows: not the error of the integration, and nothing that is infinite in
+/// some positions.
+fn is_continuous(column: &Column) -> bool {
+    use Quantity::{MechanicalAdvantage, Pole, Power, Time};
+    let quantity = column.quantity;
+    column.name != BALANCE
+        && !matches!(
+            quantity,
+            Time | Power(3) | MechanicalAdvantage(..) | Pole(..)
+        )
+}
+
+/// Three points, the middle one not below the others; the middle one may be missing at an end.
+type Bracket = (Point, Option<Point>, Point);
+
+/// The local maxima in whose neighbourhood the largest value may be, each with its value: the first of them, and those
+/// whose parabolas are highest.
+fn promising(points: &[Point], largest: f64, count: usize) -> Vec<(f64, Bracket)> {
+    let Some(last) = points.len().checked_sub(1).filter(|last| *last > 0) else {
+        return Vec::new();
+    };
+    let mut all: Vec<(f64, f64, Bracket)> = Vec::new();
+    for (i, &point) in points.iter().enumerate() {
+        let value = point[1];
+        if i == 0 || i == last {
+            if value >= largest {
+                let ends = (points[i.max(1) - 1], points[(i + 1).min(last)]);
+                all.push((value, value, (ends.0, None, ends.1)));
+            }
+            continue;
+        }
+        let (before, after) = (points[i - 1], points[i + 1]);
+        let is_peak = value >= before[1] && value >= after[1];
+        if is_peak && (value > before[1] || value > after[1]) {
+            let [_, top] = vertex([before, point, after]).unwrap_or(point);
+            // A parabola through three points may be too low by as much again.
+            if value + 2.0 * (top - value).max(0.0) >= largest {
+                all.push((top, value, (before, Some(point), after)));
+            }
+        }
+    }
+    let first = all.first().copied();
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    all.truncate(count);
+    if let Some(first) = first.filter(|first| all.iter().all(|other| other.2 != first.2)) {
+        all.push(first);
+    }
+    let bracket = |(_, value, bracket)| (value, bracket);
+    all.into_iter().map(bracket).collect()
+}
+
+/// The maximum of the parabola through three points; none if it has none.
+fn vertex([a, c, b]: [Point; 3]) -> Option<Point> {
+    let slope = (c[1] - a[1]) / (c[0] - a[0]);
+    let curvature = ((b[1] - c[1]) / (b[0] - c[0]) - slope) / (b[0] - a[0]);
+    if curvature.is_nan() || curvature >= 0.0 {
+        return None;
+    }
+    let u = 0.5 * (a[0] + c[0] - slope / curvature);
+    let value = a[1] + slope * (u - a[0]) + curvature * (u - a[0]) * (u - c[0]);
+    (u > a[0] && u < b[0]).then_some([u, value])
+}
+
+/// The largest value that is found within a bracket; every value is evaluated.
+fn climb(
+    value: &mut dyn FnMut(f64) -> Option<f64>,
+    (mut a, middle, mut b): Bracket,
+    scale: f64,
+) -> Option<Point> {
+    let mut c = match middle {
+        Some(middle) => middle,
+        None => {
+            let (end, next) = if a[1] >= b[1] { (a, b) } else { (b, a) };
+            let u = end[0] + NEXT_TO_END * (next[0] - end[0]);
+            let inside = [u, value(u)?];
+            if inside[1] <= end[1] {
+                return Some(end);
+            }
+            inside
+        }
+    };
+    let width = WIDTH * (b[0] - a[0]);
+    let mut before = f64::INFINITY;
+    for k in 0..MAX_EVALUATIONS {
+        let is_slow = k % 3 == 2 && {
+            let slow = b[0] - a[0] > 0.5 * before;
+            before = b[0] - a[0];
+            slow
+        };
+        let top = vertex([a, c, b]).filter(|_| !is_slow);
+        if top.is_some_and(|[_, top]| top - c[1] <= NO_GAIN * scale) {
+            break;
+        }
+        let u = match top {
+            Some([u, _]) if (u - c[0]).abs() > width => u,
+            Some([u, _]) => c[0] + width.copysign(u - c[0]),
+            None if c[0] - a[0] > b[0] - c[0] => c[0] - GOLDEN * (c[0] - a[0]),
+            None => c[0] + GOLDEN * (b[0] - c[0]),
+        };
+        if u <= a[0] || u >= b[0] || b[0] - a[0] <= 2.0 * width {
+            break;
+        }
+        let Some(found) = value(u).map(|value| [u, value]) else {
+            break;
+        };
+        let (left, right) = if u < c[0] { (found, c) } else { (c, found) };
+        if left[1] >= right[1] {
+            (c, b) = (left, right);
+        } else {
+            (a, c) = (left, right);
+        }
+    }
+    Some(c)
+}

@@ -1,0 +1,77 @@
+//! What the quantities of each unit come to along a trajectory: beside it, some of them are zero but for rounding.
+//!
+//! A unit may have no other quantity than one that is zero but for rounding, such as the only moment of a mechanism.
+//! So each unit is also given what the others come to over the size of the mechanism: a moment of 3e-16 N m is
+//! nothing beside forces of 10 N at 0.5 m.
+
+use crate::estimate::is_rounding;
+use crate::trajectory::compute::{Column, Quantity};
+use std::collections::BTreeMap;
+
+/// By unit: the reference beside which a quantity is zero but for rounding.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct UnitScales(BTreeMap<&'static str, f64>);
+
+/// The references of a quantity of points and of the same of angles, each by the other over an arm (m).
+fn with_arm(arm: f64, [of_points, of_angles]: [f64; 2]) -> [f64; 2] {
+    if arm > 0.0 {
+        let largest = of_points.max(arm * of_angles);
+        [largest, largest / arm]
+    } else {
+        [of_points, of_angles]
+    }
+}
+
+/// The references of forces (N) and of moments (N m), each by the other over an arm (m) and by the centripetal force of
+/// a kinetic energy (J).
+pub(crate) fn force_scales(arm: f64, [force, moment]: [f64; 2], kinetic: f64) -> [f64; 2] {
+    if arm > 0.0 {
+        let force = force.max(moment.max(kinetic) / arm);
+        [force, force * arm]
+    } else {
+        [force, moment]
+    }
+}
+
+impl UnitScales {
+    /// From the columns of a trajectory and the largest magnitude of each; `size` is that of the mechanism, m.
+    pub(crate) fn new(columns: &[Column], largest: &[f64], size: f64) -> Self {
+        let of_unit = |unit: &str| {
+            let all = columns.iter().zip(largest);
+            let alike = all.filter(|(column, _)| column.unit == unit);
+            alike.fold(0.0_f64, |scale, (_, &value)| scale.max(value))
+        };
+        let is_kinetic = |column: &Column| column.quantity == Quantity::Power(4);
+        let kinetic = columns.iter().zip(largest).find(|(c, _)| is_kinetic(c));
+        let kinetic = kinetic.map_or(0.0, |(_, &value)| value);
+        let [velocity, angular] = with_arm(size, ["m/s", "rad/s"].map(of_unit));
+        let [acceleration, angular_acceleration] = with_arm(
+            size,
+            [of_unit("m/s2"), of_unit("rad/s2").max(angular * angular)],
+        );
+        let [force, moment] = force_scales(size, ["N", "N m"].map(of_unit), kinetic);
+        let power = of_unit("W").max(force * velocity);
+        Self(BTreeMap::from([
+            ("m", size),
+            ("rad", 1.0),
+            ("m/s", velocity),
+            ("rad/s", angular),
+            ("m/s2", acceleration),
+            ("rad/s2", angular_acceleration),
+            ("N", force),
+            ("N m", moment),
+            ("W", power),
+            ("J", of_unit("J")),
+        ]))
+    }
+
+    /// Whether a quantity whose largest magnitude is `size` is zero but for rounding.
+    pub(crate) fn is_rounding(&self, unit: &str, size: f64) -> bool {
+        size == 0.0 || is_rounding(size, self.of(unit))
+    }
+
+    /// The reference of a unit; zero where there is none.
+    pub(crate) fn of(&self, unit: &str) -> f64 {
+        self.0.get(unit).copied().unwrap_or(0.0)
+    }
+}
