@@ -51,7 +51,10 @@ pub fn factor<T: Scalar>(a: &mut [T], heads: &mut [T], m: usize) -> FactorOutcom
     FactorOutcome {
         // The matrix is not square: it has no determinant.
         determinant_sign: 1.0,
-        pivot_ratio: if max_pivot > 0.0 {
+        pivot_ratio: if n == 0 {
+            // No column depends on others.
+            1.0
+        } else if max_pivot > 0.0 {
             min_pivot / max_pivot
         } else {
             0.0

@@ -83,7 +83,7 @@ pub(crate) fn order_groups(
         before.extend(evaluated_with);
     }
     let groups = strong_components(&of_equation, &before, &of_unknown);
-    let groups = absorb_redundant(groups, &redundant, &dependencies, &of_unknown);
+    let groups = absorb_redundant(groups, &redundant, &equations, &dependencies, &of_unknown);
     let as_unknown = |u: usize| match u.checked_sub(classes) {
         None => Unknown::ClassAngle(u + 1),
         Some(slide) => Unknown::SlideTravel(slide),
@@ -241,6 +241,7 @@ pub(crate) fn bodies_of_slide(tree: &Tree, slide: usize) -> Vec<usize> {
 fn absorb_redundant(
     groups: Vec<Vec<usize>>,
     redundant: &[usize],
+    equations: &[Equation],
     dependencies: &[Vec<usize>],
     of_unknown: &[usize],
 ) -> Vec<Vec<usize>> {
@@ -289,7 +290,14 @@ fn absorb_redundant(
     for &e in redundant {
         match position[joins[e]] {
             Some(at) => order[at].push(e),
-            // An equation that depends on no unknown at all: a group of its own.
+            // Equations that depend on no unknown at all, as of a pin that is written twice: a group for each loop.
+            None if e > 0 && equations[e - 1] == equations[e] && dependencies[e].is_empty() => {
+                let first = position[joins[e - 1]];
+                position[joins[e]] = first;
+                if let Some(at) = first {
+                    order[at].push(e);
+                }
+            }
             None => {
                 position[joins[e]] = Some(order.len());
                 order.push(vec![e]);
