@@ -198,21 +198,6 @@ fn cycle_tells_the_steady_cycle_and_its_flywheel() {
 }
 
 #[test]
-fn a_machine_without_a_steady_cycle_ends_with_status_1() {
-    let dir = TestDir::new();
-    let driven = "duration = 2\n[drives]\nengine = { applied-force = \"phi\", magnitude = 2.0 }";
-    dir.put("driven.toml", four_bar_with(&[("periods = 2", driven)]));
-    let run = dir.run(&["cycle", "driven.toml", "--out", "o"]);
-    assert_eq!(run.status, Some(1), "{run:?}");
-    assert!(
-        run.out.contains("no steady cycle of phi is found"),
-        "{run:?}"
-    );
-    // 2 N m over a turn.
-    assert!(run.err.contains("gains 12.6 J per cycle"), "{run:?}");
-}
-
-#[test]
 fn equilibria_and_linearise_need_no_motion() {
     let dir = TestDir::new();
     let hung = four_bar_with(&[(
