@@ -248,3 +248,61 @@ fn what_nothing_needs_is_left_out() {
         assert_eq!(bits(&with), bits(&without));
     }
 }
+
+/// A joint that is written twice, either way round, is solved: the motion and the drive are those without it, and the two
+/// share the reaction of the one.
+#[test]
+fn a_joint_written_twice_changes_nothing_but_its_own_reactions() {
+    let bar = |center: f64| Mass {
+        mass: 2.0,
+        center: vec2(center, 0.1),
+        inertia: 0.2,
+    };
+    let results = |twice: Option<(usize, bool)>| {
+        let mut bars = FourBar::new([1.0, 3.0, 2.5, 3.5]);
+        bars.sketch.actuate("phi", [GROUND, bars.crank]);
+        if let Some((joint, swapped)) = twice {
+            let mut again = bars.sketch.mechanism.joints[joint].clone();
+            again.name = "again".into();
+            if swapped {
+                again.bodies.reverse();
+                again.points.reverse();
+            }
+            bars.sketch.mechanism.joints.push(again);
+        }
+        let mut setup = bars.sketch.setup(&[1.0]);
+        setup.assembly.initial_guess[bars.coupler.0] = Some(0.3);
+        setup.assembly.initial_guess[bars.rocker.0] = Some(1.5);
+        setup.masses = vec![Mass::default(), bar(0.5), bar(1.5), bar(1.2)];
+        let reactions = setup.mechanism.reactions();
+        let model = Model::new(&setup.mechanism, &setup.masses, &setup.assembly, &reactions)
+            .expect("a model");
+        let (mut workspace, mut result) = (model.workspace::<f64>(), model.result_buffer());
+        model
+            .inverse_dynamics(&[1.7], &[1.2], &[-0.3], &mut workspace, &mut result)
+            .expect("forces");
+        let unique = (0..reactions.len()).map(|k| model.plan().is_determinate(k));
+        (
+            result.tau[0],
+            result.reactions.clone(),
+            unique.collect::<Vec<_>>(),
+        )
+    };
+    let (tau, once, _) = results(None);
+    for joint in 0..4 {
+        for swapped in [false, true] {
+            let (again, twice, unique) = results(Some((joint, swapped)));
+            assert!(
+                (again - tau).abs() < 1e-12 * tau.abs(),
+                "{joint}: {again} {tau}"
+            );
+            for k in 0..8 {
+                assert_eq!(unique[k], k / 2 != joint, "{joint} {k}");
+                if unique[k] {
+                    assert!((twice[k] - once[k]).abs() < 1e-10, "{joint} {k}");
+                }
+            }
+            assert!(!unique[8] && !unique[9]);
+        }
+    }
+}

@@ -142,7 +142,7 @@ fn run_study(command: &Command, out: &Path) -> Result<TrajectoryOutcome, StudyEr
                 atol: *rtol,
                 ..SolverSettings::default()
             };
-            dwell_study::cycle(&read(scene)?, &settings, *fluctuation)?
+            return dwell_study::cycle(&read(scene)?, &settings, *fluctuation);
         }
         Command::WorkPrecision { scene } => {
             let scene = read(scene)?;

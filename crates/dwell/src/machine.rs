@@ -5,7 +5,10 @@ use crate::mechanism::Mechanism;
 use crate::motion::Solver;
 use dwell_dynamics::Stability;
 use dwell_findings::Column;
-use dwell_study::{OperatingPoint, compute_cycle, compute_equilibria, compute_linearisation};
+use dwell_study::{
+    CycleStability, CycleVerdict, OperatingPoint, compute_cycle, compute_equilibria,
+    compute_linearisation,
+};
 
 impl Mechanism {
     /// The equilibria: over the range of the only coordinate all of them, else the one nearest to the initial state.
@@ -98,7 +101,11 @@ impl Mechanism {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn cycle(&self, solver: &Solver, fluctuation: Option<f64>) -> Result<Cycle, Error> {
-        let found = compute_cycle(self.scene.inner(), &solver.settings(), fluctuation)?;
+        let verdict = compute_cycle(self.scene.inner(), &solver.settings(), fluctuation)?;
+        let found = match verdict {
+            CycleVerdict::Steady(found) => found,
+            CycleVerdict::NoCycle { reason, .. } => return Err(reason.into()),
+        };
         let works = found
             .works
             .columns
@@ -108,11 +115,11 @@ impl Mechanism {
             period: found.steady.period,
             mean_speed: found.steady.mean_speed,
             fluctuation: found.steady.fluctuation,
-            is_stable: found.steady.is_stable(),
+            is_stable: found.errors.stability(&found.steady) == CycleStability::Stable,
             works: works
                 .map(|(column, work)| (column.name.clone(), *work))
                 .collect(),
-            flywheel: found.flywheel.map(|(_, flywheel)| flywheel.inertia),
+            flywheel: found.flywheel.map(|sized| sized.flywheel.inertia),
         })
     }
 

@@ -35,6 +35,17 @@ const NEWTON_TOLERANCE_FACTOR: f64 = 10.0;
 const PHASE_FRACTIONS: [f64; 5] = [0.0, 0.192, 0.417, 0.583, 0.877];
 /// An integration that fails below this part of the initial speed has come to rest.
 const STALL_FRACTION: f64 = 0.1;
+/// A cycle is closed if its works add up to less than this part of the sum of their magnitudes, and if one more step of
+/// Newton's method would change the speed by less than this part of it.
+const CLOSURE_TOLERANCE: f64 = 1e-3;
+/// Error of a return map in tolerances: BDF errs by hundreds.
+const MAP_ERROR_RATIO: f64 = 100.0;
+/// A machine has come to rest if its speed, and what its acceleration adds in the time of a radian at the largest speed
+/// so far, are below this part of that speed.
+const REST_TOLERANCE: f64 = 1e-6;
+/// A machine that moves by less than this (rad) in so many steps has come to rest, too.
+const REST_ANGLE: f64 = 1e-6;
+const REST_STEPS: usize = 1000;
 /// Samples of a cycle.
 const SAMPLES: usize = 360;
 
@@ -84,9 +95,11 @@ pub fn steady_cycle(machine: &Machine, guess: &[f64], options: &Options) -> Resu
     let problem = CycleProblem::new(machine, guess, options)?;
     let mut z: Vec<f64> = guess[1..machine.work_offset()].to_vec();
     let mut return_map = problem.return_map(&z)?;
+    let mut tried = vec![Trial::new(&z, &return_map)];
     let mut steps: Vec<f64> = Vec::new();
     for _ in 0..MAX_NEWTON_STEPS {
-        let mut step = problem.newton_step(&z, &return_map)?;
+        let step = problem.newton_step(&z, &return_map);
+        let mut step = step.map_err(|error| never_balances(&tried).unwrap_or(error))?;
         let size = |i: usize| options.rtol * z[i].abs() + options.atol;
         let settled = (0..z.len()).all(|i| step[i].abs() <= NEWTON_TOLERANCE_FACTOR * size(i));
         let relative_step = (step[0] / z[0]).abs();
@@ -105,27 +118,67 @@ pub fn steady_cycle(machine: &Machine, guess: &[f64], options: &Options) -> Resu
             }
             match problem.return_map(&z) {
                 Ok(return_map) => break return_map,
-                Err(error) if halvings == MAX_HALVINGS => return Err(error),
+                Err(error) if halvings == MAX_HALVINGS => {
+                    return Err(never_balances(&tried).unwrap_or(error));
+                }
                 Err(_) => {
                     halvings += 1;
                     step.iter_mut().for_each(|s| *s *= 0.5);
                 }
             }
         };
+        tried.push(Trial::new(&z, &return_map));
         if settled || stuck {
-            return problem.resolve_cycle(&z, &return_map, steps);
+            let cycle = problem.resolve_cycle(&z, &return_map, steps)?;
+            if problem.is_closed(&cycle, &return_map)? {
+                return Ok(cycle);
+            }
+            return Err(never_balances(&tried).unwrap_or(DynamicsError::NoCycle {
+                what: "the state after a cycle does not determine the speed within the error of the integration",
+            }));
         }
     }
-    Err(DynamicsError::NoCycle {
+    Err(never_balances(&tried).unwrap_or(DynamicsError::NoCycle {
         what: "Newton's method does not settle from this speed",
+    }))
+}
+
+/// A speed that was tried, rad/s, and the work that all sources do in a cycle from it, J.
+struct Trial {
+    q_dot: f64,
+    work: f64,
+}
+
+impl Trial {
+    fn new(z: &[f64], return_map: &ReturnMap) -> Self {
+        Self {
+            q_dot: z[0],
+            work: return_map.works.iter().sum(),
+        }
+    }
+}
+
+/// Where a machine gains energy in a cycle from every speed tried, or loses it from every one: no cycle lies between them.
+fn never_balances(tried: &[Trial]) -> Option<DynamicsError> {
+    let is_one_sided = |sign: f64| tried.iter().all(|trial| trial.work * sign > 0.0);
+    if !(is_one_sided(1.0) || is_one_sided(-1.0)) {
+        return None;
+    }
+    let by_speed = |a: &&Trial, b: &&Trial| a.q_dot.abs().total_cmp(&b.q_dot.abs());
+    let slowest = tried.iter().min_by(by_speed)?;
+    let fastest = tried.iter().max_by(by_speed)?;
+    Some(DynamicsError::NeverBalances {
+        work: tried.first()?.work,
+        q_dot: tried.first()?.q_dot,
+        tried: [slowest.q_dot, fastest.q_dot],
     })
 }
 
 /// The state after some revolutions from a start, at rest or not: a guess for [`steady_cycle`].
 ///
 /// # Errors
-/// As of [`Machine::evaluate`] and [`integrate`], among them that the steps allowed are used up, where the machine
-/// never completes the revolutions.
+/// [`DynamicsError::ComesToRest`]; as of [`Machine::evaluate`] and [`integrate`], among them that the steps allowed are
+/// used up, where the machine never completes the revolutions.
 pub fn initial_transient(
     machine: &Machine,
     start: &[f64],
@@ -136,9 +189,16 @@ pub fn initial_transient(
     let from = start[0];
     let distance = TAU * f64::from(revolutions);
     let mut reached = start.to_vec();
+    let mut rest = RestMonitor::new(machine, start)?;
+    let mut came_to_rest = None;
     let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
         if (now.y[0] - from).abs() < distance {
-            return Ok(StepControl::Continue);
+            let at_rest = rest.is_at_rest(now)?;
+            came_to_rest = at_rest.then_some(now.y[0]);
+            return Ok(match at_rest {
+                true => StepControl::Stop,
+                false => StepControl::Continue,
+            });
         }
         let difference =
             |t: f64| -> Result<f64> { Ok((state_at(t, now, dense)?.y[0] - from).abs() - distance) };
@@ -151,9 +211,59 @@ pub fn initial_transient(
         y: start.to_vec(),
     };
     integrate(&mut ode, &start, None, options, &mut observer)?.completed()?;
+    if let Some(q) = came_to_rest {
+        return Err(DynamicsError::ComesToRest { q });
+    }
     // The works of the cycle start from zero.
     reached[machine.work_offset()..].fill(0.0);
     Ok(reached)
+}
+
+/// Recognises a machine that has come to rest, where an integrator's steps grow without bound.
+struct RestMonitor<'m> {
+    ode: MachineOde<'m>,
+    rates: Vec<f64>,
+    /// Coordinate, speed and states of the drives.
+    states: usize,
+    /// The largest value of each state so far.
+    largest: Vec<f64>,
+    /// Where the machine was when it last moved, and the steps since.
+    last: f64,
+    still_steps: usize,
+}
+
+impl<'m> RestMonitor<'m> {
+    fn new(machine: &'m Machine, start: &[f64]) -> Result<Self> {
+        Ok(Self {
+            ode: MachineOde::new(machine, 0.0, start)?,
+            rates: vec![0.0; start.len()],
+            states: machine.work_offset(),
+            largest: start.iter().map(|x| x.abs()).collect(),
+            last: start[0],
+            still_steps: 0,
+        })
+    }
+
+    fn is_at_rest(&mut self, now: &OdeState) -> Result<bool> {
+        for (largest, x) in self.largest.iter_mut().zip(&now.y) {
+            *largest = largest.max(x.abs());
+        }
+        self.still_steps += 1;
+        if (now.y[0] - self.last).abs() > REST_ANGLE {
+            (self.last, self.still_steps) = (now.y[0], 0);
+        }
+        if self.still_steps >= REST_STEPS {
+            return Ok(true);
+        }
+        let speed = self.largest[1];
+        if speed == 0.0 || now.y[1].abs() > REST_TOLERANCE * speed {
+            return Ok(false);
+        }
+        self.ode.rhs(now.t, &now.y, &mut self.rates)?;
+        let is_constant =
+            |i: usize| self.rates[i].abs() <= REST_TOLERANCE * self.largest[i] * speed;
+        Ok((1..self.states).all(is_constant))
+    }
 }
 
 /// One cycle from z.
@@ -162,6 +272,8 @@ struct ReturnMap {
     z: Vec<f64>,
     /// S, row by row.
     sensitivity: Vec<f64>,
+    /// By nonconservative source: its work, J.
+    works: Vec<f64>,
 }
 
 /// A rotating machine whose steady cycle is sought.
@@ -240,6 +352,7 @@ impl<'m> CycleProblem<'m> {
             Some(error) => Err(error),
             None => Ok(ReturnMap {
                 z: termination.state.y[1..=n].to_vec(),
+                works: termination.state.y[self.machine.work_offset()..plain].to_vec(),
                 sensitivity: termination.state.y[plain..].to_vec(),
             }),
         }
@@ -266,6 +379,31 @@ impl<'m> CycleProblem<'m> {
         }
         lu::solve(&matrix, &pivots, &mut step);
         Ok(step)
+    }
+
+    /// Whether a cycle repeats itself: its works add up to zero, and φ determines its start.
+    ///
+    /// Where a machine gains energy at every speed, the speed that a cycle changes least is infinite: φ(z) − z and S − I
+    /// both fall below the error of the integration as z grows, and Newton's method settles anywhere.
+    fn is_closed(&self, cycle: &Cycle, return_map: &ReturnMap) -> Result<bool> {
+        let step = self.newton_step(&cycle.initial_state[1..=return_map.z.len()], return_map)?;
+        if (step[0] / cycle.initial_state[1]).abs() > CLOSURE_TOLERANCE {
+            return Ok(false);
+        }
+        let mut workspace = self.machine.workspace();
+        let state = self
+            .machine
+            .evaluate(0.0, &cycle.initial_state, &mut workspace)?;
+        let [kinetic, _] = state.energy();
+        let map_error = MAP_ERROR_RATIO * self.options.rtol;
+        let sum: f64 = cycle.works.iter().sum();
+        let size: f64 = cycle.works.iter().map(|work| work.abs()).sum();
+        if size > map_error * kinetic {
+            return Ok(sum.abs() <= CLOSURE_TOLERANCE * size + map_error * kinetic);
+        }
+        // The works are lost in the error: only that a disturbance decays or grows shows a cycle.
+        let mut multipliers = cycle.floquet_multipliers.iter();
+        Ok(multipliers.all(|[re, im]| (re - 1.0).hypot(*im) > map_error))
     }
 
     /// The state of the machine at a displacement from the start.

@@ -161,6 +161,20 @@ pub enum DynamicsError {
         /// Why not.
         what: &'static str,
     },
+    /// A machine gains energy in a cycle from every speed that was tried, or loses it from every one.
+    #[error(
+        "no steady cycle: {work} J remain in a cycle at {q_dot} rad/s, and none of the speeds tried, from {} to {} rad/s, \
+         balances them",
+        tried[0], tried[1]
+    )]
+    NeverBalances {
+        /// The work of all sources in the first cycle, J: positive if the machine gains energy.
+        work: f64,
+        /// Its speed at the start, rad/s.
+        q_dot: f64,
+        /// The slowest and the fastest speed tried, rad/s.
+        tried: [f64; 2],
+    },
     /// The eigenvalues of a linearisation could not be found.
     #[error("the eigenvalues of the linearised motion cannot be found")]
     NoEigenvalues,

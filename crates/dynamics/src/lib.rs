@@ -102,5 +102,5 @@ pub use solve::{
     Event, EventKind, EventOccurrence, Observed, ObservedMachine, ObservedValue, Solution, solve,
     solve_orbit, solve_system,
 };
-pub use state_space::{StateSpace, linearise};
+pub use state_space::{StateSpace, is_equilibrium, linearise};
 pub use tabulated::{TabulatedMachine, TabulatedMachineOde, TabulationError};

@@ -23,6 +23,9 @@ pub use observed::{Observed, ObservedMachine, ObservedValue};
 /// Parts of an orbit's period that take the place of steps.
 const ORBIT_PARTS: f64 = 64.0;
 
+/// Parts beyond which an orbit without events is sampled directly.
+const MAX_ORBIT_STEPS: usize = 100_000;
+
 /// A motion, complete or as far as it could be computed.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Solution {
@@ -125,12 +128,18 @@ pub fn solve_orbit(
 ) -> Result<Solution> {
     options.check()?;
     let point = |t: f64| OdeState::from(orbit.state_at(t));
-    let start = point(orbit.initial_state().t);
+    // As given: a speed of zero is no rounding of one, which would reverse at once.
+    let start = OdeState::from(orbit.initial_state());
     let mut recorder_state = RecorderState::new(start.t, events);
     let mut recorder = recorder_state.recorder(observed, &start)?;
     let mut solution = recorder.begin_solution(&start, options);
     solution.statistics.evaluations = orbit.points;
     let part = orbit.period / ORBIT_PARTS;
+    let span = end - start.t;
+    if events.is_empty() && span > part * options.max_steps.min(MAX_ORBIT_STEPS) as f64 {
+        sample_orbit(&mut solution, point, end, options);
+        return Ok(solution);
+    }
     let mut before = start;
     while before.t < end {
         let now = point((before.t + part).min(end));
@@ -151,6 +160,28 @@ pub fn solve_orbit(
         before = now;
     }
     Ok(solution)
+}
+
+/// The samples of an orbit, and its end: at a cost by samples, however many periods lie between them.
+fn sample_orbit(
+    solution: &mut Solution,
+    point: impl Fn(f64) -> OdeState,
+    end: f64,
+    options: &Options,
+) {
+    let start = solution.steps[0].t;
+    if let Some(sample_interval) = options.sample_interval {
+        let times = (1_u32..).map(|k| start + sample_interval * f64::from(k));
+        for t in times.take_while(|&t| t <= end) {
+            let state = point(t);
+            solution.steps.push(state.clone());
+            solution.samples.push(state);
+        }
+    }
+    if solution.steps.last().is_some_and(|last| last.t < end) {
+        solution.steps.push(point(end));
+    }
+    solution.statistics.steps = solution.steps.len() - 1;
 }
 
 /// What a recording keeps when the motion passes from one system to the next.

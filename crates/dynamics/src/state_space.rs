@@ -11,7 +11,7 @@
 
 use crate::error::{DynamicsError, Result};
 use crate::machine::{Machine, MachineState, MachineWorkspace};
-use dwell_numerics::{Dual, Scalar};
+use dwell_numerics::{DoubleDouble, Dual, Scalar};
 use faer::Mat;
 
 /// A linearised motion. Matrices are lists of rows.
@@ -82,6 +82,39 @@ pub fn linearise(machine: &Machine, t: f64, y: &[f64]) -> Result<StateSpace> {
         }
     }
     Ok(state_space)
+}
+
+/// A rate below this part of the terms that it is the sum of is zero.
+const RATE_TOLERANCE: f64 = 64.0 * f64::EPSILON;
+/// A rate is zero, too, if it is less than so many times its rounding.
+const ROUNDINGS: f64 = 8.0;
+
+/// Whether a state about which a machine was linearised is an equilibrium: each rate is zero within the rounding of the
+/// state and of the evaluation. A coordinate is known to some roundings of itself, or of 1 rad or 1 m.
+///
+/// # Errors
+/// As [`Machine::evaluate`].
+pub fn is_equilibrium(machine: &Machine, t: f64, y: &[f64], linear: &StateSpace) -> Result<bool> {
+    let coordinates = machine.free().len();
+    let size = |j: usize| match j < coordinates {
+        true => y[j].abs().max(1.0),
+        false => y[j].abs(),
+    };
+    let mut workspace: MachineWorkspace<DoubleDouble> = machine.workspace();
+    let at: Vec<DoubleDouble> = y.iter().map(|&y| DoubleDouble::from_f64(y)).collect();
+    let mut finer = vec![DoubleDouble::from_f64(0.0); machine.state_count()];
+    machine
+        .evaluate(t, &at, &mut workspace)?
+        .derivative(&mut finer);
+    let rows = linear.state_derivative.iter().zip(&linear.a).zip(&finer);
+    let is_zero = |((rate, row), finer): ((&f64, &Vec<f64>), &DoubleDouble)| {
+        let terms = row.iter().enumerate().map(|(j, a)| a.abs() * size(j));
+        let rounding = (DoubleDouble::from_f64(*rate) - *finer).hi.abs();
+        rate.abs() <= RATE_TOLERANCE * terms.sum::<f64>() + ROUNDINGS * rounding
+    };
+    // A speed is exact: a coordinate that moves, however slowly, is in no equilibrium.
+    let moves = y[coordinates..2 * coordinates].iter().any(|v| *v != 0.0);
+    Ok(!moves && rows.skip(coordinates).all(is_zero))
 }
 
 /// z of a state.

@@ -49,7 +49,12 @@ pub fn factor<T: Scalar>(a: &mut [T], heads: &mut [T], m: usize) -> FactorOutcom
         a[k * n + k] = alpha;
         heads[k] = head;
     }
-    // The matrix is not square: it has no determinant.
+    // The matrix is not square: it has no determinant. Without a column none depends on others.
+    let (min_pivot, max_pivot) = if n == 0 {
+        (1.0, 1.0)
+    } else {
+        (min_pivot, max_pivot)
+    };
     FactorOutcome::new(1.0, min_pivot, max_pivot)
 }
 

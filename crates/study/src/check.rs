@@ -1,5 +1,6 @@
 //! `dwell check`: mobility, range, groups and assembly modes of a scene, before anything moves.
 
+use crate::branch_note::branch_note;
 use crate::explain::StudyError;
 use crate::models::{loaded_model, requested_reaction_bodies};
 use crate::number_format::{coordinate_unit, count, digits, number};
@@ -45,7 +46,7 @@ pub fn describe_scene(scene: &Scene) -> Result<String, StudyError> {
     text += &describe_freedom(scene, plan);
     text += &describe_range(mechanism, plan);
     text += &describe_groups(mechanism, plan);
-    text += &describe_branch(mechanism, plan);
+    text += &(describe_branch(mechanism, plan) + &branch_note(scene, plan));
     text += &describe_pruning(scene, &model);
     text += &describe_teeth(scene);
     text += &describe_requests(scene);
@@ -71,6 +72,10 @@ fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
 /// The bodies that a group places.
 fn group_bodies(mechanism: &Mechanism, plan: &Plan, g: usize) -> String {
     let bodies = plan.group_bodies(g);
+    if plan.group_methods()[g].0 == 0 {
+        let joints = plan.group_joints(g);
+        return list(joints.iter().map(|j| mechanism.joints[j.0].name.as_str()));
+    }
     list_or(bodies.iter().map(|&b| mechanism.body_name(b)), "a line")
 }
 
@@ -165,7 +170,10 @@ fn describe_groups(mechanism: &Mechanism, plan: &Plan) -> String {
         let joints = joints.iter().map(|j| mechanism.joints[j.0].name.as_str());
         let (joints, unknowns) = (list_or(joints, "its actuator"), count(size, "unknown"));
         let (number, bodies) = (g + 1, group_bodies(mechanism, plan, g));
-        text += &format!("    {number}. {bodies} closed by {joints}: {unknowns}, {kind}\n");
+        text += &match size {
+            0 => format!("    {number}. {joints}: redundant, closes no group of its own\n"),
+            _ => format!("    {number}. {bodies} closed by {joints}: {unknowns}, {kind}\n"),
+        };
         let found = &plan.group_modes[g];
         let is_ambiguous = found.modes.len() > 1;
         for (k, mode) in found.modes.iter().enumerate().filter(|_| is_ambiguous) {

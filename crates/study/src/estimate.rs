@@ -51,6 +51,11 @@ pub fn over_motion(first: &[f64], second: &[f64], rounding: f64) -> f64 {
     SAFETY_FACTOR * differences.fold(0.0, f64::max) + rounding
 }
 
+/// The error of a number that two runs yield, the second at a tenth of the tolerance.
+pub(crate) fn of_number(first: f64, second: f64) -> f64 {
+    SAFETY_FACTOR * (first - second).abs() + 4.0 * f64::EPSILON * first.abs()
+}
+
 /// The rounding error of a value, from the same value in double-double; `size` is the magnitude of its terms.
 pub fn of_value(value: f64, finer: DoubleDouble, size: f64) -> f64 {
     (DoubleDouble::from_f64(value) - finer).hi.abs()

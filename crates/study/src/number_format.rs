@@ -24,6 +24,18 @@ pub fn digits(value: f64, count: usize) -> String {
     }
 }
 
+/// `value` to the digits that its `error` leaves, at most `count` of them; zero where it leaves none.
+pub(crate) fn digits_within(value: f64, error: f64, count: usize) -> String {
+    if !(value.abs() > error && value.is_finite()) {
+        return match value.is_finite() && error.is_finite() {
+            true => "0".to_owned(),
+            false => digits(value, count),
+        };
+    }
+    let known = value.abs().log10().floor() - error.log10().ceil() + 1.0;
+    digits(value, known.clamp(1.0, count as f64) as usize)
+}
+
 /// To six significant digits.
 pub fn number(value: f64) -> String {
     digits(value, 6)
@@ -57,6 +69,22 @@ pub fn count(number: usize, thing: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_digit_is_printed_beyond_the_error() {
+        for (value, error, text) in [
+            (197.358_021_3, 3.1e-6, "197.35802"),
+            (197.358_021_3, 0.0, "197.358021"),
+            (197.358_021_3, 0.4, "197"),
+            (197.358_021_3, 12.0, "200"),
+            (-0.012_345, 1e-4, "-0.0123"),
+            (9.0, 5.0, "9"),
+            (1e-12, 1e-11, "0"),
+            (0.0, 0.0, "0"),
+        ] {
+            assert_eq!(digits_within(value, error, 9), text, "{value} {error}");
+        }
+    }
 
     #[test]
     fn numbers_are_short_and_true() {

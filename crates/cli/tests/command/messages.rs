@@ -394,11 +394,6 @@ fn machines() {
         "linearise",
         four_bar_with(&[("periods = 2", &text)]),
     );
-    group.scene(
-        "a drive that nothing holds",
-        "cycle",
-        four_bar_with(&[("periods = 2", &text)]),
-    );
     group.dir.put("scene.toml", four_bar_with(&[]));
     for ratio in ["0", "-0.1", "3", "much"] {
         let arguments = ["cycle", "scene.toml", "--fluctuation", ratio];

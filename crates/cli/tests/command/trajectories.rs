@@ -271,3 +271,18 @@ fn what_cannot_be_followed_is_refused() {
         ],
     );
 }
+
+#[test]
+fn a_machine_without_a_steady_cycle_ends_with_status_1() {
+    let dir = TestDir::new();
+    let driven = "duration = 2\n[drives]\nengine = { applied-force = \"phi\", magnitude = 2.0 }";
+    dir.put("driven.toml", four_bar_with(&[("periods = 2", driven)]));
+    let run = dir.run(&["cycle", "driven.toml", "--out", "o"]);
+    assert_eq!(run.status, Some(1), "{run:?}");
+    assert!(
+        run.out.contains("no steady cycle of phi is found"),
+        "{run:?}"
+    );
+    // 2 N m over a turn.
+    assert!(run.err.contains("gains 12.6 J per cycle"), "{run:?}");
+}

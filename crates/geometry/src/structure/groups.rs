@@ -107,7 +107,7 @@ pub(crate) fn order_groups(
         before.extend(evaluated_with);
     }
     let groups = strong_components(&of_equation, &before, &of_unknown);
-    let groups = absorb_redundant(groups, &redundant, &dependencies, &of_unknown);
+    let groups = absorb_redundant(groups, &redundant, &equations, &dependencies, &of_unknown);
     let group = |members: Vec<usize>| {
         let rows = members.len();
         let matched = members.iter().map(|&e| of_equation[e]);
@@ -238,6 +238,7 @@ pub(crate) fn bodies_of(frames: &Frames, tree: &Tree, unknown: Unknown) -> Vec<u
 fn absorb_redundant(
     groups: Vec<Vec<usize>>,
     redundant: &[usize],
+    equations: &[Equation],
     dependencies: &[Vec<usize>],
     of_unknown: &[usize],
 ) -> Vec<Vec<usize>> {
@@ -268,10 +269,15 @@ fn absorb_redundant(
             joins[e] = start;
         }
     }
+    // Equations that depend on no unknown at all, as of a pin that is written twice: a group for each loop.
+    for &e in redundant {
+        if e > 0 && equations[e - 1] == equations[e] && dependencies[e].is_empty() {
+            joins[e] = joins[e - 1];
+        }
+    }
     // The whole depends on nothing outside it, so it can come where its first part does.
     let mut order: Vec<Vec<usize>> = Vec::new();
     let mut position: Vec<Option<usize>> = vec![None; dependencies.len()];
-    // An equation that depends on no unknown at all is a group of its own.
     for group in groups.into_iter().chain(redundant.iter().map(|&e| vec![e])) {
         match joins[group[0]] {
             UNMATCHED => order.push(group),

@@ -1,5 +1,7 @@
 //! Computes the steady cycle, its tables, and the flywheel.
 
+use crate::cycle::errors::MAX_SPEED_ERROR;
+pub use crate::cycle::errors::{CycleErrors, CycleStability};
 use crate::explain::{StudyError, labels};
 use crate::models::{SceneMachine, SolverSettings, source_name};
 use crate::number_format::{coordinate_unit, count, digits};
@@ -130,18 +132,45 @@ fn work_table(prepared: &SceneMachine<'_>, cycle: &Cycle) -> Table {
     }
 }
 
+/// A flywheel for a coefficient of fluctuation.
+pub struct SizedFlywheel {
+    /// The coefficient of fluctuation.
+    pub target: f64,
+    /// The flywheel and the cycle with it.
+    pub flywheel: Flywheel,
+    /// The estimated error of its moment of inertia, kg m².
+    pub inertia_error: f64,
+    /// The estimated errors of the cycle with it.
+    pub errors: CycleErrors,
+}
+
+/// Whether a machine has a steady cycle.
+pub enum CycleVerdict<'a> {
+    /// It was found.
+    Steady(Box<CycleResults<'a>>),
+    /// None was found, or its error is too large to say: why.
+    NoCycle {
+        /// The scene with its machine.
+        prepared: Box<SceneMachine<'a>>,
+        /// Why not.
+        reason: StudyError,
+    },
+}
+
 /// A steady cycle with its tables, and with the flywheel if a fluctuation was required.
 pub struct CycleResults<'a> {
     /// The scene with its machine.
     pub prepared: SceneMachine<'a>,
     /// The cycle.
     pub steady: Cycle,
+    /// Its estimated errors.
+    pub errors: CycleErrors,
     /// One cycle: time, states, acceleration and works since its start.
     pub samples: Table,
     /// The work of each load and drive over the cycle, and their sum.
     pub works: Table,
-    /// The required coefficient of fluctuation, and the flywheel for it.
-    pub flywheel: Option<(f64, Flywheel)>,
+    /// The flywheel, if a coefficient of fluctuation was required.
+    pub flywheel: Option<SizedFlywheel>,
     /// The cycle with the flywheel, if one is needed.
     pub flywheel_samples: Option<Table>,
 }
@@ -154,7 +183,7 @@ pub fn compute_cycle<'a>(
     scene: &'a Scene,
     settings: &SolverSettings,
     fluctuation: Option<f64>,
-) -> Result<CycleResults<'a>, StudyError> {
+) -> Result<CycleVerdict<'a>, StudyError> {
     let prepared = SceneMachine::new(scene)?;
     require_rotating(&prepared)?;
     prepared.require_autonomous("a steady cycle")?;
@@ -164,40 +193,109 @@ pub fn compute_cycle<'a>(
         max_step: settings.max_step,
         ..Options::new(settings.method, settings.rtol)
     };
+    let found = find_cycle(&prepared, &options).and_then(|(steady, errors)| {
+        let size = |target| size_for(&prepared, &steady, target, &options);
+        let flywheel = fluctuation.map(size).transpose()?;
+        Ok((steady, errors, flywheel))
+    });
+    let (steady, errors, flywheel) = match found {
+        Ok(found) => found,
+        Err(reason) => {
+            let prepared = Box::new(prepared);
+            return Ok(CycleVerdict::NoCycle { prepared, reason });
+        }
+    };
     let machine = &prepared.machine;
-    // The guess need not be exact, and a coarse integration starts more easily from rest.
-    let coarse = Options {
-        atol: options.atol.max(GUESS_TOLERANCE),
-        rtol: options.rtol.max(GUESS_TOLERANCE),
-        ..options
-    };
-    let start = prepared.initial_state();
-    let guess = initial_transient(machine, &start, RUN_UP_REVOLUTIONS, &coarse);
-    let guess = guess.map_err(|e| run_up_error(&prepared, &e))?;
-    let explain = |e: DynamicsError| prepared.explain(&e);
-    let steady = in_first_revolution(steady_cycle(machine, &guess, &options).map_err(explain)?);
-    let size = |target: f64| {
-        let sized = size_flywheel(machine, &steady.initial_state, target, &options)?;
-        let cycle = in_first_revolution(sized.cycle);
-        Ok((target, Flywheel { cycle, ..sized }))
-    };
-    let flywheel = fluctuation.map(size).transpose().map_err(explain)?;
     let samples = cycle_table(&prepared, machine, &steady)?;
     let works = work_table(&prepared, &steady);
     let flywheel_samples = match &flywheel {
-        Some((_, sized)) if sized.inertia > 0.0 => {
-            let inertia = machine.flywheel(0) + sized.inertia;
-            let heavier = machine.clone().with_flywheel(0, inertia);
-            Some(cycle_table(&prepared, &heavier, &sized.cycle)?)
+        Some(sized) if sized.flywheel.inertia > 0.0 => {
+            let heavier = with_flywheel(machine, sized.flywheel.inertia);
+            Some(cycle_table(&prepared, &heavier, &sized.flywheel.cycle)?)
         }
         _ => None,
     };
-    Ok(CycleResults {
+    Ok(CycleVerdict::Steady(Box::new(CycleResults {
         prepared,
         steady,
+        errors,
         samples,
         works,
         flywheel,
         flywheel_samples,
+    })))
+}
+
+/// The cycle from the scene's initial state, with its errors.
+fn find_cycle(
+    prepared: &SceneMachine<'_>,
+    options: &Options,
+) -> Result<(Cycle, CycleErrors), StudyError> {
+    // The guess need not be exact, and a coarse integration starts more easily from rest.
+    let coarse = Options {
+        atol: options.atol.max(GUESS_TOLERANCE),
+        rtol: options.rtol.max(GUESS_TOLERANCE),
+        ..*options
+    };
+    let (machine, start) = (&prepared.machine, prepared.initial_state());
+    let guess = initial_transient(machine, &start, RUN_UP_REVOLUTIONS, &coarse);
+    let guess = guess.map_err(|e| run_up_error(prepared, &e))?;
+    let explain = |e: DynamicsError| prepared.explain(&e);
+    let steady = in_first_revolution(steady_cycle(machine, &guess, options).map_err(explain)?);
+    let errors = estimated_errors(prepared, machine, &steady, options)?;
+    Ok((steady, errors))
+}
+
+/// The errors of a cycle, unless they are so large that there may be none.
+fn estimated_errors(
+    prepared: &SceneMachine<'_>,
+    machine: &Machine,
+    cycle: &Cycle,
+    options: &Options,
+) -> Result<CycleErrors, StudyError> {
+    let errors = CycleErrors::new(machine, cycle, options).map_err(|e| prepared.explain(&e))?;
+    if errors.speed <= MAX_SPEED_ERROR {
+        return Ok(errors);
+    }
+    let mean = digits(cycle.mean_speed, 3);
+    let error = digits(errors.speed * cycle.mean_speed.abs(), 1);
+    Err(prepared.error(
+        format!(
+            "no steady cycle is certain: one at {mean} rad/s is found, with an estimated error of {error} rad/s"
+        ),
+        "use a smaller --rtol, or another --method",
+        prepared.initial_state_label("from here"),
+    ))
+}
+
+/// The machine with a flywheel added.
+fn with_flywheel(machine: &Machine, inertia: f64) -> Machine {
+    let inertia = machine.flywheel(0) + inertia;
+    machine.clone().with_flywheel(0, inertia)
+}
+
+/// The flywheel for a coefficient of fluctuation, and its errors.
+fn size_for(
+    prepared: &SceneMachine<'_>,
+    steady: &Cycle,
+    target: f64,
+    options: &Options,
+) -> Result<SizedFlywheel, StudyError> {
+    let machine = &prepared.machine;
+    let explain = |e: DynamicsError| prepared.explain(&e);
+    let sized = size_flywheel(machine, &steady.initial_state, target, options).map_err(explain)?;
+    let cycle = in_first_revolution(sized.cycle);
+    let heavier = with_flywheel(machine, sized.inertia);
+    let errors = estimated_errors(prepared, &heavier, &cycle, options)?;
+    let mut workspace = heavier.workspace();
+    let state = heavier.evaluate(0.0, &cycle.initial_state, &mut workspace);
+    let [kinetic, _] = state.map_err(explain)?.energy();
+    let whole = 2.0 * kinetic / cycle.initial_state[1].powi(2);
+    Ok(SizedFlywheel {
+        target,
+        // The fluctuation falls as the inverse of the whole inertia.
+        inertia_error: whole * errors.fluctuation / target,
+        flywheel: Flywheel { cycle, ..sized },
+        errors,
     })
 }

@@ -1,7 +1,8 @@
 //! The steady cycle: speed over the coordinate, and acceleration over speed.
 
-use crate::cycle::compute::CycleResults;
+use crate::cycle::compute::{CycleResults, CycleStability};
 use crate::models::SolverSettings;
+use crate::number_format::digits_within;
 use crate::output::{chart, figure, symbol};
 use dwell_report::{Axis, Figure, Mark, Series, Stroke, Table};
 
@@ -14,7 +15,8 @@ pub(crate) fn cycle(results: &CycleResults<'_>, settings: &SolverSettings) -> Fi
     let (actuator, _) = prepared.first_free_coordinate();
     let name = symbol(prepared.coordinate_name(actuator));
     let mean = steady.mean_speed;
-    let is_constant = steady.fluctuation.abs() < CONSTANT_FLUCTUATION;
+    let is_constant =
+        steady.fluctuation.abs() < CONSTANT_FLUCTUATION || !results.errors.varies(steady);
     let mut speed = Axis::new(format!("d{name}/dt"), "rad/s");
     if is_constant {
         let margin = 0.01 * mean.abs();
@@ -25,7 +27,10 @@ pub(crate) fn cycle(results: &CycleResults<'_>, settings: &SolverSettings) -> Fi
     let mut over_coordinate = chart(title, position, speed.clone(), speed_curves);
     over_coordinate.marks.push(Mark::Horizontal {
         at: mean,
-        label: format!("mean {mean:.5} rad/s"),
+        label: format!(
+            "mean {} rad/s",
+            digits_within(mean, results.errors.speed * mean.abs(), 6)
+        ),
     });
     let mut panels = vec![over_coordinate.into()];
     // At constant speed the phase portrait is a point.
@@ -35,13 +40,15 @@ pub(crate) fn cycle(results: &CycleResults<'_>, settings: &SolverSettings) -> Fi
         let title = "Phase: acceleration over speed";
         panels.push(chart(title, speed, acceleration, phase).into());
     }
-    let stability = match steady.is_stable() {
-        true => "Stable",
-        false => "Unstable",
+    let errors = &results.errors;
+    let stability = match errors.stability(steady) {
+        CycleStability::Stable => "Stable",
+        CycleStability::Unstable => "Unstable",
+        CycleStability::Undecided => "Stability not decided within the error",
     };
-    let (period, fluctuation) = (steady.period, steady.fluctuation);
-    let text =
-        format!("{stability}; period {period:.6} s, coefficient of fluctuation {fluctuation:.4e}.");
+    let period = digits_within(steady.period, errors.speed * steady.period, 7);
+    let fluctuation = digits_within(steady.fluctuation, errors.fluctuation, 5);
+    let text = format!("{stability}; period {period} s, coefficient of fluctuation {fluctuation}.");
     let method = format!("shooting over the coordinate, {}", settings.describe());
     let (scene, title) = (prepared.scene, "Steady cycle");
     figure(scene, "cycle", title, &text, panels, method)

@@ -1,26 +1,44 @@
 //! Writes a steady cycle: tables, figure and summary.
 
 use super::figures;
-use crate::cycle::compute::compute_cycle;
+use crate::cycle::compute::{
+    CycleErrors, CycleResults, CycleStability, CycleVerdict, SizedFlywheel, compute_cycle,
+};
 use crate::explain::StudyError;
 use crate::models::{SceneMachine, SolverSettings, source_name};
-use crate::number_format::{count, digits};
+use crate::number_format::{count, digits, digits_within};
 use crate::output::{Outcome, signed_png};
-use dwell_dynamics::{Cycle, Flywheel};
+use crate::trajectory::output::TrajectoryOutcome;
+use dwell_dynamics::Cycle;
 use dwell_report::TableFormat;
 use dwell_scene::Scene;
 use std::f64::consts::{PI, TAU};
 
-/// The steady cycle of a scene, and the flywheel for a target coefficient of speed fluctuation if given.
+/// The steady cycle of a scene, and the flywheel for a target coefficient of speed fluctuation if given. If no steady
+/// cycle is found, [`TrajectoryOutcome::early_stop`] says why.
 ///
 /// # Errors
-/// [`StudyError`] when the free coordinate does not rotate fully, a load depends on time, or no steady cycle is found.
+/// [`StudyError`] when the free coordinate does not rotate fully, nothing does work, or a load depends on time.
 pub fn cycle(
     scene: &Scene,
     settings: &SolverSettings,
     fluctuation: Option<f64>,
-) -> Result<Outcome, StudyError> {
-    let results = compute_cycle(scene, settings, fluctuation)?;
+) -> Result<TrajectoryOutcome, StudyError> {
+    let results = match compute_cycle(scene, settings, fluctuation)? {
+        CycleVerdict::Steady(results) => results,
+        CycleVerdict::NoCycle { prepared, reason } => {
+            let (coordinate, _) = prepared.first_free_coordinate();
+            let name = prepared.coordinate_name(coordinate);
+            let summary = format!("{}: no steady cycle of {name} is found\n", scene.title);
+            return Ok(TrajectoryOutcome {
+                outcome: Outcome {
+                    summary,
+                    ..Outcome::default()
+                },
+                early_stop: Some(reason),
+            });
+        }
+    };
     let mut outcome = Outcome::default();
     let name = |rest: &str| format!("{}-cycle{rest}", scene.name);
     let files = &mut outcome.files;
@@ -31,84 +49,119 @@ pub fn cycle(
     }
     let figure = figures::cycle(&results, settings);
     outcome.files.add(name(".png"), signed_png(scene, &figure)?);
-    outcome.summary = summary(&results.prepared, &results.steady);
-    if let Some((target, flywheel)) = &results.flywheel {
-        outcome.summary += &flywheel_text(&results.prepared, *target, flywheel);
+    outcome.summary = summary(&results);
+    if let Some(flywheel) = &results.flywheel {
+        outcome.summary += &flywheel_text(&results.prepared, flywheel);
     }
-    Ok(outcome)
-}
-
-/// Mean, slowest and fastest angular velocity in rad/s and revolutions per minute.
-fn speeds(cycle: &Cycle) -> [String; 3] {
-    [cycle.mean_speed, cycle.slowest[1], cycle.fastest[1]].map(|value| {
-        let minute = digits(value * 30.0 / PI, 6);
-        format!("{} rad/s ({minute} 1/min)", digits(value, 9))
+    Ok(TrajectoryOutcome {
+        outcome,
+        early_stop: None,
     })
 }
 
-pub(crate) fn summary(prepared: &SceneMachine<'_>, cycle: &Cycle) -> String {
+/// A speed in rad/s and revolutions per minute, to the digits that its relative error leaves.
+fn speed_text(value: f64, relative_error: f64) -> String {
+    let [radians, minute] = [(value, 9), (value * 30.0 / PI, 9)]
+        .map(|(value, count)| digits_within(value, relative_error * value.abs(), count));
+    format!("{radians} rad/s ({minute} 1/min)")
+}
+
+pub(crate) fn summary(results: &CycleResults<'_>) -> String {
+    let (prepared, cycle, errors) = (&results.prepared, &results.steady, &results.errors);
     let (coordinate, _) = prepared.first_free_coordinate();
     let revolutions = count((cycle.cycle_angle / TAU).round() as usize, "revolution");
-    let position = |[q, _]: [f64; 2]| prepared.describe_coordinate(coordinate, q);
     let (title, name) = (&prepared.scene.title, prepared.coordinate_name(coordinate));
-    let [period, fluctuation] = [cycle.period, cycle.fluctuation].map(|v| digits(v, 9));
-    let [mean, slowest, fastest] = speeds(cycle);
-    let [slowest_at, fastest_at] = [cycle.slowest, cycle.fastest].map(position);
+    let period = digits_within(cycle.period, errors.speed * cycle.period, 9);
+    let mean = speed_text(cycle.mean_speed, errors.speed);
     let mut text = format!(
-        "{title}: steady cycle of {name}, {revolutions} in {period} s\n  mean speed {mean}\n  slowest {slowest} at \
-         {slowest_at}\n  fastest {fastest} at {fastest_at}\n  coefficient of fluctuation {fluctuation}\n"
+        "{title}: steady cycle of {name}, {revolutions} in {period} s\n  mean speed {mean}\n"
     );
-    let multipliers = cycle.floquet_multipliers.iter();
-    let multipliers: Vec<String> = multipliers.map(|&z| complex_text(z, 6)).collect();
+    if errors.varies(cycle) {
+        let [slowest, fastest] =
+            [cycle.slowest, cycle.fastest].map(|[_, speed]| speed_text(speed, errors.speed));
+        let position =
+            |q: f64, error: f64| prepared.describe_coordinate_within(coordinate, q, error);
+        let slowest_at = position(cycle.slowest[0], errors.positions[0]);
+        let fastest_at = position(cycle.fastest[0], errors.positions[1]);
+        let fluctuation = digits_within(cycle.fluctuation, errors.fluctuation, 9);
+        text += &format!(
+            "  slowest {slowest} at {slowest_at}\n  fastest {fastest} at {fastest_at}\n  \
+             coefficient of fluctuation {fluctuation}\n"
+        );
+    } else {
+        let error = digits(errors.fluctuation, 1);
+        text += &format!("  constant speed: the coefficient of fluctuation is below {error}\n");
+    }
+    text + &stability_text(cycle, errors) + &work_text(prepared, cycle, errors)
+}
+
+/// The multipliers, and whether the cycle is stable.
+fn stability_text(cycle: &Cycle, errors: &CycleErrors) -> String {
+    let multipliers = cycle.floquet_multipliers.iter().zip(&errors.multipliers);
+    let multipliers: Vec<String> = multipliers
+        .map(|(&z, &error)| complex_text(z, error, 6))
+        .collect();
     let multipliers = multipliers.join(", ");
-    text += match cycle.is_stable() {
-        true => "  stable",
-        false => "  unstable",
+    let verdict = match errors.stability(cycle) {
+        CycleStability::Stable => "stable",
+        CycleStability::Unstable => "unstable",
+        CycleStability::Undecided => "stability not decided within the error",
     };
-    text += &format!(
-        ": a disturbance changes by these factors per cycle (Floquet multipliers): {multipliers}\n"
-    );
+    format!(
+        "  {verdict}: a disturbance changes by these factors per cycle (Floquet multipliers): {multipliers}\n"
+    )
+}
+
+/// The works, what is left of their sum, and the errors of all numbers.
+fn work_text(prepared: &SceneMachine<'_>, cycle: &Cycle, errors: &CycleErrors) -> String {
+    let mut text = String::new();
     let sources = prepared.machine.nonconservative_sources().iter();
     for (&source, &work) in sources.zip(&cycle.works) {
         let name = source_name(prepared.scene, source);
-        text += &format!("  work of {name} per cycle {} J\n", digits(work, 9));
+        let work = digits_within(work, errors.work, 9);
+        text += &format!("  work of {name} per cycle {work} J\n");
     }
     let sum: f64 = cycle.works.iter().sum();
     let size: f64 = cycle.works.iter().map(|work| work.abs()).sum();
-    if size > 0.0 {
+    if size > errors.work {
         let relative = (sum / size).abs();
         text +=
             &format!("  sum of these works: {relative:.1e} of the sum of their absolute values\n");
     }
-    text
+    let multiplier = errors.multipliers.iter().copied().fold(0.0, f64::max);
+    text + &format!(
+        "  estimated errors: {:.1e} of the speeds, {:.1e} in the coefficient of fluctuation, {:.1e} J in the works, \
+         {multiplier:.1e} in the multipliers, from a second run at a tenth of the tolerance\n",
+        errors.speed, errors.fluctuation, errors.work
+    )
 }
 
 /// The flywheel and its effect.
-pub(crate) fn flywheel_text(
-    prepared: &SceneMachine<'_>,
-    target: f64,
-    flywheel: &Flywheel,
-) -> String {
-    let target = digits(target, 6);
+pub(crate) fn flywheel_text(prepared: &SceneMachine<'_>, sized: &SizedFlywheel) -> String {
+    let (flywheel, errors) = (&sized.flywheel, &sized.errors);
+    let target = digits(sized.target, 6);
     if flywheel.inertia == 0.0 {
         return format!("  no flywheel is needed for a coefficient of fluctuation of {target}\n");
     }
     let (coordinate, _) = prepared.first_free_coordinate();
     let name = prepared.coordinate_name(coordinate);
-    let inertia = digits(flywheel.inertia, 9);
-    let [mean, slowest, fastest] = speeds(&flywheel.cycle);
+    let inertia = digits_within(flywheel.inertia, sized.inertia_error, 9);
+    let cycle = &flywheel.cycle;
+    let [mean, slowest, fastest] = [cycle.mean_speed, cycle.slowest[1], cycle.fastest[1]]
+        .map(|speed| speed_text(speed, errors.speed));
     format!(
         "  for a coefficient of fluctuation of {target}: flywheel of {inertia} kg m² on {name}\n  with it: mean speed \
          {mean}, from {slowest} to {fastest}\n"
     )
 }
 
-/// A complex number.
-fn complex_text([re, im]: [f64; 2], count: usize) -> String {
+/// A complex number to the digits that its error leaves, at most `count`.
+fn complex_text([re, im]: [f64; 2], error: f64, count: usize) -> String {
     if im == 0.0 {
-        digits(re, count)
+        digits_within(re, error, count)
     } else {
         let sign = if im < 0.0 { '−' } else { '+' };
-        format!("{} {sign} {}i", digits(re, count), digits(im.abs(), count))
+        let [re, im] = [re, im.abs()].map(|part| digits_within(part, error, count));
+        format!("{re} {sign} {im}i")
     }
 }

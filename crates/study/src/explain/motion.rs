@@ -82,7 +82,7 @@ fn describe(
                 "the maximum of {max_steps} steps is reached at t = {} s",
                 digits(*t, 2)
             ),
-            "end the motion earlier, or use a larger --rtol",
+            "end the motion earlier, or use a larger --rtol or, if it is given, a larger --max-step",
             SceneLocation::Duration,
             "too long",
         ),
@@ -111,6 +111,22 @@ fn describe(
             format!("there is no steady cycle of {phi}: {what}"),
             "a cycle needs a drive and loads that are periodic in the coordinate; \
              `dwell simulate` shows the motion",
+            start,
+            "of this motion",
+        ),
+        DynamicsError::NeverBalances { work, q_dot, tried } => (
+            format!(
+                "there is no steady cycle of {phi}: the machine {} {} J per cycle at {} rad/s, and {} energy at every \
+                 speed that was tried, from {} to {} rad/s",
+                if *work > 0.0 { "gains" } else { "loses" },
+                digits(work.abs(), 3),
+                digits(*q_dot, 3),
+                if *work > 0.0 { "gains" } else { "loses" },
+                digits(tried[0], 3),
+                digits(tried[1], 3)
+            ),
+            "add a loss or a drive that depends on the speed, such as a damper or a motor, so that the works of a cycle \
+             balance at some speed",
             start,
             "of this motion",
         ),

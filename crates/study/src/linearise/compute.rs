@@ -5,7 +5,7 @@ use crate::explain::StudyError;
 use crate::models::{SceneMachine, build_machine, requested_reactions};
 use crate::number_format::force_unit;
 use dwell_dynamics::{
-    DynamicsError, Equilibrium, Machine, StateSpace, linearise as linearise_about,
+    DynamicsError, Equilibrium, Machine, StateSpace, is_equilibrium, linearise as linearise_about,
 };
 use dwell_findings::Column;
 use dwell_geometry::Reaction;
@@ -79,6 +79,8 @@ pub struct LinearisedMotion<'a> {
     pub state: Vec<f64>,
     /// The equilibrium there, if it was requested.
     pub equilibrium: Option<Equilibrium>,
+    /// Whether the state is an equilibrium within rounding.
+    pub is_equilibrium: bool,
     /// The matrices.
     pub linear: StateSpace,
     /// The eigenvalues of A, 1/s.
@@ -109,12 +111,15 @@ pub fn compute_linearisation(
     };
     let explain = |e: DynamicsError| prepared.explain(&e);
     let linear = linearise_about(&machine, 0.0, &state).map_err(explain)?;
+    let is_equilibrium =
+        equilibrium.is_some() || is_equilibrium(&machine, 0.0, &state, &linear).map_err(explain)?;
     let eigenvalues = linear.eigenvalues().map_err(explain)?;
     let names = StateSpaceNames::new(&prepared, &machine);
     Ok(LinearisedMotion {
         prepared,
         state,
         equilibrium,
+        is_equilibrium,
         linear,
         eigenvalues,
         names,

@@ -76,10 +76,10 @@ fn summary(motion: &LinearisedMotion<'_>) -> String {
         }
         None => {
             summary += "the initial state\n";
-            let mut rates = motion.linear.state_derivative.iter();
-            if rates.any(|rate| rate.abs() > 0.0) {
-                summary += "  not an equilibrium: the state derivative is not zero there\n";
-            }
+            summary += match motion.is_equilibrium {
+                true => "  an equilibrium: the state derivative is zero there within rounding\n",
+                false => "  not an equilibrium: the state derivative is not zero there\n",
+            };
             summary += &describe_eigenvalues(&motion.eigenvalues);
         }
     }

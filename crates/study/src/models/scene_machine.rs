@@ -4,7 +4,7 @@ use crate::explain::{
     Labels, StudyError, explain_motion, initial_state_location, labels, scene_error,
 };
 use crate::models::{build_machine, drive_states, with_drive_loads};
-use crate::number_format::{coordinate_unit, digits};
+use crate::number_format::{coordinate_unit, digits, digits_within};
 use dwell_dynamics::{DynamicsError, Machine};
 use dwell_findings::Column;
 use dwell_geometry::ActuatorId;
@@ -109,6 +109,26 @@ impl<'a> SceneMachine<'a> {
         let (name, text) = (self.coordinate_name(actuator), digits(value, 9));
         match self.is_angle(actuator) {
             true => format!("{name} = {text} rad ({}°)", digits(value.to_degrees(), 9)),
+            false => format!("{name} = {text} m"),
+        }
+    }
+
+    /// A coordinate as text, to the digits that its error leaves.
+    pub(crate) fn describe_coordinate_within(
+        &self,
+        actuator: usize,
+        value: f64,
+        error: f64,
+    ) -> String {
+        let (name, text) = (
+            self.coordinate_name(actuator),
+            digits_within(value, error, 9),
+        );
+        match self.is_angle(actuator) {
+            true => {
+                let degrees = digits_within(value.to_degrees(), error.to_degrees(), 9);
+                format!("{name} = {text} rad ({degrees}°)")
+            }
             false => format!("{name} = {text} m"),
         }
     }

@@ -1,7 +1,8 @@
 //! Cycles, equilibria and linearised motions, held against closed forms.
 
+use dwell_dynamics::Method;
 use dwell_scene::Scene;
-use dwell_study::{OperatingPoint, Outcome, SolverSettings, cycle, equilibria, linearise};
+use dwell_study::{OperatingPoint, Outcome, SolverSettings, StudyError, equilibria, linearise};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 const PENDULUM: &str = r#"
@@ -46,6 +47,17 @@ duration = 1
 
 fn scene(text: &str) -> Scene {
     Scene::parse("machine.toml", text).unwrap()
+}
+
+/// The cycle of a scene that has one.
+fn cycle(
+    scene: &Scene,
+    settings: &SolverSettings,
+    fluctuation: Option<f64>,
+) -> Result<Outcome, StudyError> {
+    let found = dwell_study::cycle(scene, settings, fluctuation)?;
+    assert!(found.early_stop.is_none(), "{:?}", found.early_stop);
+    Ok(found.outcome)
 }
 
 fn text<'a>(outcome: &'a Outcome, end: &str) -> &'a str {
@@ -138,6 +150,149 @@ fn a_linearised_pendulum_is_that_of_the_book() {
         "{}",
         linear.summary
     );
+}
+
+/// The upright position is π/2 only to rounding, where the weight still turns the pendulum by 1e-15 rad/s²; with two
+/// weights in balance the roundings of the weights remain at every angle.
+#[test]
+fn an_equilibrium_at_the_start_is_one_within_rounding() {
+    let about_start = |text: &str| {
+        let linear = linearise(&scene(text), OperatingPoint::InitialState).unwrap();
+        linear.summary
+    };
+    let balanced = PENDULUM
+        .replace("[joints]", "[bodies.load]\npoints = { P = [0.1, 0] }\nmass = 3.0\ncenter = \"P\"\ninertia = 0.1\n[joints]\nP = { weld = [\"bar.P\", \"load.P\"] }")
+        .replace("points = { A = [0, 0] }\nmass = 2.0", "points = { A = [0, 0], P = [-0.2, 0] }\nmass = 2.0");
+    for text in [
+        PENDULUM.replace("phi = -1.0", "phi = 1.5707963267948966"),
+        PENDULUM.replace("phi = -1.0", "phi = -1.5707963267948966"),
+        balanced.replace("phi = -1.0", "phi = 0.3"),
+    ] {
+        let summary = about_start(&text);
+        assert!(summary.contains("  an equilibrium"), "{summary}");
+    }
+    for angle in ["1.57079632679", "0.1"] {
+        let summary = about_start(&PENDULUM.replace("phi = -1.0", &format!("phi = {angle}")));
+        assert!(summary.contains("not an equilibrium"), "{angle}: {summary}");
+    }
+}
+
+const WINDMILL: &str = r#"
+title = "Wheel in the wind"
+[bodies.ground]
+points = { A = [0, 0] }
+[bodies.wheel]
+points = { A = [0, 0] }
+inertia = 0.02
+center = "A"
+mass = 1.0
+[joints]
+A = { revolute = ["ground.A", "wheel.A"] }
+[actuators.phi]
+angle = ["ground", "wheel"]
+[loads]
+push = { torque = "wheel", magnitude = "1.5 + 0.9*sin(phi)" }
+drag = { torque = "wheel", magnitude = "-0.002*phi.velocity^2" }
+"#;
+
+/// E = ½Jω² of the wheel follows a linear equation over φ, whose periodic solution is
+/// E = JM/2c + A (β sin φ − cos φ)/(1 + β²), β = 2c/J. What is printed agrees with it to the last digit.
+#[test]
+fn no_digit_of_a_cycle_is_wrong() {
+    let (inertia, push, sway, drag) = (0.02, 1.5, 0.9, 0.002);
+    let beta: f64 = 2.0 * drag / inertia;
+    let energy = |phi: f64| {
+        inertia * push / (2.0 * drag) + sway * (beta * phi.sin() - phi.cos()) / (1.0 + beta * beta)
+    };
+    let speed = |phi: f64| (2.0 * energy(phi) / inertia).sqrt();
+    let points = 4096;
+    let slowness = |k: i32| 1.0 / speed(TAU * f64::from(k) / f64::from(points));
+    let mean = f64::from(points) / (0..points).map(slowness).sum::<f64>();
+    let fastest_at = std::f64::consts::PI - beta.atan();
+    let exact = [
+        ("mean speed ", mean),
+        ("slowest ", speed(fastest_at + 0.5 * TAU)),
+        ("fastest ", speed(fastest_at)),
+        (
+            "coefficient of fluctuation ",
+            (speed(fastest_at) - speed(fastest_at + 0.5 * TAU)) / mean,
+        ),
+        ("multipliers): ", (-TAU * beta).exp()),
+        ("work of push per cycle ", push * TAU),
+        ("work of drag per cycle ", -push * TAU),
+    ];
+    for (method, rtol) in [
+        (Method::Bdf, 1e-6),
+        (Method::Bdf, 1e-7),
+        (Method::Bdf, 1e-10),
+        (Method::TrBdf2, 1e-6),
+        (Method::Tsit45, 1e-8),
+        (Method::Dop853, 1e-6),
+    ] {
+        let settings = SolverSettings {
+            method,
+            rtol,
+            atol: rtol,
+            ..SolverSettings::default()
+        };
+        let outcome = cycle(&scene(WINDMILL), &settings, None).unwrap();
+        assert!(outcome.summary.contains("estimated errors: "));
+        for (name, exact) in exact {
+            let (_, rest) = outcome.summary.split_once(name).unwrap();
+            let printed = rest.split([' ', '\n']).next().unwrap();
+            let decimals = printed.split_once('.').map_or(0, |(_, after)| after.len());
+            let unit = 10_f64.powi(-i32::try_from(decimals).unwrap());
+            let error = (printed.parse::<f64>().unwrap() - exact).abs();
+            assert!(
+                error <= unit,
+                "{method:?} {rtol:e}: {name}{printed}, not {exact}"
+            );
+        }
+    }
+}
+
+/// A constant torque gains 2π times itself in every cycle, at any speed: the speed that Newton's method settles on at last,
+/// hundreds of thousands of rad/s, is rounding.
+#[test]
+fn a_machine_that_gains_energy_in_each_cycle_has_no_steady_one() {
+    let rolling = WINDMILL.replace("-0.002*phi.velocity^2", "-0.5");
+    for method in [
+        Method::Bdf,
+        Method::Esdirk34,
+        Method::Tsit45,
+        Method::Dop853,
+    ] {
+        for rtol in [1e-6, 1e-8, 1e-10] {
+            let settings = SolverSettings {
+                method,
+                rtol,
+                atol: rtol,
+                ..SolverSettings::default()
+            };
+            let found = dwell_study::cycle(&scene(&rolling), &settings, None).unwrap();
+            let reason = found.early_stop.unwrap().to_string();
+            assert!(reason.contains("gains 6.28 J per cycle"), "{reason}");
+            assert!(found.outcome.files.is_empty());
+        }
+    }
+}
+
+/// Without a drive, a damper stops the wheel after ω J/c, and a steady cycle is not what it has.
+#[test]
+fn a_machine_that_stops_has_no_steady_cycle() {
+    let still = WINDMILL
+        .replace("\"1.5 + 0.9*sin(phi)\"", "0")
+        .replace("-0.002*phi.velocity^2", "-0.03*phi.velocity")
+        + "[motion]\ninitial-velocity = 3\nduration = 1\n";
+    for method in [Method::Bdf, Method::Tsit45, Method::Dop853] {
+        let settings = SolverSettings {
+            method,
+            ..SolverSettings::default()
+        };
+        let found = dwell_study::cycle(&scene(&still), &settings, None).unwrap();
+        let reason = found.early_stop.unwrap().to_string();
+        assert!(reason.contains("comes to rest at `phi` = 2"), "{reason}");
+    }
 }
 
 #[test]

@@ -11,4 +11,5 @@ mod machines;
 mod mechanical_advantage;
 mod motion;
 mod pruning;
+mod quadrature;
 mod table;

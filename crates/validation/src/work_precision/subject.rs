@@ -134,8 +134,13 @@ impl Subject {
             .machine
             .evaluate(0.0, &self.initial_state.y, &mut workspace);
         let state = state.map_err(|e| self.explain(&e))?;
-        let is_moving = |&i: &usize| state.q_dot()[i] != 0.0 || state.q_ddot()[i] != 0.0;
-        match self.machine.free().iter().any(is_moving) {
+        // A motor at rest moves first its current, and what depends on time may begin later.
+        let mut rates = vec![0.0; self.machine.state_count()];
+        state.derivative(&mut rates);
+        let changes = rates[..self.machine.work_offset()]
+            .iter()
+            .any(|rate| *rate != 0.0);
+        match changes || self.machine.depends_on_time() {
             true => Ok(()),
             false => Err(self.explain(&DynamicsError::AtRest)),
         }

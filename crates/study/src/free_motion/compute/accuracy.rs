@@ -76,6 +76,10 @@ impl FreeMotionProblem<'_> {
         let ((method, visited), found) =
             best.ok_or_else(|| self.explain(&DynamicsError::DurationTooShort))?;
         let suffix = visited.map_or("", |_| " on a table");
+        let reason = match method == methods[0] {
+            true => reason,
+            false => format!("as {} does not reach the accuracy", methods[0].name()),
+        };
         let tolerance = two_digits(found.tolerance);
         let method_text = format!("{}{suffix}, tolerance {tolerance}", method.name());
         let how = format!("{method_text}, {reason}; {} runs", found.runs);
@@ -131,10 +135,16 @@ impl FreeMotionProblem<'_> {
         let by_implicit = self.equivalent_evaluations(&implicit.statistics)
             * (BDF_ERROR_RATIO * refinement_ratio).powf(1.0 / 6.0);
         let percent = 100.0 * stiff_fraction;
-        let reason = format!("{percent:.0} % of the steps of a coarse run are stiff");
+        let stiff = format!("{percent:.0} % of the steps of a coarse run are stiff");
+        // Stiffness is the reason only where it decided.
         Ok(if reached_end(explicit) && by_explicit <= by_implicit {
+            let reason = format!("{stiff}, but BDF is expected to cost more");
             (smooth, by_explicit, reason)
         } else {
+            let reason = match stiff_fraction > MAX_STIFF_FRACTION {
+                true => stiff,
+                false => "a coarse run of DOP853 does not reach the end".to_owned(),
+            };
             ([Method::Bdf, Method::Dop853], by_implicit, reason)
         })
     }

@@ -1,5 +1,6 @@
 //! The initial value problem of a scene's free motion, and its integration.
 
+use crate::branch_note::branch_note;
 use crate::explain::{StudyError, explain_machine, explain_model, explain_motion, scene_error};
 use crate::free_motion::compute::SegmentedMotion;
 use crate::models::{build_machine, loaded_model};
@@ -44,7 +45,8 @@ impl<'a> FreeMotionProblem<'a> {
         spec: &'a FreeMotionSpec,
     ) -> Result<Self, StudyError> {
         let output_model = loaded_model(loaded_scene)?;
-        let notes = check_variables(loaded_scene, &output_model)?;
+        let notes = check_variables(loaded_scene, &output_model)?
+            + &branch_note(loaded_scene, output_model.plan());
         let machine = build_machine(scene, spec, &[])?;
         Ok(Self {
             loaded_scene,

@@ -1,6 +1,7 @@
 //! Evaluation along a trajectory: the table, and what sections and drawings need of each position.
 
 use crate::bodies::BodyPose;
+use crate::branch_note::branch_note;
 use crate::estimate::{error_scale, relative};
 use crate::explain::StudyError;
 use crate::models::loaded_model;
@@ -244,7 +245,7 @@ pub fn compute_trajectory<'a>(
     progress: Progress<'_>,
 ) -> Result<ComputedTrajectory<'a>, StudyError> {
     let model = loaded_model(scene)?;
-    let notes = check_variables(scene, &model)?;
+    let notes = check_variables(scene, &model)? + &branch_note(scene, model.plan());
     let trajectory = Trajectory::new(scene, model.plan(), analysis, points)?;
     compute_along(scene, &model, (trajectory, None), notes, progress)
 }
