@@ -6,7 +6,7 @@ use crate::motion::Solver;
 use dwell_dynamics::Stability;
 use dwell_findings::Column;
 use dwell_study::{
-    CycleStability, CycleVerdict, OperatingPoint, compute_cycle, compute_equilibria,
+    CycleSearch, CycleStability, OperatingPoint, compute_cycle, compute_equilibria,
     compute_linearisation,
 };
 
@@ -101,10 +101,10 @@ impl Mechanism {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn cycle(&self, solver: &Solver, fluctuation: Option<f64>) -> Result<Cycle, Error> {
-        let verdict = compute_cycle(self.scene.inner(), &solver.settings(), fluctuation)?;
-        let found = match verdict {
-            CycleVerdict::Steady(found) => found,
-            CycleVerdict::NoCycle { reason, .. } => return Err(reason.into()),
+        let search = compute_cycle(self.scene.inner(), &solver.settings(), fluctuation)?;
+        let found = match search {
+            CycleSearch::Steady(found) => found,
+            CycleSearch::NoCycle { reason, .. } => return Err(reason.into()),
         };
         let works = found
             .works

@@ -52,7 +52,7 @@ pub mod trajectory;
 
 pub use calibrate::{CalibrationResult, find_value};
 pub use check::describe_scene;
-pub use cycle::compute::{CycleStability, CycleVerdict, compute_cycle};
+pub use cycle::compute::{CycleSearch, CycleStability, compute_cycle};
 pub use dwell_symbolic::Language;
 pub use equilibria::compute::compute_equilibria;
 pub use explain::{StudyError, SweepError};

@@ -145,7 +145,7 @@ pub struct SizedFlywheel {
 }
 
 /// Whether a machine has a steady cycle.
-pub enum CycleVerdict<'a> {
+pub enum CycleSearch<'a> {
     /// It was found.
     Steady(Box<CycleResults<'a>>),
     /// None was found, or its error is too large to say: why.
@@ -183,7 +183,7 @@ pub fn compute_cycle<'a>(
     scene: &'a Scene,
     settings: &SolverSettings,
     fluctuation: Option<f64>,
-) -> Result<CycleVerdict<'a>, StudyError> {
+) -> Result<CycleSearch<'a>, StudyError> {
     let prepared = SceneMachine::new(scene)?;
     require_rotating(&prepared)?;
     prepared.require_autonomous("a steady cycle")?;
@@ -202,7 +202,7 @@ pub fn compute_cycle<'a>(
         Ok(found) => found,
         Err(reason) => {
             let prepared = Box::new(prepared);
-            return Ok(CycleVerdict::NoCycle { prepared, reason });
+            return Ok(CycleSearch::NoCycle { prepared, reason });
         }
     };
     let machine = &prepared.machine;
@@ -215,7 +215,7 @@ pub fn compute_cycle<'a>(
         }
         _ => None,
     };
-    Ok(CycleVerdict::Steady(Box::new(CycleResults {
+    Ok(CycleSearch::Steady(Box::new(CycleResults {
         prepared,
         steady,
         errors,

@@ -2,7 +2,7 @@
 
 use super::figures;
 use crate::cycle::compute::{
-    CycleErrors, CycleResults, CycleStability, CycleVerdict, SizedFlywheel, compute_cycle,
+    CycleErrors, CycleResults, CycleSearch, CycleStability, SizedFlywheel, compute_cycle,
 };
 use crate::explain::StudyError;
 use crate::models::{SceneMachine, SolverSettings, source_name};
@@ -25,8 +25,8 @@ pub fn cycle(
     fluctuation: Option<f64>,
 ) -> Result<TrajectoryOutcome, StudyError> {
     let results = match compute_cycle(scene, settings, fluctuation)? {
-        CycleVerdict::Steady(results) => results,
-        CycleVerdict::NoCycle { prepared, reason } => {
+        CycleSearch::Steady(results) => results,
+        CycleSearch::NoCycle { prepared, reason } => {
             let (coordinate, _) = prepared.first_free_coordinate();
             let name = prepared.coordinate_name(coordinate);
             let summary = format!("{}: no steady cycle of {name} is found\n", scene.title);
@@ -102,13 +102,13 @@ fn stability_text(cycle: &Cycle, errors: &CycleErrors) -> String {
         .map(|(&z, &error)| complex_text(z, error, 6))
         .collect();
     let multipliers = multipliers.join(", ");
-    let verdict = match errors.stability(cycle) {
+    let stability = match errors.stability(cycle) {
         CycleStability::Stable => "stable",
         CycleStability::Unstable => "unstable",
         CycleStability::Undecided => "stability not decided within the error",
     };
     format!(
-        "  {verdict}: a disturbance changes by these factors per cycle (Floquet multipliers): {multipliers}\n"
+        "  {stability}: a disturbance changes by these factors per cycle (Floquet multipliers): {multipliers}\n"
     )
 }
 
