@@ -150,22 +150,16 @@ pub(crate) struct MotionBetweenRows<'s> {
 }
 
 impl TrajectoryResults {
-    /// Finds which columns are zero but for rounding, and the extrema of those in the tables.
-    fn find_extrema(
-        &mut self,
-        scene: &Scene,
-        trajectory: &Trajectory<'_>,
-        evaluators: &mut [PositionEvaluator<'_>],
-        motion: Option<MotionBetweenRows<'_>>,
-    ) {
+    /// Finds which columns are zero but for rounding, in a mechanism of this size (m), and the residual of the power balance.
+    fn find_rounding(&mut self, size: f64) {
         let largest = |k: usize| {
             let values = self.rows.iter().map(|row| row[k].abs());
             values.filter(|v| v.is_finite()).fold(0.0, f64::max)
         };
         let largest: Vec<f64> = (0..self.columns.len()).map(largest).collect();
-        let scales = UnitScales::new(&self.columns, &largest, scene.mechanism.size());
+        let scales = UnitScales::new(&self.columns, &largest, size);
         let columns = self.columns.iter().zip(&largest);
-        let is_rounding = columns.map(|(c, &size)| scales.is_rounding(c.unit, size));
+        let is_rounding = columns.map(|(c, &largest)| scales.is_rounding(c.unit, largest));
         self.is_rounding = is_rounding.collect();
         let power = self.power_terms.iter().map(|[_, scale]| *scale);
         let power = power.fold(scales.of("W"), f64::max);
@@ -180,6 +174,17 @@ impl TrajectoryResults {
                 self.is_rounding[k] |= magnitude.is_some_and(|k| self.is_rounding[k]);
             }
         }
+    }
+
+    /// Finds the extrema of the columns in the tables that are not zero but for rounding.
+    fn find_extrema(
+        &mut self,
+        scene: &Scene,
+        trajectory: &Trajectory<'_>,
+        evaluators: &mut [PositionEvaluator<'_>],
+        motion: Option<MotionBetweenRows<'_>>,
+    ) {
+        self.find_rounding(scene.mechanism.size());
         let selected = selected_columns(scene, &self.columns).into_iter();
         let wanted: Vec<usize> = selected.filter(|&k| !self.is_rounding[k]).collect();
         let at_fraction = |u: f64| Some(trajectory.sample_at(u));
