@@ -93,7 +93,7 @@ fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static str)> 
         ("geometry", "positions" | "positions/closed_forms" | "plan" | "body_frames", _) => {
             (2, "positions: vectors, loops, revolutions")
         }
-        ("numerics", "lu", _) => (5, "groups: elimination"),
+        ("numerics", "lu" | "factor_outcome", _) => (5, "groups: elimination"),
         ("numerics", "qr", _) => (6, "groups: least squares"),
         ("geometry", "structure/coupling", _) => (7, "gears, cams and other couplings"),
         (
@@ -133,13 +133,15 @@ fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static str)> 
         (
             "kinetostatics",
             "pass/recursive_pass",
-            "evaluate_loaded" | "evaluate_with" | "propagate_loads",
+            "evaluate_loaded" | "evaluate" | "propagate_loads",
         ) => (22, "loads along the tree"),
         ("kinetostatics", "pass/sources", _) => (18, "reactions"),
         ("kinetostatics", "friction", _) | ("kinetostatics", _, "solve_friction") => {
             (23, "friction")
         }
-        ("kinetostatics", "reduced" | "model/kinematic_state", _) => (19, "unit accelerations"),
+        ("kinetostatics", "reduced" | "model/kinematic_state" | "model/workspace", _) => {
+            (19, "unit accelerations")
+        }
         ("geometry", "body_states", _) => (20, "states of bodies and distances"),
         ("kinetostatics", _, _) if module.starts_with("load") => (21, "loads"),
         ("laws", _, _) | ("numerics", "scalar", _) => (24, "laws and number types"),

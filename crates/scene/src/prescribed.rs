@@ -120,7 +120,7 @@ pub(crate) fn law_of(
 ) -> Option<Law> {
     let fields = TableReader::open(entry, format!("`{}` in {section}", shorten(entry.name)))?;
     fields.reject_unknown_keys(table("law"));
-    let laws = list(table("law").names()).unwrap_or_default();
+    let laws = list(table("law").alternatives().into_iter()).unwrap_or_default();
     let help = format!("write it as `{{ speed = 1.0 }}`; the laws are {laws}");
     let chosen = fields.alternative(table("law"), ("has no law", "no motion law"), help)?;
     let domain = LawDomain {

@@ -188,7 +188,7 @@ impl ExtremaSearch<'_, '_> {
                 }
                 Some(sign * value).filter(|value| value.is_finite())
             };
-            found.extend(climb(&mut value, bracket, scale));
+            found.extend(refine_maximum(&mut value, bracket, scale));
         }
         let best = found
             .iter()
@@ -271,7 +271,7 @@ fn vertex([a, c, b]: [Point; 3]) -> Option<Point> {
 }
 
 /// The largest value that is found within a bracket; every value is evaluated.
-fn climb(
+fn refine_maximum(
     value: &mut dyn FnMut(f64) -> Option<f64>,
     (mut a, middle, mut b): Bracket,
     scale: f64,
