@@ -228,7 +228,7 @@ fn inertia_and_potential_are_put_together_from_their_slopes() {
         let table = tabulate(&machine, 1e-8);
         let scale = |of: TableQuantity| {
             table
-                .bounds()
+                .bounds
                 .iter()
                 .find(|b| b.quantity == of)
                 .map(|b| b.scale)
@@ -240,10 +240,10 @@ fn inertia_and_potential_are_put_together_from_their_slopes() {
         let mut sums = IntegratedFunction {
             name,
             at: &m,
-            extent: table.domain(),
+            extent: table.domain,
             cells: table.cells()[0],
             scale: scale(TableQuantity::M).expect("m"),
-            is_periodic: table.period().is_some(),
+            is_periodic: table.period.is_some(),
         };
         check_integral(&sums);
         if let Some(scale) = scale(TableQuantity::V) {
@@ -367,7 +367,7 @@ fn a_motion_ends_where_its_table_does() {
     let machine = full_machine(&scene("crank-rocker"));
     let table =
         TabulatedMachine::new(&machine, 1e-9, TableDomain::Between(0.0, 2.0)).expect("a table");
-    assert_eq!((table.domain(), table.period()), ([0.0, 2.0], None));
+    assert_eq!((table.domain, table.period), ([0.0, 2.0], None));
     let y = machine.initial_state(&[1.0], &[10.0]);
     let mut moving = table.ode(0.0, &y).expect("a start");
     let start = OdeState { t: 0.0, y };

@@ -22,7 +22,7 @@ use crate::machine_ode::MachineOde;
 use crate::ode::{DenseOutput, OdeState};
 use crate::options::Options;
 use crate::solve::{Event, ObservedMachine, RecorderState, Solution};
-use candidates::{Candidate, actuator, candidates};
+use candidates::{Candidate, candidates, with_actuator};
 pub use continued_motion::{
     ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory, Segment,
 };
@@ -154,20 +154,16 @@ impl<'s> Atlas<'s> {
         mechanism: &Mechanism,
         assembly: &AssemblyConfiguration,
     ) -> Result<Chart, AtlasError> {
-        let MachineDescription {
-            loads,
-            drives,
-            reactions,
-            ..
-        } = self.description;
+        let description = self.description;
+        let (loads, drives) = (description.loads, description.drives);
         // Auxiliary bodies have no mass.
-        let mut masses = self.description.masses.to_vec();
+        let mut masses = description.masses.to_vec();
         masses.resize(mechanism.bodies.len().max(masses.len()), Mass::default());
         let model = Model::new(mechanism, &masses, assembly, &[])?;
         let modes = vec![CoordinateMode::Free; model.plan().actuators()];
         let machine = Machine::new(model, loads, modes, drives)?;
         let all = loads_with_drives(mechanism, loads, drives).map_err(MachineError::from)?;
-        let output_model = Model::new(mechanism, &masses, assembly, reactions)?;
+        let output_model = Model::new(mechanism, &masses, assembly, description.reactions)?;
         let output_model = output_model.with_loads(all);
         let (name, coordinate) = match mechanism.actuators.first() {
             Some(actuator) => (actuator.name.clone(), actuator.coordinate()),
@@ -334,28 +330,24 @@ impl<'s> Atlas<'s> {
         at: &OdeState,
         exit: &ChartExit,
     ) -> Option<(usize, Vec<f64>, ChartChangeReason)> {
-        match exit {
-            ChartExit::StepTooLong(_) => None,
+        let (speeds, reason) = match exit {
+            ChartExit::StepTooLong(_) => return None,
             ChartExit::CrossesChangePoint { crossing, above } => {
                 let to = self.crossings[*crossing].charts[usize::from(*above)];
                 let reason = ChartChangeReason::CrossesChangePoint { fit: *crossing };
-                Some((to, at.y.clone(), reason))
+                return Some((to, at.y.clone(), reason));
             }
-            ChartExit::CoordinateFold(speeds) | ChartExit::SolutionEnds(speeds) => {
-                let reason = match exit {
-                    ChartExit::CoordinateFold(_) => ChartChangeReason::CoordinateFold {
-                        speed_ratio: speeds.max_ratio(),
-                    },
-                    _ => ChartChangeReason::SolutionEnds,
-                };
-                let tried = speeds.fastest_first().take(MAX_CANDIDATES);
-                let tried: Vec<usize> = tried.collect();
-                tried.into_iter().find_map(|candidate| {
-                    let (to, y) = self.state_in_chart(from, at, candidate)?;
-                    Some((to, y, reason))
-                })
+            ChartExit::CoordinateFold(speeds) => {
+                let speed_ratio = speeds.max_ratio();
+                (speeds, ChartChangeReason::CoordinateFold { speed_ratio })
             }
-        }
+            ChartExit::SolutionEnds(speeds) => (speeds, ChartChangeReason::SolutionEnds),
+        };
+        let mut tried = speeds.fastest_first().take(MAX_CANDIDATES);
+        tried.find_map(|candidate| {
+            let (to, y) = self.state_in_chart(from, at, candidate)?;
+            Some((to, y, reason))
+        })
     }
 
     /// The state in the chart of another coordinate, which may have to be built.
@@ -365,17 +357,13 @@ impl<'s> Atlas<'s> {
         at: &OdeState,
         candidate: usize,
     ) -> Option<(usize, Vec<f64>)> {
-        let Candidate {
-            name,
-            coordinate,
-            measured,
-            ..
-        } = self.candidates[candidate].clone();
+        let chosen = self.candidates[candidate].clone();
+        let coordinate = chosen.coordinate;
         let machine = &self.charts[from].machine;
         let mut workspace = machine.workspace();
         let mut state = machine.evaluate(at.t, &at.y, &mut workspace).ok()?;
         let states = state.bodies().clone();
-        let [q, q_dot, _] = states.coordinate(measured);
+        let [q, q_dot, _] = states.coordinate(chosen.measured);
         let mut y = at.y.clone();
         (y[0], y[1]) = (q, q_dot);
         let target = OdeState { t: at.t, y };
@@ -389,10 +377,7 @@ impl<'s> Atlas<'s> {
                 }
             }
         }
-        let mechanism = Mechanism {
-            actuators: vec![actuator(self.description.mechanism, name, coordinate)?],
-            ..self.description.mechanism.clone()
-        };
+        let mechanism = with_actuator(self.description.mechanism, chosen.name, coordinate)?;
         let (mechanism, initial_guess) = self.with_counted_revolutions(mechanism, &states);
         let mut joints = branch_hints(self.description.mechanism, &states);
         joints.resize(mechanism.joints.len(), None);

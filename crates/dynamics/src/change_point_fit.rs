@@ -100,28 +100,20 @@ pub(crate) struct FitWindow {
 impl FitWindow {
     /// The distance of a coordinate from the change point, if it is within the window.
     pub(crate) fn offset_within(&self, q: f64) -> Option<f64> {
-        let x = self.offset(q);
-        (self.bounds[0]..=self.bounds[1]).contains(&x).then_some(x)
-    }
-
-    fn offset(&self, q: f64) -> f64 {
         let x = q - self.fit.center;
-        x - self
-            .period
-            .map_or(0.0, |period| period * (x / period).round())
+        let periods = |period: f64| period * (x / period).round();
+        let x = x - self.period.map_or(0.0, periods);
+        (self.bounds[0]..=self.bounds[1]).contains(&x).then_some(x)
     }
 
     /// Whether a coordinate is so far behind the window that the machine of the branch there goes on.
     pub(crate) fn has_passed(&self, q: f64) -> bool {
         let half_width = self.fit.half_width;
-        let is_past = |x: f64| {
-            if self.above {
-                x < -half_width
-            } else {
-                x > half_width
-            }
-        };
-        self.offset_within(q).is_some_and(is_past)
+        let offset = self.offset_within(q);
+        offset.is_some_and(|x| match self.above {
+            true => x < -half_width,
+            false => x > half_width,
+        })
     }
 }
 

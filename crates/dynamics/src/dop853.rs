@@ -59,21 +59,14 @@ pub(crate) fn integrate(
         to: start.clone(),
         min_step,
         previous_error: MIN_ERROR,
-        rejected_steps: 0,
-        stiff_steps: 0,
-        accepted_steps: 0,
+        statistics: Statistics::default(),
     };
     let error = stepper.run(end, options, pieces, observer).err();
+    stepper.statistics.evaluations = stepper.stages.evaluations;
     Termination {
         state: stepper.from,
         error,
-        statistics: Statistics {
-            steps: stepper.accepted_steps,
-            rejected_steps: stepper.rejected_steps,
-            stiff_steps: stepper.stiff_steps,
-            evaluations: stepper.stages.evaluations,
-            ..Statistics::default()
-        },
+        statistics: stepper.statistics,
     }
 }
 
@@ -87,9 +80,7 @@ struct Stepper<'s> {
     min_step: f64,
     /// Error of the step before, in units of the tolerance.
     previous_error: f64,
-    rejected_steps: usize,
-    stiff_steps: usize,
-    accepted_steps: usize,
+    statistics: Statistics,
 }
 
 impl Stepper<'_> {
@@ -161,12 +152,12 @@ impl Stepper<'_> {
                     * error.powf(ERROR_EXPONENT)
                     * self.previous_error.powf(PREVIOUS_ERROR_EXPONENT);
                 self.previous_error = error.max(MIN_ERROR);
-                self.accepted_steps += 1;
+                self.statistics.steps += 1;
                 let stiffness = self.stages.stiffness(h, (self.tolerance.1, &self.to.y));
-                self.stiff_steps += usize::from(stiffness > STABILITY_LIMIT);
+                self.statistics.stiff_steps += usize::from(stiffness > STABILITY_LIMIT);
                 return Ok(factor.clamp(MIN_FACTOR, max_factor) * h);
             }
-            self.rejected_steps += 1;
+            self.statistics.rejected_steps += 1;
             let shorter = if error.is_finite() {
                 (SAFETY * error.powf(-0.125)).max(MIN_FACTOR)
             } else {

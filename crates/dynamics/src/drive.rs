@@ -51,13 +51,11 @@ impl CompiledDrive {
         first_load: usize,
     ) -> Result<Vec<Self>, DriveError> {
         let mut states = 0;
-        let mut found = Vec::with_capacity(drives.len());
-        for (i, drive) in drives.iter().enumerate() {
+        let compiled = drives.iter().enumerate().map(|(i, drive)| {
             let wrong = |what| DriveError { drive: i, what };
-            let compiled = Self::new(mechanism, drive, first_load + i, &mut states);
-            found.push(compiled.map_err(wrong)?);
-        }
-        Ok(found)
+            Self::new(mechanism, drive, first_load + i, &mut states).map_err(wrong)
+        });
+        compiled.collect()
     }
 
     fn new(

@@ -104,6 +104,11 @@ fn stability(eigenvalues: &[[f64; 2]]) -> Stability {
     }
 }
 
+/// That there is no equilibrium, and why.
+fn none<T>(what: &'static str) -> Result<T> {
+    Err(DynamicsError::NoEquilibrium { what })
+}
+
 /// All equilibria of a machine of one free coordinate between two values of it, in their order.
 ///
 /// Of a whole revolution only one end counts.
@@ -114,9 +119,7 @@ fn stability(eigenvalues: &[[f64; 2]]) -> Stability {
 pub fn equilibria(machine: &Machine, [from, to]: [f64; 2]) -> Result<Vec<Equilibrium>> {
     let mut problem = EquilibriumProblem::new(machine)?;
     if machine.free().len() != 1 {
-        return Err(DynamicsError::NoEquilibrium {
-            what: "equilibria over an interval can be found for one degree of freedom only",
-        });
+        return none("equilibria over an interval can be found for one degree of freedom only");
     }
     let mut samples = Vec::with_capacity(SEARCH_STEPS + 1);
     for k in 0..=SEARCH_STEPS {
@@ -125,9 +128,7 @@ pub fn equilibria(machine: &Machine, [from, to]: [f64; 2]) -> Result<Vec<Equilib
     }
     let size = samples.iter().fold(0.0_f64, |size, s| size.max(s.1.abs()));
     if size == 0.0 {
-        return Err(DynamicsError::NoEquilibrium {
-            what: "every position is one",
-        });
+        return none("every position is one");
     }
     let mut zeros = problem.zeros(&samples, size)?;
     let revolutions = (to - from) / TAU;
@@ -152,9 +153,7 @@ pub fn equilibria(machine: &Machine, [from, to]: [f64; 2]) -> Result<Vec<Equilib
 pub fn static_force_and_potential(machine: &Machine, coordinates: &[f64]) -> Result<Vec<[f64; 2]>> {
     let mut problem = EquilibriumProblem::new(machine)?;
     if machine.free().len() != 1 {
-        return Err(DynamicsError::NoEquilibrium {
-            what: "a single force over the coordinate exists for one degree of freedom only",
-        });
+        return none("a single force over the coordinate exists for one degree of freedom only");
     }
     let mut workspace = machine.workspace();
     let mut found = Vec::with_capacity(coordinates.len());
@@ -200,9 +199,7 @@ struct EquilibriumProblem<'m> {
 impl<'m> EquilibriumProblem<'m> {
     fn new(machine: &'m Machine) -> Result<Self> {
         if machine.depends_on_time() {
-            return Err(DynamicsError::NoEquilibrium {
-                what: "a load, drive or prescribed motion changes with time",
-            });
+            return none("a load, drive or prescribed motion changes with time");
         }
         let n = machine.state_count();
         Ok(Self {
@@ -286,9 +283,9 @@ impl<'m> EquilibriumProblem<'m> {
         let factored = lu::factor(&mut block, &mut pivots);
         let regular = factored.determinant_sign != 0.0 && factored.pivot_ratio > PIVOT_TOLERANCE;
         if !(rows.is_empty() || regular) {
-            return Err(DynamicsError::NoEquilibrium {
-                what: "the linear equations for it have no single solution, as with a drive that integrates",
-            });
+            return none(
+                "the linear equations for it have no single solution, as with a drive that integrates",
+            );
         }
         lu::solve(&block, &pivots, b);
         Ok(())
@@ -340,8 +337,6 @@ impl<'m> EquilibriumProblem<'m> {
                 return Ok(());
             }
         }
-        Err(DynamicsError::NoEquilibrium {
-            what: "Newton's method finds none from there",
-        })
+        none("Newton's method finds none from there")
     }
 }

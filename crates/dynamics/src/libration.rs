@@ -15,7 +15,7 @@
 
 use crate::conservative::{ConservativeSystem, EnergyTerms};
 use crate::error::{DynamicsError, Result};
-use crate::time_density::TimeDensity;
+use crate::time_density::{ResolvedMotion, TimeDensity};
 use dwell_numerics::fourier::{FourierSeries, MAX_POINTS, SHARP_POINTS, refine_samples};
 use dwell_numerics::panels::Panels;
 use std::f64::consts::{PI, TAU};
@@ -23,63 +23,42 @@ use std::f64::consts::{PI, TAU};
 /// Highest number of improvements of the turning points.
 const MAX_REFINEMENTS: usize = 60;
 
-/// A resolved libration.
-pub(crate) struct Libration {
-    pub(crate) turning_points: [f64; 2],
-    pub(crate) time_density: TimeDensity,
-    /// The largest kinetic energy at a point, J.
-    pub(crate) max_kinetic: f64,
-    pub(crate) points: usize,
-}
-
-impl Libration {
-    /// The libration that passes `q` with a kinetic energy (J), from approximate turning points.
-    pub(crate) fn new(
-        system: &mut dyn ConservativeSystem,
-        q: f64,
-        kinetic: f64,
-        mut turning_points: [f64; 2],
-    ) -> Result<Self> {
-        for _ in 0..MAX_REFINEMENTS {
-            let sampled = SampledLibration::new(system, turning_points, |_| true)?;
-            let improved = sampled.improved_turning_points(q, kinetic);
-            let size = turning_points[0].abs().max(turning_points[1].abs());
-            let near = |a: f64, b: f64| (a - b).abs() <= 2.0 * f64::EPSILON * size;
-            let settled = (0..2).all(|end| near(improved[end], turning_points[end]));
-            turning_points = improved;
-            if settled {
-                break;
-            }
+/// The libration that passes `q` with a kinetic energy (J), and its turning points from approximate ones.
+pub(crate) fn libration(
+    system: &mut dyn ConservativeSystem,
+    q: f64,
+    kinetic: f64,
+    mut turning_points: [f64; 2],
+) -> Result<(ResolvedMotion, [f64; 2])> {
+    for _ in 0..MAX_REFINEMENTS {
+        let sampled = SampledLibration::new(system, turning_points, |_| true)?;
+        let improved = sampled.improved_turning_points(q, kinetic);
+        let size = turning_points[0].abs().max(turning_points[1].abs());
+        let near = |a: f64, b: f64| (a - b).abs() <= 2.0 * f64::EPSILON * size;
+        let settled = (0..2).all(|end| near(improved[end], turning_points[end]));
+        turning_points = improved;
+        if settled {
+            break;
         }
-        let resolved =
-            |s: &SampledLibration| s.samples.len() >= SHARP_POINTS || s.time_density().is_resolved;
-        let sampled = SampledLibration::new(system, turning_points, resolved)?;
-        let (max_kinetic, points) = (sampled.max_kinetic(), sampled.samples.len());
-        let series = sampled.time_density();
-        let (time_density, points) = if series.is_resolved {
-            (TimeDensity::Fourier(series), points)
-        } else {
-            let panels = sampled.piecewise_time_density(system)?;
-            let taken = points + panels.points;
-            (TimeDensity::Piecewise(panels), taken)
-        };
-        Ok(Self {
-            turning_points,
-            max_kinetic,
-            points,
-            time_density,
-        })
     }
-
-    /// The phase at which it passes `q` upwards.
-    pub(crate) fn phase(&self, q: f64) -> f64 {
-        let middle = if q < 0.5 * (self.turning_points[0] + self.turning_points[1]) {
-            0.0
-        } else {
-            PI
-        };
-        phase_of(q, self.turning_points).unwrap_or(middle)
-    }
+    let resolved =
+        |s: &SampledLibration| s.samples.len() >= SHARP_POINTS || s.time_density().is_resolved;
+    let sampled = SampledLibration::new(system, turning_points, resolved)?;
+    let mut points = sampled.samples.len();
+    let series = sampled.time_density();
+    let time_density = if series.is_resolved {
+        TimeDensity::Fourier(series)
+    } else {
+        let panels = sampled.piecewise_time_density(system)?;
+        points += panels.points;
+        TimeDensity::Piecewise(panels)
+    };
+    let resolved = ResolvedMotion {
+        time_density,
+        max_kinetic: sampled.max_kinetic(),
+        points,
+    };
+    Ok((resolved, turning_points))
 }
 
 /// A libration sampled at equally spaced phases from the lower turning point up and back.
@@ -131,21 +110,16 @@ impl SampledLibration {
 
     /// h (1 − cos s) G: the kinetic energy gained from the lower end to a phase.
     fn kinetic_gain(&self, phase: f64) -> f64 {
-        let one = |m: f64| {
-            let sine = (0.5 * m * phase).sin();
+        let one = |m: usize| {
+            let sine = (0.5 * m as f64 * phase).sin();
             2.0 * sine * sine
         };
-        let mut sum = self.force_series.mean * one(1.0);
-        for (k, [c, _]) in self.force_series.harmonics.iter().enumerate() {
-            let k = (k + 1) as f64;
-            let below = if k > 1.0 {
-                one(k - 1.0) / (k - 1.0)
-            } else {
-                0.0
-            };
-            sum += 0.5 * c * (one(k + 1.0) / (k + 1.0) - below);
-        }
-        0.5 * (self.turning_points[1] - self.turning_points[0]) * sum
+        self.half_width() * self.sum(false, one(1), one)
+    }
+
+    /// Half the distance of the turning points, h.
+    fn half_width(&self) -> f64 {
+        0.5 * (self.turning_points[1] - self.turning_points[0])
     }
 
     /// The turning points by a step of Newton's method on the kinetic energy there.
@@ -172,22 +146,11 @@ impl SampledLibration {
         [moved[0].min(q), moved[1].max(q)]
     }
 
-    /// G towards an end: `phase` counted from it, `mirrored` for the upper one. `table` holds the sines
-    /// of multiples of π over the number of points.
-    fn quotient(&self, phase: usize, mirrored: bool, sines: &[f64]) -> f64 {
-        self.sum(mirrored, |m: usize| {
-            if phase == 0 {
-                return (m * m) as f64;
-            }
-            let ratio = sines[m * phase % sines.len()] / sines[phase];
-            ratio * ratio
-        })
-    }
-
-    /// G of (1) with F_m from `fejer`; `mirrored` from the upper end.
-    fn sum(&self, mirrored: bool, fejer: impl Fn(usize) -> f64) -> f64 {
+    /// G of (1) with F_m from `fejer`, the `first` of which is 1 but for a factor of all; `mirrored` from the upper
+    /// end.
+    fn sum(&self, mirrored: bool, first: f64, fejer: impl Fn(usize) -> f64) -> f64 {
         let sign = |k: usize| if mirrored && k % 2 == 1 { -1.0 } else { 1.0 };
-        let mut sum = self.force_series.mean;
+        let mut sum = self.force_series.mean * first;
         for (k, [c, _]) in self.force_series.harmonics.iter().enumerate() {
             let k = k + 1;
             let below = if k > 1 {
@@ -203,14 +166,21 @@ impl SampledLibration {
     /// By point upwards: g, by (3).
     fn quotients(&self) -> Vec<f64> {
         let n = self.samples.len();
-        let half = 0.5 * (self.turning_points[1] - self.turning_points[0]);
+        let half = self.half_width();
         let sine = |i: usize| (PI * i as f64 / n as f64).sin();
         let sines: Vec<f64> = (0..2 * n).map(sine).collect();
         let one = |j: usize| {
             let mirrored = j > n / 4;
             let phase = if mirrored { n / 2 - j } else { j };
             let cosine = (TAU * phase as f64 / n as f64).cos();
-            self.quotient(phase, mirrored, &sines) / (half * (1.0 + cosine))
+            let quotient = self.sum(mirrored, 1.0, |m| {
+                if phase == 0 {
+                    return (m * m) as f64;
+                }
+                let ratio = sines[m * phase % sines.len()] / sines[phase];
+                ratio * ratio
+            });
+            quotient / (half * (1.0 + cosine))
         };
         (0..=n / 2).map(one).collect()
     }
@@ -239,7 +209,7 @@ impl SampledLibration {
             let distance = 2.0 * half * sin * sin;
             let q = if mirrored { b - distance } else { a + distance };
             let m = system.energy_terms(q)?.m;
-            let quotient = self.sum(mirrored, |k| {
+            let quotient = self.sum(mirrored, 1.0, |k| {
                 if sin == 0.0 {
                     return (k * k) as f64;
                 }
@@ -253,7 +223,7 @@ impl SampledLibration {
     /// The largest kinetic energy, J.
     fn max_kinetic(&self) -> f64 {
         let n = self.samples.len();
-        let half = 0.5 * (self.turning_points[1] - self.turning_points[0]);
+        let half = self.half_width();
         let energy = |(j, g): (usize, f64)| {
             let sine = half * (TAU * j as f64 / n as f64).sin();
             g * sine * sine
@@ -261,6 +231,12 @@ impl SampledLibration {
         let all = self.quotients().into_iter().enumerate().map(energy);
         all.fold(0.0, f64::max)
     }
+}
+
+/// The phase at which a libration between two turning points passes `q` upwards, or that of the nearer one.
+pub(crate) fn nearest_phase(q: f64, turning_points: [f64; 2]) -> f64 {
+    let middle = 0.5 * (turning_points[0] + turning_points[1]);
+    phase_of(q, turning_points).unwrap_or(if q < middle { 0.0 } else { PI })
 }
 
 /// The phase in 0 … π at which a libration between two turning points passes `q`; none if it does not.

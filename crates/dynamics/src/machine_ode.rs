@@ -2,9 +2,9 @@
 
 use crate::error::Result;
 use crate::machine::{Machine, MachineState, MachineWorkspace};
-use crate::ode::{OdeSystem, dual_jacobian};
+use crate::ode::{DualWorkspace, OdeSystem};
 use dwell_laws::Features;
-use dwell_numerics::{Dual, Scalar};
+use dwell_numerics::Dual;
 use std::sync::Arc;
 
 /// A machine with the working memory to integrate it, for one thread.
@@ -12,9 +12,7 @@ use std::sync::Arc;
 pub struct MachineOde<'m> {
     machine: &'m Machine,
     workspace: MachineWorkspace<f64>,
-    dual_workspace: MachineWorkspace<Dual>,
-    y: Vec<Dual>,
-    out: Vec<Dual>,
+    dual_workspace: DualWorkspace<MachineWorkspace<Dual>>,
     error_weights: Vec<f64>,
 }
 
@@ -38,21 +36,19 @@ impl<'m> MachineOde<'m> {
     pub fn until(machine: &'m Machine, t: f64, y: &[f64], end: Option<f64>) -> Result<Self> {
         let mut ode = Self::new(machine, t, y)?;
         let work = machine.largest_work(t, end.unwrap_or(t));
+        let work = if work.is_finite() { work } else { 0.0 };
         for weight in &mut ode.error_weights[machine.work_offset()..] {
-            *weight = raised_energy_scale(*weight, work);
+            *weight = weight.max(SMALL_WORK * work);
         }
         Ok(ode)
     }
 
     /// A machine whose works have no scale, where none is integrated.
     pub(crate) fn unscaled(machine: &'m Machine) -> Self {
-        let zero = vec![Dual::from_f64(0.0); machine.state_count()];
         Self {
             machine,
             workspace: machine.workspace(),
-            dual_workspace: machine.workspace(),
-            y: zero.clone(),
-            out: zero,
+            dual_workspace: DualWorkspace::new(machine.workspace(), machine.state_count()),
             error_weights: vec![1.0; machine.state_count()],
         }
     }
@@ -66,22 +62,13 @@ impl<'m> MachineOde<'m> {
 /// The part of the largest work below which a work does not count.
 const SMALL_WORK: f64 = 1e-6;
 
-/// The scale of works, J: at least a small part of what the loads can do.
-pub(crate) fn raised_energy_scale(scale: f64, work: f64) -> f64 {
-    let work = if work.is_finite() { work } else { 0.0 };
-    scale.max(SMALL_WORK * work)
-}
-
 impl MachineState<'_> {
     /// The scale of works, J: the kinetic energy and the work of actuators and drives over one unit of their
     /// coordinates.
     fn energy_scale(&self) -> f64 {
         let [kinetic, _] = self.energy();
-        let forces = self
-            .inverse_dynamics()
-            .tau
-            .iter()
-            .chain(self.drive_forces());
+        let forces = self.inverse_dynamics().tau.iter();
+        let forces = forces.chain(self.drive_forces());
         let scale = kinetic + forces.map(|f| f.abs()).sum::<f64>();
         if scale.is_normal() { scale } else { 1.0 }
     }
@@ -99,18 +86,14 @@ impl OdeSystem for MachineOde<'_> {
     }
 
     fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
-        let Self {
-            machine,
-            dual_workspace: workspace,
-            y: duals,
-            out: rates,
-            ..
-        } = self;
+        let machine = self.machine;
+        let columns = machine.work_offset();
         // Nothing depends on the works.
-        dual_jacobian(machine.work_offset(), y, (duals, rates), out, |y, out| {
+        let rhs = |y: &[Dual], workspace: &mut MachineWorkspace<Dual>, out: &mut [Dual]| {
             machine.evaluate(t, y, workspace)?.derivative(out);
             Ok(())
-        })
+        };
+        self.dual_workspace.jacobian(columns, y, out, rhs)
     }
 
     fn time_features(&self) -> Option<Arc<Features>> {

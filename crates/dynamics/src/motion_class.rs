@@ -78,11 +78,8 @@ pub fn motion_class(machine: &Machine, start: ReducedState) -> Result<MotionClas
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum ScanResult {
     TurningPoint(f64),
-    PotentialMaximum(f64),
-    Limit(f64),
-    /// Neither over a whole period: the place of the highest potential, and the kinetic energy there.
-    FullPeriod(f64, f64),
-    Undecided(f64),
+    /// What decides the class of the motion.
+    Class(MotionClass),
 }
 
 /// The scan of the kinetic energy along the coordinate, from the start of a motion.
@@ -129,15 +126,15 @@ impl<'a> EnergyScan<'a> {
         if self.kinetic == 0.0 && self.in_equilibrium()? {
             return Ok(MotionClass::Equilibrium);
         }
-        let rotation =
-            |potential_maximum_at, kinetic_at_maximum, period: Option<f64>| MotionClass::Rotation {
-                potential_maximum_at,
-                kinetic_at_maximum,
-                period: period.unwrap_or(TAU),
-            };
-        let rotates = self.range_limits.is_none() && self.period.is_some();
-        if self.system.is_potential_free() && rotates && self.kinetic > 0.0 {
-            return Ok(rotation(self.q, self.kinetic, self.period));
+        if let (None, Some(period)) = (self.range_limits, self.period)
+            && self.system.is_potential_free()
+            && self.kinetic > 0.0
+        {
+            return Ok(MotionClass::Rotation {
+                potential_maximum_at: self.q,
+                kinetic_at_maximum: self.kinetic,
+                period,
+            });
         }
         let direction = if q_dot == 0.0 {
             self.initial_terms.force.signum()
@@ -156,12 +153,8 @@ impl<'a> EnergyScan<'a> {
                     turning_points: [one.min(other), one.max(other)],
                 }
             }
-            (_, ScanResult::PotentialMaximum(to)) => MotionClass::Asymptotic { to },
-            (_, ScanResult::Limit(at)) => MotionClass::ReachesLimit { at },
-            (_, ScanResult::FullPeriod(at, kinetic)) => rotation(at, kinetic, self.period),
-            (_, ScanResult::Undecided(to) | ScanResult::TurningPoint(to)) => {
-                MotionClass::Undecided { to }
-            }
+            (_, ScanResult::Class(class)) => class,
+            (_, ScanResult::TurningPoint(to)) => MotionClass::Undecided { to },
         })
     }
 
@@ -204,9 +197,9 @@ impl<'a> EnergyScan<'a> {
     /// Scans to one side until a turning point, a potential maximum that cannot be passed, or a limit.
     fn scan(&mut self, direction: f64) -> Result<ScanResult> {
         let period = self.period;
-        let end = self
-            .range_limits
-            .map(|(from, to)| if direction > 0.0 { to } else { from });
+        let limits = self.range_limits;
+        let end = limits.map(|(from, to)| if direction > 0.0 { to } else { from });
+        let at_limit = |at| ScanResult::Class(MotionClass::ReachesLimit { at });
         let (mut step, growth, max_steps) = self.scan_steps();
         let mut before = (self.q, self.kinetic, self.initial_terms.force * direction);
         let (mut potential_maximum_at, mut kinetic_at_maximum) = (self.q, self.kinetic);
@@ -220,18 +213,18 @@ impl<'a> EnergyScan<'a> {
             if let Some(end) = at_end {
                 q = end - direction * LIMIT_TOLERANCE;
                 if (q - before.0) * direction <= 0.0 {
-                    return Ok(ScanResult::Limit(end));
+                    return Ok(at_limit(end));
                 }
             }
             let (kinetic, force) = match (self.kinetic_and_force(q), at_end) {
-                (Err(_), Some(end)) => return Ok(ScanResult::Limit(end)),
+                (Err(_), Some(end)) => return Ok(at_limit(end)),
                 (found, _) => found?,
             };
             let now = (q, kinetic, force * direction);
             if let Some(maximum) = self.potential_maximum(before, now)? {
                 let (kinetic_left, _) = self.kinetic_and_force(maximum)?;
                 if kinetic_left.abs() <= ENERGY_ROUNDING * self.energy_scale {
-                    return Ok(ScanResult::PotentialMaximum(maximum));
+                    return Ok(ScanResult::Class(MotionClass::Asymptotic { to: maximum }));
                 }
                 if kinetic_left < 0.0 {
                     return self
@@ -248,15 +241,19 @@ impl<'a> EnergyScan<'a> {
                 return self.turning_point(before, q).map(ScanResult::TurningPoint);
             }
             if let Some(end) = at_end {
-                return Ok(ScanResult::Limit(end));
+                return Ok(at_limit(end));
             }
             before = now;
             step *= growth;
         }
-        Ok(match period {
-            Some(_) => ScanResult::FullPeriod(potential_maximum_at, kinetic_at_maximum),
-            None => ScanResult::Undecided(before.0),
-        })
+        Ok(ScanResult::Class(match period {
+            Some(period) => MotionClass::Rotation {
+                potential_maximum_at,
+                kinetic_at_maximum,
+                period,
+            },
+            None => MotionClass::Undecided { to: before.0 },
+        }))
     }
 
     /// A maximum of the potential between two points (coordinate, kinetic energy, force in the direction of the scan).

@@ -74,29 +74,46 @@ pub trait OdeSystem {
     }
 }
 
-/// The first columns of a Jacobian, row by row into `out`, by dual numbers: `duals` and `rates` are working memory.
-pub(crate) fn dual_jacobian(
-    columns: usize,
-    y: &[f64],
-    (duals, rates): (&mut [Dual], &mut [Dual]),
-    out: &mut [f64],
-    mut rhs: impl FnMut(&[Dual], &mut [Dual]) -> Result<()>,
-) -> Result<()> {
-    out.fill(0.0);
-    for j in 0..columns {
-        for (i, (dual, &value)) in duals.iter_mut().zip(y).enumerate() {
-            *dual = if i == j {
-                Dual::variable(value)
-            } else {
-                Dual::from_f64(value)
-            };
-        }
-        rhs(duals, rates)?;
-        for (i, rate) in rates.iter().enumerate() {
-            out[i * y.len() + j] = rate.d;
-        }
+/// Working memory for a Jacobian by dual numbers.
+#[derive(Debug, Clone)]
+pub(crate) struct DualWorkspace<W> {
+    inner: W,
+    y: Vec<Dual>,
+    rates: Vec<Dual>,
+}
+
+impl<W> DualWorkspace<W> {
+    /// For a number of states; `inner` is what the right-hand side needs.
+    pub(crate) fn new(inner: W, states: usize) -> Self {
+        let y = vec![Dual::from_f64(0.0); states];
+        let rates = y.clone();
+        Self { inner, y, rates }
     }
-    Ok(())
+
+    /// The first columns of a Jacobian, row by row into `out`.
+    pub(crate) fn jacobian(
+        &mut self,
+        columns: usize,
+        y: &[f64],
+        out: &mut [f64],
+        mut rhs: impl FnMut(&[Dual], &mut W, &mut [Dual]) -> Result<()>,
+    ) -> Result<()> {
+        out.fill(0.0);
+        for j in 0..columns {
+            for (i, (dual, &value)) in self.y.iter_mut().zip(y).enumerate() {
+                *dual = if i == j {
+                    Dual::variable(value)
+                } else {
+                    Dual::from_f64(value)
+                };
+            }
+            rhs(&self.y, &mut self.inner, &mut self.rates)?;
+            for (i, rate) in self.rates.iter().enumerate() {
+                out[i * y.len() + j] = rate.d;
+            }
+        }
+        Ok(())
+    }
 }
 
 /// What an observer answers after a step.

@@ -17,11 +17,11 @@
 
 use crate::conservative::{ConservativeSystem, EnergyTerms, LoadedSystem, UnloadedSystem};
 use crate::error::{DynamicsError, Result};
-use crate::libration::{Libration, phase_of};
+use crate::libration::{libration, nearest_phase, phase_of};
 use crate::machine::Machine;
 use crate::motion_class::{EnergyScan, MotionClass};
 use crate::ode::ReducedState;
-use crate::time_density::TimeDensity;
+use crate::time_density::{ResolvedMotion, TimeDensity};
 use dwell_kinetostatics::ReducedModel;
 use dwell_numerics::fourier::{FourierSeries, SHARP_POINTS, refine_samples};
 use dwell_numerics::panels::Panels;
@@ -104,103 +104,52 @@ impl Orbit {
         let range = system.range();
         let (scan, class) = EnergyScan::new(&mut *system, start)?;
         let (terms, kinetic) = (scan.initial_terms, scan.kinetic);
-        match class {
+        let (resolved, kind, motion_class) = match class {
             MotionClass::Rotation { period, .. } => {
                 let angle_per_period = period * start.q_dot.signum();
-                Self::rotation(
+                let resolved = rotation(
                     system,
-                    (start, terms, kinetic),
-                    (angle_per_period, class),
+                    (start.q, terms, kinetic),
+                    angle_per_period,
                     accuracy,
-                )
+                )?;
+                (resolved, OrbitKind::Rotation(angle_per_period), class)
             }
             MotionClass::Libration { turning_points } => {
-                Self::libration(system, start, (terms, kinetic), turning_points)
+                let (resolved, turning_points) =
+                    libration(system, start.q, kinetic, turning_points)?;
+                let class = MotionClass::Libration { turning_points };
+                (resolved, OrbitKind::Libration(turning_points), class)
             }
-            MotionClass::Asymptotic { to: q } => Err(DynamicsError::AsymptoticMotion { q }),
-            MotionClass::Equilibrium => Err(DynamicsError::AtRest),
-            MotionClass::Undecided { to: q } => Err(DynamicsError::Undecided { q }),
+            MotionClass::Asymptotic { to: q } => return Err(DynamicsError::AsymptoticMotion { q }),
+            MotionClass::Equilibrium => return Err(DynamicsError::AtRest),
+            MotionClass::Undecided { to: q } => return Err(DynamicsError::Undecided { q }),
             MotionClass::ReachesLimit { at } => {
                 let (from, to) = range.limits().unwrap_or((at, at));
-                Err(DynamicsError::NoFullRevolution { from, to })
+                return Err(DynamicsError::NoFullRevolution { from, to });
             }
-        }
-    }
-
-    fn rotation(
-        system: &mut dyn ConservativeSystem,
-        (start, terms, kinetic): (ReducedState, EnergyTerms, f64),
-        (angle_per_period, class): (f64, MotionClass),
-        accuracy: f64,
-    ) -> Result<Self> {
-        // The same position without its whole revolutions, which would cost digits.
-        let first = start.q % angle_per_period;
-        let mut samples: Vec<EnergyTerms> = Vec::new();
-        loop {
-            samples = refine_samples(samples, |part| {
-                system.energy_terms(first + angle_per_period * part)
-            })?;
-            let kinetic_left = |at: &EnergyTerms| kinetic + (terms.potential - at.potential);
-            let density = |at: &EnergyTerms| {
-                angle_per_period.abs() / TAU * (at.m / (2.0 * kinetic_left(at))).sqrt()
-            };
-            let values: Vec<f64> = samples.iter().map(density).collect();
-            let max_kinetic = samples.iter().map(kinetic_left).fold(0.0, f64::max);
-            let points = samples.len();
-            let size = values.iter().sum::<f64>() / points as f64;
-            let series = FourierSeries::new(&values, size);
-            let (time_density, points) = if series.is_resolved || series.tail < accuracy {
-                (TimeDensity::Fourier(series), points)
-            } else if points >= SHARP_POINTS {
-                let panels = Panels::new::<DynamicsError>(|phase| {
-                    let at = system.energy_terms(first + angle_per_period * (phase / TAU))?;
-                    Ok(density(&at))
-                })?;
-                let taken = points + panels.points;
-                (TimeDensity::Piecewise(panels), taken)
-            } else {
-                continue;
-            };
-            return Ok(Self {
-                initial_state: start,
-                period: TAU * time_density.mean(),
-                energy: kinetic + terms.potential,
-                max_kinetic,
-                points,
-                tail: time_density.tail(),
-                motion_class: class,
-                kind: OrbitKind::Rotation(angle_per_period),
-                initial_phase: 0.0,
-                time_offset: 0.0,
-                time_density,
-            });
-        }
-    }
-
-    fn libration(
-        system: &mut dyn ConservativeSystem,
-        start: ReducedState,
-        (terms, kinetic): (EnergyTerms, f64),
-        turning_points: [f64; 2],
-    ) -> Result<Self> {
-        let libration = Libration::new(system, start.q, kinetic, turning_points)?;
-        let up = libration.phase(start.q);
-        let initial_phase = if start.q_dot < 0.0 { TAU - up } else { up };
-        let [_, time_offset] = libration.time_density.eval(initial_phase);
+        };
+        let time_density = resolved.time_density;
+        let (initial_phase, time_offset) = match kind {
+            OrbitKind::Rotation(_) => (0.0, 0.0),
+            OrbitKind::Libration(turning_points) => {
+                let up = nearest_phase(start.q, turning_points);
+                let phase = if start.q_dot < 0.0 { TAU - up } else { up };
+                (phase, time_density.eval(phase)[1])
+            }
+        };
         Ok(Self {
             initial_state: start,
-            period: TAU * libration.time_density.mean(),
+            period: TAU * time_density.mean(),
             energy: kinetic + terms.potential,
-            max_kinetic: libration.max_kinetic,
-            points: libration.points,
-            tail: libration.time_density.tail(),
-            motion_class: MotionClass::Libration {
-                turning_points: libration.turning_points,
-            },
-            kind: OrbitKind::Libration(libration.turning_points),
+            max_kinetic: resolved.max_kinetic,
+            points: resolved.points,
+            tail: time_density.tail(),
+            motion_class,
+            kind,
             initial_phase,
             time_offset,
-            time_density: libration.time_density,
+            time_density,
         })
     }
 
@@ -270,5 +219,48 @@ impl Orbit {
             q,
             q_dot: by_phase / time_density,
         }
+    }
+}
+
+/// A rotation from a coordinate with energy terms and a kinetic energy (J).
+fn rotation(
+    system: &mut dyn ConservativeSystem,
+    (q, terms, kinetic): (f64, EnergyTerms, f64),
+    angle_per_period: f64,
+    accuracy: f64,
+) -> Result<ResolvedMotion> {
+    // The same position without its whole revolutions, which would cost digits.
+    let first = q % angle_per_period;
+    let mut samples: Vec<EnergyTerms> = Vec::new();
+    loop {
+        samples = refine_samples(samples, |part| {
+            system.energy_terms(first + angle_per_period * part)
+        })?;
+        let kinetic_left = |at: &EnergyTerms| kinetic + (terms.potential - at.potential);
+        let density = |at: &EnergyTerms| {
+            angle_per_period.abs() / TAU * (at.m / (2.0 * kinetic_left(at))).sqrt()
+        };
+        let values: Vec<f64> = samples.iter().map(density).collect();
+        let max_kinetic = samples.iter().map(kinetic_left).fold(0.0, f64::max);
+        let points = samples.len();
+        let size = values.iter().sum::<f64>() / points as f64;
+        let series = FourierSeries::new(&values, size);
+        let (time_density, points) = if series.is_resolved || series.tail < accuracy {
+            (TimeDensity::Fourier(series), points)
+        } else if points >= SHARP_POINTS {
+            let panels = Panels::new::<DynamicsError>(|phase| {
+                let at = system.energy_terms(first + angle_per_period * (phase / TAU))?;
+                Ok(density(&at))
+            })?;
+            let taken = points + panels.points;
+            (TimeDensity::Piecewise(panels), taken)
+        } else {
+            continue;
+        };
+        return Ok(ResolvedMotion {
+            time_density,
+            max_kinetic,
+            points,
+        });
     }
 }

@@ -75,9 +75,14 @@ pub struct TabulatedMachine {
     /// Number of the drives' states.
     drive_state_count: usize,
     time_features: Arc<Features>,
-    bounds: Vec<Bound>,
-    domain: [f64; 2],
-    period: Option<f64>,
+    /// The error bound of each function. Loads are those of the machine's model; measured coordinates are
+    /// numbered in the order in which the loads' magnitudes name them.
+    pub bounds: Vec<Bound>,
+    /// Its domain, rad or m; one period if it is periodic. A motion that leaves it
+    /// ends there with [`PositionError::OutOfRange`].
+    pub domain: [f64; 2],
+    /// The period, rad, if there is one.
+    pub period: Option<f64>,
 }
 
 /// A load or drive without a potential. Its w is the column of its own index.
@@ -156,7 +161,7 @@ impl TabulatedMachine {
         for &load in &loads {
             tabulated_loads.push(TabulatedLoad::new(machine, load, &mut auxiliary)?);
         }
-        let entries = auxiliary.entries().to_vec();
+        let entries = auxiliary.entries.clone();
         let columns = {
             let mut fill = |q: f64, out: &mut [_]| auxiliary.fill(q, out);
             builder.columns(&entries, &|one, other| one == other, &mut fill)?
@@ -181,12 +186,6 @@ impl TabulatedMachine {
         self.bounds.iter().fold(0.0, |max, b| max.max(b.error))
     }
 
-    /// The error bound of each function. Loads are those of the machine's model; measured coordinates are
-    /// numbered in the order in which the loads' magnitudes name them.
-    pub fn bounds(&self) -> &[Bound] {
-        &self.bounds
-    }
-
     /// Cells of m, of V, of the columns; zero where there are none.
     pub fn cells(&self) -> [usize; 3] {
         let potential = self.potential.as_ref().map_or(0, IntegratedCurve::cells);
@@ -197,17 +196,6 @@ impl TabulatedMachine {
     pub fn bytes(&self) -> usize {
         let potential = self.potential.as_ref().map_or(0, IntegratedCurve::bytes);
         self.inertia.bytes() + potential + self.columns.bytes()
-    }
-
-    /// Its domain, rad or m; one period if it is periodic. A motion that leaves it
-    /// ends there with [`PositionError::OutOfRange`].
-    pub fn domain(&self) -> [f64; 2] {
-        self.domain
-    }
-
-    /// The period, rad, if there is one.
-    pub fn period(&self) -> Option<f64> {
-        self.period
     }
 
     /// m (with rotors and flywheel) and ½m′ at `q`, kg m² or kg.
@@ -250,44 +238,38 @@ impl TabulatedLoad {
     fn new(machine: &Machine, load: usize, auxiliary: &mut AuxiliaryColumns) -> Result<Self> {
         let model = machine.model();
         let drive = machine.drives.iter().find(|drive| drive.load == load);
-        let (effect, magnitude) = match (drive, &model.loads()[load]) {
-            (Some(drive), _) => {
-                let effect = LoadEffect::Drive(Box::new(drive.clone()));
-                (effect, drive.input.clone())
-            }
-            (None, found) => {
-                let effect = match found.kind {
-                    LoadKind::Damper { .. }
-                    | LoadKind::RotationalDamper { .. }
-                    | LoadKind::SlideDamper(_) => LoadEffect::Damper,
-                    LoadKind::Gravity { .. }
-                    | LoadKind::Force { .. }
-                    | LoadKind::Torque { .. }
-                    | LoadKind::Spring { .. }
-                    | LoadKind::TorsionSpring { .. }
-                    | LoadKind::PointToPointForce { .. }
-                    | LoadKind::SlideForce(_)
-                    | LoadKind::SeparatingForce(_) => LoadEffect::Force,
-                };
-                (effect, found.magnitude.clone())
-            }
+        let found = &model.loads()[load];
+        let (effect, magnitude) = match (drive, found.kind) {
+            (Some(drive), _) => (LoadEffect::Drive(Box::new(drive.clone())), &drive.input),
+            (
+                None,
+                LoadKind::Damper { .. }
+                | LoadKind::RotationalDamper { .. }
+                | LoadKind::SlideDamper(_),
+            ) => (LoadEffect::Damper, &found.magnitude),
+            (
+                None,
+                LoadKind::Gravity { .. }
+                | LoadKind::Force { .. }
+                | LoadKind::Torque { .. }
+                | LoadKind::Spring { .. }
+                | LoadKind::TorsionSpring { .. }
+                | LoadKind::PointToPointForce { .. }
+                | LoadKind::SlideForce(_)
+                | LoadKind::SeparatingForce(_),
+            ) => (LoadEffect::Force, &found.magnitude),
         };
-        let mut signals = Vec::new();
-        for &sense in model.compiled_signals(load) {
-            signals.push(match sense {
+        let signals = model.compiled_signals(load).iter().map(|signal| {
+            Ok(match *signal {
                 CompiledSignal::Time => TabulatedSignal::Time,
-                CompiledSignal::Value(measured) => {
-                    TabulatedSignal::Value(auxiliary.value(measured)?)
-                }
-                CompiledSignal::Velocity(measured) => {
-                    TabulatedSignal::Speed(auxiliary.speed(measured)?)
-                }
-            });
-        }
+                CompiledSignal::Value(of) => TabulatedSignal::Value(auxiliary.value(of)?),
+                CompiledSignal::Velocity(of) => TabulatedSignal::Speed(auxiliary.speed(of)?),
+            })
+        });
         Ok(Self {
             load,
-            magnitude,
-            signals,
+            magnitude: magnitude.clone(),
+            signals: signals.collect::<Result<_>>()?,
             effect,
         })
     }

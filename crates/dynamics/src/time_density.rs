@@ -3,6 +3,14 @@
 use dwell_numerics::fourier::FourierSeries;
 use dwell_numerics::panels::Panels;
 
+/// A motion that repeats itself, resolved over its phase.
+pub(crate) struct ResolvedMotion {
+    pub(crate) time_density: TimeDensity,
+    /// The largest kinetic energy at a point, J.
+    pub(crate) max_kinetic: f64,
+    pub(crate) points: usize,
+}
+
 /// The time per phase of a motion, dt/ds, s/rad.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum TimeDensity {

@@ -16,12 +16,12 @@ pub(super) struct Candidate {
     pub(super) weight: f64,
 }
 
-/// An actuator of a coordinate; none of a joint that is not there.
-pub(super) fn actuator(
+/// The mechanism with an actuator of another coordinate; none of a joint that is not there.
+pub(super) fn with_actuator(
     mechanism: &Mechanism,
     name: String,
     coordinate: Coordinate,
-) -> Option<Actuator> {
+) -> Option<Mechanism> {
     let (bodies, kind) = match coordinate {
         Coordinate::Angle(bodies) => (bodies, ActuatorKind::Angle),
         Coordinate::Travel(joint) => {
@@ -30,7 +30,10 @@ pub(super) fn actuator(
         }
         Coordinate::Length { bodies, points } => (bodies, ActuatorKind::Length(points)),
     };
-    Some(Actuator { name, bodies, kind })
+    Some(Mechanism {
+        actuators: vec![Actuator { name, bodies, kind }],
+        ..mechanism.clone()
+    })
 }
 
 /// The mechanism's own coordinate, the angles of all bodies and of all hinges, and all travels.

@@ -2,9 +2,9 @@
 
 use super::Atlas;
 use crate::error::{DynamicsError, Result};
+use crate::ode::OdeState;
 use crate::options::Statistics;
 use crate::solve::{EventOccurrence, Solution};
-use dwell_geometry::BodyId;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use std::f64::consts::TAU;
 
@@ -128,39 +128,26 @@ impl Atlas<'_> {
             let mut found = [Vec::new(), Vec::new()];
             // The whole revolutions by which this chart's count differs, if it counts.
             let mut revolution_offset: Option<f64> = None;
-            let (steps, samples) = (&solution.steps, &solution.samples);
-            let (mut i, mut k) = (0, 0);
-            while i < steps.len() || k < samples.len() {
-                let first = match (steps.get(i), samples.get(k)) {
-                    (Some(step), Some(sample)) => step.t <= sample.t,
-                    (step, _) => step.is_some(),
-                };
-                let point = if first { &steps[i] } else { &samples[k] };
+            let steps = solution.steps.iter().map(|point| (0, point));
+            let samples = solution.samples.iter().map(|point| (1, point));
+            let mut points: Vec<(usize, &OdeState)> = steps.chain(samples).collect();
+            points.sort_by(|(_, one), (_, other)| one.t.total_cmp(&other.t));
+            for (list, point) in points {
                 let mut state = machine.evaluate(point.t, &point.y, &mut workspace)?;
                 let states = state.bodies();
                 let mut now = states.coordinate(measured);
-                if let (CoordinateFunction::Angle(bodies), Some((t, before))) = (measured, last) {
-                    let counts = |b: BodyId| states.body(b).angle.is_some();
+                if let (CoordinateFunction::Angle(_), Some((t, before))) = (measured, last) {
                     let near = before[0] + 0.5 * (before[1] + now[1]) * (point.t - t);
                     let whole_revolutions = TAU * ((near - now[0]) / TAU).round();
-                    now[0] += match revolution_offset {
-                        Some(revolution_offset) => revolution_offset,
-                        None => whole_revolutions,
-                    };
-                    if bodies.into_iter().all(counts) {
+                    now[0] += revolution_offset.unwrap_or(whole_revolutions);
+                    if counts_revolutions(measured, states) {
                         revolution_offset.get_or_insert(whole_revolutions);
                     }
                 } else if last.is_none() {
                     revolution_offset = counts_revolutions(measured, states).then_some(0.0);
                 }
                 last = Some((point.t, now));
-                if first {
-                    found[0].push(now);
-                    i += 1;
-                } else {
-                    found[1].push(now);
-                    k += 1;
-                }
+                found[list].push(now);
             }
             let [steps, samples] = found;
             history.steps.push(steps);

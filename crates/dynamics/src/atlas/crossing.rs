@@ -1,12 +1,12 @@
 //! Crossings from one branch to the next, at the change points in which their ranges end.
 
-use super::candidates::actuator;
+use super::candidates::with_actuator;
 use super::{Atlas, Chart};
 use crate::change_point_fit::{
     ChangePointFit, ChangePointFitError, FitWindow, Result, extrapolate, half_width_for,
 };
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{AssemblyConfiguration, BodyId, Mechanism, RangeLimit};
+use dwell_geometry::{AssemblyConfiguration, BodyId, RangeLimit};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -171,11 +171,8 @@ impl Atlas<'_> {
         if let Some(found) = self.charts.iter().position(known) {
             return Ok(found);
         }
-        let actuator = actuator(self.description.mechanism, name, coordinate);
-        let mechanism = Mechanism {
-            actuators: vec![actuator.ok_or(ChangePointFitError::NoContinuation)?],
-            ..self.description.mechanism.clone()
-        };
+        let mechanism = with_actuator(self.description.mechanism, name, coordinate);
+        let mechanism = mechanism.ok_or(ChangePointFitError::NoContinuation)?;
         let assembly = AssemblyConfiguration {
             q: vec![q],
             initial_guess: angles.iter().map(|&a| Some(a)).collect(),

@@ -1,6 +1,6 @@
 //! Monitors the steps in a chart: whether its coordinate folds, or a change point is passed.
 
-use super::{Atlas, Chart, FOLD_SPEED_RATIO, POSE_TOLERANCE};
+use super::{Atlas, Candidate, Chart, FOLD_SPEED_RATIO, POSE_TOLERANCE};
 use crate::error::{DynamicsError, Result};
 use crate::machine::MachineWorkspace;
 use crate::ode::{DenseOutput, OdeState, StepControl, root_subintervals, state_at};
@@ -78,10 +78,8 @@ impl<'a, 's> ChartMonitor<'a, 's> {
         if !self.has_limits || self.is_in_fit_window(at) {
             return Ok(None);
         }
-        let speeds = self.candidate_speeds(at)?;
-        Ok(speeds
-            .faster_than(FOLD_SPEED_RATIO)
-            .map(ChartExit::CoordinateFold))
+        let fold = self.candidate_speeds(at)?.faster_than(FOLD_SPEED_RATIO);
+        Ok(fold.map(ChartExit::CoordinateFold))
     }
 
     /// Checks a step, and takes it by `step` where it is good. `exit` is then how the chart is left
@@ -195,10 +193,8 @@ impl<'a, 's> ChartMonitor<'a, 's> {
         plan.velocities(state.pose(), &[1.0], &mut self.unit_motion);
         self.unit_states.fill(plan, state.pose(), &self.unit_motion);
         let candidates = &self.atlas.candidates;
-        let present = candidates
-            .iter()
-            .find(|c| c.coordinate == self.chart.coordinate);
-        let present = present.map_or(1.0, |c| c.weight);
+        let is_present = |c: &&Candidate| c.coordinate == self.chart.coordinate;
+        let present = candidates.iter().find(is_present).map_or(1.0, |c| c.weight);
         let mut ratios: Vec<(usize, f64)> = Vec::with_capacity(candidates.len());
         for (i, candidate) in candidates.iter().enumerate() {
             if candidate.coordinate != self.chart.coordinate {

@@ -10,9 +10,8 @@ use dwell_numerics::Scalar;
 impl Machine {
     /// Whether a drive has a rotor, whose inertia resists.
     pub(super) fn has_rotors(&self) -> bool {
-        self.drives
-            .iter()
-            .any(|drive| drive.reflected_inertia > 0.0)
+        let mut drives = self.drives.iter();
+        drives.any(|drive| drive.reflected_inertia > 0.0)
     }
 
     /// Evaluates the drives' forces and the rates of their states.
@@ -82,18 +81,11 @@ impl Machine {
         state: &mut ForceState<'_, T>,
         equation: &EquationWorkspace<T>,
     ) -> Result<(), KinetostaticsError> {
-        let forces = equation
-            .drive_forces
-            .iter()
-            .zip(&equation.drive_accelerations);
-        let net_forces = self
-            .drives
-            .iter()
-            .zip(forces)
-            .map(|(drive, (&force, &s_ddot))| {
-                let inertia = T::from_f64(drive.reflected_inertia);
-                (drive.load, force - inertia * s_ddot)
-            });
-        state.set_magnitudes(net_forces)
+        let drives = self.drives.iter().zip(&equation.drive_forces);
+        let drives = drives.zip(&equation.drive_accelerations);
+        state.set_magnitudes(drives.map(|((drive, &force), &s_ddot)| {
+            let inertia = T::from_f64(drive.reflected_inertia);
+            (drive.load, force - inertia * s_ddot)
+        }))
     }
 }

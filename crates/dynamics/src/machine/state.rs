@@ -102,14 +102,11 @@ impl MachineState<'_> {
             let [_, speed] = self.coordinate(drive.measured);
             0.5 * drive.reflected_inertia * speed * speed
         });
-        let wheels = machine
-            .free
-            .iter()
-            .zip(&machine.flywheels)
-            .map(|(&i, inertia)| {
-                let speed = self.equation.q_dot[i];
-                0.5 * inertia * speed * speed
-            });
+        let wheels = machine.free.iter().zip(&machine.flywheels);
+        let wheels = wheels.map(|(&i, inertia)| {
+            let speed = self.equation.q_dot[i];
+            0.5 * inertia * speed * speed
+        });
         let kinetic = self.kinetic_energy() + rotors.sum::<f64>() + wheels.sum::<f64>();
         let loads = 0..machine.model.loads().len();
         let potentials = loads.filter_map(|load| self.potential_energy(load));

@@ -1,9 +1,8 @@
 //! A machine's table as a system to be integrated, with its exact Jacobian: dual numbers through the pieces.
 
-use super::{LoadEffect, TabulatedCoordinate, TabulatedLoad, TabulatedMachine, TabulatedSignal};
+use super::{LoadEffect, TabulatedCoordinate, TabulatedMachine, TabulatedSignal};
 use crate::error::{DynamicsError, Result, positive_inertia};
-use crate::machine_ode::raised_energy_scale;
-use crate::ode::{OdeSystem, dual_jacobian};
+use crate::ode::{DualWorkspace, OdeSystem};
 use dwell_kinetostatics::KinetostaticsError;
 use dwell_laws::Features;
 use dwell_numerics::{Dual, Scalar};
@@ -15,9 +14,7 @@ use std::sync::Arc;
 pub struct TabulatedMachineOde<'t> {
     machine: &'t TabulatedMachine,
     workspace: TableWorkspace<f64>,
-    dual_workspace: TableWorkspace<Dual>,
-    y: Vec<Dual>,
-    out: Vec<Dual>,
+    dual_workspace: DualWorkspace<TableWorkspace<Dual>>,
     /// The scale of works, J.
     energy_scale: f64,
 }
@@ -75,13 +72,10 @@ impl TabulatedMachine {
                 energy_scale += contribution.force.abs();
             }
         }
-        let zero = vec![Dual::from_f64(0.0); self.state_count()];
         Ok(TabulatedMachineOde {
             machine: self,
             workspace,
-            dual_workspace: TableWorkspace::new(self),
-            y: zero.clone(),
-            out: zero,
+            dual_workspace: DualWorkspace::new(TableWorkspace::new(self), self.state_count()),
             energy_scale: Some(energy_scale).filter(|e| e.is_normal()).unwrap_or(1.0),
         })
     }
@@ -124,27 +118,20 @@ impl TabulatedMachine {
         y: &[T],
         workspace: &mut TableWorkspace<T>,
     ) -> Result<LoadContribution<T>> {
-        let TabulatedLoad {
-            load,
-            magnitude,
-            signals,
-            effect,
-        } = &self.tabulated_loads[k];
-        let TableWorkspace {
-            columns,
-            arguments,
-            values,
-        } = workspace;
-        let (q_dot, w) = (y[1], columns[k]);
-        let sensed = arguments.iter_mut().zip(values.iter_mut()).zip(signals);
-        for ((argument, value), signal) in sensed {
-            *argument = signal.eval(t, y, columns);
+        let load = &self.tabulated_loads[k];
+        let (q_dot, w, count) = (y[1], workspace.columns[k], load.signals.len());
+        let (arguments, values) = (
+            &mut workspace.arguments[..count],
+            &mut workspace.values[..count],
+        );
+        for ((argument, value), signal) in arguments.iter_mut().zip(&mut *values).zip(&load.signals)
+        {
+            *argument = signal.eval(t, y, &workspace.columns);
             *value = argument.value();
         }
-        let count = signals.len();
-        let magnitude = magnitude.eval(&arguments[..count], &values[..count]);
+        let magnitude = load.magnitude.eval(arguments, values);
         if !magnitude.value().is_finite() {
-            let error = KinetostaticsError::MagnitudeNotFinite { load: *load };
+            let error = KinetostaticsError::MagnitudeNotFinite { load: load.load };
             return Err(DynamicsError::Load(error));
         }
         let stateless = |force: T| LoadContribution {
@@ -152,7 +139,7 @@ impl TabulatedMachine {
             generalised_force: force * w,
             drive_state_rate: None,
         };
-        Ok(match effect {
+        Ok(match &load.effect {
             LoadEffect::Force => stateless(magnitude),
             // w is that of one unit of resistance, −ds/dq.
             LoadEffect::Damper => stateless(-(magnitude * w * q_dot)),
@@ -185,13 +172,6 @@ impl TabulatedCoordinate {
     }
 }
 
-impl TabulatedMachineOde<'_> {
-    /// Works are small only where they are small beside this part of `work`, J.
-    pub fn raise_energy_scale(&mut self, work: f64) {
-        self.energy_scale = raised_energy_scale(self.energy_scale, work);
-    }
-}
-
 impl OdeSystem for TabulatedMachineOde<'_> {
     fn size(&self) -> usize {
         self.machine.state_count()
@@ -202,18 +182,12 @@ impl OdeSystem for TabulatedMachineOde<'_> {
     }
 
     fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
-        let Self {
-            machine,
-            dual_workspace: workspace,
-            y: duals,
-            out: rates,
-            ..
-        } = self;
+        let machine = self.machine;
         // No rate depends on the works.
         let columns = 2 + machine.drive_state_count;
-        dual_jacobian(columns, y, (duals, rates), out, |y, out| {
-            machine.rhs(t, y, workspace, out)
-        })
+        let rhs =
+            |y: &[Dual], workspace: &mut _, out: &mut [Dual]| machine.rhs(t, y, workspace, out);
+        self.dual_workspace.jacobian(columns, y, out, rhs)
     }
 
     fn time_features(&self) -> Option<Arc<Features>> {

@@ -4,8 +4,8 @@ use super::{CoordinateFunction, TabulatedCoordinate};
 use crate::machine::Machine;
 use dwell_kinetostatics::table::{InertiaSampler, Result, SlopeSampler, TableBuilder};
 use dwell_kinetostatics::{
-    ExactModel, Inertia, InverseDynamics, KinematicState, KinetostaticsError, Magnitude, Model,
-    TableQuantity, Workspace,
+    ExactModel, Inertia, InverseDynamics, KinematicState, Magnitude, Model, TableQuantity,
+    Workspace,
 };
 use dwell_numerics::{Dual, Scalar};
 use std::f64::consts::TAU;
@@ -32,30 +32,23 @@ impl DualModel {
         }
     }
 
-    fn at(&mut self, q: f64) -> Result<DualState<'_>> {
+    /// The state at a coordinate, and memory for its responses.
+    fn at(&mut self, q: f64) -> Result<(KinematicState<'_, Dual>, &mut InverseDynamics<Dual>)> {
         let (q, one) = (Dual::variable(q), Dual::from_f64(1.0));
-        Ok(DualState {
-            state: self
-                .model
-                .kinematic_state(&[q], &[one], &mut self.workspace)?,
-            inverse_dynamics: &mut self.inverse_dynamics,
-        })
+        let workspace = &mut self.workspace;
+        let state = self.model.kinematic_state(&[q], &[one], workspace)?;
+        Ok((state, &mut self.inverse_dynamics))
     }
 }
 
-/// The state at that coordinate.
-struct DualState<'a> {
-    state: KinematicState<'a, Dual>,
-    inverse_dynamics: &'a mut InverseDynamics<Dual>,
-}
-
-impl DualState<'_> {
-    /// The generalised force of one unit of a load.
-    fn unit_load_force(&mut self, load: usize) -> Result<Dual, KinetostaticsError> {
-        let result = &mut *self.inverse_dynamics;
-        self.state.unit_load_response(load, result)?;
-        Ok(-result.tau[0])
-    }
+/// The generalised force of one unit of a load at a state.
+fn unit_load_force(
+    state: &mut KinematicState<'_, Dual>,
+    load: usize,
+    result: &mut InverseDynamics<Dual>,
+) -> Result<Dual> {
+    state.unit_load_response(load, result)?;
+    Ok(-result.tau[0])
 }
 
 /// m and ½m′ of the bodies, rotors and flywheel.
@@ -69,15 +62,11 @@ pub(super) struct TotalInertia<'a> {
 
 impl<'a> TotalInertia<'a> {
     pub(super) fn new(machine: &Machine, exact: &'a ExactModel) -> Self {
-        let with_inertia = machine
-            .drives
-            .iter()
-            .filter(|drive| drive.reflected_inertia > 0.0);
+        let drives = machine.drives.iter();
+        let rotors = drives.map(|drive| (drive.reflected_inertia, drive.measured));
         Self {
             bodies: exact.inertia_sampler(),
-            rotors: with_inertia
-                .map(|drive| (drive.reflected_inertia, drive.measured))
-                .collect(),
+            rotors: rotors.filter(|(inertia, _)| *inertia > 0.0).collect(),
             flywheel: machine.flywheel(0),
             dual_model: DualModel::new(machine),
         }
@@ -93,7 +82,7 @@ impl<'a> TotalInertia<'a> {
             return Ok(sum);
         }
         // At unit speed and no acceleration s̈ is d²s/dq².
-        let mut state = self.dual_model.at(q)?.state;
+        let (mut state, _) = self.dual_model.at(q)?;
         let bodies = state.bodies_at(&[Dual::from_f64(0.0)]);
         for &(inertia, measured) in &self.rotors {
             let [_, slope, bend] = bodies.coordinate(measured);
@@ -168,9 +157,9 @@ impl SlopeSampler for TotalPotential {
             m: potentials.sum(),
             ..Inertia::default()
         };
-        let mut state = self.dual_model.at(q)?;
+        let (mut state, result) = self.dual_model.at(q)?;
         for &(load, magnitude) in &self.loads {
-            let w = state.unit_load_force(load)?;
+            let w = unit_load_force(&mut state, load, result)?;
             sum.half_dm -= 0.5 * magnitude * w.v;
             sum.half_ddm -= 0.5 * magnitude * w.d;
         }
@@ -183,32 +172,27 @@ pub(super) struct AuxiliaryColumns {
     dual_model: DualModel,
     domain: [f64; 2],
     period: Option<f64>,
-    entries: Vec<TableQuantity>,
+    pub(super) entries: Vec<TableQuantity>,
     /// By measured entry: the coordinate, and the slope of its uniform growth with q.
     measured: Vec<(CoordinateFunction, f64)>,
 }
 
 impl AuxiliaryColumns {
     pub(super) fn new(machine: &Machine, builder: &TableBuilder, loads: &[usize]) -> Self {
+        let entries = loads.iter().map(|&load| TableQuantity::W { load });
         Self {
             dual_model: DualModel::new(machine),
             domain: builder.domain(),
             period: builder.period(),
-            entries: loads
-                .iter()
-                .map(|&load| TableQuantity::W { load })
-                .collect(),
+            entries: entries.collect(),
             measured: Vec::new(),
         }
     }
 
-    pub(super) fn entries(&self) -> &[TableQuantity] {
-        &self.entries
-    }
-
     /// The value and the slope of a coordinate.
     fn value_and_slope(&mut self, measured: CoordinateFunction, q: f64) -> Result<[f64; 2]> {
-        let [value, slope] = self.dual_model.at(q)?.state.coordinate(measured);
+        let (state, _) = self.dual_model.at(q)?;
+        let [value, slope] = state.coordinate(measured);
         Ok([value.v, slope.v])
     }
 
@@ -248,11 +232,9 @@ impl AuxiliaryColumns {
             }
             _ => 0.0,
         };
-        let known = self.entries.iter().position(|entry| match *entry {
-            TableQuantity::S { coordinate: k } => self.measured[k] == (measured, slope),
-            _ => false,
+        let column = self.column(measured, slope, |coordinate| TableQuantity::S {
+            coordinate,
         });
-        let column = known.unwrap_or_else(|| self.add_column(measured, slope, true));
         Ok(TabulatedCoordinate {
             slope,
             offset: 0.0,
@@ -269,11 +251,7 @@ impl AuxiliaryColumns {
                 column: None,
             });
         }
-        let known = self.entries.iter().position(|entry| match *entry {
-            TableQuantity::Ds { coordinate: k } => self.measured[k].0 == measured,
-            _ => false,
-        });
-        let column = known.unwrap_or_else(|| self.add_column(measured, 0.0, false));
+        let column = self.column(measured, 0.0, |coordinate| TableQuantity::Ds { coordinate });
         Ok(TabulatedCoordinate {
             slope: 0.0,
             offset: 0.0,
@@ -281,38 +259,37 @@ impl AuxiliaryColumns {
         })
     }
 
-    /// Adds a column and returns its index.
-    fn add_column(&mut self, coordinate: CoordinateFunction, slope: f64, value: bool) -> usize {
-        let measured = self.measured.len();
-        self.measured.push((coordinate, slope));
-        self.entries.push(if value {
-            TableQuantity::S {
-                coordinate: measured,
-            }
-        } else {
-            TableQuantity::Ds {
-                coordinate: measured,
-            }
-        });
+    /// The index of the column of a quantity, which is added where it is not there yet.
+    fn column(
+        &mut self,
+        measured: CoordinateFunction,
+        slope: f64,
+        quantity: impl Fn(usize) -> TableQuantity,
+    ) -> usize {
+        let known = (0..self.measured.len()).filter(|&k| self.measured[k] == (measured, slope));
+        let mut known = known.filter_map(|k| self.entries.iter().position(|e| *e == quantity(k)));
+        if let Some(known) = known.next() {
+            return known;
+        }
+        self.entries.push(quantity(self.measured.len()));
+        self.measured.push((measured, slope));
         self.entries.len() - 1
     }
 
     /// All columns at a coordinate.
     pub(super) fn fill(&mut self, q: f64, out: &mut [Dual]) -> Result<()> {
-        let mut state = self.dual_model.at(q)?;
+        let (mut state, result) = self.dual_model.at(q)?;
         for (out, entry) in out.iter_mut().zip(&self.entries) {
             *out = match *entry {
-                TableQuantity::W { load } => state.unit_load_force(load)?,
-                TableQuantity::S {
-                    coordinate: measured,
-                } => {
-                    let (coordinate, slope) = self.measured[measured];
-                    let [value, _] = state.state.coordinate(coordinate);
+                TableQuantity::W { load } => unit_load_force(&mut state, load, result)?,
+                TableQuantity::S { coordinate } => {
+                    let (coordinate, slope) = self.measured[coordinate];
+                    let [value, _] = state.coordinate(coordinate);
                     value - Dual::variable(q) * Dual::from_f64(slope)
                 }
-                TableQuantity::Ds {
-                    coordinate: measured,
-                } => state.state.coordinate(self.measured[measured].0)[1],
+                TableQuantity::Ds { coordinate } => {
+                    state.coordinate(self.measured[coordinate].0)[1]
+                }
                 _ => Dual::default(),
             };
         }
