@@ -1,6 +1,6 @@
 //! The rows of a table, and the extrema between them.
 
-use crate::test_dir::{Run, TestDir, home};
+use crate::test_dir::{Run, TestDir, four_bar_with, home};
 use std::fs;
 
 /// A point mass on a massless bar of 1 m, released level: nine tenths of a period and more.
@@ -241,4 +241,16 @@ fn reduce_has_as_many_positions_as_are_wanted() {
     let rows = times(&dir, "o/crank-rocker-reduced.csv");
     assert_eq!(rows.len(), 5);
     assert!((rows[4] - std::f64::consts::TAU).abs() < 1e-12);
+}
+
+/// A tolerance so slack that the second digit of the energy is wrong: the files are there, and the status is 1.
+#[test]
+fn a_motion_with_a_large_error_is_a_failure() {
+    let dir = TestDir::new();
+    dir.put("scene.toml", four_bar_with(&[]));
+    let run = dir.run(&["simulate", "scene.toml", "--rtol", "1e-3"]);
+    assert_eq!(run.status, Some(1), "{}", run.err);
+    let message = "the motion is not resolved: the estimated error of the energy is";
+    assert!(run.err.contains(message), "{}", run.err);
+    assert!(run.out.contains("use a smaller --rtol"), "{}", run.out);
 }
