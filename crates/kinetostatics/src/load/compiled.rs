@@ -39,6 +39,7 @@ pub struct LoadState<T = f64> {
 
 impl<T: Scalar> LoadState<T> {
     /// Sums the wrenches on each body.
+    #[inline]
     fn sum_by_body(&mut self) {
         self.force.fill(Vec2::zero());
         self.moment.fill(T::from_f64(0.0));
@@ -139,6 +140,7 @@ impl CompiledLoads {
     }
 
     /// The wrenches of one load alone at magnitude one; of a damper, at one unit of resistance.
+    #[inline]
     pub(crate) fn unit_wrenches<T: Scalar>(
         &self,
         load: usize,

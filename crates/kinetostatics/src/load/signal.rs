@@ -9,6 +9,7 @@ use dwell_numerics::Scalar;
 
 impl CompiledLoads {
     /// A magnitude of the signals of a load at time `t` (s) and these states of the bodies.
+    #[inline]
     pub(crate) fn eval_magnitude<T: Scalar>(
         &self,
         load: usize,
@@ -36,6 +37,7 @@ impl CompiledLoads {
 impl Magnitude {
     /// The magnitude where its [signals](Self::signals) are `numbers`, with plain `values`. Friction, separating
     /// forces and external magnitudes are zero.
+    #[inline]
     pub fn eval<T: Scalar>(&self, numbers: &[T], values: &[f64]) -> T {
         match (self, numbers) {
             (Self::Constant(value), _) => T::from_f64(*value),

@@ -138,6 +138,7 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     ///
     /// # Errors
     /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where its two points coincide.
+    #[inline]
     pub fn unit_load_response(
         &mut self,
         load: usize,

@@ -24,12 +24,14 @@ pub type ForceState<'a, T = f64> = StateWithLoads<'a, T, true>;
 impl<'a, T, const WRENCHES: bool> Deref for StateWithLoads<'a, T, WRENCHES> {
     type Target = KinematicState<'a, T>;
 
+    #[inline]
     fn deref(&self) -> &Self::Target {
         &self.0
     }
 }
 
 impl<T, const WRENCHES: bool> DerefMut for StateWithLoads<'_, T, WRENCHES> {
+    #[inline]
     fn deref_mut(&mut self) -> &mut Self::Target {
         &mut self.0
     }
@@ -37,6 +39,7 @@ impl<T, const WRENCHES: bool> DerefMut for StateWithLoads<'_, T, WRENCHES> {
 
 impl<'a, T: Scalar> LoadedState<'a, T> {
     /// Sets the magnitude of a load of [`Magnitude::External`], in the unit of its kind.
+    #[inline]
     pub fn set_magnitude(&mut self, load: usize, magnitude: T) {
         self.0.workspace.loads.magnitude[load] = magnitude;
     }
@@ -45,6 +48,7 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
     ///
     /// # Errors
     /// [`KinetostaticsError::MagnitudeNotFinite`](crate::KinetostaticsError::MagnitudeNotFinite) where it has no finite value.
+    #[inline]
     pub fn eval_magnitude(&mut self, load: usize, magnitude: &Magnitude, t: f64) -> Result<T> {
         let Workspace { states, loads, .. } = &mut *self.0.workspace;
         let workspace = &mut loads.signal_workspace;
@@ -117,6 +121,7 @@ impl<T: Scalar> ForceState<'_, T> {
     ///
     /// # Errors
     /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where the two points of a load coincide.
+    #[inline]
     pub fn set_magnitudes(&mut self, magnitudes: impl Iterator<Item = (usize, T)>) -> Result<()> {
         let loads = &mut self.0.workspace.loads;
         for (load, magnitude) in magnitudes {
@@ -126,6 +131,7 @@ impl<T: Scalar> ForceState<'_, T> {
     }
 
     /// The power of a load, W.
+    #[inline]
     pub fn load_power(&self, load: usize) -> T {
         let Workspace { states, loads, .. } = &*self.0.workspace;
         let mut sum = T::from_f64(0.0);
