@@ -51,6 +51,7 @@ impl<T: Scalar> AppliedWrench<T> {
 }
 
 /// The wrenches on two bodies, each with its moment arm, force and couple.
+#[inline]
 pub(crate) fn on_two_bodies<T: Scalar>(
     source: ForceSource,
     bodies: [BodyId; 2],
@@ -69,6 +70,7 @@ pub(crate) fn on_two_bodies<T: Scalar>(
 impl CompiledLoads {
     /// Adds the wrenches of the `i`th load, taken as of this kind and magnitude `f`; none where it has no direction.
     // Long because it has one arm for each kind of load.
+    #[inline]
     pub(super) fn add_wrenches<T: Scalar>(
         &self,
         i: usize,
