@@ -114,6 +114,10 @@ fn integrate_segments(
             statistics: before.plus(part.statistics),
             ..part
         });
+        if let Some(DynamicsError::MaxStepsReached { max_steps, .. }) = &mut last.error {
+            // Those of the whole motion.
+            *max_steps = options.max_steps;
+        }
         if stopped.get() || last.error.is_some() {
             break;
         }

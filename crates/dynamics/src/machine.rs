@@ -168,7 +168,11 @@ impl Machine {
                 Magnitude::Constant(value) => value.abs(),
                 Magnitude::Law(Signal::Time, law) => law.largest(from, to),
                 Magnitude::Expression(..) => self.time_features.largest(source, from, to),
-                _ => 0.0,
+                Magnitude::Law(..)
+                | Magnitude::Function(..)
+                | Magnitude::Friction(_)
+                | Magnitude::Separating(_)
+                | Magnitude::External(_) => 0.0,
             };
             let lever = match kind {
                 LoadKind::Gravity { .. } => {

@@ -25,6 +25,7 @@ pub(crate) struct TimePieces<'f> {
     smooth: Option<Scan<'f>>,
     /// The pieces from the present time on.
     ahead: VecDeque<Piece>,
+    max_steps: usize,
 }
 
 /// A part of the motion without a switch.
@@ -62,6 +63,7 @@ impl<'f> TimePieces<'f> {
             switches,
             smooth,
             ahead: VecDeque::new(),
+            max_steps: options.max_steps,
         })
     }
 
@@ -77,7 +79,7 @@ impl<'f> TimePieces<'f> {
                 to,
                 restart,
                 ..
-            } = piece.map_err(unresolved)?;
+            } = piece.map_err(|e| unresolved(e, self.max_steps))?;
             let from = *from.get_or_insert(begins);
             // Pieces that are not separated by a switch belong together; an integration knows no shorter end.
             if restart || self.switches.is_exhausted() {
@@ -88,6 +90,7 @@ impl<'f> TimePieces<'f> {
 
     /// The latest time at which a step that begins at `t` may end.
     pub(crate) fn latest_end(&mut self, t: f64) -> Result<f64> {
+        let max_steps = self.max_steps;
         let Some(smooth) = &mut self.smooth else {
             return Ok(f64::INFINITY);
         };
@@ -98,7 +101,9 @@ impl<'f> TimePieces<'f> {
         loop {
             if k == self.ahead.len() {
                 match smooth.next() {
-                    Some(piece) => self.ahead.push_back(piece.map_err(unresolved)?),
+                    Some(piece) => self
+                        .ahead
+                        .push_back(piece.map_err(|e| unresolved(e, max_steps))?),
                     None => return Ok(latest),
                 }
             }
@@ -128,7 +133,7 @@ fn check_step_count(
     let mut count = 0;
     let mut reached = from;
     for piece in scan.take(PREDICTED_FROM) {
-        let piece = piece.map_err(unresolved)?;
+        let piece = piece.map_err(|e| unresolved(e, max_steps))?;
         (count, reached) = (count + 1, piece.to);
         if narrowest.is_none_or(|n| piece.width < n.width) {
             narrowest = Some(piece);
@@ -148,11 +153,11 @@ fn check_step_count(
     }
 }
 
-fn unresolved(Unresolved { source_index, at }: Unresolved) -> DynamicsError {
+fn unresolved(Unresolved { source_index, at }: Unresolved, max_steps: usize) -> DynamicsError {
     DynamicsError::VariesTooFast {
         source_index,
         width: 0.0,
         t: at,
-        max_steps: 0,
+        max_steps,
     }
 }

@@ -78,11 +78,11 @@ impl Spline {
         let last = steps.len();
         let second = match interpolation {
             Interpolation::Spline => second_derivatives(&steps, &slopes),
-            _ => Vec::new(),
+            Interpolation::Monotone | Interpolation::Linear | Interpolation::Step => Vec::new(),
         };
         let tangents = match interpolation {
             Interpolation::Monotone => monotone_tangents(&steps, &slopes),
-            _ => Vec::new(),
+            Interpolation::Spline | Interpolation::Linear | Interpolation::Step => Vec::new(),
         };
         let mut pieces = Vec::with_capacity(points.len());
         for (i, (&h, &slope)) in steps.iter().zip(&slopes).enumerate() {

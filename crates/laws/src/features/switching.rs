@@ -91,6 +91,7 @@ impl Pieces {
         pieces
     }
 
+    // Long because every kind of operation is named.
     fn switches_of(&self, op: usize, operands: &[usize]) -> Vec<Switch> {
         let zero = |function, left, right| Switch {
             op,
@@ -112,7 +113,45 @@ impl Pieces {
                 vec![zero(0, x, Some(low)), zero(1, x, Some(high))]
             }
             (Op::If(_), &[a, b, ..]) => vec![zero(0, a, Some(b))],
-            _ => Vec::new(),
+            // Smooth wherever they are finite. Every kind is named, so that a new one is judged.
+            (
+                Op::Number(_)
+                | Op::Constant(_)
+                | Op::Variable(_)
+                | Op::Negate
+                | Op::Unary(
+                    Unary::Sin
+                    | Unary::Cos
+                    | Unary::Tan
+                    | Unary::Asin
+                    | Unary::Acos
+                    | Unary::Atan
+                    | Unary::Sinh
+                    | Unary::Cosh
+                    | Unary::Tanh
+                    | Unary::Exp
+                    | Unary::Ln
+                    | Unary::Log10
+                    | Unary::Sqrt,
+                )
+                | Op::Binary(
+                    Binary::Add
+                    | Binary::Subtract
+                    | Binary::Multiply
+                    | Binary::Divide
+                    | Binary::Power
+                    | Binary::Hypot,
+                ),
+                _,
+            ) => Vec::new(),
+            // The parser gives each operation its operands.
+            (
+                Op::Unary(Unary::Abs | Unary::Sign | Unary::Step | Unary::Floor)
+                | Op::Binary(Binary::Min | Binary::Max | Binary::Atan2)
+                | Op::Clamp
+                | Op::If(_),
+                _,
+            ) => Vec::new(),
         }
     }
 
