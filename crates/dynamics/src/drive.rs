@@ -4,6 +4,7 @@
 use dwell_geometry::Mechanism;
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_kinetostatics::{Drive, DriveKind, Magnitude};
+use dwell_laws::SwitchKind;
 use dwell_numerics::Scalar;
 
 /// A drive that does not fit a machine.
@@ -30,6 +31,9 @@ pub(crate) struct CompiledDrive {
     pub(crate) input: Magnitude,
     law: DriveLaw,
 }
+
+/// The pieces on which a drive's two switching functions are held; none: as its input and speed say.
+pub(crate) type HeldDrive = [Option<f64>; 2];
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum DriveLaw {
@@ -118,9 +122,40 @@ impl CompiledDrive {
         })
     }
 
+    /// At which values of its two [switching functions](Self::switch_values) the drive switches.
+    pub(crate) fn switch_kinds(&self) -> Vec<SwitchKind> {
+        match self.law {
+            DriveLaw::AppliedForce | DriveLaw::Motor(_) => Vec::new(),
+            DriveLaw::SpeedController([_, _, limit]) if limit.is_finite() => {
+                vec![SwitchKind::Knots(vec![-limit, limit]), SwitchKind::Zero]
+            }
+            DriveLaw::SpeedController(_) => Vec::new(),
+        }
+    }
+
+    /// Of a speed controller: the torque or force without its limit, and the error of the speed.
+    pub(crate) fn switch_values(&self, input: f64, speed: f64, state: Option<f64>) -> [f64; 2] {
+        match self.law {
+            DriveLaw::AppliedForce | DriveLaw::Motor(_) => [f64::NAN; 2],
+            DriveLaw::SpeedController([proportional, integral, _]) => {
+                let error = input - speed;
+                [
+                    state.unwrap_or(0.0) * integral + error * proportional,
+                    error,
+                ]
+            }
+        }
+    }
+
     /// The force on the coordinate (without the rotor's inertia) and the rate of the drive's state, for
-    /// an input and the coordinate's speed.
-    pub(crate) fn eval<T: Scalar>(&self, input: T, speed: T, state: Option<T>) -> (T, T) {
+    /// an input and the coordinate's speed, on the pieces that are held.
+    pub(crate) fn eval<T: Scalar>(
+        &self,
+        input: T,
+        speed: T,
+        state: Option<T>,
+        [within, sign]: HeldDrive,
+    ) -> (T, T) {
         let zero = T::from_f64(0.0);
         match self.law {
             DriveLaw::AppliedForce => (input, zero),
@@ -139,11 +174,16 @@ impl CompiledDrive {
                 let error = input - speed;
                 let sum = state.unwrap_or(zero) * T::from_f64(integral)
                     + error * T::from_f64(proportional);
-                if sum.value().abs() <= limit {
+                // Below, between or above its limits.
+                let natural = match sum.value() {
+                    sum if sum.abs() <= limit => 1.0,
+                    sum => 1.0 + sum.signum(),
+                };
+                let beyond = within.unwrap_or(natural) - 1.0;
+                if beyond == 0.0 {
                     return (sum, error);
                 }
-                let beyond = sum.value().signum();
-                let saturated = error.value() * beyond > 0.0;
+                let saturated = sign.unwrap_or(error.value()) * beyond > 0.0;
                 let rate = if saturated { zero } else { error };
                 (T::from_f64(limit * beyond), rate)
             }

@@ -10,6 +10,7 @@ use crate::dop853;
 use crate::error::{DynamicsError, Result};
 use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, StepObserver, Termination};
 use crate::options::{Method, Options, Statistics};
+use crate::switch_monitor::{Crossing, SwitchMonitor};
 use crate::time_pieces::TimePieces;
 use diffsol::{
     DiffsolError, NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod,
@@ -46,7 +47,8 @@ fn check_interval(start: &OdeState, end: Option<f64>) -> Result<()> {
 }
 
 /// Integrates a system from `start` until `end` (s), or without an end until the observer stops it. The
-/// observer is called after every step. Where a function of time switches, one integration ends and another begins.
+/// observer is called after every step. Where a function of time or of the state switches, one integration ends and
+/// another begins.
 ///
 /// # Errors
 /// [`DynamicsError`] where not even the start can be evaluated, or an option cannot be used. An error that
@@ -61,7 +63,7 @@ pub fn integrate(
     options.check()?;
     check_interval(start, end)?;
     match system.time_features().filter(|f| !f.is_empty()) {
-        None => integrate_smooth(system, start, end, options, None, observer),
+        None => integrate_held(system, start, end, options, None, observer),
         Some(features) => {
             let mut pieces = TimePieces::new(&features, start.t, end, options)?;
             integrate_segments(system, start, end, options, &mut pieces, observer)
@@ -84,45 +86,147 @@ fn integrate_segments(
         stopped.set(stopped.get() || control == StepControl::Stop);
         Ok(control)
     };
-    let mut whole: Option<Termination> = None;
-    let mut from = start.clone();
-    let mut remaining = *options;
+    let mut parts = Parts::new(start, options);
     while let Some((begins, segment)) = pieces.next_segment()? {
-        from.t = from.t.max(begins);
+        parts.from.t = parts.from.t.max(begins);
         // The end itself, however a switch there is rounded.
         let to = segment.restart.then_some(segment.to).or(end);
-        if to.is_some_and(|to| to <= from.t) {
+        if to.is_some_and(|to| to <= parts.from.t) {
             continue;
         }
-        let part = integrate_smooth(system, &from, to, &remaining, Some(pieces), &mut watched);
-        let part = match (part, &mut whole) {
+        let (from, remaining) = (parts.from.clone(), parts.remaining);
+        let part = integrate_held(system, &from, to, &remaining, Some(pieces), &mut watched);
+        if parts.add(part)? || stopped.get() {
+            break;
+        }
+    }
+    parts.whole.ok_or(DynamicsError::DurationTooShort)
+}
+
+/// An integration in parts.
+struct Parts {
+    whole: Option<Termination>,
+    /// Where the next part begins, and what is left for it.
+    from: OdeState,
+    remaining: Options,
+    max_steps: usize,
+}
+
+impl Parts {
+    fn new(start: &OdeState, options: &Options) -> Self {
+        Self {
+            whole: None,
+            from: start.clone(),
+            remaining: *options,
+            max_steps: options.max_steps,
+        }
+    }
+
+    /// Adds a part, at whose end the next begins; whether an error ended it.
+    ///
+    /// # Errors
+    /// That of the first part.
+    fn add(&mut self, part: Result<Termination>) -> Result<bool> {
+        let part = match (part, &mut self.whole) {
             (Ok(part), _) => part,
             // Between two switches lies less than a rounding of time.
-            (Err(DynamicsError::DurationTooShort), Some(_)) => continue,
+            (Err(DynamicsError::DurationTooShort), Some(_)) => return Ok(false),
             (Err(error), None) => return Err(error),
             (Err(error), Some(before)) => {
                 before.error = Some(error);
-                break;
+                return Ok(true);
             }
         };
-        from.clone_from(&part.state);
-        remaining.max_steps = remaining.max_steps.saturating_sub(part.statistics.steps);
-        let before = whole
-            .as_ref()
-            .map_or_else(Statistics::default, |before| before.statistics);
-        let last = whole.insert(Termination {
+        self.from.clone_from(&part.state);
+        let steps = part.statistics.steps;
+        self.remaining.max_steps = self.remaining.max_steps.saturating_sub(steps);
+        let before = self.whole.take();
+        let before = before.map_or_else(Statistics::default, |before| before.statistics);
+        let last = self.whole.insert(Termination {
             statistics: before.plus(part.statistics),
             ..part
         });
         if let Some(DynamicsError::MaxStepsReached { max_steps, .. }) = &mut last.error {
             // Those of the whole motion.
-            *max_steps = options.max_steps;
+            *max_steps = self.max_steps;
         }
-        if stopped.get() || last.error.is_some() {
+        Ok(last.error.is_some())
+    }
+}
+
+/// Integrates while nothing switches in time, from one switch of the state to the next: in between, its pieces are
+/// held.
+fn integrate_held(
+    system: &mut dyn OdeSystem,
+    start: &OdeState,
+    end: Option<f64>,
+    options: &Options,
+    mut pieces: Option<&mut TimePieces<'_>>,
+    observer: StepObserver<'_>,
+) -> Result<Termination> {
+    if system.switch_kinds().is_empty() {
+        return integrate_smooth(system, start, end, options, pieces, observer);
+    }
+    let mut monitor = SwitchMonitor::new(system, start, end.unwrap_or(f64::INFINITY) - start.t)?;
+    let shared = SharedSystem {
+        size: system.size(),
+        inner: RefCell::new(system),
+    };
+    let mut parts = Parts::new(start, options);
+    loop {
+        let mut crossing: Option<Crossing> = None;
+        let mut watched = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
+            let found = monitor.after_step(&mut **shared.inner.borrow_mut(), before, now, dense)?;
+            let Some(found) = found else {
+                return observer(before, now, dense);
+            };
+            let is_longer = found.state.t > before.t;
+            let control = match is_longer {
+                true => observer(before, &found.state, dense)?,
+                false => StepControl::Continue,
+            };
+            crossing = (control == StepControl::Continue).then_some(found);
+            Ok(StepControl::Stop)
+        };
+        let (from, remaining) = (parts.from.clone(), parts.remaining);
+        let pieces = pieces.as_deref_mut();
+        let mut system = &shared;
+        let part = integrate_smooth(&mut system, &from, end, &remaining, pieces, &mut watched);
+        let is_ended = parts.add(part)?;
+        let Some(crossing) = crossing.filter(|_| !is_ended) else {
+            break;
+        };
+        monitor.pass(&crossing, &mut **shared.inner.borrow_mut())?;
+        parts.from = crossing.state;
+        if end.is_some_and(|end| parts.from.t >= end) {
             break;
         }
     }
-    whole.ok_or(DynamicsError::DurationTooShort)
+    parts.whole.ok_or(DynamicsError::DurationTooShort)
+}
+
+/// A system that is integrated and, between its steps, looked at.
+struct SharedSystem<'s> {
+    size: usize,
+    inner: RefCell<&'s mut dyn OdeSystem>,
+}
+
+impl OdeSystem for &SharedSystem<'_> {
+    fn size(&self) -> usize {
+        self.size
+    }
+
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
+        self.inner.borrow_mut().rhs(t, y, out)
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
+        self.inner.borrow_mut().jacobian(t, y, out)
+    }
+
+    fn error_weight(&self, state: usize) -> f64 {
+        self.inner.borrow().error_weight(state)
+    }
 }
 
 /// Integrates while nothing switches in time; `pieces` limits the steps.

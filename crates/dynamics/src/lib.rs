@@ -69,6 +69,8 @@ pub mod reduced_ode;
 mod repetition;
 pub mod solve;
 pub mod state_space;
+mod state_switches;
+mod switch_monitor;
 pub mod tabulated;
 mod time_density;
 mod time_pieces;

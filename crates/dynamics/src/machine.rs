@@ -22,6 +22,7 @@ mod workspace;
 use crate::change_point_fit::FitWindow;
 use crate::drive::{CompiledDrive, DriveError};
 use crate::error::{DynamicsError, Result};
+use crate::state_switches::StateSwitches;
 use dwell_geometry::Mechanism;
 use dwell_kinetostatics::{Drive, ForceState, Load, LoadError, LoadKind, Magnitude, Model, Signal};
 use dwell_laws::{Features, Law};
@@ -60,6 +61,8 @@ pub struct Machine {
     pub(crate) drives: Vec<CompiledDrive>,
     /// Where loads, drives and prescribed motions switch and vary in time.
     pub(crate) time_features: Arc<Features>,
+    /// Where loads and drives switch as coordinates and speeds move.
+    pub(crate) state_switches: StateSwitches,
     /// Number of the drives' states.
     drive_state_count: usize,
     nonconservative_sources: Vec<NonconservativeSource>,
@@ -111,6 +114,7 @@ impl Machine {
         sources.extend(prescribed.map(NonconservativeSource::Prescribed));
         Ok(Self {
             time_features: Arc::new(time_features(&model, &drives, &modes)),
+            state_switches: drives::state_switches(&model, &drives),
             drive_state_count: drives.iter().filter(|d| d.state.is_some()).count(),
             model,
             flywheels: vec![0.0; free.len()],

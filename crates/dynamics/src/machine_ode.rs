@@ -3,7 +3,8 @@
 use crate::error::Result;
 use crate::machine::{Machine, MachineState, MachineWorkspace};
 use crate::ode::{DualWorkspace, OdeSystem};
-use dwell_laws::Features;
+use crate::state_switches::{HeldSource, signal_value};
+use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::Dual;
 use std::sync::Arc;
 
@@ -14,6 +15,7 @@ pub struct MachineOde<'m> {
     workspace: MachineWorkspace<f64>,
     dual_workspace: DualWorkspace<MachineWorkspace<Dual>>,
     error_weights: Vec<f64>,
+    held: Vec<HeldSource>,
 }
 
 impl<'m> MachineOde<'m> {
@@ -50,6 +52,7 @@ impl<'m> MachineOde<'m> {
             workspace: machine.workspace(),
             dual_workspace: DualWorkspace::new(machine.workspace(), machine.state_count()),
             error_weights: vec![1.0; machine.state_count()],
+            held: Vec::new(),
         }
     }
 
@@ -98,6 +101,33 @@ impl OdeSystem for MachineOde<'_> {
 
     fn time_features(&self) -> Option<Arc<Features>> {
         Some(Arc::clone(&self.machine.time_features))
+    }
+
+    fn switch_kinds(&self) -> &[SwitchKind] {
+        self.machine.state_switches.kinds()
+    }
+
+    fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
+        let machine = self.machine;
+        let state = machine.evaluate(t, y, &mut self.workspace)?;
+        let source_state = |load: usize, signals: &mut Vec<f64>| {
+            let of_load = machine.model.compiled_signals(load).iter();
+            signals.extend(of_load.map(|&signal| signal_value(signal, t, |c| state.coordinate(c))));
+            machine.source_state(load, &state, y)
+        };
+        let switches = &machine.state_switches;
+        switches.values(&self.held, source_state, out);
+        Ok(())
+    }
+
+    fn hold_pieces(&mut self, pieces: &[Option<f64>]) {
+        let (machine, workspace) = (self.machine, &mut self.workspace);
+        let dual = self.dual_workspace.inner();
+        let set = |load: usize, held: &HeldSource| {
+            machine.hold_source(load, held, workspace);
+            machine.hold_source(load, held, dual);
+        };
+        machine.state_switches.hold(pieces, &mut self.held, set);
     }
 
     fn error_weight(&self, state: usize) -> f64 {

@@ -2,7 +2,7 @@
 
 use crate::error::{DynamicsError, Result};
 use crate::options::Statistics;
-use dwell_laws::Features;
+use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::{Dual, Scalar};
 use std::sync::Arc;
 
@@ -68,6 +68,22 @@ pub trait OdeSystem {
         None
     }
 
+    /// At which values the functions of the state switch on which pieces of the right-hand side depend.
+    fn switch_kinds(&self) -> &[SwitchKind] {
+        &[]
+    }
+
+    /// The values of these functions, on the pieces that are held.
+    ///
+    /// # Errors
+    /// As [`OdeSystem::rhs`].
+    fn switch_values(&mut self, _t: f64, _y: &[f64], _out: &mut [f64]) -> Result<()> {
+        Ok(())
+    }
+
+    /// Holds one piece of each function, wherever the state is, until others are set; none: as the state says.
+    fn hold_pieces(&mut self, _pieces: &[Option<f64>]) {}
+
     /// The factor of a state in the absolute tolerance.
     fn error_weight(&self, _state: usize) -> f64 {
         1.0
@@ -88,6 +104,11 @@ impl<W> DualWorkspace<W> {
         let y = vec![Dual::from_f64(0.0); states];
         let rates = y.clone();
         Self { inner, y, rates }
+    }
+
+    /// What the right-hand side needs.
+    pub(crate) fn inner(&mut self) -> &mut W {
+        &mut self.inner
     }
 
     /// The first columns of a Jacobian, row by row into `out`.

@@ -22,6 +22,7 @@ pub use ode::TabulatedMachineOde;
 
 use crate::drive::CompiledDrive;
 use crate::machine::{Machine, NonconservativeSource};
+use crate::state_switches::StateSwitches;
 use dwell_geometry::PositionError;
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_kinetostatics::table::{Bound, IntegratedCurve, PiecewiseColumns, Result, TableBuilder};
@@ -75,6 +76,7 @@ pub struct TabulatedMachine {
     /// Number of the drives' states.
     drive_state_count: usize,
     time_features: Arc<Features>,
+    state_switches: StateSwitches,
     /// The error bound of each function. Loads are those of the machine's model; measured coordinates are
     /// numbered in the order in which the loads' magnitudes name them.
     pub bounds: Vec<Bound>,
@@ -161,6 +163,9 @@ impl TabulatedMachine {
         for &load in &loads {
             tabulated_loads.push(TabulatedLoad::new(machine, load, &mut auxiliary)?);
         }
+        let switching = tabulated_loads.iter().enumerate();
+        let state_switches =
+            StateSwitches::of(switching.map(|(k, load)| (k, &load.magnitude, load.drive())));
         let entries = auxiliary.entries.clone();
         let columns = {
             let mut fill = |q: f64, out: &mut [_]| auxiliary.fill(q, out);
@@ -176,6 +181,7 @@ impl TabulatedMachine {
             domain: builder.domain(),
             period: builder.period(),
             time_features: Arc::clone(&machine.time_features),
+            state_switches,
             bounds: builder.bounds(),
         })
     }
@@ -235,6 +241,13 @@ fn load_of(machine: &Machine, source: NonconservativeSource) -> Option<usize> {
 }
 
 impl TabulatedLoad {
+    fn drive(&self) -> Option<&CompiledDrive> {
+        match &self.effect {
+            LoadEffect::Drive(drive) => Some(drive),
+            LoadEffect::Force | LoadEffect::Damper => None,
+        }
+    }
+
     fn new(machine: &Machine, load: usize, auxiliary: &mut AuxiliaryColumns) -> Result<Self> {
         let model = machine.model();
         let drive = machine.drives.iter().find(|drive| drive.load == load);

@@ -4,48 +4,14 @@
 
 mod parts;
 
-use dwell_dynamics::{
-    CoordinateMode, DynamicsError, Machine, Method, OdeState, Options, Solution, solve,
-};
-use dwell_geometry::{AssemblyConfiguration, BodyId, Joint, JointKind, Vec2};
-use dwell_kinetostatics::{Load, LoadKind, Magnitude, Mass, Model, Signal};
+use dwell_dynamics::{DynamicsError, Machine, Method, OdeState, Options, Solution, solve};
+use dwell_kinetostatics::{Magnitude, Signal};
 use dwell_laws::{Expression, Interpolation, Law, Spline};
-use parts::{angle, mechanism};
+use parts::{INERTIA, end_state, error_ratio};
 use proptest::prelude::*;
 
-const INERTIA: f64 = 2.0;
-
-/// A wheel on its axle under a couple.
 fn wheel(magnitude: Magnitude) -> Machine {
-    let bodies = [BodyId(0), BodyId(1)];
-    let axle = Joint {
-        name: "axle".into(),
-        bodies,
-        points: [Vec2::ZERO; 2],
-        kind: JointKind::Revolute,
-    };
-    let mut wheel = mechanism(&["ground", "wheel"], vec![axle]);
-    wheel.actuators = vec![angle([0, 1])];
-    let masses = [
-        Mass::default(),
-        Mass {
-            mass: 1.0,
-            center: Vec2::ZERO,
-            inertia: INERTIA,
-        },
-    ];
-    let assembly = AssemblyConfiguration {
-        q: vec![0.0],
-        initial_guess: vec![None; 2],
-        ..AssemblyConfiguration::default()
-    };
-    let model = Model::new(&wheel, &masses, &assembly, &[]).expect("a model");
-    let couple = Load {
-        name: "couple".into(),
-        kind: LoadKind::Torque { bodies },
-        magnitude,
-    };
-    Machine::new(model, &[couple], vec![CoordinateMode::Free], &[]).expect("a machine")
+    parts::wheel(magnitude, &[])
 }
 
 fn expression(text: &str) -> Magnitude {
@@ -59,13 +25,6 @@ fn run(machine: &Machine, speed: f64, end: f64, options: &Options) -> Solution {
         y: machine.initial_state(&[0.0], &[speed]),
     };
     solve(machine, machine.model(), &start, end, options, &[]).expect("a start")
-}
-
-/// Angle and speed at the end.
-fn end_state(solution: &Solution) -> [f64; 2] {
-    assert_eq!(solution.error, None);
-    let last = solution.steps.last().expect("steps");
-    [last.y[0], last.y[1]]
 }
 
 /// A pulse of unit impulse about a time: its magnitude, from its width.
@@ -84,14 +43,6 @@ fn pulse(shape: usize, at: f64, width: f64) -> String {
             at - 0.5 * width,
             at + 0.5 * width
         ),
-    }
-}
-
-/// The global error of an integration in tolerances: some tens (BDF: 20), and 300 with order 2.
-fn error_ratio(method: Method) -> f64 {
-    match method {
-        Method::TrBdf2 => 1000.0,
-        Method::Bdf | Method::Esdirk34 | Method::Tsit45 | Method::Dop853 => 100.0,
     }
 }
 

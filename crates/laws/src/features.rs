@@ -24,7 +24,7 @@
 mod enclosure;
 mod interval;
 mod scan;
-mod switching;
+pub(crate) mod switching;
 #[cfg(test)]
 mod tests;
 

@@ -30,12 +30,14 @@ pub mod polynomial;
 pub mod profile;
 pub mod sinusoid;
 pub mod spline;
+pub mod switches;
 
 pub use error::LawError;
-pub use expression::{Expression, ExpressionError};
+pub use expression::{Expression, ExpressionError, HeldPieces};
 pub use features::{Features, Piece, Scan, Unresolved};
 pub use law::Law;
 pub use polynomial::Polynomial;
 pub use profile::{Profile, Rise, Shape};
 pub use sinusoid::Sinusoid;
 pub use spline::{Interpolation, Spline};
+pub use switches::{SwitchKind, Switches};

@@ -174,15 +174,33 @@ impl Spline {
             let inner = &self.knots[1..self.knots.len() - 1];
             inner.partition_point(|&knot| knot <= x)
         };
+        if x < first - tolerance {
+            return self.eval_before(x);
+        }
+        self.eval_on(i, x)
+    }
+
+    /// The same of one piece, wherever `x` is: the number of points before it is `piece`.
+    pub(crate) fn eval_piece(&self, piece: f64, x: f64) -> [f64; 4] {
+        if piece < 1.0 {
+            return self.eval_before(x);
+        }
+        self.eval_on((piece as usize - 1).min(self.pieces.len() - 1), x)
+    }
+
+    /// The straight line before the first point.
+    fn eval_before(&self, x: f64) -> [f64; 4] {
+        let [value, b, ..] = self.pieces[0];
+        let b = match self.interpolation {
+            Interpolation::Spline | Interpolation::Linear => b,
+            Interpolation::Monotone | Interpolation::Step => 0.0,
+        };
+        [value + (x - self.knots[0]) * b, b, 0.0, 0.0]
+    }
+
+    fn eval_on(&self, i: usize, x: f64) -> [f64; 4] {
         let [value, b, c, d] = self.pieces[i];
         let u = x - self.knots[i];
-        if x < first - tolerance {
-            let b = match self.interpolation {
-                Interpolation::Spline | Interpolation::Linear => b,
-                Interpolation::Monotone | Interpolation::Step => 0.0,
-            };
-            return [value + u * b, b, 0.0, 0.0];
-        }
         [
             value + u * (b + u * (c + u * d)),
             b + u * (2.0 * c + u * 3.0 * d),

@@ -1,13 +1,59 @@
 //! Drives and their rotors in the equation of motion.
 
-use super::Machine;
 use super::workspace::EquationWorkspace;
+use super::{Machine, MachineState, MachineWorkspace};
+use crate::drive::CompiledDrive;
 use crate::error::Result;
+use crate::state_switches::{HeldSource, SourceState, StateSwitches};
 use dwell_geometry::body_states::BodyStates;
-use dwell_kinetostatics::{ForceState, KinetostaticsError, LoadedState};
+use dwell_kinetostatics::{ForceState, KinetostaticsError, LoadedState, Model};
 use dwell_numerics::Scalar;
 
+/// The switches of all loads and drives.
+pub(super) fn state_switches(model: &Model, drives: &[CompiledDrive]) -> StateSwitches {
+    let loads = model.loads().iter().enumerate();
+    let loads = loads.map(|(l, load)| (l, &load.magnitude, None));
+    let drives = drives.iter();
+    StateSwitches::of(loads.chain(drives.map(|d| (d.load, &d.input, Some(d)))))
+}
+
 impl Machine {
+    /// A load, or the drive that acts by it, at a state.
+    pub(crate) fn source_state(
+        &self,
+        load: usize,
+        state: &MachineState<'_>,
+        y: &[f64],
+    ) -> SourceState<'_> {
+        let drive = self.drives.iter().find(|drive| drive.load == load);
+        let magnitude = match drive {
+            Some(drive) => &drive.input,
+            None => &self.model.loads()[load].magnitude,
+        };
+        let drive_states = &y[2 * self.free.len()..];
+        let drive = drive.map(|drive| {
+            let [_, speed] = state.coordinate(drive.measured);
+            (drive, speed, drive.state.map(|s| drive_states[s]))
+        });
+        SourceState { magnitude, drive }
+    }
+
+    /// Holds a load and its drive on their pieces.
+    pub(crate) fn hold_source<T: Scalar>(
+        &self,
+        load: usize,
+        held: &HeldSource,
+        workspace: &mut MachineWorkspace<T>,
+    ) {
+        workspace
+            .inner
+            .held_pieces(load)
+            .clone_from(&held.magnitude);
+        if let Some(d) = self.drives.iter().position(|drive| drive.load == load) {
+            workspace.equation.held_drives[d] = held.drive;
+        }
+    }
+
     /// Whether a drive has a rotor, whose inertia resists.
     pub(super) fn has_rotors(&self) -> bool {
         let mut drives = self.drives.iter();
@@ -30,7 +76,8 @@ impl Machine {
             let drive_state = drive.state.map(|s| drive_states[s]);
             let input = state.eval_magnitude(drive.load, &drive.input, t)?;
             let [_, speed] = state.coordinate(drive.measured);
-            let (force, rate) = drive.eval(input + input_offsets[d], speed, drive_state);
+            let held = equation.held_drives[d];
+            let (force, rate) = drive.eval(input + input_offsets[d], speed, drive_state, held);
             equation.drive_forces[d] = force;
             state.set_magnitude(drive.load, force);
             if let Some(s) = drive.state {

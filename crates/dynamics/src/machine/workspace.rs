@@ -2,6 +2,7 @@
 
 use super::Machine;
 use crate::change_point_fit::FitWorkspace;
+use crate::drive::HeldDrive;
 use dwell_kinetostatics::{InverseDynamics, Workspace};
 use dwell_numerics::Scalar;
 
@@ -30,6 +31,7 @@ impl Machine {
                 drive_accelerations: zeros(drives),
                 rotor_response: self.model.result_buffer(),
                 drive_state_rates: zeros(self.drive_state_count),
+                held_drives: vec![[None; 2]; drives],
                 fit_workspace: None,
             },
         }
@@ -66,5 +68,7 @@ pub(super) struct EquationWorkspace<T> {
     pub(super) pivots: Vec<usize>,
     pub(super) free_accelerations: Vec<T>,
     pub(super) drive_state_rates: Vec<T>,
+    /// By drive: the pieces on which it is held.
+    pub(super) held_drives: Vec<HeldDrive>,
     pub(super) fit_workspace: Option<Box<FitWorkspace<T>>>,
 }

@@ -3,8 +3,9 @@
 use super::{LoadEffect, TabulatedCoordinate, TabulatedMachine, TabulatedSignal};
 use crate::error::{DynamicsError, Result, positive_inertia};
 use crate::ode::{DualWorkspace, OdeSystem};
+use crate::state_switches::{HeldSource, SourceState};
 use dwell_kinetostatics::KinetostaticsError;
-use dwell_laws::Features;
+use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::{Dual, Scalar};
 use std::sync::Arc;
 
@@ -17,6 +18,8 @@ pub struct TabulatedMachineOde<'t> {
     dual_workspace: DualWorkspace<TableWorkspace<Dual>>,
     /// The scale of works, J.
     energy_scale: f64,
+    /// By switching load: its held pieces.
+    held: Vec<HeldSource>,
 }
 
 /// Working memory in one kind of number.
@@ -25,6 +28,8 @@ struct TableWorkspace<T> {
     columns: Vec<T>,
     arguments: Vec<T>,
     values: Vec<f64>,
+    /// By load: the pieces on which it is held.
+    held: Vec<HeldSource>,
 }
 
 impl<T: Scalar> TableWorkspace<T> {
@@ -36,6 +41,7 @@ impl<T: Scalar> TableWorkspace<T> {
             columns: vec![T::from_f64(0.0); machine.column_count],
             arguments: vec![T::from_f64(0.0); max],
             values: vec![0.0; max],
+            held: vec![HeldSource::default(); machine.tabulated_loads.len()],
         }
     }
 }
@@ -77,6 +83,7 @@ impl TabulatedMachine {
             workspace,
             dual_workspace: DualWorkspace::new(TableWorkspace::new(self), self.state_count()),
             energy_scale: Some(energy_scale).filter(|e| e.is_normal()).unwrap_or(1.0),
+            held: Vec::new(),
         })
     }
 
@@ -129,7 +136,8 @@ impl TabulatedMachine {
             *argument = signal.eval(t, y, &workspace.columns);
             *value = argument.value();
         }
-        let magnitude = load.magnitude.eval(arguments, values);
+        let held = &workspace.held[k];
+        let magnitude = load.magnitude.eval(arguments, values, &held.magnitude);
         if !magnitude.value().is_finite() {
             let error = KinetostaticsError::MagnitudeNotFinite { load: load.load };
             return Err(DynamicsError::Load(error));
@@ -145,7 +153,7 @@ impl TabulatedMachine {
             LoadEffect::Damper => stateless(-(magnitude * w * q_dot)),
             LoadEffect::Drive(drive) => {
                 let state = drive.state.map(|place| y[2 + place]);
-                let (drive_force, rate) = drive.eval(magnitude, w * q_dot, state);
+                let (drive_force, rate) = drive.eval(magnitude, w * q_dot, state, held.drive);
                 LoadContribution {
                     drive_state_rate: drive.state.map(|place| (place, rate)),
                     ..stateless(drive_force)
@@ -192,6 +200,40 @@ impl OdeSystem for TabulatedMachineOde<'_> {
 
     fn time_features(&self) -> Option<Arc<Features>> {
         Some(Arc::clone(&self.machine.time_features))
+    }
+
+    fn switch_kinds(&self) -> &[SwitchKind] {
+        self.machine.state_switches.kinds()
+    }
+
+    fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
+        let Self {
+            machine, workspace, ..
+        } = self;
+        let columns = &mut workspace.columns;
+        machine.columns.eval(y[0], columns, &mut [])?;
+        let source_state = |k: usize, signals: &mut Vec<f64>| {
+            let load = &machine.tabulated_loads[k];
+            signals.extend(load.signals.iter().map(|signal| signal.eval(t, y, columns)));
+            let drive = load.drive();
+            SourceState {
+                magnitude: &load.magnitude,
+                drive: drive.map(|d| (d, columns[k] * y[1], d.state.map(|place| y[2 + place]))),
+            }
+        };
+        machine.state_switches.values(&self.held, source_state, out);
+        Ok(())
+    }
+
+    fn hold_pieces(&mut self, pieces: &[Option<f64>]) {
+        let (own, dual) = (&mut self.workspace, self.dual_workspace.inner());
+        let set = |k: usize, held: &HeldSource| {
+            own.held[k].clone_from(held);
+            dual.held[k].clone_from(held);
+        };
+        self.machine
+            .state_switches
+            .hold(pieces, &mut self.held, set);
     }
 
     fn error_weight(&self, state: usize) -> f64 {

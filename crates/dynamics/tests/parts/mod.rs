@@ -3,13 +3,14 @@
 #![allow(clippy::expect_used, reason = "tests")]
 
 use dwell_dynamics::{
-    Atlas, ContinuedMotion, Event, MachineDescription, Method, OdeState, Options,
+    Atlas, ContinuedMotion, CoordinateMode, Event, Machine, MachineDescription, Method, OdeState,
+    Options, Solution,
 };
 use dwell_geometry::{
     Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Joint, JointKind, Mechanism, Vec2,
     vec2,
 };
-use dwell_kinetostatics::{Drive, DriveKind, Load, LoadKind, Magnitude, Mass, Motor};
+use dwell_kinetostatics::{Drive, DriveKind, Load, LoadKind, Magnitude, Mass, Model, Motor};
 
 pub(crate) fn body(name: &str) -> Body {
     Body { name: name.into() }
@@ -240,4 +241,51 @@ pub(crate) fn energy_lost(atlas: &Atlas<'_>, motion: &ContinuedMotion) -> f64 {
         }
     }
     (high - low) / max_kinetic
+}
+
+/// Moment of inertia of [`wheel`], kg m².
+pub(crate) const INERTIA: f64 = 2.0;
+
+/// A wheel on its axle under a couple, and drives.
+pub(crate) fn wheel(magnitude: Magnitude, drives: &[Drive]) -> Machine {
+    let axle = pin("axle", [0, 1], [Vec2::ZERO; 2]);
+    let mut wheel = mechanism(&["ground", "wheel"], vec![axle]);
+    wheel.actuators = vec![angle([0, 1])];
+    let masses = [
+        Mass::default(),
+        Mass {
+            mass: 1.0,
+            center: Vec2::ZERO,
+            inertia: INERTIA,
+        },
+    ];
+    let assembly = AssemblyConfiguration {
+        q: vec![0.0],
+        initial_guess: vec![None; 2],
+        ..AssemblyConfiguration::default()
+    };
+    let model = Model::new(&wheel, &masses, &assembly, &[]).expect("a model");
+    let couple = Load {
+        name: "couple".into(),
+        kind: LoadKind::Torque {
+            bodies: [BodyId(0), BodyId(1)],
+        },
+        magnitude,
+    };
+    Machine::new(model, &[couple], vec![CoordinateMode::Free], drives).expect("a machine")
+}
+
+/// Angle and speed at the end.
+pub(crate) fn end_state(solution: &Solution) -> [f64; 2] {
+    assert_eq!(solution.error, None);
+    let last = solution.steps.last().expect("steps");
+    [last.y[0], last.y[1]]
+}
+
+/// The global error of an integration in tolerances: some tens (BDF: 20), and 300 with order 2.
+pub(crate) fn error_ratio(method: Method) -> f64 {
+    match method {
+        Method::TrBdf2 => 1000.0,
+        Method::Bdf | Method::Esdirk34 | Method::Tsit45 | Method::Dop853 => 100.0,
+    }
 }

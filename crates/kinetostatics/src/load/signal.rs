@@ -5,6 +5,7 @@ use super::{CompiledLoads, CompiledSignal, MAX_FUNCTION_SIGNALS, Magnitude, Sign
 use crate::error::{KinetostaticsError, Result};
 use dwell_geometry::Mechanism;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
+use dwell_laws::{HeldPieces, Switches};
 use dwell_numerics::Scalar;
 
 impl CompiledLoads {
@@ -16,7 +17,11 @@ impl CompiledLoads {
         magnitude: &Magnitude,
         t: f64,
         states: &BodyStates<T>,
-        SignalWorkspace { numbers, values }: &mut SignalWorkspace<T>,
+        SignalWorkspace {
+            numbers,
+            values,
+            held,
+        }: &mut SignalWorkspace<T>,
     ) -> Result<T> {
         let signals = &self.compiled_signals[load];
         let slots = numbers.iter_mut().zip(values.iter_mut()).zip(signals);
@@ -28,17 +33,25 @@ impl CompiledLoads {
             };
             *value = number.value();
         }
-        let found = magnitude.eval(&numbers[..signals.len()], &values[..signals.len()]);
+        let (numbers, values) = (&numbers[..signals.len()], &values[..signals.len()]);
+        let found = magnitude.eval(numbers, values, held.get(load).unwrap_or(&FREE));
         let not_finite = KinetostaticsError::MagnitudeNotFinite { load };
         found.value().is_finite().then_some(found).ok_or(not_finite)
     }
 }
 
 impl Magnitude {
-    /// The magnitude where its [signals](Self::signals) are `numbers`, with plain `values`. Friction, separating
-    /// forces and external magnitudes are zero.
+    /// The magnitude where its [signals](Self::signals) are `numbers`, with plain `values`, on the pieces that are
+    /// held. Friction, separating forces and external magnitudes are zero.
     #[inline]
-    pub fn eval<T: Scalar>(&self, numbers: &[T], values: &[f64]) -> T {
+    pub fn eval<T: Scalar>(&self, numbers: &[T], values: &[f64], held: &HeldPieces) -> T {
+        if !held.is_empty() {
+            let found = self.eval_held(numbers, values, held);
+            // A piece need not be defined beyond its bounds: the root of a distance.
+            if found.value().is_finite() {
+                return found;
+            }
+        }
         match (self, numbers) {
             (Self::Constant(value), _) => T::from_f64(*value),
             (Self::Law(_, law), &[x, ..]) => x.compose(&law.eval(x.value())),
@@ -55,13 +68,58 @@ impl Magnitude {
             (Self::Friction(_) | Self::Separating(_) | Self::External(_), _) => T::from_f64(0.0),
         }
     }
+
+    /// The magnitude on the pieces that are held, of what can be held.
+    fn eval_held<T: Scalar>(&self, numbers: &[T], values: &[f64], held: &HeldPieces) -> T {
+        match (self, numbers) {
+            (Self::Law(_, law), &[x, ..]) => x.compose(&law.eval_held(x.value(), held)),
+            (Self::Expression(expression, signals), numbers) => {
+                let slope = |i: usize| match signals.get(i) {
+                    Some(Signal::Time) => 0.0,
+                    _ => expression.derivatives_held(values, i, held)[1],
+                };
+                first_order(expression.eval_held(values, held), slope, numbers, values)
+            }
+            (
+                Self::Constant(_)
+                | Self::Law(..)
+                | Self::Function(..)
+                | Self::Friction(_)
+                | Self::Separating(_)
+                | Self::External(_),
+                _,
+            ) => T::from_f64(f64::NAN),
+        }
+    }
+
+    /// Where it switches as coordinates and speeds move.
+    pub fn switches(&self) -> Switches {
+        match self {
+            Self::Law(Signal::Value(_) | Signal::Velocity(_), law) => Switches::of_law(law),
+            Self::Expression(expression, signals) => {
+                let time = signals.iter().position(|s| *s == Signal::Time);
+                Switches::of_expression(expression, time)
+            }
+            Self::Constant(_)
+            | Self::Law(Signal::Time, _)
+            | Self::Function(..)
+            | Self::Friction(_)
+            | Self::Separating(_)
+            | Self::External(_) => Switches::default(),
+        }
+    }
 }
+
+/// Nothing is held.
+static FREE: HeldPieces = HeldPieces::NONE;
 
 /// Working memory for the signals of one magnitude.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct SignalWorkspace<T> {
     numbers: Vec<T>,
     values: Vec<f64>,
+    /// By load: the pieces of its magnitude that are held; without an entry, none.
+    pub(crate) held: Vec<HeldPieces>,
 }
 
 impl<T: Scalar> SignalWorkspace<T> {
@@ -69,6 +127,7 @@ impl<T: Scalar> SignalWorkspace<T> {
         Self {
             numbers: vec![T::from_f64(0.0); max_signals],
             values: vec![0.0; max_signals],
+            held: Vec::new(),
         }
     }
 }

@@ -6,6 +6,7 @@ use crate::load::LoadState;
 use crate::pass::{InverseDynamics, RecursivePass};
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{Motion, Plan, Pose};
+use dwell_laws::HeldPieces;
 use dwell_numerics::Scalar;
 
 /// Working memory for evaluations of a model in one thread. What it holds is read through the [stages](super::stages)
@@ -56,6 +57,16 @@ impl Model {
 }
 
 impl<T: Scalar> Workspace<T> {
+    /// The pieces on which the magnitude of a load is held, wherever its signals are, until others are set; none at
+    /// first.
+    pub fn held_pieces(&mut self, load: usize) -> &mut HeldPieces {
+        let held = &mut self.loads.signal_workspace.held;
+        if held.len() <= load {
+            held.resize(load + 1, HeldPieces::NONE);
+        }
+        &mut held[load]
+    }
+
     /// The virtual motion at the pose, at unit velocity of these coordinates.
     #[inline]
     pub(super) fn set_unit_velocities(&mut self, plan: &Plan, coordinates: &[usize]) {

@@ -32,8 +32,9 @@ mod token;
 pub use error::{ExpressionError, nearest};
 pub(crate) use function::{Binary, Unary};
 use jet::{Jet, TapeScalar};
+pub use tape::HeldPieces;
 use tape::Tape;
-pub(crate) use tape::{Op, run_parts};
+pub(crate) use tape::{Op, Sides, run_held_parts, run_parts};
 
 /// An expression of named variables, ready to be evaluated. Its language is described
 /// [in the module](crate::expression).
@@ -104,18 +105,30 @@ impl Expression {
         self.tape.run(|i| value(values, i))
     }
 
+    /// The value where some operations are held on one of their pieces ([`Switches::hold`](crate::Switches::hold)).
+    pub fn eval_held(&self, values: &[f64], held: &HeldPieces) -> f64 {
+        self.tape.run_held(|i| value(values, i), &held.sides)
+    }
+
+    /// [`derivatives_wrt`](Self::derivatives_wrt) where some operations are held on one of their pieces.
+    pub fn derivatives_held(&self, values: &[f64], variable: usize, held: &HeldPieces) -> [f64; 4] {
+        let jet = |i| jet(values, variable, i);
+        self.tape.run_held(jet, &held.sides).derivatives()
+    }
+
     /// The value, and its first three derivatives with respect to the variable of that place in
     /// the list given to [`parse`](Self::parse), the others held.
     pub fn derivatives_wrt(&self, values: &[f64], variable: usize) -> [f64; 4] {
-        let jet = self.tape.run(|i| {
-            let value = value(values, i);
-            if i == variable {
-                Jet::variable(value)
-            } else {
-                Jet::constant(value)
-            }
-        });
-        jet.derivatives()
+        self.tape.run(|i| jet(values, variable, i)).derivatives()
+    }
+}
+
+fn jet(values: &[f64], variable: usize, i: usize) -> Jet {
+    let value = value(values, i);
+    if i == variable {
+        Jet::variable(value)
+    } else {
+        Jet::constant(value)
     }
 }
 

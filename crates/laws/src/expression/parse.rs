@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::error::{ExpressionError, nearest};
 use super::function::{Binary, Comparison, Constant, Function};
-use super::tape::{Op, STACK_SIZE, Tape, is_identifier, run};
+use super::tape::{Op, STACK_SIZE, Sides, Tape, is_identifier, run};
 use super::token::{self, Token, TokenKind};
 
 /// How deep parentheses, powers and signs may nest: each takes a few calls of the parser.
@@ -369,7 +369,7 @@ fn constant(op: Op, operands: &[Operand]) -> Option<f64> {
         *slot = Op::Number(operand.constant?);
     }
     ops.get(..=operands.len())
-        .map(|ops| run::<f64, MAX_OPERANDS>(ops, |_| f64::NAN))
+        .map(|ops| run::<f64, MAX_OPERANDS>(ops, |_| f64::NAN, |_| Sides::default()))
 }
 
 /// A scene can have hundreds of names; the first two dozen are listed.

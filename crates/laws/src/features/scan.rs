@@ -2,7 +2,8 @@
 
 use super::Features;
 use super::interval::Interval;
-use super::switching::{Pieces, Sides, Switch};
+use super::switching::{Pieces, Switch};
+use crate::expression::Sides;
 
 /// A piece is smooth if a parabola is as good as its terms, to this part of their largest values.
 const SMOOTHNESS: f64 = 1e-3;

@@ -2,11 +2,7 @@
 
 use super::enclosure::Enclosure;
 use super::interval::Interval;
-use crate::expression::{Binary, Expression, Op, Unary, run_parts};
-
-/// Which piece of a switching operation holds: the sign of its function, or the whole number below it.
-/// An operation has up to two functions (`clamp`).
-pub(super) type Sides = [Option<f64>; 2];
+use crate::expression::{Binary, Expression, Op, Sides, Unary, run_parts};
 
 /// An expression in one of its variables, the others unknown.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,60 +19,86 @@ pub(super) struct Pieces {
 
 /// A function of the variable whose zeros (or whole values) separate two pieces.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Switch {
+pub(crate) struct Switch {
     /// The operation that switches, and which of its functions this is.
-    pub(super) op: usize,
-    pub(super) function: usize,
+    pub(crate) op: usize,
+    pub(crate) function: usize,
     /// The last operation of the minuend and of the subtrahend, if there is one.
-    left: usize,
-    right: Option<usize>,
+    pub(crate) left: usize,
+    pub(crate) right: Option<usize>,
     /// Whether it switches at every whole value, not only at zero.
-    pub(super) at_integers: bool,
+    pub(crate) at_integers: bool,
+}
+
+/// The operations of an expression with what they depend on.
+pub(crate) struct Operands {
+    /// By operation: where that of its first operand begins.
+    pub(crate) starts: Vec<usize>,
+    /// By operation: whether it depends on the variable, and on another one.
+    pub(crate) depends: Vec<[bool; 2]>,
+    /// By operation: the last operation of each operand.
+    pub(crate) operands: Vec<Vec<usize>>,
+}
+
+impl Operands {
+    pub(crate) fn of(ops: &[Op], variable: Option<usize>) -> Self {
+        let mut found = Self {
+            starts: Vec::with_capacity(ops.len()),
+            depends: Vec::with_capacity(ops.len()),
+            operands: Vec::with_capacity(ops.len()),
+        };
+        let mut stack: Vec<usize> = Vec::new();
+        for (i, op) in ops.iter().enumerate() {
+            let of = stack.split_off(stack.len().saturating_sub(op.arity()));
+            let own = match op {
+                Op::Variable(index) => [Some(*index) == variable, Some(*index) != variable],
+                _ => [false; 2],
+            };
+            let all = of.iter().map(|&o| found.depends[o]);
+            let depends = all.fold(own, |[a, b], [c, d]| [a || c, b || d]);
+            let start = of.first().map_or(i, |&first| found.starts[first]);
+            found.depends.push(depends);
+            found.starts.push(start);
+            found.operands.push(of);
+            stack.push(i);
+        }
+        found
+    }
+
+    /// Whether two operands are the same text, so that their difference is zero everywhere.
+    pub(crate) fn is_same(&self, ops: &[Op], a: usize, b: usize) -> bool {
+        ops[self.starts[a]..=a] == ops[self.starts[b]..=b]
+    }
 }
 
 impl Pieces {
     pub(super) fn of(expression: &Expression, variable: usize) -> Self {
         let ops = expression.ops().to_vec();
-        let mut starts = Vec::with_capacity(ops.len());
-        // By operation: whether it depends on the variable, and on another one.
-        let mut depends: Vec<[bool; 2]> = Vec::with_capacity(ops.len());
-        let mut operands: Vec<Vec<usize>> = Vec::with_capacity(ops.len());
-        let mut stack: Vec<usize> = Vec::new();
-        for (i, op) in ops.iter().enumerate() {
-            let of = stack.split_off(stack.len().saturating_sub(op.arity()));
-            let own = match op {
-                Op::Variable(index) => [*index == variable, *index != variable],
-                _ => [false; 2],
-            };
-            let all = of.iter().map(|&o| depends[o]);
-            depends.push(all.fold(own, |[a, b], [c, d]| [a || c, b || d]));
-            starts.push(of.first().map_or(i, |&first| starts[first]));
-            operands.push(of);
-            stack.push(i);
-        }
+        let tree = Operands::of(&ops, Some(variable));
+        let (depends, operands) = (&tree.depends, &tree.operands);
         let is_alone = |i: usize| depends[i] == [true, false];
         let mut pieces = Self {
             switches: Vec::new(),
             terms: Vec::new(),
             variable,
-            starts,
+            starts: tree.starts.clone(),
             ops,
         };
         for (i, of) in operands.iter().enumerate() {
-            let found = pieces.switches_of(i, of);
+            let found = switches_of(pieces.ops[i], i, of);
             let separable = |s: &Switch| match s.right {
                 None => is_alone(s.left),
                 Some(right) => {
                     let neither = !depends[s.left][1] && !depends[right][1];
                     neither
                         && (is_alone(s.left) || is_alone(right))
-                        && !pieces.is_same(s.left, right)
+                        && !tree.is_same(&pieces.ops, s.left, right)
                 }
             };
             let found: Vec<Switch> = found.into_iter().filter(separable).collect();
             pieces.switches.extend(found);
         }
-        let mut open: Vec<usize> = stack;
+        let mut open: Vec<usize> = pieces.ops.len().checked_sub(1).into_iter().collect();
         while let Some(i) = open.pop() {
             let is_sum = matches!(
                 pieces.ops[i],
@@ -89,75 +111,6 @@ impl Pieces {
             }
         }
         pieces
-    }
-
-    // Long because every kind of operation is named.
-    fn switches_of(&self, op: usize, operands: &[usize]) -> Vec<Switch> {
-        let zero = |function, left, right| Switch {
-            op,
-            function,
-            left,
-            right,
-            at_integers: false,
-        };
-        match (self.ops[op], operands) {
-            (Op::Unary(Unary::Abs | Unary::Sign | Unary::Step), &[x]) => vec![zero(0, x, None)],
-            (Op::Unary(Unary::Floor), &[x]) => vec![Switch {
-                at_integers: true,
-                ..zero(0, x, None)
-            }],
-            (Op::Binary(Binary::Min | Binary::Max), &[a, b]) => vec![zero(0, a, Some(b))],
-            // Its cut: y = 0 on the left.
-            (Op::Binary(Binary::Atan2), &[y, _]) => vec![zero(0, y, None)],
-            (Op::Clamp, &[x, low, high]) => {
-                vec![zero(0, x, Some(low)), zero(1, x, Some(high))]
-            }
-            (Op::If(_), &[a, b, ..]) => vec![zero(0, a, Some(b))],
-            // Smooth wherever they are finite. Every kind is named, so that a new one is judged.
-            (
-                Op::Number(_)
-                | Op::Constant(_)
-                | Op::Variable(_)
-                | Op::Negate
-                | Op::Unary(
-                    Unary::Sin
-                    | Unary::Cos
-                    | Unary::Tan
-                    | Unary::Asin
-                    | Unary::Acos
-                    | Unary::Atan
-                    | Unary::Sinh
-                    | Unary::Cosh
-                    | Unary::Tanh
-                    | Unary::Exp
-                    | Unary::Ln
-                    | Unary::Log10
-                    | Unary::Sqrt,
-                )
-                | Op::Binary(
-                    Binary::Add
-                    | Binary::Subtract
-                    | Binary::Multiply
-                    | Binary::Divide
-                    | Binary::Power
-                    | Binary::Hypot,
-                ),
-                _,
-            ) => Vec::new(),
-            // The parser gives each operation its operands.
-            (
-                Op::Unary(Unary::Abs | Unary::Sign | Unary::Step | Unary::Floor)
-                | Op::Binary(Binary::Min | Binary::Max | Binary::Atan2)
-                | Op::Clamp
-                | Op::If(_),
-                _,
-            ) => Vec::new(),
-        }
-    }
-
-    /// Whether two operands are the same text, so that their difference is zero everywhere.
-    fn is_same(&self, a: usize, b: usize) -> bool {
-        self.ops[self.starts[a]..=a] == self.ops[self.starts[b]..=b]
     }
 
     /// Number of operations, each of which has its sides.
@@ -253,5 +206,70 @@ impl Pieces {
     /// The value of a term.
     pub(super) fn term_value(&self, last: usize, x: f64) -> f64 {
         run_parts(&self.ops[self.starts[last]..=last], |_| x)
+    }
+}
+
+/// The functions whose zeros separate the pieces of an operation.
+// Long because every kind of operation is named.
+pub(crate) fn switches_of(operation: Op, op: usize, operands: &[usize]) -> Vec<Switch> {
+    let zero = |function, left, right| Switch {
+        op,
+        function,
+        left,
+        right,
+        at_integers: false,
+    };
+    match (operation, operands) {
+        (Op::Unary(Unary::Abs | Unary::Sign | Unary::Step), &[x]) => vec![zero(0, x, None)],
+        (Op::Unary(Unary::Floor), &[x]) => vec![Switch {
+            at_integers: true,
+            ..zero(0, x, None)
+        }],
+        (Op::Binary(Binary::Min | Binary::Max), &[a, b]) => vec![zero(0, a, Some(b))],
+        // Its cut: y = 0 on the left.
+        (Op::Binary(Binary::Atan2), &[y, _]) => vec![zero(0, y, None)],
+        (Op::Clamp, &[x, low, high]) => {
+            vec![zero(0, x, Some(low)), zero(1, x, Some(high))]
+        }
+        (Op::If(_), &[a, b, ..]) => vec![zero(0, a, Some(b))],
+        // Smooth wherever they are finite. Every kind is named, so that a new one is judged.
+        (
+            Op::Number(_)
+            | Op::Constant(_)
+            | Op::Variable(_)
+            | Op::Negate
+            | Op::Unary(
+                Unary::Sin
+                | Unary::Cos
+                | Unary::Tan
+                | Unary::Asin
+                | Unary::Acos
+                | Unary::Atan
+                | Unary::Sinh
+                | Unary::Cosh
+                | Unary::Tanh
+                | Unary::Exp
+                | Unary::Ln
+                | Unary::Log10
+                | Unary::Sqrt,
+            )
+            | Op::Binary(
+                Binary::Add
+                | Binary::Subtract
+                | Binary::Multiply
+                | Binary::Divide
+                | Binary::Power
+                | Binary::Hypot,
+            ),
+            _,
+        ) => Vec::new(),
+        // The parser gives each operation its operands.
+        (
+            Op::Unary(Unary::Abs | Unary::Sign | Unary::Step | Unary::Floor)
+            | Op::Binary(Binary::Min | Binary::Max | Binary::Atan2)
+            | Op::Clamp
+            | Op::If(_),
+            _,
+        ) => Vec::new(),
     }
 }

@@ -1,0 +1,126 @@
+//! Which pieces of loads and drives are held while a motion is integrated, and the functions that separate them.
+//!
+//! A magnitude that switches as coordinates and speeds move, such as `if(x > 0.1, 100, 0)`, is smooth on each of its
+//! pieces ([`Switches`]). So are the limits of a speed controller.
+
+use crate::drive::{CompiledDrive, HeldDrive};
+use dwell_kinetostatics::{Magnitude, Signal};
+use dwell_laws::{HeldPieces, SwitchKind, Switches};
+
+/// The switches of all loads and drives of a machine.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct StateSwitches {
+    sources: Vec<SwitchSource>,
+    kinds: Vec<SwitchKind>,
+}
+
+/// A load or drive that switches.
+#[derive(Debug, Clone, PartialEq)]
+struct SwitchSource {
+    /// Its index among the loads.
+    index: usize,
+    magnitude: Switches,
+    /// Number of switching functions of its drive.
+    drive_count: usize,
+}
+
+/// The pieces on which a load or drive is held.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct HeldSource {
+    pub(crate) magnitude: HeldPieces,
+    pub(crate) drive: HeldDrive,
+}
+
+/// A load or drive at one state of motion.
+pub(crate) struct SourceState<'a> {
+    pub(crate) magnitude: &'a Magnitude,
+    /// A drive with its speed and its state.
+    pub(crate) drive: Option<(&'a CompiledDrive, f64, Option<f64>)>,
+}
+
+impl StateSwitches {
+    /// Of magnitudes with the index of each load, and the drives whose inputs they are.
+    pub(crate) fn of<'a>(
+        sources: impl IntoIterator<Item = (usize, &'a Magnitude, Option<&'a CompiledDrive>)>,
+    ) -> Self {
+        let mut all = Self::default();
+        for (index, magnitude, drive) in sources {
+            let magnitude = magnitude.switches();
+            let drive_kinds = drive.map_or_else(Vec::new, CompiledDrive::switch_kinds);
+            if magnitude.kinds().is_empty() && drive_kinds.is_empty() {
+                continue;
+            }
+            all.kinds.extend_from_slice(magnitude.kinds());
+            let drive_count = drive_kinds.len();
+            all.kinds.extend(drive_kinds);
+            all.sources.push(SwitchSource {
+                index,
+                magnitude,
+                drive_count,
+            });
+        }
+        all
+    }
+
+    /// At which values each function switches.
+    pub(crate) fn kinds(&self) -> &[SwitchKind] {
+        &self.kinds
+    }
+
+    /// Holds one piece for each function, or none: `set` gets the load's index and its pieces.
+    pub(crate) fn hold(
+        &self,
+        mut pieces: &[Option<f64>],
+        held: &mut Vec<HeldSource>,
+        mut set: impl FnMut(usize, &HeldSource),
+    ) {
+        held.resize(self.sources.len(), HeldSource::default());
+        for (source, held) in self.sources.iter().zip(held) {
+            let (own, rest) = pieces.split_at(source.magnitude.kinds().len());
+            let (drive, rest) = rest.split_at(source.drive_count);
+            pieces = rest;
+            source.magnitude.hold(own, &mut held.magnitude);
+            held.drive[..drive.len()].copy_from_slice(drive);
+            set(source.index, held);
+        }
+    }
+
+    /// The value of each function on the pieces that are held; `state_of` gives a load or drive by its index, with the
+    /// values of its signals.
+    pub(crate) fn values<'a>(
+        &self,
+        held: &[HeldSource],
+        mut state_of: impl FnMut(usize, &mut Vec<f64>) -> SourceState<'a>,
+        mut out: &mut [f64],
+    ) {
+        let free = HeldSource::default();
+        let mut signals = Vec::new();
+        for (k, source) in self.sources.iter().enumerate() {
+            signals.clear();
+            let state = state_of(source.index, &mut signals);
+            let held = held.get(k).unwrap_or(&free);
+            let (own, rest) = out.split_at_mut(source.magnitude.kinds().len());
+            let (of_drive, rest) = rest.split_at_mut(source.drive_count);
+            out = rest;
+            source.magnitude.values(&signals, &held.magnitude, own);
+            if let (false, Some((drive, speed, drive_state))) = (of_drive.is_empty(), state.drive) {
+                let input = state.magnitude.eval(&signals, &signals, &held.magnitude);
+                let values = drive.switch_values(input, speed, drive_state);
+                of_drive.copy_from_slice(&values[..of_drive.len()]);
+            }
+        }
+    }
+}
+
+/// The value of a signal at time `t` (s); `coordinate` gives value and speed.
+pub(crate) fn signal_value<C: Copy>(
+    signal: Signal<C>,
+    t: f64,
+    coordinate: impl Fn(C) -> [f64; 2],
+) -> f64 {
+    match signal {
+        Signal::Time => t,
+        Signal::Value(of) => coordinate(of)[0],
+        Signal::Velocity(of) => coordinate(of)[1],
+    }
+}

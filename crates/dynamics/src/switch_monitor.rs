@@ -1,0 +1,341 @@
+//! Integration across the switches of loads and drives that coordinates and speeds decide.
+//!
+//! While the pieces are held, everything is smooth, and a step may lead beyond a switch. Where it does, the switch is
+//! located on the dense output, the motion is kept up to there, and the next integration begins with the piece beyond.
+//! Where the rates on both pieces lead back to the switch, as of a brake at rest, the motion stays on it: there the
+//! switch is not held until it has kept its side for some steps.
+
+use crate::error::Result;
+use crate::ode::{DenseOutput, OdeState, OdeSystem, root_subintervals, state_at};
+use dwell_laws::SwitchKind;
+use dwell_numerics::root;
+
+/// Step along the rates that shows on which side of a switch they lead, as a part of the step before.
+const PROBE: f64 = 1e-4;
+/// Steps for which a switch that is not held must keep its side to be held again, at first.
+const PATIENCE: u32 = 4;
+/// Roundings of time within which two switches happen together.
+const TOGETHER: f64 = 16.0 * f64::EPSILON;
+
+/// Watches the switches of a system during its integration.
+pub(crate) struct SwitchMonitor {
+    switches: Vec<MonitoredSwitch>,
+    values: Vec<f64>,
+    /// Length of the last step, s.
+    step: f64,
+}
+
+#[derive(Debug, Clone)]
+struct MonitoredSwitch {
+    kind: SwitchKind,
+    /// The piece that is held; none where it is not.
+    piece: Option<f64>,
+    /// Whether the piece has held since the integration began: at its start a switch may be within a rounding.
+    is_inside: bool,
+    /// When it switched last.
+    switched: Option<f64>,
+    /// Where it is not held: its piece, for how many steps, and for how many it must be.
+    observed: (Option<f64>, u32),
+    patience: u32,
+    /// Distances from the nearest bound at the last points of the step, the latest first.
+    margins: [(f64, f64); 2],
+}
+
+/// Where an integration ends because a switch is passed.
+pub(crate) struct Crossing {
+    pub(crate) state: OdeState,
+    /// The switches, and whether each passes its upper bound.
+    passed: Vec<(usize, bool)>,
+}
+
+impl MonitoredSwitch {
+    /// How far the value is within the bounds of the piece; negative beyond one. None where it is not watched.
+    fn margin(&self, value: f64) -> Option<f64> {
+        let [low, high] = self.kind.bounds(self.piece?);
+        let margin = (value - low).min(high - value);
+        (!margin.is_nan()).then_some(margin)
+    }
+
+    /// Whether a value beyond the bounds is beyond the upper one.
+    fn is_above(&self, value: f64) -> bool {
+        let [low, high] = self.kind.bounds(self.piece.unwrap_or_default());
+        value - low > high - value
+    }
+}
+
+impl SwitchMonitor {
+    /// Holds the pieces at the start of an integration of `span` (s).
+    ///
+    /// # Errors
+    /// Where the start cannot be evaluated.
+    pub(crate) fn new(system: &mut dyn OdeSystem, start: &OdeState, span: f64) -> Result<Self> {
+        let switches = system.switch_kinds().iter().map(|kind| MonitoredSwitch {
+            kind: kind.clone(),
+            piece: None,
+            is_inside: false,
+            switched: None,
+            observed: (None, 0),
+            patience: PATIENCE,
+            margins: [(f64::NAN, f64::NAN); 2],
+        });
+        let switches: Vec<_> = switches.collect();
+        let mut monitor = Self {
+            values: vec![0.0; switches.len()],
+            switches,
+            step: PROBE * if span.is_finite() { span } else { 1.0 },
+        };
+        monitor.hold(system);
+        system.switch_values(start.t, &start.y, &mut monitor.values)?;
+        for (switch, &value) in monitor.switches.iter_mut().zip(&monitor.values) {
+            switch.piece = switch.kind.piece_at(value);
+        }
+        let undecided = |k: &usize| monitor.switches[*k].piece.is_none();
+        let undecided: Vec<usize> = (0..monitor.switches.len()).filter(undecided).collect();
+        for k in undecided {
+            if !monitor.values[k].is_nan() {
+                monitor.decide_by_rates(k, system, start)?;
+            }
+        }
+        monitor.hold(system);
+        Ok(monitor)
+    }
+
+    fn hold(&self, system: &mut dyn OdeSystem) {
+        let pieces: Vec<Option<f64>> = self.switches.iter().map(|s| s.piece).collect();
+        system.hold_pieces(&pieces);
+    }
+
+    /// Holds the side of zero on which its own rates lead further into it; none where neither or both do.
+    fn decide_by_rates(
+        &mut self,
+        k: usize,
+        system: &mut dyn OdeSystem,
+        at: &OdeState,
+    ) -> Result<()> {
+        let mut leads_away = [false; 2];
+        for (leads_away, side) in leads_away.iter_mut().zip([-1.0, 1.0]) {
+            self.switches[k].piece = Some(side);
+            self.hold(system);
+            *leads_away = self.margin_growth(k, system, at)? > 0.0;
+        }
+        self.switches[k].piece = match leads_away {
+            [true, false] => Some(-1.0),
+            [false, true] => Some(1.0),
+            _ => None,
+        };
+        Ok(())
+    }
+
+    /// Growth of a switch's margin in a small step along the rates.
+    fn margin_growth(
+        &mut self,
+        k: usize,
+        system: &mut dyn OdeSystem,
+        at: &OdeState,
+    ) -> Result<f64> {
+        let mut margin = |t: f64, y: &[f64]| -> Result<f64> {
+            system.switch_values(t, y, &mut self.values)?;
+            let margin = self.switches[k].margin(self.values[k]);
+            Ok(margin.unwrap_or(f64::NAN))
+        };
+        let before = margin(at.t, &at.y)?;
+        let mut rates = vec![0.0; at.y.len()];
+        system.rhs(at.t, &at.y, &mut rates)?;
+        let h = PROBE * self.step;
+        let y: Vec<f64> =
+            at.y.iter()
+                .zip(&rates)
+                .map(|(y, rate)| y + h * rate)
+                .collect();
+        system.switch_values(at.t + h, &y, &mut self.values)?;
+        let after = self.switches[k].margin(self.values[k]);
+        Ok(after.unwrap_or(f64::NAN) - before)
+    }
+
+    /// Where the integration begins anew because of what happened in a step: a switch was passed, or one that was not
+    /// held now is.
+    ///
+    /// # Errors
+    /// Where a state cannot be evaluated.
+    pub(crate) fn after_step(
+        &mut self,
+        system: &mut dyn OdeSystem,
+        before: &OdeState,
+        now: &OdeState,
+        dense: DenseOutput<'_>,
+    ) -> Result<Option<Crossing>> {
+        let crossing = self.first_crossing(system, before, now, dense)?;
+        if crossing.is_some() || !self.holds_again(system, now)? {
+            return Ok(crossing);
+        }
+        Ok(Some(Crossing {
+            state: now.clone(),
+            passed: Vec::new(),
+        }))
+    }
+
+    /// Where the first switch is passed in a step, if one is.
+    fn first_crossing(
+        &mut self,
+        system: &mut dyn OdeSystem,
+        before: &OdeState,
+        now: &OdeState,
+        dense: DenseOutput<'_>,
+    ) -> Result<Option<Crossing>> {
+        self.step = now.t - before.t;
+        system.switch_values(before.t, &before.y, &mut self.values)?;
+        for (switch, &value) in self.switches.iter_mut().zip(&self.values) {
+            let margin = switch.margin(value).unwrap_or(f64::NAN);
+            switch.margins = [(before.t, margin), (f64::NAN, f64::NAN)];
+            switch.is_inside |= margin > 0.0;
+        }
+        for t in root_subintervals(before, now) {
+            let point = state_at(t, now, dense)?;
+            system.switch_values(t, &point.y, &mut self.values)?;
+            let mut first: Option<(f64, Vec<(usize, bool)>)> = None;
+            for k in 0..self.switches.len() {
+                let Some((at, upward)) = self.crossing_time(k, t, system, before, now, dense)?
+                else {
+                    continue;
+                };
+                match &mut first {
+                    Some((t, passed)) if (at - *t).abs() <= TOGETHER * at.abs() => {
+                        passed.push((k, upward));
+                    }
+                    Some((t, _)) if at > *t => {}
+                    _ => first = Some((at, vec![(k, upward)])),
+                }
+            }
+            if let Some((at, passed)) = first {
+                let state = if at > before.t {
+                    state_at(at, now, dense)?
+                } else {
+                    before.clone()
+                };
+                return Ok(Some(Crossing { state, passed }));
+            }
+        }
+        Ok(None)
+    }
+
+    /// When a switch is passed between the last point of the step and `t`, and whether upwards.
+    fn crossing_time(
+        &mut self,
+        k: usize,
+        t: f64,
+        system: &mut dyn OdeSystem,
+        before: &OdeState,
+        now: &OdeState,
+        dense: DenseOutput<'_>,
+    ) -> Result<Option<(f64, bool)>> {
+        let value = self.values[k];
+        let switch = &mut self.switches[k];
+        let Some(margin) = switch.margin(value) else {
+            return Ok(None);
+        };
+        let earlier = switch.margins;
+        switch.margins = [(t, margin), earlier[0]];
+        let was_inside = switch.is_inside;
+        switch.is_inside |= margin > 0.0;
+        if margin < 0.0 && !was_inside {
+            // It was passed, within a rounding, where the integration began.
+            return Ok(Some((earlier[0].0, switch.is_above(value))));
+        }
+        // Or into the next piece and back between two points.
+        let lowest = vertex([earlier[1], earlier[0], (t, margin)]);
+        let Some(end) = (margin < 0.0).then_some(t).or(lowest) else {
+            return Ok(None);
+        };
+        let switch = switch.clone();
+        let mut values = vec![0.0; self.switches.len()];
+        let mut value_at = |at: f64| -> Result<f64> {
+            let state = if at > before.t {
+                state_at(at, now, dense)?
+            } else {
+                before.clone()
+            };
+            system.switch_values(at, &state.y, &mut values)?;
+            Ok(values[k])
+        };
+        let beyond = value_at(end)?;
+        if switch.margin(beyond).is_none_or(|margin| margin >= 0.0) {
+            return Ok(None);
+        }
+        let from = if end > earlier[0].0 {
+            earlier[0]
+        } else {
+            earlier[1]
+        };
+        let margin_at =
+            |at: f64| -> Result<f64> { Ok(switch.margin(value_at(at)?).unwrap_or(f64::NAN)) };
+        let found = root::find(margin_at, from.0, end)?;
+        Ok(found.map(|at| (at, switch.is_above(beyond))))
+    }
+
+    /// Holds the pieces beyond a crossing, unless the rates there lead back.
+    ///
+    /// # Errors
+    /// Where the state cannot be evaluated.
+    pub(crate) fn pass(&mut self, crossing: &Crossing, system: &mut dyn OdeSystem) -> Result<()> {
+        let at = &crossing.state;
+        for switch in &mut self.switches {
+            switch.is_inside = false;
+        }
+        for &(k, upward) in &crossing.passed {
+            let switch = &mut self.switches[k];
+            switch.piece = switch.piece.map(|piece| switch.kind.next(piece, upward));
+        }
+        self.hold(system);
+        for &(k, _) in &crossing.passed {
+            let returns = self.margin_growth(k, system, at)? < 0.0;
+            let switch = &mut self.switches[k];
+            let again = |last: f64| (at.t - last).abs() <= TOGETHER * at.t.abs();
+            if returns || switch.switched.is_some_and(again) {
+                switch.piece = None;
+                switch.observed = (None, 0);
+            }
+            switch.switched = Some(at.t);
+        }
+        self.hold(system);
+        Ok(())
+    }
+
+    /// After a step: whether a switch that is not held has kept its side for so long that it is now held, so that the
+    /// integration begins anew.
+    fn holds_again(&mut self, system: &mut dyn OdeSystem, now: &OdeState) -> Result<bool> {
+        if self.switches.iter().all(|s| s.piece.is_some()) {
+            return Ok(false);
+        }
+        system.switch_values(now.t, &now.y, &mut self.values)?;
+        let mut changed = false;
+        for (switch, &value) in self.switches.iter_mut().zip(&self.values) {
+            if switch.piece.is_some() {
+                continue;
+            }
+            let piece = switch.kind.piece_at(value);
+            let (last, steps) = switch.observed;
+            switch.observed = (piece, if piece == last { steps + 1 } else { 0 });
+            if piece.is_some() && switch.observed.1 >= switch.patience {
+                switch.piece = piece;
+                switch.patience = switch.patience.saturating_mul(2);
+                changed = true;
+            }
+        }
+        if changed {
+            self.hold(system);
+        }
+        Ok(changed)
+    }
+}
+
+/// Where the parabola through three points has its minimum, between the outer ones; none where it does not come near
+/// zero, or starts from there.
+fn vertex([(t0, m0), (t1, m1), (t2, m2)]: [(f64, f64); 3]) -> Option<f64> {
+    let (before, after) = ((m1 - m0) / (t1 - t0), (m2 - m1) / (t2 - t1));
+    let curvature = (after - before) / (t2 - t0);
+    let slope = before + curvature * (t1 - t0);
+    let lowest = t1 - 0.5 * slope / curvature;
+    let value = m1 - 0.25 * slope * slope / curvature;
+    let near = value < 0.1 * m0.min(m1).min(m2);
+    (m0 > 0.0 && curvature > 0.0 && near && lowest > t0 && lowest < t2).then_some(lowest)
+}

@@ -1,0 +1,187 @@
+//! Where functions of coordinates and speeds switch, and their pieces held across a switch.
+//!
+//! A switch of time alone is known before a motion ([`Features`](crate::Features)). One of coordinates and speeds is met
+//! on the way: until then an integrator must see one smooth piece, also in a trial step that leads beyond. So the
+//! pieces are held, the functions whose zeros separate them are watched, and where one passes a bound the next piece
+//! is held instead.
+//!
+//! ```
+//! use dwell_laws::{Expression, HeldPieces, Switches};
+//!
+//! // A spring that only pushes.
+//! let stop = Expression::parse("if(x > 0.1, 4e3*(0.1 - x), 0)", &["x"])?;
+//! let switches = Switches::of_expression(&stop, None);
+//! let kind = &switches.kinds()[0];
+//! let mut value = [0.0];
+//! switches.values(&[0.2], &HeldPieces::default(), &mut value);
+//! let pushes = kind.piece_at(value[0]);
+//!
+//! let mut held = HeldPieces::default();
+//! switches.hold(&[pushes], &mut held);
+//! assert_eq!(stop.eval_held(&[0.0], &held), 4e2); // the same piece, continued
+//! assert_eq!(stop.eval(&[0.0]), 0.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+use crate::expression::{Expression, HeldPieces, Op, Sides, run_held_parts};
+use crate::features::switching::{Operands, Switch, switches_of};
+use crate::law::Law;
+
+/// The functions of a magnitude whose values separate its pieces.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Switches {
+    kinds: Vec<SwitchKind>,
+    source: Source,
+}
+
+/// At which values a function switches.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SwitchKind {
+    /// At zero.
+    Zero,
+    /// At every whole value.
+    Integers,
+    /// At these values, in order.
+    Knots(Vec<f64>),
+}
+
+#[derive(Debug, Clone, PartialEq, Default)]
+enum Source {
+    /// A law of one variable, which is the function itself.
+    #[default]
+    Law,
+    Expression {
+        ops: Vec<Op>,
+        /// By switch: where its operands begin.
+        switches: Vec<(Switch, [usize; 2])>,
+    },
+}
+
+impl SwitchKind {
+    /// The piece at a value of the function: the sign, or the number of the interval. None where it is undecided: at
+    /// zero, or where the value is no number.
+    pub fn piece_at(&self, value: f64) -> Option<f64> {
+        match self {
+            _ if value.is_nan() => None,
+            Self::Zero => (value != 0.0).then_some(value.signum()),
+            Self::Integers => Some(value.floor()),
+            Self::Knots(knots) => Some(knots.partition_point(|&knot| knot <= value) as f64),
+        }
+    }
+
+    /// The values between which a piece holds.
+    pub fn bounds(&self, piece: f64) -> [f64; 2] {
+        match self {
+            Self::Zero if piece > 0.0 => [0.0, f64::INFINITY],
+            Self::Zero => [f64::NEG_INFINITY, 0.0],
+            Self::Integers => [piece, piece + 1.0],
+            Self::Knots(knots) => {
+                let knot = |i: f64| knots.get(i as usize).copied();
+                let below = (piece >= 1.0).then(|| knot(piece - 1.0)).flatten();
+                let above = knot(piece).unwrap_or(f64::INFINITY);
+                [below.unwrap_or(f64::NEG_INFINITY), above]
+            }
+        }
+    }
+
+    /// The piece beyond the upper or the lower bound of one.
+    pub fn next(&self, piece: f64, upward: bool) -> f64 {
+        match self {
+            Self::Zero => -piece,
+            Self::Integers | Self::Knots(_) => piece + if upward { 1.0 } else { -1.0 },
+        }
+    }
+}
+
+impl Switches {
+    /// Those of an expression that depend on more than `time`, its variable of that index.
+    pub fn of_expression(expression: &Expression, time: Option<usize>) -> Self {
+        let ops = expression.ops().to_vec();
+        let tree = Operands::of(&ops, time);
+        let mut switches = Vec::new();
+        for (i, operands) in tree.operands.iter().enumerate() {
+            for switch in switches_of(ops[i], i, operands) {
+                let moves = |last: usize| tree.depends[last][1];
+                let is_state = moves(switch.left) || switch.right.is_some_and(moves);
+                let same = |right| tree.is_same(&ops, switch.left, right);
+                if is_state && !switch.right.is_some_and(same) {
+                    let right = switch.right.map_or(0, |right| tree.starts[right]);
+                    switches.push((switch, [tree.starts[switch.left], right]));
+                }
+            }
+        }
+        let kind = |(switch, _): &(Switch, _)| match switch.at_integers {
+            true => SwitchKind::Integers,
+            false => SwitchKind::Zero,
+        };
+        Self {
+            kinds: switches.iter().map(kind).collect(),
+            source: Source::Expression { ops, switches },
+        }
+    }
+
+    /// Those of a law of a coordinate or speed.
+    pub fn of_law(law: &Law) -> Self {
+        let knots = match law {
+            Law::Expression(expression) => return Self::of_expression(expression, None),
+            Law::Spline(spline) if spline.has_kinks() => spline.knots().to_vec(),
+            Law::Profile(profile) => profile.corners().to_vec(),
+            Law::Spline(_) | Law::Polynomial(_) | Law::Sinusoid(_) => return Self::default(),
+        };
+        Self {
+            kinds: vec![SwitchKind::Knots(knots)],
+            source: Source::Law,
+        }
+    }
+
+    /// At which values each function switches.
+    pub fn kinds(&self) -> &[SwitchKind] {
+        &self.kinds
+    }
+
+    /// The value of each function at these variables, on the pieces that are held.
+    pub fn values(&self, variables: &[f64], held: &HeldPieces, out: &mut [f64]) {
+        match &self.source {
+            Source::Law => out.fill(variables.first().copied().unwrap_or(f64::NAN)),
+            Source::Expression { ops, switches } => {
+                let variable = |i: usize| variables.get(i).copied().unwrap_or(f64::NAN);
+                let part = |start: usize, last: usize| {
+                    let sides = held.sides.get(start..=last).unwrap_or_default();
+                    run_held_parts(&ops[start..=last], variable, sides)
+                };
+                for (out, (switch, [left, right])) in out.iter_mut().zip(switches) {
+                    let subtrahend = switch.right.map_or(0.0, |last| part(*right, last));
+                    *out = part(*left, switch.left) - subtrahend;
+                }
+            }
+        }
+    }
+
+    /// Holds these pieces, one for each function; what is none is not held.
+    pub fn hold(&self, pieces: &[Option<f64>], held: &mut HeldPieces) {
+        held.sides.clear();
+        if pieces.iter().all(Option::is_none) {
+            return;
+        }
+        match &self.source {
+            Source::Law => held.sides.extend(pieces.iter().map(|&piece| [piece, None])),
+            Source::Expression { ops, switches } => {
+                held.sides.resize(ops.len(), Sides::default());
+                for ((switch, _), &piece) in switches.iter().zip(pieces) {
+                    held.sides[switch.op][switch.function] = piece;
+                }
+            }
+        }
+    }
+}
+
+impl Law {
+    /// The value and its first three derivatives at `x` where a piece is held ([`Switches::hold`]).
+    pub fn eval_held(&self, x: f64, held: &HeldPieces) -> [f64; 4] {
+        match (self, held.sides.first()) {
+            (Self::Expression(expression), Some(_)) => expression.derivatives_held(&[x], 0, held),
+            (Self::Spline(spline), Some(&[Some(piece), _])) => spline.eval_piece(piece, x),
+            _ => self.eval(x),
+        }
+    }
+}
