@@ -150,7 +150,7 @@ fn val_a_motion_on_a_table_is_that_of_the_machine() {
             let table = tabulate(&machine, accuracy);
             assert!(table.bound() <= accuracy, "{name}");
             assert_eq!(table.state_count(), machine.state_count());
-            let mut moving = table.ode(0.0, &y).expect("a start");
+            let mut moving = table.ode(0.0, &y, 0.0).expect("a start");
             let found = end(&mut moving, &y, until);
             let mut max = 0.0_f64;
             for (i, (found, expected)) in found.iter().zip(&expected).enumerate() {
@@ -180,7 +180,7 @@ fn a_tables_jacobian_is_the_machines() {
         }
         let table = tabulate(&machine, 1e-10);
         let (mut moving, mut exact) = (
-            table.ode(0.1, &y).expect("a start"),
+            table.ode(0.1, &y, 0.0).expect("a start"),
             MachineOde::new(&machine, 0.1, &y).expect("a start"),
         );
         let n = y.len();
@@ -274,7 +274,7 @@ fn val_energy_with_a_potential_does_not_drift_because_of_a_table() {
     );
     for accuracy in [1e-6, 1e-9] {
         let table = tabulate(&machine, accuracy);
-        let mut moving = table.ode(0.0, &y).expect("a start");
+        let mut moving = table.ode(0.0, &y, 0.0).expect("a start");
         let tabulated = states_per_step(&mut moving, |y| {
             table.energy(y[0], y[1]).expect("within").iter().sum()
         });
@@ -333,7 +333,7 @@ fn events_happen_on_a_table_when_they_do_on_the_machine() {
     let model = machine.model();
     let expected = solve(&machine, model, &start, 0.6, &options, &events).expect("a run");
     let table = tabulate(&machine, 1e-9);
-    let mut moving = table.ode(0.0, &start.y).expect("a start");
+    let mut moving = table.ode(0.0, &start.y, 0.0).expect("a start");
     let of = ObservedMachine::new(&machine, model);
     let found = solve_system(&mut moving, of, &start, Some(0.6), &options, &events);
     let found = found.expect("a run");
@@ -369,7 +369,7 @@ fn a_motion_ends_where_its_table_does() {
         TabulatedMachine::new(&machine, 1e-9, TableDomain::Between(0.0, 2.0)).expect("a table");
     assert_eq!((table.domain, table.period), ([0.0, 2.0], None));
     let y = machine.initial_state(&[1.0], &[10.0]);
-    let mut moving = table.ode(0.0, &y).expect("a start");
+    let mut moving = table.ode(0.0, &y, 0.0).expect("a start");
     let start = OdeState { t: 0.0, y };
     let mut watch = |_: &OdeState, _: &OdeState, _: DenseOutput<'_>| Ok(StepControl::Continue);
     let options = Options::new(Method::Tsit45, 1e-9);

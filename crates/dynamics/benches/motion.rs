@@ -171,7 +171,7 @@ impl MotionCase {
             (Computation::Tabulated(by), Plant::Loaded(machine)) => {
                 let table = TabulatedMachine::new(machine, table, TableDomain::Full)
                     .map_err(|e| message(&e))?;
-                let mut ode = table.ode(t, y).map_err(|e| message(&e))?;
+                let mut ode = table.ode(t, y, 0.0).map_err(|e| message(&e))?;
                 self.integrate(&mut ode, by, tolerance)
             }
             (Computation::Quadrature, Plant::Free(exact)) => {

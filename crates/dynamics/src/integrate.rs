@@ -16,6 +16,7 @@ use diffsol::{
     DiffsolError, NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod,
     OdeSolverStopReason, VectorCommon,
 };
+use dwell_laws::SwitchKind;
 use std::cell::{Cell, RefCell};
 
 /// For few states nalgebra is 2.3 times as fast as faer, with the same steps.
@@ -169,14 +170,16 @@ fn integrate_held(
     }
     let mut monitor = SwitchMonitor::new(system, start, end.unwrap_or(f64::INFINITY) - start.t)?;
     let shared = SharedSystem {
+        kinds: system.switch_kinds().to_vec(),
         size: system.size(),
         inner: RefCell::new(system),
     };
+    let [mut integrated, mut watched_system] = [&shared; 2];
     let mut parts = Parts::new(start, options);
     loop {
         let mut crossing: Option<Crossing> = None;
         let mut watched = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
-            let found = monitor.after_step(&mut **shared.inner.borrow_mut(), before, now, dense)?;
+            let found = monitor.after_step(&mut watched_system, before, now, dense)?;
             let Some(found) = found else {
                 return observer(before, now, dense);
             };
@@ -190,15 +193,22 @@ fn integrate_held(
         };
         let (from, remaining) = (parts.from.clone(), parts.remaining);
         let pieces = pieces.as_deref_mut();
-        let mut system = &shared;
-        let part = integrate_smooth(&mut system, &from, end, &remaining, pieces, &mut watched);
+        let part = integrate_smooth(
+            &mut integrated,
+            &from,
+            end,
+            &remaining,
+            pieces,
+            &mut watched,
+        );
         let is_ended = parts.add(part)?;
         let Some(crossing) = crossing.filter(|_| !is_ended) else {
             break;
         };
-        monitor.pass(&crossing, &mut **shared.inner.borrow_mut())?;
+        monitor.pass(&crossing, &mut watched_system)?;
         parts.from = crossing.state;
-        if end.is_some_and(|end| parts.from.t >= end) {
+        let rounding = 8.0 * f64::EPSILON * parts.from.t.abs();
+        if end.is_some_and(|end| parts.from.t >= end - rounding) {
             break;
         }
     }
@@ -207,6 +217,7 @@ fn integrate_held(
 
 /// A system that is integrated and, between its steps, looked at.
 struct SharedSystem<'s> {
+    kinds: Vec<SwitchKind>,
     size: usize,
     inner: RefCell<&'s mut dyn OdeSystem>,
 }
@@ -222,6 +233,18 @@ impl OdeSystem for &SharedSystem<'_> {
 
     fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         self.inner.borrow_mut().jacobian(t, y, out)
+    }
+
+    fn switch_kinds(&self) -> &[SwitchKind] {
+        &self.kinds
+    }
+
+    fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
+        self.inner.borrow_mut().switch_values(t, y, out)
+    }
+
+    fn hold_pieces(&mut self, pieces: &[Option<f64>]) {
+        self.inner.borrow_mut().hold_pieces(pieces);
     }
 
     fn error_weight(&self, state: usize) -> f64 {

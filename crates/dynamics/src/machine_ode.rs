@@ -38,9 +38,8 @@ impl<'m> MachineOde<'m> {
     pub fn until(machine: &'m Machine, t: f64, y: &[f64], end: Option<f64>) -> Result<Self> {
         let mut ode = Self::new(machine, t, y)?;
         let work = machine.largest_work(t, end.unwrap_or(t));
-        let work = if work.is_finite() { work } else { 0.0 };
         for weight in &mut ode.error_weights[machine.work_offset()..] {
-            *weight = weight.max(SMALL_WORK * work);
+            *weight = with_later_works(*weight, work);
         }
         Ok(ode)
     }
@@ -64,6 +63,16 @@ impl<'m> MachineOde<'m> {
 
 /// The part of the largest work below which a work does not count.
 const SMALL_WORK: f64 = 1e-6;
+
+/// The scale of works at the start, J, or that of the largest work to come where it is larger.
+pub(crate) fn with_later_works(scale: f64, largest_work: f64) -> f64 {
+    let later = SMALL_WORK * largest_work;
+    if later.is_finite() {
+        scale.max(later)
+    } else {
+        scale
+    }
+}
 
 impl MachineState<'_> {
     /// The scale of works, J: the kinetic energy and the work of actuators and drives over one unit of their

@@ -185,3 +185,109 @@ impl Law {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Interpolation, Spline};
+    use proptest::prelude::*;
+
+    const TEXTS: [&str; 10] = [
+        "if(x > y, x^2, 3 - y)",
+        "abs(x*y - 1) + sign(x)",
+        "floor(3*x) + step(y - x)",
+        "clamp(x + y, -1, 0.5)",
+        "min(x, max(y, x*x - 1))",
+        "atan2(y, x)",
+        "if(abs(x) < 0.3, floor(y/0.2), sign(y)*x)",
+        "if(x <= 0, if(y >= 0, 1, 2), abs(y))",
+        "max(0, 1 - abs(x - y)/0.1)",
+        "clamp(t*x, y, 1)",
+    ];
+
+    fn hold_at(switches: &Switches, at: &[f64]) -> HeldPieces {
+        let mut values = vec![0.0; switches.kinds().len()];
+        switches.values(at, &HeldPieces::NONE, &mut values);
+        let kinds = switches.kinds().iter().zip(&values);
+        let pieces: Vec<_> = kinds.map(|(kind, &value)| kind.piece_at(value)).collect();
+        let mut held = HeldPieces::NONE;
+        switches.hold(&pieces, &mut held);
+        held
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(1000) })]
+
+        /// The pieces that hold at a point have its value and slope, and go on smoothly: up to a switch they are the
+        /// function, and no function that is watched passes a bound before the function leaves them.
+        #[test]
+        fn held_pieces_are_the_function_up_to_its_switches(
+            text in prop::sample::select(TEXTS.to_vec()),
+            from in prop::array::uniform3(-1.5..1.5_f64),
+            to in prop::array::uniform3(-1.5..1.5_f64),
+        ) {
+            let expression = Expression::parse(text, &["x", "y", "t"]).expect("a formula");
+            let switches = Switches::of_expression(&expression, Some(2));
+            let mut first = vec![0.0; switches.kinds().len()];
+            switches.values(&from, &HeldPieces::NONE, &mut first);
+            prop_assume!(first.iter().all(|value| *value != 0.0));
+            let held = hold_at(&switches, &from);
+            for variable in 0..3 {
+                let free = expression.derivatives_wrt(&from, variable);
+                prop_assert_eq!(free, expression.derivatives_held(&from, variable, &held));
+            }
+            let mut values = first.clone();
+            for k in 1..=200 {
+                let part = f64::from(k) / 200.0;
+                let at = [0, 1, 2].map(|i| from[i] + part * (to[i] - from[i]));
+                switches.values(&at, &held, &mut values);
+                let inside = switches.kinds().iter().zip(values.iter().zip(&first));
+                let inside = inside.map(|(kind, (value, first))| {
+                    kind.piece_at(*first).is_none_or(|piece| {
+                        let [low, high] = kind.bounds(piece);
+                        (low..=high).contains(value)
+                    })
+                });
+                if !inside.into_iter().all(|inside| inside) {
+                    break;
+                }
+                let (one, other) = (expression.eval(&at), expression.eval_held(&at, &held));
+                prop_assert!((one - other).abs() < 1e-12, "{} {:?}: {} {}", text, at, one, other);
+            }
+        }
+    }
+
+    #[test]
+    fn switches_of_time_alone_are_not_among_them() {
+        let expression = Expression::parse("if(t > 1, abs(x), x)", &["x", "t"]).expect("a formula");
+        assert_eq!(
+            Switches::of_expression(&expression, Some(1)).kinds().len(),
+            1
+        );
+        assert_eq!(Switches::of_expression(&expression, None).kinds().len(), 2);
+    }
+
+    #[test]
+    fn the_pieces_of_a_table_go_on_beyond_its_points() {
+        let points = [[0.0, 1.0], [1.0, 2.0], [2.0, 0.0]];
+        let table = Spline::interpolating(&points, Interpolation::Linear).expect("a table");
+        let law = Law::Spline(table);
+        let switches = Switches::of_law(&law);
+        for (inside, line) in [
+            (-1.0, [1.0, 1.0]),
+            (0.5, [1.0, 1.0]),
+            (1.5, [4.0, -2.0]),
+            (3.0, [4.0, -2.0]),
+        ] {
+            let held = hold_at(&switches, &[inside]);
+            for x in [-2.0, 0.3, 1.7, 5.0] {
+                let [value, slope, ..] = law.eval_held(x, &held);
+                assert!(
+                    (value - (line[0] + line[1] * x)).abs() < 1e-15,
+                    "{inside} {x}"
+                );
+                assert_eq!(slope, line[1]);
+            }
+        }
+    }
+}

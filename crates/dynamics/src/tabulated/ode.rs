@@ -2,6 +2,7 @@
 
 use super::{LoadEffect, TabulatedCoordinate, TabulatedMachine, TabulatedSignal};
 use crate::error::{DynamicsError, Result, positive_inertia};
+use crate::machine_ode::with_later_works;
 use crate::ode::{DualWorkspace, OdeSystem};
 use crate::state_switches::{HeldSource, SourceState};
 use dwell_kinetostatics::KinetostaticsError;
@@ -62,11 +63,12 @@ impl TabulatedMachine {
         2 + self.drive_state_count + self.tabulated_loads.len()
     }
 
-    /// The ODE system of the table, from a state whose energies are the scale of the works.
+    /// The ODE system of the table, from a state whose energies are the scale of the works; so is the `largest_work`, J,
+    /// that loads can do during the motion ([`Machine::largest_work`](crate::Machine::largest_work), else 0).
     ///
     /// # Errors
     /// [`DynamicsError`] where the start cannot be evaluated.
-    pub fn ode(&self, t: f64, y: &[f64]) -> Result<TabulatedMachineOde<'_>> {
+    pub fn ode(&self, t: f64, y: &[f64], largest_work: f64) -> Result<TabulatedMachineOde<'_>> {
         let mut workspace = TableWorkspace::new(self);
         let [q, q_dot] = [y[0], y[1]];
         let [kinetic, _] = self.energy(q, q_dot)?;
@@ -78,11 +80,12 @@ impl TabulatedMachine {
                 energy_scale += contribution.force.abs();
             }
         }
+        let energy_scale = Some(energy_scale).filter(|e| e.is_normal()).unwrap_or(1.0);
         Ok(TabulatedMachineOde {
             machine: self,
             workspace,
             dual_workspace: DualWorkspace::new(TableWorkspace::new(self), self.state_count()),
-            energy_scale: Some(energy_scale).filter(|e| e.is_normal()).unwrap_or(1.0),
+            energy_scale: with_later_works(energy_scale, largest_work),
             held: Vec::new(),
         })
     }

@@ -145,7 +145,8 @@ fn held_piece<S: TapeScalar>(op: Op, operands: &[S], [side, second]: Sides) -> S
     if op == Op::Clamp {
         // Each of its bounds is held or not.
         let above_low = side.unwrap_or_else(|| difference(0, 1)) > 0.0;
-        let above_high = second.unwrap_or_else(|| difference(0, 2)) > 0.0;
+        let above_high = second.unwrap_or_else(|| difference(0, 2)) > 0.0
+            || !above_low && difference(1, 2) > 0.0;
         return operands[if above_high {
             2
         } else {

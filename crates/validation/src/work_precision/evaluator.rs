@@ -211,7 +211,7 @@ impl Evaluator for MachineEvaluator<'_> {
         let machine = &self.subject.machine;
         let OdeState { t, y } = &self.subject.initial_state;
         if let Some(table) = &self.table {
-            return Ok(Box::new(table.ode(*t, y)?));
+            return Ok(Box::new(table.ode(*t, y, 0.0)?));
         }
         let exact = MachineOde::new(machine, *t, y)?;
         if self.evaluation != Evaluation::SinglePrecision {

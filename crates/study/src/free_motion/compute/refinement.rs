@@ -60,7 +60,9 @@ impl FreeMotionProblem<'_> {
             return Ok(None);
         };
         let start = self.initial_state();
-        let mut ode = table.ode(start.t, &start.y).map_err(|e| self.explain(&e))?;
+        let work = self.machine.largest_work(start.t, duration);
+        let ode = table.ode(start.t, &start.y, work);
+        let mut ode = ode.map_err(|e| self.explain(&e))?;
         let outputs = ObservedMachine::new(&self.machine, &self.output_model);
         let events = self.events();
         let solution = solve_system(&mut ode, outputs, &start, Some(duration), options, &events);
