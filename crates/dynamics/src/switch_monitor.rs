@@ -10,8 +10,11 @@ use crate::ode::{DenseOutput, OdeState, OdeSystem, root_subintervals, state_at};
 use dwell_laws::SwitchKind;
 use dwell_numerics::root;
 
-/// Step along the rates that shows on which side of a switch they lead, as a part of the step before.
-const PROBE: f64 = 1e-4;
+/// Step along the rates that shows on which side of a switch they lead, as a part of the step before: the next switch
+/// may be near.
+const PROBE: f64 = 1e-7;
+/// A first step, as a part of the motion.
+const FIRST_STEP: f64 = 1e-3;
 /// Steps for which a switch that is not held must keep its side to be held again, at first.
 const PATIENCE: u32 = 4;
 /// Roundings of time within which two switches happen together.
@@ -82,7 +85,7 @@ impl SwitchMonitor {
         let mut monitor = Self {
             values: vec![0.0; switches.len()],
             switches,
-            step: PROBE * if span.is_finite() { span } else { 1.0 },
+            step: FIRST_STEP * if span.is_finite() { span } else { 1.0 },
         };
         monitor.hold(system);
         system.switch_values(start.t, &start.y, &mut monitor.values)?;
