@@ -8,10 +8,12 @@
 
 use crate::dop853;
 use crate::error::{DynamicsError, Result};
+use crate::integration_parts::Parts;
 use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, StepObserver, Termination};
 use crate::options::{Method, Options, Statistics};
 use crate::switch_monitor::{Crossing, SwitchMonitor};
 use crate::time_pieces::TimePieces;
+use diffsol::error::OdeSolverError;
 use diffsol::{
     DiffsolError, NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod,
     OdeSolverStopReason, VectorCommon,
@@ -25,6 +27,9 @@ type Solver = NalgebraLU<f64>;
 
 /// Smallest step, s, at a rate of 1 per s or less; at a higher one, in proportion shorter.
 const MIN_STEP: f64 = 1e-17;
+
+/// diffsol takes two times for one that differ by less than this part of time and step.
+const INTEGRATOR_ROUNDING: f64 = 100.0 * f64::EPSILON;
 
 /// Refuses a start or an end that is not finite, or an end before the start.
 fn check_interval(start: &OdeState, end: Option<f64>) -> Result<()> {
@@ -102,57 +107,6 @@ fn integrate_segments(
         }
     }
     parts.whole.ok_or(DynamicsError::DurationTooShort)
-}
-
-/// An integration in parts.
-struct Parts {
-    whole: Option<Termination>,
-    /// Where the next part begins, and what is left for it.
-    from: OdeState,
-    remaining: Options,
-    max_steps: usize,
-}
-
-impl Parts {
-    fn new(start: &OdeState, options: &Options) -> Self {
-        Self {
-            whole: None,
-            from: start.clone(),
-            remaining: *options,
-            max_steps: options.max_steps,
-        }
-    }
-
-    /// Adds a part, at whose end the next begins; whether an error ended it.
-    ///
-    /// # Errors
-    /// That of the first part.
-    fn add(&mut self, part: Result<Termination>) -> Result<bool> {
-        let part = match (part, &mut self.whole) {
-            (Ok(part), _) => part,
-            // Between two switches lies less than a rounding of time.
-            (Err(DynamicsError::DurationTooShort), Some(_)) => return Ok(false),
-            (Err(error), None) => return Err(error),
-            (Err(error), Some(before)) => {
-                before.error = Some(error);
-                return Ok(true);
-            }
-        };
-        self.from.clone_from(&part.state);
-        let steps = part.statistics.steps;
-        self.remaining.max_steps = self.remaining.max_steps.saturating_sub(steps);
-        let before = self.whole.take();
-        let before = before.map_or_else(Statistics::default, |before| before.statistics);
-        let last = self.whole.insert(Termination {
-            statistics: before.plus(part.statistics),
-            ..part
-        });
-        if let Some(DynamicsError::MaxStepsReached { max_steps, .. }) = &mut last.error {
-            // Those of the whole motion.
-            *max_steps = self.max_steps;
-        }
-        Ok(last.error.is_some())
-    }
 }
 
 /// Integrates while nothing switches in time, from one switch of the state to the next: in between, its pieces are
@@ -352,9 +306,7 @@ fn integrate_smooth(
 
 /// An error of the integrator itself, at the time it had reached.
 fn solver_error(error: &DiffsolError, t: f64) -> DynamicsError {
-    use diffsol::error::OdeSolverError::{
-        StepSizeTooSmall, StopTimeAtCurrentTime, TooManyErrorTestFailures,
-    };
+    use OdeSolverError::{StepSizeTooSmall, StopTimeAtCurrentTime, TooManyErrorTestFailures};
     match error {
         DiffsolError::OdeSolverError(StepSizeTooSmall { .. } | TooManyErrorTestFailures { .. }) => {
             DynamicsError::StepTooSmall { t }
@@ -416,8 +368,9 @@ impl StepLoop<'_, '_> {
         };
         let mut scratch = solver.state().y.clone();
         let mut now = at.clone();
-        let stop = self.stop_time(at.t)?;
-        set_stop_time(solver, stop).map_err(|e| cause(at.t, e))?;
+        if self.set_stop_time(solver, at.t, &cause)? {
+            return Err(DynamicsError::DurationTooShort);
+        }
         for _ in 0..self.options.max_steps {
             let reason = solver.step().map_err(|e| cause(at.t, e))?;
             let state = solver.state();
@@ -446,8 +399,9 @@ impl StepLoop<'_, '_> {
                 return Ok(());
             }
             if is_at_stop || self.options.max_step.is_some() || self.pieces.is_some() {
-                let stop = self.stop_time(at.t)?;
-                set_stop_time(solver, stop).map_err(|e| cause(at.t, e))?;
+                if self.set_stop_time(solver, at.t, &cause)? {
+                    return Ok(());
+                }
             }
         }
         Err(DynamicsError::MaxStepsReached {
@@ -466,12 +420,36 @@ impl StepLoop<'_, '_> {
         let stop = self.end.unwrap_or(f64::INFINITY).min(step).min(feature);
         Ok(stop.is_finite().then_some(stop))
     }
-}
 
-fn set_stop_time<'a, E, S>(solver: &mut S, stop: Option<f64>) -> Result<(), DiffsolError>
-where
-    E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
-    S: OdeSolverMethod<'a, E>,
-{
-    stop.map_or(Ok(()), |stop| solver.set_stop_time(stop))
+    /// Sets the time at which a step that begins at `t` must end at the latest; whether the end itself is there already
+    /// in the integrator's rounding.
+    fn set_stop_time<'a, E, S>(
+        &mut self,
+        solver: &mut S,
+        t: f64,
+        cause: &dyn Fn(f64, DiffsolError) -> DynamicsError,
+    ) -> Result<bool>
+    where
+        E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
+        S: OdeSolverMethod<'a, E>,
+    {
+        let Some(mut stop) = self.stop_time(t)? else {
+            return Ok(false);
+        };
+        let end = self.end.unwrap_or(f64::INFINITY);
+        loop {
+            match solver.set_stop_time(stop) {
+                Ok(()) => return Ok(false),
+                Err(DiffsolError::OdeSolverError(OdeSolverError::StopTimeAtCurrentTime)) => {
+                    if stop >= end {
+                        return Ok(true);
+                    }
+                    // What is narrower than its rounding of time ends a step behind it.
+                    let rounding = INTEGRATOR_ROUNDING * (t.abs() + solver.state().h.abs());
+                    stop = (stop + rounding).min(end);
+                }
+                Err(error) => return Err(cause(t, error)),
+            }
+        }
+    }
 }

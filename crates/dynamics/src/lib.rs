@@ -58,6 +58,7 @@ pub mod equilibrium;
 pub mod error;
 pub mod flywheel;
 pub mod integrate;
+mod integration_parts;
 mod libration;
 pub mod machine;
 pub mod machine_ode;
