@@ -88,6 +88,15 @@ pub enum DynamicsError {
         /// The number of steps allowed.
         max_steps: usize,
     },
+    /// A load or drive switches forth and back without end: on both sides it drives the motion back to the switch, as
+    /// a brake at rest does.
+    #[error("the load of index {source_index} switches forth and back without end at t = {t} s")]
+    Chatters {
+        /// Which: the index of a load (those of the drives last).
+        source_index: usize,
+        /// The time reached, s.
+        t: f64,
+    },
     /// The integrator's steps became too small to continue.
     #[error("the integrator's steps become too small at t = {t:e} s")]
     StepTooSmall {

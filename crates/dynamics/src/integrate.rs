@@ -193,6 +193,10 @@ impl OdeSystem for &SharedSystem<'_> {
         &self.kinds
     }
 
+    fn switch_source(&self, switch: usize) -> usize {
+        self.inner.borrow().switch_source(switch)
+    }
+
     fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         self.inner.borrow_mut().switch_values(t, y, out)
     }

@@ -116,6 +116,10 @@ impl OdeSystem for MachineOde<'_> {
         self.machine.state_switches.kinds()
     }
 
+    fn switch_source(&self, switch: usize) -> usize {
+        self.machine.state_switches.source_index(switch)
+    }
+
     fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         let machine = self.machine;
         let state = machine.evaluate(t, y, &mut self.workspace)?;

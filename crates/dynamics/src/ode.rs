@@ -73,6 +73,11 @@ pub trait OdeSystem {
         &[]
     }
 
+    /// The index of the load (those of the drives last) to which one of these functions belongs.
+    fn switch_source(&self, _switch: usize) -> usize {
+        0
+    }
+
     /// The values of these functions, on the pieces that are held.
     ///
     /// # Errors

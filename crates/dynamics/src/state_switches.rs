@@ -67,6 +67,18 @@ impl StateSwitches {
         &self.kinds
     }
 
+    /// The load's index of a function.
+    pub(crate) fn source_index(&self, mut function: usize) -> usize {
+        for source in &self.sources {
+            let count = source.magnitude.kinds().len() + source.drive_count;
+            if function < count {
+                return source.index;
+            }
+            function -= count;
+        }
+        0
+    }
+
     /// Holds one piece for each function, or none: `set` gets the load's index and its pieces.
     pub(crate) fn hold(
         &self,

@@ -5,7 +5,7 @@
 //! Where the rates on both pieces lead back to the switch, as of a brake at rest, the motion stays on it: there the
 //! switch is not held until it has kept its side for some steps.
 
-use crate::error::Result;
+use crate::error::{DynamicsError, Result};
 use crate::ode::{DenseOutput, OdeState, OdeSystem, root_subintervals, state_at};
 use dwell_laws::SwitchKind;
 use dwell_numerics::root;
@@ -17,6 +17,8 @@ const PROBE: f64 = 1e-7;
 const FIRST_STEP: f64 = 1e-3;
 /// Steps for which a switch that is not held must keep its side to be held again, at first.
 const PATIENCE: u32 = 4;
+/// Steps after which a switch to which its own pieces lead back is given up: they are short.
+const CHATTER_STEPS: u32 = 10_000;
 /// Roundings of time within which two switches happen together.
 const TOGETHER: f64 = 16.0 * f64::EPSILON;
 
@@ -39,6 +41,8 @@ struct MonitoredSwitch {
     switched: Option<f64>,
     /// Where it is not held: its piece, for how many steps, and for how many it must be.
     observed: (Option<f64>, u32),
+    /// Steps since its own pieces led back to it; none where they do not.
+    chatter: Option<u32>,
     patience: u32,
     /// Distances from the nearest bound at the last points of the step, the latest first.
     margins: [(f64, f64); 2],
@@ -78,6 +82,7 @@ impl SwitchMonitor {
             is_inside: false,
             switched: None,
             observed: (None, 0),
+            chatter: None,
             patience: PATIENCE,
             margins: [(f64::NAN, f64::NAN); 2],
         });
@@ -296,6 +301,7 @@ impl SwitchMonitor {
             if returns || switch.switched.is_some_and(again) {
                 switch.piece = None;
                 switch.observed = (None, 0);
+                switch.chatter = Some(0);
             }
             switch.switched = Some(at.t);
         }
@@ -305,21 +311,35 @@ impl SwitchMonitor {
 
     /// After a step: whether a switch that is not held has kept its side for so long that it is now held, so that the
     /// integration begins anew.
+    ///
+    /// # Errors
+    /// [`DynamicsError::Chatters`]; where the state cannot be evaluated.
     fn holds_again(&mut self, system: &mut dyn OdeSystem, now: &OdeState) -> Result<bool> {
         if self.switches.iter().all(|s| s.piece.is_some()) {
             return Ok(false);
         }
         system.switch_values(now.t, &now.y, &mut self.values)?;
         let mut changed = false;
-        for (switch, &value) in self.switches.iter_mut().zip(&self.values) {
+        for (k, (switch, &value)) in self.switches.iter_mut().zip(&self.values).enumerate() {
             if switch.piece.is_some() {
                 continue;
+            }
+            if let Some(steps) = &mut switch.chatter {
+                *steps += 1;
+                if *steps > CHATTER_STEPS {
+                    let source_index = system.switch_source(k);
+                    return Err(DynamicsError::Chatters {
+                        source_index,
+                        t: now.t,
+                    });
+                }
             }
             let piece = switch.kind.piece_at(value);
             let (last, steps) = switch.observed;
             switch.observed = (piece, if piece == last { steps + 1 } else { 0 });
             if piece.is_some() && switch.observed.1 >= switch.patience {
                 switch.piece = piece;
+                switch.chatter = None;
                 switch.patience = switch.patience.saturating_mul(2);
                 changed = true;
             }

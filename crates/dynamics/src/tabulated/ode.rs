@@ -209,6 +209,11 @@ impl OdeSystem for TabulatedMachineOde<'_> {
         self.machine.state_switches.kinds()
     }
 
+    fn switch_source(&self, switch: usize) -> usize {
+        let k = self.machine.state_switches.source_index(switch);
+        self.machine.tabulated_loads[k].load
+    }
+
     fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         let Self {
             machine, workspace, ..

@@ -23,6 +23,7 @@ pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> Stud
             t,
             max_steps,
         } => explain_fast(scene, *source_index, [*width, *t], *max_steps),
+        DynamicsError::Chatters { source_index, t } => explain_chatter(scene, *source_index, *t),
         other => {
             let (message, help, at, label) = describe(scene, other);
             scene_error(scene, message, help, [(at, label)])
@@ -219,6 +220,20 @@ fn explain_fast(
     );
     let help = "shorten the motion; or give --max-step, with which it is followed only as far as steps of that length see it";
     scene_error(scene, message, help, [(place, "varies too fast")])
+}
+
+/// Explains a load that holds the motion at its switch.
+fn explain_chatter(scene: &Scene, load: usize, t: f64) -> StudyError {
+    let name = scene.loads.get(load).map_or("", |l| l.name.as_str());
+    let message = format!(
+        "load `{name}` switches forth and back without end at t = {} s: on both sides of its switch it drives the motion \
+         back to it",
+        digits(t, 6)
+    );
+    let help = "such a load holds a mechanism, as dry friction at rest does, which is not modelled: end the motion there \
+                with an event, or use a smooth function, such as tanh(speed/0.01) for sign(speed)";
+    let label = "switches forth and back";
+    scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
 }
 
 /// Explains a load that is undefined.
