@@ -12,7 +12,7 @@ mod candidates;
 mod continued_motion;
 mod crossing;
 mod monitor;
-pub(crate) mod near_branch;
+mod near_branch;
 mod revolutions;
 
 use crate::change_point_fit::{ChangePointFit, ChangePointFitError};

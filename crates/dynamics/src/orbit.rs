@@ -15,7 +15,7 @@
 //! digits of (4) and (3) all of the time history. Where dt/ds is too sharp for equally spaced points, next to a
 //! maximum of V or where the inertia is small, it is integrated on panels.
 
-use crate::atlas::near_branch::is_too_close;
+use crate::close_branches::is_too_close;
 use crate::conservative::{ConservativeSystem, EnergyTerms, LoadedSystem, UnloadedSystem};
 use crate::error::{DynamicsError, Result};
 use crate::libration::{libration, nearest_phase, phase_of};

@@ -6,13 +6,11 @@
 //! accelerations in it are rounding, the motion ends before it.
 
 use super::Chart;
+use crate::close_branches::{MIN_HALF_WIDTH, is_too_close};
 use crate::ode::OdeState;
-use dwell_geometry::{NearBranch, Plan};
+use dwell_geometry::NearBranch;
 use std::f64::consts::TAU;
 
-/// Accelerations within a half-width w (rad, or of the mechanism's size) err by eps/w² of themselves: 2.5e-7 at this
-/// one. Between methods, motions past smaller ones differed by up to 100 times their estimates.
-const MIN_HALF_WIDTH: f64 = 3e-5;
 /// Longest step within a near part, in half-widths, and how far the part extends.
 const WIDTHS_PER_STEP: f64 = 0.5;
 const EXTENT: f64 = 4.0;
@@ -105,11 +103,6 @@ impl Chart {
         let revolution = |q: f64| ((q - from) / TAU).floor();
         plan.is_angle(0) && revolution(before.y[0]) != revolution(now.y[0])
     }
-}
-
-/// Whether a near branch is so close that rounding does not show which of the two a motion follows.
-pub(crate) fn is_too_close(near: &NearBranch, plan: &Plan) -> bool {
-    near.half_width < MIN_HALF_WIDTH * plan.coordinate_unit()
 }
 
 /// The coordinate of a near branch, whole periods apart, that a step meets within a distance.
