@@ -12,6 +12,7 @@ mod candidates;
 mod continued_motion;
 mod crossing;
 mod monitor;
+mod near_branch;
 mod revolutions;
 
 use crate::change_point_fit::{ChangePointFit, ChangePointFitError};
@@ -34,6 +35,7 @@ use dwell_geometry::{
 };
 use dwell_kinetostatics::{Drive, Load, Mass, Model, ModelError};
 use monitor::{ChartExit, ChartMonitor};
+use near_branch::Passage;
 use revolutions::load_angles;
 
 /// A chart is left when another coordinate moves this many times as fast as its own.
@@ -212,11 +214,13 @@ impl<'s> Atlas<'s> {
         let (mut chart, mut at) = (0, start.clone());
         let requested = options;
         let (mut options, mut max_step) = (*requested, None);
+        let mut passage: Option<Passage> = None;
         let mut idle = 0;
         loop {
             self.prepare_crossings(chart);
-            let (solution, exit) =
-                match self.solve_chart(chart, &at, end, &options, &mut recorder_state) {
+            let within = (&at, end, passage);
+            let (mut solution, exit) =
+                match self.solve_chart(chart, within, &options, &mut recorder_state) {
                     // Nothing is left of the duration after a change.
                     Err(DynamicsError::DurationTooShort) if !motion.segments.is_empty() => {
                         return Ok(motion);
@@ -233,6 +237,10 @@ impl<'s> Atlas<'s> {
             if let Some(last) = solution.steps.last() {
                 at.clone_from(last);
             }
+            if let Some(DynamicsError::MaxStepsReached { max_steps, .. }) = &mut solution.error {
+                // Those of the whole motion.
+                *max_steps = requested.max_steps;
+            }
             motion.terminated_by_event = solution.terminated_by_event;
             motion.error = solution.error.clone();
             motion.append(chart, solution);
@@ -240,9 +248,19 @@ impl<'s> Atlas<'s> {
                 return Ok(motion);
             }
             let exit = match exit {
-                Some(ChartExit::StepTooLong(step)) => {
+                Some(ChartExit::StepTooLong(step, place)) => {
                     options.max_step = Some(STEP_REDUCTION * step);
+                    passage = passage.or(place);
                     continue;
+                }
+                Some(ChartExit::PlacePassed) => {
+                    (passage, options.max_step) = (None, requested.max_step);
+                    continue;
+                }
+                Some(ChartExit::BranchesTooClose { q, half_width }) => {
+                    let t = at.t;
+                    motion.error = Some(DynamicsError::NearBranches { t, q, half_width });
+                    return Ok(motion);
                 }
                 None if self.shorten_steps(chart, &at, &mut max_step) => {
                     options.max_step = max_step;
@@ -252,6 +270,7 @@ impl<'s> Atlas<'s> {
                 exit => exit,
             };
             (max_step, options.max_step) = (None, requested.max_step);
+            passage = None;
             // A chart that must be left and cannot be ends the motion; so do charts that only lead to
             // each other.
             let exit = exit.filter(|_| idle < MAX_IDLE_CHARTS);
@@ -277,8 +296,7 @@ impl<'s> Atlas<'s> {
     fn solve_chart(
         &self,
         chart: usize,
-        at: &OdeState,
-        end: f64,
+        (at, end, passage): (&OdeState, f64, Option<Passage>),
         options: &Options,
         recorder_state: &mut RecorderState<'_>,
     ) -> Result<(Solution, Option<ChartExit>)> {
@@ -286,7 +304,7 @@ impl<'s> Atlas<'s> {
         let observed = ObservedMachine::new(&current.machine, &current.output_model);
         let mut recorder = recorder_state.recorder(observed, at)?;
         let mut solution = recorder.begin_solution(at, options);
-        let mut monitor = ChartMonitor::new(self, chart);
+        let mut monitor = ChartMonitor::new(self, chart, passage);
         if let Some(exit_at_start) = monitor.exit_at_fold(at)? {
             return Ok((solution, Some(exit_at_start)));
         }
@@ -319,7 +337,9 @@ impl<'s> Atlas<'s> {
 
     /// The fastest other coordinates where a chart ends, if they are faster than its own.
     fn fallback_exit(&self, chart: usize, at: &OdeState) -> Option<ChartExit> {
-        let speeds = ChartMonitor::new(self, chart).candidate_speeds(at).ok()?;
+        let speeds = ChartMonitor::new(self, chart, None)
+            .candidate_speeds(at)
+            .ok()?;
         speeds.faster_than(1.0).map(ChartExit::SolutionEnds)
     }
 
@@ -331,7 +351,9 @@ impl<'s> Atlas<'s> {
         exit: &ChartExit,
     ) -> Option<(usize, Vec<f64>, ChartChangeReason)> {
         let (speeds, reason) = match exit {
-            ChartExit::StepTooLong(_) => return None,
+            ChartExit::StepTooLong(..)
+            | ChartExit::PlacePassed
+            | ChartExit::BranchesTooClose { .. } => return None,
             ChartExit::CrossesChangePoint { crossing, above } => {
                 let to = self.crossings[*crossing].charts[usize::from(*above)];
                 let reason = ChartChangeReason::CrossesChangePoint { fit: *crossing };

@@ -49,6 +49,14 @@ pub enum ChangePointFitError {
     /// It has couplings, which count whole revolutions.
     #[error("a motion with gears or couplings cannot pass a change point")]
     Couplings,
+    /// The branches come close there, but do not meet.
+    #[error(
+        "the assembly branches come within {half_width:.1e} of each other there without meeting"
+    )]
+    Separate {
+        /// The part of the coordinate, rad or m.
+        half_width: f64,
+    },
     /// There is no pose next to it.
     #[error(transparent)]
     Position(#[from] PositionError),

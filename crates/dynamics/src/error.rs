@@ -50,6 +50,18 @@ pub enum DynamicsError {
         /// Its coordinate, rad.
         q: f64,
     },
+    /// Two assembly branches come so close that rounding does not show which of them the motion follows.
+    #[error(
+        "two assembly branches come close at q = {q}, within {half_width:.1e} of the coordinate, which the motion reaches soon after t = {t} s"
+    )]
+    NearBranches {
+        /// The time of the last state before, s.
+        t: f64,
+        /// Where they are nearest, rad or m.
+        q: f64,
+        /// The part of the coordinate within which they differ from those of a change point, rad or m.
+        half_width: f64,
+    },
     /// An option, such as a tolerance, that cannot be used.
     #[error("{what} must be a {must}, not {value}")]
     BadOption {

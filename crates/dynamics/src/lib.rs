@@ -50,6 +50,7 @@
 
 pub mod atlas;
 mod change_point_fit;
+mod close_branches;
 mod conservative;
 pub mod cycle;
 mod dop853;

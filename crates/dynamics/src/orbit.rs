@@ -15,6 +15,7 @@
 //! digits of (4) and (3) all of the time history. Where dt/ds is too sharp for equally spaced points, next to a
 //! maximum of V or where the inertia is small, it is integrated on panels.
 
+use crate::close_branches::is_too_close;
 use crate::conservative::{ConservativeSystem, EnergyTerms, LoadedSystem, UnloadedSystem};
 use crate::error::{DynamicsError, Result};
 use crate::libration::{libration, nearest_phase, phase_of};
@@ -22,6 +23,7 @@ use crate::machine::Machine;
 use crate::motion_class::{EnergyScan, MotionClass};
 use crate::ode::ReducedState;
 use crate::time_density::{ResolvedMotion, TimeDensity};
+use dwell_geometry::NearBranch;
 use dwell_kinetostatics::ReducedModel;
 use dwell_numerics::fourier::{FourierSeries, SHARP_POINTS, refine_samples};
 use dwell_numerics::panels::Panels;
@@ -156,6 +158,23 @@ impl Orbit {
     /// The state at the start.
     pub fn initial_state(&self) -> ReducedState {
         self.initial_state
+    }
+
+    /// Whether it passes a place where another assembly branch is so close that rounding does not show which of the two
+    /// the motion follows.
+    pub fn passes_close_branches(&self, machine: &Machine) -> bool {
+        let plan = machine.model().plan();
+        let visits = |near: &NearBranch| match self.kind {
+            OrbitKind::Rotation(_) => true,
+            OrbitKind::Libration([a, b]) => {
+                let period = plan.range().period().unwrap_or(TAU);
+                let angle = near.q + period * ((a - near.q) / period).ceil();
+                let q = if plan.is_angle(0) { angle } else { near.q };
+                (a..=b).contains(&q)
+            }
+        };
+        let mut near = plan.near_branches().iter();
+        near.any(|near| is_too_close(near, plan) && visits(near))
     }
 
     /// The first time (s), not before the start, at which the coordinate is `q` (rad or m), by (3); of a rotation

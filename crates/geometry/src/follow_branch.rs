@@ -1,14 +1,16 @@
 //! Follows the branch of the assembly over the range of a single actuator, and stores poses along it for the groups
 //! whose positions are found by iteration.
 
+mod separation;
+
 use crate::error::AssemblyError;
-use crate::plan::range::{Range, RangeLimit};
+use crate::plan::range::{NearBranch, Range, RangeLimit};
 use crate::plan::stored_poses::{StoredPose, StoredPoses};
 use crate::plan::{AssurGroup, GroupKind, PlacementMethod, Plan, Pose};
 use crate::plane::{Vec2, vec2};
 use crate::positions::{InitialIterate, STEPS_PER_REVOLUTION};
 use crate::structure::groups::Unknown;
-use dwell_numerics::{Dual, Scalar};
+use dwell_numerics::Dual;
 use std::f64::consts::TAU;
 
 /// Revolutions after which a branch that neither ends nor closes is no longer followed.
@@ -19,6 +21,8 @@ const CHANGE_POINT_DETERMINANT: f64 = 1e-6;
 /// A change point is distinguished from a limit position by the product of the determinant and its slope: to
 /// the former it falls as the determinant itself, to the latter (a square root) it stays as it is.
 const CHANGE_POINT_PRODUCT: f64 = 1e-3;
+/// Behind a limit position with a smaller product another branch may be near.
+const NEAR_PRODUCT: f64 = 0.1;
 /// A step is taken if the tangents of all determinants stay clear of zero over so many times its
 /// length: towards a limit position, where they fall as a square root, the distance left is halved.
 const TANGENT_CLEARANCE: f64 = 4.0;
@@ -26,6 +30,10 @@ const TANGENT_CLEARANCE: f64 = 4.0;
 const SAME_POSE: f64 = 1e-6;
 /// Where the branch cannot be followed any further, the step is halved until it is this small, rad.
 const MIN_STEP: f64 = 2e-14;
+/// A pose from which the poses next to a limit can be followed again has a determinant of this part of the largest.
+const ANCHOR_DETERMINANT: f64 = 1e-2;
+/// Branches that both fold back within this part of the coordinate cannot be followed to their limits one by one.
+const MIN_FOLD_HALF_WIDTH: f64 = 2e-6;
 
 impl Plan {
     /// Follows the branch from the assembly over the range of a single actuator, in both directions, and
@@ -37,13 +45,15 @@ impl Plan {
         }
         let mut ahead = vec![assembly_pose.clone()];
         let mut up = None;
+        let mut near = Vec::new();
         for revolutions in 1..=MAX_REVOLUTIONS {
-            up = self.follow_direction(&mut ahead, 1.0, 1);
+            up = self.follow_direction(&mut ahead, 1.0, 1, &mut near);
             if up.is_some() {
                 break;
             }
             if self.angular[0] && self.is_same_pose(assembly_pose, ahead.last()) {
                 self.store_poses(&ahead);
+                self.near_branches = near;
                 self.range = match revolutions {
                     1 => Range::Full,
                     revolutions => Range::Revolutions(revolutions),
@@ -52,7 +62,8 @@ impl Plan {
             }
         }
         let mut back = vec![assembly_pose.clone()];
-        let down = self.follow_direction(&mut back, -1.0, MAX_REVOLUTIONS);
+        let down = self.follow_direction(&mut back, -1.0, MAX_REVOLUTIONS, &mut near);
+        self.near_branches = near;
         back.reverse();
         back.pop();
         back.extend(ahead);
@@ -81,6 +92,7 @@ impl Plan {
         poses: &mut Vec<Pose<f64>>,
         direction: f64,
         revolutions: u32,
+        near: &mut Vec<NearBranch>,
     ) -> Option<RangeLimit> {
         let uses_stored_poses = self.groups.iter().any(|g| g.uses_stored_poses);
         let mut pose = poses.last()?.clone();
@@ -90,8 +102,10 @@ impl Plan {
                 q: q0,
                 group: 0,
                 change_point: false,
+                separation: None,
             });
         };
+        let mut anchor = pose.clone();
         let size = |m: &Dual| [m.v, (m.v * m.d).abs()];
         let mut largest: Vec<[f64; 2]> = margins.iter().map(size).collect();
         for k in 1..=revolutions as usize * STEPS_PER_REVOLUTION {
@@ -124,6 +138,15 @@ impl Plan {
                             let [value, product] = size(margin);
                             *maximum = [maximum[0].max(value), maximum[1].max(product)];
                         }
+                        near.extend(
+                            self.branches_passed([pose.q[0], reached.q[0]], [&margins, &left]),
+                        );
+                        let mut both = left.iter().zip(&largest);
+                        if both.all(|(margin, maximum)| {
+                            size(margin)[0] > ANCHOR_DETERMINANT * maximum[0]
+                        }) {
+                            anchor.clone_from(&reached);
+                        }
                         if !uses_stored_poses && poses.len() > 1 {
                             // Only the ends are wanted.
                             poses.pop();
@@ -141,28 +164,60 @@ impl Plan {
                             let group = (0..margins.len())
                                 .min_by(|a, b| relative_margin(a).total_cmp(&relative_margin(b)))
                                 .unwrap_or(0);
-                            let margin = &margins[group];
                             let change_point = at_change_point
-                                || size(margin)[1] < CHANGE_POINT_PRODUCT * largest[group][1];
-                            // Where the determinant crosses zero, the last step is Newton's.
-                            let left = if change_point {
-                                -margin.v / margin.d
-                            } else {
-                                0.0
-                            };
-                            let is_near =
-                                left * direction > 0.0 && left.abs() < self.continuation_step(0);
-                            return Some(RangeLimit {
-                                q: pose.q[0] + if is_near { left } else { 0.0 },
-                                group,
-                                change_point,
-                            });
+                                || size(&margins[group])[1]
+                                    < CHANGE_POINT_PRODUCT * largest[group][1];
+                            let at = (&pose, &margins[group]);
+                            let shallow = size(at.1)[1] < NEAR_PRODUCT * largest[group][1];
+                            let anchor = Some(&anchor).filter(|_| shallow || change_point);
+                            let limit =
+                                self.limit_near(at, (direction, group, change_point), anchor);
+                            near.extend(limit.1);
+                            return Some(limit.0);
                         }
                     }
                 }
             }
         }
         None
+    }
+
+    /// The limit at which a branch ends soon after a pose, in a direction of the coordinate; and the branch behind it, if
+    /// one is near. `margin` is that of the group that ends it.
+    fn limit_near(
+        &self,
+        (pose, margin): (&Pose<f64>, &Dual),
+        (direction, group, mut change_point): (f64, usize, bool),
+        anchor: Option<&Pose<f64>>,
+    ) -> (RangeLimit, Option<NearBranch>) {
+        // Where the determinant crosses zero, the last step is Newton's.
+        let left = match change_point {
+            true => -margin.v / margin.d,
+            false => 0.0,
+        };
+        let is_near = left * direction > 0.0 && left.abs() < self.continuation_step(0);
+        let q = pose.q[0] + if is_near { left } else { 0.0 };
+        let found = anchor.and_then(|anchor| self.separation(group, q, anchor));
+        let behind = found.and_then(|found| self.branch_behind(group, found));
+        let smallest = MIN_FOLD_HALF_WIDTH * self.coordinate_unit();
+        let folds = found.is_some_and(|found| found.square < -smallest * smallest);
+        let mut limit = RangeLimit {
+            q,
+            group,
+            change_point,
+            separation: behind.filter(|_| change_point).map(|b| b.half_width),
+        };
+        if change_point && folds {
+            // Both branches fold back: it is a limit position of each.
+            change_point = false;
+            limit = RangeLimit {
+                q: pose.q[0],
+                separation: None,
+                change_point,
+                ..limit
+            };
+        }
+        (limit, behind)
     }
 
     /// By group, the size of its determinant, with its derivative by the coordinate: how far the
@@ -173,13 +228,8 @@ impl Plan {
         let q = [Dual::variable(at.q[0])];
         self.positions_from(&q, &mut pose, InitialIterate::CurrentPose)
             .ok()?;
-        let margin = |(g, assur): (usize, &AssurGroup)| {
-            let determinant = match &assur.kind {
-                GroupKind::RrrDyad(_) | GroupKind::GuidedPoint(_) => {
-                    Dual::from_f64(1.0) / pose.inverse_determinant[g]
-                }
-                GroupKind::Factored(factored_group) => factored_group.determinant(&pose),
-            };
+        let margin = |(g, _): (usize, &AssurGroup)| {
+            let determinant = self.group_determinant(g, &pose);
             if determinant.v < 0.0 {
                 -determinant
             } else {

@@ -66,7 +66,7 @@ pub use mechanism::{
     Joint, JointId, JointKind, Mechanism, Reaction,
 };
 pub use motion::{ForceBalance, Motion};
-pub use plan::range::{Range, RangeLimit};
+pub use plan::range::{NearBranch, Range, RangeLimit};
 pub use plan::{AssemblyConfiguration, Plan, Pose};
 pub use plane::{Vec2, vec2};
 pub use structure::{coupling, frames, groups, lower, tree};

@@ -7,7 +7,7 @@ pub(crate) mod range;
 pub(crate) mod stored_poses;
 
 use crate::mechanism::{BodyId, JointId};
-use crate::plan::range::{Range, RangeLimit};
+use crate::plan::range::{NearBranch, Range, RangeLimit};
 use crate::plan::stored_poses::StoredPoses;
 use crate::plane::Vec2;
 use crate::structure::coupling::CouplingEquation;
@@ -70,6 +70,8 @@ pub struct Plan {
     pub(crate) range: Range,
     /// Where the range ends, downwards and upwards, if it does.
     pub(crate) range_limits: [Option<RangeLimit>; 2],
+    /// Where other branches come near this one, in the range as it was followed.
+    pub(crate) near_branches: Vec<NearBranch>,
     /// The pose at assembly.
     pub(crate) assembly_pose: Option<Box<Pose<f64>>>,
     /// By reaction of the mechanism: whether the loads determine it; empty where they determine all.
@@ -401,6 +403,19 @@ impl Plan {
     /// Where and why the range ends, downwards and upwards.
     pub fn range_limits(&self) -> [Option<RangeLimit>; 2] {
         self.range_limits
+    }
+
+    /// What changes of the first actuator's coordinate are compared with: 1 rad, or the mechanism's size, m.
+    pub fn coordinate_unit(&self) -> f64 {
+        match self.angular.first() {
+            Some(false) => self.size,
+            _ => 1.0,
+        }
+    }
+
+    /// Where other branches come near the branch of the single actuator; where the pose repeats, in one period.
+    pub fn near_branches(&self) -> &[NearBranch] {
+        &self.near_branches
     }
 
     /// The moving bodies, each after the one that carries it.

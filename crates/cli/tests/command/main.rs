@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 mod messages;
+mod near_branches;
 mod results;
 mod rows;
 mod studies;

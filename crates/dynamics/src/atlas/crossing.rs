@@ -43,6 +43,9 @@ impl Atlas<'_> {
     fn build_crossing(&mut self, chart: usize, limit: RangeLimit, upwards: bool) -> Result<()> {
         let current = &self.charts[chart];
         let plan = current.machine.model.plan();
+        if let Some(half_width) = limit.separation {
+            return Err(ChangePointFitError::Separate { half_width });
+        }
         if current.machine.model.frictions().len() > 0 {
             return Err(ChangePointFitError::Friction);
         }

@@ -1,5 +1,6 @@
 //! Monitors the steps in a chart: whether its coordinate folds, or a change point is passed.
 
+use super::near_branch::{NearBranchStep, Passage};
 use super::{Atlas, Candidate, Chart, FOLD_SPEED_RATIO, POSE_TOLERANCE};
 use crate::error::{DynamicsError, Result};
 use crate::machine::MachineWorkspace;
@@ -18,8 +19,17 @@ pub(super) enum ChartExit {
     CoordinateFold(CandidateSpeeds),
     /// The solution in it ends.
     SolutionEnds(CandidateSpeeds),
-    /// It is not left: a step of this length (s) is too long to distinguish a reversal from a fold.
-    StepTooLong(f64),
+    /// It is not left: a step of this length (s) is too long to distinguish a reversal from a fold, or the place that
+    /// it passes needs shorter steps.
+    StepTooLong(f64, Option<Passage>),
+    /// It is not left: the steps may grow again behind such a place.
+    PlacePassed,
+    /// It ends where branches are too close to distinguish.
+    BranchesTooClose {
+        /// Where they are nearest, rad or m, and the half-width within which they are near.
+        q: f64,
+        half_width: f64,
+    },
     /// The motion continues behind a change point.
     CrossesChangePoint { crossing: usize, above: bool },
 }
@@ -54,19 +64,25 @@ pub(super) struct ChartMonitor<'a, 's> {
     chart: &'a Chart,
     /// Whether the range of its coordinate has limits.
     has_limits: bool,
+    /// Whether other branches come near its branch.
+    has_near_branches: bool,
+    /// The place for which the steps are short now.
+    passage: Option<Passage>,
     workspace: MachineWorkspace<f64>,
     unit_motion: Motion<f64>,
     unit_states: BodyStates,
 }
 
 impl<'a, 's> ChartMonitor<'a, 's> {
-    pub(super) fn new(atlas: &'a Atlas<'s>, index: usize) -> Self {
+    pub(super) fn new(atlas: &'a Atlas<'s>, index: usize, passage: Option<Passage>) -> Self {
         let chart = &atlas.charts[index];
         let plan = chart.machine.model.plan();
         Self {
             atlas,
             chart,
             has_limits: plan.range().limits().is_some(),
+            has_near_branches: !plan.near_branches().is_empty(),
+            passage,
             workspace: chart.machine.workspace(),
             unit_motion: plan.motion(),
             unit_states: BodyStates::new(plan),
@@ -92,8 +108,19 @@ impl<'a, 's> ChartMonitor<'a, 's> {
         exit: &mut Option<ChartExit>,
         step: impl FnOnce(DenseOutput<'_>) -> Result<StepControl>,
     ) -> Result<StepControl> {
-        if !self.has_limits {
+        if !self.has_limits && !self.has_near_branches {
             return step(dense);
+        }
+        if let Some(refused) = self.refused_step(before, now) {
+            *exit = Some(refused);
+            return Ok(StepControl::Stop);
+        }
+        if !self.has_limits {
+            let next = step(dense)?;
+            *exit = self
+                .place_passed(now)
+                .filter(|_| next == StepControl::Continue);
+            return Ok(exit.as_ref().map_or(next, |_| StepControl::Stop));
         }
         if let Some(fold) = self.fold_within(before, now, dense)? {
             // What follows the fold is on another branch: the step is discarded.
@@ -106,7 +133,7 @@ impl<'a, 's> ChartMonitor<'a, 's> {
             && speeds.max_ratio() > FOLD_OVERSHOOT * FOLD_SPEED_RATIO
         {
             // The nearer the fold, the more an error of the coordinate changes all others.
-            *exit = Some(ChartExit::StepTooLong(now.t - before.t));
+            *exit = Some(ChartExit::StepTooLong(now.t - before.t, None));
             return Ok(StepControl::Stop);
         }
         let next = step(dense)?;
@@ -130,7 +157,31 @@ impl<'a, 's> ChartMonitor<'a, 's> {
                 above: !window.above,
             }));
         }
-        self.exit_at_fold(now)
+        let fold = self.exit_at_fold(now)?;
+        Ok(fold.or_else(|| self.place_passed(now)))
+    }
+
+    /// Why a step is not taken: it leads over a gap of the range, or past a near branch that it does not resolve.
+    fn refused_step(&self, before: &OdeState, now: &OdeState) -> Option<ChartExit> {
+        let length = now.t - before.t;
+        if self.chart.steps_over_gap(before, now) {
+            return Some(ChartExit::StepTooLong(length, None));
+        }
+        match self.chart.near_branch_step(before, now) {
+            NearBranchStep::Resolved => None,
+            NearBranchStep::TooLong(place) => Some(ChartExit::StepTooLong(length, Some(place))),
+            NearBranchStep::Unresolvable { q, half_width } => {
+                Some(ChartExit::BranchesTooClose { q, half_width })
+            }
+        }
+    }
+
+    /// Whether the place for which the steps are short lies behind.
+    fn place_passed(&self, now: &OdeState) -> Option<ChartExit> {
+        let place = self.passage?;
+        place
+            .is_left_behind(now.y[0])
+            .then_some(ChartExit::PlacePassed)
     }
 
     /// The distance of a coordinate from the nearest limit of the range.
@@ -167,7 +218,7 @@ impl<'a, 's> ChartMonitor<'a, 's> {
                             let [to_start, to_end] = [before, now].map(|p| at.y[0] - p.y[0]);
                             let distance = to_start.abs().max(to_end.abs());
                             if distance > self.distance_to_limit(at.y[0]) {
-                                return Ok(Some(ChartExit::StepTooLong(now.t - before.t)));
+                                return Ok(Some(ChartExit::StepTooLong(now.t - before.t, None)));
                             }
                         }
                         Ok(speeds) => return Ok(Some(ChartExit::CoordinateFold(speeds))),

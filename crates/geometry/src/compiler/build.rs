@@ -74,6 +74,7 @@ impl Plan {
             assembly_coordinates: vec![0.0; mechanism.actuators.len()],
             range: Range::Full,
             range_limits: [None; 2],
+            near_branches: Vec::new(),
             assembly_pose: None,
             group_modes: Vec::new(),
             determinate: Vec::new(),

@@ -31,6 +31,21 @@ pub struct RangeLimit {
     /// Whether another branch meets this one there and could be followed: a change point; else it is
     /// a limit position, where the coordinate turns back.
     pub change_point: bool,
+    /// At a change point: the half-width (rad or m) within which the two branches come close without meeting, so close
+    /// that rounding does not show which of them a motion follows. None where they meet.
+    pub separation: Option<f64>,
+}
+
+/// Where another branch comes near this one without meeting it: within the half-width of the coordinate, the velocity
+/// ratios change from those of one branch of a change point to those of the other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NearBranch {
+    /// The coordinate where they are nearest, rad or m. At a limit position it is that much beyond the range.
+    pub q: f64,
+    /// The half-width, rad or m.
+    pub half_width: f64,
+    /// The group of bodies whose branches they are.
+    pub group: usize,
 }
 
 impl Range {

@@ -1,9 +1,10 @@
 //! Explains motions that fail, with their locations in the scene.
 
 use crate::explain::{
-    StudyError, explain_position, initial_state_location, labels, quoted_coordinate, scene_error,
+    StudyError, body_names, explain_position, initial_state_location, joint_labels, labels,
+    quoted_coordinate, scene_error,
 };
-use crate::number_format::{digits, number};
+use crate::number_format::{coordinate_unit, digits, number};
 use dwell_dynamics::DynamicsError;
 use dwell_geometry::{ActuatorId, BodyId, Plan};
 use dwell_kinetostatics::KinetostaticsError;
@@ -16,6 +17,9 @@ pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> Stud
         DynamicsError::Position(position) => explain_position(scene, plan, position),
         DynamicsError::Load(load) => explain_load(scene, *load),
         DynamicsError::LimitPosition { t, q } => explain_limit_position(scene, plan, *t, *q),
+        DynamicsError::NearBranches { t, q, half_width } => {
+            explain_near_branches(scene, plan, *t, [*q, *half_width])
+        }
         DynamicsError::NoInertia { q, .. } => explain_no_inertia(scene, *q),
         DynamicsError::VariesTooFast {
             source_index,
@@ -186,6 +190,36 @@ fn explain_limit_position(scene: &Scene, plan: &Plan, t: f64, q: f64) -> StudyEr
     };
     let place = (SceneLocation::Duration, "too long");
     scene_error(scene, message, help, [place])
+}
+
+/// The motion reaches a place where two assembly modes are too close to each other.
+fn explain_near_branches(
+    scene: &Scene,
+    plan: &Plan,
+    t: f64,
+    [q, half_width]: [f64; 2],
+) -> StudyError {
+    let unit = coordinate_unit(plan.is_angle(0));
+    let mut nearest = plan.near_branches().iter();
+    let group = nearest.find(|near| near.half_width == half_width);
+    let bodies = group.map(|near| body_names(&scene.mechanism, &plan.group_bodies(near.group)));
+    let message = format!(
+        "soon after t = {} s the assembly modes of {} nearly meet, at {} = {} {unit}: they are as close as at a change \
+         point within {} {unit}, and rounding does not show in which of them the motion continues",
+        digits(t, 6),
+        bodies.unwrap_or_else(|| "the mechanism".to_owned()),
+        quoted_coordinate(scene),
+        number(q),
+        digits(half_width, 2),
+    );
+    let help = "make the lengths exactly those of a change point, which the motion crosses; or change one by more than 1e-9 \
+                of the mechanism's size, so that the modes are apart; or end the motion earlier";
+    let joints = group.map(|near| plan.group_joints(near.group));
+    let places = match joints {
+        Some(joints) if !joints.is_empty() => joint_labels(&joints, "their lengths nearly fit"),
+        _ => labels([SceneLocation::Duration].into_iter(), "beyond that time"),
+    };
+    scene_error(scene, message, help, places)
 }
 
 fn explain_no_inertia(scene: &Scene, q: f64) -> StudyError {

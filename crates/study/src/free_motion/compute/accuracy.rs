@@ -173,6 +173,9 @@ impl FreeMotionProblem<'_> {
         }
         let start = self.initial_reduced_state();
         let orbit = Orbit::loaded(&self.machine, start).ok()?;
+        if orbit.passes_close_branches(&self.machine) {
+            return None;
+        }
         let outputs = ObservedMachine::new(&self.machine, &self.output_model);
         let options = Options {
             sample_interval: Some(sample_interval),

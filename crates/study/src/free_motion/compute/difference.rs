@@ -142,7 +142,7 @@ impl FreeMotionProblem<'_> {
 }
 
 /// The samples at common times. Next to a change point one of them may lack samples.
-fn pair_by_time<'s>(
+pub(crate) fn pair_by_time<'s>(
     one: &'s [TrajectorySample],
     two: &'s [TrajectorySample],
 ) -> Vec<(&'s TrajectorySample, &'s TrajectorySample)> {

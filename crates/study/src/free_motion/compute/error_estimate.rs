@@ -2,6 +2,7 @@
 
 use crate::estimate::{self, is_rounding};
 use crate::explain::StudyError;
+use crate::free_motion::compute::difference::pair_by_time;
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::number_format::{coordinate_unit, digits};
 use crate::ranges::extent;
@@ -39,15 +40,16 @@ impl FreeMotionProblem<'_> {
         let second = self.solve(scene, duration, &finer).ok();
         let second = second.and_then(|motion| self.samples(&motion).ok());
         // The last samples may be missing if an event ends one of the runs earlier.
-        let pairs = samples.iter().zip(second.iter().flatten());
-        let pairs: Vec<SamplePair<'_>> = pairs.take_while(|(a, b)| a.t == b.t).collect();
+        let second = second.unwrap_or_default();
+        let pairs: Vec<SamplePair<'_>> = pair_by_time(&samples, &second);
         let Some((last, _)) = pairs.last() else {
             let text = format!("  no error estimate: a second run, at {refinement}, fails\n");
             let inaccuracy = "its error cannot be estimated: a second run fails".to_owned();
             return Ok((text, Some(inaccuracy)));
         };
         // An event may end one of the runs a sample earlier.
-        let is_whole = pairs.len() + 2 > samples.len();
+        let left = samples.iter().filter(|sample| sample.t > last.t);
+        let is_whole = left.count() < 2;
         let until = digits(last.t, 6);
         let part = match is_whole {
             true => "over the whole motion".to_owned(),

@@ -6,7 +6,7 @@ use crate::models::{SolverSettings, with_drive_loads};
 use crate::number_format::digits;
 use crate::progress::Progress;
 use crate::trajectory::compute::{ComputedTrajectory, MotionBetweenRows, compute_along};
-use dwell_dynamics::{EventOccurrence, Options};
+use dwell_dynamics::{DynamicsError, EventOccurrence, Options};
 use dwell_findings::Table;
 use dwell_scene::{Scene, SceneError, SceneLocation};
 
@@ -80,7 +80,10 @@ pub(crate) fn compute_free_motion_at(
     times.map_or(Ok(()), |times| check_times(times, duration))?;
     let integrated = problem.integrate(scene, solver, duration)?;
     let motion = &integrated.motion;
-    if let Some(error) = motion.failure.as_ref().filter(|_| motion.end_time() == 0.0) {
+    // Where branches are too close at the start, the scene is a valid one.
+    let is_refused = |error: &&DynamicsError| !matches!(error, DynamicsError::NearBranches { .. });
+    let failure = motion.failure.as_ref().filter(is_refused);
+    if let Some(error) = failure.filter(|_| motion.end_time() == 0.0) {
         return Err(problem.explain(error));
     }
     let trajectory = problem.trajectory(&integrated, times);

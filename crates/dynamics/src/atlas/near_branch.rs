@@ -1,0 +1,121 @@
+//! Steps past places where another assembly branch is near: within a small part of the coordinate the inertia changes
+//! as if the motion passed from one branch of a change point to the other. A step over such a part does not see it, and
+//! one over the gap between two limit positions goes on where the motion folds back.
+//!
+//! So steps are shortened there, to a part of the distance, until they resolve it. Where the part is so small that the
+//! accelerations in it are rounding, the motion ends before it.
+
+use super::Chart;
+use crate::close_branches::{MIN_HALF_WIDTH, is_too_close};
+use crate::ode::OdeState;
+use dwell_geometry::NearBranch;
+use std::f64::consts::TAU;
+
+/// Longest step within a near part, in half-widths, and how far the part extends.
+const WIDTHS_PER_STEP: f64 = 0.5;
+const EXTENT: f64 = 4.0;
+/// A step this much longer than the distance to a part that is too small leads into it, in half-widths of the smallest
+/// that is followed.
+const CLEARANCE: f64 = 2.0;
+
+/// A step longer than this (rad, or of the mechanism's size) does not end a motion: a shorter one is tried.
+const LONG_STEP: f64 = 1e-3;
+
+/// What a step meets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum NearBranchStep {
+    /// Nothing, or it resolves what is there.
+    Resolved,
+    /// It is too long for what is there.
+    TooLong(Passage),
+    /// It leads to branches that are too close to distinguish.
+    Unresolvable { q: f64, half_width: f64 },
+}
+
+/// A place that is passed in short steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Passage {
+    /// Its coordinate, in the revolution in which it is passed, rad or m.
+    center: f64,
+    half_width: f64,
+    /// How far from it the short steps began.
+    from: f64,
+}
+
+impl Passage {
+    /// Whether a coordinate is so far behind it, or back before it, that steps may grow again.
+    pub(super) fn is_left_behind(&self, q: f64) -> bool {
+        let distance = q - self.center;
+        let passed = distance * self.from < 0.0 && distance.abs() > 2.0 * EXTENT * self.half_width;
+        passed || distance.abs() > 2.0 * self.from.abs() + 4.0 * EXTENT * self.half_width
+    }
+}
+
+impl Chart {
+    /// What a step meets of the near branches.
+    pub(super) fn near_branch_step(&self, before: &OdeState, now: &OdeState) -> NearBranchStep {
+        let plan = self.machine.model.plan();
+        let (from, to) = (before.y[0], now.y[0]);
+        let unit = plan.coordinate_unit();
+        let period = match plan.range().period() {
+            Some(period) => Some(period),
+            None => plan.is_angle(0).then_some(TAU),
+        };
+        for near in plan.near_branches() {
+            let is_small = is_too_close(near, plan);
+            let reach = match is_small {
+                true => CLEARANCE * MIN_HALF_WIDTH * unit,
+                false => EXTENT * near.half_width,
+            };
+            let Some(center) = nearest_in_step(near, period, [from, to], reach) else {
+                continue;
+            };
+            let longest = match is_small {
+                true => LONG_STEP * unit,
+                false => WIDTHS_PER_STEP * near.half_width,
+            };
+            if (to - from).abs() > longest {
+                return NearBranchStep::TooLong(Passage {
+                    center,
+                    half_width: near.half_width,
+                    from: from - center,
+                });
+            }
+            if is_small {
+                let (q, half_width) = (center, near.half_width);
+                return NearBranchStep::Unresolvable { q, half_width };
+            }
+        }
+        NearBranchStep::Resolved
+    }
+
+    /// Whether a step leads from one revolution of a limited range to another, or passes over a fit window.
+    pub(super) fn steps_over_gap(&self, before: &OdeState, now: &OdeState) -> bool {
+        let step = (now.y[0] - before.y[0]).abs();
+        let windows = &self.machine.fit_windows;
+        if windows.iter().any(|window| step > window.fit.fit_radius) {
+            return true;
+        }
+        let plan = self.machine.model.plan();
+        let Some((from, _)) = plan.range().limits().filter(|_| windows.is_empty()) else {
+            return false;
+        };
+        let revolution = |q: f64| ((q - from) / TAU).floor();
+        plan.is_angle(0) && revolution(before.y[0]) != revolution(now.y[0])
+    }
+}
+
+/// The coordinate of a near branch, whole periods apart, that a step meets within a distance.
+fn nearest_in_step(
+    near: &NearBranch,
+    period: Option<f64>,
+    [from, to]: [f64; 2],
+    reach: f64,
+) -> Option<f64> {
+    let (low, high) = (from.min(to) - reach, from.max(to) + reach);
+    let first = match period {
+        Some(period) => near.q + period * ((low - near.q) / period).ceil(),
+        None => near.q,
+    };
+    (low..=high).contains(&first).then_some(first)
+}
