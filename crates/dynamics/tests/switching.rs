@@ -7,7 +7,7 @@ mod parts;
 use dwell_dynamics::{
     CoordinateMode, DynamicsError, Machine, Method, OdeState, Options, Solution, solve,
 };
-use dwell_geometry::{AssemblyConfiguration, BodyId, Joint, JointKind, Vec2};
+use dwell_geometry::{AssemblyConfiguration, BodyId, Joint, Vec2};
 use dwell_kinetostatics::{Load, LoadKind, Magnitude, Mass, Model, Signal};
 use dwell_laws::{Expression, Interpolation, Law, Spline};
 use parts::{angle, mechanism};
@@ -18,12 +18,7 @@ const INERTIA: f64 = 2.0;
 /// A wheel on its axle under a couple.
 fn wheel(magnitude: Magnitude) -> Machine {
     let bodies = [BodyId(0), BodyId(1)];
-    let axle = Joint {
-        name: "axle".into(),
-        bodies,
-        points: [Vec2::ZERO; 2],
-        kind: JointKind::Revolute,
-    };
+    let axle = Joint::revolute("axle", bodies, [Vec2::ZERO; 2]);
     let mut wheel = mechanism(&["ground", "wheel"], vec![axle]);
     wheel.actuators = vec![angle([0, 1])];
     let masses = [

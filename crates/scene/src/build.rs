@@ -145,11 +145,8 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     if log.count() > 0 {
         return None;
     }
-    let body = |name: &str| Body {
-        name: name.to_owned(),
-    };
     let mechanism = Mechanism {
-        bodies: bodies.list.iter().map(|b| body(b.name)).collect(),
+        bodies: bodies.list.iter().map(|b| Body::named(b.name)).collect(),
         ground: bodies.ground?,
         joints: joints.list.into_iter().filter_map(|j| j.joint).collect(),
         actuators: actuators.into_iter().filter_map(|a| a.actuator).collect(),

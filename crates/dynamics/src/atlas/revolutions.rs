@@ -27,14 +27,9 @@ impl Atlas<'_> {
             }
             let auxiliary = BodyId(mechanism.bodies.len());
             let name = format!("revolutions of {}", mechanism.body_name(bodies[1]));
-            mechanism.bodies.push(Body { name: name.clone() });
+            mechanism.bodies.push(Body::named(&name));
             initial_guess.push(Some(states.angle(bodies)[0]));
-            let joint = |kind| Joint {
-                name: name.clone(),
-                bodies: [ground, auxiliary],
-                points: [Vec2::ZERO; 2],
-                kind,
-            };
+            let joint = |kind| Joint::new(&name, [ground, auxiliary], [Vec2::ZERO; 2], kind);
             let relation = JointKind::Coupling(mechanism.couplings.len());
             mechanism
                 .joints
