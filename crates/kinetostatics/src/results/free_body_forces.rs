@@ -45,7 +45,9 @@ impl FreeBodyForces {
                 CoordinateFunction::Angle(bodies) => {
                     find_couple_points(mechanism, model.plan(), bodies)
                 }
-                _ => [Vec2::ZERO; 2],
+                CoordinateFunction::Travel { .. } | CoordinateFunction::Length { .. } => {
+                    [Vec2::ZERO; 2]
+                }
             };
             Some((measured, couple_points))
         };
