@@ -111,7 +111,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     let mut motion = motion.map(|f| ParsedMotion::read(f, &actuators, can_start_at_rest));
     let initial = motion.as_ref().map_or(&[][..], |m| &m.initial_coordinates);
     let at = assembly_section.as_ref().map(|f| &f.span);
-    let start = assembly.coordinates_or(initial, &actuators, at, log);
+    let start = assembly.coordinates_or(initial, (&bodies, &joints), &actuators, at);
     if let (Some(motion), Some(f)) = (&mut motion, &motion_section) {
         motion.read_laws(&actuators, &start);
         let events = f.get("events");
