@@ -1,8 +1,6 @@
 //! The chain as its definition has it, and its statics by hand.
 
-use dwell_geometry::{
-    Actuator, AssemblyConfiguration, Body, Joint, Mechanism, Vec2, vec2,
-};
+use dwell_geometry::{Actuator, AssemblyConfiguration, Body, Joint, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::{Load, LoadKind, Magnitude, Mass, Model};
 use std::f64::consts::FRAC_PI_2;
 

@@ -8,8 +8,8 @@ use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Actuator, BodyId, Joint, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::{Load, Mass};
 use parts::{
-    Setup, angle, energy_lost, four_bar, gravity, length, mechanism, motor, samples,
-    slider_crank, solve_setup, torsion_spring,
+    Setup, angle, energy_lost, four_bar, gravity, length, mechanism, motor, samples, slider_crank,
+    solve_setup, torsion_spring,
 };
 
 const CRANK: CoordinateFunction = CoordinateFunction::Angle([BodyId(0), BodyId(1)]);
@@ -175,7 +175,12 @@ fn a_slider_is_followed_through_its_dead_points() {
         mass: 0.6,
         ..Mass::default()
     };
-    let masses = with_flywheel(vec![Mass::default(), Mass::uniform_bar(1.0, 0.1), Mass::uniform_bar(0.8, 0.35), piston]);
+    let masses = with_flywheel(vec![
+        Mass::default(),
+        Mass::uniform_bar(1.0, 0.1),
+        Mass::uniform_bar(0.8, 0.35),
+        piston,
+    ]);
     let crank = Setup::new(&chain, angle([0, 1]), &masses, 1.0, &[0.0, 1.0, -0.2, 0.0]);
     let crank = crank.with_loads(&[gravity()], &[]);
     let cylinder = length([0, 3], [vec2(-0.1, 0.02), Vec2::ZERO]);
@@ -203,7 +208,12 @@ fn loads_and_drives_go_on_in_another_chart() {
 #[test]
 fn a_diagonal_leads_to_a_bridge() {
     let chain = four_bar([0.4, 0.2, 0.4, 0.2]);
-    let masses = [Mass::default(), Mass::uniform_bar(1.0, 0.2), Mass::uniform_bar(0.8, 0.4), Mass::uniform_bar(0.5, 0.2)];
+    let masses = [
+        Mass::default(),
+        Mass::uniform_bar(1.0, 0.2),
+        Mass::uniform_bar(0.8, 0.4),
+        Mass::uniform_bar(0.5, 0.2),
+    ];
     let crank = Setup::new(&chain, angle([0, 1]), &masses, 1.0, &[0.0, 1.0, 0.0, 1.0]);
     let diagonal = length([0, 2], [Vec2::ZERO, vec2(0.4, 0.0)]);
     let pair = Pair::new(crank.with_loads(&[gravity()], &[]), diagonal, 14.0, 4.0);

@@ -10,8 +10,8 @@ use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Body, BodyId, Joint, Mechanism, Reaction, Vec2, vec2};
 use dwell_kinetostatics::{Drive, Load, Mass};
 use parts::{
-    Setup, angle, energy_lost, four_bar, gravity, mechanism, motor, samples,
-    slider_crank, solve_setup, torsion_damper,
+    Setup, angle, energy_lost, four_bar, gravity, mechanism, motor, samples, slider_crank,
+    solve_setup, torsion_damper,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -61,7 +61,10 @@ fn pendulum(n: usize, q: f64) -> Setup {
         center: vec2(arm, 0.0),
         inertia: m - mass * arm * arm,
     };
-    let one = mechanism(&["ground", "link"], vec![Joint::revolute("A", [0, 1], [Vec2::ZERO; 2])]);
+    let one = mechanism(
+        &["ground", "link"],
+        vec![Joint::revolute("A", [0, 1], [Vec2::ZERO; 2])],
+    );
     Setup::new(&one, angle([0, 1]), &[Mass::default(), link], q, &[0.0, q])
         .with_loads(&[gravity()], &[])
 }
@@ -227,7 +230,12 @@ fn a_piston_passes_the_pivot() {
         mass: 0.6,
         ..Mass::default()
     };
-    let masses = [Mass::default(), Mass::uniform_bar(1.0, r), Mass::uniform_bar(0.8, r), piston];
+    let masses = [
+        Mass::default(),
+        Mass::uniform_bar(1.0, r),
+        Mass::uniform_bar(0.8, r),
+        piston,
+    ];
     let chain = slider_crank(r, r, 0.0);
     let setup = Setup::new(&chain, angle([0, 1]), &masses, 0.4, &[0.0, 0.4, -0.4, 0.0]);
     let setup = setup.with_loads(&[gravity()], &[]);

@@ -13,8 +13,7 @@ use bench::{Case, EVALUATIONS, GOLDEN_ANGLE, reactions, stop};
 use closed_form_general::General;
 use closed_form_reduced::{Body, FourBar, SliderCrank};
 use dwell_geometry::{
-    Actuator, ActuatorKind, AssemblyConfiguration, Body as Named, BodyId, Joint, JointKind,
-    Mechanism, Reaction, Vec2, vec2,
+    Actuator, AssemblyConfiguration, Body as Named, Joint, Mechanism, Reaction, Vec2, vec2,
 };
 use dwell_kinetostatics::{Batch, ExactModel, Mass, Model, ReducedModel};
 use dwell_scene::Scene;

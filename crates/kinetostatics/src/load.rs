@@ -307,7 +307,11 @@ impl Load {
     /// and those of its magnitude's signals.
     pub fn angle_pairs(&self) -> Vec<[BodyId; 2]> {
         let by_signals = self.magnitude.angle_pairs();
-        self.kind.angle_pair().into_iter().chain(by_signals).collect()
+        self.kind
+            .angle_pair()
+            .into_iter()
+            .chain(by_signals)
+            .collect()
     }
 
     /// The bodies it acts on and those whose motion its magnitude depends on. Gravity acts on those

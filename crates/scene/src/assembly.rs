@@ -79,13 +79,13 @@ impl ParsedAssembly {
         let given = |k: usize| self.coordinates[k].or(initial.get(k).copied().flatten());
         let given = (0..actuators.len()).map(given);
         let mut coordinates: Vec<f64> = given.clone().map(Option::unwrap_or_default).collect();
-        let is_missing = |(k, a): &(usize, &ParsedActuator<'_>)| {
-            a.is_distance() && !self.mentioned.contains(k)
-        };
+        let is_missing =
+            |(k, a): &(usize, &ParsedActuator<'_>)| a.is_distance() && !self.mentioned.contains(k);
         let missing = actuators.iter().enumerate().zip(given);
         let missing = missing.filter(|(actuator, given)| given.is_none() && is_missing(actuator));
         let missing: Vec<usize> = missing.map(|((k, _), _)| k).collect();
-        for (k, length) in self.guessed_lengths(&missing, &coordinates, (bodies, joints), actuators) {
+        for (k, length) in self.guessed_lengths(&missing, &coordinates, (bodies, joints), actuators)
+        {
             coordinates[k] = length.unwrap_or_default();
             if length.is_none() {
                 let a = &actuators[k];

@@ -1,7 +1,7 @@
 //! The coordinates in which a motion of one degree of freedom can be described.
 
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_geometry::{Actuator, ActuatorKind, BodyId, Coordinate, JointId, JointKind, Mechanism};
+use dwell_geometry::{Actuator, BodyId, Coordinate, JointId, JointKind, Mechanism};
 
 /// What an angle between two moving bodies counts against one from the ground: it may fold sooner.
 const RELATIVE_ANGLE_WEIGHT: f64 = 0.5;

@@ -11,16 +11,14 @@ const BLOCK: BodyId = BodyId(3);
 fn slotted_rocker(place: Vec2) -> Mechanism {
     let along = vec2(0.8, 0.6);
     Mechanism {
-        bodies: ["ground", "crank", "rocker", "block"].map(Body::named).into(),
+        bodies: ["ground", "crank", "rocker", "block"]
+            .map(Body::named)
+            .into(),
         ground: 0,
         joints: vec![
             Joint::revolute("A", [0, 1], [place, vec2(0.3, 0.1)]),
             Joint::revolute("B", [1, 3], [vec2(0.4, 0.1), Vec2::ZERO]),
-            Joint::revolute(
-                "D",
-                [0, 2],
-                [place + vec2(-0.25, 0.05), vec2(0.2, 0.0)],
-            ),
+            Joint::revolute("D", [0, 2], [place + vec2(-0.25, 0.05), vec2(0.2, 0.0)]),
             Joint::new(
                 "slot",
                 [2, 3],

@@ -33,8 +33,7 @@ impl Mechanism {
         assembly: &AssemblyConfiguration,
         actuator: ActuatorId,
     ) -> Option<f64> {
-        let Coordinate::Length { bodies, points } =
-            self.actuators.get(actuator.0)?.coordinate()
+        let Coordinate::Length { bodies, points } = self.actuators.get(actuator.0)?.coordinate()
         else {
             return None;
         };
@@ -90,7 +89,9 @@ impl Mechanism {
         }
         let by_joints = self.joints.iter().filter_map(|joint| match joint.kind {
             JointKind::Weld { angle } => Some((joint.bodies, angle)),
-            JointKind::Prismatic { axes } => Some((joint.bodies, axes[0].angle() - axes[1].angle())),
+            JointKind::Prismatic { axes } => {
+                Some((joint.bodies, axes[0].angle() - axes[1].angle()))
+            }
             JointKind::Revolute
             | JointKind::Slot { .. }
             | JointKind::Gear { .. }

@@ -50,7 +50,10 @@ impl Friction {
             (JointKind::Revolute, FrictionContact::Pin { .. }) => {
                 kind == LoadKind::Torque { bodies }
             }
-            (JointKind::Prismatic { .. } | JointKind::Slot { .. }, FrictionContact::Guide { .. }) => {
+            (
+                JointKind::Prismatic { .. } | JointKind::Slot { .. },
+                FrictionContact::Guide { .. },
+            ) => {
                 matches!(kind, LoadKind::SlideForce(guide) if guide.bodies == bodies)
             }
             (JointKind::Revolute, FrictionContact::Guide { .. })

@@ -234,7 +234,7 @@ fn coordinate_wrenches(
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
-    use dwell_geometry::{Actuator, ActuatorKind, AssemblyConfiguration, Body, Mechanism, Plan};
+    use dwell_geometry::{Actuator, AssemblyConfiguration, Body, Mechanism, Plan};
 
     const GROUND: BodyId = BodyId(0);
     const ONE: BodyId = BodyId(1);

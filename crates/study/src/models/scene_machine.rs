@@ -1,5 +1,6 @@
 //! The machine of a scene, as `cycle`, `equilibria` and `linearise` use it.
 
+use crate::branch_note::branch_note;
 use crate::explain::{
     Labels, StudyError, explain_motion, initial_state_location, labels, scene_error,
 };
@@ -42,6 +43,11 @@ impl<'a> SceneMachine<'a> {
             spec,
             machine,
         })
+    }
+
+    /// Where the assembly mode in use is far from the approximate angles that the scene gives.
+    pub(crate) fn branch_note(&self) -> String {
+        branch_note(self.scene, self.machine.model().plan())
     }
 
     /// The initial state of `[motion]`, or else the assembly configuration at rest.

@@ -1,8 +1,8 @@
 //! The mechanisms of the grid.
 
 use dwell_geometry::{
-    Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Joint, JointId, JointKind,
-    Mechanism, Reaction, Vec2, vec2,
+    Actuator, ActuatorKind, AssemblyConfiguration, Body, Joint, JointId, JointKind, Mechanism,
+    Reaction, Vec2, vec2,
 };
 use dwell_kinetostatics::{ExactModel, Mass, Model, ModelError};
 

@@ -70,7 +70,9 @@ fn five_bar() -> Setup {
     Setup {
         name: "five-bar",
         mechanism: Mechanism {
-            bodies: ["ground", "crank", "left", "right", "other"].map(Body::named).into(),
+            bodies: ["ground", "crank", "left", "right", "other"]
+                .map(Body::named)
+                .into(),
             joints: vec![
                 Joint::revolute("A", [0, 1], [a, near]),
                 Joint::revolute("B", [1, 2], [far, coupler[0]]),
@@ -150,7 +152,9 @@ fn boom() -> Setup {
     Setup {
         name: "boom",
         mechanism: Mechanism {
-            bodies: ["ground", "boom", "barrel", "rod", "stick", "bucket"].map(Body::named).into(),
+            bodies: ["ground", "boom", "barrel", "rod", "stick", "bucket"]
+                .map(Body::named)
+                .into(),
             joints: vec![
                 Joint::revolute("O", [0, 1], [o, vec2(0.1, 0.0)]),
                 Joint::revolute("P", [2, 0], [Vec2::ZERO, p]),
@@ -214,7 +218,9 @@ fn epicyclic() -> Setup {
     Setup {
         name: "epicyclic",
         mechanism: Mechanism {
-            bodies: ["ground", "arm", "planet", "ring", "rack"].map(Body::named).into(),
+            bodies: ["ground", "arm", "planet", "ring", "rack"]
+                .map(Body::named)
+                .into(),
             joints: vec![
                 Joint::revolute("O", [0, 1], [o, hub]),
                 Joint::revolute("P", [1, 2], [hub + vec2(sun + planet, 0.0), rim]),
@@ -318,7 +324,11 @@ fn wedge() -> Setup {
                     },
                 ),
             ],
-            actuators: vec![Actuator::new("push", [0, 1], ActuatorKind::Travel(JointId(0)))],
+            actuators: vec![Actuator::new(
+                "push",
+                [0, 1],
+                ActuatorKind::Travel(JointId(0)),
+            )],
             ..Mechanism::default()
         },
         masses: masses(3),
@@ -377,7 +387,9 @@ fn cam() -> Setup {
     Setup {
         name: "cam",
         mechanism: Mechanism {
-            bodies: ["ground", "crank", "slide", "lever", "flag"].map(Body::named).into(),
+            bodies: ["ground", "crank", "slide", "lever", "flag"]
+                .map(Body::named)
+                .into(),
             joints: vec![
                 Joint::revolute("A", [0, 1], [a, hub]),
                 Joint::new(

@@ -1,9 +1,7 @@
 //! The mechanisms of the tests.
 
 use super::dense::DenseSubject;
-use dwell_geometry::{
-    Actuator, Body, Joint, JointKind, Mechanism, Vec2, vec2,
-};
+use dwell_geometry::{Actuator, Body, Joint, JointKind, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::Mass;
 use dwell_verify::{Case, Range, spread};
 use std::f64::consts::PI;
@@ -89,7 +87,9 @@ impl Setup {
 pub(crate) fn crank_rocker() -> Setup {
     Setup {
         mechanism: Mechanism {
-            bodies: ["ground", "crank", "coupler", "rocker"].map(Body::named).into(),
+            bodies: ["ground", "crank", "coupler", "rocker"]
+                .map(Body::named)
+                .into(),
             ground: 0,
             joints: vec![
                 Joint::revolute("A", [0, 1], [Vec2::ZERO; 2]),
@@ -100,7 +100,12 @@ pub(crate) fn crank_rocker() -> Setup {
             actuators: vec![Actuator::angle("phi", [0, 1])],
             couplings: vec![],
         },
-        masses: vec![Mass::default(), Mass::uniform_bar(1.0, 1.0), Mass::uniform_bar(2.0, 3.5), Mass::uniform_bar(2.0, 3.0)],
+        masses: vec![
+            Mass::default(),
+            Mass::uniform_bar(1.0, 1.0),
+            Mass::uniform_bar(2.0, 3.5),
+            Mass::uniform_bar(2.0, 3.0),
+        ],
         range: Range::Full,
         q0: 0.0,
         initial_guess: vec![[0.0; 3], [0.0; 3], [1.0, 0.0, 0.9], [4.0, 0.0, 1.9]],
@@ -111,7 +116,9 @@ pub(crate) fn crank_rocker() -> Setup {
 pub(crate) fn single_dwell() -> Setup {
     Setup {
         mechanism: Mechanism {
-            bodies: ["ground", "crank", "coupler", "rocker", "guide", "slider"].map(Body::named).into(),
+            bodies: ["ground", "crank", "coupler", "rocker", "guide", "slider"]
+                .map(Body::named)
+                .into(),
             ground: 0,
             joints: vec![
                 Joint::revolute("A", [0, 1], [Vec2::ZERO; 2]),
@@ -163,11 +170,18 @@ pub(crate) fn single_dwell() -> Setup {
 pub(crate) fn inverted_slider_crank() -> Setup {
     Setup {
         mechanism: Mechanism {
-            bodies: ["rocker", "crank", "ground", "block"].map(Body::named).into(),
+            bodies: ["rocker", "crank", "ground", "block"]
+                .map(Body::named)
+                .into(),
             ground: 2,
             joints: vec![
                 Joint::revolute("O", [0, 2], [vec2(-0.1, 0.05), vec2(0.0, -0.4)]),
-                Joint::prismatic("slot", [0, 3], [vec2(0.1, 0.08), vec2(0.02, -0.01)], [1.3, 1.3]),
+                Joint::prismatic(
+                    "slot",
+                    [0, 3],
+                    [vec2(0.1, 0.08), vec2(0.02, -0.01)],
+                    [1.3, 1.3],
+                ),
                 Joint::revolute("A", [2, 1], [Vec2::ZERO, vec2(0.04, 0.03)]),
                 Joint::revolute("B", [1, 3], [vec2(0.16, 0.12), vec2(-0.03, 0.02)]),
             ],
@@ -217,7 +231,7 @@ pub(crate) fn pendulum() -> Setup {
         mechanism: Mechanism {
             bodies: ["bar", "ground"].map(Body::named).into(),
             ground: 1,
-            joints: vec![pin("A", [0, 1], [[0.0, 0.0], [2.0, 1.0]])],
+            joints: vec![Joint::revolute("A", [0, 1], [Vec2::ZERO, vec2(2.0, 1.0)])],
             actuators: vec![Actuator::angle("phi", [1, 0])],
             couplings: vec![],
         },
