@@ -23,6 +23,7 @@ use crate::units::Units;
 use crate::value::Context;
 use crate::wording::shorten;
 use dwell_geometry::{Body, Mechanism, Vec2};
+use dwell_laws::expression::nearest;
 use toml::de::DeValue;
 
 impl Scene {
@@ -252,9 +253,16 @@ fn report_unjoined_bodies(bodies: &Bodies<'_>, joints: &Joints<'_>) {
             joined[body.0] = true;
         }
     }
-    for (body, _) in bodies.list.iter().zip(joined).filter(|(_, joined)| !joined) {
+    let by_body = || bodies.list.iter().zip(&joined);
+    let others = by_body()
+        .filter(|(_, joined)| **joined)
+        .map(|(b, _)| b.name);
+    for (body, _) in by_body().filter(|(_, joined)| !**joined) {
         let message = format!("body `{}` is in no joint", shorten(body.name));
-        let help = "join it to another body in [joints], or leave it out";
+        let mut help = "join it to another body in [joints], or leave it out".to_owned();
+        if let Some(near) = nearest(body.name, others.clone()) {
+            help += &format!("; or did you mean `{near}`?");
+        }
         (joints.log).report(message, &[(&body.key, "not connected")], help);
     }
 }
