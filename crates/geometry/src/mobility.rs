@@ -7,7 +7,7 @@
 
 use crate::body_states::BodyStates;
 use crate::constraint_rows::ConstraintRows;
-use crate::mechanism::{BodyId, Mechanism};
+use crate::mechanism::{BodyId, Joint, JointKind, Mechanism};
 use crate::plan::AssemblyConfiguration;
 use crate::plane::{Vec2, vec2};
 use faer::linalg::solvers::Svd;
@@ -217,7 +217,8 @@ impl DenseConstraints {
             if let Some(c) = self.rows.column(child) {
                 let (origin, rotation) = frame(&x, parent);
                 let (_, child_rotation) = frame(&x, child);
-                let apart = Vec2::from_angle(attempt as f64) * points_apart(joint.kind).unwrap_or(0.0);
+                let apart =
+                    Vec2::from_angle(attempt as f64) * points_apart(joint.kind).unwrap_or(0.0);
                 let at = origin + joint.points[from].rotate(rotation) + apart
                     - joint.points[1 - from].rotate(child_rotation);
                 (x[c], x[c + 1]) = (at.x, at.y);

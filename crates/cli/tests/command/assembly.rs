@@ -3,7 +3,12 @@
 use crate::test_dir::{Run, TestDir};
 
 /// A four-bar of these lengths in m (ground, crank, coupler, rocker), a crank at `phi` and a coupler at about `coupler`, rad.
-fn four_bar([ground, crank, coupler, rocker]: [f64; 4], phi: f64, guess: f64, rest: &str) -> String {
+fn four_bar(
+    [ground, crank, coupler, rocker]: [f64; 4],
+    phi: f64,
+    guess: f64,
+    rest: &str,
+) -> String {
     format!(
         r#"
 title = "Four-bar"
@@ -30,7 +35,13 @@ coupler = {guess}
 fn run(text: &str, arguments: &[&str]) -> Run {
     let dir = TestDir::new();
     dir.put("s.toml", text);
-    let scene = [&arguments[..1], &["s.toml"], &arguments[1..], &["--out", "o"]].concat();
+    let scene = [
+        &arguments[..1],
+        &["s.toml"],
+        &arguments[1..],
+        &["--out", "o"],
+    ]
+    .concat();
     dir.run(&scene)
 }
 
@@ -54,8 +65,14 @@ fn every_command_says_where_the_assembly_mode_is_far_from_the_given_angles() {
         (&free, &["check"][..]),
         (&free, &["kinematics"]),
         (&free, &["reduce"]),
-        (&free, &["calibrate", "--parameter", "crank.inertia", "--period", "1"]),
-        (&free, &["sweep", "--vary", "crank.inertia=0.4,0.5", "--result", "m"]),
+        (
+            &free,
+            &["calibrate", "--parameter", "crank.inertia", "--period", "1"],
+        ),
+        (
+            &free,
+            &["sweep", "--vary", "crank.inertia=0.4,0.5", "--result", "m"],
+        ),
         (&driven, &["simulate"]),
         (&driven, &["cycle"]),
         (&driven, &["equilibria"]),
@@ -72,7 +89,8 @@ fn every_command_says_where_the_assembly_mode_is_far_from_the_given_angles() {
 fn ends(text: &str) -> Vec<String> {
     let out = run(text, &["check"]).out;
     let lines = out.lines().map(str::trim);
-    let is_end = |line: &&str| line.starts_with("limit position") || line.starts_with("change point");
+    let is_end =
+        |line: &&str| line.starts_with("limit position") || line.starts_with("change point");
     let name = |line: &str| line.split(", where").next().unwrap_or_default().to_owned();
     lines.filter(is_end).map(name).collect()
 }
@@ -83,8 +101,14 @@ fn the_end_of_a_range_has_one_name() {
     let limited = [0.4, 0.3, 0.35, 0.25];
     let parallelogram = [0.4, 0.2, 0.4, 0.2];
     for (lengths, upper) in [
-        (limited, "limit position of `coupler`, `rocker` at phi = 2.046915388 rad (117.28°)"),
-        (parallelogram, "change point of `coupler`, `rocker` at phi = 3.1415926"),
+        (
+            limited,
+            "limit position of `coupler`, `rocker` at phi = 2.046915388 rad (117.28°)",
+        ),
+        (
+            parallelogram,
+            "change point of `coupler`, `rocker` at phi = 3.1415926",
+        ),
     ] {
         let text = four_bar(lengths, 0.5, 0.0, "[coordinate-sweep]\nphi = [0.5, 6.0]\n");
         let ends = ends(&text);
@@ -93,7 +117,10 @@ fn the_end_of_a_range_has_one_name() {
         let swept = run(&text, &["kinematics"]);
         assert_eq!(swept.status, Some(1), "{}", swept.err);
         let message = plain(&swept);
-        assert!(message.contains(&format!("the {} is reached", ends[1])), "{message}");
+        assert!(
+            message.contains(&format!("the {} is reached", ends[1])),
+            "{message}"
+        );
     }
 }
 
@@ -104,9 +131,16 @@ fn a_start_outside_the_range_names_its_ends() {
     let text = four_bar([0.4, 0.3, 0.35, 0.25], 0.5, 0.0, sweep);
     let range = "0.000000 to 2.046915 rad (0.00° to 117.28°)";
     let checked = plain(&run(&text, &["check"]));
-    assert!(checked.contains(&format!("phi ranges from {range}")), "{checked}");
+    assert!(
+        checked.contains(&format!("phi ranges from {range}")),
+        "{checked}"
+    );
     let refused = run(&text, &["kinematics"]);
-    assert!(plain(&refused).contains(&format!("outside the range of {range}")), "{}", refused.err);
+    assert!(
+        plain(&refused).contains(&format!("outside the range of {range}")),
+        "{}",
+        refused.err
+    );
 }
 
 const BOOM: &str = r#"
@@ -131,17 +165,33 @@ duration = 0.1
 fn the_length_of_a_cylinder_follows_from_an_approximate_angle() {
     let checked = run(BOOM, &["check"]);
     assert_eq!(checked.status, Some(0), "{}", checked.err);
-    let angle = checked.out.lines().find(|l| l.trim_start().starts_with("boom "));
-    assert!(angle.is_some_and(|l| l.contains("0.500000 rad")), "{}", checked.out);
+    let angle = checked
+        .out
+        .lines()
+        .find(|l| l.trim_start().starts_with("boom "));
+    assert!(
+        angle.is_some_and(|l| l.contains("0.500000 rad")),
+        "{}",
+        checked.out
+    );
     assert_eq!(run(BOOM, &["simulate"]).status, Some(0));
     // Without the angle nothing says where it stands.
     let unknown = run(&BOOM.replace("boom = 0.5\n", ""), &["check"]);
     assert_eq!(unknown.status, Some(2));
     let message = plain(&unknown);
-    assert!(message.contains("the length of `lift` at the start is not given"), "{message}");
-    assert!(message.contains("or the approximate angles of the bodies"), "{message}");
+    assert!(
+        message.contains("the length of `lift` at the start is not given"),
+        "{message}"
+    );
+    assert!(
+        message.contains("or the approximate angles of the bodies"),
+        "{message}"
+    );
     // A given length is exact, whatever the angle says.
-    let given = run(&BOOM.replace("boom = 0.5\n", "boom = 0.5\nlift = 1.1\n"), &["check"]);
+    let given = run(
+        &BOOM.replace("boom = 0.5\n", "boom = 0.5\nlift = 1.1\n"),
+        &["check"],
+    );
     assert!(!given.out.contains("0.500000 rad"), "{}", given.out);
 }
 

@@ -60,12 +60,20 @@ fn follow(case: &Case, planets: usize, turns: f64) {
     // Angles of some hundred radians, of which the last digit is known.
     let rounding = 4.0 * f64::EPSILON * q.abs().max(1.0);
     let arm = body("arm");
-    assert!((arm.rotation.cross(dwell_geometry::Vec2::from_angle(0.3 * q))).abs() < rounding);
+    assert!(
+        (arm.rotation
+            .cross(dwell_geometry::Vec2::from_angle(0.3 * q)))
+        .abs()
+            < rounding
+    );
     assert!((arm.angular_velocity - 0.6).abs() < 1e-14);
     for k in 0..planets {
         let planet = body(&format!("planet{k}"));
         let expected = dwell_geometry::Vec2::from_angle(-0.75 * q);
-        assert!((planet.rotation - expected).norm() < 4.0 * rounding, "{turns} {k}");
+        assert!(
+            (planet.rotation - expected).norm() < 4.0 * rounding,
+            "{turns} {k}"
+        );
         assert!((planet.angular_velocity + 1.5).abs() < 1e-13);
     }
     let result = state.inverse_dynamics();
@@ -74,7 +82,10 @@ fn follow(case: &Case, planets: usize, turns: f64) {
         for teeth in ["inner", "outer"] {
             let force = case.reaction(result, &format!("{teeth}{k}.tooth"));
             let share = 3.6 / 0.03 / planets as f64;
-            assert!((force.abs() - share).abs() < 1e-10, "{teeth}{k}: {force} {share}");
+            assert!(
+                (force.abs() - share).abs() < 1e-10,
+                "{teeth}{k}: {force} {share}"
+            );
         }
     }
 }
