@@ -202,14 +202,14 @@ impl DenseConstraints {
         let mut placed = vec![false; mechanism.bodies.len()];
         placed[mechanism.ground] = true;
         // Where gears, wheels and the ends of a distance are, other joints say if they can: joints whose points meet come first.
-        let meets = |joint: &&Joint| points_apart(joint.kind).is_none();
+        let is_together = |joint: &&Joint| points_apart(joint.kind).is_none();
         loop {
             let can_place = |joint: &&Joint| {
                 let [one, two] = joint.bodies.map(|b| placed[b.0]);
                 one != two
             };
             let joints = || mechanism.joints.iter().filter(can_place);
-            let Some(joint) = joints().find(meets).or_else(|| joints().next()) else {
+            let Some(joint) = joints().find(is_together).or_else(|| joints().next()) else {
                 break x;
             };
             let from = usize::from(!placed[joint.bodies[0].0]);

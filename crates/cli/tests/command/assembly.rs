@@ -1,6 +1,6 @@
 //! Where a mechanism is assembled, where its range ends, and what the commands say about both.
 
-use crate::test_dir::{Run, TestDir};
+use crate::test_dir::{Run, TestDir, home};
 
 /// A four-bar of these lengths in m (ground, crank, coupler, rocker), a crank at `phi` and a coupler at about `coupler`, rad.
 fn four_bar(
@@ -208,4 +208,24 @@ fn a_body_in_no_joint_may_be_a_misspelt_one() {
     let message = plain(&run(&text, &["check"]));
     assert!(message.contains("body `bom` is in no joint"), "{message}");
     assert!(message.contains("did you mean `boom`?"), "{message}");
+}
+
+/// Joints that are written twice are redundant, wherever they stand: a distance cannot place a body before its pins do.
+#[test]
+fn joints_written_twice_may_stand_before_the_others() {
+    let path = home().join("validation/massless-coupler/scene.toml");
+    let text = std::fs::read_to_string(path).unwrap();
+    let twins = "[joints]\n\
+        twin = { revolute = [\"ground.A\", \"crank.A\"] }\n\
+        link-twin = { distance = [\"crank.B\", \"rocker.C\"], length = 360 }\n\
+        joint-twin = { weld = [\"rocker.W\", \"arm.W\"], angle = -35 }\n";
+    let checked = run(&text.replace("[joints]\n", twins), &["check"]);
+    assert_eq!(checked.status, Some(0), "{}", checked.err);
+    assert!(
+        checked
+            .out
+            .contains("6 constraints are redundant, consistently"),
+        "{}",
+        checked.out
+    );
 }

@@ -260,7 +260,7 @@ impl Plan {
         let follows_carrier = |&l: &usize| {
             let axis = self.loop_closures[l].axis;
             let by_carrier = |(_, frame)| self.carrier_phases.contains_key(&frame);
-            axis.map_or_else(|| self.closes_anyhow(l, group), by_carrier)
+            axis.map_or_else(|| self.closes_in_any_pose(l, group), by_carrier)
         };
         if group.is_rotational()
             && group.loops.iter().all(follows_carrier)
@@ -287,7 +287,7 @@ impl Plan {
     }
 
     /// Whether no unknown of a group can open a loop: that of a pin that is written twice.
-    fn closes_anyhow(&self, l: usize, group: &Group) -> bool {
+    fn closes_in_any_pose(&self, l: usize, group: &Group) -> bool {
         let closure = &self.loop_closures[l];
         let is_constant = |&(vector, frame): &(usize, usize)| {
             let length = self.frame_vectors[vector].local.norm();
