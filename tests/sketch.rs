@@ -44,7 +44,7 @@ impl Sketch {
 
     /// A body with its mass and its rough angle.
     pub fn mass(&mut self, name: &str, mass: Mass, initial_guess: Option<f64>) -> BodyId {
-        self.mechanism.bodies.push(Body { name: name.into() });
+        self.mechanism.bodies.push(Body::named(name));
         self.masses.push(mass);
         self.rough.push(initial_guess);
         BodyId(self.masses.len() - 1)
@@ -73,53 +73,35 @@ impl Sketch {
         second: BodyPoint,
         kind: JointKind,
     ) -> JointId {
-        self.mechanism.joints.push(Joint {
-            name: name.into(),
-            bodies: [first.0, second.0],
-            points: [first.1, second.1].map(|[x, y]| vec2(x, y)),
-            kind,
-        });
+        let points = [first.1, second.1].map(|[x, y]| vec2(x, y));
+        let joint = Joint::new(name, [first.0, second.0], points, kind);
+        self.mechanism.joints.push(joint);
         JointId(self.mechanism.joints.len() - 1)
     }
 
     /// An actuator that turns the second body from the first.
     pub fn actuate(&mut self, name: &str, bodies: [BodyId; 2]) {
-        let name = name.into();
-        self.mechanism.actuators.push(Actuator {
-            name,
-            bodies,
-            kind: ActuatorKind::Angle,
-        });
+        self.mechanism.actuators.push(Actuator::angle(name, bodies));
     }
 
     /// An actuator that drives the travel of a joint between the two bodies.
     pub fn actuate_travel(&mut self, name: &str, bodies: [BodyId; 2], joint: JointId) {
-        self.mechanism.actuators.push(Actuator {
-            name: name.into(),
-            bodies,
-            kind: ActuatorKind::Travel(joint),
-        });
+        let actuator = Actuator::new(name, bodies, ActuatorKind::Travel(joint));
+        self.mechanism.actuators.push(actuator);
     }
 
     /// An actuator that drives the distance of two points.
     pub fn actuate_length(&mut self, name: &str, bodies: [BodyId; 2], points: [Vec2; 2]) {
-        self.mechanism.actuators.push(Actuator {
-            name: name.into(),
-            bodies,
-            kind: ActuatorKind::Length(points),
-        });
+        let actuator = Actuator::new(name, bodies, ActuatorKind::Length(points));
+        self.mechanism.actuators.push(actuator);
     }
 
     /// A relation, as a joint between the two bodies of its first coordinate.
     pub fn couple(&mut self, name: &str, bodies: [BodyId; 2], relation: Coupling) {
         let kind = JointKind::Coupling(self.mechanism.couplings.len());
         self.mechanism.couplings.push(relation);
-        self.mechanism.joints.push(Joint {
-            name: name.into(),
-            bodies,
-            points: [Vec2::ZERO; 2],
-            kind,
-        });
+        let joint = Joint::new(name, bodies, [Vec2::ZERO; 2], kind);
+        self.mechanism.joints.push(joint);
     }
 
     /// What it takes to make a model of it, with the actuators at `q`.

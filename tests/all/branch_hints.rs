@@ -84,18 +84,14 @@ fn the_travel_is_the_joints_own() {
     swapped.mechanism.joints[guide.0].bodies.reverse();
     assert_at(point(&swapped, (slider, O)), 0.4, 0.0);
     let mut setup = with_hints(setup, &[(guide, -0.4)]);
-    setup.mechanism.bodies.push(dwell_geometry::Body {
-        name: "pendulum".into(),
-    });
+    let body = dwell_geometry::Body::named("pendulum");
+    setup.mechanism.bodies.push(body);
     setup.masses.push(Default::default());
     setup.assembly.initial_guess.push(None);
     let pendulum = BodyId(2);
-    setup.mechanism.joints.push(dwell_geometry::Joint {
-        name: "held".into(),
-        bodies: [slider, pendulum],
-        points: [Vec2::ZERO; 2],
-        kind: JointKind::Weld { angle: 0.0 },
-    });
+    let weld = JointKind::Weld { angle: 0.0 };
+    let held = dwell_geometry::Joint::new("held", [slider, pendulum], [Vec2::ZERO; 2], weld);
+    setup.mechanism.joints.push(held);
     setup.assembly.branch_hints.push(None);
     let mut seed = Rng(7);
     for _ in 0..8 {

@@ -1,9 +1,6 @@
 //! The chain as its definition has it, and its statics by hand.
 
-use dwell_geometry::{
-    Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Joint, JointKind, Mechanism, Vec2,
-    vec2,
-};
+use dwell_geometry::{Actuator, AssemblyConfiguration, Body, Joint, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::{Load, LoadKind, Magnitude, Mass, Model};
 use std::f64::consts::FRAC_PI_2;
 
@@ -13,33 +10,22 @@ pub const GRAVITY: f64 = 9.81;
 /// N four-bars: links 1 m and 1 kg, ground pivots 1 m apart, and θ of the first link is q. The
 /// pins in the order of [`by_hand`]: A₀, then B, C and A of every four-bar.
 fn chain(n: usize) -> Mechanism {
-    let body = |name: String| Body { name };
-    let pin = |name: String, bodies: [usize; 2], points: [Vec2; 2]| Joint {
-        name,
-        bodies: bodies.map(BodyId),
-        points,
-        kind: JointKind::Revolute,
-    };
     let tip = vec2(1.0, 0.0);
     let mut chain = Mechanism {
-        bodies: vec![body("ground".into()), body("link0".into())],
-        joints: vec![pin("A0".into(), [0, 1], [Vec2::ZERO; 2])],
-        actuators: vec![Actuator {
-            name: "theta".into(),
-            bodies: [BodyId(0), BodyId(1)],
-            kind: ActuatorKind::Angle,
-        }],
+        bodies: ["ground", "link0"].map(Body::named).into(),
+        joints: vec![Joint::revolute("A0", [0, 1], [Vec2::ZERO; 2])],
+        actuators: vec![Actuator::angle("theta", [0, 1])],
         ..Mechanism::default()
     };
     for i in 1..=n {
         let [before, coupler, link] = [2 * i - 1, 2 * i, 2 * i + 1];
         let pivot = vec2(i as f64, 0.0);
         let bodies = [format!("coupler{i}"), format!("link{i}")];
-        chain.bodies.extend(bodies.map(body));
+        chain.bodies.extend(bodies.map(Body::named));
         chain.joints.extend([
-            pin(format!("B{i}"), [before, coupler], [tip, Vec2::ZERO]),
-            pin(format!("C{i}"), [coupler, link], [tip, tip]),
-            pin(format!("A{i}"), [0, link], [pivot, Vec2::ZERO]),
+            Joint::revolute(format!("B{i}"), [before, coupler], [tip, Vec2::ZERO]),
+            Joint::revolute(format!("C{i}"), [coupler, link], [tip, tip]),
+            Joint::revolute(format!("A{i}"), [0, link], [pivot, Vec2::ZERO]),
         ]);
     }
     chain
@@ -48,11 +34,7 @@ fn chain(n: usize) -> Mechanism {
 /// Its model with every reaction, under gravity.
 pub fn model(n: usize) -> Model {
     let chain = chain(n);
-    let bar = Mass {
-        mass: 1.0,
-        center: vec2(0.5, 0.0),
-        inertia: 1.0 / 12.0,
-    };
+    let bar = Mass::uniform_bar(1.0, 1.0);
     let mut masses = vec![bar; chain.bodies.len()];
     masses[0] = Mass::default();
     let upright = |b: usize| Some(if b % 2 == 1 { FRAC_PI_2 } else { 0.0 });

@@ -103,3 +103,8 @@ pub use reduced::{Coefficients, Evaluator, ReducedModel};
 pub use sweep::{Sweep, SweepResults};
 pub use table::Table;
 pub use value::Value;
+
+/// The fragment of the README is a program that runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

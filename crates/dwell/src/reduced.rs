@@ -43,7 +43,8 @@ impl Mechanism {
             wanted.extend(meant);
             if wanted.len() == before {
                 let names = self.reactions();
-                let names = names.iter().map(String::as_str);
+                let joints = mechanism.joints.iter().map(|j| &j.name);
+                let names = names.iter().chain(joints).map(String::as_str);
                 return Err(Error::unknown("reaction", "reactions", name, names));
             }
         }

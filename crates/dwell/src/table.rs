@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::reduced::{Coefficients, ReducedModel};
+use dwell_geometry::Range;
 use dwell_kinetostatics::table::Labels;
 use dwell_kinetostatics::{ExactModel, ReducedModel as _, TableDomain, TabulatedModel};
 use std::f64::consts::TAU;
@@ -25,8 +26,12 @@ impl ReducedModel {
         let scene = self.scene.inner();
         let model = self.loaded.as_ref().unwrap_or(self.exact.model());
         let domain = match model.plan().range() {
-            dwell_geometry::Range::Unbounded => TableDomain::Between(0.0, TAU),
-            _ => TableDomain::Full,
+            Range::Unbounded => TableDomain::Between(0.0, TAU),
+            Range::Full
+            | Range::Revolutions(_)
+            | Range::Limited(..)
+            | Range::Stroke(..)
+            | Range::Unresolved(..) => TableDomain::Full,
         };
         let names = model.reactions().iter();
         let labels = Labels {

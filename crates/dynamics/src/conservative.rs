@@ -157,7 +157,11 @@ pub(crate) fn limits(range: Range, q: f64) -> Result<Option<(f64, f64)>> {
     };
     let shift = match range {
         Range::Limited(..) => TAU * ((q - from) / TAU).floor(),
-        _ => 0.0,
+        Range::Full
+        | Range::Revolutions(_)
+        | Range::Stroke(..)
+        | Range::Unbounded
+        | Range::Unresolved(..) => 0.0,
     };
     if q > to + shift || q < from + shift {
         return Err(PositionError::OutOfRange { q, from, to }.into());

@@ -6,22 +6,15 @@
 //! ```
 //! use dwell_dynamics::{CoordinateMode, Event, EventKind, Machine, Method, OdeState, Options, solve};
 //! use dwell_geometry::body_states::CoordinateFunction;
-//! use dwell_geometry::{
-//!     Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Joint, JointKind, Mechanism, Vec2, vec2,
-//! };
+//! use dwell_geometry::{Actuator, AssemblyConfiguration, Body, BodyId, Joint, Mechanism, Vec2, vec2};
 //! use dwell_kinetostatics::{Load, LoadKind, Magnitude, Mass, Model};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let bodies = [BodyId(0), BodyId(1)];
 //! let mechanism = Mechanism {
-//!     bodies: ["ground", "bob"].map(|name| Body { name: name.to_owned() }).to_vec(),
-//!     joints: vec![Joint {
-//!         name: "pivot".to_owned(),
-//!         bodies,
-//!         points: [Vec2::ZERO; 2],
-//!         kind: JointKind::Revolute,
-//!     }],
-//!     actuators: vec![Actuator { name: "q".to_owned(), bodies, kind: ActuatorKind::Angle }],
+//!     bodies: ["ground", "bob"].map(Body::named).into(),
+//!     joints: vec![Joint::revolute("pivot", bodies, [Vec2::ZERO; 2])],
+//!     actuators: vec![Actuator::angle("q", bodies)],
 //!     ..Mechanism::default()
 //! };
 //! // 2 kg at 0.5 m from the pivot; q is the angle from the horizontal, and the start 1e-4 rad from hanging.

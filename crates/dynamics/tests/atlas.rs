@@ -5,11 +5,11 @@ mod parts;
 
 use dwell_dynamics::{ChartChangeReason, Event, EventKind, Method, Options, solve};
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_geometry::{Actuator, BodyId, Mechanism, Vec2, vec2};
+use dwell_geometry::{Actuator, BodyId, Joint, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::{Load, Mass};
 use parts::{
-    Setup, angle, bar, energy_lost, four_bar, gravity, length, mechanism, motor, pin, samples,
-    slider_crank, solve_setup, torsion_spring,
+    Setup, angle, energy_lost, four_bar, gravity, length, mechanism, motor, samples, slider_crank,
+    solve_setup, torsion_spring,
 };
 
 const CRANK: CoordinateFunction = CoordinateFunction::Angle([BodyId(0), BodyId(1)]);
@@ -159,9 +159,9 @@ fn crank_rocker(loads: &[Load], speed: f64, end: f64) -> Pair {
     let chain = four_bar([0.4, 0.1, 0.35, 0.25]);
     let masses = [
         Mass::default(),
-        bar(1.0, 0.1),
-        bar(0.8, 0.35),
-        bar(0.5, 0.25),
+        Mass::uniform_bar(1.0, 0.1),
+        Mass::uniform_bar(0.8, 0.35),
+        Mass::uniform_bar(0.5, 0.25),
     ];
     let masses = with_flywheel(masses.to_vec());
     let crank = Setup::new(&chain, angle([0, 1]), &masses, 1.0, &[0.0, 1.0, 0.2, 1.5]);
@@ -175,7 +175,12 @@ fn a_slider_is_followed_through_its_dead_points() {
         mass: 0.6,
         ..Mass::default()
     };
-    let masses = with_flywheel(vec![Mass::default(), bar(1.0, 0.1), bar(0.8, 0.35), piston]);
+    let masses = with_flywheel(vec![
+        Mass::default(),
+        Mass::uniform_bar(1.0, 0.1),
+        Mass::uniform_bar(0.8, 0.35),
+        piston,
+    ]);
     let crank = Setup::new(&chain, angle([0, 1]), &masses, 1.0, &[0.0, 1.0, -0.2, 0.0]);
     let crank = crank.with_loads(&[gravity()], &[]);
     let cylinder = length([0, 3], [vec2(-0.1, 0.02), Vec2::ZERO]);
@@ -203,7 +208,12 @@ fn loads_and_drives_go_on_in_another_chart() {
 #[test]
 fn a_diagonal_leads_to_a_bridge() {
     let chain = four_bar([0.4, 0.2, 0.4, 0.2]);
-    let masses = [Mass::default(), bar(1.0, 0.2), bar(0.8, 0.4), bar(0.5, 0.2)];
+    let masses = [
+        Mass::default(),
+        Mass::uniform_bar(1.0, 0.2),
+        Mass::uniform_bar(0.8, 0.4),
+        Mass::uniform_bar(0.5, 0.2),
+    ];
     let crank = Setup::new(&chain, angle([0, 1]), &masses, 1.0, &[0.0, 1.0, 0.0, 1.0]);
     let diagonal = length([0, 2], [Vec2::ZERO, vec2(0.4, 0.0)]);
     let pair = Pair::new(crank.with_loads(&[gravity()], &[]), diagonal, 14.0, 4.0);
@@ -247,7 +257,7 @@ fn no_step_leads_over_a_fold() {
     };
     let chain: Mechanism = mechanism(
         &["ground", "lever"],
-        vec![pin("A", [0, 1], [Vec2::ZERO; 2])],
+        vec![Joint::revolute("A", [0, 1], [Vec2::ZERO; 2])],
     );
     for anchor in [0.9, 3.0] {
         let cylinder = length([0, 1], [vec2(anchor, 0.0), Vec2::IDENTITY]);

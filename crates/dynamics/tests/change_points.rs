@@ -7,11 +7,11 @@ use dwell_dynamics::{
     Atlas, ChartChangeReason, ContinuedMotion, MachineDescription, Method, Options,
 };
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_geometry::{BodyId, Mechanism, Reaction, Vec2, vec2};
+use dwell_geometry::{Body, BodyId, Joint, Mechanism, Reaction, Vec2, vec2};
 use dwell_kinetostatics::{Drive, Load, Mass};
 use parts::{
-    Setup, angle, bar, body, energy_lost, four_bar, gravity, mechanism, motor, pin, samples,
-    slider_crank, solve_setup, torsion_damper,
+    Setup, angle, energy_lost, four_bar, gravity, mechanism, motor, samples, slider_crank,
+    solve_setup, torsion_damper,
 };
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -22,18 +22,17 @@ fn chain(n: usize) -> Mechanism {
     let tip = Vec2::IDENTITY;
     let mut chain = mechanism(
         &["ground", "link0"],
-        vec![pin("A0", [0, 1], [Vec2::ZERO; 2])],
+        vec![Joint::revolute("A0", [0, 1], [Vec2::ZERO; 2])],
     );
     for i in 1..=n {
         let [before, coupler, link] = [2 * i - 1, 2 * i, 2 * i + 1];
         let pivot = vec2(i as f64, 0.0);
-        chain
-            .bodies
-            .extend([body(&format!("coupler{i}")), body(&format!("link{i}"))]);
+        let links = [format!("coupler{i}"), format!("link{i}")];
+        chain.bodies.extend(links.map(Body::named));
         chain.joints.extend([
-            pin(&format!("B{i}"), [before, coupler], [tip, Vec2::ZERO]),
-            pin(&format!("C{i}"), [coupler, link], [tip, tip]),
-            pin(&format!("A{i}"), [0, link], [pivot, Vec2::ZERO]),
+            Joint::revolute(format!("B{i}"), [before, coupler], [tip, Vec2::ZERO]),
+            Joint::revolute(format!("C{i}"), [coupler, link], [tip, tip]),
+            Joint::revolute(format!("A{i}"), [0, link], [pivot, Vec2::ZERO]),
         ]);
     }
     chain
@@ -42,7 +41,7 @@ fn chain(n: usize) -> Mechanism {
 /// Its links turned by `q`.
 fn chain_at(n: usize, q: f64) -> Setup {
     let chain = chain(n);
-    let mut masses = vec![bar(1.0, 1.0); chain.bodies.len()];
+    let mut masses = vec![Mass::uniform_bar(1.0, 1.0); chain.bodies.len()];
     masses[0] = Mass::default();
     let initial_guess: Vec<f64> = (0..masses.len())
         .map(|b| if b % 2 == 1 { q } else { 0.0 })
@@ -62,7 +61,10 @@ fn pendulum(n: usize, q: f64) -> Setup {
         center: vec2(arm, 0.0),
         inertia: m - mass * arm * arm,
     };
-    let one = mechanism(&["ground", "link"], vec![pin("A", [0, 1], [Vec2::ZERO; 2])]);
+    let one = mechanism(
+        &["ground", "link"],
+        vec![Joint::revolute("A", [0, 1], [Vec2::ZERO; 2])],
+    );
     Setup::new(&one, angle([0, 1]), &[Mass::default(), link], q, &[0.0, q])
         .with_loads(&[gravity()], &[])
 }
@@ -191,9 +193,9 @@ fn a_curved_change_point() {
     let chain = four_bar([0.3, 0.1, 0.22, 0.18]);
     let masses = [
         Mass::default(),
-        bar(1.0, 0.1),
-        bar(0.8, 0.22),
-        bar(0.5, 0.18),
+        Mass::uniform_bar(1.0, 0.1),
+        Mass::uniform_bar(0.8, 0.22),
+        Mass::uniform_bar(0.5, 0.18),
     ];
     let setup = Setup::new(&chain, angle([0, 1]), &masses, 1.0, &[0.0, 1.0, 0.5, 1.5]);
     let setup = setup.with_loads(&[gravity()], &[]);
@@ -228,7 +230,12 @@ fn a_piston_passes_the_pivot() {
         mass: 0.6,
         ..Mass::default()
     };
-    let masses = [Mass::default(), bar(1.0, r), bar(0.8, r), piston];
+    let masses = [
+        Mass::default(),
+        Mass::uniform_bar(1.0, r),
+        Mass::uniform_bar(0.8, r),
+        piston,
+    ];
     let chain = slider_crank(r, r, 0.0);
     let setup = Setup::new(&chain, angle([0, 1]), &masses, 0.4, &[0.0, 0.4, -0.4, 0.0]);
     let setup = setup.with_loads(&[gravity()], &[]);

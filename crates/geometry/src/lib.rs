@@ -2,28 +2,19 @@
 //! A [`Mechanism`] describes one, and [`Plan::compile`] assembles it and fixes the order in which it is evaluated.
 //!
 //! ```
-//! use dwell_geometry::{
-//!     Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Joint, JointKind, Mechanism, Plan, vec2,
-//! };
+//! use dwell_geometry::{Actuator, AssemblyConfiguration, Body, Joint, Mechanism, Plan, Vec2, vec2};
 //!
 //! // A four-bar: crank 1 m, coupler 3 m, rocker 3 m, and 3 m between the pins on the ground.
-//! let body = |name: &str| Body { name: name.into() };
-//! let pin = |name: &str, first, second, on_first, on_second| Joint {
-//!     name: name.into(),
-//!     bodies: [BodyId(first), BodyId(second)],
-//!     points: [on_first, on_second],
-//!     kind: JointKind::Revolute,
-//! };
 //! let four_bar = Mechanism {
-//!     bodies: ["ground", "crank", "coupler", "rocker"].map(body).into(),
+//!     bodies: ["ground", "crank", "coupler", "rocker"].map(Body::named).into(),
 //!     ground: 0,
 //!     joints: vec![
-//!         pin("A", 0, 1, vec2(0.0, 0.0), vec2(0.0, 0.0)),
-//!         pin("B", 1, 2, vec2(1.0, 0.0), vec2(0.0, 0.0)),
-//!         pin("C", 2, 3, vec2(3.0, 0.0), vec2(3.0, 0.0)),
-//!         pin("D", 0, 3, vec2(3.0, 0.0), vec2(0.0, 0.0)),
+//!         Joint::revolute("A", [0, 1], [Vec2::ZERO; 2]),
+//!         Joint::revolute("B", [1, 2], [vec2(1.0, 0.0), Vec2::ZERO]),
+//!         Joint::revolute("C", [2, 3], [vec2(3.0, 0.0); 2]),
+//!         Joint::revolute("D", [0, 3], [vec2(3.0, 0.0), Vec2::ZERO]),
 //!     ],
-//!     actuators: vec![Actuator { name: "q".into(), bodies: [BodyId(0), BodyId(1)], kind: ActuatorKind::Angle }],
+//!     actuators: vec![Actuator::angle("q", [0, 1])],
 //!     couplings: Vec::new(),
 //! };
 //!

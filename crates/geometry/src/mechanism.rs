@@ -1,6 +1,8 @@
 //! The description of a mechanism: bodies, the joints between them, and the actuators
 //! whose coordinates are the independent ones. Lengths in m, angles in rad.
 
+mod guessed_length;
+mod parts;
 mod size;
 
 use crate::plane::Vec2;

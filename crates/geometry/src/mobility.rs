@@ -7,7 +7,7 @@
 
 use crate::body_states::BodyStates;
 use crate::constraint_rows::ConstraintRows;
-use crate::mechanism::{BodyId, Mechanism};
+use crate::mechanism::{BodyId, Joint, JointKind, Mechanism};
 use crate::plan::AssemblyConfiguration;
 use crate::plane::{Vec2, vec2};
 use faer::linalg::solvers::Svd;
@@ -113,6 +113,23 @@ pub fn mobility_at(mechanism: &Mechanism, states: &BodyStates) -> Option<Mobilit
     Some(constraints.analyse(mechanism, &x))
 }
 
+/// How far the two points of a joint are apart, m; none where they meet or lie on a line of both bodies.
+fn points_apart(kind: JointKind) -> Option<f64> {
+    match kind {
+        JointKind::Revolute
+        | JointKind::Prismatic { .. }
+        | JointKind::Slot { .. }
+        | JointKind::Weld { .. } => None,
+        JointKind::Gear { radii, internal } => {
+            let sign = if internal { -1.0 } else { 1.0 };
+            Some((radii[0] + sign * radii[1]).abs())
+        }
+        JointKind::Rack { radius, .. } | JointKind::Rolling { radius, .. } => Some(radius.abs()),
+        JointKind::Distance { length } => Some(length),
+        JointKind::Coupling(_) => Some(0.0),
+    }
+}
+
 impl DenseConstraints {
     fn new(mechanism: &Mechanism, rank_tolerance: f64) -> Option<Self> {
         let rows = ConstraintRows::new(mechanism).ok()?;
@@ -184,27 +201,30 @@ impl DenseConstraints {
         };
         let mut placed = vec![false; mechanism.bodies.len()];
         placed[mechanism.ground] = true;
-        let mut again = true;
-        while std::mem::replace(&mut again, false) {
-            for joint in &mechanism.joints {
-                for (from, to) in [(0, 1), (1, 0)] {
-                    let [parent, child] = [from, to].map(|i| joint.bodies[i]);
-                    if !placed[parent.0] || placed[child.0] {
-                        continue;
-                    }
-                    if let Some(c) = self.rows.column(child) {
-                        let (origin, rotation) = frame(&x, parent);
-                        let (_, child_rotation) = frame(&x, child);
-                        let at = origin + joint.points[from].rotate(rotation)
-                            - joint.points[to].rotate(child_rotation);
-                        (x[c], x[c + 1]) = (at.x, at.y);
-                    }
-                    placed[child.0] = true;
-                    again = true;
-                }
+        // Where gears, wheels and the ends of a distance are, other joints say if they can: joints whose points meet come first.
+        let is_together = |joint: &&Joint| points_apart(joint.kind).is_none();
+        loop {
+            let can_place = |joint: &&Joint| {
+                let [one, two] = joint.bodies.map(|b| placed[b.0]);
+                one != two
+            };
+            let joints = || mechanism.joints.iter().filter(can_place);
+            let Some(joint) = joints().find(is_together).or_else(|| joints().next()) else {
+                break x;
+            };
+            let from = usize::from(!placed[joint.bodies[0].0]);
+            let [parent, child] = [from, 1 - from].map(|i| joint.bodies[i]);
+            if let Some(c) = self.rows.column(child) {
+                let (origin, rotation) = frame(&x, parent);
+                let (_, child_rotation) = frame(&x, child);
+                let apart =
+                    Vec2::from_angle(attempt as f64) * points_apart(joint.kind).unwrap_or(0.0);
+                let at = origin + joint.points[from].rotate(rotation) + apart
+                    - joint.points[1 - from].rotate(child_rotation);
+                (x[c], x[c + 1]) = (at.x, at.y);
             }
+            placed[child.0] = true;
         }
-        x
     }
 
     /// Closes the first `count` rows by the smallest corrections; returns the residual, m.

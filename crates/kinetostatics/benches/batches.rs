@@ -13,8 +13,7 @@ use bench::{Case, EVALUATIONS, GOLDEN_ANGLE, reactions, stop};
 use closed_form_general::General;
 use closed_form_reduced::{Body, FourBar, SliderCrank};
 use dwell_geometry::{
-    Actuator, ActuatorKind, AssemblyConfiguration, Body as Named, BodyId, Joint, JointKind,
-    Mechanism, Reaction, Vec2, vec2,
+    Actuator, AssemblyConfiguration, Body as Named, Joint, Mechanism, Reaction, Vec2, vec2,
 };
 use dwell_kinetostatics::{Batch, ExactModel, Mass, Model, ReducedModel};
 use dwell_scene::Scene;
@@ -164,15 +163,7 @@ fn time(min_ns: &mut f64, evaluate: impl FnOnce()) {
 
 /// IFToMM's A02: N four-bars in a row, all links 1 m and 1 kg. Its m is (4 N + 1)/3, whatever the angle.
 fn chain(n: usize) -> ExactModel {
-    let body = |_| Named {
-        name: "link".into(),
-    };
-    let pin = |bodies: [usize; 2], points: [Vec2; 2]| Joint {
-        name: "pin".into(),
-        bodies: bodies.map(BodyId),
-        points,
-        kind: JointKind::Revolute,
-    };
+    let pin = |bodies: [usize; 2], points| Joint::revolute("pin", bodies, points);
     let tip = vec2(1.0, 0.0);
     let mut joints = vec![pin([0, 1], [Vec2::ZERO; 2])];
     for i in 1..=n {
@@ -184,20 +175,12 @@ fn chain(n: usize) -> ExactModel {
         ]);
     }
     let mechanism = Mechanism {
-        bodies: (0..2 * n + 2).map(body).collect(),
+        bodies: (0..2 * n + 2).map(|_| Named::named("link")).collect(),
         joints,
-        actuators: vec![Actuator {
-            name: "theta".into(),
-            bodies: [BodyId(0), BodyId(1)],
-            kind: ActuatorKind::Angle,
-        }],
+        actuators: vec![Actuator::angle("theta", [0, 1])],
         ..Mechanism::default()
     };
-    let bar = Mass {
-        mass: 1.0,
-        center: vec2(0.5, 0.0),
-        inertia: 1.0 / 12.0,
-    };
+    let bar = Mass::uniform_bar(1.0, 1.0);
     let assembly = AssemblyConfiguration {
         q: vec![FRAC_PI_2],
         initial_guess: (0..2 * n + 2)

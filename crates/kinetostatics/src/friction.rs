@@ -14,7 +14,7 @@
 //! the same state has two accelerations, or none.
 
 use crate::error::{KinetostaticsError, Result};
-use crate::load::{Friction, FrictionContact, Load, LoadKind};
+use crate::load::{Friction, FrictionContact, Load};
 use crate::pass::InverseDynamics;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{Mechanism, Reaction};
@@ -133,14 +133,9 @@ impl DependentLoad {
             }
             let law = if let Some(friction) = one.friction() {
                 // The surfaces slide along the coordinate of the load.
-                let coordinate = match one.kind {
-                    LoadKind::SlideForce(guide) => guide.travel(),
-                    LoadKind::Torque { bodies } => CoordinateFunction::Angle(bodies),
-                    _ => return None,
-                };
                 ReactionLaw::Friction {
                     friction,
-                    coordinate,
+                    coordinate: one.kind.sliding_coordinate()?,
                 }
             } else {
                 let tangent = one.pressure_angle()?.angle.tan();

@@ -6,21 +6,13 @@
 //! about the joint, mL²/3, and the horizontal reaction at q = 90° is −m L/2 per unit of q̈.
 //!
 //! ```
-//! use dwell_geometry::{
-//!     Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Joint, JointKind, Mechanism, Vec2, vec2,
-//! };
+//! use dwell_geometry::{Actuator, AssemblyConfiguration, Body, Joint, Mechanism, Vec2, vec2};
 //! use dwell_kinetostatics::{ExactModel, Mass, Model, ReducedModel};
 //!
-//! let bodies = [BodyId(0), BodyId(1)]; // the ground and the bar
 //! let mechanism = Mechanism {
-//!     bodies: ["ground", "bar"].map(|name| Body { name: name.into() }).into(),
-//!     joints: vec![Joint {
-//!         name: "A".into(),
-//!         bodies,
-//!         points: [Vec2::ZERO; 2],
-//!         kind: JointKind::Revolute,
-//!     }],
-//!     actuators: vec![Actuator { name: "q".into(), bodies, kind: ActuatorKind::Angle }],
+//!     bodies: ["ground", "bar"].map(Body::named).into(),
+//!     joints: vec![Joint::revolute("A", [0, 1], [Vec2::ZERO; 2])],
+//!     actuators: vec![Actuator::angle("q", [0, 1])],
 //!     ..Mechanism::default()
 //! };
 //! let bar = Mass { mass: 2.0, center: vec2(0.5, 0.0), inertia: 2.0 / 12.0 };

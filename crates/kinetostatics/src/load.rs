@@ -187,7 +187,55 @@ pub enum Magnitude {
     External(Vec<Signal>),
 }
 
+impl LoadKind {
+    /// The two bodies on whose relative angle, with whole revolutions, a load of this kind itself depends; none for most.
+    pub fn angle_pair(self) -> Option<[BodyId; 2]> {
+        match self {
+            Self::TorsionSpring { bodies, .. } => Some(bodies),
+            Self::Gravity { .. }
+            | Self::Force { .. }
+            | Self::Torque { .. }
+            | Self::Spring { .. }
+            | Self::Damper { .. }
+            | Self::RotationalDamper { .. }
+            | Self::PointToPointForce { .. }
+            | Self::SlideForce(_)
+            | Self::SlideDamper(_)
+            | Self::SeparatingForce(_) => None,
+        }
+    }
+
+    /// The coordinate along which two surfaces slide whose friction is a load of this kind: of a pin or of a guide. No
+    /// other load is a friction.
+    pub(crate) fn sliding_coordinate(self) -> Option<CoordinateFunction> {
+        match self {
+            Self::SlideForce(guide) => Some(guide.travel()),
+            Self::Torque { bodies } => Some(CoordinateFunction::Angle(bodies)),
+            Self::Gravity { .. }
+            | Self::Force { .. }
+            | Self::Spring { .. }
+            | Self::TorsionSpring { .. }
+            | Self::Damper { .. }
+            | Self::RotationalDamper { .. }
+            | Self::PointToPointForce { .. }
+            | Self::SlideDamper(_)
+            | Self::SeparatingForce(_) => None,
+        }
+    }
+}
+
 impl Magnitude {
+    /// The pairs of bodies on the value of whose relative angle it depends.
+    pub fn angle_pairs(&self) -> impl Iterator<Item = [BodyId; 2]> {
+        let pair = |signal: &Signal| match *signal {
+            Signal::Value(Coordinate::Angle(bodies)) => Some(bodies),
+            Signal::Value(Coordinate::Travel(_) | Coordinate::Length { .. })
+            | Signal::Velocity(_)
+            | Signal::Time => None,
+        };
+        self.signals().iter().filter_map(pair)
+    }
+
     /// The signals it depends on.
     pub fn signals(&self) -> &[Signal] {
         match self {
@@ -218,16 +266,19 @@ impl Load {
     /// Whether it has a potential energy: gravity, springs and forces of constant direction, where the magnitude is
     /// constant; and the separating force of teeth, which does no work.
     pub fn is_conservative(&self) -> bool {
-        let has_potential = matches!(
-            self.kind,
+        let has_potential = match self.kind {
             LoadKind::Gravity { .. }
-                | LoadKind::Spring { .. }
-                | LoadKind::TorsionSpring { .. }
-                | LoadKind::Force {
-                    body_fixed: false,
-                    ..
-                }
-        );
+            | LoadKind::Spring { .. }
+            | LoadKind::TorsionSpring { .. }
+            | LoadKind::SeparatingForce(_) => true,
+            LoadKind::Force { body_fixed, .. } => !body_fixed,
+            LoadKind::Torque { .. }
+            | LoadKind::Damper { .. }
+            | LoadKind::RotationalDamper { .. }
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SlideForce(_)
+            | LoadKind::SlideDamper(_) => false,
+        };
         !self.does_work() || has_potential && matches!(self.magnitude, Magnitude::Constant(_))
     }
 
@@ -255,16 +306,12 @@ impl Load {
     /// The pairs of bodies on whose relative angle it depends, with whole revolutions: those of a torsional spring
     /// and those of its magnitude's signals.
     pub fn angle_pairs(&self) -> Vec<[BodyId; 2]> {
-        let mut pairs = Vec::new();
-        if let LoadKind::TorsionSpring { bodies, .. } = self.kind {
-            pairs.push(bodies);
-        }
-        for signal in self.magnitude.signals() {
-            if let Signal::Value(Coordinate::Angle(bodies)) = *signal {
-                pairs.push(bodies);
-            }
-        }
-        pairs
+        let by_signals = self.magnitude.angle_pairs();
+        self.kind
+            .angle_pair()
+            .into_iter()
+            .chain(by_signals)
+            .collect()
     }
 
     /// The bodies it acts on and those whose motion its magnitude depends on. Gravity acts on those

@@ -2,12 +2,12 @@
 
 use crate::bodies::Bodies;
 use crate::coordinates::ParsedActuator;
-use crate::diagnostics::{Diagnostics, Span};
+use crate::diagnostics::Span;
 use crate::joints::{Joints, kind_name};
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
-use dwell_geometry::{ActuatorId, BodyId, BranchHint};
+use dwell_geometry::{ActuatorId, AssemblyConfiguration, Body, BodyId, BranchHint, Mechanism};
 
 /// `[assembly]` as read: the coordinate of each actuator, rad or m, the angle of each body, rad, and the travel or
 /// direction of each joint, m or rad.
@@ -67,27 +67,70 @@ impl ParsedAssembly {
     }
 
     /// Coordinate of each actuator at assembly: as it is given, or as in `initial` where the motion starts, or 0. No two
-    /// points are at 0 from each other by default: reports which distances are missing, in the section or else at the actuator.
+    /// points are at 0 from each other by default: such a distance follows from the approximate angles, or is reported as
+    /// missing, in the section or else at the actuator.
     pub(crate) fn coordinates_or(
         &self,
         initial: &[Option<f64>],
+        (bodies, joints): (&Bodies<'_>, &Joints<'_>),
         actuators: &[ParsedActuator<'_>],
         section: Option<&Span>,
-        log: &Diagnostics,
     ) -> Vec<f64> {
-        let mut coordinates = Vec::with_capacity(actuators.len());
-        for (k, a) in actuators.iter().enumerate() {
-            let coordinate = self.coordinates[k].or(initial.get(k).copied().flatten());
-            if a.is_distance() && coordinate.is_none() && !self.mentioned.contains(&k) {
+        let given = |k: usize| self.coordinates[k].or(initial.get(k).copied().flatten());
+        let given = (0..actuators.len()).map(given);
+        let mut coordinates: Vec<f64> = given.clone().map(Option::unwrap_or_default).collect();
+        let is_missing =
+            |(k, a): &(usize, &ParsedActuator<'_>)| a.is_distance() && !self.mentioned.contains(k);
+        let missing = actuators.iter().enumerate().zip(given);
+        let missing = missing.filter(|(actuator, given)| given.is_none() && is_missing(actuator));
+        let missing: Vec<usize> = missing.map(|((k, _), _)| k).collect();
+        for (k, length) in self.guessed_lengths(&missing, &coordinates, (bodies, joints), actuators)
+        {
+            coordinates[k] = length.unwrap_or_default();
+            if length.is_none() {
+                let a = &actuators[k];
                 let name = shorten(a.name);
                 let message = format!("the length of `{name}` at the start is not given");
                 let labels = [(section.unwrap_or(&a.key), "no length at assembly")];
-                let help = format!("add it to [assembly], such as `{name} = 0.5`");
-                log.report(message, &labels, help);
+                let help = format!(
+                    "add it to [assembly], such as `{name} = 0.5`, or the approximate angles of the bodies from the ground to its two points"
+                );
+                joints.log.report(message, &labels, help);
             }
-            coordinates.push(coordinate.unwrap_or(0.0));
         }
         coordinates
+    }
+
+    /// The lengths of actuators where the bodies stand at their approximate angles, m.
+    fn guessed_lengths(
+        &self,
+        missing: &[usize],
+        coordinates: &[f64],
+        (bodies, joints): (&Bodies<'_>, &Joints<'_>),
+        actuators: &[ParsedActuator<'_>],
+    ) -> Vec<(usize, Option<f64>)> {
+        let read_joints = joints.list.iter().map(|j| j.joint.clone()).collect();
+        let read_actuators = actuators.iter().map(|a| a.actuator.clone()).collect();
+        let (Some(ground), Some(joints), Some(actuators)) =
+            (bodies.ground, read_joints, read_actuators)
+        else {
+            // What could not be read is reported.
+            return Vec::new();
+        };
+        let mechanism = Mechanism {
+            bodies: bodies.list.iter().map(|b| Body::named(b.name)).collect(),
+            ground,
+            joints,
+            actuators,
+            couplings: Vec::new(),
+        };
+        let assembly = AssemblyConfiguration {
+            q: coordinates.to_vec(),
+            initial_guess: self.initial_guess.clone(),
+            branch_hints: self.branch_hints.clone(),
+        };
+        let length = |&k: &usize| (k, mechanism.guessed_length(&assembly, ActuatorId(k)));
+        missing.iter().map(length).collect()
     }
 }
 

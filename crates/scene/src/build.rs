@@ -23,6 +23,7 @@ use crate::units::Units;
 use crate::value::Context;
 use crate::wording::shorten;
 use dwell_geometry::{Body, Mechanism, Vec2};
+use dwell_laws::expression::nearest;
 use toml::de::DeValue;
 
 impl Scene {
@@ -111,7 +112,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     let mut motion = motion.map(|f| ParsedMotion::read(f, &actuators, can_start_at_rest));
     let initial = motion.as_ref().map_or(&[][..], |m| &m.initial_coordinates);
     let at = assembly_section.as_ref().map(|f| &f.span);
-    let start = assembly.coordinates_or(initial, &actuators, at, log);
+    let start = assembly.coordinates_or(initial, (&bodies, &joints), &actuators, at);
     if let (Some(motion), Some(f)) = (&mut motion, &motion_section) {
         motion.read_laws(&actuators, &start);
         let events = f.get("events");
@@ -145,11 +146,8 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     if log.count() > 0 {
         return None;
     }
-    let body = |name: &str| Body {
-        name: name.to_owned(),
-    };
     let mechanism = Mechanism {
-        bodies: bodies.list.iter().map(|b| body(b.name)).collect(),
+        bodies: bodies.list.iter().map(|b| Body::named(b.name)).collect(),
         ground: bodies.ground?,
         joints: joints.list.into_iter().filter_map(|j| j.joint).collect(),
         actuators: actuators.into_iter().filter_map(|a| a.actuator).collect(),
@@ -255,9 +253,16 @@ fn report_unjoined_bodies(bodies: &Bodies<'_>, joints: &Joints<'_>) {
             joined[body.0] = true;
         }
     }
-    for (body, _) in bodies.list.iter().zip(joined).filter(|(_, joined)| !joined) {
+    let by_body = || bodies.list.iter().zip(&joined);
+    let others = by_body()
+        .filter(|(_, joined)| **joined)
+        .map(|(b, _)| b.name);
+    for (body, _) in by_body().filter(|(_, joined)| !**joined) {
         let message = format!("body `{}` is in no joint", shorten(body.name));
-        let help = "join it to another body in [joints], or leave it out";
+        let mut help = "join it to another body in [joints], or leave it out".to_owned();
+        if let Some(near) = nearest(body.name, others.clone()) {
+            help += &format!("; or did you mean `{near}`?");
+        }
         (joints.log).report(message, &[(&body.key, "not connected")], help);
     }
 }

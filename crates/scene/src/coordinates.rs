@@ -243,8 +243,7 @@ fn read_actuator(entry: &Entry<'_>, bodies: &Bodies<'_>, joints: &Joints<'_>) ->
             (bodies, ActuatorKind::Length(points))
         }
     };
-    let name = entry.name.to_owned();
-    Some(Actuator { name, bodies, kind })
+    Some(Actuator::new(entry.name, bodies, kind))
 }
 
 /// What a coordinate of `[coordinates]` measures.

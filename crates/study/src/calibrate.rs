@@ -5,7 +5,7 @@ use crate::models::{initial_reduced_state, reduced_model};
 use crate::number_format::{digits, number};
 use crate::ranges::extent;
 #[cfg(feature = "output")]
-use crate::{models::PreparedScene, output::Outcome};
+use crate::{branch_note::branch_note, models::PreparedScene, output::Outcome};
 use dwell_dynamics::Orbit;
 use dwell_numerics::root;
 use dwell_scene::{Scene, SceneLocation};
@@ -198,7 +198,8 @@ pub fn calibrate(
     path: Option<&str>,
     period: Option<f64>,
 ) -> Result<Outcome, StudyError> {
-    PreparedScene::for_driven_angle(scene, true)?;
+    let prepared = PreparedScene::for_driven_angle(scene, true)?;
+    let note = branch_note(scene, prepared.model.model().plan());
     let section = scene.calibration.as_ref();
     let path = path.or(section.map(|c| c.path.as_str()));
     let period = period.or(section.map(|c| c.period));
@@ -218,7 +219,7 @@ pub fn calibrate(
     Ok(Outcome {
         summary: format!(
             "{title}: {path} = {value} {unit} gives the period {period} s\n  the scene has {current} {unit}, which gives \
-             {current_period} s\n"
+             {current_period} s\n{note}"
         ),
         ..Outcome::default()
     })

@@ -1,7 +1,7 @@
 //! `dwell check`: mobility, range, groups and assembly modes of a scene, before anything moves.
 
 use crate::branch_note::branch_note;
-use crate::explain::StudyError;
+use crate::explain::{StudyError, describe_ends, describe_limit};
 use crate::models::{loaded_model, requested_reaction_bodies};
 use crate::number_format::{coordinate_unit, count, digits, number};
 #[cfg(feature = "output")]
@@ -9,7 +9,7 @@ use crate::output::Outcome;
 use crate::trajectory::compute::{check_variables, requested_bodies};
 use dwell_geometry::mobility::mobility;
 use dwell_geometry::plan::GroupModes;
-use dwell_geometry::{BodyId, BranchHint, JointId, Mechanism, Plan, Range, RangeLimit};
+use dwell_geometry::{BodyId, BranchHint, JointId, Mechanism, Plan, Range};
 use dwell_kinetostatics::{Load, Mesh, Model};
 use dwell_scene::Scene;
 
@@ -130,33 +130,21 @@ fn describe_range(mechanism: &Mechanism, plan: &Plan) -> String {
                 [None, Some(_)] => "; no lower limit was found down to there",
                 [None, None] => "; no limit was found up to there",
             };
-            let unit = match angle {
-                true => format!("rad ({:.2}° to {:.2}°)", from.to_degrees(), to.to_degrees()),
-                false => "m".to_owned(),
-            };
-            format!("ranges from {from:.6} to {to:.6} {unit}{note}")
+            format!("ranges from {}{note}", describe_ends(from, to, angle))
         }
     };
     let limits = plan.range_limits().into_iter().flatten();
-    let limits = limits.map(|limit| describe_limit(mechanism, plan, limit));
+    let limits = limits.map(|limit| {
+        let beyond = match limit.change_point {
+            true => ", where another assembly mode begins",
+            false => "",
+        };
+        format!(
+            "    {}{beyond}\n",
+            describe_limit(mechanism, plan, limit, 0.0)
+        )
+    });
     format!("  {name} {text}\n{}", limits.collect::<String>())
-}
-
-/// The cause of a limit.
-fn describe_limit(mechanism: &Mechanism, plan: &Plan, limit: RangeLimit) -> String {
-    let what = match limit.change_point {
-        true => "change point (another assembly mode begins)",
-        false => "limit position",
-    };
-    let bodies = match plan.group_methods().is_empty() {
-        true => String::new(),
-        false => {
-            let bodies = plan.group_bodies(limit.group);
-            " of ".to_owned() + &list(bodies.iter().map(|&b| mechanism.body_name(b)))
-        }
-    };
-    let unit = coordinate_unit(plan.is_angle(0));
-    format!("    {:.12} {unit}: {what}{bodies}\n", limit.q)
 }
 
 fn describe_groups(mechanism: &Mechanism, plan: &Plan) -> String {

@@ -30,7 +30,7 @@ pub fn comparison_options(options: &Options) -> Options {
     }
     let method = match options.method {
         Method::Tsit45 => Method::Bdf,
-        _ => Method::Tsit45,
+        Method::Bdf | Method::Esdirk34 | Method::TrBdf2 | Method::Dop853 => Method::Tsit45,
     };
     Options { method, ..*options }
 }

@@ -4,32 +4,19 @@
 //! without the velocities, accelerations and forces of the other crates: so the values check the reduced model.
 //!
 //! ```
-//! use dwell_geometry::{
-//!     Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Joint, JointKind, Mechanism, Plan, Vec2, vec2,
-//! };
+//! use dwell_geometry::{Actuator, AssemblyConfiguration, Body, Joint, Mechanism, Plan, Vec2, vec2};
 //! use dwell_kinetostatics::Mass;
 //! use dwell_symbolic::Symbolic;
 //!
-//! let joint = |name: &str, bodies: [usize; 2], points: [Vec2; 2], kind| Joint {
-//!     name: name.into(),
-//!     bodies: bodies.map(BodyId),
-//!     points,
-//!     kind,
-//! };
-//! let axis = vec2(1.0, 0.0);
 //! let slider_crank = Mechanism {
-//!     bodies: ["ground", "crank", "rod", "slider"].map(|name| Body { name: name.into() }).into(),
+//!     bodies: ["ground", "crank", "rod", "slider"].map(Body::named).into(),
 //!     joints: vec![
-//!         joint("O", [0, 1], [Vec2::ZERO, Vec2::ZERO], JointKind::Revolute),
-//!         joint("A", [1, 2], [vec2(1.0, 0.0), Vec2::ZERO], JointKind::Revolute),
-//!         joint("B", [2, 3], [vec2(3.0, 0.0), Vec2::ZERO], JointKind::Revolute),
-//!         joint("slide", [0, 3], [Vec2::ZERO, Vec2::ZERO], JointKind::Prismatic { axes: [axis, axis] }),
+//!         Joint::revolute("O", [0, 1], [Vec2::ZERO; 2]),
+//!         Joint::revolute("A", [1, 2], [vec2(1.0, 0.0), Vec2::ZERO]),
+//!         Joint::revolute("B", [2, 3], [vec2(3.0, 0.0), Vec2::ZERO]),
+//!         Joint::prismatic("slide", [0, 3], [Vec2::ZERO; 2], [0.0; 2]),
 //!     ],
-//!     actuators: vec![Actuator {
-//!         name: "phi".into(),
-//!         bodies: [BodyId(0), BodyId(1)],
-//!         kind: ActuatorKind::Angle,
-//!     }],
+//!     actuators: vec![Actuator::angle("phi", [0, 1])],
 //!     ..Mechanism::default()
 //! };
 //! // The slider alone has mass, 2 kg; the rod points from the crank to the right.

@@ -2,21 +2,15 @@
 //! equations of the mechanism alone, never from a compiled plan, and as far as possible from positions and velocities only.
 //!
 //! ```
-//! use dwell_geometry::{Body, BodyId, Joint, JointKind, Mechanism, Vec2, vec2};
+//! use dwell_geometry::{Body, Joint, Mechanism, Vec2, vec2};
 //!
-//! let pin = |name: &str, bodies: [usize; 2], points: [Vec2; 2]| Joint {
-//!     name: name.into(),
-//!     bodies: bodies.map(BodyId),
-//!     points,
-//!     kind: JointKind::Revolute,
-//! };
 //! let four_bar = Mechanism {
-//!     bodies: ["ground", "crank", "coupler", "rocker"].map(|name| Body { name: name.into() }).into(),
+//!     bodies: ["ground", "crank", "coupler", "rocker"].map(Body::named).into(),
 //!     joints: vec![
-//!         pin("A", [0, 1], [Vec2::ZERO, Vec2::ZERO]),
-//!         pin("B", [1, 2], [vec2(1.0, 0.0), Vec2::ZERO]),
-//!         pin("C", [2, 3], [vec2(2.0, 0.0), vec2(1.0, 0.0)]),
-//!         pin("D", [0, 3], [vec2(2.0, 0.0), Vec2::ZERO]),
+//!         Joint::revolute("A", [0, 1], [Vec2::ZERO, Vec2::ZERO]),
+//!         Joint::revolute("B", [1, 2], [vec2(1.0, 0.0), Vec2::ZERO]),
+//!         Joint::revolute("C", [2, 3], [vec2(2.0, 0.0), vec2(1.0, 0.0)]),
+//!         Joint::revolute("D", [0, 3], [vec2(2.0, 0.0), Vec2::ZERO]),
 //!     ],
 //!     ..Mechanism::default()
 //! };

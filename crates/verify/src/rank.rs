@@ -117,23 +117,15 @@ fn rank_of(dense: &DenseMechanism, matrix: MatRef<'_, f64>) -> Result<Rank> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_geometry::{Actuator, ActuatorKind, Body, Joint, JointKind, Vec2, vec2};
+    use dwell_geometry::{Actuator, Body, Joint, Vec2, vec2};
 
     fn pin(bodies: [usize; 2], points: [Vec2; 2]) -> Joint {
-        Joint {
-            name: "pin".into(),
-            bodies: bodies.map(BodyId),
-            points,
-            kind: JointKind::Revolute,
-        }
+        Joint::revolute("pin", bodies, points)
     }
 
     fn bars(count: usize, joints: Vec<Joint>) -> Mechanism {
-        let body = |b: usize| Body {
-            name: format!("{b}"),
-        };
         Mechanism {
-            bodies: (0..=count).map(body).collect(),
+            bodies: (0..=count).map(|b| Body::named(b.to_string())).collect(),
             joints,
             ..Mechanism::default()
         }
@@ -178,11 +170,7 @@ mod tests {
     #[test]
     fn a_drive_holds_what_it_reaches() {
         let (mut mechanism, poses) = table();
-        mechanism.actuators.push(Actuator {
-            name: "lean".into(),
-            bodies: [BodyId(0), BodyId(1)],
-            kind: ActuatorKind::Angle,
-        });
+        mechanism.actuators.push(Actuator::angle("lean", [0, 1]));
         let Ranks {
             joints,
             with_actuators,

@@ -236,12 +236,7 @@ impl PlacedMechanism {
         let n = self.bodies.len();
         let mut described = DescribedMechanism {
             mechanism: Mechanism {
-                bodies: vec![
-                    Body {
-                        name: String::new()
-                    };
-                    n
-                ],
+                bodies: vec![Body::named(""); n],
                 ground: view.bodies[0],
                 joints: joints.into_iter().flatten().collect(),
                 actuators,

@@ -68,7 +68,8 @@ impl MechanismBuilder {
     }
 
     /// A body, new or already there, to which points and a mass can be added. What it returns borrows the mechanism:
-    /// end the statement before the next part is added.
+    /// end the statement before the next part is added. A misspelt name makes a body of its own, which is in no joint:
+    /// [`assemble`](MechanismBuilder::assemble) then names the body that may be meant.
     ///
     /// ```
     /// let mut m = dwell::Mechanism::builder("Four-bar");

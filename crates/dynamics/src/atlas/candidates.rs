@@ -1,7 +1,7 @@
 //! The coordinates in which a motion of one degree of freedom can be described.
 
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_geometry::{Actuator, ActuatorKind, BodyId, Coordinate, JointId, JointKind, Mechanism};
+use dwell_geometry::{Actuator, BodyId, Coordinate, JointId, JointKind, Mechanism};
 
 /// What an angle between two moving bodies counts against one from the ground: it may fold sooner.
 const RELATIVE_ANGLE_WEIGHT: f64 = 0.5;
@@ -22,16 +22,8 @@ pub(super) fn with_actuator(
     name: String,
     coordinate: Coordinate,
 ) -> Option<Mechanism> {
-    let (bodies, kind) = match coordinate {
-        Coordinate::Angle(bodies) => (bodies, ActuatorKind::Angle),
-        Coordinate::Travel(joint) => {
-            let bodies = mechanism.joints.get(joint.0)?.bodies;
-            (bodies, ActuatorKind::Travel(joint))
-        }
-        Coordinate::Length { bodies, points } => (bodies, ActuatorKind::Length(points)),
-    };
     Some(Mechanism {
-        actuators: vec![Actuator { name, bodies, kind }],
+        actuators: vec![Actuator::of(name, coordinate, mechanism)?],
         ..mechanism.clone()
     })
 }
@@ -53,7 +45,7 @@ pub(super) fn candidates(mechanism: &Mechanism, size: f64) -> Vec<Candidate> {
         let weight = match coordinate {
             Coordinate::Angle(bodies) if bodies.contains(&ground) => 1.0,
             Coordinate::Angle(_) => RELATIVE_ANGLE_WEIGHT,
-            _ => 1.0 / size,
+            Coordinate::Travel(_) | Coordinate::Length { .. } => 1.0 / size,
         };
         if let Some(measured) = CoordinateFunction::find(mechanism, coordinate) {
             found.push(Candidate {

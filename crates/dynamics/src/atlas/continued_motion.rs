@@ -163,6 +163,6 @@ fn counts_revolutions(measured: CoordinateFunction, states: &BodyStates) -> bool
         CoordinateFunction::Angle(bodies) => {
             bodies.into_iter().all(|b| states.body(b).angle.is_some())
         }
-        _ => false,
+        CoordinateFunction::Travel { .. } | CoordinateFunction::Length { .. } => false,
     }
 }

@@ -3,7 +3,7 @@
 use super::{Atlas, MachineDescription};
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{Body, BodyId, Coordinate, Coupling, Joint, JointKind, Mechanism, Vec2};
-use dwell_kinetostatics::{LoadKind, Magnitude, Signal};
+use dwell_kinetostatics::Magnitude;
 use dwell_laws::{Law, Polynomial};
 
 impl Atlas<'_> {
@@ -27,14 +27,9 @@ impl Atlas<'_> {
             }
             let auxiliary = BodyId(mechanism.bodies.len());
             let name = format!("revolutions of {}", mechanism.body_name(bodies[1]));
-            mechanism.bodies.push(Body { name: name.clone() });
+            mechanism.bodies.push(Body::named(&name));
             initial_guess.push(Some(states.angle(bodies)[0]));
-            let joint = |kind| Joint {
-                name: name.clone(),
-                bodies: [ground, auxiliary],
-                points: [Vec2::ZERO; 2],
-                kind,
-            };
+            let joint = |kind| Joint::new(&name, [ground, auxiliary], [Vec2::ZERO; 2], kind);
             let relation = JointKind::Coupling(mechanism.couplings.len());
             mechanism
                 .joints
@@ -55,25 +50,9 @@ impl Atlas<'_> {
 pub(super) fn load_angles(description: &MachineDescription<'_>) -> Vec<[BodyId; 2]> {
     let loads = description.loads.iter().map(|load| &load.magnitude);
     let drives = description.drives.iter().map(|drive| drive.kind.input());
-    let signals = loads.chain(drives).flat_map(Magnitude::signals);
-    let mut angles: Vec<[BodyId; 2]> = signals
-        .filter_map(|signal| match signal {
-            Signal::Value(Coordinate::Angle(bodies)) => Some(*bodies),
-            _ => None,
-        })
-        .collect();
-    angles.extend(description.loads.iter().filter_map(|load| match load.kind {
-        LoadKind::TorsionSpring { bodies, .. } => Some(bodies),
-        LoadKind::Gravity { .. }
-        | LoadKind::Force { .. }
-        | LoadKind::Torque { .. }
-        | LoadKind::Spring { .. }
-        | LoadKind::Damper { .. }
-        | LoadKind::RotationalDamper { .. }
-        | LoadKind::PointToPointForce { .. }
-        | LoadKind::SlideForce(_)
-        | LoadKind::SlideDamper(_)
-        | LoadKind::SeparatingForce(_) => None,
-    }));
-    angles
+    let by_signals = loads.chain(drives).flat_map(Magnitude::angle_pairs);
+    let by_kinds = description.loads.iter();
+    by_signals
+        .chain(by_kinds.filter_map(|load| load.kind.angle_pair()))
+        .collect()
 }

@@ -230,7 +230,8 @@ impl AuxiliaryColumns {
                 let [later, _] = self.value_and_slope(measured, from + period)?;
                 TAU * ((later - now) / TAU).round() / period
             }
-            _ => 0.0,
+            (None, _)
+            | (_, CoordinateFunction::Travel { .. } | CoordinateFunction::Length { .. }) => 0.0,
         };
         let column = self.column(measured, slope, |coordinate| TableQuantity::S {
             coordinate,
@@ -290,7 +291,14 @@ impl AuxiliaryColumns {
                 TableQuantity::Ds { coordinate } => {
                     state.coordinate(self.measured[coordinate].0)[1]
                 }
-                _ => Dual::default(),
+                // Those of the model itself and of its potential are filled elsewhere.
+                TableQuantity::M
+                | TableQuantity::HalfDm
+                | TableQuantity::A { .. }
+                | TableQuantity::B { .. }
+                | TableQuantity::C { .. }
+                | TableQuantity::V
+                | TableQuantity::HalfDv => Dual::default(),
             };
         }
         Ok(())

@@ -7,52 +7,21 @@ use dwell_dynamics::{
     Options, Solution,
 };
 use dwell_geometry::{
-    Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Joint, JointKind, Mechanism, Vec2,
-    vec2,
+    Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Joint, Mechanism, Vec2, vec2,
 };
 use dwell_kinetostatics::{Drive, DriveKind, Load, LoadKind, Magnitude, Mass, Model, Motor};
 
-pub(crate) fn body(name: &str) -> Body {
-    Body { name: name.into() }
-}
-
-pub(crate) fn pin(name: &str, bodies: [usize; 2], points: [Vec2; 2]) -> Joint {
-    Joint {
-        name: name.into(),
-        bodies: bodies.map(BodyId),
-        points,
-        kind: JointKind::Revolute,
-    }
-}
-
 pub(crate) fn angle(bodies: [usize; 2]) -> Actuator {
-    Actuator {
-        name: "angle".into(),
-        bodies: bodies.map(BodyId),
-        kind: ActuatorKind::Angle,
-    }
+    Actuator::angle("angle", bodies)
 }
 
 pub(crate) fn length(bodies: [usize; 2], points: [Vec2; 2]) -> Actuator {
-    Actuator {
-        name: "length".into(),
-        bodies: bodies.map(BodyId),
-        kind: ActuatorKind::Length(points),
-    }
-}
-
-/// A uniform bar from its frame's origin along x.
-pub(crate) fn bar(mass: f64, length: f64) -> Mass {
-    Mass {
-        mass,
-        center: vec2(0.5 * length, 0.0),
-        inertia: mass * length * length / 12.0,
-    }
+    Actuator::new("length", bodies, ActuatorKind::Length(points))
 }
 
 pub(crate) fn mechanism(bodies: &[&str], joints: Vec<Joint>) -> Mechanism {
     Mechanism {
-        bodies: bodies.iter().map(|name| body(name)).collect(),
+        bodies: bodies.iter().copied().map(Body::named).collect(),
         joints,
         ..Mechanism::default()
     }
@@ -63,30 +32,24 @@ pub(crate) fn four_bar([ground, crank, coupler, rocker]: [f64; 4]) -> Mechanism 
     mechanism(
         &["ground", "crank", "coupler", "rocker"],
         vec![
-            pin("A", [0, 1], [Vec2::ZERO; 2]),
-            pin("B", [1, 2], [vec2(crank, 0.0), Vec2::ZERO]),
-            pin("C", [2, 3], [vec2(coupler, 0.0), vec2(rocker, 0.0)]),
-            pin("D", [0, 3], [vec2(ground, 0.0), Vec2::ZERO]),
+            Joint::revolute("A", [0, 1], [Vec2::ZERO; 2]),
+            Joint::revolute("B", [1, 2], [vec2(crank, 0.0), Vec2::ZERO]),
+            Joint::revolute("C", [2, 3], [vec2(coupler, 0.0), vec2(rocker, 0.0)]),
+            Joint::revolute("D", [0, 3], [vec2(ground, 0.0), Vec2::ZERO]),
         ],
     )
 }
 
 /// Ground, crank, rod and piston, with a guide beside the crank's pivot.
 pub(crate) fn slider_crank(crank: f64, rod: f64, offset: f64) -> Mechanism {
-    let guide = Joint {
-        name: "D".into(),
-        bodies: [BodyId(0), BodyId(3)],
-        points: [vec2(0.0, offset), Vec2::ZERO],
-        kind: JointKind::Prismatic {
-            axes: [Vec2::IDENTITY; 2],
-        },
-    };
+    let points = [vec2(0.0, offset), Vec2::ZERO];
+    let guide = Joint::prismatic("D", [0, 3], points, [0.0; 2]);
     mechanism(
         &["ground", "crank", "rod", "piston"],
         vec![
-            pin("A", [0, 1], [Vec2::ZERO; 2]),
-            pin("B", [1, 2], [vec2(crank, 0.0), Vec2::ZERO]),
-            pin("C", [2, 3], [vec2(rod, 0.0), Vec2::ZERO]),
+            Joint::revolute("A", [0, 1], [Vec2::ZERO; 2]),
+            Joint::revolute("B", [1, 2], [vec2(crank, 0.0), Vec2::ZERO]),
+            Joint::revolute("C", [2, 3], [vec2(rod, 0.0), Vec2::ZERO]),
             guide,
         ],
     )

@@ -1,5 +1,5 @@
 use super::*;
-use crate::mechanism::{Actuator, ActuatorKind, Body, Joint, JointKind};
+use crate::mechanism::{Actuator, Body, Joint, JointKind};
 use crate::plan::AssemblyConfiguration;
 use dwell_numerics::Dual;
 
@@ -9,32 +9,17 @@ const BLOCK: BodyId = BodyId(3);
 
 /// A crank whose pin drives a slotted rocker by a block, standing at `place`.
 fn slotted_rocker(place: Vec2) -> Mechanism {
-    let body = |name: &str| Body { name: name.into() };
-    let joint = |name: &str, bodies: [usize; 2], points, kind| Joint {
-        name: name.into(),
-        bodies: bodies.map(BodyId),
-        points,
-        kind,
-    };
     let along = vec2(0.8, 0.6);
     Mechanism {
-        bodies: ["ground", "crank", "rocker", "block"].map(body).into(),
+        bodies: ["ground", "crank", "rocker", "block"]
+            .map(Body::named)
+            .into(),
         ground: 0,
         joints: vec![
-            joint("A", [0, 1], [place, vec2(0.3, 0.1)], JointKind::Revolute),
-            joint(
-                "B",
-                [1, 3],
-                [vec2(0.4, 0.1), Vec2::ZERO],
-                JointKind::Revolute,
-            ),
-            joint(
-                "D",
-                [0, 2],
-                [place + vec2(-0.25, 0.05), vec2(0.2, 0.0)],
-                JointKind::Revolute,
-            ),
-            joint(
+            Joint::revolute("A", [0, 1], [place, vec2(0.3, 0.1)]),
+            Joint::revolute("B", [1, 3], [vec2(0.4, 0.1), Vec2::ZERO]),
+            Joint::revolute("D", [0, 2], [place + vec2(-0.25, 0.05), vec2(0.2, 0.0)]),
+            Joint::new(
                 "slot",
                 [2, 3],
                 [vec2(0.2, 0.02), Vec2::ZERO],
@@ -43,11 +28,7 @@ fn slotted_rocker(place: Vec2) -> Mechanism {
                 },
             ),
         ],
-        actuators: vec![Actuator {
-            name: "q".into(),
-            bodies: [BodyId(0), CRANK],
-            kind: ActuatorKind::Angle,
-        }],
+        actuators: vec![Actuator::angle("q", [0, 1])],
         couplings: Vec::new(),
     }
 }

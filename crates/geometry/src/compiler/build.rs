@@ -17,6 +17,9 @@ use crate::structure::lower::{self, Lowered};
 use crate::structure::tree::{LoopJoint, Tree};
 use std::collections::HashMap;
 
+/// Two points of a body are one within this part of the mechanism's size: no rotation separates them.
+const SAME_POINT: f64 = 1e-12;
+
 impl Plan {
     /// The plan without branches, range and stored poses.
     //
@@ -230,10 +233,11 @@ impl Plan {
     fn factored_group(&self, group: &Group, lu: usize, pivots: usize) -> GroupKind {
         let columns = group.unknowns.len();
         GroupKind::Factored(FactoredGroup {
-            method: if group.rows == columns {
-                self.placement_method(group)
-            } else {
-                PlacementMethod::Newton
+            method: match self.placement_method(group) {
+                // Redundant equations that are linear agree everywhere if they do at assembly.
+                method @ (PlacementMethod::Linear | PlacementMethod::GearTrain) => method,
+                method if group.rows == columns => method,
+                _ => PlacementMethod::Newton,
             },
             rows: group.rows,
             columns,
@@ -256,7 +260,8 @@ impl Plan {
         // Loops that only follow lines of centres: the angles of the carriers give their directions.
         let follows_carrier = |&l: &usize| {
             let axis = self.loop_closures[l].axis;
-            axis.is_some_and(|(_, frame)| self.carrier_phases.contains_key(&frame))
+            let by_carrier = |(_, frame)| self.carrier_phases.contains_key(&frame);
+            axis.map_or_else(|| self.closes_in_any_pose(l, group), by_carrier)
         };
         if group.is_rotational()
             && group.loops.iter().all(follows_carrier)
@@ -280,6 +285,16 @@ impl Plan {
             (&[Unknown::ClassAngle(c)], Some(_)) => PlacementMethod::PointOnLine(c),
             _ => PlacementMethod::Newton,
         }
+    }
+
+    /// Whether no unknown of a group can open a loop: that of a pin that is written twice.
+    fn closes_in_any_pose(&self, l: usize, group: &Group) -> bool {
+        let closure = &self.loop_closures[l];
+        let is_constant = |&(vector, frame): &(usize, usize)| {
+            let length = self.frame_vectors[vector].local.norm();
+            length <= SAME_POINT * self.size || !self.is_unknown_in(group, frame)
+        };
+        closure.slides.is_empty() && closure.vectors.iter().all(is_constant)
     }
 
     fn prepare_rrr_dyad(

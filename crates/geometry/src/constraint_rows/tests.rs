@@ -11,43 +11,20 @@ use std::f64::consts::TAU;
 /// Ground, a bar on a revolute, a block sliding on the bar with offsets everywhere, and the
 /// block pinned to the ground from the other side, so that every kind of end occurs.
 fn swinging_block() -> Mechanism {
-    let body = |name: &str| Body { name: name.into() };
-    let joint = |name: &str, bodies: [usize; 2], points, kind| Joint {
-        name: name.into(),
-        bodies: bodies.map(BodyId),
-        points,
-        kind,
-    };
     Mechanism {
-        bodies: vec![body("bar"), body("ground"), body("block")],
+        bodies: ["bar", "ground", "block"].map(Body::named).into(),
         ground: 1,
         joints: vec![
-            joint(
-                "A",
-                [1, 0],
-                [vec2(3.0, -2.0), vec2(0.4, 0.1)],
-                JointKind::Revolute,
-            ),
-            joint(
+            Joint::revolute("A", [1, 0], [vec2(3.0, -2.0), vec2(0.4, 0.1)]),
+            Joint::prismatic(
                 "slide",
                 [0, 2],
                 [vec2(-0.3, 0.7), vec2(0.2, 0.5)],
-                JointKind::Prismatic {
-                    axes: [Vec2::from_angle(0.6), Vec2::from_angle(-2.9)],
-                },
+                [0.6, -2.9],
             ),
-            joint(
-                "B",
-                [2, 1],
-                [vec2(1.1, 0.0), vec2(5.0, 1.0)],
-                JointKind::Revolute,
-            ),
+            Joint::revolute("B", [2, 1], [vec2(1.1, 0.0), vec2(5.0, 1.0)]),
         ],
-        actuators: vec![Actuator {
-            name: "phi".into(),
-            bodies: [BodyId(0), BodyId(2)],
-            kind: ActuatorKind::Angle,
-        }],
+        actuators: vec![Actuator::angle("phi", [0, 2])],
         couplings: vec![],
     }
 }
@@ -109,18 +86,15 @@ fn the_curvature_is_the_second_derivative_along_a_straight_line() {
 #[test]
 fn the_multiplier_is_the_action_of_the_first_body_on_the_second() {
     let slope = Vec2::from_angle(0.5);
-    let body = |name: &str| Body { name: name.into() };
     let mechanism = Mechanism {
-        bodies: vec![body("ground"), body("block")],
+        bodies: ["ground", "block"].map(Body::named).into(),
         ground: 0,
-        joints: vec![Joint {
-            name: "slide".into(),
-            bodies: [BodyId(0), BodyId(1)],
-            points: [Vec2::ZERO, vec2(0.0, 0.25)],
-            kind: JointKind::Prismatic {
-                axes: [slope, vec2(1.0, 0.0)],
-            },
-        }],
+        joints: vec![Joint::prismatic(
+            "slide",
+            [0, 1],
+            [Vec2::ZERO, vec2(0.0, 0.25)],
+            [0.5, 0.0],
+        )],
         actuators: vec![],
         couplings: vec![],
     };
@@ -175,19 +149,6 @@ fn broken_references_are_named() {
     ));
 }
 
-fn joint(name: &str, bodies: [usize; 2], points: [Vec2; 2], kind: JointKind) -> Joint {
-    Joint {
-        name: name.into(),
-        bodies: bodies.map(BodyId),
-        points,
-        kind,
-    }
-}
-
-fn named(names: &[&str]) -> Vec<Body> {
-    names.iter().map(|&n| Body { name: n.into() }).collect()
-}
-
 /// One joint of every kind and one actuator of every drive, with offsets everywhere, the ground as
 /// the first body, the second and neither. It is no mechanism that could close; rows do not mind.
 fn everything() -> Mechanism {
@@ -203,11 +164,7 @@ fn everything() -> Mechanism {
         })
     };
     let angle = |bodies: [usize; 2]| Coordinate::Angle(bodies.map(BodyId));
-    let actuator = |bodies: [usize; 2], kind| Actuator {
-        name: "q".into(),
-        bodies: bodies.map(BodyId),
-        kind,
-    };
+    let actuator = |bodies: [usize; 2], kind| Actuator::new("q", bodies, kind);
     let gear = |internal| JointKind::Gear {
         radii: [0.7, 0.4],
         internal,
@@ -230,10 +187,10 @@ fn everything() -> Mechanism {
             JointKind::Coupling(1),
             JointKind::Coupling(2),
         ];
-        joints.extend(kinds.map(|kind| joint("joint", on, [p, q], kind)));
+        joints.extend(kinds.map(|kind| Joint::new("joint", on, [p, q], kind)));
     }
     Mechanism {
-        bodies: named(&["ground", "a", "b", "c", "d"]),
+        bodies: ["ground", "a", "b", "c", "d"].map(Body::named).into(),
         ground: 0,
         joints,
         actuators: vec![
@@ -344,9 +301,9 @@ fn a_multiplier_acts_where_its_component_says() {
     let check = |kind: JointKind, p2: Vec2, row: usize, force: Vec2, at: Vec2, couple: f64| {
         let o2 = p2 - q.rotate(Vec2::from_angle(theta2));
         let mechanism = Mechanism {
-            bodies: named(&["a", "ground", "b"]),
+            bodies: ["a", "ground", "b"].map(Body::named).into(),
             ground: 1,
-            joints: vec![joint("joint", [0, 2], [p, q], kind)],
+            joints: vec![Joint::new("joint", [0, 2], [p, q], kind)],
             ..Mechanism::default()
         };
         let rows = ConstraintRows::new(&mechanism).unwrap();

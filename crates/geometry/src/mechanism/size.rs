@@ -12,11 +12,11 @@ impl Mechanism {
     /// on the order of its parts. Points that only loads or results name do not count.
     ///
     /// ```
-    /// use dwell_geometry::{Body, BodyId, Joint, JointKind, Mechanism, vec2};
+    /// use dwell_geometry::{Body, Joint, Mechanism, vec2};
     ///
-    /// let pin = |points| Joint { name: "pin".into(), bodies: [BodyId(0), BodyId(1)], points, kind: JointKind::Revolute };
+    /// let pin = |points| Joint::revolute("pin", [0, 1], points);
     /// let mut rod = Mechanism {
-    ///     bodies: vec![Body { name: "ground".into() }, Body { name: "rod".into() }],
+    ///     bodies: ["ground", "rod"].map(Body::named).into(),
     ///     joints: vec![pin([vec2(9.0, 9.0), vec2(7.0, 5.0)])],
     ///     ..Mechanism::default()
     /// };

@@ -12,10 +12,10 @@ impl Plan {
         let name = |g: &AssurGroup| match &g.kind {
             GroupKind::RrrDyad(_) => "pinned dyad, closed form",
             GroupKind::GuidedPoint(_) => "guided point, closed form",
-            GroupKind::Factored(factored_group) if factored_group.rows > factored_group.columns => {
-                "Newton from stored poses, least squares"
-            }
             GroupKind::Factored(factored_group) => match factored_group.method {
+                PlacementMethod::Newton if factored_group.is_overdetermined() => {
+                    "Newton from stored poses, least squares"
+                }
                 PlacementMethod::Newton if self.actuators() == 1 => "Newton from stored poses",
                 PlacementMethod::Newton => "Newton along a path from the assembly",
                 PlacementMethod::Linear if g.group.loops.is_empty() => "coupling",

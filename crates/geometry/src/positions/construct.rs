@@ -123,10 +123,15 @@ impl Plan {
         self.residual(group, pose);
         self.assemble_jacobian(group, factored_group, pose);
         let n = factored_group.columns;
-        for (row, &l) in loops.iter().enumerate() {
+        let mut next_row = 0;
+        for &l in loops {
+            let row = next_row;
             let Some((_, line_frame)) = self.loop_closures[l].axis else {
+                // No unknown can open it.
+                next_row += 2;
                 continue;
             };
+            next_row += 1;
             let Some(&(carrier, phase)) = self.carrier_phases.get(&line_frame) else {
                 continue;
             };
@@ -143,6 +148,7 @@ impl Plan {
         factored_group.factor(group, pose)?;
         self.apply_newton_step(group, factored_group, pose);
         self.rotate_group(group, pose);
+        self.check_redundant(group, factored_group, pose)?;
         self.factor_jacobian(group, factored_group, pose)
     }
 }

@@ -212,7 +212,6 @@ impl Plan {
         let mut residual = f64::INFINITY;
         let mut once_more = true;
         let converged = CONVERGED.max(0.05 * T::EPSILON.sqrt());
-        let redundant_tolerance = REDUNDANT_RESIDUAL.max(64.0 * T::EPSILON);
         for _ in 0..MAX_NEWTON_STEPS {
             self.rotate_group(group, pose);
             residual = self.residual(group, pose);
@@ -224,17 +223,34 @@ impl Plan {
             // One step past convergence: it makes the derivative of a dual number exact.
             if largest < converged && !std::mem::replace(&mut once_more, false) {
                 self.rotate_group(group, pose);
-                if factored_group.is_overdetermined() {
-                    residual = self.residual(group, pose);
-                    if residual > redundant_tolerance * self.groups[group].size {
-                        break;
-                    }
-                }
+                self.check_redundant(group, factored_group, pose)?;
                 return self.factor_jacobian(group, factored_group, pose);
             }
         }
         let q = pose.q[0].value();
         Err(PositionError::NotConverged { group, q, residual })
+    }
+
+    /// Checks that redundant equations agree with the others: where they do not, the group is not closed.
+    pub(crate) fn check_redundant<T: Scalar>(
+        &self,
+        group: usize,
+        factored_group: &FactoredGroup,
+        pose: &mut Pose<T>,
+    ) -> Result<(), PositionError> {
+        if !factored_group.is_overdetermined() {
+            return Ok(());
+        }
+        // Radii are as precise as lengths: what they leave open grows with the angle.
+        let classes = self.groups[group].group.classes();
+        let angles = classes.map(|c| pose.angle[self.class_frame(c)].value().abs());
+        let tolerance = REDUNDANT_RESIDUAL.max(64.0 * T::EPSILON) * angles.fold(1.0, f64::max);
+        let residual = self.residual(group, pose);
+        let q = pose.q[0].value();
+        match residual <= tolerance * self.groups[group].size {
+            true => Ok(()),
+            false => Err(PositionError::NotConverged { group, q, residual }),
+        }
     }
 
     /// One step from zero, for equations that are linear in the unknowns.
@@ -261,6 +277,7 @@ impl Plan {
             return Err(PositionError::NotFinite { q });
         }
         self.rotate_group(group, pose);
+        self.check_redundant(group, factored_group, pose)?;
         Ok(outcome)
     }
 

@@ -45,17 +45,28 @@ impl Friction {
                 "its coefficient of friction and its size must be finite and not negative, its speed positive",
             );
         }
-        // Coulomb friction acts on no other pairs of a joint and a load.
-        let fits = match (self.contact, joint.kind, kind) {
-            (FrictionContact::Pin { .. }, JointKind::Revolute, LoadKind::Torque { bodies }) => {
-                bodies == joint.bodies
+        let bodies = joint.bodies;
+        let fits = match (joint.kind, self.contact) {
+            (JointKind::Revolute, FrictionContact::Pin { .. }) => {
+                kind == LoadKind::Torque { bodies }
             }
             (
-                FrictionContact::Guide { .. },
                 JointKind::Prismatic { .. } | JointKind::Slot { .. },
-                LoadKind::SlideForce(guide),
-            ) => guide.bodies == joint.bodies,
-            _ => false,
+                FrictionContact::Guide { .. },
+            ) => {
+                matches!(kind, LoadKind::SlideForce(guide) if guide.bodies == bodies)
+            }
+            (JointKind::Revolute, FrictionContact::Guide { .. })
+            | (JointKind::Prismatic { .. } | JointKind::Slot { .. }, FrictionContact::Pin { .. })
+            | (
+                JointKind::Weld { .. }
+                | JointKind::Gear { .. }
+                | JointKind::Rack { .. }
+                | JointKind::Rolling { .. }
+                | JointKind::Distance { .. }
+                | JointKind::Coupling(_),
+                _,
+            ) => false,
         };
         let misfit = "its joint is no revolute joint, prismatic joint or slot between its bodies";
         fits.then_some(()).ok_or(misfit)

@@ -60,7 +60,9 @@ impl Magnitude {
                 let slope = |i: usize| match signals.get(i) {
                     // Nothing varies with time but time, and an exponential of it that overflows has no slope.
                     Some(Signal::Time) => 0.0,
-                    _ => expression.derivatives_wrt(values, i)[1],
+                    Some(Signal::Value(_) | Signal::Velocity(_)) | None => {
+                        expression.derivatives_wrt(values, i)[1]
+                    }
                 };
                 first_order(expression.eval(values), slope, numbers, values)
             }

@@ -119,7 +119,10 @@ impl ReactionSources {
             match *source {
                 ReactionSource::TreeJoint(carried, _) => force_needed[carried] = true,
                 ReactionSource::AngularConstraint { body, .. } => moment_needed[body] = true,
-                _ => {}
+                ReactionSource::Normal(_)
+                | ReactionSource::LoopJoint(..)
+                | ReactionSource::Coupling(_)
+                | ReactionSource::Redundant => {}
             }
         }
         // A couple is transferred to the reference body, which is further inwards.
@@ -150,7 +153,7 @@ impl ReactionSources {
             }
             (Component::Moment, Some(pair), _) => angular_constraint_moment(plan, pair),
             (_, Some(pair), _) => self.pair_force(plan, pair, component),
-            _ => ReactionSource::Redundant,
+            (_, None, _) => ReactionSource::Redundant,
         }
     }
 
@@ -174,7 +177,16 @@ impl ReactionSources {
             }
             // The line of a distance is the x axis of its second body.
             (Component::Axial, _) => in_frame(kinematic_pair.bodies[1], Vec2::IDENTITY),
-            _ => ForceDirection::Ground(vec2(sign, 0.0)),
+            // Besides x these are the components of couplings, of couples and of pairs without an axis: none of a force here.
+            (
+                Component::X
+                | Component::Normal
+                | Component::Moment
+                | Component::Tooth
+                | Component::Tangent
+                | Component::Force,
+                _,
+            ) => ForceDirection::Ground(vec2(sign, 0.0)),
         };
         match role {
             PairRole::TreeJoint(moving_body) => ReactionSource::TreeJoint(moving_body, direction),

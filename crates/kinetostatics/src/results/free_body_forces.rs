@@ -45,7 +45,9 @@ impl FreeBodyForces {
                 CoordinateFunction::Angle(bodies) => {
                     find_couple_points(mechanism, model.plan(), bodies)
                 }
-                _ => [Vec2::ZERO; 2],
+                CoordinateFunction::Travel { .. } | CoordinateFunction::Length { .. } => {
+                    [Vec2::ZERO; 2]
+                }
             };
             Some((measured, couple_points))
         };
@@ -232,7 +234,7 @@ fn coordinate_wrenches(
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
-    use dwell_geometry::{Actuator, ActuatorKind, AssemblyConfiguration, Body, Mechanism, Plan};
+    use dwell_geometry::{Actuator, AssemblyConfiguration, Body, Mechanism, Plan};
 
     const GROUND: BodyId = BodyId(0);
     const ONE: BodyId = BodyId(1);
@@ -243,20 +245,10 @@ mod tests {
     /// Two bodies pinned to each other, the first to the ground, at these velocities: any joint can be imagined
     /// between two of the three.
     fn states(velocities: [f64; 2]) -> BodyStates {
-        let body = |name: &str| Body { name: name.into() };
-        let pin = |bodies, points| Joint {
-            name: "pin".into(),
-            bodies,
-            points,
-            kind: JointKind::Revolute,
-        };
-        let actuator = |bodies| Actuator {
-            name: "q".into(),
-            bodies,
-            kind: ActuatorKind::Angle,
-        };
+        let pin = |bodies, points| Joint::revolute("pin", bodies, points);
+        let actuator = |bodies| Actuator::angle("q", bodies);
         let mechanism = Mechanism {
-            bodies: ["ground", "one", "two"].map(body).into(),
+            bodies: ["ground", "one", "two"].map(Body::named).into(),
             joints: vec![pin([GROUND, ONE], [A, Vec2::ZERO]), pin([ONE, TWO], [B, B])],
             actuators: vec![actuator([GROUND, ONE]), actuator([GROUND, TWO])],
             ..Mechanism::default()
@@ -360,12 +352,7 @@ mod tests {
             ([B, B], JointKind::Weld { angle: -1.1 }),
         ];
         for (points, kind) in kinds {
-            let joint = Joint {
-                name: "thought".into(),
-                bodies: between,
-                points,
-                kind,
-            };
+            let joint = Joint::new("thought", between, points, kind);
             for velocities in [[1.0, 0.0], [0.0, 1.0], [-0.7, 2.3]] {
                 let states = states(velocities);
                 let rates = row_rates(&joint, &states);

@@ -27,14 +27,9 @@ fn machine<const J: usize>(
     (bodies, drive, q): ([usize; 2], ActuatorKind, f64),
     relations: Vec<Coupling>,
 ) -> Machine {
-    let body = |i: usize| Body {
-        name: format!("body {i}"),
-    };
-    let joint = |(bodies, points, kind): ([usize; 2], [Vec2; 2], JointKind)| Joint {
-        name: "joint".into(),
-        bodies: bodies.map(BodyId),
-        points,
-        kind,
+    let body = |i: usize| Body::named(format!("body {i}"));
+    let joint = |(bodies, points, kind): ([usize; 2], [Vec2; 2], JointKind)| {
+        Joint::new("joint", bodies, points, kind)
     };
     let ground = [Mass::default()].into_iter();
     let moving = (0..initial_angles.len()).map(|i| {
@@ -54,11 +49,7 @@ fn machine<const J: usize>(
             bodies: (0..=initial_angles.len()).map(body).collect(),
             ground: 0,
             joints: joints.into_iter().map(joint).collect(),
-            actuators: vec![Actuator {
-                name: "q".into(),
-                bodies: bodies.map(BodyId),
-                kind: drive,
-            }],
+            actuators: vec![Actuator::new("q", bodies, drive)],
             couplings: relations,
         },
         masses: ground.chain(moving).collect(),

@@ -3,6 +3,7 @@
 
 mod balances;
 mod machines;
+mod planets;
 mod revolutions;
 mod scenes;
 mod sections;

@@ -62,12 +62,8 @@ impl Joints<'_> {
             independent,
             law,
         });
-        Some(Joint {
-            name: self.list[k].name.clone(),
-            bodies,
-            points,
-            kind: JointKind::Coupling(self.couplings.len() - 1),
-        })
+        let kind = JointKind::Coupling(self.couplings.len() - 1);
+        Some(Joint::new(&self.list[k].name, bodies, points, kind))
     }
 
     /// The dependent and the independent coordinate, which differ.

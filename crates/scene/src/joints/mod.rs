@@ -211,12 +211,7 @@ impl<'a> Joints<'a> {
         let id = JointId(self.list.len());
         self.log.place(SceneLocation::JointPoint(id, 0), &a.2);
         self.log.place(SceneLocation::JointPoint(id, 1), &b.2);
-        Joint {
-            name: name.to_owned(),
-            bodies: [a.0, b.0],
-            points: [a, b].map(|point| bodies.at(point)),
-            kind,
-        }
+        Joint::new(name, [a.0, b.0], [a, b].map(|point| bodies.at(point)), kind)
     }
 }
 

@@ -29,7 +29,11 @@ pub fn cycle(
         CycleSearch::NoCycle { prepared, reason } => {
             let (coordinate, _) = prepared.first_free_coordinate();
             let name = prepared.coordinate_name(coordinate);
-            let summary = format!("{}: no steady cycle of {name} is found\n", scene.title);
+            let note = prepared.branch_note();
+            let summary = format!(
+                "{}: no steady cycle of {name} is found\n{note}",
+                scene.title
+            );
             return Ok(TrajectoryOutcome {
                 outcome: Outcome {
                     summary,
@@ -92,7 +96,9 @@ pub(crate) fn summary(results: &CycleResults<'_>) -> String {
         let error = digits(errors.fluctuation, 1);
         text += &format!("  constant speed: the coefficient of fluctuation is below {error}\n");
     }
-    text + &stability_text(cycle, errors) + &work_text(prepared, cycle, errors)
+    text + &stability_text(cycle, errors)
+        + &work_text(prepared, cycle, errors)
+        + &prepared.branch_note()
 }
 
 /// The multipliers, and whether the cycle is stable.

@@ -63,7 +63,7 @@ fn summary(results: &EquilibriaResults<'_>) -> String {
     for equilibrium in found {
         text += &describe_equilibrium(prepared, equilibrium);
     }
-    text
+    text + &prepared.branch_note()
 }
 
 /// An equilibrium as text.

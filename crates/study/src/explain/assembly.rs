@@ -106,8 +106,7 @@ fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
             joint_labels(joints, "among the redundant constraints"),
         ),
         AssemblyError::SingularAssembly { bodies, joints } => {
-            let what =
-                "the start is a limit position: the actuator does not determine the motion of";
+            let what = "the start is a limit position or a change point: the actuator does not determine the motion of";
             let message = format!("{what} {}", body_names(mechanism, bodies));
             let help = "start a little away from it, or drive another joint";
             scene_error(scene, message, help, with_start(joints, "singular here"))

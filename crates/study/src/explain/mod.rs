@@ -17,5 +17,5 @@ pub(crate) use labels::{
 };
 pub use motion::explain_motion;
 pub use position::explain_position;
-pub(crate) use position::quoted_coordinate;
+pub(crate) use position::{describe_coordinate, describe_ends, describe_limit, quoted_coordinate};
 pub use study_error::{StudyError, SweepError};

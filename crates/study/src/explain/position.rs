@@ -1,14 +1,64 @@
-//! Explains positions that cannot be computed.
+//! Explains positions that cannot be computed, and names those where a range ends.
 
-use crate::explain::{StudyError, body_names, joint_labels, labels, scene_error};
+use crate::explain::{
+    StudyError, body_names, body_names_or_mechanism, joint_labels, labels, scene_error,
+};
 use crate::number_format::{coordinate_unit, digits, number};
-use dwell_geometry::{ActuatorId, Plan, PositionError};
+use dwell_geometry::{ActuatorId, Mechanism, Plan, PositionError, RangeLimit};
 use dwell_scene::{Scene, SceneLocation};
+use std::f64::consts::TAU;
 
 /// The name of the coordinate, quoted.
 pub(crate) fn quoted_coordinate(scene: &Scene) -> String {
     let first = scene.mechanism.actuators.first();
     first.map_or_else(|| "the coordinate".to_owned(), |a| format!("`{}`", a.name))
+}
+
+/// A coordinate with its name: `phi = 2.046915388 rad (117.28°)`. What is finer is rounding at the end of a range.
+pub(crate) fn describe_coordinate(name: &str, q: f64, is_angle: bool) -> String {
+    let rounded = (q * 1e9).round() * 1e-9 + 0.0;
+    match is_angle {
+        true => format!(
+            "{name} = {} rad ({}°)",
+            digits(rounded, 10),
+            number(rounded.to_degrees())
+        ),
+        false => format!("{name} = {} m", digits(rounded, 10)),
+    }
+}
+
+/// What the end of a range is, and where: `limit position of `rod` at s = 0.2 m`. `revolutions` are added to an angle.
+pub(crate) fn describe_limit(
+    mechanism: &Mechanism,
+    plan: &Plan,
+    limit: RangeLimit,
+    revolutions: f64,
+) -> String {
+    let kind = if limit.change_point {
+        "change point"
+    } else {
+        "limit position"
+    };
+    let bodies = match plan.group_methods().is_empty() {
+        true => Vec::new(),
+        false => plan.group_bodies(limit.group),
+    };
+    let who = body_names_or_mechanism(mechanism, &bodies);
+    let name = mechanism.actuators.first().map_or("", |a| &a.name);
+    let at = describe_coordinate(name, limit.q + TAU * revolutions, plan.is_angle(0));
+    format!("{kind} of {who} at {at}")
+}
+
+/// The two ends of a range: `0 to 2.046915 rad (0° to 117.28°)`.
+pub(crate) fn describe_ends(from: f64, to: f64, is_angle: bool) -> String {
+    match is_angle {
+        true => format!(
+            "{from:.6} to {to:.6} rad ({:.2}° to {:.2}°)",
+            from.to_degrees(),
+            to.to_degrees()
+        ),
+        false => format!("{from:.6} to {to:.6} m"),
+    }
 }
 
 /// Explains a position that cannot be computed. One arm for each error, so longer than a screen.
@@ -52,8 +102,8 @@ pub fn explain_position(scene: &Scene, plan: &Plan, error: &PositionError) -> St
             (message, RANGE_ENDS)
         }
         PositionError::OutOfRange { from, to, .. } => {
-            let [from, to] = [from, to].map(number);
-            let message = format!("{at} is outside its range, {from} to {to} {unit}");
+            let range = describe_ends(from, to, plan.is_angle(0));
+            let message = format!("{at} is outside its range, {range}");
             (message, "start within the range; `dwell check` shows it")
         }
         PositionError::LanesDiverge { .. } => (

@@ -87,6 +87,7 @@ fn summary(motion: &LinearisedMotion<'_>) -> String {
         summary += &format!("  {what}s: {}\n", column_list(columns));
     }
     let omitted = motion.omitted.iter();
+    summary += &motion.prepared.branch_note();
     summary + &indeterminate_note(omitted.map(|&r| scene.mechanism.reaction_name(r)))
 }
 

@@ -16,7 +16,7 @@ pub(crate) fn drive_states(scene: &Scene) -> Vec<(String, &'static str, &'static
             let meaning = "integral of the controller error";
             Some((format!("{}.integral", drive.name), unit, meaning))
         }
-        _ => None,
+        DriveKind::Motor(_) | DriveKind::SpeedController(_) | DriveKind::AppliedForce(_) => None,
     };
     scene.drives.iter().filter_map(state).collect()
 }

@@ -1,10 +1,11 @@
 //! The machine of a scene, as `cycle`, `equilibria` and `linearise` use it.
 
+use crate::branch_note::branch_note;
 use crate::explain::{
     Labels, StudyError, explain_motion, initial_state_location, labels, scene_error,
 };
 use crate::models::{build_machine, drive_states, with_drive_loads};
-use crate::number_format::{coordinate_unit, digits, digits_within};
+use crate::number_format::{coordinate_unit, digits_within};
 use dwell_dynamics::{DynamicsError, Machine};
 use dwell_findings::Column;
 use dwell_geometry::ActuatorId;
@@ -42,6 +43,11 @@ impl<'a> SceneMachine<'a> {
             spec,
             machine,
         })
+    }
+
+    /// Where the assembly mode in use is far from the approximate angles that the scene gives.
+    pub(crate) fn branch_note(&self) -> String {
+        branch_note(self.scene, self.machine.model().plan())
     }
 
     /// The initial state of `[motion]`, or else the assembly configuration at rest.
@@ -106,11 +112,7 @@ impl<'a> SceneMachine<'a> {
 
     /// A coordinate as text.
     pub fn describe_coordinate(&self, actuator: usize, value: f64) -> String {
-        let (name, text) = (self.coordinate_name(actuator), digits(value, 9));
-        match self.is_angle(actuator) {
-            true => format!("{name} = {text} rad ({}°)", digits(value.to_degrees(), 9)),
-            false => format!("{name} = {text} m"),
-        }
+        self.describe_coordinate_within(actuator, value, 0.0)
     }
 
     /// A coordinate as text, to the digits that its error leaves.

@@ -348,7 +348,12 @@ impl DrawnPosition<'_> {
                     filled: true,
                     name: None,
                 }),
-                _ => {}
+                // A prismatic joint is drawn by its line and block, gears and wheels by their circles.
+                JointKind::Prismatic { .. }
+                | JointKind::Gear { .. }
+                | JointKind::Rack { .. }
+                | JointKind::Rolling { .. }
+                | JointKind::Coupling(_) => {}
             }
         }
         for (at, joints, side) in labels {
@@ -370,7 +375,15 @@ impl DrawnPosition<'_> {
                 LoadKind::Damper { bodies, points } => {
                     self.line(&self.points(bodies, points), pen.dashed());
                 }
-                _ => {}
+                LoadKind::Gravity { .. }
+                | LoadKind::Force { .. }
+                | LoadKind::Torque { .. }
+                | LoadKind::TorsionSpring { .. }
+                | LoadKind::RotationalDamper { .. }
+                | LoadKind::PointToPointForce { .. }
+                | LoadKind::SlideForce(_)
+                | LoadKind::SlideDamper(_)
+                | LoadKind::SeparatingForce(_) => {}
             }
         }
     }
@@ -382,7 +395,11 @@ fn axis_of(kind: JointKind) -> Option<Vec2> {
         JointKind::Slot { axis }
         | JointKind::Rack { axis, .. }
         | JointKind::Rolling { axis, .. } => Some(axis),
-        _ => None,
+        JointKind::Revolute
+        | JointKind::Weld { .. }
+        | JointKind::Gear { .. }
+        | JointKind::Distance { .. }
+        | JointKind::Coupling(_) => None,
     }
 }
 

@@ -1,6 +1,7 @@
 //! Writes the reduced parameters: table, figures, summary and interpolation table.
 
 use super::figures;
+use crate::branch_note::branch_note;
 use crate::explain::StudyError;
 use crate::models::requested_reactions;
 use crate::number_format::digits;
@@ -94,6 +95,7 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
     }
     let scene = prepared.scene;
     summary += &separating_note(scene);
+    summary += &branch_note(scene, prepared.model.model().plan());
     let [_, indeterminate] = requested_reactions(scene, prepared.model.model().plan());
     let names = indeterminate.iter();
     summary + &indeterminate_note(names.map(|&r| scene.mechanism.reaction_name(r)))

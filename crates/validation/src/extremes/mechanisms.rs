@@ -1,8 +1,8 @@
 //! The mechanisms of the grid.
 
 use dwell_geometry::{
-    Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Joint, JointId, JointKind,
-    Mechanism, Reaction, Vec2, vec2,
+    Actuator, ActuatorKind, AssemblyConfiguration, Body, Joint, JointId, JointKind, Mechanism,
+    Reaction, Vec2, vec2,
 };
 use dwell_kinetostatics::{ExactModel, Mass, Model, ModelError};
 
@@ -29,38 +29,26 @@ impl TestMechanism {
         let all = [&[("ground", Mass::default())], bodies].concat();
         let mut test = Self::default();
         for (name, mass) in all {
-            test.mechanism.bodies.push(Body { name: name.into() });
+            test.mechanism.bodies.push(Body::named(name));
             test.masses.push(mass);
             test.assembly.initial_guess.push(None);
         }
         test
     }
 
-    fn joint(&mut self, name: &str, bodies: [usize; 2], points: [Vec2; 2], kind: JointKind) {
-        self.mechanism.joints.push(Joint {
-            name: name.into(),
-            bodies: bodies.map(BodyId),
-            points,
-            kind,
-        });
-    }
-
     fn revolute(&mut self, name: &str, bodies: [usize; 2], points: [Vec2; 2]) {
-        self.joint(name, bodies, points, JointKind::Revolute);
+        let joint = Joint::revolute(name, bodies, points);
+        self.mechanism.joints.push(joint);
     }
 
     fn prismatic(&mut self, name: &str, bodies: [usize; 2], points: [Vec2; 2]) {
-        let axes = [Vec2::IDENTITY; 2];
-        self.joint(name, bodies, points, JointKind::Prismatic { axes });
+        let joint = Joint::prismatic(name, bodies, points, [0.0; 2]);
+        self.mechanism.joints.push(joint);
     }
 
     /// Adds its actuator, with the coordinate at assembly.
     fn actuate(&mut self, bodies: [usize; 2], kind: ActuatorKind, start: f64) {
-        self.mechanism.actuators.push(Actuator {
-            name: "q".into(),
-            bodies: bodies.map(BodyId),
-            kind,
-        });
+        self.mechanism.actuators = vec![Actuator::new("q", bodies, kind)];
         self.assembly.q = vec![start];
     }
 
@@ -180,7 +168,8 @@ pub(crate) fn scotch_yoke(crank: f64, slide: f64) -> TestMechanism {
     let slot = JointKind::Slot {
         axis: vec2(0.0, 1.0),
     };
-    test.joint("slot", [2, 1], [Vec2::ZERO, Vec2::IDENTITY], slot);
+    let slot = Joint::new("slot", [2, 1], [Vec2::ZERO, Vec2::IDENTITY], slot);
+    test.mechanism.joints.push(slot);
     test.prismatic("guide", [0, 2], [Vec2::ZERO; 2]);
     test.actuate([0, 1], ActuatorKind::Angle, 0.5);
     test

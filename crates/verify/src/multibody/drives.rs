@@ -2,7 +2,7 @@
 
 use super::state::MultibodyState;
 use super::{MultibodyError, MultibodySystem, Result};
-use dwell_geometry::{Actuator, ActuatorKind, Coordinate, Mechanism};
+use dwell_geometry::{Actuator, Mechanism};
 use dwell_kinetostatics::{Drive, DriveKind};
 
 /// The rotor's inertia on the coordinate, kg m² or kg.
@@ -20,22 +20,12 @@ pub(super) fn with_drives(mechanism: &Mechanism, drives: &[Drive]) -> Result<Mec
     for (i, drive) in drives.iter().enumerate() {
         let what = "its coordinate is not there";
         let wrong = MultibodyError::Drive { drive: i, what };
-        let (bodies, kind) = match drive.coordinate {
-            Coordinate::Angle(bodies) => (bodies, ActuatorKind::Angle),
-            Coordinate::Length { bodies, points } => (bodies, ActuatorKind::Length(points)),
-            Coordinate::Travel(joint) => {
-                let of = mechanism.joints.get(joint.0).ok_or(wrong)?;
-                (of.bodies, ActuatorKind::Travel(joint))
-            }
-        };
-        if bodies.iter().any(|b| b.0 >= mechanism.bodies.len()) {
+        let actuator = Actuator::of(&drive.name, drive.coordinate, mechanism).ok_or(wrong)?;
+        let exists = |b: &dwell_geometry::BodyId| b.0 < mechanism.bodies.len();
+        if !actuator.bodies.iter().all(exists) {
             return Err(wrong);
         }
-        extended.actuators.push(Actuator {
-            name: drive.name.clone(),
-            bodies,
-            kind,
-        });
+        extended.actuators.push(actuator);
     }
     Ok(extended)
 }

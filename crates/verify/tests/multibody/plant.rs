@@ -49,7 +49,7 @@ impl Plant {
         inertia: f64,
         initial_guess: Option<f64>,
     ) -> BodyId {
-        self.mechanism.bodies.push(Body { name: name.into() });
+        self.mechanism.bodies.push(Body::named(name));
         self.masses.push(Mass {
             mass,
             center: vec2(x, y),
@@ -72,12 +72,9 @@ impl Plant {
     }
 
     pub(crate) fn joint(&mut self, name: &str, one: On, two: On, kind: JointKind) -> JointId {
-        self.mechanism.joints.push(Joint {
-            name: name.into(),
-            bodies: [one.0, two.0],
-            points: [one.1, two.1].map(|[x, y]| vec2(x, y)),
-            kind,
-        });
+        let points = [one.1, two.1].map(|[x, y]| vec2(x, y));
+        let joint = Joint::new(name, [one.0, two.0], points, kind);
+        self.mechanism.joints.push(joint);
         JointId(self.mechanism.joints.len() - 1)
     }
 

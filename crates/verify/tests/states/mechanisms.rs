@@ -16,31 +16,6 @@ fn on([first, second]: [usize; 2]) -> [BodyId; 2] {
     [BodyId(first), BodyId(second)]
 }
 
-fn joint(name: &str, bodies: [usize; 2], points: [Vec2; 2], kind: JointKind) -> Joint {
-    Joint {
-        name: name.into(),
-        bodies: on(bodies),
-        points,
-        kind,
-    }
-}
-
-fn pin(name: &str, bodies: [usize; 2], points: [Vec2; 2]) -> Joint {
-    joint(name, bodies, points, JointKind::Revolute)
-}
-
-fn actuator(name: &str, bodies: [usize; 2], kind: ActuatorKind) -> Actuator {
-    Actuator {
-        name: name.into(),
-        bodies: on(bodies),
-        kind,
-    }
-}
-
-fn bodies(names: &[&str]) -> Vec<Body> {
-    names.iter().map(|&n| Body { name: n.into() }).collect()
-}
-
 /// Masses with centres off every point; the ground's does not matter.
 fn masses(count: usize) -> Vec<Mass> {
     let of = |b: usize| {
@@ -95,17 +70,19 @@ fn five_bar() -> Setup {
     Setup {
         name: "five-bar",
         mechanism: Mechanism {
-            bodies: bodies(&["ground", "crank", "left", "right", "other"]),
+            bodies: ["ground", "crank", "left", "right", "other"]
+                .map(Body::named)
+                .into(),
             joints: vec![
-                pin("A", [0, 1], [a, near]),
-                pin("B", [1, 2], [far, coupler[0]]),
-                pin("C", [3, 2], [coupler[1], coupler[1]]),
-                pin("D", [3, 4], [coupler[0], far]),
-                pin("E", [4, 0], [near, e]),
+                Joint::revolute("A", [0, 1], [a, near]),
+                Joint::revolute("B", [1, 2], [far, coupler[0]]),
+                Joint::revolute("C", [3, 2], [coupler[1], coupler[1]]),
+                Joint::revolute("D", [3, 4], [coupler[0], far]),
+                Joint::revolute("E", [4, 0], [near, e]),
             ],
             actuators: vec![
-                actuator("phi", [0, 1], ActuatorKind::Angle),
-                actuator("psi", [2, 4], ActuatorKind::Angle),
+                Actuator::new("phi", [0, 1], ActuatorKind::Angle),
+                Actuator::new("psi", [2, 4], ActuatorKind::Angle),
             ],
             ..Mechanism::default()
         },
@@ -175,11 +152,13 @@ fn boom() -> Setup {
     Setup {
         name: "boom",
         mechanism: Mechanism {
-            bodies: bodies(&["ground", "boom", "barrel", "rod", "stick", "bucket"]),
+            bodies: ["ground", "boom", "barrel", "rod", "stick", "bucket"]
+                .map(Body::named)
+                .into(),
             joints: vec![
-                pin("O", [0, 1], [o, vec2(0.1, 0.0)]),
-                pin("P", [2, 0], [Vec2::ZERO, p]),
-                joint(
+                Joint::revolute("O", [0, 1], [o, vec2(0.1, 0.0)]),
+                Joint::revolute("P", [2, 0], [Vec2::ZERO, p]),
+                Joint::new(
                     "cylinder",
                     [2, 3],
                     [Vec2::ZERO, vec2(0.0, 0.2)],
@@ -187,9 +166,9 @@ fn boom() -> Setup {
                         axes: [Vec2::from_angle(axis1), Vec2::from_angle(axis2)],
                     },
                 ),
-                pin("lug", [3, 1], [vec2(0.0, 0.2), lug]),
-                pin("tip", [1, 4], [tip, vec2(0.2, 0.0)]),
-                joint(
+                Joint::revolute("lug", [3, 1], [vec2(0.0, 0.2), lug]),
+                Joint::revolute("tip", [1, 4], [tip, vec2(0.2, 0.0)]),
+                Joint::new(
                     "grip",
                     [4, 5],
                     [reach, grip],
@@ -197,8 +176,8 @@ fn boom() -> Setup {
                 ),
             ],
             actuators: vec![
-                actuator("lift", [2, 3], ActuatorKind::Travel(JointId(2))),
-                actuator("draw", [1, 4], ActuatorKind::Length(ends)),
+                Actuator::new("lift", [2, 3], ActuatorKind::Travel(JointId(2))),
+                Actuator::new("draw", [1, 4], ActuatorKind::Length(ends)),
             ],
             ..Mechanism::default()
         },
@@ -239,12 +218,14 @@ fn epicyclic() -> Setup {
     Setup {
         name: "epicyclic",
         mechanism: Mechanism {
-            bodies: bodies(&["ground", "arm", "planet", "ring", "rack"]),
+            bodies: ["ground", "arm", "planet", "ring", "rack"]
+                .map(Body::named)
+                .into(),
             joints: vec![
-                pin("O", [0, 1], [o, hub]),
-                pin("P", [1, 2], [hub + vec2(sun + planet, 0.0), rim]),
-                pin("R", [3, 0], [rim, o]),
-                joint(
+                Joint::revolute("O", [0, 1], [o, hub]),
+                Joint::revolute("P", [1, 2], [hub + vec2(sun + planet, 0.0), rim]),
+                Joint::revolute("R", [3, 0], [rim, o]),
+                Joint::new(
                     "sun",
                     [2, 0],
                     [rim, o],
@@ -253,7 +234,7 @@ fn epicyclic() -> Setup {
                         internal: false,
                     },
                 ),
-                joint(
+                Joint::new(
                     "ring",
                     [3, 2],
                     [rim, rim],
@@ -262,7 +243,7 @@ fn epicyclic() -> Setup {
                         internal: true,
                     },
                 ),
-                joint(
+                Joint::new(
                     "guide",
                     [0, 4],
                     [level, vec2(0.2, 0.0)],
@@ -270,7 +251,7 @@ fn epicyclic() -> Setup {
                 ),
                 // The pitch line passes through the point on the rack; where along it the ring
                 // stands at the start is the row's to say.
-                joint(
+                Joint::new(
                     "rack",
                     [4, 3],
                     [vec2(0.5, 0.0), rim],
@@ -280,7 +261,7 @@ fn epicyclic() -> Setup {
                     },
                 ),
             ],
-            actuators: vec![actuator("arm", [0, 1], ActuatorKind::Angle)],
+            actuators: vec![Actuator::new("arm", [0, 1], ActuatorKind::Angle)],
             ..Mechanism::default()
         },
         masses: masses(5),
@@ -315,9 +296,9 @@ fn wedge() -> Setup {
     Setup {
         name: "wedge",
         mechanism: Mechanism {
-            bodies: bodies(&["ground", "wedge", "disc"]),
+            bodies: ["ground", "wedge", "disc"].map(Body::named).into(),
             joints: vec![
-                joint(
+                Joint::new(
                     "floor",
                     [0, 1],
                     [vec2(-0.2, 0.0), vec2(0.0, -0.1)],
@@ -325,7 +306,7 @@ fn wedge() -> Setup {
                         axes: [vec2(1.0, 0.0); 2],
                     },
                 ),
-                joint(
+                Joint::new(
                     "slope",
                     [1, 2],
                     [foot, hub],
@@ -334,7 +315,7 @@ fn wedge() -> Setup {
                         radius,
                     },
                 ),
-                joint(
+                Joint::new(
                     "bar",
                     [2, 0],
                     [hub, anchor],
@@ -343,7 +324,11 @@ fn wedge() -> Setup {
                     },
                 ),
             ],
-            actuators: vec![actuator("push", [0, 1], ActuatorKind::Travel(JointId(0)))],
+            actuators: vec![Actuator::new(
+                "push",
+                [0, 1],
+                ActuatorKind::Travel(JointId(0)),
+            )],
             ..Mechanism::default()
         },
         masses: masses(3),
@@ -402,10 +387,12 @@ fn cam() -> Setup {
     Setup {
         name: "cam",
         mechanism: Mechanism {
-            bodies: bodies(&["ground", "crank", "slide", "lever", "flag"]),
+            bodies: ["ground", "crank", "slide", "lever", "flag"]
+                .map(Body::named)
+                .into(),
             joints: vec![
-                pin("A", [0, 1], [a, hub]),
-                joint(
+                Joint::revolute("A", [0, 1], [a, hub]),
+                Joint::new(
                     "guide",
                     [0, 2],
                     [foot, shoe],
@@ -413,13 +400,13 @@ fn cam() -> Setup {
                         axes: [guide, vec2(1.0, 0.0)],
                     },
                 ),
-                joint("cam", [0, 2], [Vec2::ZERO; 2], JointKind::Coupling(0)),
-                pin("L", [3, 0], [hub, l]),
-                joint("slot", [3, 2], [hub, stud], JointKind::Slot { axis: slot }),
-                pin("F", [0, 4], [f, hub]),
-                joint("wave", [0, 4], [Vec2::ZERO; 2], JointKind::Coupling(1)),
+                Joint::new("cam", [0, 2], [Vec2::ZERO; 2], JointKind::Coupling(0)),
+                Joint::revolute("L", [3, 0], [hub, l]),
+                Joint::new("slot", [3, 2], [hub, stud], JointKind::Slot { axis: slot }),
+                Joint::revolute("F", [0, 4], [f, hub]),
+                Joint::new("wave", [0, 4], [Vec2::ZERO; 2], JointKind::Coupling(1)),
             ],
-            actuators: vec![actuator("phi", [0, 1], ActuatorKind::Angle)],
+            actuators: vec![Actuator::new("phi", [0, 1], ActuatorKind::Angle)],
             couplings: vec![
                 Coupling {
                     dependent: Coordinate::Travel(JointId(1)),

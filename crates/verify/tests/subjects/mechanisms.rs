@@ -1,9 +1,7 @@
 //! The mechanisms of the tests.
 
 use super::dense::DenseSubject;
-use dwell_geometry::{
-    Actuator, ActuatorKind, Body, BodyId, Joint, JointKind, Mechanism, Vec2, vec2,
-};
+use dwell_geometry::{Actuator, Body, Joint, JointKind, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::Mass;
 use dwell_verify::{Case, Range, spread};
 use std::f64::consts::PI;
@@ -85,60 +83,29 @@ impl Setup {
     }
 }
 
-fn bodies(names: &[&str]) -> Vec<Body> {
-    names.iter().map(|&n| Body { name: n.into() }).collect()
-}
-
-fn pin(name: &str, on: [usize; 2], points: [[f64; 2]; 2]) -> Joint {
-    Joint {
-        name: name.into(),
-        bodies: on.map(BodyId),
-        points: points.map(|[x, y]| vec2(x, y)),
-        kind: JointKind::Revolute,
-    }
-}
-
-fn slide(name: &str, on: [usize; 2], points: [[f64; 2]; 2], angles: [f64; 2]) -> Joint {
-    Joint {
-        kind: JointKind::Prismatic {
-            axes: angles.map(Vec2::from_angle),
-        },
-        ..pin(name, on, points)
-    }
-}
-
-fn angle_actuator(name: &str, on: [usize; 2]) -> Vec<Actuator> {
-    vec![Actuator {
-        name: name.into(),
-        bodies: on.map(BodyId),
-        kind: ActuatorKind::Angle,
-    }]
-}
-
-fn bar(mass: f64, length: f64) -> Mass {
-    Mass {
-        mass,
-        center: vec2(0.5 * length, 0.0),
-        inertia: mass * length * length / 12.0,
-    }
-}
-
 /// Crank 1, coupler 3.5, rocker 3, ground 4 m; uniform bars of 1, 2 and 2 kg.
 pub(crate) fn crank_rocker() -> Setup {
     Setup {
         mechanism: Mechanism {
-            bodies: bodies(&["ground", "crank", "coupler", "rocker"]),
+            bodies: ["ground", "crank", "coupler", "rocker"]
+                .map(Body::named)
+                .into(),
             ground: 0,
             joints: vec![
-                pin("A", [0, 1], [[0.0, 0.0], [0.0, 0.0]]),
-                pin("B", [1, 2], [[1.0, 0.0], [0.0, 0.0]]),
-                pin("C", [2, 3], [[3.5, 0.0], [3.0, 0.0]]),
-                pin("D", [0, 3], [[4.0, 0.0], [0.0, 0.0]]),
+                Joint::revolute("A", [0, 1], [Vec2::ZERO; 2]),
+                Joint::revolute("B", [1, 2], [vec2(1.0, 0.0), Vec2::ZERO]),
+                Joint::revolute("C", [2, 3], [vec2(3.5, 0.0), vec2(3.0, 0.0)]),
+                Joint::revolute("D", [0, 3], [vec2(4.0, 0.0), Vec2::ZERO]),
             ],
-            actuators: angle_actuator("phi", [0, 1]),
+            actuators: vec![Actuator::angle("phi", [0, 1])],
             couplings: vec![],
         },
-        masses: vec![Mass::default(), bar(1.0, 1.0), bar(2.0, 3.5), bar(2.0, 3.0)],
+        masses: vec![
+            Mass::default(),
+            Mass::uniform_bar(1.0, 1.0),
+            Mass::uniform_bar(2.0, 3.5),
+            Mass::uniform_bar(2.0, 3.0),
+        ],
         range: Range::Full,
         q0: 0.0,
         initial_guess: vec![[0.0; 3], [0.0; 3], [1.0, 0.0, 0.9], [4.0, 0.0, 1.9]],
@@ -149,18 +116,20 @@ pub(crate) fn crank_rocker() -> Setup {
 pub(crate) fn single_dwell() -> Setup {
     Setup {
         mechanism: Mechanism {
-            bodies: bodies(&["ground", "crank", "coupler", "rocker", "guide", "slider"]),
+            bodies: ["ground", "crank", "coupler", "rocker", "guide", "slider"]
+                .map(Body::named)
+                .into(),
             ground: 0,
             joints: vec![
-                pin("A", [0, 1], [[0.0, 0.0], [0.0, 0.0]]),
-                pin("B", [1, 2], [[0.1, 0.0], [0.0, 0.0]]),
-                pin("C", [2, 3], [[0.25, 0.0], [0.25, 0.0]]),
-                pin("O", [0, 3], [[0.2, 0.0], [0.0, 0.0]]),
-                pin("Q", [0, 4], [[-0.2, 0.4], [0.0, 0.0]]),
-                slide("slide", [4, 5], [[0.0, 0.0], [0.0, 0.0]], [0.0, 0.0]),
-                pin("P", [2, 5], [[0.5, 0.0], [0.0, 0.0]]),
+                Joint::revolute("A", [0, 1], [Vec2::ZERO; 2]),
+                Joint::revolute("B", [1, 2], [vec2(0.1, 0.0), Vec2::ZERO]),
+                Joint::revolute("C", [2, 3], [vec2(0.25, 0.0); 2]),
+                Joint::revolute("O", [0, 3], [vec2(0.2, 0.0), Vec2::ZERO]),
+                Joint::revolute("Q", [0, 4], [vec2(-0.2, 0.4), Vec2::ZERO]),
+                Joint::prismatic("slide", [4, 5], [Vec2::ZERO; 2], [0.0, 0.0]),
+                Joint::revolute("P", [2, 5], [vec2(0.5, 0.0), Vec2::ZERO]),
             ],
-            actuators: angle_actuator("phi", [0, 1]),
+            actuators: vec![Actuator::angle("phi", [0, 1])],
             couplings: vec![],
         },
         masses: vec![
@@ -175,8 +144,8 @@ pub(crate) fn single_dwell() -> Setup {
                 center: vec2(0.25, 0.0),
                 inertia: 1.5 * 0.25 / 12.0,
             },
-            bar(0.75, 0.25),
-            bar(2.1, 0.7),
+            Mass::uniform_bar(0.75, 0.25),
+            Mass::uniform_bar(2.1, 0.7),
             Mass {
                 mass: 0.5,
                 ..Mass::default()
@@ -201,15 +170,22 @@ pub(crate) fn single_dwell() -> Setup {
 pub(crate) fn inverted_slider_crank() -> Setup {
     Setup {
         mechanism: Mechanism {
-            bodies: bodies(&["rocker", "crank", "ground", "block"]),
+            bodies: ["rocker", "crank", "ground", "block"]
+                .map(Body::named)
+                .into(),
             ground: 2,
             joints: vec![
-                pin("O", [0, 2], [[-0.1, 0.05], [0.0, -0.4]]),
-                slide("slot", [0, 3], [[0.1, 0.08], [0.02, -0.01]], [1.3, 1.3]),
-                pin("A", [2, 1], [[0.0, 0.0], [0.04, 0.03]]),
-                pin("B", [1, 3], [[0.16, 0.12], [-0.03, 0.02]]),
+                Joint::revolute("O", [0, 2], [vec2(-0.1, 0.05), vec2(0.0, -0.4)]),
+                Joint::prismatic(
+                    "slot",
+                    [0, 3],
+                    [vec2(0.1, 0.08), vec2(0.02, -0.01)],
+                    [1.3, 1.3],
+                ),
+                Joint::revolute("A", [2, 1], [Vec2::ZERO, vec2(0.04, 0.03)]),
+                Joint::revolute("B", [1, 3], [vec2(0.16, 0.12), vec2(-0.03, 0.02)]),
             ],
-            actuators: angle_actuator("drive", [2, 1]),
+            actuators: vec![Actuator::angle("drive", [2, 1])],
             couplings: vec![],
         },
         masses: vec![
@@ -241,7 +217,7 @@ pub(crate) fn inverted_slider_crank() -> Setup {
 pub(crate) fn crank_rocker_of(rocker: f64) -> Setup {
     let mut setup = crank_rocker();
     setup.mechanism.joints[2].points[1] = vec2(rocker, 0.0);
-    setup.masses[3] = bar(2.0, rocker);
+    setup.masses[3] = Mass::uniform_bar(2.0, rocker);
     // The triangle of 3, 3.5 and the rocker, by the law of cosines.
     let angle = |a: f64, b: f64, c: f64| ((a * a + b * b - c * c) / (2.0 * a * b)).acos();
     setup.initial_guess[2][2] = angle(3.0, 3.5, rocker);
@@ -253,13 +229,13 @@ pub(crate) fn crank_rocker_of(rocker: f64) -> Setup {
 pub(crate) fn pendulum() -> Setup {
     Setup {
         mechanism: Mechanism {
-            bodies: bodies(&["bar", "ground"]),
+            bodies: ["bar", "ground"].map(Body::named).into(),
             ground: 1,
-            joints: vec![pin("A", [0, 1], [[0.0, 0.0], [2.0, 1.0]])],
-            actuators: angle_actuator("phi", [1, 0]),
+            joints: vec![Joint::revolute("A", [0, 1], [Vec2::ZERO, vec2(2.0, 1.0)])],
+            actuators: vec![Actuator::angle("phi", [1, 0])],
             couplings: vec![],
         },
-        masses: vec![bar(3.0, 0.8), Mass::default()],
+        masses: vec![Mass::uniform_bar(3.0, 0.8), Mass::default()],
         range: Range::Full,
         q0: 0.0,
         initial_guess: vec![[2.0, 1.0, 0.0], [0.0; 3]],
@@ -281,7 +257,7 @@ pub(crate) fn flywheel() -> Setup {
 /// moving bodies, which the ground never feels. The coupler is named first.
 pub(crate) fn relative_drive() -> Setup {
     let mut setup = crank_rocker();
-    setup.mechanism.actuators = angle_actuator("beta", [2, 1]);
+    setup.mechanism.actuators = vec![Actuator::angle("beta", [2, 1])];
     setup.range = Range::Limited(-2.2, -1.0);
     setup.q0 = -1.5;
     // Crank at an angle φ with β = φ − θ of the coupler.

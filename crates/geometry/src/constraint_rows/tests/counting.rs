@@ -6,14 +6,14 @@ use super::*;
 pub(super) fn epicyclic(arm_drives: bool) -> Mechanism {
     let origin = vec2(0.2, -0.1);
     let mut joints = vec![
-        joint("O", [0, 1], [origin, vec2(0.1, 0.0)], JointKind::Revolute),
-        joint(
+        Joint::new("O", [0, 1], [origin, vec2(0.1, 0.0)], JointKind::Revolute),
+        Joint::new(
             "P",
             [1, 2],
             [vec2(1.2, 0.0), vec2(0.0, 0.3)],
             JointKind::Revolute,
         ),
-        joint(
+        Joint::new(
             "teeth",
             [0, 2],
             [origin, vec2(0.0, 0.3)],
@@ -30,14 +30,10 @@ pub(super) fn epicyclic(arm_drives: bool) -> Mechanism {
         joints[0].points[1] = vec2(0.0, 0.3);
     }
     Mechanism {
-        bodies: named(&["ground", "arm", "planet"]),
+        bodies: ["ground", "arm", "planet"].map(Body::named).into(),
         ground: 0,
         joints,
-        actuators: vec![Actuator {
-            name: "q".into(),
-            bodies: [BodyId(0), BodyId(1)],
-            kind: ActuatorKind::Angle,
-        }],
+        actuators: vec![Actuator::angle("q", [0, 1])],
         couplings: vec![],
     }
 }
@@ -93,9 +89,9 @@ fn without_an_arm_the_teeth_are_taken_to_the_nearest_turn() {
 fn a_fixed_pair_keeps_its_ratio() {
     for (internal, ratio) in [(false, -1.75), (true, 1.75)] {
         let mechanism = Mechanism {
-            bodies: named(&["one", "two", "ground"]),
+            bodies: ["one", "two", "ground"].map(Body::named).into(),
             ground: 2,
-            joints: vec![joint(
+            joints: vec![Joint::new(
                 "teeth",
                 [0, 1],
                 [Vec2::ZERO; 2],
@@ -122,7 +118,7 @@ fn a_drive_is_counted_only_where_turns_are_felt() {
         let mut mechanism = swinging_block();
         mechanism
             .joints
-            .push(joint("more", [1, 0], [Vec2::ZERO; 2], kind));
+            .push(Joint::new("more", [1, 0], [Vec2::ZERO; 2], kind));
         ConstraintRows::new(&mechanism)
             .unwrap()
             .counts_revolutions()

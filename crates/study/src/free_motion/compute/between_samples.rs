@@ -24,21 +24,9 @@ impl FreeMotionProblem<'_> {
         if motion.steps().count() > MAX_STEPS {
             return None;
         }
-        let mut all = Vec::new();
-        for (segment, (chart, solution)) in motion.segments.iter().enumerate() {
-            let machine = self.machine(motion, *chart);
-            let mut workspace = machine.workspace();
-            for (k, point) in solution.steps.iter().enumerate() {
-                if machine.is_in_fit_window(&point.y) {
-                    continue;
-                }
-                let mut sample = self.sample((*chart, machine, &mut workspace), point).ok()?;
-                let coordinates = motion.actuator_coordinates.steps.get(segment);
-                sample.actuator_coordinate = coordinates.and_then(|s| s.get(k)).copied();
-                all.push((point.t, sample));
-            }
-        }
-        Some(all)
+        let coordinates = &motion.actuator_coordinates.steps;
+        self.evaluated(motion, |solution| &solution.steps, coordinates)
+            .ok()
     }
 
     /// The state at a time (s), integrated from an earlier state.

@@ -6,7 +6,9 @@ use crate::number_format::coordinate_unit;
 use crate::trajectory::compute::{
     self, BALANCE, FreeTrajectory, KINETIC, POTENTIAL, Quantity, Trajectory, TrajectorySample,
 };
-use dwell_dynamics::{DynamicsError, EventOccurrence, Machine, MachineWorkspace, OdeState};
+use dwell_dynamics::{
+    DynamicsError, EventOccurrence, Machine, MachineWorkspace, OdeState, Solution,
+};
 use dwell_findings::{Column, Table};
 use dwell_geometry::body_states::CoordinateFunction;
 
@@ -39,29 +41,44 @@ impl FreeMotionProblem<'_> {
         &self,
         motion: &SegmentedMotion,
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
+        let coordinates = &motion.actuator_coordinates.samples;
+        let evaluated = self.evaluated(motion, |solution| &solution.samples, coordinates)?;
+        let mut samples: Vec<_> = evaluated.into_iter().map(|(_, sample)| sample).collect();
         let mut initial_balance: Option<f64> = None;
-        let mut samples = Vec::new();
-        for (segment, (chart, solution)) in motion.segments.iter().enumerate() {
-            let machine = self.machine(motion, *chart);
-            let mut workspace = machine.workspace();
-            for (k, point) in solution.samples.iter().enumerate() {
-                if machine.is_in_fit_window(&point.y) {
-                    continue;
-                }
-                let at = (*chart, machine, &mut workspace);
-                let mut sample = self.sample(at, point)?;
-                let coordinates = motion.actuator_coordinates.samples.get(segment);
-                sample.actuator_coordinate = coordinates.and_then(|s| s.get(k)).copied();
-                let balance = &mut sample.extra_values[self.balance_index()];
-                *balance -= *initial_balance.get_or_insert(*balance);
-                samples.push(sample);
-            }
+        for sample in &mut samples {
+            let balance = &mut sample.extra_values[self.balance_index()];
+            *balance -= *initial_balance.get_or_insert(*balance);
         }
         if let [only] = samples.as_slice() {
             // A trajectory needs two samples, even if the motion ends at its start.
             samples.push(only.clone());
         }
         Ok(samples)
+    }
+
+    /// The states of a motion that are picked, each with its time, s, evaluated: without those within the window of a change
+    /// point's fit. `coordinates` are those of the actuator, by segment.
+    pub(super) fn evaluated(
+        &self,
+        motion: &SegmentedMotion,
+        picked: fn(&Solution) -> &[OdeState],
+        coordinates: &[Vec<[f64; 3]>],
+    ) -> Result<Vec<(f64, TrajectorySample)>, DynamicsError> {
+        let mut all = Vec::new();
+        for (segment, (chart, solution)) in motion.segments.iter().enumerate() {
+            let machine = self.machine(motion, *chart);
+            let mut workspace = machine.workspace();
+            for (k, point) in picked(solution).iter().enumerate() {
+                if machine.is_in_fit_window(&point.y) {
+                    continue;
+                }
+                let mut sample = self.sample((*chart, machine, &mut workspace), point)?;
+                let coordinates = coordinates.get(segment);
+                sample.actuator_coordinate = coordinates.and_then(|s| s.get(k)).copied();
+                all.push((point.t, sample));
+            }
+        }
+        Ok(all)
     }
 
     /// The motion at wanted times (s) up to its end, and at its end.

@@ -1,5 +1,6 @@
 //! One point of a sweep: the scene with its input values, and the results.
 
+use crate::branch_note::branch_note;
 use crate::explain::{StudyError, SweepError, explain_machine, explain_motion, explain_position};
 use crate::former_names;
 use crate::models::{compile_model, exact_model, initial_reduced_state, with_loads};
@@ -57,7 +58,7 @@ impl SweepQuantity {
 #[derive(Debug)]
 pub(crate) struct RequestedQuantities {
     pub(crate) quantities: Vec<SweepQuantity>,
-    /// A line for each request that uses a former name.
+    /// A line for each request that uses a former name, and for each body far from its approximate angle.
     pub(crate) notes: String,
 }
 
@@ -81,7 +82,8 @@ impl RequestedQuantities {
     /// # Errors
     /// [`StudyError`] where the unchanged scene cannot be assembled; [`SweepError::Result`].
     pub(crate) fn new(scene: &Scene, requests: &[String]) -> Result<Self, StudyError> {
-        let mut quantities = available_quantities(scene)?;
+        let model = compile_model(scene, &scene.mechanism.reactions())?;
+        let mut quantities = available_quantities(scene, &model);
         for request in requests {
             if !quantities.iter().any(|q| q.matches(request)) {
                 let name = request.clone();
@@ -97,7 +99,8 @@ impl RequestedQuantities {
             let renamed = quantities.iter().filter(|q| q.matches_former(request));
             former_names::note(request, renamed.map(|q| &q.name))
         });
-        let notes = notes.collect();
+        let mut notes: String = notes.collect();
+        notes += &branch_note(scene, model.plan());
         if !requests.is_empty() {
             quantities.retain(|q| requests.iter().any(|request| q.matches(request)));
         }
@@ -182,8 +185,7 @@ fn peak_analysis(scene: &Scene) -> Option<Analysis> {
 }
 
 /// Every quantity that the sections of a scene allow.
-fn available_quantities(scene: &Scene) -> Result<Vec<SweepQuantity>, StudyError> {
-    let model = compile_model(scene, &scene.mechanism.reactions())?;
+fn available_quantities(scene: &Scene, model: &Model) -> Vec<SweepQuantity> {
     let mut all = Vec::new();
     let mut add = |name: String, unit, kind, index| {
         all.push(SweepQuantity {
@@ -208,7 +210,7 @@ fn available_quantities(scene: &Scene) -> Result<Vec<SweepQuantity>, StudyError>
         let unit = coordinate_unit(angle);
         add("range.lower".to_owned(), unit, ResultKind::Range, 0);
         add("range.upper".to_owned(), unit, ResultKind::Range, 1);
-        if is_conservative(scene, &model) {
+        if is_conservative(scene, model) {
             add("period".to_owned(), "s", ResultKind::Orbit, 0);
             add("energy".to_owned(), "J", ResultKind::Orbit, 1);
         }
@@ -228,7 +230,7 @@ fn available_quantities(scene: &Scene) -> Result<Vec<SweepQuantity>, StudyError>
             }
         }
     }
-    Ok(all)
+    all
 }
 
 /// Whether the scene has a conservative free motion.

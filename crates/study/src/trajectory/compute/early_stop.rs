@@ -1,13 +1,13 @@
 //! The early end of a trajectory: where, why, and its message.
 
 use crate::explain::{
-    StudyError, body_names_or_mechanism, joint_labels, non_finite_coupling,
-    non_finite_coupling_error, scene_error,
+    StudyError, body_names_or_mechanism, describe_coordinate, describe_ends, describe_limit,
+    joint_labels, non_finite_coupling, non_finite_coupling_error, scene_error,
 };
 use crate::number_format::{coordinate_unit, digits, number};
 use crate::trajectory::compute::{Trajectory, TrajectorySample, table_of};
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{BodyId, JointId, Plan, PositionError};
+use dwell_geometry::{BodyId, JointId, Plan, PositionError, RangeLimit};
 use dwell_kinetostatics::{KinetostaticsError, LoadKind, Signal};
 use dwell_scene::{Scene, SceneLocation};
 use std::f64::consts::TAU;
@@ -148,6 +148,9 @@ impl<'a> EarlyStop<'a> {
                 [beyond],
             );
         }
+        if let Some(limit) = self.limit(error) {
+            return self.explain_range_limit(scene, limit);
+        }
         let group = error.group();
         let group = group.or_else(|| diverging_group(plan, &self.last_reached.q));
         let bodies = group.map(|g| plan.group_bodies(g)).unwrap_or_default();
@@ -165,9 +168,6 @@ impl<'a> EarlyStop<'a> {
             PositionError::NotConverged { .. } | PositionError::LanesDiverge { .. } => {
                 format!("the positions of {who} could not be computed beyond")
             }
-            PositionError::OutOfRange { .. } if group.is_some() => {
-                format!("{who} are in a singular configuration there, at the limit of the range")
-            }
             PositionError::OutOfRange { .. } => "the range ends there".to_owned(),
         };
         let mut labels = joint_labels(&joints, "cannot stay joined beyond");
@@ -176,6 +176,65 @@ impl<'a> EarlyStop<'a> {
             scene,
             format!("a limit position is reached at {position}: {why}"),
             "the results end there; end the motion or the sweep before it, or change a length",
+            labels,
+        )
+    }
+
+    /// The limit of a single actuator's range that is reached, with the revolutions in which it is.
+    fn limit(&self, error: &PositionError) -> Option<(RangeLimit, f64)> {
+        let PositionError::OutOfRange { .. } = error else {
+            return None;
+        };
+        let reached = self.last_reached.q[0];
+        let turns = |limit: &RangeLimit| ((reached - limit.q) / TAU).round();
+        let distance = |limit: &RangeLimit| match self.plan.is_angle(0) {
+            true => (reached - limit.q - TAU * turns(limit)).abs(),
+            false => (reached - limit.q).abs(),
+        };
+        let limits = self.plan.range_limits().into_iter().flatten();
+        let limit = limits.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        let revolutions = if self.plan.is_angle(0) {
+            turns(&limit)
+        } else {
+            0.0
+        };
+        Some((limit, revolutions))
+    }
+
+    /// The error where the range of a single actuator ends.
+    fn explain_range_limit(
+        &self,
+        scene: &Scene,
+        (limit, revolutions): (RangeLimit, f64),
+    ) -> StudyError {
+        let plan = self.plan;
+        let name = describe_limit(&scene.mechanism, plan, limit, revolutions);
+        let when = match self.trajectory.swept_actuator() {
+            Some(_) => String::new(),
+            None => format!(" at t = {} s", digits(self.last_reached.t, 6)),
+        };
+        let why = match limit.change_point {
+            true => "another assembly mode begins there",
+            false => "the actuator cannot move on there",
+        };
+        let has_group = limit.group < plan.group_methods().len();
+        let joints = if has_group {
+            plan.group_joints(limit.group)
+        } else {
+            Vec::new()
+        };
+        let mut labels = joint_labels(&joints, "cannot stay joined beyond");
+        let beyond = (
+            self.trajectory.location(scene),
+            "continues beyond it".to_owned(),
+        );
+        labels.push(beyond);
+        let help =
+            "the results end there; end the motion or the sweep before it, or change a length";
+        scene_error(
+            scene,
+            format!("the {name} is reached{when}: {why}"),
+            help,
             labels,
         )
     }
@@ -192,11 +251,10 @@ impl<'a> EarlyStop<'a> {
         let mut labels = joint_labels(&joints.unwrap_or_default(), "cannot be joined there");
         labels.push((self.trajectory.location(scene), "starts there".to_owned()));
         let range = plan.range().limits().map(|(from, to)| {
-            let unit = coordinate_unit(plan.is_angle(0));
-            let [from, to] = [from, to].map(number);
+            let range = describe_ends(from, to, plan.is_angle(0));
             match plan.range_limits() {
-                [Some(_), Some(_)] => format!(", outside the range of {from} to {to} {unit}"),
-                _ => format!("; the range was searched from {from} to {to} {unit} only"),
+                [Some(_), Some(_)] => format!(", outside the range of {range}"),
+                _ => format!("; the range was searched from {range} only"),
             }
         });
         let range = range.unwrap_or_default();
@@ -209,11 +267,8 @@ impl<'a> EarlyStop<'a> {
     fn describe_position(&self, scene: &Scene) -> String {
         let at = &self.last_reached;
         let one = |(i, q): (usize, &f64)| {
-            let (name, value) = (&scene.mechanism.actuators[i].name, digits(*q, 8));
-            match self.plan.is_angle(i) {
-                true => format!("{name} = {value} rad ({}°)", number(q.to_degrees())),
-                false => format!("{name} = {value} m"),
-            }
+            let name = &scene.mechanism.actuators[i].name;
+            describe_coordinate(name, *q, self.plan.is_angle(i))
         };
         let all: Vec<_> = at.q.iter().enumerate().map(one).collect();
         let all = all.join(", ");
