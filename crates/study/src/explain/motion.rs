@@ -86,6 +86,15 @@ fn describe(
             SceneLocation::Duration,
             "too long",
         ),
+        DynamicsError::TooManyEvents { t, max_occurrences } => (
+            format!(
+                "more than {max_occurrences} events happen: the motion is given up to the last of these, at t = {} s",
+                digits(*t, 6)
+            ),
+            "make the motion shorter, leave out an event that happens in every period, or let an event stop it",
+            SceneLocation::Duration,
+            "so many events in this time",
+        ),
         DynamicsError::StepTooSmall { t } => (
             format!(
                 "the integrator's step becomes too small at t = {} s: the motion changes too fast there",
