@@ -118,7 +118,9 @@ impl Orbit {
     fn from_rule(of: &SampledOrbit, resolved: ResolvedMotion) -> Self {
         let time_density = resolved.time_density;
         let (kind, time_offset) = match &of.kind {
-            SampledKind::Rotation(rotation) => (OrbitKind::Rotation(rotation.angle_per_period), 0.0),
+            SampledKind::Rotation(rotation) => {
+                (OrbitKind::Rotation(rotation.angle_per_period), 0.0)
+            }
             SampledKind::Libration(libration) => (
                 OrbitKind::Libration(libration.turning_points),
                 time_density.eval(of.initial_phase)[1],
@@ -286,7 +288,9 @@ impl SampledOrbit {
                 let rotation = SampledRotation::new(start.q, energies, angle_per_period);
                 (SampledKind::Rotation(rotation), class, 0.0)
             }
-            MotionClass::Libration { turning_points: approximate } => {
+            MotionClass::Libration {
+                turning_points: approximate,
+            } => {
                 let turning_points = turning_points(system, start.q, kinetic, approximate)?;
                 let class = MotionClass::Libration { turning_points };
                 let up = nearest_phase(start.q, turning_points);

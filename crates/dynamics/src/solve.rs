@@ -19,9 +19,9 @@ use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, state_at};
 use crate::options::{Options, Statistics};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_kinetostatics::Model;
-pub use event::{Event, EventKind, EventOccurrence};
-use event::FoundEvent;
 pub(crate) use event::TouchTolerance;
+pub use event::{Event, EventKind, EventOccurrence};
+use event::{FoundEvent, MAX_OCCURRENCES, too_many_events};
 pub use observed::{Observed, ObservedMachine, ObservedValue};
 pub use orbit_solution::solve_orbit;
 use tracker::EventTracker;
@@ -231,6 +231,9 @@ impl<O: Observed> SolutionRecorder<'_, '_, O> {
         for tracker in &mut state.trackers {
             tracker.locate([before, now], dense, observed, &mut found)?;
         }
+        if solution.event_occurrences.len() + found.len() > MAX_OCCURRENCES {
+            return Err(too_many_events(before.t));
+        }
         let stop = stop_at_terminal(&mut found);
         if let Some(until) = stop.as_ref().filter(|until| until.t < before.t) {
             // It came to the value in an earlier step, and has passed it in this one only.
@@ -252,10 +255,9 @@ impl<O: Observed> SolutionRecorder<'_, '_, O> {
         }
         solution.add_occurrences(found);
         solution.terminated_by_event = stop.is_some();
-        Ok(if solution.terminated_by_event {
-            StepControl::Stop
-        } else {
-            StepControl::Continue
+        Ok(match stop {
+            Some(_) => StepControl::Stop,
+            None => StepControl::Continue,
         })
     }
 

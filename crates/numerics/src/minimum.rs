@@ -50,7 +50,11 @@ pub fn find<E>(
             GOLDEN * change_before
         });
         let least = resolution.copysign(change);
-        let at = x + if change.abs() >= resolution { change } else { least };
+        let at = x + if change.abs() >= resolution {
+            change
+        } else {
+            least
+        };
         let value = f(at)?;
         if value <= fx {
             if at < x {
@@ -89,11 +93,20 @@ mod tests {
         };
         let [at, value] = find(&mut cosine, [2.0, 5.0], 1e-7, f64::NEG_INFINITY).unwrap();
         assert!((at - 0.3 - std::f64::consts::PI).abs() < 1e-6, "{at}");
-        assert!((value + 1.0).abs() < 1e-12 && evaluations < 15, "{evaluations}");
+        assert!(
+            (value + 1.0).abs() < 1e-12 && evaluations < 15,
+            "{evaluations}"
+        );
         // The end of a slope; and what is deep enough at once.
         let [at, _] = find(|x: f64| Ok::<_, Infallible>(x), [1.0, 2.0], 1e-6, 0.0).unwrap();
         assert!((at - 1.0).abs() < 1e-5, "{at}");
-        let [_, value] = find(|x: f64| Ok::<_, Infallible>(x * x - 1.0), [-1.0, 2.0], 1e-9, -0.5).unwrap();
+        let [_, value] = find(
+            |x: f64| Ok::<_, Infallible>(x * x - 1.0),
+            [-1.0, 2.0],
+            1e-9,
+            -0.5,
+        )
+        .unwrap();
         assert!(value <= -0.5);
     }
 }

@@ -14,26 +14,25 @@ const DERIVATIVES: [[f64; POINTS]; POINTS] = [
     [3.0, -16.0, 36.0, -48.0, 25.0],
 ];
 
-/// Whether a function, from its values at `count` equally spaced points (five or more), may come to zero from above
+/// Whether a function, known by its `value` at `count` equally spaced points (five or more), may come to zero from above
 /// between point `k` and the next, and rise again.
-pub(super) fn may_dip(values: impl Iterator<Item = f64>, count: usize, k: usize) -> bool {
+pub(super) fn may_dip(value: impl Fn(usize) -> f64, count: usize, k: usize) -> bool {
     let Some(last_window) = count.checked_sub(POINTS) else {
         return false;
     };
     let first = k.saturating_sub(1).min(last_window);
-    let mut window = [f64::NAN; POINTS];
-    for (at, value) in window.iter_mut().zip(values.skip(first)) {
-        *at = value;
-    }
+    let window: [f64; POINTS] = std::array::from_fn(|i| value(first + i));
     let j = k - first;
     let slope = |at: usize| {
         let terms = DERIVATIVES[at].iter().zip(&window);
         terms.map(|(c, v)| c * v).sum::<f64>() / 12.0
     };
     let [falls, rises] = [slope(j), slope(j + 1)];
-    let [low, high] = window.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| {
-        [l.min(*v), h.max(*v)]
-    });
+    let [low, high] = window
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| {
+            [l.min(*v), h.max(*v)]
+        });
     let spread = high - low;
     // A minimum at a point itself has a slope of zero there, but for the error of the polynomial.
     let flat = 1e-3 * spread;
@@ -62,14 +61,14 @@ mod tests {
         };
         // The minimum is between the points 3 and 4.
         let near = sampled(-1e-9, std::f64::consts::PI - 0.7);
-        let found: Vec<bool> = (0..8).map(|k| may_dip(near.iter().copied(), 9, k)).collect();
+        let found: Vec<bool> = (0..8).map(|k| may_dip(|i| near[i], 9, k)).collect();
         let only = |wanted: usize| (0..8).map(|k| k == wanted).collect::<Vec<_>>();
         assert_eq!(found, only(3));
         let far = sampled(0.2, std::f64::consts::PI - 0.7);
-        assert!((0..8).all(|k| !may_dip(far.iter().copied(), 9, k)));
+        assert!((0..8).all(|k| !may_dip(|i| far[i], 9, k)));
         // At a point, it is in one of its neighbours.
         let at_point = sampled(0.0, std::f64::consts::PI - 0.8);
-        let dips = |k: usize| may_dip(at_point.iter().copied(), 9, k);
+        let dips = |k: usize| may_dip(|i| at_point[i], 9, k);
         assert!(dips(3) || dips(4));
     }
 }

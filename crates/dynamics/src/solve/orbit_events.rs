@@ -5,7 +5,9 @@
 //! less kD. It happens once, and is looked for only in the periods in which the coordinate can be there. A revolution
 //! is completed in every period, since D is a multiple of 2π.
 
-use super::event::{Event, EventKind, EventOccurrence, FoundEvent, TouchTolerance};
+use super::event::{
+    Event, EventKind, EventOccurrence, FoundEvent, MAX_OCCURRENCES, TouchTolerance, too_many_events,
+};
 use super::observed::ObservedMachine;
 use super::orbit_solution::point;
 use super::stop_at_terminal;
@@ -24,16 +26,13 @@ const PARTS: usize = 64;
 const MAX_PERIODS: usize = 64;
 /// Functions that differ by less of their size repeat themselves: solutions of large groups differ by some rounding.
 const REPETITION_TOLERANCE: f64 = 1e-8;
-/// Occurrences that are kept.
-const MAX_OCCURRENCES: usize = 100_000;
 
 /// The events that happen along an orbit.
 pub(super) struct OrbitEvents {
     /// In order of time.
     pub(super) occurrences: Vec<EventOccurrence>,
-    /// Whether the last of them ends the motion.
-    pub(super) ends_motion: bool,
-    pub(super) error: Option<DynamicsError>,
+    /// Where the motion ends before its end, and the error if that is why.
+    pub(super) end: Option<(OdeState, Option<DynamicsError>)>,
 }
 
 impl OrbitEvents {
@@ -47,22 +46,25 @@ impl OrbitEvents {
     ) -> Result<Self> {
         let mut search = Search::new(orbit, observed, end, options, events)?;
         if events.is_empty() {
-            return Ok(search.into_events(None));
+            return Ok(search.into_events());
         }
-        while !search.step()? {
+        while !search.step()? && !search.is_full() {
             if let Some(repetition) = search.repetition() {
                 return search.repeat(&repetition);
             }
-            let (t, parts) = (search.before.t, search.values.len());
-            if parts > options.max_steps {
-                let max_steps = options.max_steps;
-                return Ok(search.into_events(Some(DynamicsError::MaxStepsReached { t, max_steps })));
-            }
-            if let Some(error) = search.excess() {
-                return Ok(search.into_events(Some(error)));
+            if search.values.len() > options.max_steps {
+                let (state, max_steps) = (search.before.clone(), options.max_steps);
+                let error = DynamicsError::MaxStepsReached {
+                    t: state.t,
+                    max_steps,
+                };
+                return Ok(Self {
+                    end: Some((state, Some(error))),
+                    ..search.into_events()
+                });
             }
         }
-        Ok(search.into_events(None))
+        Ok(search.into_events())
     }
 }
 
@@ -106,7 +108,12 @@ impl<'s> Search<'s> {
         };
         let before = OdeState::from(orbit.initial_state());
         let tracker = |found| EventTracker::new(found, tolerance, &mut observed, &before);
-        let trackers: Vec<_> = events.iter().copied().enumerate().map(tracker).collect::<Result<_>>()?;
+        let trackers: Vec<_> = events
+            .iter()
+            .copied()
+            .enumerate()
+            .map(tracker)
+            .collect::<Result<_>>()?;
         Ok(Self {
             orbit,
             events,
@@ -126,7 +133,11 @@ impl<'s> Search<'s> {
     /// The time at which a number of parts are over, s.
     fn time_after(&self, parts: usize) -> f64 {
         let (periods, parts) = (parts / PARTS, parts % PARTS);
-        let within = if parts == 0 { 0.0 } else { self.parts[parts - 1] };
+        let within = if parts == 0 {
+            0.0
+        } else {
+            self.parts[parts - 1]
+        };
         self.start + self.orbit.period * periods as f64 + within
     }
 
@@ -142,7 +153,8 @@ impl<'s> Search<'s> {
             let step = [&self.before, &now];
             tracker.locate(step, &mut dense, &mut self.observed, &mut self.found)?;
         }
-        self.values.push(self.trackers.iter().map(EventTracker::value).collect());
+        self.values
+            .push(self.trackers.iter().map(EventTracker::value).collect());
         self.before = now;
         let is_stopped = self.found.iter().any(|(_, terminal)| *terminal);
         if t >= self.end && !is_stopped {
@@ -153,24 +165,27 @@ impl<'s> Search<'s> {
         Ok(is_stopped || t >= self.end)
     }
 
-    /// Why not all that was found can be kept.
-    fn excess(&self) -> Option<DynamicsError> {
-        let last = self.found.get(MAX_OCCURRENCES - 1)?;
-        (self.found.len() > MAX_OCCURRENCES).then_some(DynamicsError::TooManyEvents {
-            t: last.0.state.t,
-            max_occurrences: MAX_OCCURRENCES,
-        })
+    /// Whether more was found than can be kept.
+    fn is_full(&self) -> bool {
+        self.found.len() > MAX_OCCURRENCES
     }
 
-    /// What was found so far, up to an error.
-    fn into_events(mut self, error: Option<DynamicsError>) -> OrbitEvents {
-        let stop = stop_at_terminal(&mut self.found);
+    /// What was found so far.
+    fn into_events(mut self) -> OrbitEvents {
+        let mut end = stop_at_terminal(&mut self.found).map(|state| (state, None));
+        if let Some((last, _)) = self
+            .found
+            .get(MAX_OCCURRENCES - 1)
+            .filter(|_| self.is_full())
+        {
+            let error = too_many_events(last.state.t);
+            end = Some((last.state.clone(), Some(error)));
+        }
         self.found.truncate(MAX_OCCURRENCES);
         let occurrences = self.found.into_iter().map(|(occurrence, _)| occurrence);
         OrbitEvents {
             occurrences: occurrences.collect(),
-            ends_motion: stop.is_some() || error.is_some(),
-            error,
+            end,
         }
     }
 
@@ -205,7 +220,7 @@ impl<'s> Search<'s> {
     fn repeat(mut self, repetition: &Repetition) -> Result<OrbitEvents> {
         // One part more: what happens at the end of a period is a rounding before or behind it.
         if self.step()? {
-            return Ok(self.into_events(None));
+            return Ok(self.into_events());
         }
         stop_at_terminal(&mut self.found);
         let duration = self.orbit.period * repetition.periods as f64;
@@ -214,9 +229,14 @@ impl<'s> Search<'s> {
             matches!(self.events[e].kind, EventKind::Reaches(..)) && repetition.growth[e] != 0.0
         };
         self.found.retain(|(o, _)| o.state.t <= base_end);
-        let is_repeated = |(o, _): &&FoundEvent| o.state.t > base_end - duration && !passed_once(o.event);
-        let base: Vec<EventOccurrence> =
-            self.found.iter().filter(is_repeated).map(|(o, _)| o.clone()).collect();
+        let is_repeated =
+            |(o, _): &&FoundEvent| o.state.t > base_end - duration && !passed_once(o.event);
+        let base: Vec<EventOccurrence> = self
+            .found
+            .iter()
+            .filter(is_repeated)
+            .map(|(o, _)| o.clone())
+            .collect();
         let mut once = Vec::new();
         for e in (0..self.events.len()).filter(|&e| passed_once(e)) {
             once.extend(self.later_passages(e, repetition)?);
@@ -240,18 +260,16 @@ impl<'s> Search<'s> {
             windows += 1.0;
         }
         self.found.retain(|(o, _)| o.state.t <= last);
-        self.found.sort_by(|(a, _), (b, _)| a.state.t.total_cmp(&b.state.t));
+        self.found
+            .sort_by(|(a, _), (b, _)| a.state.t.total_cmp(&b.state.t));
         for (occurrence, _) in &mut self.found {
             // What is a rounding behind the end is at the end.
             occurrence.state.t = occurrence.state.t.min(self.end);
         }
-        let error = self.excess();
-        if error.is_none() && until.is_some() {
-            if let Some((_, terminal)) = self.found.last_mut() {
-                *terminal = true;
-            }
+        if let (Some(_), Some((_, terminal))) = (until, self.found.last_mut()) {
+            *terminal = true;
         }
-        Ok(self.into_events(error))
+        Ok(self.into_events())
     }
 
     /// A time (s) in the part behind a number of parts that is far from all events.
@@ -267,22 +285,30 @@ impl<'s> Search<'s> {
     }
 
     /// The passages of the value of one event, whose coordinate grows, after those that were found.
-    fn later_passages(&mut self, e: usize, repetition: &Repetition) -> Result<Vec<EventOccurrence>> {
+    fn later_passages(
+        &mut self,
+        e: usize,
+        repetition: &Repetition,
+    ) -> Result<Vec<EventOccurrence>> {
         let (event, growth) = (self.events[e], repetition.growth[e]);
         let EventKind::Reaches(_, target) = event.kind else {
             return Ok(Vec::new());
         };
         let window = PARTS * repetition.periods;
         let last = &self.values[window..=2 * window];
-        let [low, high] = last.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| {
-            [l.min(v[e]), h.max(v[e])]
-        });
+        let [low, high] = last
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| {
+                [l.min(v[e]), h.max(v[e])]
+            });
         // Between the parts it may go further; and a passage may begin with a window.
         let margin = 0.25 * (high - low) + 0.5 * growth.abs();
         let windows = [low - margin, high + margin].map(|value| (target - value) / growth);
         let first = windows[0].min(windows[1]).floor().max(1.0);
         let last_wanted = windows[0].max(windows[1]).ceil();
-        let times: Vec<f64> = (0..=window).map(|part| self.time_after(window + part)).collect();
+        let times: Vec<f64> = (0..=window)
+            .map(|part| self.time_after(window + part))
+            .collect();
         let duration = self.orbit.period * repetition.periods as f64;
         let after = |windows: f64, part: usize| times[part] + windows * duration;
         let begin = after(first, 0);
@@ -291,7 +317,13 @@ impl<'s> Search<'s> {
         }
         let mut before = point(self.orbit, begin);
         let near = self.values[window][e] + first * growth;
-        let found = (e, Event { terminal: None, ..event });
+        let found = (
+            e,
+            Event {
+                terminal: None,
+                ..event
+            },
+        );
         let mut tracker = EventTracker::new(found, self.tolerance, &mut self.observed, &before)?;
         tracker = tracker.with_value_near(near);
         let mut passages = Vec::new();
@@ -303,12 +335,20 @@ impl<'s> Search<'s> {
                     y.copy_from_slice(&point(self.orbit, t).y);
                     Ok(())
                 };
-                tracker.locate([&before, &now], &mut dense, &mut self.observed, &mut passages)?;
+                tracker.locate(
+                    [&before, &now],
+                    &mut dense,
+                    &mut self.observed,
+                    &mut passages,
+                )?;
                 before = now;
             }
             windows += 1.0;
         }
-        Ok(passages.into_iter().map(|(occurrence, _)| occurrence).collect())
+        Ok(passages
+            .into_iter()
+            .map(|(occurrence, _)| occurrence)
+            .collect())
     }
 
     /// When the motion is ended by an event that is not yet among those found, if it is.
@@ -323,7 +363,10 @@ impl<'s> Search<'s> {
             let passed = self.found.iter().filter(|(o, _)| o.event == e).count();
             let further = wanted.checked_sub(passed + 1)?;
             let of_event = |all: &[EventOccurrence]| -> Vec<f64> {
-                all.iter().filter(|o| o.event == e).map(|o| o.state.t).collect()
+                all.iter()
+                    .filter(|o| o.event == e)
+                    .map(|o| o.state.t)
+                    .collect()
             };
             let [base, once] = [base, once].map(of_event);
             if base.is_empty() {

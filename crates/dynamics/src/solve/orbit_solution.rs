@@ -28,8 +28,8 @@ pub fn solve_orbit(
     // As given: a speed of zero is no rounding of one.
     let start = OdeState::from(orbit.initial_state());
     let found = OrbitEvents::find(orbit, observed, end, options, events)?;
-    let last = found.occurrences.last().filter(|_| found.ends_motion);
-    let last = last.map_or_else(|| point(orbit, end), |last| last.state.clone());
+    let terminated_by_event = matches!(found.end, Some((_, None)));
+    let (last, error) = found.end.unwrap_or_else(|| (point(orbit, end), None));
     let mut samples = Vec::new();
     if let Some(sample_interval) = options.sample_interval {
         samples.push(start.clone());
@@ -54,9 +54,9 @@ pub fn solve_orbit(
         },
         steps,
         samples,
-        terminated_by_event: found.ends_motion && found.error.is_none(),
+        terminated_by_event,
         event_occurrences: found.occurrences,
-        error: found.error,
+        error,
     })
 }
 

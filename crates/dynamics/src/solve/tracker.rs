@@ -5,10 +5,12 @@
 //! value and return, and only then its minimum is looked for. A passage counts when the function has gone beyond the
 //! value by more than a touch; its time is that of the zero.
 
-use super::event::{Event, EventKind, EventOccurrence, FoundEvent, TouchTolerance};
+use super::event::{
+    Event, EventKind, EventOccurrence, FoundEvent, MAX_OCCURRENCES, TouchTolerance, too_many_events,
+};
 use super::excursion::may_dip;
 use super::observed::{Observed, ObservedValue};
-use crate::error::Result;
+use crate::error::{DynamicsError, Result};
 use crate::ode::{DenseOutput, OdeState, state_at, subinterval_ends};
 use dwell_numerics::{minimum, root};
 use std::f64::consts::{FRAC_PI_4, TAU};
@@ -17,6 +19,8 @@ use std::num::NonZeroUsize;
 /// Parts of a step, and of each angle of this size if it is longer.
 const SUBINTERVALS: usize = 4;
 const MAX_ANGLE: f64 = FRAC_PI_4;
+/// Parts of a step beyond which events are not looked for: 8192 revolutions.
+const MAX_PARTS: usize = 1 << 18;
 /// Resolution of a minimum in time, as a part of a subinterval.
 const RESOLUTION: f64 = 1e-6;
 
@@ -192,8 +196,12 @@ impl<C: Copy> EventTracker<C> {
         observed: &mut impl Observed<Coordinate = C>,
         found: &mut Vec<FoundEvent>,
     ) -> Result<()> {
-        let angles = (observed.angle_between(before, now) / MAX_ANGLE).ceil();
-        let parts = SUBINTERVALS * (angles as usize).max(1);
+        let angle = observed.angle_between(before, now);
+        let parts = SUBINTERVALS * ((angle / MAX_ANGLE).ceil() as usize).max(1);
+        if parts > MAX_PARTS {
+            let t = before.t;
+            return Err(DynamicsError::StepTooLongForEvents { t, angle });
+        }
         let mut points = std::mem::take(&mut self.points);
         points.clear();
         points.push(self.previous);
@@ -212,6 +220,9 @@ impl<C: Copy> EventTracker<C> {
             while let Some(passage) = self.passage((&points, k), now, dense, observed)? {
                 let returns = passage.exit.is_some();
                 self.add(passage, found);
+                if found.len() > MAX_OCCURRENCES {
+                    return Err(too_many_events(before.t));
+                }
                 if self.single_value().is_some() || returns {
                     break;
                 }
@@ -245,19 +256,26 @@ impl<C: Copy> EventTracker<C> {
             // The time from which on the function is beyond the value, and until when.
             let mut beyond = (d1 <= -touch).then_some([t1, t1]);
             if beyond.is_none() {
-                let distances = points.iter().map(|(_, v)| target.distance(v.value));
-                if may_dip(distances, points.len(), k - 1) {
+                let distance = |i: usize| target.distance(points[i].1.value);
+                if may_dip(distance, points.len(), k - 1) {
                     let resolution = RESOLUTION * (t1 - t0);
                     let lowest = minimum::find(&mut distance_at, [t0, t1], resolution, -touch)?;
                     beyond = (lowest[1] <= -touch).then_some([lowest[0], t1]);
                 }
             }
-            let is_pending = self.pending.as_ref().is_some_and(|(value, _)| *value == target.value);
+            let is_pending = self
+                .pending
+                .as_ref()
+                .is_some_and(|(value, _)| *value == target.value);
             let Some([deep, until]) = beyond else {
                 if d1 > 0.0 && is_pending {
                     self.pending = None;
                 } else if d1 <= 0.0 && !is_pending {
-                    let zero = if d0 > 0.0 { root::find(&mut distance_at, t0, t1)? } else { Some(t0) };
+                    let zero = if d0 > 0.0 {
+                        root::find(&mut distance_at, t0, t1)?
+                    } else {
+                        Some(t0)
+                    };
                     let state = state_at(zero.unwrap_or(t1), now, dense)?;
                     self.pending = Some((target.value, self.occurrence(state, target.side < 0.0)));
                 }
@@ -277,7 +295,11 @@ impl<C: Copy> EventTracker<C> {
                 Some((_, entry)) => entry,
                 None => self.occurrence(state_at(entry, now, dense)?, target.side < 0.0),
             };
-            return Ok(Some(Passage { target, entry, exit }));
+            return Ok(Some(Passage {
+                target,
+                entry,
+                exit,
+            }));
         }
         Ok(None)
     }
@@ -319,12 +341,23 @@ impl<C: Copy> EventTracker<C> {
         let Some(target) = reached else {
             return;
         };
-        let entry = match self.pending.take().filter(|(value, _)| *value == target.value) {
+        let entry = match self
+            .pending
+            .take()
+            .filter(|(value, _)| *value == target.value)
+        {
             Some((_, entry)) => entry,
             None => self.occurrence(end.clone(), target.side < 0.0),
         };
         let exit = None;
-        self.add(Passage { target, entry, exit }, found);
+        self.add(
+            Passage {
+                target,
+                entry,
+                exit,
+            },
+            found,
+        );
     }
 }
 

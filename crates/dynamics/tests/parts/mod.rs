@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "each test binary takes what it needs")]
 #![allow(clippy::expect_used, reason = "tests")]
 
+pub(crate) mod watched;
+
 use dwell_dynamics::{
     Atlas, ContinuedMotion, Event, MachineDescription, Method, OdeState, Options,
 };

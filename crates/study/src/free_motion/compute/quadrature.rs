@@ -114,3 +114,83 @@ impl FreeMotionProblem<'_> {
         self.difference(motion, &delayed)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::with_drive_loads;
+    use dwell_scene::Scene;
+
+    /// Rotations and librations, with and without loads.
+    const CASES: [&str; 4] = [
+        "pendulum-a01",
+        "crank-rocker",
+        "slotted-rocker",
+        "single-dwell",
+    ];
+
+    /// The points, the estimate and the true error, against the fully resolved orbit, of a case over a number of
+    /// periods. None of a motion without a period.
+    fn errors(case: &str, periods: f64, accuracy: f64) -> Option<(usize, f64, f64)> {
+        let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
+        let text = std::fs::read_to_string(format!("{cases}/{case}/scene.toml")).unwrap();
+        let scene = Scene::parse(case, &text).unwrap();
+        let loaded_scene = with_drive_loads(&scene).unwrap();
+        let motion = scene.motion.as_ref().unwrap();
+        let problem = FreeMotionProblem::new(&scene, &loaded_scene, motion).unwrap();
+        let orbit = Orbit::loaded(&problem.machine, problem.initial_reduced_state()).ok()?;
+        let duration = periods * orbit.period;
+        let interval = duration / 500.0;
+        let found = problem.by_quadrature(accuracy, duration, interval)?;
+        let [_, estimate] = found.accuracy.unwrap();
+        let points = found.motion.statistics.evaluations;
+        let exact = problem.along(orbit, 1e-12, duration, interval).unwrap();
+        let true_error = problem.difference(&exact, &found.motion).unwrap().largest();
+        Some((points, estimate, true_error))
+    }
+
+    #[test]
+    fn val_accuracy_is_kept_with_few_points() {
+        let mut compared = 0;
+        for case in CASES {
+            for periods in [0.7, 10.0, 1000.0] {
+                let mut last_points = 0;
+                for exponent in 2..=12 {
+                    let accuracy = 10_f64.powi(-exponent);
+                    let Some((points, estimate, true_error)) = errors(case, periods, accuracy)
+                    else {
+                        continue;
+                    };
+                    println!(
+                        "{case} {periods} {accuracy:e}: {points} points, {true_error:.1e} of {estimate:.1e}"
+                    );
+                    assert!(
+                        true_error <= estimate,
+                        "{case}: {true_error:e} {estimate:e}"
+                    );
+                    // The roundings of a thousand periods are beyond the finest.
+                    assert!(
+                        estimate <= accuracy || estimate < 1e-14 * periods.max(100.0),
+                        "{estimate:e}"
+                    );
+                    assert!(
+                        true_error < 1e-13 || estimate < 100.0 * true_error,
+                        "{estimate:e} {true_error:e}"
+                    );
+                    assert!(
+                        points >= last_points,
+                        "{case} {accuracy:e}: {points} after {last_points}"
+                    );
+                    last_points = points;
+                    compared += 1;
+                }
+                let coarse = errors(case, periods, 1e-2).map_or(0, |(points, ..)| points);
+                assert!(
+                    last_points == 0 || last_points > coarse,
+                    "{case}: {last_points} {coarse}"
+                );
+            }
+        }
+        assert!(compared > 90, "{compared}");
+    }
+}
