@@ -22,7 +22,7 @@ const MAX_ANGLE: f64 = FRAC_PI_4;
 /// Parts of a step beyond which events are not looked for: 8192 revolutions.
 const MAX_PARTS: usize = 1 << 18;
 /// Resolution of a minimum in time, as a part of a subinterval.
-const RESOLUTION: f64 = 1e-6;
+const RESOLUTION: f64 = 1e-5;
 
 /// The search for one event.
 pub(crate) struct EventTracker<C> {
