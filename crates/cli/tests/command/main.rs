@@ -1,6 +1,7 @@
 //! The command as it is run: exit status, files, and every word of its messages.
 #![allow(clippy::unwrap_used, reason = "a test")]
 
+mod long_motions;
 mod messages;
 mod results;
 mod rows;
