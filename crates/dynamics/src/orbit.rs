@@ -28,7 +28,7 @@ use dwell_numerics::fourier::MIN_POINTS;
 use std::f64::consts::TAU;
 
 /// Points of the coarsest rule of a sequence.
-const FEWEST_POINTS: usize = 16;
+const MIN_SEQUENCE_POINTS: usize = 16;
 /// Steps of Newton's method, halvings among them, to a phase.
 const MAX_NEWTON_STEPS: usize = 100;
 
@@ -243,7 +243,7 @@ impl OrbitSequence {
     /// As [`Orbit::loaded`].
     pub fn loaded(machine: &Machine, start: ReducedState) -> Result<Self> {
         let mut system = LoadedSystem::new(machine)?;
-        let samples = SampledOrbit::new(&mut system, start, FEWEST_POINTS)?;
+        let samples = SampledOrbit::new(&mut system, start, MIN_SEQUENCE_POINTS)?;
         Ok(Self { system, samples })
     }
 

@@ -132,6 +132,20 @@ fn an_event_at_the_end_happens() {
     }
 }
 
+/// However far an angle has grown, its revolutions are counted, coarse as the tolerance may be.
+#[test]
+fn revolutions_of_a_coarse_motion() {
+    let wheel = Watched::pendulum([0.0, 30.0]);
+    let revolution = watch(&[EventKind::Revolution(wheel.angle(1))]);
+    let end = 300.5 * wheel.orbit().period;
+    let coarse = wheel.by_integration(Method::Dop853, 1e-5, end, &revolution);
+    assert_eq!(counts(&coarse, 1), [300]);
+    assert_eq!(
+        counts(&wheel.by_quadrature(1e-2, end, &revolution), 1),
+        [300]
+    );
+}
+
 /// A rotor turns many times in one step, and all of its events are found.
 #[test]
 fn long_steps_hold_many_events() {

@@ -10,6 +10,7 @@ const MAX_EVALUATIONS: usize = 60;
 ///
 /// # Errors
 /// The first error of `f`.
+// Long because Brent's iteration is one loop over six numbers.
 pub fn find<E>(
     mut f: impl FnMut(f64) -> Result<f64, E>,
     [mut a, mut b]: [f64; 2],

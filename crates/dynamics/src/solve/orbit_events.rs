@@ -285,6 +285,7 @@ impl<'s> Search<'s> {
     }
 
     /// The passages of the value of one event, whose coordinate grows, after those that were found.
+    // Long because it is one search: in which repetitions it may be passed, and then through these part by part.
     fn later_passages(
         &mut self,
         e: usize,

@@ -32,8 +32,8 @@ pub(crate) struct EventTracker<C> {
     tolerance: TouchTolerance,
     /// Time and value of the last evaluation: angles whose revolutions are not counted are continued from it.
     previous: (f64, ObservedValue),
-    /// What the function was expected to change by over the last subinterval.
-    expected_change: f64,
+    /// What the function was expected to change by over each of the last two subintervals.
+    expected_changes: [f64; 2],
     /// Revolutions, rad, that a counted angle differs by from the continued one since another system took over.
     revolution_offset: f64,
     /// Of revolutions: the value at the start, and the number passed.
@@ -77,7 +77,7 @@ impl<C: Copy> EventTracker<C> {
             index,
             tolerance,
             previous: (start.t, value),
-            expected_change: 0.0,
+            expected_changes: [0.0; 2],
             revolution_offset: 0.0,
             origin: value.value,
             revolutions: 0.0,
@@ -152,7 +152,12 @@ impl<C: Copy> EventTracker<C> {
             EventKind::Reaction(..) => 0.0,
             _ => self.tolerance.absolute,
         };
-        absolute + self.tolerance.relative * self.size
+        // An angle that grows with every revolution is no less certain to turn back than in the first.
+        let size = match self.previous.1.revolutions_counted {
+            Some(_) => self.size.min(TAU),
+            None => self.size,
+        };
+        absolute + self.tolerance.relative * size
     }
 
     /// The value of an event with one value.
@@ -229,7 +234,8 @@ impl<C: Copy> EventTracker<C> {
             }
             let [(t0, v0), (t1, v1)] = [points[k - 1], points[k]];
             let change = v1.value - v0.value;
-            self.expected_change = self.event.kind.expected_change(v1, t1 - t0, change);
+            let expected = self.event.kind.expected_change(v1, t1 - t0, change);
+            self.expected_changes = [self.expected_changes[1], expected];
             self.previous = points[k];
         }
         self.points = points;
@@ -237,6 +243,7 @@ impl<C: Copy> EventTracker<C> {
     }
 
     /// A passage between a point of a step and the one before, with the return if that follows before the point.
+    // Long because where a passage begins and ends depends on both points, and on what was passed before them.
     fn passage(
         &mut self,
         (points, k): (&[(f64, ObservedValue)], usize),
@@ -335,8 +342,14 @@ impl<C: Copy> EventTracker<C> {
         let touch = self.touch();
         let value = self.value();
         let reached = self.targets().into_iter().flatten().find(|target| {
-            let is_there = target.distance(value).abs() <= touch;
-            is_there && target.side * self.expected_change < -touch
+            let distance = target.distance(value);
+            let [before, now] = self.expected_changes.map(|change| target.side * change);
+            // A parabola with these slopes, one subinterval apart, turns back there.
+            let lowest = match now > before {
+                true => distance - 0.5 * now * now / (now - before),
+                false => f64::NEG_INFINITY,
+            };
+            distance.abs() <= touch && now < 0.0 && lowest < -touch
         });
         let Some(target) = reached else {
             return;
