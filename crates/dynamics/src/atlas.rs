@@ -22,7 +22,7 @@ use crate::machine::{CoordinateMode, Machine, MachineError, loads_with_drives};
 use crate::machine_ode::MachineOde;
 use crate::ode::{DenseOutput, OdeState};
 use crate::options::Options;
-use crate::solve::{Event, ObservedMachine, RecorderState, Solution};
+use crate::solve::{Event, ObservedMachine, RecorderState, Solution, TouchTolerance};
 use candidates::{Candidate, candidates, with_actuator};
 pub use continued_motion::{
     ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory, Segment,
@@ -210,7 +210,8 @@ impl<'s> Atlas<'s> {
     ) -> Result<ContinuedMotion> {
         self.tighten_tolerance(options.rtol);
         let mut motion = ContinuedMotion::default();
-        let mut recorder_state = RecorderState::new(start.t, events);
+        let tolerance = TouchTolerance::of_integration(options);
+        let mut recorder_state = RecorderState::new(start.t, events, tolerance);
         let (mut chart, mut at) = (0, start.clone());
         let requested = options;
         let (mut options, mut max_step) = (*requested, None);
@@ -316,6 +317,9 @@ impl<'s> Atlas<'s> {
             })
         };
         let termination = integrate(&mut ode, at, Some(end), options, &mut observer)?;
+        if termination.error.is_none() && exit.is_none() {
+            recorder.record_end(&mut solution);
+        }
         solution.error = termination.error;
         solution.statistics = termination.statistics;
         Ok((solution, exit))

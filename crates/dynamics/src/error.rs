@@ -86,6 +86,22 @@ pub enum DynamicsError {
         /// The number of steps allowed.
         max_steps: usize,
     },
+    /// More events happen than are kept.
+    #[error("more than {max_occurrences} events happen: up to t = {t} s these are all")]
+    TooManyEvents {
+        /// The time of the last one kept, s.
+        t: f64,
+        /// The number of occurrences that are kept.
+        max_occurrences: usize,
+    },
+    /// A step goes through so many revolutions that events within it are not looked for.
+    #[error("events cannot be looked for in a step from t = {t} s through {angle} rad")]
+    StepTooLongForEvents {
+        /// Where the step begins, s.
+        t: f64,
+        /// What it goes through, rad.
+        angle: f64,
+    },
     /// Something varies so fast in time that more steps are needed than allowed.
     #[error(
         "a function of time varies within {width:.1e} s near t = {t} s, for which more steps are needed than the {max_steps} allowed"

@@ -62,6 +62,7 @@ pub mod options;
 pub mod orbit;
 pub mod reduced_ode;
 mod repetition;
+mod rotation;
 pub mod solve;
 pub mod state_space;
 mod state_switches;
@@ -93,7 +94,7 @@ pub use ode::{
     DenseOutput, OdeState, OdeSystem, ReducedState, StepControl, StepObserver, Termination,
 };
 pub use options::{Method, Options, Statistics};
-pub use orbit::Orbit;
+pub use orbit::{Orbit, OrbitSequence};
 pub use reduced_ode::{ReducedCoordinate, ReducedOde, ReducedOutputs, solve_reduced};
 pub use solve::{
     Event, EventKind, EventOccurrence, Observed, ObservedMachine, ObservedValue, Solution, solve,

@@ -16,22 +16,28 @@
 use crate::conservative::{ConservativeSystem, EnergyTerms};
 use crate::error::{DynamicsError, Result};
 use crate::time_density::{ResolvedMotion, TimeDensity};
-use dwell_numerics::fourier::{FourierSeries, MAX_POINTS, SHARP_POINTS, refine_samples};
+use dwell_numerics::fourier::{
+    FourierSeries, MAX_POINTS, MIN_POINTS, SHARP_POINTS, refine_samples,
+};
 use dwell_numerics::panels::Panels;
 use std::f64::consts::{PI, TAU};
 
 /// Highest number of improvements of the turning points.
 const MAX_REFINEMENTS: usize = 60;
 
-/// The libration that passes `q` with a kinetic energy (J), and its turning points from approximate ones.
-pub(crate) fn libration(
+/// The turning points of the libration that passes `q` with a kinetic energy (J), from approximate ones.
+pub(crate) fn turning_points(
     system: &mut dyn ConservativeSystem,
     q: f64,
     kinetic: f64,
     mut turning_points: [f64; 2],
-) -> Result<(ResolvedMotion, [f64; 2])> {
+) -> Result<[f64; 2]> {
     for _ in 0..MAX_REFINEMENTS {
-        let sampled = SampledLibration::new(system, turning_points, |_| true)?;
+        let mut sampled = SampledLibration::new(turning_points);
+        while !sampled.force_series.is_resolved {
+            sampled.double_points(system, MIN_POINTS)?;
+            sampled.check_points()?;
+        }
         let improved = sampled.improved_turning_points(q, kinetic);
         let size = turning_points[0].abs().max(turning_points[1].abs());
         let near = |a: f64, b: f64| (a - b).abs() <= 2.0 * f64::EPSILON * size;
@@ -41,71 +47,95 @@ pub(crate) fn libration(
             break;
         }
     }
-    let resolved =
-        |s: &SampledLibration| s.samples.len() >= SHARP_POINTS || s.time_density().is_resolved;
-    let sampled = SampledLibration::new(system, turning_points, resolved)?;
-    let mut points = sampled.samples.len();
-    let series = sampled.time_density();
-    let time_density = if series.is_resolved {
-        TimeDensity::Fourier(series)
-    } else {
-        let panels = sampled.piecewise_time_density(system)?;
-        points += panels.points;
-        TimeDensity::Piecewise(panels)
-    };
-    let resolved = ResolvedMotion {
-        time_density,
-        max_kinetic: sampled.max_kinetic(),
-        points,
-    };
-    Ok((resolved, turning_points))
+    Ok(turning_points)
 }
 
 /// A libration sampled at equally spaced phases from the lower turning point up and back.
-struct SampledLibration {
-    turning_points: [f64; 2],
+pub(crate) struct SampledLibration {
+    pub(crate) turning_points: [f64; 2],
     samples: Vec<EnergyTerms>,
     force_series: FourierSeries,
 }
 
 impl SampledLibration {
-    fn new(
-        system: &mut dyn ConservativeSystem,
-        turning_points: [f64; 2],
-        resolved: impl Fn(&Self) -> bool,
-    ) -> Result<Self> {
-        let [a, b] = turning_points;
-        let half = 0.5 * (b - a);
-        let mut sampled = Self {
+    /// Without points yet.
+    pub(crate) fn new(turning_points: [f64; 2]) -> Self {
+        Self {
             turning_points,
             samples: Vec::new(),
             force_series: FourierSeries::default(),
-        };
-        loop {
-            let samples = std::mem::take(&mut sampled.samples);
-            sampled.samples = refine_samples(samples, |part| {
-                // 1 − cos s, from the nearer end: the same upwards and downwards.
-                let sine = (PI * part).sin();
-                let cosine = (PI * part).cos();
-                let q = if sine.abs() < cosine.abs() {
-                    a + 2.0 * half * sine * sine
-                } else {
-                    b - 2.0 * half * cosine * cosine
-                };
-                system.energy_terms(q)
-            })?;
-            let forces: Vec<f64> = sampled.samples.iter().map(|h| h.force).collect();
-            let size = forces.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
-            sampled.force_series = FourierSeries::new(&forces, size);
-            if sampled.force_series.is_resolved && resolved(&sampled) {
-                return Ok(sampled);
-            }
-            let points = sampled.samples.len();
-            if points >= MAX_POINTS {
-                let tail = sampled.force_series.tail.max(sampled.time_density().tail);
-                return Err(DynamicsError::NotResolved { points, tail });
-            }
         }
+    }
+
+    /// The libration by twice as many points as before, or by `first`. Where equal steps do not resolve it to an
+    /// accuracy, a part of the mean of dt/ds, it is integrated on panels.
+    pub(crate) fn next(
+        &mut self,
+        system: &mut dyn ConservativeSystem,
+        first: usize,
+        accuracy: f64,
+    ) -> Result<ResolvedMotion> {
+        loop {
+            self.double_points(system, first)?;
+            let force = &self.force_series;
+            if force.is_resolved || force.tail < accuracy {
+                break;
+            }
+            self.check_points()?;
+        }
+        let mut points = self.samples.len();
+        let series = self.time_density();
+        let is_resolved = self.force_series.is_resolved && series.is_resolved;
+        let is_sharp = points >= SHARP_POINTS && !is_resolved;
+        let time_density = if is_sharp && !(series.tail < accuracy) {
+            while !self.force_series.is_resolved {
+                self.check_points()?;
+                self.double_points(system, first)?;
+            }
+            let panels = self.piecewise_time_density(system)?;
+            points = self.samples.len() + panels.points;
+            TimeDensity::Piecewise(panels)
+        } else {
+            TimeDensity::Fourier(series)
+        };
+        Ok(ResolvedMotion {
+            is_resolved: is_resolved || matches!(time_density, TimeDensity::Piecewise(_)),
+            time_density,
+            max_kinetic: self.max_kinetic(),
+            points,
+        })
+    }
+
+    /// An error where no more points are to be had.
+    fn check_points(&self) -> Result<()> {
+        let points = self.samples.len();
+        if points >= MAX_POINTS && !self.force_series.is_resolved {
+            let tail = self.force_series.tail.max(self.time_density().tail);
+            return Err(DynamicsError::NotResolved { points, tail });
+        }
+        Ok(())
+    }
+
+    /// Samples twice as many points as before, or the `first`.
+    fn double_points(&mut self, system: &mut dyn ConservativeSystem, first: usize) -> Result<()> {
+        let [a, b] = self.turning_points;
+        let half = 0.5 * (b - a);
+        let samples = std::mem::take(&mut self.samples);
+        self.samples = refine_samples(samples, first, |part| {
+            // 1 − cos s, from the nearer end: the same upwards and downwards.
+            let sine = (PI * part).sin();
+            let cosine = (PI * part).cos();
+            let q = if sine.abs() < cosine.abs() {
+                a + 2.0 * half * sine * sine
+            } else {
+                b - 2.0 * half * cosine * cosine
+            };
+            system.energy_terms(q)
+        })?;
+        let forces: Vec<f64> = self.samples.iter().map(|h| h.force).collect();
+        let size = forces.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+        self.force_series = FourierSeries::new(&forces, size);
+        Ok(())
     }
 
     /// h (1 − cos s) G: the kinetic energy gained from the lower end to a phase.

@@ -185,12 +185,21 @@ pub(crate) fn root_subintervals(
     before: &OdeState,
     now: &OdeState,
 ) -> impl Iterator<Item = f64> + use<> {
+    subinterval_ends(before, now, ROOT_SUBINTERVALS)
+}
+
+/// The ends of equal parts of a step; the last is the step's own.
+pub(crate) fn subinterval_ends(
+    before: &OdeState,
+    now: &OdeState,
+    parts: usize,
+) -> impl Iterator<Item = f64> + use<> {
     let (from, to) = (before.t, now.t);
-    (1..=ROOT_SUBINTERVALS).map(move |k| {
-        if k == ROOT_SUBINTERVALS {
+    (1..=parts).map(move |k| {
+        if k == parts {
             to
         } else {
-            from + (to - from) * k as f64 / ROOT_SUBINTERVALS as f64
+            from + (to - from) * k as f64 / parts as f64
         }
     })
 }

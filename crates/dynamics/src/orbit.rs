@@ -16,19 +16,21 @@
 //! maximum of V or where the inertia is small, it is integrated on panels.
 
 use crate::close_branches::is_too_close;
-use crate::conservative::{ConservativeSystem, EnergyTerms, LoadedSystem, UnloadedSystem};
+use crate::conservative::{ConservativeSystem, LoadedSystem, UnloadedSystem};
 use crate::error::{DynamicsError, Result};
-use crate::libration::{libration, nearest_phase, phase_of};
+use crate::libration::{SampledLibration, nearest_phase, phase_of, turning_points};
 use crate::machine::Machine;
 use crate::motion_class::{EnergyScan, MotionClass};
-use crate::ode::ReducedState;
+use crate::ode::{OdeState, ReducedState};
+use crate::rotation::SampledRotation;
 use crate::time_density::{ResolvedMotion, TimeDensity};
 use dwell_geometry::NearBranch;
 use dwell_kinetostatics::ReducedModel;
-use dwell_numerics::fourier::{FourierSeries, SHARP_POINTS, refine_samples};
-use dwell_numerics::panels::Panels;
+use dwell_numerics::fourier::MIN_POINTS;
 use std::f64::consts::TAU;
 
+/// Points of the coarsest rule of a sequence.
+const MIN_SEQUENCE_POINTS: usize = 16;
 /// Steps of Newton's method, halvings among them, to a phase.
 const MAX_NEWTON_STEPS: usize = 100;
 
@@ -44,8 +46,10 @@ pub struct Orbit {
     pub max_kinetic: f64,
     /// Points of the rule that resolved it.
     pub points: usize,
-    /// The last Fourier coefficients as a part of the mean: what rounding leaves in a point.
+    /// The last Fourier coefficients as a part of the mean: where it is resolved, what rounding leaves in a point.
     pub tail: f64,
+    /// Whether more points would change roundings only.
+    pub is_resolved: bool,
     /// Whether it is a rotation or a libration, and where.
     pub motion_class: MotionClass,
     kind: OrbitKind,
@@ -103,56 +107,41 @@ impl Orbit {
         start: ReducedState,
         accuracy: f64,
     ) -> Result<Self> {
-        let range = system.range();
-        let (scan, class) = EnergyScan::new(&mut *system, start)?;
-        let (terms, kinetic) = (scan.initial_terms, scan.kinetic);
-        let (resolved, kind, motion_class) = match class {
-            MotionClass::Rotation { period, .. } => {
-                let angle_per_period = period * start.q_dot.signum();
-                let resolved = rotation(
-                    system,
-                    (start.q, terms, kinetic),
-                    angle_per_period,
-                    accuracy,
-                )?;
-                (resolved, OrbitKind::Rotation(angle_per_period), class)
+        let mut samples = SampledOrbit::new(system, start, MIN_POINTS)?;
+        loop {
+            let orbit = samples.next(system, accuracy)?;
+            if orbit.is_resolved || orbit.tail < accuracy {
+                return Ok(orbit);
             }
-            MotionClass::Libration { turning_points } => {
-                let (resolved, turning_points) =
-                    libration(system, start.q, kinetic, turning_points)?;
-                let class = MotionClass::Libration { turning_points };
-                (resolved, OrbitKind::Libration(turning_points), class)
-            }
-            MotionClass::Asymptotic { to: q } => return Err(DynamicsError::AsymptoticMotion { q }),
-            MotionClass::Equilibrium => return Err(DynamicsError::AtRest),
-            MotionClass::Undecided { to: q } => return Err(DynamicsError::Undecided { q }),
-            MotionClass::ReachesLimit { at } => {
-                let (from, to) = range.limits().unwrap_or((at, at));
-                return Err(DynamicsError::NoFullRevolution { from, to });
-            }
-        };
+        }
+    }
+
+    /// The motion that a rule has resolved; `initial_phase` is that of the start.
+    fn from_rule(of: &SampledOrbit, resolved: ResolvedMotion) -> Self {
         let time_density = resolved.time_density;
-        let (initial_phase, time_offset) = match kind {
-            OrbitKind::Rotation(_) => (0.0, 0.0),
-            OrbitKind::Libration(turning_points) => {
-                let up = nearest_phase(start.q, turning_points);
-                let phase = if start.q_dot < 0.0 { TAU - up } else { up };
-                (phase, time_density.eval(phase)[1])
+        let (kind, time_offset) = match &of.kind {
+            SampledKind::Rotation(rotation) => {
+                (OrbitKind::Rotation(rotation.angle_per_period), 0.0)
             }
+            SampledKind::Libration(libration) => (
+                OrbitKind::Libration(libration.turning_points),
+                time_density.eval(of.initial_phase)[1],
+            ),
         };
-        Ok(Self {
-            initial_state: start,
+        Self {
+            initial_state: of.start,
             period: TAU * time_density.mean(),
-            energy: kinetic + terms.potential,
+            energy: of.energy,
             max_kinetic: resolved.max_kinetic,
             points: resolved.points,
+            is_resolved: resolved.is_resolved,
             tail: time_density.tail(),
-            motion_class,
+            motion_class: of.motion_class,
             kind,
-            initial_phase,
+            initial_phase: of.initial_phase,
             time_offset,
             time_density,
-        })
+        }
     }
 
     /// The state at the start.
@@ -195,6 +184,25 @@ impl Orbit {
                 Some(self.initial_state.t + time - self.time_offset)
             }
         }
+    }
+
+    /// The times (s) after the start at which the phase has grown by equal parts of a period; the last is the period.
+    pub(crate) fn times_of_parts(&self, parts: usize) -> Vec<f64> {
+        let time = |k: usize| {
+            let phase = self.initial_phase + TAU * k as f64 / parts as f64;
+            self.time_density.eval(phase)[1] - self.time_offset
+        };
+        (1..parts).map(time).chain([self.period]).collect()
+    }
+
+    /// The state a number of periods after another.
+    pub(crate) fn after_periods(&self, state: &OdeState, periods: f64) -> OdeState {
+        let mut later = state.clone();
+        later.t += periods * self.period;
+        if let (OrbitKind::Rotation(angle_per_period), Some(q)) = (self.kind, later.y.first_mut()) {
+            *q += periods * angle_per_period;
+        }
+        later
     }
 
     /// The state at time `t` (s), by Newton's method on (3).
@@ -241,45 +249,99 @@ impl Orbit {
     }
 }
 
-/// A rotation from a coordinate with energy terms and a kinetic energy (J).
-fn rotation(
-    system: &mut dyn ConservativeSystem,
-    (q, terms, kinetic): (f64, EnergyTerms, f64),
-    angle_per_period: f64,
-    accuracy: f64,
-) -> Result<ResolvedMotion> {
-    // The same position without its whole revolutions, which would cost digits.
-    let first = q % angle_per_period;
-    let mut samples: Vec<EnergyTerms> = Vec::new();
-    loop {
-        samples = refine_samples(samples, |part| {
-            system.energy_terms(first + angle_per_period * part)
-        })?;
-        let kinetic_left = |at: &EnergyTerms| kinetic + (terms.potential - at.potential);
-        let density = |at: &EnergyTerms| {
-            angle_per_period.abs() / TAU * (at.m / (2.0 * kinetic_left(at))).sqrt()
+/// The orbits of one motion by more and more points, for the error of one is its difference from the next.
+pub struct OrbitSequence {
+    system: LoadedSystem,
+    samples: SampledOrbit,
+}
+
+impl OrbitSequence {
+    /// Of a machine, as [`Orbit::loaded`].
+    ///
+    /// # Errors
+    /// As [`Orbit::loaded`].
+    pub fn loaded(machine: &Machine, start: ReducedState) -> Result<Self> {
+        let mut system = LoadedSystem::new(machine)?;
+        let samples = SampledOrbit::new(&mut system, start, MIN_SEQUENCE_POINTS)?;
+        Ok(Self { system, samples })
+    }
+
+    /// The orbit by twice as many points as the one before. A motion too sharp for equally spaced points is resolved on
+    /// panels, unless what is left of its rule is below an accuracy (a part of the period).
+    ///
+    /// # Errors
+    /// As [`Orbit::loaded`].
+    pub fn next_orbit(&mut self, accuracy: f64) -> Result<Orbit> {
+        self.samples.next(&mut self.system, accuracy)
+    }
+}
+
+/// A motion that is sampled at more and more points.
+struct SampledOrbit {
+    start: ReducedState,
+    energy: f64,
+    motion_class: MotionClass,
+    kind: SampledKind,
+    initial_phase: f64,
+    first_points: usize,
+}
+
+enum SampledKind {
+    Rotation(SampledRotation),
+    Libration(SampledLibration),
+}
+
+impl SampledOrbit {
+    fn new(
+        system: &mut dyn ConservativeSystem,
+        start: ReducedState,
+        first_points: usize,
+    ) -> Result<Self> {
+        let range = system.range();
+        let (scan, class) = EnergyScan::new(&mut *system, start)?;
+        let (potential, kinetic) = (scan.initial_terms.potential, scan.kinetic);
+        let (kind, motion_class, initial_phase) = match class {
+            MotionClass::Rotation { period, .. } => {
+                let angle_per_period = period * start.q_dot.signum();
+                let energies = [kinetic, potential];
+                let rotation = SampledRotation::new(start.q, energies, angle_per_period);
+                (SampledKind::Rotation(rotation), class, 0.0)
+            }
+            MotionClass::Libration {
+                turning_points: approximate,
+            } => {
+                let turning_points = turning_points(system, start.q, kinetic, approximate)?;
+                let class = MotionClass::Libration { turning_points };
+                let up = nearest_phase(start.q, turning_points);
+                let phase = if start.q_dot < 0.0 { TAU - up } else { up };
+                let libration = SampledLibration::new(turning_points);
+                (SampledKind::Libration(libration), class, phase)
+            }
+            MotionClass::Asymptotic { to: q } => return Err(DynamicsError::AsymptoticMotion { q }),
+            MotionClass::Equilibrium => return Err(DynamicsError::AtRest),
+            MotionClass::Undecided { to: q } => return Err(DynamicsError::Undecided { q }),
+            MotionClass::ReachesLimit { at } => {
+                let (from, to) = range.limits().unwrap_or((at, at));
+                return Err(DynamicsError::NoFullRevolution { from, to });
+            }
         };
-        let values: Vec<f64> = samples.iter().map(density).collect();
-        let max_kinetic = samples.iter().map(kinetic_left).fold(0.0, f64::max);
-        let points = samples.len();
-        let size = values.iter().sum::<f64>() / points as f64;
-        let series = FourierSeries::new(&values, size);
-        let (time_density, points) = if series.is_resolved || series.tail < accuracy {
-            (TimeDensity::Fourier(series), points)
-        } else if points >= SHARP_POINTS {
-            let panels = Panels::new::<DynamicsError>(|phase| {
-                let at = system.energy_terms(first + angle_per_period * (phase / TAU))?;
-                Ok(density(&at))
-            })?;
-            let taken = points + panels.points;
-            (TimeDensity::Piecewise(panels), taken)
-        } else {
-            continue;
+        Ok(Self {
+            start,
+            energy: kinetic + potential,
+            motion_class,
+            kind,
+            initial_phase,
+            first_points,
+        })
+    }
+
+    /// The orbit by twice as many points as the one before.
+    fn next(&mut self, system: &mut dyn ConservativeSystem, accuracy: f64) -> Result<Orbit> {
+        let first = self.first_points;
+        let resolved = match &mut self.kind {
+            SampledKind::Rotation(rotation) => rotation.next(system, first, accuracy)?,
+            SampledKind::Libration(libration) => libration.next(system, first, accuracy)?,
         };
-        return Ok(ResolvedMotion {
-            time_density,
-            max_kinetic,
-            points,
-        });
+        Ok(Orbit::from_rule(self, resolved))
     }
 }

@@ -13,7 +13,8 @@ use crate::conservative::limits;
 use crate::error::{DynamicsError, Result, positive_inertia};
 use crate::ode::{OdeState, OdeSystem, ReducedState};
 use crate::options::Options;
-use crate::solve::{Event, EventKind, Observed, ObservedValue, Solution, solve_system};
+use crate::solve::{Event, EventKind, Observed, ObservedValue, Solution, solve_with_limits};
+use dwell_geometry::Range;
 use dwell_kinetostatics::{Coefficients, ReducedModel};
 use std::num::NonZeroUsize;
 
@@ -167,6 +168,13 @@ impl<R: ReducedModel> Observed for ReducedOutputs<'_, R> {
         self.evaluate(at.y[0], at.y[1])?;
         Ok(self.reactions[index])
     }
+
+    fn angle_between(&self, from: &OdeState, to: &OdeState) -> f64 {
+        match self.model.range() {
+            Range::Stroke(..) => 0.0,
+            _ => (to.y[0] - from.y[0]).abs(),
+        }
+    }
 }
 
 /// Integrates the free motion of a reduced model from `start` until `end` (s), or without an end until a
@@ -189,22 +197,23 @@ pub fn solve_reduced<R: ReducedModel>(
     if end.is_none() && start.q_dot == 0.0 {
         return Err(DynamicsError::AtRest);
     }
-    let mut events = events.to_vec();
     let requested = events.len();
+    let mut at_limits = Vec::new();
     if let Some((from, to)) = limits {
         let at_limit = [
             EventKind::Reaches(ReducedCoordinate, from + LIMIT_TOLERANCE),
             EventKind::Reaches(ReducedCoordinate, to - LIMIT_TOLERANCE),
             EventKind::Reversal(ReducedCoordinate),
         ];
-        events.extend(at_limit.map(|kind| Event {
+        at_limits.extend(at_limit.map(|kind| Event {
             kind,
             terminal: Some(NonZeroUsize::MIN),
         }));
     }
     let mut ode = ReducedOde::new(model).with_speed_scale(start.q_dot);
     let outputs = ReducedOutputs::new(model);
-    let mut solution = solve_system(&mut ode, outputs, &start.into(), end, options, &events)?;
+    let (from, events) = (start.into(), (events, &at_limits[..]));
+    let mut solution = solve_with_limits(&mut ode, outputs, &from, end, options, events)?;
     let is_at_limit = |event: usize| event >= requested;
     let last = solution.event_occurrences.last();
     // Within its range the mechanism has a pose everywhere: a missing one means the limit.

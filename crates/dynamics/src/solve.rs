@@ -1,11 +1,15 @@
 //! The solution of an initial-value problem: its steps, equally spaced samples, and events.
 //!
-//! An event is a zero of a function of the state. It is looked for in several subintervals of each step's
-//! dense output, so that two in one step are found, and located there to rounding; the error of the dense
-//! output itself is that of the integration.
+//! An event is the passage of a function of the state through a value. It is looked for in several subintervals of
+//! each step's dense output, so that two in one step are found, and located there to rounding; the error of the dense
+//! output itself is that of the integration. On an orbit, which is known at every time, it is looked for in one period.
 
 mod event;
+mod excursion;
 mod observed;
+mod orbit_events;
+mod orbit_solution;
+mod tracker;
 
 use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
@@ -13,18 +17,14 @@ use crate::machine::Machine;
 use crate::machine_ode::MachineOde;
 use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, state_at};
 use crate::options::{Options, Statistics};
-use crate::orbit::Orbit;
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_kinetostatics::Model;
-use event::EventTracker;
+pub(crate) use event::TouchTolerance;
 pub use event::{Event, EventKind, EventOccurrence};
+use event::{FoundEvent, MAX_OCCURRENCES, too_many_events};
 pub use observed::{Observed, ObservedMachine, ObservedValue};
-
-/// Parts of an orbit's period that take the place of steps.
-const ORBIT_PARTS: f64 = 64.0;
-
-/// Parts beyond which an orbit without events is sampled directly.
-const MAX_ORBIT_STEPS: usize = 100_000;
+pub use orbit_solution::solve_orbit;
+use tracker::EventTracker;
 
 /// A motion, complete or as far as it could be computed.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -53,6 +53,26 @@ impl Solution {
             Some(error) => Err(error),
             None => Ok(self),
         }
+    }
+
+    /// Adds occurrences; one of them may have begun in an earlier step.
+    fn add_occurrences(&mut self, found: Vec<FoundEvent>) {
+        let all = &mut self.event_occurrences;
+        let last = all.last().map(|last| last.state.t);
+        let is_later = |(first, _): &FoundEvent| last.is_none_or(|last| last <= first.state.t);
+        let in_order = found.first().is_none_or(is_later);
+        all.extend(found.into_iter().map(|(occurrence, _)| occurrence));
+        if !in_order {
+            all.sort_by(|a, b| a.state.t.total_cmp(&b.state.t));
+        }
+    }
+
+    /// Ends at a state before the last step's end.
+    fn cut(&mut self, end: &OdeState) {
+        self.steps.retain(|step| step.t < end.t);
+        self.steps.push(end.clone());
+        self.samples.retain(|sample| sample.t <= end.t);
+        self.event_occurrences.retain(|o| o.state.t <= end.t);
     }
 
     /// Adds the end to the samples, unless one of them is there up to rounding.
@@ -101,92 +121,38 @@ pub fn solve_system<O: Observed>(
     options: &Options,
     events: &[Event<O::Coordinate>],
 ) -> Result<Solution> {
-    let mut recorder_state = RecorderState::new(start.t, events);
+    solve_with_limits(system, observed, start, end, options, (events, &[]))
+}
+
+/// The same with further events behind the others, whose values are limits: they need not be passed by more than the
+/// error of the motion.
+pub(crate) fn solve_with_limits<O: Observed>(
+    system: &mut dyn OdeSystem,
+    observed: O,
+    start: &OdeState,
+    end: Option<f64>,
+    options: &Options,
+    (events, limits): (&[Event<O::Coordinate>], &[Event<O::Coordinate>]),
+) -> Result<Solution> {
+    let tolerance = TouchTolerance::of_integration(options);
+    let mut recorder_state = RecorderState::new(start.t, events, tolerance).with_limits(limits);
     let mut recorder = recorder_state.recorder(observed, start)?;
     let mut solution = recorder.begin_solution(start, options);
     let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
         recorder.record_step(&mut solution, options, before, now, dense)
     };
     let termination = integrate(system, start, end, options, &mut observer)?;
+    if termination.error.is_none() {
+        recorder.record_end(&mut solution);
+    }
     solution.error = termination.error;
     solution.statistics = termination.statistics;
     Ok(solution)
 }
 
-/// The solution along an orbit of a machine, which is known at every time: no integration. Events are looked
-/// for in equal parts of its period.
-///
-/// # Errors
-/// [`DynamicsError`] where the start cannot be evaluated, or an option cannot be used. That the number of
-/// steps is used up is in [`Solution::error`].
-pub fn solve_orbit(
-    orbit: &Orbit,
-    observed: ObservedMachine<'_>,
-    end: f64,
-    options: &Options,
-    events: &[Event],
-) -> Result<Solution> {
-    options.check()?;
-    let point = |t: f64| OdeState::from(orbit.state_at(t));
-    // As given: a speed of zero is no rounding of one, which would reverse at once.
-    let start = OdeState::from(orbit.initial_state());
-    let mut recorder_state = RecorderState::new(start.t, events);
-    let mut recorder = recorder_state.recorder(observed, &start)?;
-    let mut solution = recorder.begin_solution(&start, options);
-    solution.statistics.evaluations = orbit.points;
-    let part = orbit.period / ORBIT_PARTS;
-    let span = end - start.t;
-    if events.is_empty() && span > part * options.max_steps.min(MAX_ORBIT_STEPS) as f64 {
-        sample_orbit(&mut solution, point, end, options);
-        return Ok(solution);
-    }
-    let mut before = start;
-    while before.t < end {
-        let now = point((before.t + part).min(end));
-        let mut dense = |t: f64, y: &mut [f64]| {
-            y.copy_from_slice(&point(t).y);
-            Ok(())
-        };
-        let control = recorder.record_step(&mut solution, options, &before, &now, &mut dense)?;
-        solution.statistics.steps += 1;
-        if control == StepControl::Stop {
-            break;
-        }
-        if solution.statistics.steps >= options.max_steps {
-            let (t, max_steps) = (now.t, options.max_steps);
-            solution.error = Some(DynamicsError::MaxStepsReached { t, max_steps });
-            break;
-        }
-        before = now;
-    }
-    Ok(solution)
-}
-
-/// The samples of an orbit, and its end: at a cost by samples, however many periods lie between them.
-fn sample_orbit(
-    solution: &mut Solution,
-    point: impl Fn(f64) -> OdeState,
-    end: f64,
-    options: &Options,
-) {
-    let start = solution.steps[0].t;
-    if let Some(sample_interval) = options.sample_interval {
-        let times = (1_u32..).map(|k| start + sample_interval * f64::from(k));
-        for t in times.take_while(|&t| t <= end) {
-            let state = point(t);
-            solution.steps.push(state.clone());
-            solution.samples.push(state);
-        }
-    }
-    if solution.steps.last().is_some_and(|last| last.t < end) {
-        solution.steps.push(point(end));
-    }
-    solution.statistics.steps = solution.steps.len() - 1;
-}
-
 /// What a recording keeps when the motion passes from one system to the next.
 pub(crate) struct RecorderState<'e, C = CoordinateFunction> {
-    events: &'e [Event<C>],
+    events: Vec<(&'e Event<C>, TouchTolerance)>,
     trackers: Vec<EventTracker<C>>,
     /// When the motion began, and the samples taken since.
     start_time: f64,
@@ -194,13 +160,20 @@ pub(crate) struct RecorderState<'e, C = CoordinateFunction> {
 }
 
 impl<'e, C: Copy> RecorderState<'e, C> {
-    pub(crate) fn new(start_time: f64, events: &'e [Event<C>]) -> Self {
+    pub(crate) fn new(start_time: f64, events: &'e [Event<C>], tolerance: TouchTolerance) -> Self {
         Self {
-            events,
+            events: events.iter().map(|event| (event, tolerance)).collect(),
             trackers: Vec::with_capacity(events.len()),
             start_time,
             sample_count: 0,
         }
+    }
+
+    /// The same with further events that happen where their value is touched.
+    fn with_limits(mut self, limits: &'e [Event<C>]) -> Self {
+        let exact = limits.iter().map(|event| (event, TouchTolerance::NONE));
+        self.events.extend(exact);
+        self
     }
 
     /// Begins, or continues with another system, at a state.
@@ -210,9 +183,9 @@ impl<'e, C: Copy> RecorderState<'e, C> {
         from: &OdeState,
     ) -> Result<SolutionRecorder<'m, 'e, O>> {
         if self.trackers.is_empty() {
-            for &event in self.events {
-                self.trackers
-                    .push(EventTracker::new(event, &mut observed, from)?);
+            for (i, &(&event, tolerance)) in self.events.iter().enumerate() {
+                let tracker = EventTracker::new((i, event), tolerance, &mut observed, from)?;
+                self.trackers.push(tracker);
             }
         } else {
             for tracker in &mut self.trackers {
@@ -255,37 +228,64 @@ impl<O: Observed> SolutionRecorder<'_, '_, O> {
     ) -> Result<StepControl> {
         let Self { observed, state } = self;
         let mut found = Vec::new();
-        for (i, tracker) in state.trackers.iter_mut().enumerate() {
-            tracker.locate_roots(i, [before, now], dense, observed, &mut found)?;
+        for tracker in &mut state.trackers {
+            tracker.locate([before, now], dense, observed, &mut found)?;
         }
-        found.sort_by(|(a, _), (b, _)| a.state.t.total_cmp(&b.state.t));
-        let stop = found.iter().position(|(_, terminal)| *terminal);
-        if let Some(stop) = stop {
-            found.truncate(stop + 1);
+        if solution.event_occurrences.len() + found.len() > MAX_OCCURRENCES {
+            return Err(too_many_events(before.t));
         }
-        let until = match (stop, found.last()) {
-            (Some(_), Some((last, _))) => last.state.t,
-            _ => now.t,
-        };
-        if let Some(sample_interval) = options.sample_interval {
-            while let t = state.start_time + sample_interval * state.sample_count as f64
-                && t <= until
-            {
-                // Between two integrations lie a few roundings of time, in which nothing happens.
-                let mut sample = state_at(t.max(before.t), now, dense)?;
-                sample.t = t;
-                solution.samples.push(sample);
-                state.sample_count += 1;
-            }
-        }
-        solution.steps.push(state_at(until, now, dense)?);
-        let occurrences = found.into_iter().map(|(occurrence, _)| occurrence);
-        solution.event_occurrences.extend(occurrences);
-        solution.terminated_by_event = stop.is_some();
-        Ok(if solution.terminated_by_event {
-            StepControl::Stop
+        let stop = stop_at_terminal(&mut found);
+        if let Some(until) = stop.as_ref().filter(|until| until.t < before.t) {
+            // It came to the value in an earlier step, and has passed it in this one only.
+            solution.cut(until);
         } else {
-            StepControl::Continue
+            let until = stop.as_ref().map_or(now.t, |until| until.t);
+            if let Some(sample_interval) = options.sample_interval {
+                while let t = state.start_time + sample_interval * state.sample_count as f64
+                    && t <= until
+                {
+                    // Between two integrations lie a few roundings of time, in which nothing happens.
+                    let mut sample = state_at(t.max(before.t), now, dense)?;
+                    sample.t = t;
+                    solution.samples.push(sample);
+                    state.sample_count += 1;
+                }
+            }
+            solution.steps.push(state_at(until, now, dense)?);
+        }
+        solution.add_occurrences(found);
+        solution.terminated_by_event = stop.is_some();
+        Ok(match stop {
+            Some(_) => StepControl::Stop,
+            None => StepControl::Continue,
         })
     }
+
+    /// Adds the events that happen at the very end of the motion.
+    pub(crate) fn record_end(&mut self, solution: &mut Solution) {
+        let Some(end) = solution.steps.last().cloned() else {
+            return;
+        };
+        if solution.terminated_by_event {
+            return;
+        }
+        let mut found = Vec::new();
+        for tracker in &mut self.state.trackers {
+            tracker.at_end(&end, &mut found);
+        }
+        let stop = stop_at_terminal(&mut found);
+        if let Some(until) = &stop {
+            solution.cut(until);
+        }
+        solution.add_occurrences(found);
+        solution.terminated_by_event = stop.is_some();
+    }
+}
+
+/// Orders occurrences by time, up to the first that ends the motion; its state.
+fn stop_at_terminal(found: &mut Vec<FoundEvent>) -> Option<OdeState> {
+    found.sort_by(|(a, _), (b, _)| a.state.t.total_cmp(&b.state.t));
+    let stop = found.iter().position(|(_, terminal)| *terminal)?;
+    found.truncate(stop + 1);
+    found.last().map(|(last, _)| last.state.clone())
 }

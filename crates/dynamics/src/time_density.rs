@@ -9,6 +9,8 @@ pub(crate) struct ResolvedMotion {
     /// The largest kinetic energy at a point, J.
     pub(crate) max_kinetic: f64,
     pub(crate) points: usize,
+    /// Whether more points would change roundings only.
+    pub(crate) is_resolved: bool,
 }
 
 /// The time per phase of a motion, dt/ds, s/rad.

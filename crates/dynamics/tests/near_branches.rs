@@ -8,7 +8,7 @@ use dwell_dynamics::{ContinuedMotion, DynamicsError, Method, Options};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, Plan};
 use dwell_kinetostatics::Mass;
-use parts::{Setup, angle, bar, energy_lost, four_bar, gravity, samples, solve_setup};
+use parts::{Setup, angle, energy_lost, four_bar, gravity, samples, solve_setup};
 use std::f64::consts::PI;
 
 const GROUND: f64 = 0.4;
@@ -19,9 +19,9 @@ fn parallelogram([coupler, rocker]: [f64; 2]) -> Setup {
     let chain = four_bar([GROUND, CRANK, GROUND + coupler, CRANK + rocker]);
     let masses = [
         Mass::default(),
-        bar(1.0, CRANK),
-        bar(2.0, GROUND),
-        bar(0.5, CRANK),
+        Mass::uniform_bar(1.0, CRANK),
+        Mass::uniform_bar(2.0, GROUND),
+        Mass::uniform_bar(0.5, CRANK),
     ];
     Setup::new(&chain, angle([0, 1]), &masses, 1.0, &[0.0, 1.0, 0.0, 1.0])
 }

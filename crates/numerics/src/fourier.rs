@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 
-/// Number of points to begin with.
+/// Number of points from which on what looks resolved is.
 pub const MIN_POINTS: usize = 32;
 /// Number of points beyond which a function counts as not resolved.
 pub const MAX_POINTS: usize = 8192;
@@ -39,7 +39,12 @@ impl FourierSeries {
         let largest = |of: &[[f64; 2]]| of.iter().flatten().fold(0.0_f64, |m, c| m.max(c.abs()));
         let count = harmonics.len();
         let tail = largest(&harmonics[count - 4..]);
-        let tail = if tail == 0.0 { 0.0 } else { tail / size };
+        let tail = match (mean.is_finite(), tail == 0.0) {
+            (true, true) => 0.0,
+            (true, false) => tail / size,
+            // A value that is no number is in every coefficient.
+            (false, _) => f64::INFINITY,
+        };
         let sum = |of: &[[f64; 2]]| of.iter().flatten().map(|c| c.abs()).sum::<f64>();
         let [half, rest] = [count / 2, count - count / 4];
         let is_flat = sum(&harmonics[rest..]) > FLATNESS * sum(&harmonics[half..rest]);
@@ -71,18 +76,17 @@ impl FourierSeries {
 }
 
 /// Samples at twice as many equally spaced parts (0 … 1) of a period as `known` holds, which are kept; without
-/// any, the samples at [`MIN_POINTS`] parts.
+/// any, the samples at `first` parts, a power of two from 16.
 ///
 /// # Errors
 /// The first error of `at`.
 pub fn refine_samples<V, E>(
     known: Vec<V>,
+    first: usize,
     mut at: impl FnMut(f64) -> Result<V, E>,
 ) -> Result<Vec<V>, E> {
     if known.is_empty() {
-        return (0..MIN_POINTS)
-            .map(|k| at(k as f64 / MIN_POINTS as f64))
-            .collect();
+        return (0..first).map(|k| at(k as f64 / first as f64)).collect();
     }
     let points = known.len();
     let mut finer = Vec::with_capacity(2 * points);

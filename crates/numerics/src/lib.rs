@@ -26,6 +26,7 @@ pub mod fourier;
 pub mod lanes;
 pub mod lu;
 mod lu_faer;
+pub mod minimum;
 pub mod panels;
 pub mod polynomial_fit;
 pub mod qr;

@@ -1,18 +1,23 @@
-//! Events: zeros of functions of the state, located to rounding on the dense output of a step.
+//! Events: functions of the state that pass a value.
+//!
+//! An event happens where its function passes to the other side of the value. The start is no event, whatever the
+//! value there, and no event is a *touch*: a function that comes to the value and turns back, or goes beyond it by
+//! less than the error of the motion, has not passed it. So a pendulum released at 90° never passes 90°, whichever
+//! method computes its return.
 
 use super::observed::{Observed, ObservedValue};
-use crate::error::Result;
-use crate::ode::{DenseOutput, OdeState, root_subintervals, state_at};
+use crate::error::{DynamicsError, Result};
+use crate::ode::OdeState;
+use crate::options::Options;
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_numerics::root;
-use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
 
-/// The function whose zero is an event. `C` names a coordinate of the system that moves: of a machine, any
-/// [`CoordinateFunction`]; of a reduced model, its [`ReducedCoordinate`](crate::ReducedCoordinate).
+/// The function whose passage through a value is an event. `C` names a coordinate of the system that moves: of a
+/// machine, any [`CoordinateFunction`]; of a reduced model, its [`ReducedCoordinate`](crate::ReducedCoordinate).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EventKind<C = CoordinateFunction> {
-    /// A coordinate passes a value, rad or m.
+    /// A coordinate passes a value, rad or m. One that turns back there, or beyond it by less than the error of the
+    /// motion, does not pass it.
     Reaches(C, f64),
     /// The speed of a coordinate changes its sign.
     Reversal(C),
@@ -39,145 +44,55 @@ pub struct EventOccurrence {
     pub event: usize,
     /// Time and state of its zero.
     pub state: OdeState,
-    /// Whether the function increases through zero.
+    /// Whether the function increases through the value.
     pub rising: bool,
+}
+
+/// Occurrences that are kept.
+pub(super) const MAX_OCCURRENCES: usize = 100_000;
+
+/// The error of a motion in which more events happen than are kept; they are known up to a time, s.
+pub(super) fn too_many_events(t: f64) -> DynamicsError {
+    DynamicsError::TooManyEvents {
+        t,
+        max_occurrences: MAX_OCCURRENCES,
+    }
 }
 
 /// An occurrence found in a step, and whether it is the one that ends the motion.
 pub(super) type FoundEvent = (EventOccurrence, bool);
 
-/// The search for one event over the steps of a motion.
-pub(crate) struct EventTracker<C> {
-    event: Event<C>,
-    /// Time and value of the last evaluation: angles whose revolutions are not counted are continued from it.
-    previous: (f64, ObservedValue),
-    /// Revolutions, rad, that a counted angle differs by from the continued one since another system took over.
-    revolution_offset: f64,
-    /// Of revolutions: the value at the start, and the number passed.
-    origin: f64,
-    revolutions: f64,
-    occurrences: usize,
+/// How far a function must pass a value: less is within the error of the motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct TouchTolerance {
+    /// rad or m, and per s; not of reactions.
+    pub(crate) absolute: f64,
+    /// As a part of the function's largest value.
+    pub(crate) relative: f64,
 }
 
-impl<C: Copy> EventTracker<C> {
-    pub(super) fn new(
-        event: Event<C>,
-        observed: &mut impl Observed<Coordinate = C>,
-        start: &OdeState,
-    ) -> Result<Self> {
-        let value = event.kind.eval(observed, start)?;
-        Ok(Self {
-            event,
-            previous: (start.t, value),
-            revolution_offset: 0.0,
-            origin: value.value,
-            revolutions: 0.0,
-            occurrences: 0,
-        })
-    }
+impl TouchTolerance {
+    /// Any passage counts.
+    pub(crate) const NONE: Self = Self {
+        absolute: 0.0,
+        relative: 0.0,
+    };
 
-    /// Continues with another system, whose angles may differ by whole revolutions.
-    pub(super) fn continue_from(
-        &mut self,
-        observed: &mut impl Observed<Coordinate = C>,
-        at: &OdeState,
-    ) -> Result<()> {
-        let mut value = self.event.kind.eval(observed, at)?;
-        self.revolution_offset = 0.0;
-        if value.revolutions_counted.is_some() {
-            let shift = TAU * ((self.previous.1.value - value.value) / TAU).round();
-            value.value += shift;
-            self.revolution_offset = shift;
+    /// Of an integration.
+    pub(crate) fn of_integration(options: &Options) -> Self {
+        /// Errors of an amplitude over ten periods, in tolerances: up to 15 by explicit methods. By implicit ones they
+        /// are hundreds and more, but none gains more than this (`tests/grazing.rs`).
+        const ERROR_RATIO: f64 = 50.0;
+        Self {
+            absolute: ERROR_RATIO * options.atol,
+            relative: ERROR_RATIO * options.rtol,
         }
-        self.previous = (at.t, value);
-        Ok(())
-    }
-
-    /// The function, with the revolutions that make an angle continuous from its `last` value.
-    fn eval_unwrapped(
-        &self,
-        last: (f64, ObservedValue),
-        observed: &mut impl Observed<Coordinate = C>,
-        at: &OdeState,
-    ) -> Result<ObservedValue> {
-        let mut value = self.event.kind.eval(observed, at)?;
-        value.value += match value.revolutions_counted {
-            None => 0.0,
-            Some(true) => self.revolution_offset,
-            Some(false) => {
-                let (t, last) = last;
-                let near = last.value + 0.5 * (last.rate + value.rate) * (at.t - t);
-                TAU * ((near - value.value) / TAU).round()
-            }
-        };
-        Ok(value)
-    }
-
-    /// Finds the occurrences in one step.
-    pub(super) fn locate_roots(
-        &mut self,
-        index: usize,
-        [before, now]: [&OdeState; 2],
-        dense: DenseOutput<'_>,
-        observed: &mut impl Observed<Coordinate = C>,
-        found: &mut Vec<FoundEvent>,
-    ) -> Result<()> {
-        for t in root_subintervals(before, now) {
-            let point = state_at(t, now, dense)?;
-            let last = self.previous;
-            let (t0, v0) = (last.0, last.1.value);
-            let value = self.eval_unwrapped(last, observed, &point)?;
-            let v1 = value.value;
-            while let Some(target) = self.target(v0, v1) {
-                let mut difference = |t: f64| -> Result<f64> {
-                    let at = state_at(t, now, dense)?;
-                    Ok(self.eval_unwrapped(last, observed, &at)?.value - target)
-                };
-                // A value that is zero at the subinterval's start was found before.
-                let t = if v0 == target {
-                    None
-                } else {
-                    root::find(&mut difference, t0, point.t)?
-                };
-                let Some(t) = t else {
-                    break;
-                };
-                let occurrence = EventOccurrence {
-                    event: index,
-                    state: state_at(t, now, dense)?,
-                    rising: v1 > v0,
-                };
-                self.occurrences += 1;
-                let last_wanted = self.event.terminal.map(NonZeroUsize::get);
-                found.push((occurrence, last_wanted == Some(self.occurrences)));
-                if !matches!(self.event.kind, EventKind::Revolution(_)) {
-                    break;
-                }
-                self.revolutions += (v1 - v0).signum();
-            }
-            self.previous = (point.t, value);
-        }
-        Ok(())
-    }
-
-    /// The target value that lies between two values of the function, if there is one.
-    fn target(&self, v0: f64, v1: f64) -> Option<f64> {
-        let passes = |target: f64| (v0 - target) * (v1 - target) < 0.0 || v1 == target;
-        if matches!(self.event.kind, EventKind::Revolution(_)) {
-            let next =
-                [1.0, -1.0].map(|direction| self.origin + TAU * (self.revolutions + direction));
-            // Forwards and back over the same mark is no second revolution.
-            return next
-                .into_iter()
-                .find(|&target| v0 != target && passes(target));
-        }
-        (v0 != 0.0 && passes(0.0)).then_some(0.0)
     }
 }
 
 impl<C: Copy> EventKind<C> {
     /// The value of its function.
-    fn eval(
+    pub(super) fn eval(
         self,
         observed: &mut impl Observed<Coordinate = C>,
         at: &OdeState,
@@ -188,16 +103,20 @@ impl<C: Copy> EventKind<C> {
             revolutions_counted: None,
         };
         Ok(match self {
-            Self::Reaches(coordinate, target) => {
-                let found = observed.coordinate(coordinate, at)?;
-                ObservedValue {
-                    value: found.value - target,
-                    ..found
-                }
+            Self::Reaches(coordinate, _) | Self::Revolution(coordinate) => {
+                observed.coordinate(coordinate, at)?
             }
-            Self::Revolution(coordinate) => observed.coordinate(coordinate, at)?,
             Self::Reversal(coordinate) => uncounted(observed.coordinate(coordinate, at)?.rate),
-            Self::Reaction(k, target) => uncounted(observed.reaction(k, at)? - target),
+            Self::Reaction(k, _) => uncounted(observed.reaction(k, at)?),
         })
+    }
+
+    /// The change of its function in a time (s) at its present rate; of a function without known rate, its last
+    /// change.
+    pub(super) fn expected_change(self, now: ObservedValue, time: f64, last_change: f64) -> f64 {
+        match self {
+            Self::Reaches(..) | Self::Revolution(_) => now.rate * time,
+            Self::Reversal(_) | Self::Reaction(..) => last_change,
+        }
     }
 }

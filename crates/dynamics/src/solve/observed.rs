@@ -23,6 +23,10 @@ pub trait Observed {
     /// # Errors
     /// [`DynamicsError`](crate::DynamicsError) where the state cannot be evaluated.
     fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64>;
+
+    /// The largest change of one of its angles from one state to another, rad: events are looked for at points that
+    /// are near each other in it.
+    fn angle_between(&self, from: &OdeState, to: &OdeState) -> f64;
 }
 
 /// A value and its rate of change.
@@ -86,5 +90,13 @@ impl Observed for ObservedMachine<'_> {
         let (workspace, result) = (&mut self.output_workspace, &mut self.inverse_dynamics);
         let outputs = state.outputs(self.output_model, workspace, result)?;
         Ok(outputs.inverse_dynamics().reactions[index])
+    }
+
+    fn angle_between(&self, from: &OdeState, to: &OdeState) -> f64 {
+        let plan = self.machine.model().plan();
+        let free = self.machine.free().iter().enumerate();
+        let angles = free.filter(|(_, coordinate)| plan.is_angle(**coordinate));
+        let changes = angles.map(|(k, _)| (to.y[k] - from.y[k]).abs());
+        changes.fold(0.0, f64::max)
     }
 }

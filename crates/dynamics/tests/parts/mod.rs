@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "each test binary takes what it needs")]
 #![allow(clippy::expect_used, reason = "tests")]
 
+pub(crate) mod watched;
+
 use dwell_dynamics::{
     Atlas, ContinuedMotion, CoordinateMode, Event, Machine, MachineDescription, Method, OdeState,
     Options, Solution,
@@ -211,7 +213,7 @@ pub(crate) const INERTIA: f64 = 2.0;
 
 /// A wheel on its axle under a couple, and drives.
 pub(crate) fn wheel(magnitude: Magnitude, drives: &[Drive]) -> Machine {
-    let axle = pin("axle", [0, 1], [Vec2::ZERO; 2]);
+    let axle = Joint::revolute("axle", [0, 1], [Vec2::ZERO; 2]);
     let mut wheel = mechanism(&["ground", "wheel"], vec![axle]);
     wheel.actuators = vec![angle([0, 1])];
     let masses = [

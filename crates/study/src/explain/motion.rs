@@ -91,6 +91,25 @@ fn describe(
             SceneLocation::Duration,
             "too long",
         ),
+        DynamicsError::TooManyEvents { t, max_occurrences } => (
+            format!(
+                "more than {max_occurrences} events happen: the motion is computed up to t = {} s",
+                digits(*t, 6)
+            ),
+            "make the motion shorter, leave out an event that happens in every period, or let an event stop it",
+            SceneLocation::Duration,
+            "so many events in this time",
+        ),
+        DynamicsError::StepTooLongForEvents { t, angle } => (
+            format!(
+                "a step of the integrator from t = {} s goes through {} revolutions: events within it are not looked for",
+                digits(*t, 6),
+                digits(angle / TAU, 3)
+            ),
+            "give --max-step, or --accuracy, with which a motion without losses is not integrated; or leave out the events",
+            SceneLocation::Duration,
+            "steps are so long in this motion",
+        ),
         DynamicsError::StepTooSmall { t } => (
             format!(
                 "the integrator's step becomes too small at t = {} s: the motion changes too fast there",

@@ -8,17 +8,13 @@
 //!    over the whole motion, in coordinates, energy and reactions. That difference is the estimate; the finer run is
 //!    kept.
 
-use crate::estimate;
 use crate::explain::StudyError;
 use crate::free_motion::compute::refinement::{
     COARSE_TOLERANCE, Candidate, FIRST_TOLERANCE_RATIO, MIN_TOLERANCE, Refinement,
 };
 use crate::free_motion::compute::{ComputedMotion, Difference, FreeMotionProblem, SegmentedMotion};
 use crate::ranges::extent;
-use dwell_dynamics::{
-    DynamicsError, Method, ObservedMachine, OdeState, Options, Orbit, ReducedState, Solution,
-    Statistics, solve_orbit,
-};
+use dwell_dynamics::{DynamicsError, Method, Options, Statistics};
 use dwell_scene::Scene;
 
 /// Error of BDF relative to DOP853 at the same tolerance: 2 to 240 in ten revolutions of m = 2 + cos q, growing
@@ -160,51 +156,11 @@ impl FreeMotionProblem<'_> {
         let is_single_segment = coarse.segments.len() == 1 && coarse.charts.len() <= 1;
         is_single_segment && reached_end(coarse) && self.machine.free() == [0]
     }
-
-    /// The motion by quadrature, if it is conservative and periodic.
-    fn by_quadrature(
-        &self,
-        accuracy: f64,
-        duration: f64,
-        sample_interval: f64,
-    ) -> Option<ComputedMotion> {
-        if self.spec.laws.iter().any(Option::is_some) {
-            return None;
-        }
-        let start = self.initial_reduced_state();
-        let orbit = Orbit::loaded(&self.machine, start).ok()?;
-        if orbit.passes_close_branches(&self.machine) {
-            return None;
-        }
-        let outputs = ObservedMachine::new(&self.machine, &self.output_model);
-        let options = Options {
-            sample_interval: Some(sample_interval),
-            ..Options::new(Method::Dop853, MIN_TOLERANCE)
-        };
-        let solution = solve_orbit(&orbit, outputs, duration, &options, &self.events()).ok()?;
-        if solution.error.is_some() {
-            return None;
-        }
-        let perturbed = |factor: f64| {
-            let q_dot = start.q_dot * factor;
-            Orbit::loaded(&self.machine, ReducedState { q_dot, ..start })
-        };
-        // The rounding of the initial state and the error of the rule act as a delay.
-        let delay = estimate::of_period(&orbit, perturbed).ok()? / orbit.period;
-        let motion = SegmentedMotion::single_segment(solution);
-        let delayed = time_scaled(&orbit, &motion, delay);
-        let difference = self.difference(&motion, &delayed).ok()?;
-        let method_text = "quadrature".to_owned();
-        let points = orbit.points;
-        let how = format!("quadrature (conservative, periodic motion), {points} quadrature points");
-        let found = ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, &difference);
-        Some(found)
-    }
 }
 
 impl ComputedMotion {
     /// A motion to a required accuracy, how it was computed, and its estimated error.
-    fn to_accuracy(
+    pub(super) fn to_accuracy(
         motion: SegmentedMotion,
         method_text: String,
         accuracy: f64,
@@ -236,24 +192,6 @@ fn visited_range(motion: &SegmentedMotion) -> [f64; 2] {
 /// Whether a motion reached its end.
 fn reached_end(motion: &SegmentedMotion) -> bool {
     motion.failure.is_none()
-}
-
-/// The same motion, delayed by a fraction of the time.
-fn time_scaled(orbit: &Orbit, motion: &SegmentedMotion, fraction: f64) -> SegmentedMotion {
-    let shifted = |point: &OdeState| {
-        let ReducedState { q, q_dot, .. } = orbit.state_at(point.t * (1.0 + fraction));
-        OdeState {
-            t: point.t,
-            y: vec![q, q_dot],
-        }
-    };
-    let solutions = motion.segments.iter().map(|(_, solution)| solution);
-    let samples = solutions.clone().flat_map(|s| &s.samples);
-    SegmentedMotion::single_segment(Solution {
-        steps: solutions.flat_map(|s| s.steps.last().cloned()).collect(),
-        samples: samples.map(shifted).collect(),
-        ..Solution::default()
-    })
 }
 
 /// A number with two significant digits.

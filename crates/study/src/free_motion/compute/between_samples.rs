@@ -57,8 +57,8 @@ impl FreeMotionProblem<'_> {
         before.is_some_and(is_fit) || after.is_some_and(is_fit)
     }
 
-    /// The motion at a time (s): from the step before, which is integrated once more up to there. None where that is
-    /// not possible.
+    /// The motion at a time (s): from its orbit, or from the step before, which is integrated once more up to there.
+    /// None where that is not possible.
     pub(crate) fn sample_at(&self, motion: &SegmentedMotion, t: f64) -> Option<TrajectorySample> {
         let holds = |steps: &[OdeState]| {
             let ends = steps.first().zip(steps.last());
@@ -72,9 +72,10 @@ impl FreeMotionProblem<'_> {
             .checked_sub(1)?;
         let before = &solution.steps[k];
         let machine = self.machine(motion, *chart);
-        let point = match before.t == t {
-            true => before.clone(),
-            false => {
+        let point = match (before.t == t, &motion.orbit) {
+            (true, _) => before.clone(),
+            (false, Some(orbit)) => OdeState::from(orbit.state_at(t)),
+            (false, None) => {
                 let mut by_each = METHODS.iter();
                 by_each.find_map(|options| self.state_after(machine, before, t, options))?
             }

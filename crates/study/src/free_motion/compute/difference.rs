@@ -30,6 +30,16 @@ impl Difference {
         })
     }
 
+    /// The sums of both.
+    pub(crate) fn plus(self, other: &Self) -> Self {
+        Self {
+            coordinate: self.coordinate + other.coordinate,
+            energy: self.energy + other.energy,
+            reactions: self.reactions + other.reactions,
+            end: self.end + other.end,
+        }
+    }
+
     /// All differences times a factor.
     pub(crate) fn scaled(self, factor: f64) -> Self {
         Self {

@@ -6,6 +6,7 @@ mod description;
 mod difference;
 mod error_estimate;
 mod problem;
+mod quadrature;
 mod refinement;
 mod segmented_motion;
 mod simulation;

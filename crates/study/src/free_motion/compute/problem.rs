@@ -99,6 +99,7 @@ impl<'a> FreeMotionProblem<'a> {
         let chart_changes = self.describe_changes(&atlas, &continued);
         let segments = continued.segments.into_iter();
         Ok(SegmentedMotion {
+            orbit: None,
             chart_changes,
             charts: atlas.charts().to_vec(),
             actuator_coordinates: history.map_err(|e| self.explain(&e))?,

@@ -1,7 +1,7 @@
 //! A free motion as a sequence of segments.
 
 use dwell_dynamics::atlas::{Chart, CoordinateHistory};
-use dwell_dynamics::{DynamicsError, EventOccurrence, OdeState, Solution, Statistics};
+use dwell_dynamics::{DynamicsError, EventOccurrence, OdeState, Orbit, Solution, Statistics};
 
 /// A computed motion and its description.
 pub(crate) struct ComputedMotion {
@@ -24,6 +24,8 @@ pub struct SegmentedMotion {
     pub segments: Vec<(usize, Solution)>,
     /// By segment, at its steps and its samples: the only actuator's coordinate with two derivatives.
     pub(crate) actuator_coordinates: CoordinateHistory,
+    /// The orbit that it was computed from, which is known at every time.
+    pub(crate) orbit: Option<Orbit>,
     /// Lines of the summary about chart changes and change points.
     pub(crate) chart_changes: Vec<String>,
     /// Why it ended early, if it did.
@@ -38,10 +40,19 @@ impl SegmentedMotion {
         Self {
             charts: Vec::new(),
             actuator_coordinates: CoordinateHistory::default(),
+            orbit: None,
             chart_changes: Vec::new(),
             failure: solution.error.clone(),
             statistics: solution.statistics,
             segments: vec![(0, solution)],
+        }
+    }
+
+    /// A motion by quadrature.
+    pub(crate) fn along_orbit(orbit: Orbit, solution: Solution) -> Self {
+        Self {
+            orbit: Some(orbit),
+            ..Self::single_segment(solution)
         }
     }
 

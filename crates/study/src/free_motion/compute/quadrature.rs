@@ -1,0 +1,199 @@
+//! A conservative periodic motion by quadrature, to a required accuracy.
+//!
+//! The rule has the fewest points with which the whole motion keeps the accuracy. Its error is the difference from the
+//! motion by twice as many points, over the whole duration: an error of the period counts in every period. To that the
+//! rounding of the initial state is added, which acts as a delay.
+
+use crate::estimate;
+use crate::free_motion::compute::refinement::MIN_TOLERANCE;
+use crate::free_motion::compute::{ComputedMotion, Difference, FreeMotionProblem, SegmentedMotion};
+use dwell_dynamics::{
+    DynamicsError, Method, ObservedMachine, OdeState, Options, Orbit, OrbitSequence, ReducedState,
+    Solution, solve_orbit,
+};
+
+/// The error of a rule is at most this many times its difference from the next: the error of that one is at most half
+/// of it, and a thousandth where the rule resolves the motion.
+const SAFETY_FACTOR: f64 = 2.0;
+
+/// How much smaller the last coefficients of a rule must be that follows one which did not keep the accuracy.
+const TAIL_RATIO: f64 = 0.01;
+
+impl FreeMotionProblem<'_> {
+    /// The motion by quadrature, if it is conservative and periodic.
+    pub(super) fn by_quadrature(
+        &self,
+        accuracy: f64,
+        duration: f64,
+        sample_interval: f64,
+    ) -> Option<ComputedMotion> {
+        if self.spec.laws.iter().any(Option::is_some) {
+            return None;
+        }
+        let start = self.initial_reduced_state();
+        let mut sequence = OrbitSequence::loaded(&self.machine, start).ok()?;
+        let exact = Orbit::loaded(&self.machine, start).ok()?;
+        if exact.passes_close_branches(&self.machine) {
+            return None;
+        }
+        let perturbed = |factor: f64| {
+            let q_dot = start.q_dot * factor;
+            Orbit::loaded(&self.machine, ReducedState { q_dot, ..start })
+        };
+        let delay = estimate::of_period(&exact, perturbed).ok()? / exact.period;
+        let along = |orbit: Orbit| self.along(orbit, accuracy, duration, sample_interval);
+        let mut tail = accuracy;
+        let mut orbit = sequence.next_orbit(tail).ok()?;
+        let (motion, difference) = loop {
+            let is_candidate = orbit.is_resolved || orbit.tail < tail;
+            let finer = sequence.next_orbit(tail).ok()?;
+            if !is_candidate {
+                orbit = finer;
+                continue;
+            }
+            let motion = along(orbit.clone())?;
+            let rounding = self.rounding_difference(&motion, &orbit, delay).ok()?;
+            let next = along(finer.clone())?;
+            let truncation = self.difference(&motion, &next).ok()?;
+            let difference = truncation.scaled(SAFETY_FACTOR).plus(&rounding);
+            // More points than both need would change roundings only.
+            if difference.largest() <= accuracy || (orbit.is_resolved && finer.is_resolved) {
+                break (motion, difference);
+            }
+            tail *= TAIL_RATIO;
+            orbit = finer;
+        };
+        let method_text = "quadrature".to_owned();
+        let points = orbit.points;
+        let how = format!("quadrature (conservative, periodic motion), {points} quadrature points");
+        let found = ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, &difference);
+        Some(found)
+    }
+
+    /// The motion along an orbit.
+    fn along(
+        &self,
+        orbit: Orbit,
+        accuracy: f64,
+        duration: f64,
+        sample_interval: f64,
+    ) -> Option<SegmentedMotion> {
+        let outputs = ObservedMachine::new(&self.machine, &self.output_model);
+        let options = Options {
+            sample_interval: Some(sample_interval),
+            rtol: accuracy,
+            // What an event must pass its value by is relative to the motion, whatever its size.
+            atol: f64::MIN_POSITIVE,
+            ..Options::new(Method::Dop853, MIN_TOLERANCE)
+        };
+        let solution = solve_orbit(&orbit, outputs, duration, &options, &self.events()).ok()?;
+        if let Some(DynamicsError::MaxStepsReached { .. }) = solution.error {
+            return None;
+        }
+        Some(SegmentedMotion::along_orbit(orbit, solution))
+    }
+
+    /// The difference of a motion from the same with a delay, a fraction of the time.
+    fn rounding_difference(
+        &self,
+        motion: &SegmentedMotion,
+        orbit: &Orbit,
+        delay: f64,
+    ) -> Result<Difference, DynamicsError> {
+        let shifted = |point: &OdeState| {
+            let ReducedState { q, q_dot, .. } = orbit.state_at(point.t * (1.0 + delay));
+            OdeState {
+                t: point.t,
+                y: vec![q, q_dot],
+            }
+        };
+        let solutions = motion.segments.iter().map(|(_, solution)| solution);
+        let samples = solutions.clone().flat_map(|s| &s.samples);
+        let delayed = SegmentedMotion::single_segment(Solution {
+            steps: solutions.flat_map(|s| s.steps.last().cloned()).collect(),
+            samples: samples.map(shifted).collect(),
+            ..Solution::default()
+        });
+        self.difference(motion, &delayed)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::models::with_drive_loads;
+    use dwell_scene::Scene;
+
+    /// Rotations and librations, with and without loads.
+    const CASES: [&str; 4] = [
+        "pendulum-a01",
+        "crank-rocker",
+        "slotted-rocker",
+        "single-dwell",
+    ];
+
+    /// The points, the estimate and the true error, against the fully resolved orbit, of a case over a number of
+    /// periods. None of a motion without a period.
+    fn errors(case: &str, periods: f64, accuracy: f64) -> Option<(usize, f64, f64)> {
+        let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
+        let text = std::fs::read_to_string(format!("{cases}/{case}/scene.toml")).unwrap();
+        let scene = Scene::parse(case, &text).unwrap();
+        let loaded_scene = with_drive_loads(&scene).unwrap();
+        let motion = scene.motion.as_ref().unwrap();
+        let problem = FreeMotionProblem::new(&scene, &loaded_scene, motion).unwrap();
+        let orbit = Orbit::loaded(&problem.machine, problem.initial_reduced_state()).ok()?;
+        let duration = periods * orbit.period;
+        let interval = duration / 500.0;
+        let found = problem.by_quadrature(accuracy, duration, interval)?;
+        let [_, estimate] = found.accuracy.unwrap();
+        let points = found.motion.statistics.evaluations;
+        let exact = problem.along(orbit, 1e-12, duration, interval).unwrap();
+        let true_error = problem.difference(&exact, &found.motion).unwrap().largest();
+        Some((points, estimate, true_error))
+    }
+
+    #[test]
+    fn val_accuracy_is_kept_with_few_points() {
+        let mut compared = 0;
+        for case in CASES {
+            for periods in [0.7, 10.0, 1000.0] {
+                let mut last_points = 0;
+                for exponent in 2..=12 {
+                    let accuracy = 10_f64.powi(-exponent);
+                    let Some((points, estimate, true_error)) = errors(case, periods, accuracy)
+                    else {
+                        continue;
+                    };
+                    println!(
+                        "{case} {periods} {accuracy:e}: {points} points, {true_error:.1e} of {estimate:.1e}"
+                    );
+                    assert!(
+                        true_error <= estimate,
+                        "{case}: {true_error:e} {estimate:e}"
+                    );
+                    // The roundings of a thousand periods are beyond the finest.
+                    assert!(
+                        estimate <= accuracy || estimate < 1e-14 * periods.max(100.0),
+                        "{estimate:e}"
+                    );
+                    assert!(
+                        true_error < 1e-13 || estimate < 100.0 * true_error,
+                        "{estimate:e} {true_error:e}"
+                    );
+                    assert!(
+                        points >= last_points,
+                        "{case} {accuracy:e}: {points} after {last_points}"
+                    );
+                    last_points = points;
+                    compared += 1;
+                }
+                let coarse = errors(case, periods, 1e-2).map_or(0, |(points, ..)| points);
+                assert!(
+                    last_points == 0 || last_points > coarse,
+                    "{case}: {last_points} {coarse}"
+                );
+            }
+        }
+        assert!(compared > 90, "{compared}");
+    }
+}
