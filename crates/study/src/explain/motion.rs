@@ -3,7 +3,7 @@
 use crate::explain::{
     StudyError, explain_position, initial_state_location, labels, quoted_coordinate, scene_error,
 };
-use crate::number_format::{digits, number};
+use crate::number_format::{digits, force_unit, number};
 use dwell_dynamics::DynamicsError;
 use dwell_geometry::{ActuatorId, BodyId, Plan};
 use dwell_kinetostatics::KinetostaticsError;
@@ -17,6 +17,9 @@ pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> Stud
         DynamicsError::Load(load) => explain_load(scene, *load),
         DynamicsError::LimitPosition { t, q } => explain_limit_position(scene, plan, *t, *q),
         DynamicsError::NoInertia { q, .. } => explain_no_inertia(scene, *q),
+        DynamicsError::Unbalanced { actuator, force } => {
+            explain_unbalanced(scene, *actuator, *force)
+        }
         DynamicsError::VariesTooFast {
             source_index,
             width,
@@ -184,6 +187,27 @@ fn explain_limit_position(scene: &Scene, plan: &Plan, t: f64, q: f64) -> StudyEr
         None => "start farther from it, or drive a joint that rotates fully".to_owned(),
     };
     let place = (SceneLocation::Duration, "too long");
+    scene_error(scene, message, help, [place])
+}
+
+/// No equilibrium, because a force keeps its sign.
+fn explain_unbalanced(scene: &Scene, actuator: usize, [low, high]: [f64; 2]) -> StudyError {
+    let actuator_of = &scene.mechanism.actuators[actuator];
+    let unit = force_unit(actuator_of.coordinate().is_angle());
+    let name = &actuator_of.name;
+    let forces = match [low, high].map(number) {
+        [low, high] if low == high => format!("is {low} {unit}"),
+        [low, high] => format!("stays between {low} and {high} {unit}"),
+    };
+    let message = format!(
+        "no equilibrium found: the static force along `{name}` {forces} wherever it was evaluated"
+    );
+    let help = "the loads must balance somewhere, as with a spring or a weight against it; \
+                `dwell linearise --about initial` needs no equilibrium";
+    let place = (
+        SceneLocation::Actuator(ActuatorId(actuator)),
+        "pushed to one side only",
+    );
     scene_error(scene, message, help, [place])
 }
 
