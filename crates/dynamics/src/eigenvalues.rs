@@ -138,7 +138,7 @@ mod tests {
     /// that nothing drives back.
     #[test]
     fn errors_cover_what_the_entries_leave_open() {
-        let entry = 1e-10;
+        let entry = 1e-10_f64;
         let stiffness = |k: f64| vec![0.0, 1.0, -k, 0.0];
         let only = vec![0.0, 0.0, entry, 0.0];
         for (k, expected) in [(4.0, 0.25 * entry), (0.0, entry.sqrt())] {

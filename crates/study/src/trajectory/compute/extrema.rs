@@ -219,6 +219,11 @@ fn is_continuous(column: &Column) -> bool {
         )
 }
 
+/// Whether the extrema of a column, but for the abscissa, are always those of the rows.
+pub(crate) fn is_searched_in_rows(column: &Column) -> bool {
+    column.quantity != Quantity::Time && !is_continuous(column)
+}
+
 /// The largest value of a function that is known at some points, also between them: it is evaluated about its local
 /// maxima there, about those `count` whose parabolas are highest. None where no point has a value.
 pub(crate) fn largest_between(
