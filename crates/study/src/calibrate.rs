@@ -65,14 +65,6 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationR
     let (current_period, current_period_error) = period_with_error(scene)?;
     let period_with = |value: f64| period_of(&scene.with_value(path, value)?);
     let result = |value: f64| {
-        let (_, error) = period_with_error(&scene.with_value(path, value)?)?;
-        let step = DIFFERENCE * value.abs().max(f64::MIN_POSITIVE);
-        let slope = match (period_with(value + step), period_with(value - step)) {
-            (Ok(above), Ok(below)) => 0.5 * (above - below).abs() / step,
-            // Next to a value without a period.
-            (Ok(beside), Err(_)) | (Err(_), Ok(beside)) => (beside - period).abs() / step,
-            (Err(error), Err(_)) => return Err(error),
-        };
         Ok(CalibrationResult {
             path: path.to_owned(),
             unit: unit.clone(),
@@ -80,7 +72,7 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationR
             current_period,
             current_period_error,
             value,
-            value_error: error / slope + f64::EPSILON * value.abs(),
+            value_error: value_error(scene, path, value, period)?,
             period,
         })
     };
@@ -107,6 +99,20 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationR
         refuse(message, "the mechanism changes its assembly mode there")
     })?;
     result(value)
+}
+
+/// The error of a value that gives a period (s): that of the period over its change with the value.
+fn value_error(scene: &Scene, path: &str, value: f64, period: f64) -> Result<f64, StudyError> {
+    let (_, error) = period_with_error(&scene.with_value(path, value)?)?;
+    let step = DIFFERENCE * value.abs().max(f64::MIN_POSITIVE);
+    let period_with = |value: f64| period_of(&scene.with_value(path, value)?);
+    let slope = match (period_with(value + step), period_with(value - step)) {
+        (Ok(above), Ok(below)) => 0.5 * (above - below).abs() / step,
+        // Next to a value without a period.
+        (Ok(beside), Err(_)) | (Err(_), Ok(beside)) => (beside - period).abs() / step,
+        (Err(error), Err(_)) => return Err(error),
+    };
+    Ok(error / slope + f64::EPSILON * value.abs())
 }
 
 /// The search for a bracket of the required period.

@@ -224,6 +224,23 @@ fn equilibria_of_two_freedoms_are_listed_with_their_neutral_directions() {
     );
 }
 
+/// Without any force every position is an equilibrium: it is said once, at the start.
+#[test]
+fn without_a_force_every_position_is_an_equilibrium() {
+    let free = PENDULUM.split("[loads]").next().unwrap();
+    let text = format!("{free}[assembly]\nphi = 0.7\n");
+    let found = equilibria(&scene(&text)).unwrap().summary;
+    assert!(found.contains("1 equilibrium of phi"), "{found}");
+    assert!(
+        found.contains("phi = 0.7 rad") && found.contains(": neutral\n"),
+        "{found}"
+    );
+    assert!(
+        found.contains("neutral: every position of phi between"),
+        "{found}"
+    );
+}
+
 /// The eigenvalues about the start state their error, too; those of a free wheel are zero, and printed so.
 #[test]
 fn eigenvalues_about_the_start_state_their_error() {

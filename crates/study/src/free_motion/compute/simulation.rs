@@ -96,15 +96,7 @@ pub(crate) fn compute_free_motion_at(
     });
     let followed = (trajectory, between);
     let mut computed = compute_along(&loaded_scene, model, followed, notes, progress)?;
-    if let Some(second) = &integrated.comparison {
-        // What has no rows has no errors.
-        let second = problem.trajectory(second, &integrated.method_text, times);
-        let second = second.ok().map(|trajectory| (trajectory, None));
-        let rows = second.and_then(|followed| {
-            compute_along(&loaded_scene, model, followed, String::new(), &no_progress).ok()
-        });
-        computed.set_errors(rows.as_ref());
-    }
+    problem.set_errors(&mut computed, &integrated, times);
     let shortfall = problem.shortfall(scene, &integrated, solver);
     computed.early_stop = shortfall.or(computed.early_stop);
     let mut summary = problem.summary(&integrated, duration);
@@ -231,6 +223,26 @@ impl FreeMotionProblem<'_> {
             delay: None,
             motion,
         })
+    }
+
+    /// Sets the errors of a motion's columns from its second computation, with rows at the same times.
+    fn set_errors(
+        &self,
+        computed: &mut ComputedTrajectory<'_>,
+        integrated: &ComputedMotion,
+        times: Option<&[f64]>,
+    ) {
+        let Some(second) = &integrated.comparison else {
+            return;
+        };
+        // What has no rows has no errors.
+        let (scene, model) = (self.loaded_scene, &self.output_model);
+        let second = self.trajectory(second, &integrated.method_text, times);
+        let second = second.ok().map(|trajectory| (trajectory, None));
+        let second = second.and_then(|followed| {
+            compute_along(scene, model, followed, String::new(), &no_progress).ok()
+        });
+        computed.set_errors(second.as_ref());
     }
 
     /// Why a motion is not what was required: it ended early, or is less accurate.
