@@ -25,7 +25,7 @@ impl AtRest<'_> {
     pub(super) fn equilibrium(&mut self) -> Result<Equilibrium> {
         let factored = self.factor_here()?;
         let rounding = self.rounding()?;
-        let rank = factored.rank(WEAK);
+        let rank = factored.rank(WEAK, 1.0);
         let mut errors = factored.largest_change(&rounding, rank);
         let mut neutral = Vec::new();
         let at = self.y.clone();
@@ -97,7 +97,7 @@ impl AtRest<'_> {
                 return Ok(true);
             }
             let factored = self.factor_here()?;
-            let step = self.correction(&factored, factored.rank(WEAK));
+            let step = self.correction(&factored, factored.rank(WEAK, 1.0));
             self.add_to_unknowns(1.0, &step);
         }
         self.is_balanced()
@@ -107,7 +107,7 @@ impl AtRest<'_> {
     pub(super) fn slide_towards(&mut self, start: &[f64]) -> Result<()> {
         for _ in 0..MAX_SLIDES {
             let factored = self.factor_here()?;
-            let directions = factored.null_directions(factored.rank(WEAK));
+            let directions = factored.null_directions(factored.rank(WEAK, 1.0));
             let unknowns = self.unknowns();
             let missing = unknowns.iter().map(|&j| start[j] - self.y[j]);
             let step = projection(&missing.collect::<Vec<_>>(), &directions);

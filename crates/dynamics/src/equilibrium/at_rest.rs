@@ -25,6 +25,8 @@ const FORCE_ROUNDING: f64 = 8.0 * f64::EPSILON;
 const COORDINATE_ROUNDING: f64 = 2.0 * f64::EPSILON;
 /// A singular value below this part of the largest is zero to Newton's method.
 const SINGULAR: f64 = 1e-10;
+/// Size of a Jacobian of which all may be rounding.
+const SMALL: f64 = 1e-4;
 /// A component of a direction below this part of its largest is zero.
 const NO_COMPONENT: f64 = 1e-6;
 
@@ -52,9 +54,10 @@ pub(super) struct Factored {
 }
 
 impl Factored {
-    /// The singular values that count as zero are those from here on.
-    pub(super) fn rank(&self, smallest: f64) -> usize {
-        let largest = self.sizes.first().copied().unwrap_or(0.0);
+    /// The singular values that count as zero are those from here on: below a part of the largest, or of `size`, where a
+    /// Jacobian of forces that change over an arm by all the loads can do has the size 1.
+    pub(super) fn rank(&self, smallest: f64, size: f64) -> usize {
+        let largest = self.sizes.first().copied().unwrap_or(0.0).max(size);
         let is_regular = |size: &&f64| **size > smallest * largest;
         self.sizes.iter().take_while(is_regular).count()
     }
@@ -205,7 +208,7 @@ impl<'m> AtRest<'m> {
         let entries = drive_states.iter().map(|&i| -self.entry(i, 0));
         let rates: Vec<f64> = entries.collect();
         let factored = self.factor(&drive_states, &drive_states)?;
-        let response = factored.solve(&rates, factored.rank(SINGULAR));
+        let response = factored.solve(&rates, factored.rank(SINGULAR, SMALL));
         let through = drive_states.iter().zip(&response);
         let more: f64 = through.map(|(&j, change)| self.entry(1, j) * change).sum();
         Ok(self.entry(1, 0) + more)
@@ -421,7 +424,7 @@ impl<'m> AtRest<'m> {
                 return Ok(());
             }
             let wanted: Vec<f64> = rows.iter().map(|&i| -self.rates[i]).collect();
-            let step = factored.solve(&wanted, factored.rank(SINGULAR));
+            let step = factored.solve(&wanted, factored.rank(SINGULAR, SMALL));
             let from = self.y.clone();
             let largest = |of: &dyn Fn(usize, f64) -> f64| {
                 let both = columns.iter().zip(&step);

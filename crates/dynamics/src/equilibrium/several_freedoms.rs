@@ -175,6 +175,8 @@ pub fn equilibrium_near(machine: &Machine, y: &[f64]) -> Result<Equilibrium> {
         return none("no coordinate is free");
     }
     at_rest.begin_at(y);
+    at_rest.is_balanced()?;
+    at_rest.count_forces()?;
     at_rest.solve_all()?;
     let found = at_rest.equilibrium()?;
     if found.neutral.is_empty() {
