@@ -20,9 +20,14 @@ const MAX_COORDINATE_STEP: f64 = 0.5;
 const STEP_TOLERANCE: f64 = 1e-9;
 /// A force below this part of the largest, and of what the loads come to, is zero.
 const FORCE_TOLERANCE: f64 = 64.0 * f64::EPSILON;
+/// A coordinate is known to this part of itself, or of 1 rad or the size of the mechanism, where a rate is compared with zero.
+const COORDINATE_TOLERANCE: f64 = 8.0 * f64::EPSILON;
 /// Rounding of a force, and of a coordinate, in an error estimate.
-const FORCE_ROUNDING: f64 = 8.0 * f64::EPSILON;
+const FORCE_ROUNDING: f64 = 2.0 * f64::EPSILON;
 const COORDINATE_ROUNDING: f64 = 2.0 * f64::EPSILON;
+/// Where a force is more than this part of the largest, Newton's method has found no equilibrium but a position whose inertia
+/// grows beyond all bounds, so that nothing accelerates it.
+const REMAINING_FORCE: f64 = 1e-7;
 /// A singular value below this part of the largest is zero to Newton's method.
 const SINGULAR: f64 = 1e-10;
 /// Size of a Jacobian of which all may be rounding.
@@ -260,6 +265,17 @@ impl<'m> AtRest<'m> {
         Ok(forces)
     }
 
+    /// Whether forces are left at the present position although nothing accelerates it.
+    pub(super) fn has_forces(&mut self) -> Result<bool> {
+        self.evaluate()?;
+        let forces = self.forces()?;
+        let works = forces
+            .iter()
+            .zip(&self.arms)
+            .map(|(force, arm)| force.abs() * arm);
+        Ok(works.fold(0.0, f64::max) > REMAINING_FORCE * self.work)
+    }
+
     /// By free coordinate: the accelerations by forces of `part` of the largest works.
     fn accelerations_of(&mut self, part: f64) -> Result<Vec<f64>> {
         let n = self.free();
@@ -284,7 +300,7 @@ impl<'m> AtRest<'m> {
 
     /// By equation: below what its rate is zero, where the Jacobian was found last.
     fn zero_rates(&mut self) -> Result<Vec<f64>> {
-        self.rounding_of_rates(FORCE_TOLERANCE, FORCE_ROUNDING)
+        self.rounding_of_rates(FORCE_TOLERANCE, COORDINATE_TOLERANCE)
     }
 
     /// By equation: the estimated rounding error of its rate, where the Jacobian was found last; the difference from

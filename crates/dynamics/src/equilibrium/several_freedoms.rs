@@ -113,7 +113,7 @@ impl Search<'_, '_> {
 
     /// Adds the equilibrium at the present state, unless it is outside the ranges or known.
     fn add(&mut self) -> Result<()> {
-        if !self.move_into_ranges()? || self.is_known() {
+        if !self.move_into_ranges()? || self.is_known() || self.at_rest.has_forces()? {
             return Ok(());
         }
         let found = self.at_rest.equilibrium()?;
@@ -178,6 +178,11 @@ pub fn equilibrium_near(machine: &Machine, y: &[f64]) -> Result<Equilibrium> {
     at_rest.is_balanced()?;
     at_rest.count_forces()?;
     at_rest.solve_all()?;
+    if at_rest.has_forces()? {
+        return none(
+            "Newton's method ends where the inertia grows beyond all bounds, next to a limit position or a change point",
+        );
+    }
     let found = at_rest.equilibrium()?;
     if found.neutral.is_empty() {
         return Ok(found);

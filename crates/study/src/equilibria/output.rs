@@ -4,8 +4,9 @@ use super::figures;
 use crate::equilibria::compute::{EquilibriaResults, SearchedRange, compute_equilibria};
 use crate::explain::StudyError;
 use crate::models::SceneMachine;
-use crate::number_format::{coordinate_unit, count, digits, digits_within};
+use crate::number_format::{coordinate_unit, count, digits, digits_within, force_unit, number};
 use crate::output::{Outcome, signed_png};
+use crate::ranges::extent;
 use dwell_dynamics::{Equilibrium, Stability};
 use dwell_report::TableExport as _;
 use dwell_scene::Scene;
@@ -32,7 +33,7 @@ pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
 fn summary(results: &EquilibriaResults<'_>) -> String {
     let (prepared, found) = (&results.prepared, &results.found);
     let title = &prepared.scene.title;
-    let number = match found.len() {
+    let found_count = match found.len() {
         0 => "no equilibrium".to_owned(),
         1 => "1 equilibrium".to_owned(),
         n => format!("{n} equilibria"),
@@ -47,7 +48,7 @@ fn summary(results: &EquilibriaResults<'_>) -> String {
                 false => "",
             };
             let interval = interval_text(prepared, coordinate, [*from, *to]);
-            format!("{title}: {number} of {interval}{period}\n")
+            format!("{title}: {found_count} of {interval}{period}\n")
         }
         SearchedRange::Starts { starts, ranges } => {
             let ranges = free.iter().zip(ranges);
@@ -55,13 +56,25 @@ fn summary(results: &EquilibriaResults<'_>) -> String {
                 .map(|(&i, range)| interval_text(prepared, i, *range))
                 .collect();
             format!(
-                "{title}: {number} of {} found from {starts} starts, spread evenly over {}; a search from starts \
+                "{title}: {found_count} of {} found from {starts} starts, spread evenly over {}; a search from starts \
                  cannot prove that there are no others\n",
                 count(free.len(), "free coordinate"),
                 ranges.join(", ")
             )
         }
     };
+    if let Some(curves) = results.curves.as_ref().filter(|_| found.is_empty()) {
+        let (coordinate, is_angle) = prepared.first_free_coordinate();
+        let forces = curves.force_and_potential.iter().map(|[force, _]| *force);
+        let [low, high] = extent(forces).map(number);
+        let (name, unit) = (prepared.coordinate_name(coordinate), force_unit(is_angle));
+        text += &match low == high {
+            true => format!("  the static force along {name} is {low} {unit} everywhere\n"),
+            false => {
+                format!("  the static force along {name} stays between {low} and {high} {unit}\n")
+            }
+        };
+    }
     for equilibrium in found {
         text += &describe_equilibrium(prepared, equilibrium);
     }

@@ -104,8 +104,14 @@ fn the_largest_values_of_a_motion_have_the_digits_of_their_errors() {
     let coarse = largest(1e-3);
     assert!(coarse.len() > 1, "{coarse:?}");
     for (name, value, unit) in &coarse {
-        let (_, exact, fine_unit) = fine.iter().find(|(other, ..)| other == name).unwrap();
-        assert!((value - exact).abs() <= *unit, "{name}: {value} {exact}");
+        let Some((_, exact, fine_unit)) = fine.iter().find(|(other, ..)| other == name) else {
+            continue;
+        };
+        // The error, and the rounding of what is printed.
+        assert!(
+            (value - exact).abs() <= 1.5 * unit,
+            "{name}: {value} {exact}"
+        );
         // Six digits would be too many, and one too few.
         assert!(
             unit > fine_unit && *unit < 0.1 * exact.abs(),
@@ -145,10 +151,27 @@ fn rest_is_rest_within_rounding() {
         "{standing}"
     );
     assert!(stop.is_none(), "{stop:?}");
-    let (fallen, stop) = summary(FRAC_PI_2, 20.0);
+    // An implicit method may stay for ever; an explicit one multiplies the rounding.
+    let upright = scene(&moving(FRAC_PI_2, 30.0, ""));
+    let settings = SolverSettings {
+        method: Method::Dop853,
+        ..SolverSettings::default()
+    };
+    let found = simulate(&upright, &settings, &|_| {}).unwrap();
+    let (fallen, stop) = (
+        found.outcome.summary,
+        found.early_stop.map(|e| e.to_string()),
+    );
     assert!(!fallen.contains("stays at rest"), "{fallen}");
     let stop = stop.unwrap();
     assert!(stop.contains("starts in an unstable equilibrium"), "{stop}");
+    let pushed = PENDULUM.split("weight").next().unwrap();
+    let pushed = format!("{pushed}push = {{ torque = \"bar\", magnitude = 3 }}\n");
+    let none = equilibria(&scene(&pushed)).unwrap().summary;
+    assert!(
+        none.contains("the static force along phi is 3 N m everywhere"),
+        "{none}"
+    );
     // A millionth of a radian is a release, and no rounding.
     let (released, stop) = summary(-FRAC_PI_2 + 1e-6, 1.0);
     assert!(
