@@ -340,7 +340,8 @@ fn a_five_bar_rests_where_its_potential_is_flat() {
     let first = machine.initial_state(&scene.assembly.coordinates, &[0.0, 0.0]);
     let ranges = [0, 1].map(|k| [first[k] - 3.0, first[k] + 3.2]);
     let found = equilibria_from_starts(&machine, &first, &ranges, 400).unwrap();
-    assert!(!found.is_empty());
+    // Where both rods coincide the inertia grows beyond all bounds, so that accelerations vanish; forces do not.
+    assert_eq!(found.len(), 6, "{found:?}");
     let mut workspace = machine.workspace();
     let mut potential = |at: &[f64], p: f64, q: f64| {
         let mut state = at.to_vec();

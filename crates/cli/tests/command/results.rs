@@ -126,7 +126,7 @@ fn simulate_writes_a_table_with_units_and_a_picture() {
             !header.contains("phi.actuator_force"),
             "nothing acts through a free actuator: {header}"
         );
-        let period = "period 5.419662677064 s by quadrature";
+        let period = "period 5.419662677064 s (estimated error ";
         assert!(run.out.contains(period), "{}", run.out);
         let energy = "of the largest kinetic energy, 0.455087 J";
         assert!(run.out.contains(energy), "{}", run.out);

@@ -199,8 +199,12 @@ impl FreeMotionProblem<'_> {
             max_difference = max_difference.max((sum - initial).abs());
         }
         if max_kinetic <= REST * self.energy_scale(duration, max_potential) {
-            let mut text =
-                "  the mechanism stays at rest within rounding: no force moves it\n".to_owned();
+            let rounding = if max_kinetic == 0.0 {
+                ""
+            } else {
+                " within rounding"
+            };
+            let mut text = format!("  the mechanism stays at rest{rounding}: no force moves it\n");
             if self.starts_unstable() {
                 text += "  it starts in an unstable equilibrium, which the least disturbance would end\n";
             }
