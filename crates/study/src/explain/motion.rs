@@ -340,6 +340,7 @@ A = { revolute = ["ground.A", "bar.A"] }
 [actuators.phi]
 angle = ["ground", "bar"]
 [motion]
+initial-velocity = 1
 duration = 10
 "#;
         let scene = Scene::parse("bar.toml", text).unwrap();

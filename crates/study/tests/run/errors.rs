@@ -101,17 +101,15 @@ fn the_largest_values_of_a_motion_have_the_digits_of_their_errors() {
         parsed.collect()
     };
     let fine = largest(1e-11);
-    let coarse = largest(1e-3);
+    let coarse = largest(1e-6);
     assert!(coarse.len() > 1, "{coarse:?}");
     for (name, value, unit) in &coarse {
         let Some((_, exact, fine_unit)) = fine.iter().find(|(other, ..)| other == name) else {
             continue;
         };
         // The error, and the rounding of what is printed.
-        assert!(
-            (value - exact).abs() <= 1.5 * unit,
-            "{name}: {value} {exact}"
-        );
+        let wrong = (value.abs() - exact.abs()).abs();
+        assert!(wrong <= 1.5 * unit, "{name}: {value} {exact}");
         // Six digits would be too many, and one too few.
         assert!(
             unit > fine_unit && *unit < 0.1 * exact.abs(),
@@ -278,7 +276,8 @@ fn eigenvalues_about_the_start_state_their_error() {
         .unwrap();
     // The double zero of the wheel is known to a root of a rounding.
     assert!(error > 1e-10 && error < 1e-5, "{summary}");
-    let pendulum = linearise(&scene(PENDULUM), OperatingPoint::InitialState).unwrap();
+    let tilted = format!("{PENDULUM}[assembly]\nphi = -1.0\n");
+    let pendulum = linearise(&scene(&tilted), OperatingPoint::InitialState).unwrap();
     let error: f64 = between(&pendulum.summary, "    estimated error: ", " 1/s")
         .parse()
         .unwrap();

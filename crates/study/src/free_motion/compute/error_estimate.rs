@@ -28,12 +28,13 @@ pub(crate) struct ErrorEstimate {
 type SamplePair<'a> = (&'a TrajectorySample, &'a TrajectorySample);
 
 impl FreeMotionProblem<'_> {
-    /// The estimated error of a motion, by a second run.
+    /// The estimated error of a motion of which a duration (s) was requested, by a second run.
     pub(crate) fn estimate_error(
         &self,
         scene: &Scene,
         motion: &SegmentedMotion,
         options: &Options,
+        requested: f64,
     ) -> Result<ErrorEstimate, StudyError> {
         let duration = motion.end_time();
         if duration == 0.0 {
@@ -45,6 +46,13 @@ impl FreeMotionProblem<'_> {
             "a tenth of the tolerance".to_owned()
         } else {
             format!("the same tolerance by {}", finer.method.name())
+        };
+        // An event that ends the motion may happen later in the second run.
+        let is_ended_by_event = motion.failure.is_none() && duration < requested;
+        let duration = if is_ended_by_event {
+            requested
+        } else {
+            duration
         };
         let second = self.solve(scene, duration, &finer).ok();
         let others = second.as_ref().and_then(|motion| self.samples(motion).ok());
