@@ -16,9 +16,9 @@ const MAX_CORRECTIONS: usize = 12;
 /// The shortest distance over which a weak direction is looked at.
 const SHORTEST: f64 = 1e-12;
 /// Steps towards the start along neutral directions, the longest of them, and the shortest that counts.
-const MAX_SLIDES: usize = 64;
-const LONGEST_SLIDE: f64 = 0.3;
-const SHORTEST_SLIDE: f64 = 1e-12;
+const SLIDE_STEPS: usize = 64;
+const MAX_SLIDE: f64 = 0.3;
+const MIN_SLIDE: f64 = 1e-12;
 
 impl AtRest<'_> {
     /// The equilibrium at the present state, which is one.
@@ -105,18 +105,18 @@ impl AtRest<'_> {
 
     /// Moves an equilibrium along the directions in which it goes on to where it is nearest to `start`.
     pub(super) fn slide_towards(&mut self, start: &[f64]) -> Result<()> {
-        for _ in 0..MAX_SLIDES {
+        for _ in 0..SLIDE_STEPS {
             let factored = self.factor_here()?;
             let directions = factored.null_directions(factored.rank(WEAK, 1.0));
             let unknowns = self.unknowns();
             let missing = unknowns.iter().map(|&j| start[j] - self.y[j]);
             let step = projection(&missing.collect::<Vec<_>>(), &directions);
             let length = step.iter().fold(0.0_f64, |max, part| max.max(part.abs()));
-            if length <= SHORTEST_SLIDE {
+            if length <= MIN_SLIDE {
                 return Ok(());
             }
             let before = self.y.clone();
-            self.add_to_unknowns((LONGEST_SLIDE / length).min(1.0), &step);
+            self.add_to_unknowns((MAX_SLIDE / length).min(1.0), &step);
             if !self.balance_again().unwrap_or(false) {
                 self.y = before;
                 return Ok(());

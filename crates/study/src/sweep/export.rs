@@ -117,7 +117,7 @@ fn summary(prepared: &PreparedSweep<'_>, path: &Path, rows: &[Row], counts: Coun
     }
     let quantities = &prepared.requested.quantities;
     if quantities.iter().any(SweepQuantity::is_extremum) {
-        text += "  smallest and largest values of a motion or a range are looked for between its positions, too\n";
+        text += "  smallest and largest values of a motion or a range are searched between its positions, too\n";
     }
     for (k, heading) in prepared.results.iter().enumerate() {
         if let Some(spread) = Spread::of(rows.iter().map(|row| row.result.values[k])) {
