@@ -18,6 +18,7 @@ mod derivatives;
 mod dop853;
 mod energies;
 mod equilibria;
+mod equilibria_found;
 mod events;
 mod extremes;
 mod findings;

@@ -11,10 +11,10 @@ use dwell_study::{
 };
 
 impl Mechanism {
-    /// The equilibria: over the range of the only coordinate all of them, else the one nearest to the initial state.
+    /// The equilibria: over the range of the only coordinate all of them, else those that many starts lead to.
     ///
     /// # Errors
-    /// [`Error::Study`] where loads depend on time, or there is no equilibrium.
+    /// [`Error::Study`] where loads depend on time, or none is found of several coordinates.
     ///
     /// ```
     /// use dwell::{Actuator, Joint, Load, Mechanism, Stability};

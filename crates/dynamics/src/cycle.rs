@@ -13,6 +13,7 @@
 
 mod variational;
 
+use crate::eigenvalues::eigenvalues;
 use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
 use crate::machine::Machine;
@@ -20,7 +21,6 @@ use crate::machine_ode::MachineOde;
 use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, root_subintervals, state_at};
 use crate::options::Options;
 use crate::repetition::{PERIODICITY_TOLERANCE, repetition_angle};
-use crate::state_space::eigenvalues;
 use dwell_numerics::lu;
 use dwell_numerics::root;
 use std::f64::consts::TAU;

@@ -192,6 +192,17 @@ pub enum DynamicsError {
         /// Why not.
         what: &'static str,
     },
+    /// There is no equilibrium: the static force along a coordinate keeps its sign.
+    #[error(
+        "no equilibrium: the static force along coordinate {actuator} stays between {} and {}",
+        force[0], force[1]
+    )]
+    Unbalanced {
+        /// The actuator of the coordinate.
+        actuator: usize,
+        /// The smallest and the largest force found, N·m or N.
+        force: [f64; 2],
+    },
     /// There is no steady cycle, or none was found.
     #[error("no steady cycle: {what}")]
     NoCycle {

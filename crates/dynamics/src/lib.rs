@@ -48,6 +48,7 @@ mod conservative;
 pub mod cycle;
 mod dop853;
 mod drive;
+mod eigenvalues;
 pub mod equilibrium;
 pub mod error;
 pub mod flywheel;
@@ -79,7 +80,8 @@ pub use change_point_fit::{ChangePointFit, ChangePointFitError};
 pub use cycle::{Cycle, initial_transient, steady_cycle};
 pub use drive::DriveError;
 pub use equilibrium::{
-    Equilibrium, Mode, Stability, equilibria, equilibrium_near, static_force_and_potential,
+    Equilibrium, Mode, NeutralDirection, Stability, equilibria, equilibria_from_starts,
+    equilibrium_near, static_force_and_potential,
 };
 pub use error::DynamicsError;
 pub use flywheel::{Flywheel, size_flywheel};
@@ -100,5 +102,5 @@ pub use solve::{
     Event, EventKind, EventOccurrence, Observed, ObservedMachine, ObservedValue, Solution, solve,
     solve_orbit, solve_system,
 };
-pub use state_space::{StateSpace, is_equilibrium, linearise};
+pub use state_space::{StateSpace, eigenvalues_about, is_equilibrium, linearise};
 pub use tabulated::{TabulatedMachine, TabulatedMachineOde, TabulationError};

@@ -9,10 +9,10 @@
 //!
 //! from dual numbers: exact to rounding.
 
-use crate::error::{DynamicsError, Result};
+use crate::eigenvalues::{eigenvalues, eigenvalues_with_errors};
+use crate::error::Result;
 use crate::machine::{Machine, MachineState, MachineWorkspace};
 use dwell_numerics::{DoubleDouble, Dual, Scalar};
-use faer::Mat;
 
 /// A linearised motion. Matrices are lists of rows.
 #[derive(Debug, Clone, PartialEq)]
@@ -135,7 +135,7 @@ impl StateSpace {
     /// The eigenvalues of A, 1/s, as real and imaginary parts, the largest real part first.
     ///
     /// # Errors
-    /// [`DynamicsError::NoEigenvalues`].
+    /// [`DynamicsError::NoEigenvalues`](crate::DynamicsError::NoEigenvalues).
     pub fn eigenvalues(&self) -> Result<Vec<[f64; 2]>> {
         let n = self.a.len();
         let flat: Vec<f64> = self.a.iter().flatten().copied().collect();
@@ -143,15 +143,49 @@ impl StateSpace {
     }
 }
 
-/// The eigenvalues of a row-major n×n matrix, the largest real part first.
-pub(crate) fn eigenvalues(matrix: &[f64], n: usize) -> Result<Vec<[f64; 2]>> {
-    if !matrix.iter().all(|a| a.is_finite()) {
-        return Err(DynamicsError::NoEigenvalues);
+/// Roundings of a coordinate, and of an entry of A, that its error counts.
+const STATE_ROUNDINGS: f64 = 2.0;
+const ENTRY_ROUNDINGS: f64 = 4.0;
+/// Signs by which neighbouring states are changed, for the errors of A.
+const SIDES: [[f64; 2]; 4] = [[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]];
+
+/// The eigenvalues of a linearised motion, 1/s, as real and imaginary parts, the largest real part first; and the
+/// estimated error of each. The state is known to `state_errors`, and to rounding: what this changes in A, and what else is
+/// rounding in it, is compared.
+///
+/// # Errors
+/// [`DynamicsError::NoEigenvalues`](crate::DynamicsError::NoEigenvalues).
+pub fn eigenvalues_about(
+    machine: &Machine,
+    t: f64,
+    y: &[f64],
+    state_errors: &[f64],
+    linear: &StateSpace,
+) -> Result<(Vec<[f64; 2]>, Vec<f64>)> {
+    let (n, coordinates) = (linear.a.len(), machine.free().len());
+    let entries = || linear.a.iter().flatten().copied();
+    let mut changes = vec![0.0_f64; n * n];
+    for sides in SIDES {
+        let mut near = y.to_vec();
+        for j in 0..n {
+            let size = match j < coordinates {
+                true => y[j].abs().max(1.0),
+                false => y[j].abs(),
+            };
+            let error = state_errors.get(j).copied().unwrap_or(0.0);
+            near[j] += sides[j % 2] * error.max(STATE_ROUNDINGS * f64::EPSILON * size);
+        }
+        // Next to a limit position there may be no other state.
+        let Ok(near) = linearise(machine, t, &near) else {
+            continue;
+        };
+        let others = near.a.iter().flatten();
+        for ((change, entry), other) in changes.iter_mut().zip(entries()).zip(others) {
+            *change = change.max((other - entry).abs());
+        }
     }
-    let matrix = Mat::from_fn(n, n, |i, j| matrix[i * n + j]);
-    let found = matrix.eigenvalues();
-    let found = found.map_err(|_| DynamicsError::NoEigenvalues)?;
-    let mut values: Vec<[f64; 2]> = found.iter().map(|z| [z.re, z.im]).collect();
-    values.sort_by(|x, y| y[0].total_cmp(&x[0]).then(y[1].total_cmp(&x[1])));
-    Ok(values)
+    let errors = changes.iter().zip(entries());
+    let errors = errors.map(|(change, a)| change + ENTRY_ROUNDINGS * f64::EPSILON * a.abs());
+    let matrix: Vec<f64> = entries().collect();
+    eigenvalues_with_errors(&matrix, &errors.collect::<Vec<_>>(), n)
 }

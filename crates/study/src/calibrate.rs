@@ -1,12 +1,16 @@
 //! `dwell calibrate`: the scene value that gives a required period of the free motion.
 
+use crate::estimate;
 use crate::explain::{StudyError, explain_motion, missing_section_label, scene_error};
 use crate::models::{initial_reduced_state, reduced_model};
 use crate::number_format::{digits, number};
 use crate::ranges::extent;
 #[cfg(feature = "output")]
-use crate::{branch_note::branch_note, models::PreparedScene, output::Outcome};
-use dwell_dynamics::Orbit;
+use crate::{
+    branch_note::branch_note, models::PreparedScene, number_format::digits_within, output::Outcome,
+};
+use dwell_dynamics::{Orbit, ReducedState};
+use dwell_kinetostatics::ExactModel;
 use dwell_numerics::root;
 use dwell_scene::{Scene, SceneLocation};
 
@@ -21,8 +25,12 @@ pub struct CalibrationResult {
     pub current: f64,
     /// The period it gives, s.
     pub current_period: f64,
+    /// The estimated error of that period, s.
+    pub current_period_error: f64,
     /// The value found.
     pub value: f64,
+    /// Its estimated error: that of the period over the change of the period with the value.
+    pub value_error: f64,
     /// The required period, s.
     pub period: f64,
 }
@@ -30,6 +38,8 @@ pub struct CalibrationResult {
 /// Largest factor between the value in the scene and a trial value, and the first factor.
 const MAX_FACTOR: f64 = 1e6;
 const FIRST_FACTOR: f64 = 1.0 + 1.0 / 64.0;
+/// Relative change of the value for the slope of the period.
+const DIFFERENCE: f64 = 1e-5;
 /// Number of bisections after a step to a value that has no period.
 const BISECTIONS: usize = 12;
 
@@ -54,24 +64,28 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationR
             [(SceneLocation::Calibration, "the period of this motion")],
         ));
     }
-    let current_period = period_of(scene)?;
-    let result = |value: f64| CalibrationResult {
-        path: path.to_owned(),
-        unit: unit.clone(),
-        current,
-        current_period,
-        value,
-        period,
+    let (current_period, current_period_error) = period_with_error(scene)?;
+    let period_with = |value: f64| period_of(&scene.with_value(path, value)?);
+    let result = |value: f64| {
+        Ok(CalibrationResult {
+            path: path.to_owned(),
+            unit: unit.clone(),
+            current,
+            current_period,
+            current_period_error,
+            value,
+            value_error: value_error(scene, path, value, period)?,
+            period,
+        })
     };
     if current_period == period {
-        return Ok(result(current));
+        return result(current);
     }
     if current == 0.0 {
         let message = "is zero, and the search multiplies the present value by factors";
         let help = "give an approximate value in the scene first";
         return Err(refuse(format!("`{path}` {message}"), help));
     }
-    let period_with = |value: f64| period_of(&scene.with_value(path, value)?);
     let search = BracketSearch::outwards(current, current_period, period, &period_with);
     let (a, b) = search.bracket.ok_or_else(|| {
         let (found, help) = search.describe(&unit);
@@ -86,7 +100,21 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationR
         let message = format!("the period is discontinuous at {period} s, {between}");
         refuse(message, "the mechanism changes its assembly mode there")
     })?;
-    Ok(result(value))
+    result(value)
+}
+
+/// The error of a value that gives a period (s): that of the period over its change with the value.
+fn value_error(scene: &Scene, path: &str, value: f64, period: f64) -> Result<f64, StudyError> {
+    let (_, error) = period_with_error(&scene.with_value(path, value)?)?;
+    let step = DIFFERENCE * value.abs().max(f64::MIN_POSITIVE);
+    let period_with = |value: f64| period_of(&scene.with_value(path, value)?);
+    let slope = match (period_with(value + step), period_with(value - step)) {
+        (Ok(above), Ok(below)) => 0.5 * (above - below).abs() / step,
+        // Next to a value without a period.
+        (Ok(beside), Err(_)) | (Err(_), Ok(beside)) => (beside - period).abs() / step,
+        (Err(error), Err(_)) => return Err(error),
+    };
+    Ok(error / slope + f64::EPSILON * value.abs())
 }
 
 /// The search for a bracket of the required period.
@@ -173,6 +201,22 @@ impl BracketSearch {
 }
 
 fn period_of(scene: &Scene) -> Result<f64, StudyError> {
+    Ok(orbit_of(scene)?.0.period)
+}
+
+/// The period of a scene's motion, and its error, s.
+fn period_with_error(scene: &Scene) -> Result<(f64, f64), StudyError> {
+    let (orbit, exact, start) = orbit_of(scene)?;
+    let perturbed = |factor: f64| {
+        let q_dot = start.q_dot * factor;
+        Orbit::new(&exact, ReducedState { q_dot, ..start })
+    };
+    let error = estimate::of_period(&orbit, perturbed);
+    let error = error.map_err(|e| explain_motion(scene, exact.model().plan(), &e))?;
+    Ok((orbit.period, error))
+}
+
+fn orbit_of(scene: &Scene) -> Result<(Orbit, ExactModel, ReducedState), StudyError> {
     let exact = reduced_model(scene, &[])?;
     let Some(start) = initial_reduced_state(scene) else {
         return Err(scene_error(
@@ -184,7 +228,7 @@ fn period_of(scene: &Scene) -> Result<f64, StudyError> {
     };
     let orbit = Orbit::new(&exact, start);
     let orbit = orbit.map_err(|e| explain_motion(scene, exact.model().plan(), &e))?;
-    Ok(orbit.period)
+    Ok((orbit, exact, start))
 }
 
 /// `dwell calibrate`, with the path and the period of the scene's `[calibration]` where none is given.
@@ -213,13 +257,14 @@ pub fn calibrate(
     };
     let result = find_value(scene, path, period)?;
     let (title, unit) = (&scene.title, &result.unit);
-    let [value, period, current] =
-        [result.value, result.period, result.current].map(|v| digits(v, 12));
-    let current_period = digits(result.current_period, 13);
+    let [period, current] = [result.period, result.current].map(|v| digits(v, 12));
+    let value = digits_within(result.value, result.value_error, 12);
+    let current_period = digits_within(result.current_period, result.current_period_error, 13);
+    let [value_error, period_error] = [result.value_error, result.current_period_error];
     Ok(Outcome {
         summary: format!(
             "{title}: {path} = {value} {unit} gives the period {period} s\n  the scene has {current} {unit}, which gives \
-             {current_period} s\n{note}"
+             {current_period} s\n  estimated errors: {value_error:.1e} {unit}, {period_error:.1e} s\n{note}"
         ),
         ..Outcome::default()
     })

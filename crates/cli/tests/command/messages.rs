@@ -387,7 +387,6 @@ fn machines() {
         "equilibria",
         four_bar_with(&[("periods = 2", &text)]),
     );
-    group.scene("no force at all", "equilibria", four_bar_with(&[]));
     let text = drive("duration = 2", action);
     group.scene(
         "a force that never ends",

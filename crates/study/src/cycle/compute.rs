@@ -71,10 +71,26 @@ fn require_rotating(prepared: &SceneMachine<'_>) -> Result<(), StudyError> {
 }
 
 /// Explains a machine that does not complete the first revolutions.
-fn run_up_error(prepared: &SceneMachine<'_>, error: &DynamicsError) -> StudyError {
+fn run_up_error(
+    prepared: &SceneMachine<'_>,
+    error: &DynamicsError,
+    max_step: Option<f64>,
+) -> StudyError {
     let DynamicsError::MaxStepsReached { t, max_steps } = *error else {
         return prepared.explain(error);
     };
+    let is_limited = |longest: &f64| t >= 0.5 * longest * max_steps as f64;
+    if let Some(longest) = max_step.filter(is_limited) {
+        let [t, longest] = [t, longest].map(|t| digits(t, 2));
+        return prepared.error(
+            format!(
+                "after {}, at t = {t} s, the first revolutions are not complete: --max-step allows none above {longest} s",
+                count(max_steps, "step")
+            ),
+            "give a longer --max-step, or none",
+            prepared.initial_state_label("from here"),
+        );
+    }
     prepared.error(
         format!(
             "the machine does not complete its revolutions: after {}, at t = {} s, it has not made {} from \
@@ -239,7 +255,7 @@ fn find_cycle(
     };
     let (machine, start) = (&prepared.machine, prepared.initial_state());
     let guess = initial_transient(machine, &start, RUN_UP_REVOLUTIONS, &coarse);
-    let guess = guess.map_err(|e| run_up_error(prepared, &e))?;
+    let guess = guess.map_err(|e| run_up_error(prepared, &e, options.max_step))?;
     let explain = |e: DynamicsError| prepared.explain(&e);
     let steady = in_first_revolution(steady_cycle(machine, &guess, options).map_err(explain)?);
     let errors = estimated_errors(prepared, machine, &steady, options)?;

@@ -2,10 +2,10 @@
 
 use crate::explain::StudyError;
 use crate::models::SceneMachine;
-use crate::ranges::equally_spaced;
+use crate::ranges::{equally_spaced, extent};
 use dwell_dynamics::{
-    Equilibrium, Stability, equilibria as equilibria_over, equilibrium_near,
-    static_force_and_potential,
+    DynamicsError, Equilibrium, Stability, equilibria as equilibria_over, equilibria_from_starts,
+    equilibrium_near, static_force_and_potential,
 };
 use dwell_findings::{Column, Table};
 use dwell_scene::Scene;
@@ -28,41 +28,102 @@ const MARGIN: f64 = 1e-3;
 const CUT_FRACTION: f64 = 0.47;
 /// Positions of the force in the figure.
 const POSITIONS: usize = 360;
-/// A real or imaginary part below this fraction of the eigenvalue's modulus is rounding.
-const ROUNDING: f64 = 1e-9;
+/// Starts of the search for one free coordinate, which double with each further one, and their highest number.
+const STARTS: usize = 200;
+const MAX_STARTS: usize = 3200;
+/// Range of a length on both sides of the start, in sizes of the mechanism.
+const LENGTH_RANGE: f64 = 2.0;
 
-/// Equilibria, and the interval of the only coordinate that was searched for all of them.
-pub(crate) type FoundEquilibria = (Vec<Equilibrium>, Option<[f64; 2]>);
-
-/// Finds the equilibria.
-pub(crate) fn find_equilibria(prepared: &SceneMachine<'_>) -> Result<FoundEquilibria, StudyError> {
-    prepared.require_autonomous("an equilibrium")?;
-    let interval = search_interval(prepared);
-    let found = match interval {
-        Some(interval) => equilibria_over(&prepared.machine, interval),
-        None => equilibrium_near(&prepared.machine, &prepared.initial_state()).map(|e| vec![e]),
-    };
-    Ok((found.map_err(|e| prepared.explain(&e))?, interval))
+/// Where equilibria were looked for.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SearchedRange {
+    /// The interval of the only coordinate of the mechanism, rad or m, in which all are found.
+    Interval([f64; 2]),
+    /// So many starts within the ranges of the free coordinates, rad or m; what no start leads to is not found.
+    Starts {
+        /// How many.
+        starts: usize,
+        /// By free coordinate.
+        ranges: Vec<[f64; 2]>,
+    },
 }
 
-/// The range of the only coordinate of the mechanism; if it is unlimited, one period around the start.
-fn search_interval(prepared: &SceneMachine<'_>) -> Option<[f64; 2]> {
-    let plan = prepared.machine.model().plan();
-    if plan.actuators() != 1 {
-        return None;
-    }
-    let range = plan.range();
-    if let Some((from, to)) = range.limits() {
-        let margin = MARGIN * (to - from);
-        return Some([from + margin, to - margin]);
-    }
-    let period = match range.period() {
-        Some(period) => period,
-        None if plan.is_angle(0) => TAU,
-        None => return None,
+/// Finds the equilibria.
+pub(crate) fn find_equilibria(
+    prepared: &SceneMachine<'_>,
+) -> Result<(Vec<Equilibrium>, SearchedRange), StudyError> {
+    prepared.require_autonomous("an equilibrium")?;
+    let (machine, start) = (&prepared.machine, prepared.initial_state());
+    let searched = searched_range(prepared);
+    let found = match &searched {
+        SearchedRange::Interval(interval) => equilibria_over(machine, *interval)
+            .and_then(|found| found.into_iter().map(|e| nearest_to(prepared, e)).collect()),
+        SearchedRange::Starts { starts, ranges } => {
+            equilibria_from_starts(machine, &start, ranges, *starts)
+        }
     };
-    let from = prepared.initial_state()[0] - CUT_FRACTION * period;
-    Some([from, from + period])
+    Ok((found.map_err(|e| prepared.explain(&e))?, searched))
+}
+
+/// An equilibrium; where every position of an interval is one, that at the start if the start is within.
+fn nearest_to(
+    prepared: &SceneMachine<'_>,
+    found: Equilibrium,
+) -> Result<Equilibrium, DynamicsError> {
+    let start = prepared.initial_state();
+    let holds_start = found.neutral.iter().any(|neutral| {
+        let extent = neutral.extent;
+        extent.is_some_and(|[from, to]| (from..=to).contains(&start[0]))
+    });
+    if !holds_start {
+        return Ok(found);
+    }
+    Ok(Equilibrium {
+        neutral: found.neutral,
+        stability: found.stability,
+        ..equilibrium_near(&prepared.machine, &start)?
+    })
+}
+
+/// The range of the only coordinate of the mechanism; if it is unlimited, one period around the start. With several
+/// coordinates one revolution around the start of each free angle, and lengths around the start.
+fn searched_range(prepared: &SceneMachine<'_>) -> SearchedRange {
+    let plan = prepared.machine.model().plan();
+    let start = prepared.initial_state();
+    if plan.actuators() == 1 {
+        let range = plan.range();
+        if let Some((from, to)) = range.limits() {
+            let margin = MARGIN * (to - from);
+            return SearchedRange::Interval([from + margin, to - margin]);
+        }
+        let period = range.period().or(plan.is_angle(0).then_some(TAU));
+        if let Some(period) = period {
+            let from = start[0] - CUT_FRACTION * period;
+            return SearchedRange::Interval([from, from + period]);
+        }
+    }
+    let length = LENGTH_RANGE * prepared.scene.mechanism.size();
+    let free = prepared.machine.free();
+    let range = |(&i, q): (&usize, &f64)| match plan.is_angle(i) {
+        true => [q - CUT_FRACTION * TAU, q + (1.0 - CUT_FRACTION) * TAU],
+        false => [q - length, q + length],
+    };
+    let doublings = free.len().saturating_sub(1).min(8);
+    SearchedRange::Starts {
+        starts: (STARTS << doublings).min(MAX_STARTS),
+        ranges: free.iter().zip(&start).map(range).collect(),
+    }
+}
+
+/// The smallest and the largest static force (N·m or N) over an interval.
+pub(crate) fn force_extent(
+    prepared: &SceneMachine<'_>,
+    interval: [f64; 2],
+) -> Result<[f64; 2], StudyError> {
+    let values =
+        static_force_and_potential(&prepared.machine, &equally_spaced(interval, POSITIONS));
+    let values = values.map_err(|e| prepared.explain(&e))?;
+    Ok(extent(values.into_iter().map(|[force, _]| force)))
 }
 
 /// One row per equilibrium.
@@ -76,6 +137,7 @@ fn equilibrium_table(prepared: &SceneMachine<'_>, found: &[Equilibrium]) -> Tabl
     columns.extend_from_slice(&states[2 * free..]);
     columns.push(Column::new("stability", ""));
     columns.push(Column::new("max_real_eigenvalue", "1/s"));
+    let has_neutral = found.iter().any(|e| !e.neutral.is_empty());
     let modes = found.iter().map(|e| e.modes().len()).max().unwrap_or(0);
     for k in 1..=modes {
         let parts = [
@@ -85,6 +147,9 @@ fn equilibrium_table(prepared: &SceneMachine<'_>, found: &[Equilibrium]) -> Tabl
         ];
         columns.extend(parts.map(|(part, unit)| Column::new(format!("mode{k}.{part}"), unit)));
     }
+    if has_neutral {
+        columns.push(Column::new("neutral_directions", ""));
+    }
     let row = |e: &Equilibrium| {
         let mut row = e.y[..free].to_vec();
         row.extend(e.y[..free].iter().zip(&start).map(|(q, start)| q - start));
@@ -93,26 +158,29 @@ fn equilibrium_table(prepared: &SceneMachine<'_>, found: &[Equilibrium]) -> Tabl
             Stability::Asymptotic => 1.0,
             Stability::Centre => 0.0,
             Stability::Unstable => -1.0,
-            Stability::Undecided => f64::NAN,
+            Stability::Neutral | Stability::Undecided => f64::NAN,
         });
-        let first = e.eigenvalues.first();
-        row.push(first.map_or(f64::NAN, |z| without_rounding(*z)[0]));
+        let first = e.eigenvalues.first().zip(e.eigenvalue_errors.first());
+        row.push(first.map_or(f64::NAN, |([re, _], error)| zero_within(*re, *error)));
+        let largest_error = e.eigenvalue_errors.iter().copied().fold(0.0, f64::max);
         for mode in e.modes() {
-            let [damping, _] = without_rounding([mode.damping_ratio, 1.0]);
             let frequency = mode.angular_frequency;
+            let damping = zero_within(mode.damping_ratio, largest_error / frequency);
             row.extend([frequency, frequency / TAU, damping]);
         }
-        row.resize(columns.len(), f64::NAN);
+        row.resize(columns.len() - usize::from(has_neutral), f64::NAN);
+        if has_neutral {
+            row.push(e.neutral.len() as f64);
+        }
         row
     };
     let rows = found.iter().map(row).collect();
     Table { columns, rows }
 }
 
-/// An eigenvalue without rounding.
-pub(crate) fn without_rounding([re, im]: [f64; 2]) -> [f64; 2] {
-    let threshold = ROUNDING * re.hypot(im);
-    [re, im].map(|part| if part.abs() <= threshold { 0.0 } else { part })
+/// A value, or zero where its error leaves no digit.
+fn zero_within(value: f64, error: f64) -> f64 {
+    if value.abs() <= error { 0.0 } else { value }
 }
 
 /// The equilibria of a scene with their table, and the static force around them.
@@ -121,8 +189,8 @@ pub struct EquilibriaResults<'a> {
     pub prepared: SceneMachine<'a>,
     /// The equilibria.
     pub found: Vec<Equilibrium>,
-    /// The interval that was searched for all equilibria, if there is a single coordinate.
-    pub interval: Option<[f64; 2]>,
+    /// Where they were looked for.
+    pub searched: SearchedRange,
     /// One row per equilibrium.
     pub table: Table,
     /// Static force and potential over the interval.
@@ -135,16 +203,16 @@ pub struct EquilibriaResults<'a> {
 /// As [`equilibria`](crate::equilibria()).
 pub fn compute_equilibria(scene: &Scene) -> Result<EquilibriaResults<'_>, StudyError> {
     let prepared = SceneMachine::new(scene)?;
-    let (found, interval) = find_equilibria(&prepared)?;
+    let (found, searched) = find_equilibria(&prepared)?;
     let table = equilibrium_table(&prepared, &found);
     let force_and_potential = |q: &[f64]| {
         let values = static_force_and_potential(&prepared.machine, q);
         values.map_err(|e| prepared.explain(&e))
     };
-    let curves = match interval {
-        None => None,
-        Some(interval) => {
-            let q = equally_spaced(interval, POSITIONS);
+    let curves = match &searched {
+        SearchedRange::Starts { .. } => None,
+        SearchedRange::Interval(interval) => {
+            let q = equally_spaced(*interval, POSITIONS);
             let marked: Vec<f64> = found.iter().map(|e| e.y[0]).collect();
             Some(StaticCurves {
                 force_and_potential: force_and_potential(&q)?,
@@ -156,7 +224,7 @@ pub fn compute_equilibria(scene: &Scene) -> Result<EquilibriaResults<'_>, StudyE
     Ok(EquilibriaResults {
         prepared,
         found,
-        interval,
+        searched,
         table,
         curves,
     })

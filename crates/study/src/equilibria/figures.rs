@@ -16,6 +16,9 @@ pub(crate) fn equilibria(results: &EquilibriaResults<'_>, curves: &StaticCurves)
         let pairs = curves.q.iter().zip(&curves.force_and_potential);
         let line = Series::line("", pairs.map(|(q, values)| [x(*q), values[k]]).collect());
         let points = results.found.iter().zip(&curves.at_equilibria);
+        let (intervals, points): (Vec<_>, Vec<_>) =
+            points.partition(|(e, _)| e.neutral.iter().any(|neutral| neutral.extent.is_some()));
+        let points = points.into_iter();
         let points = points.map(|(e, values)| (e.stability, [x(e.y[0]), values[k]]));
         let (stable, others): (Vec<_>, Vec<_>) = points.partition(|(stability, _)| {
             matches!(stability, Stability::Asymptotic | Stability::Centre)
@@ -25,6 +28,14 @@ pub(crate) fn equilibria(results: &EquilibriaResults<'_>, curves: &StaticCurves)
             let points = stable.into_iter().map(|(_, at)| at).collect();
             let filled = Series::line("stable", points).stroke(Stroke::Points);
             series.push(filled.color(Paint::Palette(1)));
+        }
+        for (e, values) in intervals {
+            let extents = e.neutral.iter().filter_map(|neutral| neutral.extent);
+            series.extend(extents.map(|extent| {
+                let ends = extent.map(|q| [x(q), values[k]]);
+                let interval = Series::line("every position an equilibrium", ends.to_vec());
+                interval.color(Paint::Palette(1))
+            }));
         }
         let mut chart = chart(title, coordinate_axis(&name, angle), y, series);
         for (_, at) in others {

@@ -1,22 +1,22 @@
 //! Writes equilibria: table, figure and summary.
 
 use super::figures;
-use crate::equilibria::compute::{EquilibriaResults, compute_equilibria, without_rounding};
+use crate::equilibria::compute::{EquilibriaResults, SearchedRange, compute_equilibria};
 use crate::explain::StudyError;
 use crate::models::SceneMachine;
-use crate::number_format::{coordinate_unit, count, digits};
+use crate::number_format::{coordinate_unit, count, digits, digits_within, force_unit, number};
 use crate::output::{Outcome, signed_png};
+use crate::ranges::extent;
 use dwell_dynamics::{Equilibrium, Stability};
 use dwell_report::TableExport as _;
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
 
-/// The equilibria of a scene: with one coordinate all of its range, with several the one that
-/// Newton's method finds from the start.
+/// The equilibria of a scene: with one coordinate all of its range, with several those that Newton's method finds from
+/// many starts.
 ///
 /// # Errors
-/// [`StudyError`] when a load depends on time, every position is an equilibrium, or none is found from
-/// the start.
+/// [`StudyError`] when a load depends on time, or with several coordinates none is found.
 pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
     let results = compute_equilibria(scene)?;
     let mut outcome = Outcome::default();
@@ -32,38 +32,65 @@ pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
 
 fn summary(results: &EquilibriaResults<'_>) -> String {
     let (prepared, found) = (&results.prepared, &results.found);
-    let (coordinate, is_angle) = prepared.first_free_coordinate();
     let title = &prepared.scene.title;
-    let mut text = match results.interval {
-        Some([from, to]) => {
+    let found_count = match found.len() {
+        0 => "no equilibrium".to_owned(),
+        1 => "1 equilibrium".to_owned(),
+        n => format!("{n} equilibria"),
+    };
+    let free = prepared.machine.free();
+    let mut text = match &results.searched {
+        SearchedRange::Interval([from, to]) => {
+            let (coordinate, is_angle) = prepared.first_free_coordinate();
             let is_whole_period = is_angle && (to - from) >= TAU * (1.0 - 1e-12);
-            let [from, to] = [from, to].map(|q| match is_angle {
-                true => format!("{}°", digits(q.to_degrees(), 6)),
-                false => format!("{} m", digits(q, 6)),
-            });
-            let found = match found.len() {
-                0 => "no equilibrium".to_owned(),
-                1 => "1 equilibrium".to_owned(),
-                n => format!("{n} equilibria"),
-            };
-            let name = prepared.coordinate_name(coordinate);
             let period = match is_whole_period {
                 true => ", one revolution around the start",
                 false => "",
             };
-            format!("{title}: {found} of {name} between {from} and {to}{period}\n")
+            let interval = interval_text(prepared, coordinate, [*from, *to]);
+            format!("{title}: {found_count} of {interval}{period}\n")
         }
-        None => {
-            let free = count(prepared.machine.free().len(), "free coordinate");
+        SearchedRange::Starts { starts, ranges } => {
+            let ranges = free.iter().zip(ranges);
+            let ranges: Vec<String> = ranges
+                .map(|(&i, range)| interval_text(prepared, i, *range))
+                .collect();
             format!(
-                "{title}: the equilibrium of {free} that Newton's method finds from the start\n"
+                "{title}: {found_count} of {} found from {starts} starts, spread evenly over {}; a search from starts \
+                 cannot prove that there are no others\n",
+                count(free.len(), "free coordinate"),
+                ranges.join(", ")
             )
         }
     };
+    if let Some(curves) = results.curves.as_ref().filter(|_| found.is_empty()) {
+        let (coordinate, is_angle) = prepared.first_free_coordinate();
+        let forces = curves.force_and_potential.iter().map(|[force, _]| *force);
+        let [low, high] = extent(forces).map(number);
+        let (name, unit) = (prepared.coordinate_name(coordinate), force_unit(is_angle));
+        text += &match low == high {
+            true => format!("  the static force along {name} is {low} {unit} everywhere\n"),
+            false => {
+                format!("  the static force along {name} stays between {low} and {high} {unit}\n")
+            }
+        };
+    }
     for equilibrium in found {
         text += &describe_equilibrium(prepared, equilibrium);
     }
     text + &prepared.branch_note()
+}
+
+/// `phi between 10° and 20°`.
+fn interval_text(prepared: &SceneMachine<'_>, actuator: usize, interval: [f64; 2]) -> String {
+    let [from, to] = interval.map(|q| match prepared.is_angle(actuator) {
+        true => format!("{}°", digits(q.to_degrees(), 6)),
+        false => format!("{} m", digits(q, 6)),
+    });
+    format!(
+        "{} between {from} and {to}",
+        prepared.coordinate_name(actuator)
+    )
 }
 
 /// An equilibrium as text.
@@ -72,12 +99,14 @@ pub(crate) fn describe_equilibrium(
     equilibrium: &Equilibrium,
 ) -> String {
     let start = prepared.initial_state();
-    let free = prepared.machine.free().iter().enumerate();
-    let positions: Vec<String> = free
+    let free = || prepared.machine.free().iter().enumerate();
+    let positions: Vec<String> = free()
         .map(|(k, &i)| {
-            let deflection = digits(equilibrium.y[k] - start[k], 6);
+            let (q, error) = (equilibrium.y[k], equilibrium.errors[k]);
+            let error_from_start = error + f64::EPSILON * q.abs().max(start[k].abs());
+            let deflection = digits_within(q - start[k], error_from_start, 6);
             let unit = coordinate_unit(prepared.is_angle(i));
-            let position = prepared.describe_coordinate(i, equilibrium.y[k]);
+            let position = prepared.describe_coordinate_within(i, q, error);
             format!("{position}, {deflection} {unit} from the start")
         })
         .collect();
@@ -85,26 +114,89 @@ pub(crate) fn describe_equilibrium(
         Stability::Asymptotic => "asymptotically stable",
         Stability::Centre => "stable without damping (centre)",
         Stability::Unstable => "unstable",
+        Stability::Neutral => "neutral",
         Stability::Undecided => "stability is not decided by the linearisation",
     };
-    let eigenvalues = describe_eigenvalues(&equilibrium.eigenvalues);
-    format!("  {}: {stability}\n{eigenvalues}", positions.join("; "))
+    let mut text = format!("  {}: {stability}\n", positions.join("; "));
+    text += &describe_neutral(prepared, equilibrium);
+    text += &describe_eigenvalues(&equilibrium.eigenvalues, &equilibrium.eigenvalue_errors);
+    let errors = free().map(|(k, &i)| {
+        let unit = coordinate_unit(prepared.is_angle(i));
+        format!(
+            "{:.1e} {unit} in {}",
+            equilibrium.errors[k],
+            prepared.coordinate_name(i)
+        )
+    });
+    let errors: Vec<String> = errors.collect();
+    let eigenvalues = largest(&equilibrium.eigenvalue_errors);
+    text + &format!(
+        "    estimated errors: {}, {eigenvalues:.1e} 1/s in the eigenvalues\n",
+        errors.join(", ")
+    )
 }
 
-/// Eigenvalues as text: a complex pair once, with its frequency and damping.
-pub(crate) fn describe_eigenvalues(values: &[[f64; 2]]) -> String {
-    let one = |&z: &[f64; 2]| {
-        let [re, im] = without_rounding(z);
+/// The directions in which equilibria go on.
+fn describe_neutral(prepared: &SceneMachine<'_>, equilibrium: &Equilibrium) -> String {
+    let mut text = String::new();
+    for neutral in &equilibrium.neutral {
+        let free = prepared.machine.free().iter().zip(&neutral.direction);
+        let moved: Vec<(usize, f64)> = free
+            .filter(|(_, part)| **part != 0.0)
+            .map(|(&i, part)| (i, *part))
+            .collect();
+        text += &match (neutral.extent, moved.as_slice()) {
+            (Some(extent), &[(i, _)]) => {
+                let interval = interval_text(prepared, i, extent);
+                format!("    neutral: every position of {interval} is an equilibrium\n")
+            }
+            (_, &[(i, _)]) => {
+                let name = prepared.coordinate_name(i);
+                format!(
+                    "    neutral direction {name}: nothing drives it back or away, it stays where it is put\n"
+                )
+            }
+            (_, several) => {
+                let parts = several.iter().map(|&(i, part)| {
+                    let name = prepared.coordinate_name(i);
+                    format!(
+                        "{} {} of {name}",
+                        digits(part, 4),
+                        coordinate_unit(prepared.is_angle(i))
+                    )
+                });
+                let parts: Vec<String> = parts.collect();
+                format!(
+                    "    neutral direction {}: nothing drives them back or away along it\n",
+                    parts.join(" with ")
+                )
+            }
+        };
+    }
+    text
+}
+
+/// The largest of some errors.
+pub(crate) fn largest(errors: &[f64]) -> f64 {
+    errors.iter().copied().fold(0.0, f64::max)
+}
+
+/// Eigenvalues as text, to the digits that their errors leave: a complex pair once, with its frequency and damping.
+pub(crate) fn describe_eigenvalues(values: &[[f64; 2]], errors: &[f64]) -> String {
+    let one = |(&[re, im], &error): (&[f64; 2], &f64)| {
         let size = re.hypot(im);
-        let damping = digits(if re == 0.0 { 0.0 } else { -re / size }, 6);
-        let [a, b, angular, frequency] = [re, im, size, size / TAU].map(|v| digits(v, 9));
-        match im {
-            0.0 => format!("    eigenvalue {a} 1/s\n"),
-            im if im < 0.0 => String::new(),
-            _ => format!(
-                "    eigenvalues {a} ± {b}i 1/s: {angular} rad/s = {frequency} Hz, damping ratio {damping}\n"
-            ),
+        let within = |value: f64, error: f64| digits_within(value, error, 9);
+        let [a, b] = [re, im].map(|part| within(part, error));
+        if im.abs() <= error {
+            return format!("    eigenvalue {a} 1/s\n");
+        } else if im < 0.0 {
+            return String::new();
         }
+        let (angular, frequency) = (within(size, error), within(size / TAU, error / TAU));
+        let damping = digits_within(-re / size, error / size, 6);
+        format!(
+            "    eigenvalues {a} ± {b}i 1/s: {angular} rad/s = {frequency} Hz, damping ratio {damping}\n"
+        )
     };
-    values.iter().map(one).collect()
+    values.iter().zip(errors).map(one).collect()
 }

@@ -16,6 +16,7 @@ pub(crate) use labels::{
     initial_state_location, joint_labels, joint_names, labels, missing_section_label, start_labels,
 };
 pub use motion::explain_motion;
+pub(crate) use motion::{StepLimits, explain_max_steps};
 pub use position::explain_position;
 pub(crate) use position::{describe_coordinate, describe_ends, describe_limit, quoted_coordinate};
 pub use study_error::{StudyError, SweepError};

@@ -4,7 +4,7 @@ use crate::explain::{
     StudyError, body_names, explain_position, initial_state_location, joint_labels, labels,
     quoted_coordinate, scene_error,
 };
-use crate::number_format::{coordinate_unit, digits, number};
+use crate::number_format::{coordinate_unit, digits, force_unit, number};
 use dwell_dynamics::DynamicsError;
 use dwell_geometry::{ActuatorId, BodyId, Plan};
 use dwell_kinetostatics::KinetostaticsError;
@@ -21,6 +21,9 @@ pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> Stud
             explain_near_branches(scene, plan, *t, [*q, *half_width])
         }
         DynamicsError::NoInertia { q, .. } => explain_no_inertia(scene, *q),
+        DynamicsError::Unbalanced { actuator, force } => {
+            explain_unbalanced(scene, *actuator, *force)
+        }
         DynamicsError::VariesTooFast {
             source_index,
             width,
@@ -33,6 +36,48 @@ pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> Stud
             scene_error(scene, message, help, [(at, label)])
         }
     }
+}
+
+/// What limits the steps of an integration.
+pub(crate) struct StepLimits {
+    /// The longest step that was asked for, s.
+    pub(crate) max_step: Option<f64>,
+    /// The option that sets the tolerance.
+    pub(crate) tolerance: &'static str,
+}
+
+/// Explains a motion that takes too many steps: it is the longest step allowed that makes them many where they are on
+/// average at least half as long, else the tolerance.
+pub(crate) fn explain_max_steps(
+    scene: &Scene,
+    t: f64,
+    max_steps: usize,
+    limits: &StepLimits,
+) -> StudyError {
+    let reached = digits(t, 2);
+    let mean = t / max_steps as f64;
+    let tolerance = limits.tolerance;
+    let (cause, help) = match limits.max_step {
+        Some(max_step) if mean >= 0.5 * max_step => (
+            format!(": --max-step allows none above {} s", number(max_step)),
+            "end the motion earlier, or give a longer --max-step, or none".to_owned(),
+        ),
+        Some(_) => (
+            ": the tolerance, not --max-step, makes them short".to_owned(),
+            format!("end the motion earlier, or use a larger {tolerance}"),
+        ),
+        None => (
+            String::new(),
+            format!("end the motion earlier, or use a larger {tolerance}"),
+        ),
+    };
+    let message = format!("the maximum of {max_steps} steps is reached at t = {reached} s{cause}");
+    scene_error(
+        scene,
+        message,
+        &help,
+        [(SceneLocation::Duration, "too long")],
+    )
 }
 
 /// Message, help, location and its label of an error that needs no more than its own numbers. One arm for each error,
@@ -87,7 +132,7 @@ fn describe(
                 "the maximum of {max_steps} steps is reached at t = {} s",
                 digits(*t, 2)
             ),
-            "end the motion earlier, or use a larger --rtol or, if it is given, a larger --max-step",
+            "end the motion earlier, or use a larger tolerance",
             SceneLocation::Duration,
             "too long",
         ),
@@ -241,6 +286,27 @@ fn explain_near_branches(
     scene_error(scene, message, help, places)
 }
 
+/// No equilibrium, because a force keeps its sign.
+fn explain_unbalanced(scene: &Scene, actuator: usize, [low, high]: [f64; 2]) -> StudyError {
+    let actuator_of = &scene.mechanism.actuators[actuator];
+    let unit = force_unit(actuator_of.coordinate().is_angle());
+    let name = &actuator_of.name;
+    let forces = match [low, high].map(number) {
+        [low, high] if low == high => format!("is {low} {unit}"),
+        [low, high] => format!("stays between {low} and {high} {unit}"),
+    };
+    let message = format!(
+        "no equilibrium found: the static force along `{name}` {forces} wherever it was evaluated"
+    );
+    let help = "the loads must balance somewhere, as with a spring or a weight against it; \
+                `dwell linearise --about initial` needs no equilibrium";
+    let place = (
+        SceneLocation::Actuator(ActuatorId(actuator)),
+        "pushed to one side only",
+    );
+    scene_error(scene, message, help, [place])
+}
+
 fn explain_no_inertia(scene: &Scene, q: f64) -> StudyError {
     let mechanism = &scene.mechanism;
     let message = format!(
@@ -320,4 +386,69 @@ fn rounded_down(t: f64) -> Option<String> {
     let unit = 10_f64.powf(t.log10().floor() - 1.0);
     let time = (t / unit).floor() * unit;
     (time.is_normal() && time > 0.0).then(|| digits(time, 2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The longest step is blamed where it makes the steps many, and nothing else then; the tolerance by its own option.
+    #[test]
+    fn too_many_steps_are_blamed_on_what_makes_them_many() {
+        let text = r#"
+[bodies.ground]
+points = { A = [0, 0] }
+[bodies.bar]
+points = { A = [0, 0] }
+mass = 2.0
+center = [0.3, 0]
+inertia = 0.05
+[joints]
+A = { revolute = ["ground.A", "bar.A"] }
+[actuators.phi]
+angle = ["ground", "bar"]
+[motion]
+initial-velocity = 1
+duration = 10
+"#;
+        let scene = Scene::parse("bar.toml", text).unwrap();
+        let explain = |max_step, tolerance, t| {
+            let limits = StepLimits {
+                max_step,
+                tolerance,
+            };
+            match explain_max_steps(&scene, t, 1000, &limits) {
+                StudyError::Scene(error) => {
+                    let first = &error.errors()[0];
+                    (
+                        first.message.clone(),
+                        first.help.clone().unwrap_or_default(),
+                    )
+                }
+                other => panic!("{other}"),
+            }
+        };
+        // A thousand steps of 1 µs, as long as they may be.
+        let (message, help) = explain(Some(1e-6), "--rtol", 1e-3);
+        assert!(
+            message.contains("--max-step allows none above 1e-6 s"),
+            "{message}"
+        );
+        assert!(
+            help.contains("longer --max-step") && !help.contains("--rtol"),
+            "{help}"
+        );
+        // Much shorter than they may be.
+        let (message, help) = explain(Some(1.0), "--rtol", 1e-3);
+        assert!(message.contains("not --max-step"), "{message}");
+        assert!(help.contains("larger --rtol"), "{help}");
+        for tolerance in ["--rtol", "--accuracy"] {
+            let (message, help) = explain(None, tolerance, 1e-3);
+            assert!(
+                !message.contains("--max-step") && !help.contains("--max-step"),
+                "{help}"
+            );
+            assert!(help.contains(tolerance), "{help}");
+        }
+    }
 }

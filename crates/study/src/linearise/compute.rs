@@ -1,11 +1,12 @@
 //! The operating point, and names and units of states, inputs and outputs.
 
-use crate::equilibria::compute::find_equilibria;
+use crate::equilibria::compute::{SearchedRange, find_equilibria, force_extent};
 use crate::explain::StudyError;
 use crate::models::{SceneMachine, build_machine, requested_reactions};
 use crate::number_format::force_unit;
 use dwell_dynamics::{
-    DynamicsError, Equilibrium, Machine, StateSpace, is_equilibrium, linearise as linearise_about,
+    DynamicsError, Equilibrium, Machine, StateSpace, eigenvalues_about, is_equilibrium,
+    linearise as linearise_about,
 };
 use dwell_findings::Column;
 use dwell_geometry::Reaction;
@@ -23,13 +24,26 @@ pub enum OperatingPoint {
 
 /// The equilibrium nearest to the start.
 fn nearest_equilibrium(prepared: &SceneMachine<'_>) -> Result<Equilibrium, StudyError> {
-    let (found, _) = find_equilibria(prepared)?;
-    let start = prepared.initial_state()[0];
-    let distance = |e: &Equilibrium| (e.y[0] - start).abs();
+    let (found, searched) = find_equilibria(prepared)?;
+    let (start, n) = (prepared.initial_state(), prepared.machine.free().len());
+    let distance = |e: &Equilibrium| -> f64 {
+        let differences = e.y[..n].iter().zip(&start).map(|(a, b)| (a - b).powi(2));
+        differences.sum()
+    };
     let found = found.into_iter();
     let nearest = found.min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    let what = "the static force has no zero in the range";
-    nearest.ok_or_else(|| prepared.explain(&DynamicsError::NoEquilibrium { what }))
+    match (nearest, searched) {
+        (Some(nearest), _) => Ok(nearest),
+        (None, SearchedRange::Interval(interval)) => {
+            let force = force_extent(prepared, interval)?;
+            let (actuator, _) = prepared.first_free_coordinate();
+            Err(prepared.explain(&DynamicsError::Unbalanced { actuator, force }))
+        }
+        (None, SearchedRange::Starts { .. }) => {
+            let what = "no start leads to one";
+            Err(prepared.explain(&DynamicsError::NoEquilibrium { what }))
+        }
+    }
 }
 
 /// Names and units of states, inputs and outputs.
@@ -85,6 +99,8 @@ pub struct LinearisedMotion<'a> {
     pub linear: StateSpace,
     /// The eigenvalues of A, 1/s.
     pub eigenvalues: Vec<[f64; 2]>,
+    /// The estimated error of each.
+    pub eigenvalue_errors: Vec<f64>,
     /// Names and units of states, inputs and outputs.
     pub names: StateSpaceNames,
     /// Requested reactions that are statically indeterminate, and so no outputs.
@@ -113,7 +129,9 @@ pub fn compute_linearisation(
     let linear = linearise_about(&machine, 0.0, &state).map_err(explain)?;
     let is_equilibrium =
         equilibrium.is_some() || is_equilibrium(&machine, 0.0, &state, &linear).map_err(explain)?;
-    let eigenvalues = linear.eigenvalues().map_err(explain)?;
+    let state_errors = equilibrium.as_ref().map_or(&[][..], |e| &e.errors);
+    let found = eigenvalues_about(&machine, 0.0, &state, state_errors, &linear);
+    let (eigenvalues, eigenvalue_errors) = found.map_err(explain)?;
     let names = StateSpaceNames::new(&prepared, &machine);
     Ok(LinearisedMotion {
         prepared,
@@ -122,6 +140,7 @@ pub fn compute_linearisation(
         is_equilibrium,
         linear,
         eigenvalues,
+        eigenvalue_errors,
         names,
         omitted,
     })

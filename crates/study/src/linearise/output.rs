@@ -1,6 +1,6 @@
 //! Writes a linearised motion: matrices, document and summary.
 
-use crate::equilibria::output::{describe_eigenvalues, describe_equilibrium};
+use crate::equilibria::output::{describe_eigenvalues, describe_equilibrium, largest};
 use crate::explain::StudyError;
 use crate::linearise::compute::{
     LinearisedMotion, OperatingPoint, StateSpaceNames, compute_linearisation,
@@ -80,7 +80,10 @@ fn summary(motion: &LinearisedMotion<'_>) -> String {
                 true => "  an equilibrium: the state derivative is zero there within rounding\n",
                 false => "  not an equilibrium: the state derivative is not zero there\n",
             };
-            summary += &describe_eigenvalues(&motion.eigenvalues);
+            let errors = &motion.eigenvalue_errors;
+            summary += &describe_eigenvalues(&motion.eigenvalues, errors);
+            let error = largest(errors);
+            summary += &format!("    estimated error: {error:.1e} 1/s in the eigenvalues\n");
         }
     }
     for (what, columns) in signals(names) {

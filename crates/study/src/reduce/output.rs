@@ -4,7 +4,7 @@ use super::figures;
 use crate::branch_note::branch_note;
 use crate::explain::StudyError;
 use crate::models::requested_reactions;
-use crate::number_format::digits;
+use crate::number_format::digits_within;
 use crate::output::{Outcome, indeterminate_note, separating_note, signed_png};
 use crate::ranges::extent;
 use crate::reduce::compute::{
@@ -74,17 +74,22 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
     let (prepared, curves) = (&reduction.prepared, &reduction.curves);
     let extent_of = |pick: fn(&Coefficients) -> f64| extent(curves.coefficients.iter().map(pick));
     let m = extent_of(|c| c.m);
-    let [m_min, m_max] = m.map(|m| digits(m, 9));
-    let [h_min, h_max] = match reduction.errors.is_rounding[1] {
+    let half_dm = match reduction.errors.is_rounding[1] {
         true => [0.0; 2],
         false => extent_of(|c| c.half_dm),
-    }
-    .map(|h| digits(h, 9));
+    };
+    // Errors are relative to the largest value.
+    let texts = |values: [f64; 2], error: f64| {
+        let largest = values[0].abs().max(values[1].abs());
+        values.map(|value| digits_within(value, error * largest, 9))
+    };
+    let [m_error, half_dm_error, _] = reduction.errors.max_errors;
+    let ([m_min, m_max], [h_min, h_max]) = (texts(m, m_error), texts(half_dm, half_dm_error));
     let (title, count) = (&prepared.scene.title, curves.q.len());
     let name = prepared.coordinate_name();
     let mut summary = format!(
-        "{title}: {count} positions of {name}\n  m    from {m_min} to {m_max} kg m²\n  ½m′  from {h_min} to {h_max} \
-         kg m²/rad\n"
+        "{title}: {count} positions of {name}, and there\n  m    from {m_min} to {m_max} kg m²\n  ½m′  from {h_min} to \
+         {h_max} kg m²/rad\n"
     );
     summary += &describe_rounding(&reduction.errors);
     if let Some(note) = note {

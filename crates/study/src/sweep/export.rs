@@ -1,9 +1,9 @@
 //! The output of a sweep: table, summary and figure.
 
 use crate::explain::StudyError;
-use crate::number_format::{count, digits, number};
+use crate::number_format::{count, digits, digits_within, number};
 use crate::output::{Outcome, signed_png};
-use crate::sweep::compute::Row;
+use crate::sweep::compute::{Row, SweepQuantity};
 use crate::sweep::figure::figure;
 use crate::sweep::output::PreparedSweep;
 use crate::sweep::spread::Spread;
@@ -115,6 +115,10 @@ fn summary(prepared: &PreparedSweep<'_>, path: &Path, rows: &[Row], counts: Coun
     if counts.missing > 0 {
         text += &format!("  {} not computed yet\n", count(counts.missing, "point"));
     }
+    let quantities = &prepared.requested.quantities;
+    if quantities.iter().any(SweepQuantity::is_extremum) {
+        text += "  smallest and largest values of a motion or a range are searched between its positions, too\n";
+    }
     for (k, heading) in prepared.results.iter().enumerate() {
         if let Some(spread) = Spread::of(rows.iter().map(|row| row.result.values[k])) {
             text += &spread_text(heading, &spread, design.is_random());
@@ -131,9 +135,12 @@ fn spread_text(heading: &str, spread: &Spread, random: bool) -> String {
         None => text + "\n",
         Some(deviation) => {
             let [low, high] = spread.quantiles.map(number);
-            let (mean, deviation) = (digits(spread.mean, 9), digits(deviation, 4));
+            let [mean_error, deviation_error] = spread.sampling_errors(deviation);
+            let mean = digits_within(spread.mean, mean_error, 9);
+            let deviation = digits_within(deviation, deviation_error, 4);
+            let error = digits(mean_error, 2);
             format!(
-                "{text}, mean {mean}, standard deviation {deviation}, 95 % between {low} and {high}\n"
+                "{text}, mean {mean} (standard error {error}), standard deviation {deviation}, 95 % between {low} and {high}\n"
             )
         }
     }

@@ -10,6 +10,8 @@ pub(crate) struct Spread {
     pub(crate) deviation: Option<f64>,
     /// The 2.5 % and 97.5 % quantiles.
     pub(crate) quantiles: [f64; 2],
+    /// Number of values.
+    pub(crate) count: f64,
 }
 
 impl Spread {
@@ -28,7 +30,14 @@ impl Spread {
             mean,
             deviation: (sorted.len() > 1).then(|| (squares / (count - 1.0)).sqrt()),
             quantiles: [0.025, 0.975].map(|probability| quantile(&sorted, probability)),
+            count,
         })
+    }
+
+    /// The standard errors of the mean and of a standard deviation, of a normal sample.
+    pub(crate) fn sampling_errors(&self, deviation: f64) -> [f64; 2] {
+        let mean = deviation / self.count.sqrt();
+        [mean, deviation / (2.0 * (self.count - 1.0)).sqrt()]
     }
 }
 
@@ -53,6 +62,11 @@ mod tests {
         // Σ (k − 20)² over 0 … 40 is 2 · 20 · 21 · 41 / 6 = 5740, over n − 1 = 40; one rounding of a root.
         let deviation = spread.deviation.expect("two values");
         assert!((deviation - 143.5_f64.sqrt()).abs() < 1e-14);
+        // √(143.5 / 41) and √(143.5 / 80).
+        let errors = spread.sampling_errors(deviation);
+        for (error, square) in errors.iter().zip([143.5 / 41.0, 143.5 / 80.0]) {
+            assert!((error * error - square).abs() < 1e-13, "{errors:?}");
+        }
         assert_eq!(Spread::of([f64::NAN].into_iter()), None);
         assert_eq!(
             Spread::of([2.0].into_iter()).and_then(|s| s.deviation),

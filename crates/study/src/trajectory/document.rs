@@ -1,10 +1,11 @@
 //! The text of a trajectory analysis: the printed summary, and the Markdown page with extrema, column meanings and figures.
 
-use crate::number_format::{count, number};
+use crate::number_format::{count, digits_within, number};
 use crate::output::{indeterminate_note, provenance_line};
+use crate::ranges::extent;
 use crate::trajectory::compute::{
     Analysis, ComputedTrajectory, Extremum, Quantity, SectionedLink, Trajectory, TrajectoryResults,
-    selected_columns,
+    is_searched_in_rows, selected_columns,
 };
 use dwell_kinetostatics::{Distribution, Section};
 use dwell_report::{Block, Document as Page, Figure};
@@ -50,7 +51,7 @@ impl<'a> Document<'a> {
             results,
             trajectory,
             selected,
-            extrema: sorted_extrema(results, &listed),
+            extrema: sorted_extrema(results, &listed, abscissa),
             abscissa: (name, unit),
             at: format!("at {name} [{unit}]"),
             abscissa_values: results.rows.iter().map(|row| row[abscissa]).collect(),
@@ -77,7 +78,7 @@ impl<'a> Document<'a> {
         let at = &self.at;
         let header = ["quantity", "unit", "min", at, "max", at];
         let row = |of: &ColumnExtrema| {
-            let cells = of.ends.map(|end| [end.value, end.at].map(number));
+            let cells = of.ends.map(|end| of.texts(end));
             let mut row = vec![of.name.clone(), of.unit.to_owned()];
             row.extend(cells.into_iter().flatten());
             row
@@ -130,9 +131,10 @@ impl<'a> Document<'a> {
         };
         let (abscissa, abscissa_unit) = self.abscissa;
         let mut listed: Vec<(&str, f64)> = Vec::new();
+        let mut largest_error = 0.0_f64;
         for of in &self.extrema {
             let (name, unit) = (&of.name, of.unit);
-            let Extremum { value, at } = of.largest();
+            let value = of.largest().value;
             let size = value.abs();
             let of_unit = listed.iter().filter(|(u, _)| *u == unit);
             let mut of_unit = of_unit.map(|(_, v)| v.abs());
@@ -150,9 +152,27 @@ impl<'a> Document<'a> {
                 continue;
             }
             listed.push((unit, value));
-            let [value, at] = [value, at].map(number);
-            text +=
-                &format!("  {name} reaches {value} {unit} at {abscissa} = {at} {abscissa_unit}\n");
+            let is_known = of.error < size;
+            let [value, at] = of.texts(of.largest());
+            text += &match is_known {
+                true => {
+                    largest_error = largest_error.max(of.error / size);
+                    format!(
+                        "  {name} reaches {value} {unit} at {abscissa} = {at} {abscissa_unit}\n"
+                    )
+                }
+                false => {
+                    format!(
+                        "  {name}: its largest value is not known, as its estimated error is {:.1e} {unit}\n",
+                        of.error
+                    )
+                }
+            };
+        }
+        if largest_error > 0.0 && self.trajectory.analysis == Analysis::FreeMotion {
+            text += &format!(
+                "  estimated error of these values: at most {largest_error:.1e} of each\n"
+            );
         }
         if !text.is_empty() && !self.results.extrema.are_between_rows {
             text += &format!("  {LARGEST_OF_ROWS}\n");
@@ -233,7 +253,9 @@ impl<'a> Document<'a> {
                 "Smallest and largest values in the rows of the table: between them there may be larger ones."
             }
         };
-        blocks.push(Block::Text(where_found.to_owned()));
+        blocks.push(Block::Text(
+            where_found.to_owned() + &self.searched_in_rows(),
+        ));
         blocks.push(self.extrema_table());
         blocks.extend(self.internal_forces());
         blocks.push(Block::Heading("Columns".to_owned()));
@@ -256,6 +278,21 @@ impl<'a> Document<'a> {
         blocks.push(Block::Text(format!("{provenance} · {method}")));
         let title = self.title();
         Page { title, blocks }.markdown()
+    }
+
+    /// The sentence about the columns whose extrema are those of the rows although others are looked for between them.
+    fn searched_in_rows(&self) -> String {
+        if !self.results.extrema.are_between_rows {
+            return String::new();
+        }
+        let columns = self.selected.iter().map(|&k| &self.results.columns[k]);
+        let names = columns
+            .filter(|c| is_searched_in_rows(c))
+            .map(|c| c.name.as_str());
+        match names.collect::<Vec<_>>().as_slice() {
+            [] => String::new(),
+            names => format!(" Of the rows only: {}.", names.join(", ")),
+        }
     }
 
     fn internal_forces(&self) -> Vec<Block> {
@@ -300,9 +337,36 @@ struct ColumnExtrema {
     unit: &'static str,
     /// The smallest and the largest value.
     ends: [Extremum; 2],
+    /// The estimated error of its values, in its unit.
+    error: f64,
+    /// Extent of the abscissa.
+    span: f64,
 }
 
+/// An extremum is found to this part of the abscissa: there, a rounding of its value is the change of a parabola.
+const FOUND_WITHIN: f64 = 1e-6;
+
 impl ColumnExtrema {
+    /// An extremum and where it occurs, to the digits that their errors leave.
+    fn texts(&self, Extremum { value, at }: Extremum) -> [String; 2] {
+        let size = self
+            .ends
+            .iter()
+            .map(|end| end.value.abs())
+            .fold(0.0, f64::max);
+        let relative = if self.error > 0.0 {
+            self.error / size
+        } else {
+            0.0
+        };
+        let error_at = self.span * (FOUND_WITHIN + relative).min(1.0);
+        let value = match self.error.is_finite() {
+            true => digits_within(value, self.error, 6),
+            false => number(value),
+        };
+        [value, digits_within(at, error_at, 6)]
+    }
+
     /// The extremum of larger magnitude.
     fn largest(&self) -> Extremum {
         let [min, max] = self.ends;
@@ -315,12 +379,32 @@ impl ColumnExtrema {
 }
 
 /// The extrema of some columns, grouped by unit, largest absolute value first.
-fn sorted_extrema(results: &TrajectoryResults, listed: &[usize]) -> Vec<ColumnExtrema> {
+fn sorted_extrema(
+    results: &TrajectoryResults,
+    listed: &[usize],
+    abscissa: usize,
+) -> Vec<ColumnExtrema> {
+    let [from, to] = extent(results.rows.iter().map(|row| row[abscissa]));
+    // Of the forces along a prescribed motion the rounding is known, relative to the largest of their unit.
+    let rounding = |unit: &str| {
+        let columns = results.columns.iter().zip(&results.extrema.of_columns);
+        let alike =
+            columns.filter(|(column, _)| column.unit == unit && matches!(unit, "N" | "N m"));
+        let sizes = alike.filter_map(|(_, ends)| Some(ends.as_ref()?.map(|end| end.value.abs())));
+        results.rounding_error.unwrap_or(0.0) * sizes.flatten().fold(0.0, f64::max)
+    };
     let entry = |&k: &usize| {
+        let unit = results.columns[k].unit;
         Some(ColumnExtrema {
             name: results.columns[k].name.clone(),
-            unit: results.columns[k].unit,
+            unit,
             ends: results.extrema.of_columns[k]?,
+            error: results
+                .errors
+                .get(k)
+                .copied()
+                .unwrap_or_else(|| rounding(unit)),
+            span: to - from,
         })
     };
     let mut all: Vec<ColumnExtrema> = listed.iter().filter_map(entry).collect();

@@ -4,6 +4,7 @@
 
 mod branch_hints;
 mod early_stops;
+mod errors;
 mod forces;
 mod former_names;
 mod gears;

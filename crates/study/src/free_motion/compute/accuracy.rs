@@ -80,8 +80,11 @@ impl FreeMotionProblem<'_> {
         let method_text = format!("{}{suffix}, tolerance {tolerance}", method.name());
         let how = format!("{method_text}, {reason}; {} runs", found.runs);
         let (motion, difference) = (found.motion, &found.difference);
-        let found = ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, difference);
-        Ok(found)
+        let computed = ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, difference);
+        Ok(ComputedMotion {
+            comparison: Some(found.before),
+            ..computed
+        })
     }
 
     /// The first candidate that reaches the accuracy, or else the one that comes nearest to it.
@@ -124,24 +127,19 @@ impl FreeMotionProblem<'_> {
         let by_explicit = statistics.evaluations as f64
             * (stiff_fraction + (1.0 - stiff_fraction) * refinement_ratio.powf(1.0 / 8.0));
         let smooth = [Method::Dop853, Method::Bdf];
-        if reached_end(explicit) && stiff_fraction <= MAX_STIFF_FRACTION {
-            return Ok((smooth, by_explicit, "the motion is smooth".to_owned()));
+        let reached = reached_end(explicit);
+        let reason = |method| reason_for(method, stiff_fraction);
+        if reached && stiff_fraction <= MAX_STIFF_FRACTION {
+            return Ok((smooth, by_explicit, reason(Method::Dop853)));
         }
         let implicit = implicit()?;
         let by_implicit = self.equivalent_evaluations(&implicit.statistics)
             * (BDF_ERROR_RATIO * refinement_ratio).powf(1.0 / 6.0);
-        let percent = 100.0 * stiff_fraction;
-        let stiff = format!("{percent:.0} % of the steps of a coarse run are stiff");
-        // Stiffness is the reason only where it decided.
-        Ok(if reached_end(explicit) && by_explicit <= by_implicit {
-            let reason = format!("{stiff}, but BDF is expected to cost more");
-            (smooth, by_explicit, reason)
+        Ok(if reached && by_explicit <= by_implicit {
+            (smooth, by_explicit, reason(Method::Dop853))
         } else {
-            let reason = match stiff_fraction > MAX_STIFF_FRACTION {
-                true => stiff,
-                false => "a coarse run of DOP853 does not reach the end".to_owned(),
-            };
-            ([Method::Bdf, Method::Dop853], by_implicit, reason)
+            let methods = [Method::Bdf, Method::Dop853];
+            (methods, by_implicit, reason(Method::Bdf))
         })
     }
 
@@ -179,7 +177,23 @@ impl ComputedMotion {
             remarks,
             accuracy: Some([accuracy, difference.largest()]),
             inaccuracy: None,
+            comparison: None,
+            delay: None,
         }
+    }
+}
+
+/// Why a method is chosen, where so many steps of a coarse run of DOP853 were stiff: stiffness is the reason only where it
+/// decided.
+fn reason_for(method: Method, stiff_fraction: f64) -> String {
+    let is_stiff = stiff_fraction > MAX_STIFF_FRACTION;
+    let percent = 100.0 * stiff_fraction;
+    let stiff = format!("{percent:.0} % of the steps of a coarse run are stiff");
+    match (method.is_implicit(), is_stiff) {
+        (false, true) => format!("{stiff}, but BDF is expected to cost more"),
+        (false, false) => "the motion is smooth".to_owned(),
+        (true, true) => stiff,
+        (true, false) => "a coarse run of DOP853 does not reach the end".to_owned(),
     }
 }
 
@@ -288,6 +302,25 @@ mod tests {
             "{difference:e} {estimate:e}"
         );
         found.method_text
+    }
+
+    /// DOP853 is never chosen because of stiffness, and BDF never for want of it.
+    #[test]
+    fn stiffness_is_the_reason_only_where_it_decided() {
+        for stiff_fraction in [0.0, 0.04, 0.06, 0.9] {
+            let reason = reason_for(Method::Dop853, stiff_fraction);
+            let expected = match stiff_fraction > MAX_STIFF_FRACTION {
+                true => "but BDF is expected to cost more",
+                false => "smooth",
+            };
+            assert!(reason.ends_with(expected), "{stiff_fraction}: {reason}");
+        }
+        assert_eq!(
+            reason_for(Method::Bdf, 0.9),
+            "90 % of the steps of a coarse run are stiff"
+        );
+        let unfinished = reason_for(Method::Bdf, 0.01);
+        assert!(!unfinished.contains("stiff"), "{unfinished}");
     }
 
     /// Forty seconds under a force, a couple and a motor.

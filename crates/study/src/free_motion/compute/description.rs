@@ -1,16 +1,20 @@
 //! The summary of a motion.
 
-use crate::estimate::is_rounding;
-use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
+use crate::estimate::{self, is_rounding};
+use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
 use crate::models::SolverSettings;
-use crate::number_format::{coordinate_unit, digits};
+use crate::number_format::{coordinate_unit, digits, digits_within};
 use dwell_dynamics::{
-    MachineWorkspace, Method, MotionClass, OdeState, Options, Orbit, Statistics, motion_class,
+    DynamicsError, EventOccurrence, MachineWorkspace, Method, MotionClass, OdeState, Options,
+    Orbit, ReducedState, Statistics, eigenvalues_about, is_equilibrium, linearise, motion_class,
     solve,
 };
 
 /// Largest relative error of the energy balance that is not commented on.
 const MAX_ENERGY_LOSS: f64 = 1e-6;
+/// A kinetic energy below this part of what the loads can do is that of rounding: it takes 1e-13 of the size of the
+/// mechanism to gain it.
+const REST: f64 = 1e-26;
 /// Another method is suggested if it takes this many times fewer evaluations.
 const HINT_COST_RATIO: f64 = 4.0;
 
@@ -25,7 +29,7 @@ impl FreeMotionProblem<'_> {
         let unit = coordinate_unit(self.output_model.plan().is_angle(0));
         let start = self.initial_reduced_state();
         let period = || match Orbit::loaded(&self.machine, start) {
-            Ok(orbit) => format!("; period {} s by quadrature", digits(orbit.period, 13)),
+            Ok(orbit) => format!("; period {} by quadrature", self.period_text(&orbit, start)),
             Err(_) => String::new(),
         };
         let class = match motion_class(&self.machine, start) {
@@ -37,7 +41,8 @@ impl FreeMotionProblem<'_> {
                 format!("rotation; kinetic energy at the potential maximum {kinetic} J{period}")
             }
             Ok(MotionClass::Libration { turning_points }) => {
-                let [a, b] = turning_points.map(|q| digits(q, 10));
+                let errors = self.turning_point_errors(start, turning_points);
+                let [a, b] = [0, 1].map(|k| digits_within(turning_points[k], errors[k], 10));
                 format!("libration between {name} = {a} and {b} {unit}{}", period())
             }
             Ok(MotionClass::Asymptotic { to }) => {
@@ -49,30 +54,67 @@ impl FreeMotionProblem<'_> {
         format!("  by energy: {class}\n")
     }
 
-    pub(crate) fn summary(
-        &self,
-        motion: &SegmentedMotion,
-        method_text: &str,
-        duration: f64,
-    ) -> String {
+    /// A period (s) with its error.
+    fn period_text(&self, orbit: &Orbit, start: ReducedState) -> String {
+        let perturbed = |factor: f64| {
+            let q_dot = start.q_dot * factor;
+            Orbit::loaded(&self.machine, ReducedState { q_dot, ..start })
+        };
+        match estimate::of_period(orbit, perturbed) {
+            Ok(error) => {
+                let period = digits_within(orbit.period, error, 13);
+                format!("{period} s (estimated error {error:.1e} s)")
+            }
+            Err(_) => format!("{} s (its error is not known)", digits(orbit.period, 3)),
+        }
+    }
+
+    /// The errors of turning points (rad or m), from their change under the rounding of the start.
+    fn turning_point_errors(&self, start: ReducedState, turning_points: [f64; 2]) -> [f64; 2] {
+        let mut errors = turning_points.map(|q| 4.0 * f64::EPSILON * q.abs().max(start.q.abs()));
+        for side in [-1.0, 1.0] {
+            let rounding = 2.0 * side * f64::EPSILON;
+            let near = ReducedState {
+                q: start.q + rounding * start.q.abs().max(1.0),
+                q_dot: start.q_dot * (1.0 + rounding),
+                ..start
+            };
+            match motion_class(&self.machine, near) {
+                Ok(MotionClass::Libration {
+                    turning_points: others,
+                }) => {
+                    for (error, (a, b)) in errors.iter_mut().zip(turning_points.iter().zip(others))
+                    {
+                        *error = error.max((a - b).abs());
+                    }
+                }
+                // Within rounding it is another motion.
+                _ => errors = turning_points.map(f64::abs),
+            }
+        }
+        errors
+    }
+
+    pub(crate) fn summary(&self, computed: &ComputedMotion, duration: f64) -> String {
+        let (motion, method_text) = (&computed.motion, &computed.method_text);
         let end = motion.end_time();
         let of_all = match end < duration {
             true => format!(" of {}", digits(duration, 7)),
             false => String::new(),
         };
-        let mut text = format!("  {}{of_all} s by {method_text}\n", digits(end, 7));
+        let end_error = match &computed.comparison {
+            Some(second) if end < duration => estimate::of_number(end, second.end_time()),
+            _ => 0.0,
+        };
+        let end = digits_within(end, end_error, 7);
+        let mut text = format!("  {end}{of_all} s by {method_text}\n");
         for (i, event) in self.spec.events.iter().enumerate() {
-            let times = motion.occurrences().filter(|(_, o)| o.event == i);
-            let times: Vec<_> = times.collect();
-            let first = times.first();
-            let first = first.map(|(_, o)| format!(", first at t = {} s", digits(o.state.t, 13)));
-            let stopped = match first {
-                Some(_) if event.terminal => "; the motion ends there",
+            let happened = event_text(computed, i);
+            let stopped = match motion.occurrences().any(|(_, o)| o.event == i) {
+                true if event.terminal => "; the motion ends there",
                 _ => "",
             };
-            let (name, count) = (&event.name, times.len());
-            let first = first.unwrap_or_default();
-            text += &format!("  {name}: {count} times{first}{stopped}\n");
+            text += &format!("  {}: {happened}{stopped}\n", event.name);
         }
         for change in &motion.chart_changes {
             text += &format!("  {change}\n");
@@ -84,11 +126,61 @@ impl FreeMotionProblem<'_> {
             cost.evaluations, cost.jacobians
         );
         text += &format!("{} factorisations\n", cost.factorisations);
-        text + &self.describe_motion_class() + &self.describe_energy_balance(motion)
+        text + &self.describe_motion_class() + &self.describe_energy_balance(motion, duration)
+    }
+
+    /// What the loads and the initial speed can do over a duration (s), J: the energies beside which others are rounding.
+    fn energy_scale(&self, duration: f64, max_potential: f64) -> f64 {
+        self.machine.largest_work(0.0, duration).max(max_potential)
+    }
+
+    /// Whether a motion starts at rest in an unstable equilibrium, within rounding, and leaves it.
+    pub(crate) fn leaves_unstable_equilibrium(&self, motion: &SegmentedMotion) -> bool {
+        self.starts_unstable() && self.moves(motion)
+    }
+
+    /// Whether it starts at rest in an unstable equilibrium, within rounding.
+    fn starts_unstable(&self) -> bool {
+        let start = self.initial_state();
+        if self.machine.depends_on_time() || self.machine.free().is_empty() {
+            return false;
+        }
+        let unstable = || {
+            let linear = linearise(&self.machine, start.t, &start.y)?;
+            if !is_equilibrium(&self.machine, start.t, &start.y, &linear)? {
+                return Ok(false);
+            }
+            let found = eigenvalues_about(&self.machine, start.t, &start.y, &[], &linear);
+            let (values, errors) = found?;
+            Ok::<_, DynamicsError>(
+                values
+                    .iter()
+                    .zip(&errors)
+                    .any(|([re, _], error)| re > error),
+            )
+        };
+        unstable().unwrap_or(false)
+    }
+
+    /// Whether a motion has more kinetic energy than rounding.
+    fn moves(&self, motion: &SegmentedMotion) -> bool {
+        let mut workspaces: Vec<Option<MachineWorkspace>> = Vec::new();
+        let scale = self.energy_scale(motion.end_time(), 0.0);
+        let mut moves = false;
+        for (chart, point) in motion.steps() {
+            let machine = self.machine(motion, chart);
+            workspaces.resize_with(workspaces.len().max(chart + 1), || None);
+            let workspace = workspaces[chart].get_or_insert_with(|| machine.workspace());
+            if let Ok(state) = machine.evaluate(point.t, &point.y, workspace) {
+                let [kinetic, potential] = state.energy();
+                moves |= kinetic > REST * scale.max(potential.abs());
+            }
+        }
+        moves
     }
 
     /// The error of the energy balance.
-    fn describe_energy_balance(&self, motion: &SegmentedMotion) -> String {
+    fn describe_energy_balance(&self, motion: &SegmentedMotion, duration: f64) -> String {
         let (mut initial, mut max_difference) = (None, 0.0_f64);
         let (mut max_kinetic, mut max_potential) = (0.0_f64, 0.0_f64);
         let mut workspaces: Vec<Option<MachineWorkspace>> = Vec::new();
@@ -106,20 +198,30 @@ impl FreeMotionProblem<'_> {
             max_potential = max_potential.max(potential.abs());
             max_difference = max_difference.max((sum - initial).abs());
         }
-        if max_kinetic == 0.0 {
-            return "  the mechanism stays at rest: no force moves it\n".to_owned();
+        if max_kinetic <= REST * self.energy_scale(duration, max_potential) {
+            let rounding = if max_kinetic == 0.0 {
+                ""
+            } else {
+                " within rounding"
+            };
+            let mut text = format!("  the mechanism stays at rest{rounding}: no force moves it\n");
+            if self.starts_unstable() {
+                text += "  it starts in an unstable equilibrium, which the least disturbance would end\n";
+            }
+            return text;
         }
         let (kind, largest) = match is_rounding(max_kinetic, max_potential) {
             true => ("potential", max_potential),
             false => ("kinetic", max_kinetic),
         };
-        let (relative_loss, energy) = (max_difference / largest, digits(largest, 6));
+        let relative_loss = max_difference / largest;
+        let energy = digits_within(largest, max_difference, 6);
         let mut text = format!(
             "  energy balance closes to {relative_loss:.1e} of the largest {kind} energy, {energy} J\n"
         );
         // By quadrature it is part of the estimated error.
         if relative_loss > MAX_ENERGY_LOSS && motion.orbit.is_none() {
-            text += "  this is large: use a smaller --rtol\n";
+            text += "  this is large: a finer tolerance is needed\n";
         }
         text
     }
@@ -150,6 +252,7 @@ impl FreeMotionProblem<'_> {
         };
         let options = Options {
             atol: settings.atol,
+            max_step: settings.max_step,
             max_steps: motion.statistics.steps.max(100),
             ..Options::new(other, settings.rtol)
         };
@@ -174,5 +277,36 @@ impl FreeMotionProblem<'_> {
         format!(
             "  hint: --method {name} takes about {ratio:.0} times fewer evaluations from t = {from} to {to} s\n"
         )
+    }
+}
+
+/// How often an event happens in a motion and when first, with the error of that time.
+fn event_text(computed: &ComputedMotion, event: usize) -> String {
+    let times = |motion: &SegmentedMotion| -> Vec<f64> {
+        let all = motion.occurrences().map(|(_, o): (_, &EventOccurrence)| o);
+        let of_event = all.filter(|o| o.event == event);
+        of_event.map(|o| o.state.t).collect()
+    };
+    let own = times(&computed.motion);
+    let others = computed.comparison.as_ref().map(times);
+    let mut text = format!("{} times", own.len());
+    if let Some(others) = others.as_ref().filter(|others| others.len() != own.len()) {
+        text += &format!(
+            " ({} in a second run: within its error it is not certain)",
+            others.len()
+        );
+    }
+    let Some(&first) = own.first() else {
+        return text;
+    };
+    let delay = computed.delay.unwrap_or_default();
+    let other = others.as_ref().and_then(|others| others.first());
+    let error = other.map(|other| estimate::of_number(first, *other) + delay * first);
+    text + &match error {
+        Some(error) => {
+            let first = digits_within(first, error, 13);
+            format!(", first at t = {first} s (estimated error {error:.1e} s)")
+        }
+        None => format!(", first at t = {} s", digits(first, 3)),
     }
 }

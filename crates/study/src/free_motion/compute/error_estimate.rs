@@ -14,21 +14,32 @@ use dwell_scene::Scene;
 /// is wrong.
 const LARGE_ERROR: f64 = 0.01;
 
+/// What a second run says of a motion.
+#[derive(Default)]
+pub(crate) struct ErrorEstimate {
+    /// The line of the summary about the error.
+    pub(crate) text: String,
+    /// Why the motion is no result: the error is large, or holds for a part of it only.
+    pub(crate) inaccuracy: Option<String>,
+    /// The second run.
+    pub(crate) second: Option<SegmentedMotion>,
+}
+
 /// A sample of each of two runs at the same time.
 type SamplePair<'a> = (&'a TrajectorySample, &'a TrajectorySample);
 
 impl FreeMotionProblem<'_> {
-    /// The line of the summary about the error of a motion; and why it is no result, if the error is large, or holds for
-    /// a part of the motion only.
+    /// The estimated error of a motion of which a duration (s) was requested, by a second run.
     pub(crate) fn estimate_error(
         &self,
         scene: &Scene,
         motion: &SegmentedMotion,
         options: &Options,
-    ) -> Result<(String, Option<String>), StudyError> {
+        requested: f64,
+    ) -> Result<ErrorEstimate, StudyError> {
         let duration = motion.end_time();
         if duration == 0.0 {
-            return Ok((String::new(), None));
+            return Ok(ErrorEstimate::default());
         }
         let samples = self.samples(motion).map_err(|e| self.explain(&e))?;
         let finer = estimate::comparison_options(options);
@@ -37,15 +48,26 @@ impl FreeMotionProblem<'_> {
         } else {
             format!("the same tolerance by {}", finer.method.name())
         };
+        // An event that ends the motion may happen later in the second run.
+        let is_ended_by_event = motion.failure.is_none() && duration < requested;
+        let duration = if is_ended_by_event {
+            requested
+        } else {
+            duration
+        };
         let second = self.solve(scene, duration, &finer).ok();
-        let second = second.and_then(|motion| self.samples(&motion).ok());
+        let others = second.as_ref().and_then(|motion| self.samples(motion).ok());
         // The last samples may be missing if an event ends one of the runs earlier.
-        let second = second.unwrap_or_default();
-        let pairs: Vec<SamplePair<'_>> = pair_by_time(&samples, &second);
+        let others = others.unwrap_or_default();
+        let pairs: Vec<SamplePair<'_>> = pair_by_time(&samples, &others);
         let Some((last, _)) = pairs.last() else {
             let text = format!("  no error estimate: a second run, at {refinement}, fails\n");
             let inaccuracy = "its error cannot be estimated: a second run fails".to_owned();
-            return Ok((text, Some(inaccuracy)));
+            return Ok(ErrorEstimate {
+                text,
+                inaccuracy: Some(inaccuracy),
+                second: None,
+            });
         };
         // An event may end one of the runs a sample earlier.
         let left = samples.iter().filter(|sample| sample.t > last.t);
@@ -64,7 +86,11 @@ impl FreeMotionProblem<'_> {
         let ends = (!is_whole).then(|| {
             format!("its error is known until t = {until} s only, where a second run ends")
         });
-        Ok((text, large.or(ends)))
+        Ok(ErrorEstimate {
+            text,
+            inaccuracy: large.or(ends),
+            second,
+        })
     }
 
     /// The error of each free coordinate, and of the energy balance if anything moves; and the first that is large.

@@ -6,7 +6,7 @@
 
 use crate::estimate;
 use crate::free_motion::compute::refinement::MIN_TOLERANCE;
-use crate::free_motion::compute::{ComputedMotion, Difference, FreeMotionProblem, SegmentedMotion};
+use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
 use dwell_dynamics::{
     DynamicsError, Method, ObservedMachine, OdeState, Options, Orbit, OrbitSequence, ReducedState,
     Solution, solve_orbit,
@@ -44,7 +44,7 @@ impl FreeMotionProblem<'_> {
         let along = |orbit: Orbit| self.along(orbit, accuracy, duration, sample_interval);
         let mut tail = accuracy;
         let mut orbit = sequence.next_orbit(tail).ok()?;
-        let (motion, difference) = loop {
+        let (motion, difference, comparison) = loop {
             let is_candidate = orbit.is_resolved || orbit.tail < tail;
             let finer = sequence.next_orbit(tail).ok()?;
             if !is_candidate {
@@ -52,13 +52,20 @@ impl FreeMotionProblem<'_> {
                 continue;
             }
             let motion = along(orbit.clone())?;
-            let rounding = self.rounding_difference(&motion, &orbit, delay).ok()?;
+            let rounding = delayed(&motion, &orbit, delay);
+            let rounding = self.difference(&motion, &rounding).ok()?;
             let next = along(finer.clone())?;
             let truncation = self.difference(&motion, &next).ok()?;
             let difference = truncation.scaled(SAFETY_FACTOR).plus(&rounding);
             // More points than both need would change roundings only.
             if difference.largest() <= accuracy || (orbit.is_resolved && finer.is_resolved) {
-                break (motion, difference);
+                // Both errors together, with the events and the end of the finer orbit.
+                let mut comparison = delayed(&motion, &finer, delay);
+                for ((_, to), (_, from)) in comparison.segments.iter_mut().zip(next.segments) {
+                    to.event_occurrences = from.event_occurrences;
+                    to.steps = from.steps;
+                }
+                break (motion, difference, comparison);
             }
             tail *= TAIL_RATIO;
             orbit = finer;
@@ -67,7 +74,11 @@ impl FreeMotionProblem<'_> {
         let points = orbit.points;
         let how = format!("quadrature (conservative, periodic motion), {points} quadrature points");
         let found = ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, &difference);
-        Some(found)
+        Some(ComputedMotion {
+            comparison: Some(comparison),
+            delay: Some(delay),
+            ..found
+        })
     }
 
     /// The motion along an orbit.
@@ -92,30 +103,24 @@ impl FreeMotionProblem<'_> {
         }
         Some(SegmentedMotion::along_orbit(orbit, solution))
     }
+}
 
-    /// The difference of a motion from the same with a delay, a fraction of the time.
-    fn rounding_difference(
-        &self,
-        motion: &SegmentedMotion,
-        orbit: &Orbit,
-        delay: f64,
-    ) -> Result<Difference, DynamicsError> {
-        let shifted = |point: &OdeState| {
-            let ReducedState { q, q_dot, .. } = orbit.state_at(point.t * (1.0 + delay));
-            OdeState {
-                t: point.t,
-                y: vec![q, q_dot],
-            }
-        };
-        let solutions = motion.segments.iter().map(|(_, solution)| solution);
-        let samples = solutions.clone().flat_map(|s| &s.samples);
-        let delayed = SegmentedMotion::single_segment(Solution {
-            steps: solutions.flat_map(|s| s.steps.last().cloned()).collect(),
-            samples: samples.map(shifted).collect(),
-            ..Solution::default()
-        });
-        self.difference(motion, &delayed)
-    }
+/// The instants of a motion on an orbit that is delayed by a fraction of the time.
+fn delayed(motion: &SegmentedMotion, orbit: &Orbit, delay: f64) -> SegmentedMotion {
+    let shifted = |point: &OdeState| {
+        let ReducedState { q, q_dot, .. } = orbit.state_at(point.t * (1.0 + delay));
+        OdeState {
+            t: point.t,
+            y: vec![q, q_dot],
+        }
+    };
+    let solutions = motion.segments.iter().map(|(_, solution)| solution);
+    let samples = solutions.clone().flat_map(|s| &s.samples);
+    SegmentedMotion::single_segment(Solution {
+        steps: solutions.flat_map(|s| s.steps.last().cloned()).collect(),
+        samples: samples.map(shifted).collect(),
+        ..Solution::default()
+    })
 }
 
 #[cfg(test)]

@@ -34,6 +34,8 @@ pub(super) type Candidate = (Method, Option<[f64; 2]>);
 pub(super) struct Refinement {
     pub(super) tolerance: f64,
     pub(super) motion: SegmentedMotion,
+    /// The run before, with which it was compared.
+    pub(super) before: SegmentedMotion,
     pub(super) difference: Difference,
     pub(super) runs: usize,
 }
@@ -102,13 +104,15 @@ impl FreeMotionProblem<'_> {
             let difference = self.difference(&kept, &motion);
             let difference = difference.map_err(|e| self.explain(&e))?;
             let difference = difference.scaled(SAFETY_FACTOR);
-            (tolerance, kept) = (next, motion);
+            tolerance = next;
+            let before = std::mem::replace(&mut kept, motion);
             runs += 1;
             let largest = difference.largest();
             if largest <= accuracy || next <= 1.01 * min_tolerance || runs >= MAX_RUNS {
                 return Ok(Some(Refinement {
                     tolerance,
                     motion: kept,
+                    before,
                     difference,
                     runs,
                 }));

@@ -14,6 +14,10 @@ pub(crate) struct ComputedMotion {
     pub(crate) accuracy: Option<[f64; 2]>,
     /// Why it is no result although nothing failed, if so.
     pub(crate) inaccuracy: Option<String>,
+    /// A second computation, whose difference shows the errors.
+    pub(crate) comparison: Option<SegmentedMotion>,
+    /// The relative error of all times, where the second computation is the same motion delayed.
+    pub(crate) delay: Option<f64>,
 }
 
 /// A free motion as a sequence of segments, each in one chart.

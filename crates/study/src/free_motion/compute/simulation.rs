@@ -1,10 +1,12 @@
 //! Simulates a free motion: integration, samples, energies and forces.
 
-use crate::explain::{StudyError, missing_section_label, scene_error};
+use crate::explain::{
+    StepLimits, StudyError, explain_max_steps, missing_section_label, scene_error,
+};
 use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem};
 use crate::models::{SolverSettings, with_drive_loads};
 use crate::number_format::digits;
-use crate::progress::Progress;
+use crate::progress::{Progress, no_progress};
 use crate::trajectory::compute::{ComputedTrajectory, MotionBetweenRows, compute_along};
 use dwell_dynamics::{DynamicsError, EventOccurrence, Options};
 use dwell_findings::Table;
@@ -86,7 +88,7 @@ pub(crate) fn compute_free_motion_at(
     if let Some(error) = failure.filter(|_| motion.end_time() == 0.0) {
         return Err(problem.explain(error));
     }
-    let trajectory = problem.trajectory(&integrated, times);
+    let trajectory = problem.trajectory(motion, &integrated.method_text, times);
     let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
     let (model, notes) = (&problem.output_model, String::new());
     let sample = |t: f64| problem.sample_at(motion, t);
@@ -97,9 +99,10 @@ pub(crate) fn compute_free_motion_at(
     });
     let followed = (trajectory, between);
     let mut computed = compute_along(&loaded_scene, model, followed, notes, progress)?;
-    let shortfall = problem.shortfall(scene, &integrated);
+    problem.set_errors(&mut computed, &integrated, times);
+    let shortfall = problem.shortfall(scene, &integrated, solver);
     computed.early_stop = shortfall.or(computed.early_stop);
-    let mut summary = problem.summary(motion, &integrated.method_text, duration);
+    let mut summary = problem.summary(&integrated, duration);
     summary += &problem.notes;
     summary += &integrated.remarks;
     let event = |(_, o): (usize, &EventOccurrence)| {
@@ -164,6 +167,22 @@ fn check_times(times: &[f64], duration: f64) -> Result<(), StudyError> {
     Err(SceneError::without_labels(message, Some(help)).into())
 }
 
+impl StepLimits {
+    /// What limits the steps of an integration.
+    fn of(solver: &MotionSolver) -> Self {
+        match solver {
+            MotionSolver::Settings(settings) => Self {
+                max_step: settings.max_step,
+                tolerance: "--rtol",
+            },
+            MotionSolver::Accuracy { .. } => Self {
+                max_step: None,
+                tolerance: "--accuracy",
+            },
+        }
+    }
+}
+
 impl FreeMotionProblem<'_> {
     fn integrate(
         &self,
@@ -194,18 +213,52 @@ impl FreeMotionProblem<'_> {
             ..Options::new(settings.method, settings.rtol)
         };
         let motion = self.solve(scene, duration, &options)?;
-        let (error, inaccuracy) = self.estimate_error(scene, &motion, &options)?;
+        let estimate = self.estimate_error(scene, &motion, &options, duration)?;
+        let unstable = self.leaves_unstable_equilibrium(&motion).then(|| {
+            "it starts in an unstable equilibrium, and rounding alone decides when and where it leaves it".to_owned()
+        });
         Ok(ComputedMotion {
             method_text: settings.describe(),
-            remarks: self.method_hint(&motion, settings) + &error,
+            remarks: self.method_hint(&motion, settings) + &estimate.text,
             accuracy: None,
-            inaccuracy,
+            inaccuracy: unstable.or(estimate.inaccuracy),
+            comparison: estimate.second,
+            delay: None,
             motion,
         })
     }
 
+    /// Sets the errors of a motion's columns from its second computation, with rows at the same times.
+    fn set_errors(
+        &self,
+        computed: &mut ComputedTrajectory<'_>,
+        integrated: &ComputedMotion,
+        times: Option<&[f64]>,
+    ) {
+        let Some(second) = &integrated.comparison else {
+            return;
+        };
+        // What has no rows has no errors.
+        let (scene, model) = (self.loaded_scene, &self.output_model);
+        let second = self.trajectory(second, &integrated.method_text, times);
+        let second = second.ok().map(|trajectory| (trajectory, None));
+        let second = second.and_then(|followed| {
+            compute_along(scene, model, followed, String::new(), &no_progress).ok()
+        });
+        computed.set_errors(second.as_ref());
+    }
+
     /// Why a motion is not what was required: it ended early, or is less accurate.
-    fn shortfall(&self, scene: &Scene, integrated: &ComputedMotion) -> Option<StudyError> {
+    fn shortfall(
+        &self,
+        scene: &Scene,
+        integrated: &ComputedMotion,
+        solver: &MotionSolver,
+    ) -> Option<StudyError> {
+        if let Some(DynamicsError::MaxStepsReached { t, max_steps }) = integrated.motion.failure {
+            let limits = StepLimits::of(solver);
+            return Some(explain_max_steps(self.loaded_scene, t, max_steps, &limits));
+        }
         if let Some(error) = &integrated.motion.failure {
             return Some(self.explain(error));
         }

@@ -1,6 +1,6 @@
 //! The samples and the events of a motion as tables.
 
-use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
+use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::models::{drive_states, source_name};
 use crate::number_format::coordinate_unit;
 use crate::trajectory::compute::{
@@ -16,22 +16,23 @@ impl FreeMotionProblem<'_> {
     /// A computed motion as a trajectory, with its samples or else with wanted times (s) as rows.
     pub(crate) fn trajectory(
         &self,
-        computed: &ComputedMotion,
+        motion: &SegmentedMotion,
+        method_text: &str,
         times: Option<&[f64]>,
     ) -> Result<Trajectory<'static>, DynamicsError> {
-        let end = computed.motion.end_time();
-        let charts = computed.motion.charts.iter();
+        let end = motion.end_time();
+        let charts = motion.charts.iter();
         let motion = FreeTrajectory {
             samples: match times {
-                None => self.samples(&computed.motion)?,
-                Some(times) => self.samples_at(&computed.motion, times)?,
+                None => self.samples(motion)?,
+                Some(times) => self.samples_at(motion, times)?,
             },
             extra_columns: self.extra_columns(),
             prescribed: self.spec.laws.iter().map(Option::is_some).collect(),
             charts: charts.map(|c| c.output_model.clone()).collect(),
         };
         let mut trajectory = Trajectory::of_free_motion(self.output_model.plan(), motion, end);
-        trajectory.method_text.clone_from(&computed.method_text);
+        method_text.clone_into(&mut trajectory.method_text);
         Ok(trajectory)
     }
 

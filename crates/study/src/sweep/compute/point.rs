@@ -5,14 +5,17 @@ use crate::explain::{StudyError, SweepError, explain_machine, explain_motion, ex
 use crate::former_names;
 use crate::models::{compile_model, exact_model, initial_reduced_state, with_loads};
 use crate::number_format::{coordinate_unit, force_unit};
-use crate::ranges::extent;
-use crate::trajectory::compute::{Analysis, default_limits, is_prefix_of, peak_forces};
+use crate::trajectory::compute::{
+    Analysis, Point, WantedForces, default_limits, is_prefix_of, largest_between, peak_forces,
+};
 use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Orbit, ReducedState};
 use dwell_kinetostatics::{Model, ReducedModel};
 use dwell_scene::Scene;
 
-/// Intervals of the range at which m and ½m′ are evaluated: those of `dwell reduce`.
+/// Intervals of the range at which m and ½m′ are evaluated, those of `dwell reduce`; and the local extrema of them about
+/// which the largest and smallest values are looked for between these positions.
 const INTERVALS: usize = 720;
+const REFINED: usize = 2;
 
 /// What a result is computed with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,6 +45,13 @@ pub(crate) struct SweepQuantity {
 }
 
 impl SweepQuantity {
+    /// Whether it is the smallest or largest value along a motion or a range.
+    #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for the summary"))]
+    pub(crate) fn is_extremum(&self) -> bool {
+        use ResultKind::{ActuatorForce, Inertia, Reaction};
+        matches!(self.kind, Inertia | Reaction | ActuatorForce)
+    }
+
     /// Whether a request names it: its whole name, the part before one of its dots, or its former name.
     fn matches(&self, request: &str) -> bool {
         is_prefix_of(request, &self.name) || self.matches_former(request)
@@ -152,7 +162,15 @@ impl RequestedQuantities {
         if (includes(ResultKind::Reaction) || includes(ResultKind::ActuatorForce))
             && let Some(analysis) = peak_analysis(scene)
         {
-            match peak_forces(scene, &with_loads(scene, model)?, analysis) {
+            let of_kind = |kind: ResultKind| {
+                let quantities = self.quantities.iter().filter(|q| q.kind == kind);
+                quantities.map(|q| q.index).collect()
+            };
+            let wanted = WantedForces {
+                reactions: of_kind(ResultKind::Reaction),
+                actuators: of_kind(ResultKind::ActuatorForce),
+            };
+            match peak_forces(scene, &with_loads(scene, model)?, analysis, &wanted) {
                 Ok(peaks) => {
                     set(ResultKind::Reaction, Ok(peaks.reactions));
                     set(ResultKind::ActuatorForce, Ok(peaks.tau));
@@ -256,19 +274,28 @@ fn orbit(scene: &Scene, start: ReducedState, model: &Model) -> Result<Orbit, Stu
     Orbit::loaded(&machine, start).map_err(|e| explain_motion(scene, model.plan(), &e))
 }
 
-/// The smallest and the largest m, and the smallest and the largest ½m′, over the range.
+/// The smallest and the largest m, and the smallest and the largest ½m′, over the range, also between its positions.
 fn inertia_extrema(scene: &Scene, model: &Model) -> Result<Vec<f64>, StudyError> {
     let exact = exact_model(scene, model.without_reactions())?;
     let mut workspace = exact.workspace();
     let ([from, to], ..) = default_limits(scene, model.plan());
-    let (mut m, mut half_dm) = (Vec::new(), Vec::new());
+    let mut curves: [Vec<Point>; 2] = [Vec::new(), Vec::new()];
     for k in 0..=INTERVALS {
         let fraction = k as f64 / INTERVALS as f64;
         let q = from * (1.0 - fraction) + to * fraction;
         let evaluated = exact.inertia(q, &mut workspace);
         let here = evaluated.map_err(|e| explain_position(scene, model.plan(), &e))?;
-        m.push(here.0);
-        half_dm.push(here.1);
+        curves[0].push([q, here.0]);
+        curves[1].push([q, here.1]);
     }
-    Ok([extent(m), extent(half_dm)].concat())
+    let mut extremum = |k: usize, sign: f64| {
+        let curve: Vec<Point> = curves[k].iter().map(|[q, v]| [*q, sign * v]).collect();
+        let mut value = |q: f64| {
+            let (m, half_dm) = exact.inertia(q, &mut workspace).ok()?;
+            Some(sign * [m, half_dm][k]).filter(|value| value.is_finite())
+        };
+        largest_between(&curve, REFINED, &mut value).map_or(f64::NAN, |value| sign * value)
+    };
+    let extrema = [(0, -1.0), (0, 1.0), (1, -1.0), (1, 1.0)];
+    Ok(extrema.map(|(k, sign)| extremum(k, sign)).to_vec())
 }

@@ -53,7 +53,7 @@ pub(crate) struct BetweenRows<'s> {
 }
 
 /// A position: its parameter, and the value of a column.
-type Point = [f64; 2];
+pub(crate) type Point = [f64; 2];
 
 impl<'s> BetweenRows<'s> {
     /// Of a trajectory that is known at some further positions; others are added where these and the rows are far
@@ -217,6 +217,26 @@ fn is_continuous(column: &Column) -> bool {
             quantity,
             Time | Power(3) | MechanicalAdvantage(..) | Pole(..)
         )
+}
+
+/// Whether the extrema of a column, but for the abscissa, are always those of the rows.
+pub(crate) fn is_searched_in_rows(column: &Column) -> bool {
+    column.quantity != Quantity::Time && !is_continuous(column)
+}
+
+/// The largest value of a function that is known at some points, also between them: it is evaluated about its local
+/// maxima there, about those `count` whose parabolas are highest. None where no point has a value.
+pub(crate) fn largest_between(
+    points: &[Point],
+    count: usize,
+    value: &mut dyn FnMut(f64) -> Option<f64>,
+) -> Option<f64> {
+    let known = points.iter().map(|[_, v]| *v).filter(|v| !v.is_nan());
+    let scale = known.clone().map(f64::abs).fold(0.0, f64::max);
+    let largest = known.reduce(f64::max)?;
+    let brackets = promising(points, largest, count).into_iter();
+    let found = brackets.filter_map(|(_, bracket)| refine_maximum(value, bracket, scale));
+    Some(found.map(|[_, v]| v).fold(largest, f64::max))
 }
 
 /// Three points, the middle one not below the others; the middle one may be missing at an end.

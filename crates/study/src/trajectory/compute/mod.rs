@@ -25,10 +25,12 @@ pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
 };
 pub(crate) use evaluator::{ForceEvaluator, PositionEvaluator};
-pub(crate) use extrema::{BetweenRows, Extrema, ExtremaSearch, Extremum};
+pub(crate) use extrema::{
+    BetweenRows, Extrema, ExtremaSearch, Extremum, Point, is_searched_in_rows, largest_between,
+};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryMonitor, table_of};
-pub(crate) use peak_forces::peak_forces;
+pub(crate) use peak_forces::{WantedForces, peak_forces};
 pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
 pub(crate) use results::{MotionBetweenRows, compute_along};
 pub(crate) use rounding_error::RoundingError;

@@ -2,11 +2,24 @@
 //! needs of thousands of scenes.
 
 use crate::explain::StudyError;
-use crate::trajectory::compute::{Analysis, ForceEvaluator, Trajectory};
+use crate::trajectory::compute::{Analysis, ForceEvaluator, Point, Trajectory, largest_between};
 use dwell_kinetostatics::{InverseDynamics, Model};
 use dwell_scene::Scene;
 
-/// The largest absolute values of statics or kinetostatics along the scene's trajectory.
+/// Local maxima of a force about which its largest value is looked for between the positions.
+const REFINED: usize = 2;
+
+/// The forces whose largest values are wanted, by their indices.
+#[derive(Debug, Default)]
+pub(crate) struct WantedForces {
+    /// Among the reactions of the mechanism.
+    pub(crate) reactions: Vec<usize>,
+    /// Among the actuators.
+    pub(crate) actuators: Vec<usize>,
+}
+
+/// The largest absolute values of statics or kinetostatics along the scene's trajectory: of the wanted forces also between
+/// its positions.
 ///
 /// # Errors
 /// [`StudyError::Scene`] where the scene defines no trajectory, or it ends early.
@@ -14,6 +27,7 @@ pub(crate) fn peak_forces(
     scene: &Scene,
     model: &Model,
     analysis: Analysis,
+    wanted: &WantedForces,
 ) -> Result<InverseDynamics<f64>, StudyError> {
     let plan = model.plan();
     let trajectory = Trajectory::new(scene, plan, analysis, None)?;
@@ -22,19 +36,48 @@ pub(crate) fn peak_forces(
     // Only couplings have functions that may jump.
     let has_couplings = !scene.mechanism.couplings.is_empty();
     let mut peaks = model.result_buffer();
-    let early_stop = trajectory.follow(plan, |_, sample| {
+    let mut curves = [
+        vec![Vec::<Point>::new(); wanted.reactions.len()],
+        vec![Vec::new(); wanted.actuators.len()],
+    ];
+    let early_stop = trajectory.follow(plan, |k, sample| {
         evaluator.evaluate(sample, trajectory.load_time(sample))?;
         if has_couplings {
             evaluator.fill_states(sample)?;
         }
-        raise_to(&mut peaks.reactions, &evaluator.results.reactions);
-        raise_to(&mut peaks.tau, &evaluator.results.tau);
+        let results = &evaluator.results;
+        raise_to(&mut peaks.reactions, &results.reactions);
+        raise_to(&mut peaks.tau, &results.tau);
+        let [reactions, actuators] = &mut curves;
+        let u = trajectory.fraction_at(k);
+        for (curve, &r) in reactions.iter_mut().zip(&wanted.reactions) {
+            curve.push([u, results.reactions[r].abs()]);
+        }
+        for (curve, &i) in actuators.iter_mut().zip(&wanted.actuators) {
+            curve.push([u, results.tau[i].abs()]);
+        }
         Ok(())
     });
-    match early_stop {
-        Some(stop) => Err(stop.explain(scene)),
-        None => Ok(peaks),
+    if let Some(stop) = early_stop {
+        return Err(stop.explain(scene));
     }
+    let [reactions, actuators] = &curves;
+    let mut largest = |curve: &[Point], pick: &dyn Fn(&InverseDynamics<f64>) -> f64| {
+        let mut value = |u: f64| {
+            let sample = trajectory.sample_at(u);
+            let t = trajectory.load_time(&sample);
+            evaluator.evaluate(&sample, t).ok()?;
+            Some(pick(&evaluator.results).abs()).filter(|value| value.is_finite())
+        };
+        largest_between(curve, REFINED, &mut value).unwrap_or(f64::NAN)
+    };
+    for (curve, &r) in reactions.iter().zip(&wanted.reactions) {
+        peaks.reactions[r] = largest(curve, &|results| results.reactions[r]);
+    }
+    for (curve, &i) in actuators.iter().zip(&wanted.actuators) {
+        peaks.tau[i] = largest(curve, &|results| results.tau[i]);
+    }
+    Ok(peaks)
 }
 
 fn raise_to(peaks: &mut [f64], values: &[f64]) {

@@ -2,7 +2,7 @@
 
 use crate::bodies::BodyPose;
 use crate::branch_note::branch_note;
-use crate::estimate::{error_scale, relative};
+use crate::estimate::{self, error_scale, relative};
 use crate::explain::StudyError;
 use crate::models::loaded_model;
 use crate::progress::{Progress, Step};
@@ -43,6 +43,8 @@ pub struct TrajectoryResults {
     pub(crate) is_rounding: Vec<bool>,
     /// The extrema of the columns.
     pub(crate) extrema: Extrema,
+    /// By column: the estimated error of its values, in its unit; empty where nothing is known of it.
+    pub(crate) errors: Vec<f64>,
 }
 
 impl TrajectoryResults {
@@ -68,6 +70,7 @@ impl TrajectoryResults {
             modelled: model.plan().placed_bodies(),
             is_rounding: Vec::new(),
             extrema: Extrema::default(),
+            errors: Vec::new(),
         }
     }
 
@@ -235,6 +238,38 @@ pub struct ComputedTrajectory<'a> {
     pub early_stop: Option<StudyError>,
     /// A line for each requested column that is called by a former name.
     pub notes: String,
+}
+
+impl ComputedTrajectory<'_> {
+    /// Sets the errors of a motion's columns from their differences in another computation at the same times; where there
+    /// is none, or a column never has values in both, nothing is known.
+    pub(crate) fn set_errors(&mut self, other: Option<&ComputedTrajectory<'_>>) {
+        let Some(other) = other else { return };
+        let [own, others] = [&self.trajectory, &other.trajectory].map(|trajectory| {
+            let motion = trajectory.free_motion();
+            motion.map_or(&[][..], |motion| &motion.samples)
+        });
+        let (rows, other_rows) = (&self.results.rows, &other.results.rows);
+        let mut others = others.iter().zip(other_rows).peekable();
+        let mut pairs: Vec<(&Vec<f64>, &Vec<f64>)> = Vec::new();
+        for (sample, row) in own.iter().zip(rows) {
+            while others.next_if(|(other, _)| other.t < sample.t).is_some() {}
+            if let Some((_, other)) = others.next_if(|(other, _)| other.t == sample.t) {
+                pairs.push((row, other));
+            }
+        }
+        let error = |k: usize| {
+            let values = pairs.iter().map(|(a, b)| (a[k], b[k]));
+            // Next to a change point a reaction may be undefined.
+            let known = values.filter(|(a, b)| a.is_finite() && b.is_finite());
+            let (one, two): (Vec<f64>, Vec<f64>) = known.unzip();
+            match one.is_empty() {
+                true => f64::INFINITY,
+                false => estimate::over_motion(&one, &two, 0.0),
+            }
+        };
+        self.results.errors = (0..self.results.columns.len()).map(error).collect();
+    }
 }
 
 /// Analyses a scene along its prescribed motion, its sweep, or the range of its only actuator, at `points` positions
