@@ -93,7 +93,7 @@ def non_finite_print(run):
 # Columns that are undefined at some positions: at a dead point there is no ratio, at rest no pole.
 # An equilibrium
 # may have fewer modes than another.
-UNDEFINED = ("mechanical_advantage", "pole", "ratio", "transmission", "relative_error", "mode")
+UNDEFINED = ("mechanical_advantage", "pole", "ratio", "transmission", "relative_error", "mode", "table_accuracy")
 
 
 def non_finite_file(run):
@@ -211,8 +211,9 @@ def extrema_bound_rows(run):
         if not cells:
             continue
         low, high = float(row["min"]), float(row["max"])
-        # What is zero but for rounding is zero among the extrema.
-        rounding = 1e-11 * largest if low == high == 0 else 0
+        # What is zero but for rounding is zero among the extrema: beside the largest number, which may be an energy, or, where
+        # the mechanism is a million metres large, beside a moment that is a force times that.
+        rounding = max(1e-11 * largest, 1e-6 * largest_of_unit(extrema, row["unit"])) if low == high == 0 else 0
         slack = max(1e-9 * max(abs(low), abs(high), largest_of_unit(extrema, row["unit"])), rounding)
         if not (low <= min(cells) + slack and max(cells) - slack <= high):
             return f"{name}: extrema {low} and {high}, rows from {min(cells)} to {max(cells)}"

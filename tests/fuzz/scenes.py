@@ -186,7 +186,11 @@ def add_motion(rng, scene):
     actuators = names(scene, "actuators")
     if not actuators:
         return
-    motion = {"duration": round(10 ** rng.uniform(-2, 1), 4)}
+    # About as long as that of the source: it knows how fast the mechanism is.
+    former = scene.get("motion")
+    former = former.get("duration") if isinstance(former, dict) else None
+    longest = 3 * former if isinstance(former, float) and 0 < former < 3 else 5
+    motion = {"duration": round(longest * 10 ** rng.uniform(-2, 0), 6)}
     motion["initial-velocity"] = {q: rng.choice([0, 0, 1, -3, 10]) for q in actuators}
     if len(actuators) == 1 and rng.random() < 0.2:
         del motion["duration"]

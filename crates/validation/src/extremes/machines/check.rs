@@ -14,85 +14,108 @@ const MAX_REFUSED: f64 = 0.2;
 
 /// The findings: accuracies kept or refused, estimates not below the true error and not far above it.
 pub fn check(results: &[MachineResult]) -> Vec<Finding> {
-    let runs = || {
-        results
-            .iter()
-            .flat_map(|m| m.runs.iter().map(move |run| (m, run)))
-    };
-    let known = || results.iter().filter(|m| m.without_reference.is_none());
-    let count = runs().count().max(1) as f64;
-    let finding = |key: &str,
-                   comparison: &str,
-                   scale: &str,
-                   reason: &str,
-                   (value, worst_at): (f64, String),
-                   allowed: f64| {
+    let ratios = runs(results).filter_map(|(_, run)| run.estimate_ratio());
+    let ratios: Vec<f64> = ratios.collect();
+    let too_large = ratios.iter().filter(|ratio| **ratio > MAX_ESTIMATE_RATIO);
+    let too_large = too_large.count() as f64 / ratios.len().max(1) as f64;
+    let mut findings = vec![
         Finding {
-            comparison: comparison.to_owned(),
-            domain: format!("{} machines with {count} runs", results.len()),
-            scale: scale.to_owned(),
-            tolerance_reason: reason.to_owned(),
-            worst_at,
-            pass: value <= allowed && !results.is_empty(),
-            ..Finding::new(key, Check::ClosedForms, [value; 2], allowed)
-        }
-    };
-    let kept = largest(results, MachineRun::accuracy_ratio);
-    let below = largest(results, |run| Some(1.0 / run.estimate_ratio()?));
-    let ratios: Vec<f64> = runs().filter_map(|(_, run)| run.estimate_ratio()).collect();
-    let too_large = ratios
-        .iter()
-        .filter(|ratio| **ratio > MAX_ESTIMATE_RATIO)
-        .count();
-    let too_large = too_large as f64 / ratios.len().max(1) as f64;
-    let refused = runs().filter(|(_, run)| run.refused.is_some()).count() as f64 / count;
-    let unknown = (results.len() - known().count()) as f64 / results.len().max(1) as f64;
-    let first_refused = runs().find(|(_, run)| run.refused.is_some());
+            comparison: "motions of random machines to a required accuracy: another method, restarted by hand at switches in time"
+                .to_owned(),
+            scale: "the required accuracy".to_owned(),
+            tolerance_reason: "what is promised is kept".to_owned(),
+            ..finding("machines-accuracy", results, largest(results, MachineRun::accuracy_ratio), 1.0)
+        },
+        Finding {
+            comparison: "the true error of random machines, where it is above 1e-13".to_owned(),
+            scale: "the estimated error".to_owned(),
+            tolerance_reason: "an estimate below the true error would hide a wrong number".to_owned(),
+            ..finding(
+                "machines-error-estimate",
+                results,
+                largest(results, |run| Some(1.0 / run.estimate_ratio()?)),
+                1.0,
+            )
+        },
+        Finding {
+            comparison: "estimated errors of random machines above 100 times the true ones".to_owned(),
+            scale: "the runs".to_owned(),
+            tolerance_reason: "an estimate that is often far too large says nothing".to_owned(),
+            ..finding(
+                "machines-error-estimates",
+                results,
+                (too_large, String::new()),
+                1.0 - REQUIRED_CELL_FRACTION,
+            )
+        },
+    ];
+    findings.extend(refusals(results));
+    findings
+}
+
+/// The findings on what is refused, by the program and by the reference.
+fn refusals(results: &[MachineResult]) -> [Finding; 2] {
+    let mut refused = runs(results).filter(|(_, run)| run.refused.is_some());
+    let first_refused = refused.next();
+    let refused = refused.count() + usize::from(first_refused.is_some());
+    let refused = refused as f64 / runs(results).count().max(1) as f64;
     let first_refused = first_refused.map_or_else(String::new, |(m, run)| location(m, run));
-    let first_unknown = results.iter().find(|m| m.without_reference.is_some());
+    let mut unknown = results.iter().filter(|m| m.without_reference.is_some());
+    let first_unknown = unknown.next();
+    let unknown = unknown.count() + usize::from(first_unknown.is_some());
+    let unknown = unknown as f64 / results.len().max(1) as f64;
     let first_unknown = first_unknown.map_or_else(String::new, |m| format!("machine {}", m.number));
-    vec![
-        finding(
-            "machines-accuracy",
-            "motions of random machines to a required accuracy: another method, restarted by hand at switches in time",
-            "the required accuracy",
-            "what is promised is kept",
-            kept,
-            1.0,
-        ),
-        finding(
-            "machines-error-estimate",
-            "the true error of random machines, where it is above 1e-13",
-            "the estimated error",
-            "an estimate below the true error would hide a wrong number",
-            below,
-            1.0,
-        ),
-        finding(
-            "machines-error-estimates",
-            "estimated errors of random machines above 100 times the true ones",
-            "the runs",
-            "an estimate that is often far too large says nothing",
-            (too_large, String::new()),
-            1.0 - REQUIRED_CELL_FRACTION,
-        ),
-        finding(
-            "machines-refused",
-            "motions of random machines that are refused",
-            "the runs",
-            "where a speed is held by a switch there is no motion to follow; these are few",
-            (refused, first_refused),
-            MAX_REFUSED,
-        ),
-        finding(
-            "machines-without-reference",
-            "random machines that the reference cannot follow, either",
-            "the machines",
-            "what has no reference is not checked",
-            (unknown, first_unknown),
-            MAX_UNKNOWN,
-        ),
+    [
+        Finding {
+            comparison: "motions of random machines that are refused".to_owned(),
+            scale: "the runs".to_owned(),
+            tolerance_reason:
+                "where a switch holds a speed there is no motion to follow; these are few"
+                    .to_owned(),
+            ..finding(
+                "machines-refused",
+                results,
+                (refused, first_refused),
+                MAX_REFUSED,
+            )
+        },
+        Finding {
+            comparison: "random machines that the reference cannot follow, either".to_owned(),
+            scale: "the machines".to_owned(),
+            tolerance_reason: "what has no reference is not checked".to_owned(),
+            ..finding(
+                "machines-without-reference",
+                results,
+                (unknown, first_unknown),
+                MAX_UNKNOWN,
+            )
+        },
     ]
+}
+
+fn runs(results: &[MachineResult]) -> impl Iterator<Item = (&MachineResult, &MachineRun)> {
+    results
+        .iter()
+        .flat_map(|m| m.runs.iter().map(move |run| (m, run)))
+}
+
+/// A finding on a number of the machines, with where it is and what is allowed.
+fn finding(
+    key: &str,
+    results: &[MachineResult],
+    (value, worst_at): (f64, String),
+    allowed: f64,
+) -> Finding {
+    Finding {
+        domain: format!(
+            "{} machines with {} runs",
+            results.len(),
+            runs(results).count()
+        ),
+        worst_at,
+        pass: value <= allowed && !results.is_empty(),
+        ..Finding::new(key, Check::ClosedForms, [value; 2], allowed)
+    }
 }
 
 fn location(machine: &MachineResult, run: &MachineRun) -> String {

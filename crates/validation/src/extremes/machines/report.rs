@@ -19,6 +19,7 @@ const ERROR_RANGE: [f64; 2] = [1e-16, 1e-2];
 ///
 /// # Errors
 /// [`StudyError`] where the picture cannot be drawn.
+// Longer than a screen, with the text of the page.
 pub(in crate::extremes) fn add_to(
     outcome: &mut Outcome,
     results: &[MachineResult],

@@ -11,6 +11,7 @@ pub(super) const MAX_ERROR_RATIO: f64 = 10.0;
 const MAX_REFUSED: f64 = 0.05;
 
 /// The findings: all pulses seen, accuracies kept, errors as with restarts by hand, few refused.
+// Longer than a screen, with the text of four findings.
 pub fn check(results: &[PulseResult]) -> Vec<Finding> {
     let runs = || {
         results

@@ -20,6 +20,7 @@ const RATIO_RANGE: [f64; 2] = [1e-6, 1e2];
 ///
 /// # Errors
 /// [`StudyError`] where the picture cannot be drawn.
+// Longer than a screen, with the text of the page.
 pub(in crate::extremes) fn add_to(
     outcome: &mut Outcome,
     results: &[PulseResult],
