@@ -299,7 +299,8 @@ fn of_the_state(draws: &mut Draws, q: &str) -> String {
     match draws.below(6) {
         0 => format!("if({q} > {at}, {a}, {b})"),
         1 => format!("-{}*max(0, {q} - {at})", 100.0 * a),
-        2 => format!("{a} - {b}*sign({q} - {at})"),
+        // On both sides in the same direction.
+        2 => format!("{a} - {}*sign({q} - {at})", 0.2 * b.min(a)),
         // Away from the switch on both sides: it is passed, never held.
         3 => format!("if({q}.velocity > {at}, {}, {a})", a + b),
         4 => format!("-{a}*{q}.velocity*abs({q}.velocity) - {b}*{q}"),

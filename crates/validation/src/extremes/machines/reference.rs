@@ -8,8 +8,9 @@ use dwell_study::models::build_machine;
 
 /// Tolerance of the reference, and of the run that shows its error.
 const TOLERANCES: [f64; 2] = [1e-13, 1e-12];
-/// Steps, also those that are rejected, before a motion counts as one that cannot be followed.
-const MAX_STEPS: usize = 400_000;
+/// Steps, also those that are rejected, before a motion counts as one that cannot be followed: one that comes to rest at
+/// a switch that holds it switches without end.
+const MAX_STEPS: usize = 150_000;
 /// Shortest step, in spans: below it a step is taken whatever its error, for it crosses a jump.
 const SHORTEST: f64 = 1e-14;
 /// How far from a switch in time its sides are evaluated, in spans.

@@ -4,7 +4,8 @@ use super::draw::RandomMachine;
 use super::reference::Reference;
 use crate::extremes::draws::Draws;
 use dwell_scene::Scene;
-use dwell_study::{MotionSolver, compute_free_motion, no_progress};
+use dwell_study::free_motion::compute::FreeMotion;
+use dwell_study::{MotionSolver, StudyError, compute_free_motion, no_progress};
 use rayon::prelude::*;
 
 /// The accuracies that are required.
@@ -32,10 +33,8 @@ pub struct MachineResult {
 pub struct MachineRun {
     /// The required accuracy.
     pub accuracy: f64,
-    /// Why the motion is refused with status 1, or with status 2.
+    /// Why the motion is refused.
     pub refused: Option<String>,
-    /// Whether the refusal says that the scene is at fault: status 2.
-    pub is_scene_error: bool,
     /// The true error: rad, of lengths and energies relative to the largest.
     pub error: f64,
     /// The part of it that the reference may have.
@@ -59,40 +58,46 @@ fn machine_result(seed: u64, number: usize) -> MachineResult {
         .map(|k| random.span * k as f64 / ROWS as f64)
         .collect();
     let reference = Reference::new(&random, &times);
-    let runs = ACCURACIES.map(|accuracy| {
-        let failed = |reason: String, is_scene_error| MachineRun {
-            accuracy,
-            refused: Some(reason),
-            is_scene_error,
-            error: f64::NAN,
-            reference_error: f64::NAN,
-            estimate: f64::NAN,
-        };
-        match run(&random, accuracy, reference.as_ref().ok()) {
-            Ok(run) => run,
-            Err(reason) => failed(reason, true),
-        }
-    });
+    // Without a reference there is nothing to compare with.
+    let runs = reference.as_ref().map_or_else(
+        |_| Vec::new(),
+        |reference| {
+            ACCURACIES
+                .map(|accuracy| run(&random, accuracy, reference))
+                .into()
+        },
+    );
     MachineResult {
         number,
         kind: random.kind,
         without_reference: reference.err(),
         text: random.text,
-        runs: runs.into(),
+        runs,
     }
 }
 
-fn run(
-    random: &RandomMachine,
-    accuracy: f64,
-    reference: Option<&Reference>,
-) -> Result<MachineRun, String> {
+/// A run; where the scene is refused, with the reason.
+fn run(random: &RandomMachine, accuracy: f64, reference: &Reference) -> MachineRun {
     let solver = MotionSolver::Accuracy {
         accuracy,
         sample_interval: Some(random.span / ROWS as f64),
     };
-    let scene = Scene::parse("machine.toml", &random.text).map_err(|e| e.to_string())?;
-    let found = compute_free_motion(&scene, &solver, &no_progress).map_err(|e| e.to_string())?;
+    let scene = Scene::parse("machine.toml", &random.text).map_err(StudyError::from);
+    let found = scene.and_then(|scene| compute_free_motion(&scene, &solver, &no_progress));
+    match found {
+        Ok(found) => compared(accuracy, &found, reference),
+        Err(error) => MachineRun {
+            accuracy,
+            refused: Some(error.to_string()),
+            error: f64::NAN,
+            reference_error: f64::NAN,
+            estimate: f64::NAN,
+        },
+    }
+}
+
+/// The errors of a motion.
+fn compared(accuracy: f64, found: &FreeMotion, reference: &Reference) -> MachineRun {
     let table = &found.computed.table;
     let cells = |name: &str| -> Vec<f64> {
         let column = table.columns.iter().position(|c| c.name == name);
@@ -107,47 +112,21 @@ fn run(
         0.0
     };
     let mut reference_error = 0.0_f64;
-    let Some(reference) = reference else {
-        (error, reference_error) = (f64::NAN, f64::NAN);
-        return Ok(machine_run(
-            accuracy,
-            found.computed.early_stop.map(|e| e.to_string()),
-            [error, reference_error],
-            found.estimated_error,
-        ));
-    };
     for (i, name) in ["q", "r"].iter().enumerate().take(reference.travels.len()) {
-        let scale = if reference.is_angle[i] {
-            1.0
-        } else {
-            reference.travels[i]
+        let scale = match reference.is_angle[i] {
+            true => 1.0,
+            false => reference.travels[i],
         };
         let pairs = cells(name).into_iter().zip(&reference.coordinates);
         let differences = pairs.map(|(value, expected)| (value - expected[i]).abs());
         error = error.max(differences.fold(0.0, f64::max) / scale);
         reference_error = reference_error.max(reference.errors[i] / scale);
     }
-    let refused = found.computed.early_stop.map(|e| e.to_string());
-    Ok(machine_run(
-        accuracy,
-        refused,
-        [error, reference_error],
-        found.estimated_error,
-    ))
-}
-
-fn machine_run(
-    accuracy: f64,
-    refused: Option<String>,
-    [error, reference_error]: [f64; 2],
-    estimate: Option<f64>,
-) -> MachineRun {
     MachineRun {
         accuracy,
-        refused,
-        is_scene_error: false,
+        refused: found.computed.early_stop.as_ref().map(ToString::to_string),
         error,
         reference_error,
-        estimate: estimate.unwrap_or(f64::NAN),
+        estimate: found.estimated_error.unwrap_or(f64::NAN),
     }
 }
