@@ -13,8 +13,10 @@ mod run;
 mod subject;
 
 pub use check::check;
+pub use pulse::PulseShape;
 pub(super) use report::add_to;
-pub use run::{PulseResult, PulseRun, evaluate};
+pub use run::{PulseResult, PulseRun, RunKind, evaluate};
+pub use subject::PulseSubject;
 
 /// Pulses of `dwell validate`, and with `--slow`.
 pub(super) fn count(slow: bool) -> usize {
