@@ -9,7 +9,7 @@ default:
 validate *cases: && size mutations
     cargo run --release -- validate {{ cases }}
 
-# The same with the extremes that take minutes: 1e5 revolutions
+# The same with the extremes that take minutes: 1e5 revolutions, 1000 pulses, 200 random machines
 [group('main')]
 validate-slow: && size
     cargo run --release -- validate --slow
@@ -27,10 +27,16 @@ mutations:
 alias validate-long := validate-slow
 alias faults := mutations
 
-# All tests
+# All tests, and 2000 mutated scenes with random commands
 [group('main')]
-test:
+test: && fuzz
     cargo test --release --workspace
+
+# Mutated scenes with random commands, each in a process of its own: no panic, no silence, no contradiction
+[group('main')]
+fuzz pairs="2000" seed="1":
+    cargo build --release --workspace --bins
+    python3 tests/fuzz/run.py {{ pairs }} {{ seed }}
 
 # Format, lints with warnings denied, no circle of imports between folders, and no long file or function without a reason
 [group('care')]
@@ -57,10 +63,11 @@ bench:
 peers:
     python3 validation/peers/run.py
 
-# What takes too long for each change: 1e5 revolutions, new random draws in every property, peers, the dependencies' advisories
+# What takes too long for each change: 1e5 revolutions, 1000 pulses, 200 random machines, new random draws in every property, 100 000 mutated scenes, peers, the dependencies' advisories
 [group('care')]
 nightly: validate-slow mutations
     PROPTEST_CASES=2000 cargo test --release --workspace
+    just fuzz 100000 "$(date +%j)"
     just peers deny
 
 # What the build server runs

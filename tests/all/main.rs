@@ -16,6 +16,7 @@ mod change_points;
 mod cycles;
 mod derivatives;
 mod dop853;
+mod drawn_studies;
 mod energies;
 mod equilibria;
 mod equilibria_found;

@@ -14,7 +14,7 @@ use dwell_findings::all_pass;
 use dwell_report::Files;
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{
-    Analysis, MotionSolver, Outcome, ParameterSweep, Progress, SolverSettings, Step, StudyError,
+    Analysis, MotionSolver, Outcome, ParameterSweep, SolverSettings, Step, StudyError,
     TableRequest, TrajectoryOutcome,
 };
 use dwell_validation::ValidationError;
@@ -24,6 +24,7 @@ use options::{Command, Options, TrajectoryArgs};
 use std::io::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
+use std::time::Duration;
 
 fn main() -> ExitCode {
     // clap itself exits with 2 on a bad argument, and with 0 for help.
@@ -59,12 +60,16 @@ fn run(options: Options) -> Result<bool, Report> {
             cases,
             folder,
             slow,
+            seed,
         } => {
-            let (outcome, failures) = validate::validate(cases, folder, *slow)?;
+            let (outcome, failures) = validate::validate(cases, folder, *slow, *seed)?;
             (outcome, None, failures)
         }
         study => {
-            let done = run_study(study, &out).map_err(|e| Report::new(as_scene_error(e)))?;
+            let bar = progress_bar();
+            let done = run_study(study, &out, &bar);
+            bar.finish_and_clear();
+            let done = done.map_err(|e| Report::new(as_scene_error(e)))?;
             (done.outcome, done.early_stop, None)
         }
     };
@@ -82,9 +87,14 @@ fn run(options: Options) -> Result<bool, Report> {
 }
 
 /// Runs a study of one scene: one arm for each command, so longer than a screen.
-fn run_study(command: &Command, out: &Path) -> Result<TrajectoryOutcome, StudyError> {
+fn run_study(
+    command: &Command,
+    out: &Path,
+    bar: &ProgressBar,
+) -> Result<TrajectoryOutcome, StudyError> {
+    let progress = |step: Step<'_>| show_step(bar, step);
     let outcome = match command {
-        Command::Check { scene } => dwell_study::check(&read(scene)?)?,
+        Command::Check { scene } => dwell_study::check(&read(scene, bar)?)?,
         Command::Reduce {
             scene,
             table_accuracy,
@@ -99,7 +109,7 @@ fn run_study(command: &Command, out: &Path) -> Result<TrajectoryOutcome, StudyEr
                 interval: from.zip(*to),
                 required: table_accuracy.is_some(),
             });
-            dwell_study::reduce(&read(scene)?, points, tabulation)?
+            dwell_study::reduce(&read(scene, bar)?, points, tabulation)?
         }
         Command::Simulate {
             scene,
@@ -124,11 +134,9 @@ fn run_study(command: &Command, out: &Path) -> Result<TrajectoryOutcome, StudyEr
                     sample_interval: *sample_interval,
                 }),
             };
-            let scene = read(scene)?;
+            let scene = read(scene, bar)?;
             let times = times.as_deref().map(instants::read).transpose()?;
-            return with_progress(|progress| {
-                dwell_study::simulate_with(&scene, &solver, times.as_deref(), progress)
-            });
+            return dwell_study::simulate_with(&scene, &solver, times.as_deref(), &progress);
         }
         Command::Cycle {
             scene,
@@ -142,30 +150,32 @@ fn run_study(command: &Command, out: &Path) -> Result<TrajectoryOutcome, StudyEr
                 atol: *rtol,
                 ..SolverSettings::default()
             };
-            return dwell_study::cycle(&read(scene)?, &settings, *fluctuation);
+            return dwell_study::cycle(&read(scene, bar)?, &settings, *fluctuation);
         }
         Command::WorkPrecision { scene } => {
-            let scene = read(scene)?;
-            with_progress(|progress| dwell_validation::work_precision(&scene, progress))?
+            let scene = read(scene, bar)?;
+            dwell_validation::work_precision(&scene, &progress)?
         }
-        Command::Equilibria { scene } => dwell_study::equilibria(&read(scene)?)?,
-        Command::Linearise { scene, about } => dwell_study::linearise(&read(scene)?, *about)?,
+        Command::Equilibria { scene } => dwell_study::equilibria(&read(scene, bar)?)?,
+        Command::Linearise { scene, about } => dwell_study::linearise(&read(scene, bar)?, *about)?,
         Command::Symbolic {
             scene,
             format,
             reaction,
-        } => dwell_study::symbolic(&read(scene)?, *format, reaction.as_deref())?,
-        Command::Kinematics(arguments) => return run_trajectory(arguments, Analysis::Kinematics),
-        Command::Statics(arguments) => return run_trajectory(arguments, Analysis::Statics),
+        } => dwell_study::symbolic(&read(scene, bar)?, *format, reaction.as_deref())?,
+        Command::Kinematics(arguments) => {
+            return run_trajectory(arguments, Analysis::Kinematics, bar);
+        }
+        Command::Statics(arguments) => return run_trajectory(arguments, Analysis::Statics, bar),
         Command::Kinetostatics(arguments) => {
-            return run_trajectory(arguments, Analysis::Kinetostatics);
+            return run_trajectory(arguments, Analysis::Kinetostatics, bar);
         }
         Command::Calibrate {
             scene,
             parameter,
             period,
         } => {
-            let scene = read(scene)?;
+            let scene = read(scene, bar)?;
             if let Some(path) = parameter {
                 note_former_path(&scene, path);
             }
@@ -180,7 +190,7 @@ fn run_study(command: &Command, out: &Path) -> Result<TrajectoryOutcome, StudyEr
             shard,
             export,
         } => {
-            let scene = read(scene)?;
+            let scene = read(scene, bar)?;
             for axis in vary {
                 let path = axis.split(['=', '~', '±']).next().unwrap_or_default();
                 note_former_path(&scene, path.trim());
@@ -194,7 +204,7 @@ fn run_study(command: &Command, out: &Path) -> Result<TrajectoryOutcome, StudyEr
                 export: *export,
                 folder: out,
             };
-            with_progress(|progress| dwell_study::sweep(&scene, &sweep, progress))?
+            dwell_study::sweep(&scene, &sweep, &progress)?
         }
         // They are no studies of a scene.
         Command::Validate { .. } | Command::Schema => Outcome::default(),
@@ -210,10 +220,12 @@ fn run_study(command: &Command, out: &Path) -> Result<TrajectoryOutcome, StudyEr
 fn run_trajectory(
     arguments: &TrajectoryArgs,
     analysis: Analysis,
+    bar: &ProgressBar,
 ) -> Result<TrajectoryOutcome, StudyError> {
-    let scene = read(&arguments.scene)?;
+    let scene = read(&arguments.scene, bar)?;
     let points = arguments.points.map(|n| n as usize);
-    with_progress(|progress| dwell_study::analyse_trajectory(&scene, analysis, points, progress))
+    let progress = |step: Step<'_>| show_step(bar, step);
+    dwell_study::analyse_trajectory(&scene, analysis, points, &progress)
 }
 
 /// Writes the files, and prints the paths of the first.
@@ -233,30 +245,26 @@ fn write_files(files: &Files, out: &Path) -> Result<(), Report> {
     }
 }
 
-/// Runs a long study with a progress bar.
-fn with_progress<T>(run: impl FnOnce(Progress<'_>) -> T) -> T {
-    let bar = progress_bar();
-    let progress = |step: Step<'_>| {
-        bar.set_length(step.total as u64);
-        bar.set_message(step.done.to_owned());
-        bar.inc(1);
-    };
-    let done = run(&progress);
-    bar.finish_and_clear();
-    done
+/// Shows a step of a long study.
+fn show_step(bar: &ProgressBar, step: Step<'_>) {
+    bar.set_length(step.total as u64);
+    bar.set_message(step.done.to_owned());
+    bar.inc(1);
 }
 
 fn progress_bar() -> ProgressBar {
     let bar = ProgressBar::new(0);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {msg}") {
         bar.set_style(style);
     }
     bar
 }
 
-fn read(path: &Path) -> Result<Scene, StudyError> {
+fn read(path: &Path, bar: &ProgressBar) -> Result<Scene, StudyError> {
     let scene = Scene::read(path)?;
     print_warnings(&scene);
+    // From now on a terminal shows every second that the study goes on.
+    bar.enable_steady_tick(Duration::from_secs(1));
     Ok(scene)
 }
 

@@ -10,11 +10,12 @@ use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// Validates the cases in parallel, and with all of Dwell's own cases also the extreme parameters (`slow`: those
-/// that take minutes too). The outcome holds the cases that could be validated, the report the errors of the others.
+/// that take minutes too; `seed`: that of what is drawn at random). The outcome holds the cases that could be validated, the report the errors of the others.
 pub(crate) fn validate(
     names: &[String],
     folder: &Path,
     slow: bool,
+    seed: u64,
 ) -> Result<(Outcome, Option<Report>), Report> {
     let cases = cases::find(names, folder)?;
     let read = |case: &PathBuf| Scene::read(case.join("scene.toml"));
@@ -37,7 +38,7 @@ pub(crate) fn validate(
         || scenes.par_iter().zip(&cases).map(one).collect(),
         || {
             rayon::join(
-                || (all_cases || slow).then(|| extremes::study(slow)),
+                || (all_cases || slow).then(|| extremes::study(slow, seed)),
                 || all_cases.then(|| work_precision::selected_case_reports(&read)),
             )
         },

@@ -4,9 +4,12 @@
 
 mod check;
 mod closed_forms;
+mod draws;
 mod free_motion;
 mod limit_positions;
+pub mod machines;
 mod mechanisms;
+pub mod pulses;
 mod report;
 mod run_pair;
 mod scale;
@@ -24,13 +27,21 @@ use dwell_study::Outcome;
 use dwell_study::StudyError;
 use rayon::prelude::*;
 
-/// The whole study: `extremes`, or `extremes-long` with the rows that take minutes.
+/// The whole study: `extremes`, or `extremes-long` with the rows that take minutes. What is drawn at random is of a
+/// `seed`.
 ///
 /// # Errors
 /// [`StudyError`] where a picture cannot be drawn.
-pub fn study(slow: bool) -> Result<Outcome, StudyError> {
+pub fn study(slow: bool, seed: u64) -> Result<Outcome, StudyError> {
     let name = if slow { "extremes-long" } else { "extremes" };
-    outcome(&evaluate(all_series(slow)), name)
+    let mut outcome = outcome(&evaluate(all_series(slow)), name)?;
+    let pulses = pulses::evaluate(pulses::count(slow), seed);
+    pulses::add_to(&mut outcome, &pulses, seed, name)?;
+    if slow {
+        let machines = machines::evaluate(machines::COUNT, seed);
+        machines::add_to(&mut outcome, &machines, seed, name)?;
+    }
+    Ok(outcome)
 }
 
 /// The rows of the grid; with `slow` those that take minutes too.

@@ -37,8 +37,11 @@ impl FreeMotionProblem<'_> {
         t: f64,
         &(method, tolerance, max_steps): &(Method, f64, usize),
     ) -> Option<OdeState> {
+        // Within a step nothing switches, and nothing varies faster than it: it need not be searched again, which would take
+        // most of the time.
         let options = Options {
             max_steps,
+            max_step: Some(t - before.t),
             ..Options::new(method, tolerance)
         };
         let mut ode = MachineOde::new(machine, before.t, &before.y).ok()?;

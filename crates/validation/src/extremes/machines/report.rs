@@ -1,0 +1,205 @@
+//! The table and the picture of the random machines.
+
+use super::check::check;
+use super::run::{ACCURACIES, MachineResult, MachineRun};
+use crate::extremes::series::MAX_ESTIMATE_RATIO;
+use crate::report_parts::{draw_figures, figure_blocks, pass_or_fail, table};
+use dwell_findings::all_pass;
+use dwell_report::{
+    Axis, Block, Chart, Column, Document, Figure, Mark, Paint, Series, Stroke, Table,
+    TableExport as _, png, reproducible_text,
+};
+use dwell_study::output::chart;
+use dwell_study::{Outcome, StudyError};
+
+/// Errors that a chart shows.
+const ERROR_RANGE: [f64; 2] = [1e-16, 1e-2];
+
+/// Adds the report of the machines, `NAME-machines.md` with its text, its table and its picture, to an outcome.
+///
+/// # Errors
+/// [`StudyError`] where the picture cannot be drawn.
+// Longer than a screen, with the text of the page.
+pub(in crate::extremes) fn add_to(
+    outcome: &mut Outcome,
+    results: &[MachineResult],
+    seed: u64,
+    name: &str,
+) -> Result<(), StudyError> {
+    let findings = check(results);
+    let name = format!("{name}-machines");
+    let figures = [figure(results, seed)];
+    draw_figures(&mut outcome.files, &name, &figures, png)?;
+    outcome
+        .files
+        .add(format!("{name}/machines.csv"), csv_table(results).csv()?);
+    for machine in results {
+        let file = format!("{name}/machine-{:03}.toml", machine.number);
+        outcome.files.add(file, machine.text.clone());
+    }
+    let head = format!("Machines\n\n{} machines of seed {seed}\n\n", results.len());
+    outcome
+        .files
+        .add(format!("{name}.txt"), head + &reproducible_text(&findings));
+    let mut blocks = vec![
+        Block::Text(format!(
+            "{}. Mechanisms of one and two freedoms, drawn by seed {seed}, under loads that switch with time, coordinates and \
+             speeds, with motors and with speed controllers that saturate; `dwell validate --seed N` draws others. Each is \
+             simulated to four accuracies, and compared with a Runge–Kutta method of order 5 with step control of its own at \
+             1e-13, restarted by hand at the switches in time; the error of that reference is its difference from 1e-12. The scenes \
+             are in the folder of the picture.",
+            pass_or_fail(all_pass(&findings))
+        )),
+        table(
+            &[
+                "Accuracy",
+                "Runs",
+                "Refused",
+                "Largest true error",
+                "Largest error / estimate",
+                "Estimates above 100 times",
+            ],
+            ACCURACIES
+                .iter()
+                .map(|&accuracy| summary_row(accuracy, results)),
+        ),
+    ];
+    blocks.extend(figure_blocks(&name, &figures, false));
+    blocks.push(Block::Heading("Findings".to_owned()));
+    blocks.push(Block::Findings(findings.clone()));
+    let document = Document {
+        title: "Random machines".to_owned(),
+        blocks,
+    };
+    outcome.files.add(format!("{name}.md"), document.markdown());
+    let passed = findings.iter().filter(|f| f.pass).count();
+    outcome.summary += &format!(
+        "{name}: {passed} of {} findings pass, {} machines\n",
+        findings.len(),
+        results.len()
+    );
+    outcome.findings.extend(findings);
+    Ok(())
+}
+
+/// An accuracy in numbers.
+fn summary_row(accuracy: f64, results: &[MachineResult]) -> Vec<String> {
+    let runs = || {
+        results
+            .iter()
+            .flat_map(|m| &m.runs)
+            .filter(|run| run.accuracy == accuracy)
+    };
+    let ratios: Vec<f64> = runs().filter_map(MachineRun::estimate_ratio).collect();
+    let completed = runs().filter(|run| run.refused.is_none());
+    let error = completed.map(|run| run.error).fold(0.0, f64::max);
+    let below = ratios.iter().map(|ratio| 1.0 / ratio).fold(0.0, f64::max);
+    vec![
+        format!("{accuracy:.0e}"),
+        runs().count().to_string(),
+        runs()
+            .filter(|run| run.refused.is_some())
+            .count()
+            .to_string(),
+        format!("{error:.1e}"),
+        format!("{below:.2}"),
+        ratios
+            .iter()
+            .filter(|ratio| **ratio > MAX_ESTIMATE_RATIO)
+            .count()
+            .to_string(),
+    ]
+}
+
+fn figure(results: &[MachineResult], seed: u64) -> Figure {
+    Figure {
+        name: "machines".to_owned(),
+        title: "Random machines: promised, estimated and true errors".to_owned(),
+        caption: format!(
+            "{} machines of seed {seed}, each to four required accuracies; one mark for each motion that is not refused. Left: the \
+             true error by machine; dashed: the required accuracies, which it must not exceed. Right: the estimated error over \
+             the true one, between 1 and {MAX_ESTIMATE_RATIO} wherever the true error is above 1e-13.",
+            results.len()
+        ),
+        columns: 2,
+        panels: [errors(results), estimates(results)].map(Into::into).into(),
+        ..Figure::default()
+    }
+}
+
+fn by_accuracy(
+    results: &[MachineResult],
+    of: impl Fn(&MachineResult, &MachineRun) -> Option<[f64; 2]>,
+) -> Vec<Series> {
+    let series = ACCURACIES.iter().enumerate().map(|(k, accuracy)| {
+        let runs = results
+            .iter()
+            .flat_map(|m| m.runs.iter().map(move |run| (m, run)));
+        let runs = runs.filter(|(_, run)| run.accuracy == *accuracy && run.refused.is_none());
+        let points = runs.filter_map(|(m, run)| of(m, run)).collect();
+        let series = Series::line(format!("accuracy {accuracy:.0e}"), points);
+        series.stroke(Stroke::Points).color(Paint::Palette(k))
+    });
+    series.collect()
+}
+
+fn errors(results: &[MachineResult]) -> Chart {
+    let [low, high] = ERROR_RANGE;
+    let last = results.len() as f64;
+    let mut series = by_accuracy(results, |m, run| {
+        (!run.error.is_nan()).then(|| [m.number as f64, run.error.clamp(low, high)])
+    });
+    for (k, accuracy) in ACCURACIES.iter().enumerate() {
+        let line = Series::line("", vec![[-0.5, *accuracy], [last, *accuracy]]);
+        series.push(line.stroke(Stroke::Dashed).color(Paint::Palette(k)));
+    }
+    let x = Axis::new("machine", "").with_range(-0.5, last);
+    let y = Axis::log("true error", "").with_range(low, high);
+    chart("Accuracy kept", x, y, series)
+}
+
+fn estimates(results: &[MachineResult]) -> Chart {
+    let series = by_accuracy(results, |_, run| {
+        Some([run.error, run.estimate_ratio()?.clamp(0.1, 1e6)])
+    });
+    let line = |at: f64| Mark::Horizontal {
+        at,
+        label: String::new(),
+    };
+    let x = Axis::log("true error", "").with_range(1e-13, ERROR_RANGE[1]);
+    let y = Axis::log("estimate / true error", "").with_range(0.1, 1e6);
+    Chart {
+        marks: vec![line(1.0), line(MAX_ESTIMATE_RATIO)],
+        ..chart("Estimates", x, y, series)
+    }
+}
+
+/// All numbers of all runs.
+fn csv_table(results: &[MachineResult]) -> Table {
+    let columns = [
+        "machine",
+        "accuracy",
+        "refused",
+        "true error",
+        "error of the reference",
+        "estimate",
+    ];
+    let row = |m: &MachineResult, run: &MachineRun| {
+        let refused = f64::from(u8::from(run.refused.is_some()));
+        vec![
+            m.number as f64,
+            run.accuracy,
+            refused,
+            run.error,
+            run.reference_error,
+            run.estimate,
+        ]
+    };
+    let rows = results
+        .iter()
+        .flat_map(|m| m.runs.iter().map(move |run| row(m, run)));
+    Table {
+        columns: columns.map(|name| Column::new(name, "")).into(),
+        rows: rows.collect(),
+    }
+}
