@@ -187,7 +187,7 @@ impl Orbit {
     }
 
     /// The times (s) after the start at which the phase has grown by equal parts of a period; the last is the period.
-    pub(crate) fn times_of_parts(&self, parts: usize) -> Vec<f64> {
+    pub fn times_of_parts(&self, parts: usize) -> Vec<f64> {
         let time = |k: usize| {
             let phase = self.initial_phase + TAU * k as f64 / parts as f64;
             self.time_density.eval(phase)[1] - self.time_offset
