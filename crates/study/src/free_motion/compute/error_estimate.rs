@@ -49,12 +49,7 @@ impl FreeMotionProblem<'_> {
             format!("the same tolerance by {}", finer.method.name())
         };
         // An event that ends the motion may happen later in the second run.
-        let is_ended_by_event = motion.failure.is_none() && duration < requested;
-        let duration = if is_ended_by_event {
-            requested
-        } else {
-            duration
-        };
+        let duration = motion.failure.as_ref().map_or(requested, |_| duration);
         let second = self.solve(scene, duration, &finer).ok();
         let others = second.as_ref().and_then(|motion| self.samples(motion).ok());
         // The last samples may be missing if an event ends one of the runs earlier.
