@@ -212,6 +212,9 @@ def extrema_bound_rows(run):
         if not cells:
             continue
         low, high = float(row["min"]), float(row["max"])
+        # A force that is zero but for rounding has no direction.
+        if low == high == 0 and ".direction" in name:
+            continue
         # What is zero but for rounding is zero among the extrema: beside the largest number, which may be an energy, or, where
         # the mechanism is a million metres large, beside a moment that is a force times that.
         rounding = max(1e-11 * largest, 1e-6 * largest_of_unit(extrema, row["unit"])) if low == high == 0 else 0
