@@ -49,7 +49,7 @@ pub(super) struct Passage {
 
 impl Passage {
     /// Whether a coordinate is so far behind it, or back before it, that steps may grow again.
-    pub(super) fn is_left_behind(&self, q: f64) -> bool {
+    pub(super) fn is_passed(&self, q: f64) -> bool {
         let distance = q - self.center;
         let passed = distance * self.from < 0.0 && distance.abs() > 2.0 * EXTENT * self.half_width;
         passed || distance.abs() > 2.0 * self.from.abs() + 4.0 * EXTENT * self.half_width
