@@ -267,6 +267,12 @@ impl<'s> Atlas<'s> {
                     options.max_step = max_step;
                     continue;
                 }
+                None if let Some((place, step)) =
+                    self.charts[chart].shorter_step(&at, options.max_step) =>
+                {
+                    (passage, options.max_step) = (Some(place), Some(step));
+                    continue;
+                }
                 None => self.fallback_exit(chart, &at),
                 exit => exit,
             };

@@ -198,7 +198,7 @@ impl Plan {
         let is_near = left * direction > 0.0 && left.abs() < self.continuation_step(0);
         let q = pose.q[0] + if is_near { left } else { 0.0 };
         let found = anchor.and_then(|anchor| self.separation(group, q, anchor));
-        let behind = found.and_then(|found| self.branch_behind(group, found));
+        let behind = found.and_then(|found| self.branch_beyond(group, found));
         let smallest = MIN_FOLD_HALF_WIDTH * self.coordinate_unit();
         let folds = found.is_some_and(|found| found.square < -smallest * smallest);
         let mut limit = RangeLimit {

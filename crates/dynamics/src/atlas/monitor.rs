@@ -179,9 +179,7 @@ impl<'a, 's> ChartMonitor<'a, 's> {
     /// Whether the place for which the steps are short lies behind.
     fn place_passed(&self, now: &OdeState) -> Option<ChartExit> {
         let place = self.passage?;
-        place
-            .is_left_behind(now.y[0])
-            .then_some(ChartExit::PlacePassed)
+        place.is_passed(now.y[0]).then_some(ChartExit::PlacePassed)
     }
 
     /// The distance of a coordinate from the nearest limit of the range.

@@ -21,6 +21,11 @@ const CLEARANCE: f64 = 2.0;
 /// A step longer than this (rad, or of the mechanism's size) does not end a motion: a shorter one is tried.
 const LONG_STEP: f64 = 1e-3;
 
+/// How far from a place a step that failed may have begun (rad, or of the mechanism's size), and how short steps get
+/// there before another cause is assumed, in half-widths.
+const FAILURE_REACH: f64 = 1.5;
+const MIN_STEP_WIDTHS: f64 = 1e-2;
+
 /// What a step meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum NearBranchStep {
@@ -44,7 +49,7 @@ pub(super) struct Passage {
 
 impl Passage {
     /// Whether a coordinate is so far behind it, or back before it, that steps may grow again.
-    pub(super) fn is_left_behind(&self, q: f64) -> bool {
+    pub(super) fn is_passed(&self, q: f64) -> bool {
         let distance = q - self.center;
         let passed = distance * self.from < 0.0 && distance.abs() > 2.0 * EXTENT * self.half_width;
         passed || distance.abs() > 2.0 * self.from.abs() + 4.0 * EXTENT * self.half_width
@@ -87,6 +92,35 @@ impl Chart {
             }
         }
         NearBranchStep::Resolved
+    }
+
+    /// The place ahead of a state from which a step failed, and a longest step (s) for which it may not; none where that
+    /// is not the cause. `last` is the longest step that failed.
+    pub(super) fn shorter_step(&self, at: &OdeState, last: Option<f64>) -> Option<(Passage, f64)> {
+        let plan = self.machine.model.plan();
+        let (q, speed) = (at.y[0], at.y[1].abs());
+        let reach = FAILURE_REACH * plan.coordinate_unit();
+        let ends = match at.y[1] < 0.0 {
+            true => [q - reach, q],
+            false => [q, q + reach],
+        };
+        let period = plan.range().period();
+        let period = period.or_else(|| plan.is_angle(0).then_some(TAU));
+        let mut near = plan.near_branches().iter();
+        let (center, half_width) = near.find_map(|near| {
+            let center = nearest_in_step(near, period, ends, near.half_width)?;
+            Some((center, near.half_width))
+        })?;
+        let distance = (q - center).abs().max(half_width);
+        let first = 0.25 * distance / speed;
+        let next = last.map_or(first, |last| first.min(0.25 * last));
+        let passage = Passage {
+            center,
+            half_width,
+            from: q - center,
+        };
+        let is_worth = next.is_finite() && next * speed > MIN_STEP_WIDTHS * half_width;
+        is_worth.then_some((passage, next))
     }
 
     /// Whether a step leads from one revolution of a limited range to another, or passes over a fit window.

@@ -126,7 +126,7 @@ impl Plan {
     }
 
     /// The near branch behind a fold, where both fold back at a small distance.
-    pub(super) fn branch_behind(&self, group: usize, found: Separation) -> Option<NearBranch> {
+    pub(super) fn branch_beyond(&self, group: usize, found: Separation) -> Option<NearBranch> {
         let half_width = found.square.abs().sqrt();
         let is_near = half_width > 0.0 && half_width < NEAR_HALF_WIDTH * self.coordinate_unit();
         is_near.then_some(NearBranch {
