@@ -44,8 +44,8 @@ fn pulses_that_are_missed_promised_in_vain_or_refused_are_seen() {
         failed(&findings).join(" ")
     };
     assert_eq!(with(&|_| ()), "");
-    assert_eq!(with(&|run| run.missed = 1.0), "pulses-seen");
-    assert_eq!(with(&|run| run.missed = f64::NAN), "pulses-seen");
+    assert_eq!(with(&|run| run.missed = 1.0), "pulses-missed");
+    assert_eq!(with(&|run| run.missed = f64::NAN), "pulses-missed");
     let worse = with(&|run| run.error = 2e-6);
     assert_eq!(worse, "pulses-accuracy pulses-restarts");
     let refused = with(&|run| run.refused = Some("too hard".to_owned()));

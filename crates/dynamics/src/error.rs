@@ -95,7 +95,7 @@ pub enum DynamicsError {
         max_occurrences: usize,
     },
     /// A step goes through so many revolutions that events within it are not looked for.
-    #[error("events cannot be looked for in a step from t = {t} s through {angle} rad")]
+    #[error("events cannot be found in a step from t = {t} s through {angle} rad")]
     StepTooLongForEvents {
         /// Where the step begins, s.
         t: f64,

@@ -252,5 +252,9 @@ fn a_motion_with_a_large_error_is_a_failure() {
     assert_eq!(run.status, Some(1), "{}", run.err);
     let message = "the motion is not resolved: the estimated error of the energy is";
     assert!(run.err.contains(message), "{}", run.err);
-    assert!(run.out.contains("use a smaller --rtol"), "{}", run.out);
+    assert!(
+        run.out.contains("a finer tolerance is needed"),
+        "{}",
+        run.out
+    );
 }

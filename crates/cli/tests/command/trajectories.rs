@@ -264,7 +264,7 @@ fn what_cannot_be_followed_is_refused() {
         &["statics", "scene.toml"],
         &[
             "the first position cannot be reached: phi = 3 rad",
-            "of -1.37156 to",
+            "range of -1.371564 to",
         ],
     );
 }

@@ -147,7 +147,7 @@ fn describe(
         ),
         DynamicsError::StepTooLongForEvents { t, angle } => (
             format!(
-                "a step of the integrator from t = {} s goes through {} revolutions: events within it are not looked for",
+                "a step of the integrator from t = {} s goes through {} revolutions: events within it cannot be found",
                 digits(*t, 6),
                 digits(angle / TAU, 3)
             ),

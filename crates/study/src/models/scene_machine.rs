@@ -1,5 +1,6 @@
 //! The machine of a scene, as `cycle`, `equilibria` and `linearise` use it.
 
+#[cfg(feature = "output")]
 use crate::branch_note::branch_note;
 use crate::explain::{
     Labels, StudyError, explain_motion, initial_state_location, labels, scene_error,
@@ -46,6 +47,7 @@ impl<'a> SceneMachine<'a> {
     }
 
     /// Where the assembly mode in use is far from the approximate angles that the scene gives.
+    #[cfg(feature = "output")]
     pub(crate) fn branch_note(&self) -> String {
         branch_note(self.scene, self.machine.model().plan())
     }

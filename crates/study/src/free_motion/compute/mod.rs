@@ -16,5 +16,6 @@ pub(crate) use difference::Difference;
 pub use problem::FreeMotionProblem;
 pub(crate) use segmented_motion::ComputedMotion;
 pub use segmented_motion::SegmentedMotion;
+#[cfg(feature = "output")]
 pub(crate) use simulation::compute_free_motion_at;
 pub use simulation::{FreeMotion, MotionSolver, compute_free_motion};

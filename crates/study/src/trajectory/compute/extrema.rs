@@ -220,6 +220,7 @@ fn is_continuous(column: &Column) -> bool {
 }
 
 /// Whether the extrema of a column, but for the abscissa, are always those of the rows.
+#[cfg(feature = "output")]
 pub(crate) fn is_searched_in_rows(column: &Column) -> bool {
     column.quantity != Quantity::Time && !is_continuous(column)
 }

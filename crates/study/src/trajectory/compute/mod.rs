@@ -25,9 +25,9 @@ pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
 };
 pub(crate) use evaluator::{ForceEvaluator, PositionEvaluator};
-pub(crate) use extrema::{
-    BetweenRows, Extrema, ExtremaSearch, Extremum, Point, is_searched_in_rows, largest_between,
-};
+pub(crate) use extrema::{BetweenRows, Extrema, ExtremaSearch, Point, largest_between};
+#[cfg(feature = "output")]
+pub(crate) use extrema::{Extremum, is_searched_in_rows};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryMonitor, table_of};
 pub(crate) use peak_forces::{WantedForces, peak_forces};

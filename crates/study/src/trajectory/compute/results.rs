@@ -179,6 +179,18 @@ impl TrajectoryResults {
         }
     }
 
+    /// The index of the column of a quantity.
+    pub(crate) fn column_index(&self, quantity: Quantity) -> Option<usize> {
+        self.columns.iter().position(|c| c.quantity == quantity)
+    }
+
+    /// The index of the column of the abscissa: time, or the swept coordinate.
+    pub(crate) fn abscissa(&self, trajectory: &Trajectory<'_>) -> usize {
+        let swept = trajectory.swept_actuator();
+        let quantity = swept.map_or(Quantity::Time, |a| Quantity::ActuatorCoordinate(a, 0));
+        self.column_index(quantity).unwrap_or(0)
+    }
+
     /// Finds the extrema of the columns in the tables that are not zero but for rounding.
     fn find_extrema(
         &mut self,

@@ -9,7 +9,7 @@ use crate::number_format::digits;
 use crate::output::{MechanismDrawing, chart, coordinate_axis, figure, symbol};
 use crate::ranges::extent;
 use crate::trajectory::compute::{
-    Analysis, Column, ComputedTrajectory, Quantity, Trajectory, TrajectoryResults,
+    Analysis, Column, ComputedTrajectory, Quantity, TrajectoryResults,
 };
 use dwell_report::{
     Animation, Axis, Chart, Drawing, Figure, Paint, Panel, Pen, Scale, Series, Shape, Stroke,
@@ -313,17 +313,5 @@ impl TrajectoryResults {
         let bodies = scene.mechanism.bodies.iter().zip(&self.modelled);
         let unmodelled = bodies.filter(|(_, modelled)| !**modelled);
         unmodelled.map(|(body, _)| body.name.clone()).collect()
-    }
-
-    /// The index of the column of a quantity.
-    pub(crate) fn column_index(&self, quantity: Quantity) -> Option<usize> {
-        self.columns.iter().position(|c| c.quantity == quantity)
-    }
-
-    /// The index of the column of the abscissa: time, or the swept coordinate.
-    pub(crate) fn abscissa(&self, trajectory: &Trajectory<'_>) -> usize {
-        let swept = trajectory.swept_actuator();
-        let quantity = swept.map_or(Quantity::Time, |a| Quantity::ActuatorCoordinate(a, 0));
-        self.column_index(quantity).unwrap_or(0)
     }
 }

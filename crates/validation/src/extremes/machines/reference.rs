@@ -14,7 +14,7 @@ const MAX_STEPS: usize = 150_000;
 /// Shortest step, in spans: below it a step is taken whatever its error, for it crosses a jump.
 const SHORTEST: f64 = 1e-14;
 /// How far from a switch in time its sides are evaluated, in spans.
-const BESIDE: f64 = 4e-15;
+const SWITCH_MARGIN: f64 = 4e-15;
 
 const C: [f64; 7] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
 const A: [&[f64]; 7] = [
@@ -179,8 +179,8 @@ impl Integration<'_> {
         piece: [f64; 2],
         y: &[f64],
     ) -> Result<(Vec<f64>, f64), String> {
-        let beside = BESIDE * self.span;
-        let inside = [piece[0] + beside, piece[1] - beside];
+        let margin = SWITCH_MARGIN * self.span;
+        let inside = [piece[0] + margin, piece[1] - margin];
         let mut next = y.to_vec();
         for stage in 0..7 {
             for (i, value) in next.iter_mut().enumerate() {

@@ -21,7 +21,7 @@ pub fn check(results: &[PulseResult]) -> Vec<Finding> {
     let completed = || runs().filter(|(_, run)| run.refused.is_none());
     let refused = runs().count() - completed().count();
     let share = refused as f64 / runs().count().max(1) as f64;
-    let seen = largest(completed(), |run| Some(run.missed / MISSED));
+    let missed = largest(completed(), |run| Some(run.missed / MISSED));
     let kept = largest(completed(), PulseRun::accuracy_ratio);
     let restarted = largest(completed(), |run| {
         Some(run.restart_ratio()? / MAX_ERROR_RATIO)
@@ -40,15 +40,15 @@ pub fn check(results: &[PulseResult]) -> Vec<Finding> {
         };
     vec![
         finding(
-            "pulses-seen",
-            "the speed behind a pulse: from its impulse, or from restarts by hand",
+            "pulses-missed",
+            "the speed after a pulse: from its impulse, or from restarts by hand",
             "half of what the pulse changes the speed by",
             "a pulse that is stepped over has an error of 2",
-            seen,
+            missed,
         ),
         finding(
             "pulses-accuracy",
-            "the coordinate behind a pulse to a required accuracy: from the impulse, or from restarts by hand",
+            "the coordinate after a pulse to a required accuracy: from the impulse, or from restarts by hand",
             "the required accuracy",
             "what is promised is kept",
             kept,

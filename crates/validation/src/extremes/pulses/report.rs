@@ -121,10 +121,10 @@ fn figure(results: &[PulseResult], seed: u64) -> Figure {
     let runs: usize = results.iter().map(|p| p.runs.len()).sum();
     Figure {
         name: "pulses".to_owned(),
-        title: "Pulses: seen, kept, and as exact as restarts by hand".to_owned(),
+        title: "Pulses: none missed, accuracies reached, as exact as restarts by hand".to_owned(),
         caption: format!(
             "{} pulses of seed {seed} in {runs} runs, one mark each, over the width of the pulse. Above: the error of the \
-             speed behind the pulse over what it changes the speed by, where a missed pulse is at 1; the true error of the \
+             speed after the pulse over what it changes the speed by, where a missed pulse is at 1; the true error of the \
              coordinate over the required accuracy, which must stay below 1. Below: the error of a method over that of the same \
              method restarted by hand at the switches, which must stay below {MAX_ERROR_RATIO}; the estimated error over \
              the true one, where it is above rounding.",
@@ -132,7 +132,7 @@ fn figure(results: &[PulseResult], seed: u64) -> Figure {
         ),
         columns: 2,
         panels: [
-            seen(results),
+            missed(results),
             accuracy(results),
             restarts(results),
             estimates(results),
@@ -202,7 +202,7 @@ fn by_accuracy(
     series.collect()
 }
 
-fn seen(results: &[PulseResult]) -> Chart {
+fn missed(results: &[PulseResult]) -> Chart {
     let range = [1e-16, 10.0];
     let [low, high] = range;
     let y = Axis::log("error of the speed / effect of the pulse", "").with_range(low, high);
