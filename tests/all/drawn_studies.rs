@@ -19,7 +19,7 @@ fn pulse_run(kind: RunKind) -> PulseRun {
         refused: None,
         error: 1e-8,
         missed: 1e-7,
-        error_by_hand: 1e-8,
+        error_by_hand: Some(1e-8),
         estimate: 1e-7,
         rounding: 1e-12,
     }

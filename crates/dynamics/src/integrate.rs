@@ -402,10 +402,9 @@ impl StepLoop<'_, '_> {
             if control == StepControl::Stop || is_end {
                 return Ok(());
             }
-            if is_at_stop || self.options.max_step.is_some() || self.pieces.is_some() {
-                if self.set_stop_time(solver, at.t, &cause)? {
-                    return Ok(());
-                }
+            let is_limited = self.options.max_step.is_some() || self.pieces.is_some();
+            if (is_at_stop || is_limited) && self.set_stop_time(solver, at.t, &cause)? {
+                return Ok(());
             }
         }
         Err(DynamicsError::MaxStepsReached {

@@ -87,7 +87,7 @@ impl SampledLibration {
         let series = self.time_density();
         let is_resolved = self.force_series.is_resolved && series.is_resolved;
         let is_sharp = points >= SHARP_POINTS && !is_resolved;
-        let time_density = if is_sharp && !(series.tail < accuracy) {
+        let time_density = if is_sharp && (series.tail >= accuracy || series.tail.is_nan()) {
             while !self.force_series.is_resolved {
                 self.check_points()?;
                 self.double_points(system, first)?;

@@ -212,7 +212,7 @@ pub fn solve_reduced<R: ReducedModel>(
     }
     let mut ode = ReducedOde::new(model).with_speed_scale(start.q_dot);
     let outputs = ReducedOutputs::new(model);
-    let (from, events) = (start.into(), (events, &at_limits[..]));
+    let (from, events) = (start.into(), [events, &at_limits[..]]);
     let mut solution = solve_with_limits(&mut ode, outputs, &from, end, options, events)?;
     let is_at_limit = |event: usize| event >= requested;
     let last = solution.event_occurrences.last();

@@ -54,7 +54,7 @@ impl SampledRotation {
         let series = FourierSeries::new(&values, size);
         let is_sharp = points >= SHARP_POINTS && !series.is_resolved;
         let mut is_resolved = series.is_resolved;
-        let time_density = if is_sharp && !(series.tail < accuracy) {
+        let time_density = if is_sharp && (series.tail >= accuracy || series.tail.is_nan()) {
             let panels = Panels::new::<DynamicsError>(|phase| {
                 let at = system.energy_terms(from + angle_per_period * (phase / TAU))?;
                 Ok(density(&at))

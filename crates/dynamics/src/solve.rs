@@ -121,7 +121,7 @@ pub fn solve_system<O: Observed>(
     options: &Options,
     events: &[Event<O::Coordinate>],
 ) -> Result<Solution> {
-    solve_with_limits(system, observed, start, end, options, (events, &[]))
+    solve_with_limits(system, observed, start, end, options, [events, &[]])
 }
 
 /// The same with further events behind the others, whose values are limits: they need not be passed by more than the
@@ -132,7 +132,7 @@ pub(crate) fn solve_with_limits<O: Observed>(
     start: &OdeState,
     end: Option<f64>,
     options: &Options,
-    (events, limits): (&[Event<O::Coordinate>], &[Event<O::Coordinate>]),
+    [events, limits]: [&[Event<O::Coordinate>]; 2],
 ) -> Result<Solution> {
     let tolerance = TouchTolerance::of_integration(options);
     let mut recorder_state = RecorderState::new(start.t, events, tolerance).with_limits(limits);

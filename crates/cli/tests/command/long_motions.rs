@@ -55,7 +55,10 @@ fn forty_thousand_periods_with_their_events() {
     }
     // Its largest force, at the bottom of a swing, is three times the weight, between whatever rows.
     let text = fs::read_to_string(dir.0.join("o/long-motion-extrema.csv")).unwrap();
-    let force = text.lines().find(|line| line.starts_with("A.magnitude,")).unwrap();
+    let force = text
+        .lines()
+        .find(|line| line.starts_with("A.magnitude,"))
+        .unwrap();
     let cells = force.split(',').skip(2).map(|cell| cell.parse().unwrap());
     let cells: Vec<f64> = cells.collect();
     let largest = cells[0].abs().max(cells[2].abs());

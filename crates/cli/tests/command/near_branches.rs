@@ -44,7 +44,7 @@ duration = 1.3
 
 fn simulate(coupler: &str, arguments: &[&str]) -> Run {
     let dir = TestDir::new();
-    dir.put("bar.toml", &parallelogram(coupler));
+    dir.put("bar.toml", parallelogram(coupler));
     let command = ["simulate", "bar.toml", "--sample-interval", "0.013"];
     dir.run(&[&command, arguments, &["--out", "o"]].concat())
 }

@@ -192,7 +192,7 @@ impl<'s> Search<'s> {
     /// How the functions of all events repeat themselves, if the last periods show that they do: as many as before them.
     fn repetition(&self) -> Option<Repetition> {
         let done = self.values.len() - 1;
-        if done % (2 * PARTS) != 0 || done > 2 * PARTS * MAX_PERIODS {
+        if !done.is_multiple_of(2 * PARTS) || done > 2 * PARTS * MAX_PERIODS {
             return None;
         }
         let (periods, half) = (done / (2 * PARTS), done / 2);

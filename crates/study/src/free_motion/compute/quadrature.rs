@@ -6,7 +6,7 @@
 
 use crate::estimate;
 use crate::free_motion::compute::refinement::MIN_TOLERANCE;
-use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
+use crate::free_motion::compute::{ComputedMotion, Difference, FreeMotionProblem, SegmentedMotion};
 use dwell_dynamics::{
     DynamicsError, Method, ObservedMachine, OdeState, Options, Orbit, OrbitSequence, ReducedState,
     Solution, solve_orbit,
@@ -56,20 +56,7 @@ impl FreeMotionProblem<'_> {
             let motion = along(orbit.clone())?;
             let next = along(finer.clone())?;
             let ends = [motion.end_time(), next.end_time()];
-            let times = compared_times(&orbit, ends[0]);
-            let at_times = |orbit: &Orbit, end: f64, delay: f64| {
-                let late = |&t: &f64| OdeState {
-                    t,
-                    ..OdeState::from(orbit.state_at(t * (1.0 + delay)))
-                };
-                compared_motion(times.iter().map(late).collect(), end)
-            };
-            let these = at_times(&orbit, ends[0], 0.0);
-            let rounding = at_times(&orbit, ends[0], delay);
-            let rounding = self.difference(&these, &rounding).ok()?;
-            let truncation = at_times(&finer, ends[1], 0.0);
-            let truncation = self.difference(&these, &truncation).ok()?;
-            let difference = truncation.scaled(SAFETY_FACTOR).plus(&rounding);
+            let difference = self.orbit_difference([&orbit, &finer], ends, delay).ok()?;
             // More points than both need would change roundings only.
             if difference.largest() <= accuracy || (orbit.is_resolved && finer.is_resolved) {
                 // Both errors together, with the events and the end of the finer orbit.
@@ -92,6 +79,28 @@ impl FreeMotionProblem<'_> {
             delay: Some(delay),
             ..found
         })
+    }
+
+    /// The error of an orbit's rule, from a finer one, and of the rounding that delays it by a part of the time; `ends`
+    /// are those of the two motions, s.
+    fn orbit_difference(
+        &self,
+        [orbit, finer]: [&Orbit; 2],
+        ends: [f64; 2],
+        delay: f64,
+    ) -> Result<Difference, DynamicsError> {
+        let times = compared_times(orbit, ends[0]);
+        let at_times = |orbit: &Orbit, end: f64, delay: f64| {
+            let late = |&t: &f64| OdeState {
+                t,
+                ..OdeState::from(orbit.state_at(t * (1.0 + delay)))
+            };
+            compared_motion(times.iter().map(late).collect(), end)
+        };
+        let these = at_times(orbit, ends[0], 0.0);
+        let rounding = self.difference(&these, &at_times(orbit, ends[0], delay))?;
+        let truncation = self.difference(&these, &at_times(finer, ends[1], 0.0))?;
+        Ok(truncation.scaled(SAFETY_FACTOR).plus(&rounding))
     }
 
     /// The motion along an orbit.

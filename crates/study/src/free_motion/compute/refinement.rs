@@ -24,6 +24,8 @@ const TABLE_TOLERANCE_RATIO: f64 = 0.1;
 const MIN_TABLE_TOLERANCE: f64 = 1e-13;
 /// Margin of a table of a limited range beyond the coarse run, relative to the range of that run.
 const TABLE_MARGIN: f64 = 0.05;
+/// The factor to the next tolerance where the last one changed no step.
+const EQUAL_STEPS_FACTOR: f64 = 1e-3;
 /// Maximum number of runs.
 const MAX_RUNS: usize = 6;
 
@@ -105,9 +107,16 @@ impl FreeMotionProblem<'_> {
             let difference = difference.map_err(|e| self.explain(&e))?;
             let difference = difference.scaled(SAFETY_FACTOR);
             tolerance = next;
-            let before = std::mem::replace(&mut kept, motion);
             runs += 1;
             let largest = difference.largest();
+            // Switches may divide a motion into parts of a step each, which two tolerances take alike: their difference
+            // shows nothing.
+            let has_more_steps = motion.statistics.steps > kept.statistics.steps;
+            if !has_more_steps && next > 1.01 * min_tolerance && runs < MAX_RUNS {
+                next = (EQUAL_STEPS_FACTOR * next).max(min_tolerance);
+                continue;
+            }
+            let before = std::mem::replace(&mut kept, motion);
             if largest <= accuracy || next <= 1.01 * min_tolerance || runs >= MAX_RUNS {
                 return Ok(Some(Refinement {
                     tolerance,

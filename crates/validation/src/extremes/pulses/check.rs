@@ -138,7 +138,7 @@ impl PulseRun {
             RunKind::Fixed(_, tolerance) => {
                 // Below a tolerance the error by hand is chance: of 300 runs of seed 2 it is so in 4, with 1 to 5 tolerances.
                 let floor = self.rounding + tolerance;
-                Some(self.error / (self.error_by_hand + floor))
+                Some(self.error / (self.error_by_hand? + floor))
             }
             RunKind::Accuracy(_) => None,
         }

@@ -35,6 +35,19 @@ impl PulseShape {
         Self::Periodic,
     ];
 
+    /// Whether it has switches at which an integration can be restarted: a bell is smooth everywhere.
+    pub(super) fn has_switches(self) -> bool {
+        match self {
+            Self::Bell => false,
+            Self::Triangle
+            | Self::SineSquared
+            | Self::Rectangle
+            | Self::StepPair
+            | Self::Nested
+            | Self::Periodic => true,
+        }
+    }
+
     /// Its name in tables.
     pub fn name(self) -> &'static str {
         match self {

@@ -263,7 +263,7 @@ fn csv_table(results: &[PulseResult]) -> Table {
         let errors = [
             run.error,
             run.missed,
-            run.error_by_hand,
+            run.error_by_hand.unwrap_or(f64::NAN),
             run.estimate,
             run.rounding,
         ];

@@ -53,8 +53,8 @@ pub struct PulseRun {
     pub error: f64,
     /// The error of the speed over what the pulse changes it by: 1 where the pulse is missed.
     pub missed: f64,
-    /// Of a fixed method: the same error where it is restarted by hand at the switches.
-    pub error_by_hand: f64,
+    /// Of a fixed method, where the pulse has switches: the same error where it is restarted there by hand.
+    pub error_by_hand: Option<f64>,
     /// Of a required accuracy: the estimated error.
     pub estimate: f64,
     /// The error that the reference and the rounding of time allow.
@@ -137,7 +137,7 @@ fn failed_run(kind: RunKind, reason: String) -> PulseRun {
         refused,
         error: nan,
         missed: nan,
-        error_by_hand: nan,
+        error_by_hand: Some(nan),
         estimate: nan,
         rounding,
     }
@@ -150,10 +150,10 @@ fn pulse_run(motion: &PulsedMotion, kind: RunKind, expected: &Expected) -> Pulse
     };
     let difference = |end: [f64; 2]| (end[0] - expected.end[0]).abs() / expected.scale;
     let error_by_hand = match kind {
-        RunKind::Fixed(method, tolerance) => {
-            restarted(motion, method, tolerance).map_or(f64::NAN, difference)
+        RunKind::Fixed(method, tolerance) if motion.pulse.shape.has_switches() => {
+            Some(restarted(motion, method, tolerance).map_or(f64::NAN, difference))
         }
-        RunKind::Accuracy(_) => f64::NAN,
+        RunKind::Fixed(..) | RunKind::Accuracy(_) => None,
     };
     PulseRun {
         kind,
