@@ -149,6 +149,7 @@ impl CompiledDrive {
 
     /// The force on the coordinate (without the rotor's inertia) and the rate of the drive's state, for
     /// an input and the coordinate's speed, on the pieces that are held.
+    #[inline]
     pub(crate) fn eval<T: Scalar>(
         &self,
         input: T,

@@ -34,7 +34,10 @@ impl CompiledLoads {
             *value = number.value();
         }
         let (numbers, values) = (&numbers[..signals.len()], &values[..signals.len()]);
-        let found = magnitude.eval(numbers, values, held.get(load).unwrap_or(&FREE));
+        let found = match held.get(load) {
+            Some(held) => magnitude.eval(numbers, values, held),
+            None => magnitude.eval_free(numbers, values),
+        };
         let not_finite = KinetostaticsError::MagnitudeNotFinite { load };
         found.value().is_finite().then_some(found).ok_or(not_finite)
     }
@@ -52,6 +55,12 @@ impl Magnitude {
                 return found;
             }
         }
+        self.eval_free(numbers, values)
+    }
+
+    /// The magnitude where nothing is held.
+    #[inline]
+    fn eval_free<T: Scalar>(&self, numbers: &[T], values: &[f64]) -> T {
         match (self, numbers) {
             (Self::Constant(value), _) => T::from_f64(*value),
             (Self::Law(_, law), &[x, ..]) => x.compose(&law.eval(x.value())),
@@ -71,7 +80,10 @@ impl Magnitude {
         }
     }
 
-    /// The magnitude on the pieces that are held, of what can be held.
+    /// The magnitude on the pieces that are held, of what can be held. Apart, so that the usual evaluation stays small
+    /// enough to be inlined.
+    #[cold]
+    #[inline(never)]
     fn eval_held<T: Scalar>(&self, numbers: &[T], values: &[f64], held: &HeldPieces) -> T {
         match (self, numbers) {
             (Self::Law(_, law), &[x, ..]) => x.compose(&law.eval_held(x.value(), held)),
@@ -111,9 +123,6 @@ impl Magnitude {
         }
     }
 }
-
-/// Nothing is held.
-static FREE: HeldPieces = HeldPieces::NONE;
 
 /// Working memory for the signals of one magnitude.
 #[derive(Debug, Clone, PartialEq, Default)]
