@@ -40,6 +40,15 @@ impl Difference {
         }
     }
 
+    /// No less than this in the coordinates and the energy.
+    pub(crate) fn at_least(self, least: f64) -> Self {
+        Self {
+            coordinate: nan_max(least, self.coordinate),
+            energy: nan_max(least, self.energy),
+            ..self
+        }
+    }
+
     /// All differences times a factor.
     pub(crate) fn scaled(self, factor: f64) -> Self {
         Self {

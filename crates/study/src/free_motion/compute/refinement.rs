@@ -24,6 +24,9 @@ const TABLE_TOLERANCE_RATIO: f64 = 0.1;
 const MIN_TABLE_TOLERANCE: f64 = 1e-13;
 /// Margin of a table of a limited range beyond the coarse run, relative to the range of that run.
 const TABLE_MARGIN: f64 = 0.05;
+/// How many times as many steps the finer of two runs must take for their difference to be an error of all parts of the
+/// motion; else the error is at least the tolerance.
+const INDEPENDENT_STEPS: f64 = 1.2;
 /// The factor to the next tolerance where the last one changed no step.
 const EQUAL_STEPS_FACTOR: f64 = 1e-3;
 /// Maximum number of runs.
@@ -108,14 +111,19 @@ impl FreeMotionProblem<'_> {
             let difference = difference.scaled(SAFETY_FACTOR);
             tolerance = next;
             runs += 1;
-            let largest = difference.largest();
             // Switches may divide a motion into parts of a step each, which two tolerances take alike: their difference
             // shows nothing.
-            let has_more_steps = motion.statistics.steps > kept.statistics.steps;
+            let [steps, kept_steps] = [&motion, &kept].map(|run| run.statistics.steps as f64);
+            let has_more_steps = steps > kept_steps;
             if !has_more_steps && next > 1.01 * min_tolerance && runs < MAX_RUNS {
                 next = (EQUAL_STEPS_FACTOR * next).max(min_tolerance);
                 continue;
             }
+            let difference = match steps >= INDEPENDENT_STEPS * kept_steps {
+                true => difference,
+                false => difference.at_least(next),
+            };
+            let largest = difference.largest();
             let before = std::mem::replace(&mut kept, motion);
             if largest <= accuracy || next <= 1.01 * min_tolerance || runs >= MAX_RUNS {
                 return Ok(Some(Refinement {
