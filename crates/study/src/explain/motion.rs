@@ -350,7 +350,8 @@ fn explain_chatter(scene: &Scene, load: usize, t: f64) -> StudyError {
         digits(t, 6)
     );
     let help = "such a load holds a mechanism, as dry friction at rest does, which is not modelled: end the motion there \
-                with an event, or use a smooth function, such as tanh(speed/0.01) for sign(speed)";
+                with an event, or use a smooth function, such as tanh(speed/0.01) for sign(speed); of a \
+                speed controller at its limit, a larger limit or no integral gain";
     let label = "switches forth and back";
     scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
 }
