@@ -108,21 +108,17 @@ impl FreeMotionProblem<'_> {
             };
             let difference = self.difference(&kept, &motion);
             let difference = difference.map_err(|e| self.explain(&e))?;
-            let difference = difference.scaled(SAFETY_FACTOR);
             tolerance = next;
             runs += 1;
             // Switches may divide a motion into parts of a step each, which two tolerances take alike: their difference
             // shows nothing.
             let [steps, kept_steps] = [&motion, &kept].map(|run| run.statistics.steps as f64);
-            let has_more_steps = steps > kept_steps;
-            if !has_more_steps && next > 1.01 * min_tolerance && runs < MAX_RUNS {
+            if steps <= kept_steps && next > 1.01 * min_tolerance && runs < MAX_RUNS {
                 next = (EQUAL_STEPS_FACTOR * next).max(min_tolerance);
                 continue;
             }
-            let difference = match steps >= INDEPENDENT_STEPS * kept_steps {
-                true => difference,
-                false => difference.at_least(next),
-            };
+            let least = f64::from(u8::from(steps < INDEPENDENT_STEPS * kept_steps)) * next;
+            let difference = difference.scaled(SAFETY_FACTOR).at_least(least);
             let largest = difference.largest();
             let before = std::mem::replace(&mut kept, motion);
             if largest <= accuracy || next <= 1.01 * min_tolerance || runs >= MAX_RUNS {
