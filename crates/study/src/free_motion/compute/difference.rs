@@ -41,10 +41,10 @@ impl Difference {
     }
 
     /// No less than this in the coordinates and the energy.
-    pub(crate) fn at_least(self, least: f64) -> Self {
+    pub(crate) fn with_minimum(self, minimum: f64) -> Self {
         Self {
-            coordinate: nan_max(least, self.coordinate),
-            energy: nan_max(least, self.energy),
+            coordinate: nan_max(minimum, self.coordinate),
+            energy: nan_max(minimum, self.energy),
             ..self
         }
     }

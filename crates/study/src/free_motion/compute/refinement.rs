@@ -118,7 +118,7 @@ impl FreeMotionProblem<'_> {
                 continue;
             }
             let least = f64::from(u8::from(steps < INDEPENDENT_STEPS * kept_steps)) * next;
-            let difference = difference.scaled(SAFETY_FACTOR).at_least(least);
+            let difference = difference.scaled(SAFETY_FACTOR).with_minimum(least);
             let largest = difference.largest();
             let before = std::mem::replace(&mut kept, motion);
             if largest <= accuracy || next <= 1.01 * min_tolerance || runs >= MAX_RUNS {
