@@ -132,7 +132,7 @@ impl CompiledLoads {
         out.wrenches.clear();
         out.gravity = Vec2::zero();
         for (i, load) in self.loads.iter().enumerate() {
-            self.add_wrenches(i, load.kind, out.magnitude[i], states, out)
+            self.add_wrenches(i, &load.kind, out.magnitude[i], states, out)
                 .ok_or(KinetostaticsError::NoDirection { load: i })?;
         }
         out.sum_by_body();
@@ -164,7 +164,7 @@ impl CompiledLoads {
             | LoadKind::SlideForce(_)
             | LoadKind::SeparatingForce(_)) => (kind, 1.0),
         };
-        self.add_wrenches(load, kind, T::from_f64(sign), states, out)
+        self.add_wrenches(load, &kind, T::from_f64(sign), states, out)
             .ok_or(KinetostaticsError::NoDirection { load })?;
         out.sum_by_body();
         Ok(())

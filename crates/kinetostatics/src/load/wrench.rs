@@ -4,7 +4,7 @@ use super::{CompiledLoads, Guide, LoadKind, LoadState, Mesh};
 use crate::mass::Mass;
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{ActuatorId, BodyId, Joint, JointId, JointKind, Mechanism, Plan, Vec2};
-use dwell_numerics::Scalar;
+use dwell_numerics::{Scalar, map_array};
 
 /// The cause of a wrench on a body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,7 +58,7 @@ pub(crate) fn on_two_bodies<T: Scalar>(
     moment_arms: [Vec2<T>; 2],
     actions: [(Vec2<T>, T); 2],
 ) -> [AppliedWrench<T>; 2] {
-    [0, 1].map(|i| AppliedWrench {
+    map_array([0, 1], |i: usize| AppliedWrench {
         source,
         body: bodies[i],
         force: actions[i].0,
@@ -74,14 +74,16 @@ impl CompiledLoads {
     pub(super) fn add_wrenches<T: Scalar>(
         &self,
         i: usize,
-        kind: LoadKind,
+        kind: &LoadKind,
         f: T,
         states: &BodyStates<T>,
         out: &mut LoadState<T>,
     ) -> Option<()> {
         let (source, zero) = (ForceSource::Load(i), T::from_f64(0.0));
         let moment_arms_at = |bodies: [BodyId; 2], points: [Vec2; 2]| {
-            [0, 1].map(|i| states.body(bodies[i]).moment_arm(points[i]))
+            map_array([0, 1], |i: usize| {
+                states.body(bodies[i]).moment_arm(points[i])
+            })
         };
         let forces = |bodies, moment_arms, force: Vec2<T>| {
             on_two_bodies(source, bodies, moment_arms, [(-force, zero), (force, zero)])
@@ -93,7 +95,7 @@ impl CompiledLoads {
             let moment_arms = moment_arms_at(bodies, self.couple_points[i]);
             on_two_bodies(source, bodies, moment_arms, actions)
         };
-        let on_both = match kind {
+        let on_both = match *kind {
             LoadKind::Gravity { direction } => {
                 let pull = direction.cast() * f;
                 out.gravity += pull;
@@ -173,16 +175,16 @@ impl CompiledLoads {
                 along(bodies, points, force)
             }
             // On both bodies at the pitch point.
-            LoadKind::SeparatingForce(mesh) => {
-                let Mesh { bodies, points, .. } = mesh;
+            LoadKind::SeparatingForce(ref mesh) => {
+                let &Mesh { bodies, points, .. } = mesh;
                 let [pitch_point, away] = mesh.pitch_point(states)?;
                 let [first, second] = moment_arms_at(bodies, points);
                 let between = states.separation(bodies, points).gap + pitch_point;
                 forces(bodies, [first + between, second + pitch_point], away * f)
             }
             // Along the guide, on both bodies at the second body's point.
-            LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
-                let Guide { bodies, points, .. } = guide;
+            LoadKind::SlideForce(ref guide) | LoadKind::SlideDamper(ref guide) => {
+                let &Guide { bodies, points, .. } = guide;
                 let f = match kind {
                     LoadKind::SlideDamper(_) => -(f * states.coordinate(guide.travel())[1]),
                     _ => f,
