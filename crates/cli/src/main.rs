@@ -7,6 +7,7 @@ mod cases;
 mod former;
 mod instants;
 mod options;
+mod times;
 mod validate;
 
 use clap::Parser;
@@ -25,6 +26,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 use std::time::Duration;
+use times::Times;
 
 fn main() -> ExitCode {
     // clap itself exits with 2 on a bad argument, and with 0 for help.
@@ -43,7 +45,12 @@ fn main() -> ExitCode {
 
 /// Runs a command, and returns whether all its checks passed.
 fn run(options: Options) -> Result<bool, Report> {
-    let Options { command, out } = options;
+    let Options {
+        command,
+        out,
+        pictures,
+    } = options;
+    let mut times = Times::new();
     if let Command::Schema = command {
         print(&dwell_scene::schema())?;
         return Ok(true);
@@ -68,13 +75,22 @@ fn run(options: Options) -> Result<bool, Report> {
         study => {
             let bar = progress_bar();
             let done = run_study(study, &out, &bar);
+            times.add("computing");
+            let done = done.and_then(|done| {
+                bar.set_position(0);
+                let outcome = done.outcome.draw(pictures, &|step| show_step(&bar, step))?;
+                Ok((outcome, done.early_stop))
+            });
+            times.add("drawing");
             bar.finish_and_clear();
-            let done = done.map_err(|e| Report::new(as_scene_error(e)))?;
-            (done.outcome, done.early_stop, None)
+            let (outcome, early_stop) = done.map_err(|e| Report::new(as_scene_error(e)))?;
+            (outcome, early_stop, None)
         }
     };
     print(&outcome.summary)?;
     write_files(&outcome.files, &out)?;
+    times.add("writing");
+    print_note(&times.text());
     let ended_early = early_stop.is_some();
     if let Some(reason) = early_stop {
         print_note(&format!("{:?}", Report::new(as_scene_error(reason))));

@@ -4,7 +4,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use dwell_dynamics::Method;
 use dwell_report::TableFormat;
-use dwell_study::{FormulaFormat, Language, OperatingPoint, Shard};
+use dwell_study::{FormulaFormat, Language, OperatingPoint, Pictures, Shard};
 use std::path::PathBuf;
 
 /// Kinetostatics and dynamics of planar mechanisms, with independent checks
@@ -16,6 +16,9 @@ pub(crate) struct Options {
     /// Folder for the output files
     #[arg(long, global = true, default_value = "reports", value_name = "FOLDER")]
     pub(crate) out: PathBuf,
+    /// Pictures to draw; they take most of the time. Validation draws all of its own
+    #[arg(long, global = true, value_parser = choice(PICTURES), default_value = "main", value_name = "PICTURES")]
+    pub(crate) pictures: Pictures,
 }
 
 #[derive(Debug, Subcommand)]
@@ -226,6 +229,20 @@ const METHODS: Choices<Method> = &[
         "dop853",
         Method::Dop853,
         "Explicit Runge–Kutta of order 8: for smooth motions at high accuracy",
+    ),
+];
+
+const PICTURES: Choices<Pictures> = &[
+    ("none", Pictures::None, "None"),
+    (
+        "main",
+        Pictures::Main,
+        "The mechanism and the first results of the command",
+    ),
+    (
+        "all",
+        Pictures::All,
+        "All, and the animation of the mechanism",
     ),
 ];
 

@@ -7,7 +7,7 @@ use crate::cycle::compute::{
 use crate::explain::StudyError;
 use crate::models::{SceneMachine, SolverSettings, source_name};
 use crate::number_format::{count, digits, digits_within};
-use crate::output::{Outcome, signed_png};
+use crate::output::{Outcome, Picture};
 use crate::trajectory::output::TrajectoryOutcome;
 use dwell_dynamics::Cycle;
 use dwell_report::TableFormat;
@@ -52,7 +52,8 @@ pub fn cycle(
         files.add_table(&name("-flywheel"), samples, &TableFormat::ALL)?;
     }
     let figure = figures::cycle(&results, settings);
-    outcome.files.add(name(".png"), signed_png(scene, &figure)?);
+    let picture = Picture::figure(scene, name(".png"), true, figure);
+    outcome.pictures.push(picture);
     outcome.summary = summary(&results);
     if let Some(flywheel) = &results.flywheel {
         outcome.summary += &flywheel_text(&results.prepared, flywheel);

@@ -5,7 +5,7 @@ use crate::equilibria::compute::{EquilibriaResults, SearchedRange, compute_equil
 use crate::explain::StudyError;
 use crate::models::SceneMachine;
 use crate::number_format::{coordinate_unit, count, digits, digits_within, force_unit, number};
-use crate::output::{Outcome, signed_png};
+use crate::output::{Outcome, Picture};
 use crate::ranges::extent;
 use dwell_dynamics::{Equilibrium, Stability};
 use dwell_report::TableExport as _;
@@ -24,7 +24,8 @@ pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
     outcome.files.add(name("csv"), results.table.csv()?);
     if let Some(curves) = &results.curves {
         let figure = figures::equilibria(&results, curves);
-        outcome.files.add(name("png"), signed_png(scene, &figure)?);
+        let picture = Picture::figure(scene, name("png"), true, figure);
+        outcome.pictures.push(picture);
     }
     outcome.summary = summary(&results);
     Ok(outcome)

@@ -52,7 +52,7 @@ pub fn simulate_with(
 ) -> Result<TrajectoryOutcome, StudyError> {
     let motion = compute_free_motion_at(scene, solver, times, progress)?;
     let (scene, computed) = (&motion.loaded_scene, motion.computed);
-    let mut outcome = report(scene, &computed, progress)?;
+    let mut outcome = report(scene, &computed)?;
     if !motion.events.is_empty() {
         let name = format!("{}-motion-events.csv", scene.name);
         outcome.files.add(name, motion.event_table.csv()?);

@@ -2,6 +2,7 @@
 
 mod captions;
 mod mechanism_drawing;
+mod pictures;
 mod provenance;
 
 pub(crate) use captions::{
@@ -10,13 +11,14 @@ pub(crate) use captions::{
 };
 pub use captions::{caption, chart, coordinate_label, figure, scene_caption, symbol};
 pub use mechanism_drawing::MechanismDrawing;
-pub(crate) use provenance::signed_gif;
+pub use pictures::{Picture, Pictures};
 pub use provenance::{provenance_line, signed_png};
 
 use dwell_findings::Finding;
-use dwell_report::Files;
+use dwell_report::{Document, Files};
 
-/// The result of an analysis, in memory: nothing is written until the caller writes the files.
+/// The result of an analysis, in memory: nothing is drawn until the caller [draws](Self::draw) the pictures, and nothing
+/// is written until the caller writes the files.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outcome {
     /// Text to print.
@@ -25,4 +27,8 @@ pub struct Outcome {
     pub files: Files,
     /// Results of checks.
     pub findings: Vec<Finding>,
+    /// What can be drawn.
+    pub pictures: Vec<Picture>,
+    /// The page that shows the results and the pictures that are drawn, with its path.
+    pub page: Option<(String, Document)>,
 }

@@ -1,6 +1,6 @@
 //! Provenance of results: version, scene and method, without dates and host names.
 
-use dwell_report::{Animation, Figure, ReportError, png};
+use dwell_report::{Figure, ReportError, png};
 use dwell_scene::Scene;
 
 /// Digits of a hash in figures; documents have all of them.
@@ -17,7 +17,7 @@ fn line(scene: &Scene, hash: &str) -> String {
 }
 
 /// The same with a short hash, and the method.
-fn signature(scene: &Scene, method_text: &str) -> String {
+pub(super) fn signature(scene: &Scene, method_text: &str) -> String {
     let line = line(scene, &scene.hash()[..SHORT_HASH]);
     match method_text {
         "" => line,
@@ -25,22 +25,12 @@ fn signature(scene: &Scene, method_text: &str) -> String {
     }
 }
 
-/// Draws a figure of a scene. Every figure is drawn here, so that each carries its provenance; its `provenance` field
-/// holds the method and tolerance.
+/// Draws a figure of a scene with its provenance; its `provenance` field holds the method and tolerance.
 pub fn signed_png(scene: &Scene, figure: &Figure) -> Result<Vec<u8>, ReportError> {
     png(&Figure {
         provenance: signature(scene, &figure.provenance),
         ..figure.clone()
     })
-}
-
-/// The same for an animation.
-pub(crate) fn signed_gif(scene: &Scene, animation: Animation) -> Result<Vec<u8>, ReportError> {
-    Animation {
-        provenance: signature(scene, &animation.provenance),
-        ..animation
-    }
-    .gif()
 }
 
 #[cfg(test)]

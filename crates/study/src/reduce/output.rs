@@ -5,7 +5,7 @@ use crate::branch_note::branch_note;
 use crate::explain::StudyError;
 use crate::models::requested_reactions;
 use crate::number_format::digits_within;
-use crate::output::{Outcome, indeterminate_note, separating_note, signed_png};
+use crate::output::{Outcome, Picture, indeterminate_note, separating_note};
 use crate::ranges::extent;
 use crate::reduce::compute::{
     Reduction, RoundingErrors, TableRequest, compute_reduction, tabulate,
@@ -13,6 +13,9 @@ use crate::reduce::compute::{
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Figure, Files, TableFormat};
 use dwell_scene::Scene;
+
+/// The figures that are drawn unless others are wanted: m, ½m′, and the first reactions.
+const MAIN_FIGURES: [&str; 2] = ["reduced", "reaction"];
 
 /// The reduced parameters of a scene over its range, at `points` positions (two or more) if given, and an interpolation
 /// table if requested.
@@ -39,10 +42,12 @@ pub fn reduce(
     let mut files = Files::new();
     let stem = format!("{}-reduced", scene.name);
     files.add_table(&stem, &reduction.table(), &TableFormat::ALL)?;
-    for figure in &figures {
-        let name = format!("{}-{}.png", scene.name, figure.name);
-        files.add(name, signed_png(scene, figure)?);
-    }
+    let picture = |figure: Figure| {
+        let path = format!("{}-{}.png", scene.name, figure.name);
+        let is_main = MAIN_FIGURES.contains(&figure.name.as_str());
+        Picture::figure(scene, path, is_main, figure)
+    };
+    let pictures = figures.into_iter().map(picture).collect();
     let mut summary = summary(&reduction, note.as_deref());
     if let Some(request) = table {
         let tabulation = tabulate(prepared, &request)?;
@@ -54,7 +59,8 @@ pub fn reduce(
     Ok(Outcome {
         summary,
         files,
-        findings: Vec::new(),
+        pictures,
+        ..Outcome::default()
     })
 }
 

@@ -2,7 +2,7 @@
 
 use crate::explain::StudyError;
 use crate::number_format::{count, digits, digits_within, number};
-use crate::output::{Outcome, signed_png};
+use crate::output::{Outcome, Picture};
 use crate::sweep::compute::{Row, SweepQuantity};
 use crate::sweep::figure::figure;
 use crate::sweep::output::PreparedSweep;
@@ -50,7 +50,8 @@ pub(crate) fn report_sweep(
     if sweep.export.is_none() {
         match figure(prepared, rows) {
             Ok((figure, note)) => {
-                outcome.files.add(name(".png"), signed_png(scene, &figure)?);
+                let picture = Picture::figure(scene, name(".png"), true, figure);
+                outcome.pictures.push(picture);
                 outcome.summary += &note.map_or(String::new(), |note| format!("  {note}\n"));
             }
             Err(why) => outcome.summary += &format!("  no figure: {why}\n"),

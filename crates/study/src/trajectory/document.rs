@@ -229,8 +229,8 @@ impl<'a> Document<'a> {
         text
     }
 
-    /// The Markdown page.
-    pub(crate) fn markdown(&self, figures: &[Figure], file: &dyn Fn(&Figure) -> String) -> String {
+    /// The page, with all figures.
+    pub(crate) fn page(&self, figures: &[Figure], file: &dyn Fn(&Figure) -> String) -> Page {
         let mut blocks = vec![Block::Text(format!("{}.", self.first_line()))];
         blocks.extend(self.scene.note.clone().map(Block::Text));
         let balance = self.power_balance_text();
@@ -277,7 +277,7 @@ impl<'a> Document<'a> {
         let method = &self.trajectory.method_text;
         blocks.push(Block::Text(format!("{provenance} · {method}")));
         let title = self.title();
-        Page { title, blocks }.markdown()
+        Page { title, blocks }
     }
 
     /// The sentence about the columns whose extrema are those of the rows although others are looked for between them.

@@ -2,12 +2,11 @@
 
 use super::{document, figures};
 use crate::explain::StudyError;
-use crate::output::{Outcome, signed_gif, signed_png};
-use crate::progress::{Progress, Step};
+use crate::output::{Outcome, Picture};
+use crate::progress::Progress;
 use crate::trajectory::compute::{Analysis, ComputedTrajectory, compute_trajectory};
-use dwell_report::{Figure, Files, ReportError, TableExport as _, TableFormat};
+use dwell_report::{Figure, Files, TableExport as _, TableFormat};
 use dwell_scene::Scene;
-use rayon::prelude::*;
 
 /// The outcome of an analysis along a trajectory.
 #[derive(Debug)]
@@ -30,7 +29,7 @@ pub fn analyse_trajectory(
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
     let computed = compute_trajectory(scene, analysis, points, progress)?;
-    let mut outcome = report(scene, &computed, progress)?;
+    let mut outcome = report(scene, &computed)?;
     outcome.summary += &computed.notes;
     Ok(TrajectoryOutcome {
         outcome,
@@ -42,7 +41,6 @@ pub fn analyse_trajectory(
 pub(crate) fn report(
     scene: &Scene,
     computed: &ComputedTrajectory<'_>,
-    progress: Progress<'_>,
 ) -> Result<Outcome, StudyError> {
     let (trajectory, results) = (&computed.trajectory, &computed.results);
     let analysis = trajectory.analysis.name();
@@ -58,30 +56,32 @@ pub(crate) fn report(
         files.add(file("-envelope"), link.envelope_table().csv()?);
     }
     let (figures, left_out) = figures::trajectory_figures(scene, computed);
-    let total = trajectory.progress_steps() + figures.len() + 1;
     let file = |figure: &Figure| name(&format!("-{}.png", figure.name));
-    let drawn = figures.par_iter().map(|figure| {
-        let bytes = signed_png(scene, figure)?;
-        progress(Step {
-            total,
-            done: &figure.name,
-        });
-        Ok((file(figure), bytes))
-    });
-    for (path, bytes) in drawn.collect::<Result<Vec<_>, ReportError>>()? {
-        files.add(path, bytes);
-    }
+    let page = Some((name(".md"), document.page(&figures, &file)));
+    let picture = |figure: Figure| {
+        let is_main = is_main(trajectory.analysis, &figure.name);
+        Picture::figure(scene, file(&figure), is_main, figure)
+    };
+    let mut pictures: Vec<Picture> = figures.into_iter().map(picture).collect();
     let animation = figures::animation(scene, computed);
-    files.add(name("-mechanism.gif"), signed_gif(scene, animation)?);
-    progress(Step {
-        total,
-        done: "animation",
-    });
-    files.add(name(".md"), document.markdown(&figures, &file));
+    pictures.push(Picture::animation(scene, name("-mechanism.gif"), animation));
     let note = left_out.map(|note| format!("  {note}\n"));
     Ok(Outcome {
         summary: document.summary() + &note.unwrap_or_default(),
         files,
-        findings: Vec::new(),
+        pictures,
+        page,
+        ..Outcome::default()
     })
+}
+
+/// Whether a figure is drawn unless others are wanted: the mechanism, what the analysis is for, and internal forces,
+/// which a scene requests one by one.
+fn is_main(analysis: Analysis, figure: &str) -> bool {
+    let own: &[&str] = match analysis {
+        Analysis::Kinematics => &["angles", "travels"],
+        Analysis::Statics | Analysis::Kinetostatics => &["actuator-forces", "reactions"],
+        Analysis::FreeMotion => &["coordinates", "energies", "reactions"],
+    };
+    figure == "mechanism" || own.contains(&figure) || figure.starts_with("internal-forces")
 }

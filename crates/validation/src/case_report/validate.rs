@@ -64,6 +64,7 @@ pub fn validate(
             summary: summary(scene, &analysis) + &reference.notes + &reference.tolerances.notes,
             files,
             findings: analysis.findings,
+            ..Outcome::default()
         },
         snapshot,
         not_applicable: analysis.not_applicable,

@@ -44,6 +44,7 @@ pub fn outcome(results: &[SeriesResult], name: &str) -> Result<Outcome, StudyErr
         ),
         files,
         findings,
+        ..Outcome::default()
     })
 }
 

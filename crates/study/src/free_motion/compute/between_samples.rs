@@ -3,9 +3,12 @@
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::trajectory::compute::TrajectorySample;
 use dwell_dynamics::{
-    Machine, MachineOde, Method, ObservedMachine, OdeState, Options, solve_system,
+    DenseOutput, MachineOde, MachineWorkspace, Method, OdeState, Options, StepControl, integrate,
 };
 use dwell_geometry::body_states::CoordinateFunction;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::f64::consts::TAU;
 
 /// Highest number of steps that are evaluated like samples.
@@ -29,27 +32,6 @@ impl FreeMotionProblem<'_> {
             .ok()
     }
 
-    /// The state at a time (s), integrated from an earlier state.
-    fn state_after(
-        &self,
-        machine: &Machine,
-        before: &OdeState,
-        t: f64,
-        &(method, tolerance, max_steps): &(Method, f64, usize),
-    ) -> Option<OdeState> {
-        // Within a step nothing switches, and nothing varies faster than it: it need not be searched again, which would take
-        // most of the time.
-        let options = Options {
-            max_steps,
-            max_step: Some(t - before.t),
-            ..Options::new(method, tolerance)
-        };
-        let mut ode = MachineOde::new(machine, before.t, &before.y).ok()?;
-        let observed = ObservedMachine::new(machine, &self.output_model);
-        let part = solve_system(&mut ode, observed, before, Some(t), &options, &[]);
-        part.ok()?.completed().ok()?.steps.pop()
-    }
-
     /// Whether a time (s) is in a step that begins or ends within the window of a change point's fit.
     pub(crate) fn is_in_fit_window(&self, motion: &SegmentedMotion, t: f64) -> bool {
         let is_fit = |(chart, step): (usize, &OdeState)| {
@@ -60,9 +42,28 @@ impl FreeMotionProblem<'_> {
         before.is_some_and(is_fit) || after.is_some_and(is_fit)
     }
 
+    /// A motion at any of its times.
+    pub(crate) fn sampler<'m>(&'m self, motion: &'m SegmentedMotion) -> MotionSampler<'m> {
+        MotionSampler {
+            problem: self,
+            motion,
+            machines: RefCell::new(BTreeMap::new()),
+        }
+    }
+}
+
+/// A motion at any of its times, with the working memory to compute it, by chart.
+pub(crate) struct MotionSampler<'m> {
+    problem: &'m FreeMotionProblem<'m>,
+    motion: &'m SegmentedMotion,
+    machines: RefCell<BTreeMap<usize, (MachineOde<'m>, MachineWorkspace)>>,
+}
+
+impl<'m> MotionSampler<'m> {
     /// The motion at a time (s): from its orbit, or from the step before, which is integrated once more up to there.
     /// None where that is not possible.
-    pub(crate) fn sample_at(&self, motion: &SegmentedMotion, t: f64) -> Option<TrajectorySample> {
+    pub(crate) fn sample_at(&self, t: f64) -> Option<TrajectorySample> {
+        let (problem, motion) = (self.problem, self.motion);
         let holds = |steps: &[OdeState]| {
             let ends = steps.first().zip(steps.last());
             ends.is_some_and(|(first, last)| first.t <= t && t <= last.t)
@@ -74,27 +75,32 @@ impl FreeMotionProblem<'_> {
             .partition_point(|step| step.t <= t)
             .checked_sub(1)?;
         let before = &solution.steps[k];
-        let machine = self.machine(motion, *chart);
+        let machine = problem.machine(motion, *chart);
+        let mut machines = self.machines.borrow_mut();
+        let (ode, workspace) = match machines.entry(*chart) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
+                let ode = MachineOde::new(machine, before.t, &before.y).ok()?;
+                new.insert((ode, machine.workspace()))
+            }
+        };
         let point = match (before.t == t, &motion.orbit) {
             (true, _) => before.clone(),
             (false, Some(orbit)) => OdeState::from(orbit.state_at(t)),
             (false, None) => {
                 let mut by_each = METHODS.iter();
-                by_each.find_map(|options| self.state_after(machine, before, t, options))?
+                by_each.find_map(|options| state_after(ode, before, t, options))?
             }
         };
         if machine.is_in_fit_window(&point.y) {
             return None;
         }
-        let mut workspace = machine.workspace();
-        let mut sample = self
-            .sample((*chart, machine, &mut workspace), &point)
-            .ok()?;
+        let mut sample = problem.sample((*chart, machine, workspace), &point).ok()?;
         if let Some(steps) = motion.actuator_coordinates.steps.get(segment) {
-            let mechanism = &self.loaded_scene.mechanism;
+            let mechanism = &problem.loaded_scene.mechanism;
             let measured =
                 CoordinateFunction::find(mechanism, mechanism.actuators[0].coordinate())?;
-            let mut state = machine.evaluate(point.t, &point.y, &mut workspace).ok()?;
+            let mut state = machine.evaluate(point.t, &point.y, workspace).ok()?;
             let mut now = state.bodies().coordinate(measured);
             if let CoordinateFunction::Angle(_) = measured {
                 let [q, q_dot, _] = *steps.get(k)?;
@@ -105,4 +111,23 @@ impl FreeMotionProblem<'_> {
         }
         Some(sample)
     }
+}
+
+/// The state at a time (s), integrated from an earlier state.
+fn state_after(
+    ode: &mut MachineOde<'_>,
+    before: &OdeState,
+    t: f64,
+    &(method, tolerance, max_steps): &(Method, f64, usize),
+) -> Option<OdeState> {
+    // Within a step nothing switches, and nothing varies faster than it: it need not be searched again, which would take
+    // most of the time.
+    let options = Options {
+        max_steps,
+        max_step: Some(t - before.t),
+        ..Options::new(method, tolerance)
+    };
+    let mut go_on = |_: &OdeState, _: &OdeState, _: DenseOutput<'_>| Ok(StepControl::Continue);
+    let part = integrate(ode, before, Some(t), &options, &mut go_on).ok()?;
+    part.error.is_none().then_some(part.state)
 }

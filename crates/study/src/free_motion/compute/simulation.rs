@@ -91,7 +91,8 @@ pub(crate) fn compute_free_motion_at(
     let trajectory = problem.trajectory(motion, &integrated.method_text, times);
     let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
     let (model, notes) = (&problem.output_model, String::new());
-    let sample = |t: f64| problem.sample_at(motion, t);
+    let sampler = problem.sampler(motion);
+    let sample = |t: f64| sampler.sample_at(t);
     let between = problem.steps_as_samples(motion);
     let between = between.map(|further| MotionBetweenRows {
         further,

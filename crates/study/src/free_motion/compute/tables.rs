@@ -91,12 +91,13 @@ impl FreeMotionProblem<'_> {
         let end = motion.end_time();
         let wanted = times.iter().copied().filter(|&t| t < end).chain([end]);
         let index = self.balance_index();
-        let initial = self
-            .sample_at(motion, 0.0)
+        let sampler = self.sampler(motion);
+        let initial = sampler
+            .sample_at(0.0)
             .map_or(0.0, |s| s.extra_values[index]);
         let mut samples = Vec::new();
         for t in wanted {
-            let Some(mut sample) = self.sample_at(motion, t) else {
+            let Some(mut sample) = sampler.sample_at(t) else {
                 if self.is_in_fit_window(motion, t) {
                     continue;
                 }

@@ -343,7 +343,7 @@ pub(crate) fn compute_along<'a>(
         }
         if k.is_multiple_of(POSITIONS_PER_STEP) {
             progress(Step {
-                total: trajectory.progress_steps() + 1,
+                total: trajectory.progress_steps(),
                 done: "positions",
             });
         }

@@ -1,0 +1,47 @@
+//! Where the time of a command went.
+
+use std::time::{Duration, Instant};
+
+/// The stages of a command, and how long each took.
+pub(crate) struct Times {
+    since: Instant,
+    stages: Vec<(&'static str, Duration)>,
+}
+
+impl Times {
+    /// Begins now.
+    pub(crate) fn new() -> Self {
+        Self {
+            since: Instant::now(),
+            stages: Vec::new(),
+        }
+    }
+
+    /// Ends a stage; the next begins.
+    pub(crate) fn add(&mut self, stage: &'static str) {
+        let now = Instant::now();
+        self.stages.push((stage, now - self.since));
+        self.since = now;
+    }
+
+    /// The stages as a line.
+    pub(crate) fn text(&self) -> String {
+        let whole: Duration = self.stages.iter().map(|(_, time)| *time).sum();
+        let stages = self.stages.iter();
+        let stages: Vec<String> = stages
+            .map(|(stage, time)| format!("{stage} {}", seconds(*time)))
+            .collect();
+        format!("time: {} ({})", seconds(whole), stages.join(", "))
+    }
+}
+
+/// Two or three digits are enough.
+fn seconds(time: Duration) -> String {
+    let seconds = time.as_secs_f64();
+    match seconds {
+        _ if seconds < 0.001 => "below 1 ms".to_owned(),
+        _ if seconds < 1.0 => format!("{:.0} ms", seconds * 1e3),
+        _ if seconds < 100.0 => format!("{seconds:.1} s"),
+        _ => format!("{seconds:.0} s"),
+    }
+}
