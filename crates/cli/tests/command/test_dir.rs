@@ -36,7 +36,9 @@ pub(crate) fn four_bar_with(changes: &[(&str, &str)]) -> String {
 pub(crate) struct Run {
     pub(crate) status: Option<i32>,
     pub(crate) out: String,
+    /// Without the line about its time, which differs from run to run.
     pub(crate) err: String,
+    pub(crate) time: Option<String>,
 }
 
 /// A folder, removed at the end.
@@ -74,10 +76,16 @@ impl TestDir {
     pub(crate) fn run(&self, arguments: &[&str]) -> Run {
         let done = self.command(arguments).output().unwrap();
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        let err = text(done.stderr);
+        let is_time = |line: &&str| line.starts_with("time: ");
         Run {
             status: done.status.code(),
             out: text(done.stdout),
-            err: text(done.stderr),
+            err: err
+                .split_inclusive('\n')
+                .filter(|line| !is_time(line))
+                .collect(),
+            time: err.lines().find(is_time).map(str::to_owned),
         }
     }
 

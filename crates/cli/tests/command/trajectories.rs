@@ -17,7 +17,8 @@ fn header(dir: &TestDir, file: &str) -> Vec<String> {
 #[test]
 fn kinematics_writes_positions_speeds_and_accelerations() {
     let dir = TestDir::new();
-    let run = dir.run(&["kinematics", &case("crank-rocker"), "--out", "o"]);
+    let scene = case("crank-rocker");
+    let run = dir.run(&["kinematics", &scene, "--out", "o", "--pictures", "all"]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     let files = dir.files("o");
     for file in [
@@ -98,7 +99,8 @@ fn statics_writes_forces_without_speeds() {
 #[test]
 fn kinetostatics_writes_forces_power_and_peaks() {
     let dir = TestDir::new();
-    let run = dir.run(&["kinetostatics", &case("boom"), "--out", "o"]);
+    let scene = case("boom");
+    let run = dir.run(&["kinetostatics", &scene, "--out", "o", "--pictures", "all"]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     let columns = header(&dir, "o/boom-kinetostatics.csv");
     for column in [
