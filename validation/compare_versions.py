@@ -104,7 +104,8 @@ def tables(folder, renamed_files=(("-peaks.csv", "-extrema.csv"), ("-section-", 
         name = path.name
         for old, new in renamed_files:
             name = name.replace(old, new)
-        found[name] = path
+        # The parts of a link's name are separated by dots, formerly by hyphens.
+        found[name.removesuffix(".csv").replace(".", "-")] = path
     return found
 
 

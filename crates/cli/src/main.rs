@@ -12,7 +12,7 @@ mod validate;
 
 use clap::Parser;
 use dwell_findings::all_pass;
-use dwell_report::Files;
+use dwell_report::{Files, OutputFolder, ReportError};
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{
     Analysis, MotionSolver, Outcome, ParameterSweep, SolverSettings, Step, StudyError,
@@ -55,13 +55,7 @@ fn run(options: Options) -> Result<bool, Report> {
         print(&dwell_scene::schema())?;
         return Ok(true);
     }
-    if out.exists() && !out.is_dir() {
-        return Err(miette!(
-            help = "give a folder with --out; it is created if it does not exist",
-            "`{}` is not a folder, so no report can be written there",
-            out.display()
-        ));
-    }
+    let folder = open_folder(&command, &out)?;
     let (outcome, early_stop, failures) = match &command {
         Command::Validate {
             cases,
@@ -88,7 +82,9 @@ fn run(options: Options) -> Result<bool, Report> {
         }
     };
     print(&outcome.summary)?;
-    write_files(&outcome.files, &out)?;
+    if let Some(folder) = folder {
+        write_files(&outcome.files, folder, &out)?;
+    }
     times.add("writing");
     print_note(&times.text());
     let ended_early = early_stop.is_some();
@@ -244,13 +240,38 @@ fn run_trajectory(
     dwell_study::analyse_trajectory(&scene, analysis, points, &progress)
 }
 
+/// The folder of the results, tested before the work; none for a command that writes nothing.
+fn open_folder(command: &Command, out: &Path) -> Result<Option<OutputFolder>, Report> {
+    if let Command::Check { .. } = command {
+        return Ok(None);
+    }
+    if out.exists() && !out.is_dir() {
+        return Err(miette!(
+            help = "give a folder with --out; it is created if it does not exist",
+            "`{}` is not a folder, so no report can be written there",
+            out.display()
+        ));
+    }
+    let mut folder = OutputFolder::open(out).map_err(unwritten)?;
+    if let Some(scene) = command.scene() {
+        folder
+            .reserve(&Scene::name_of_file(scene), scene)
+            .map_err(unwritten)?;
+    }
+    Ok(Some(folder))
+}
+
+fn unwritten(error: ReportError) -> Report {
+    let help = "no file was written; choose another folder with --out";
+    miette!(help = help, "{error}")
+}
+
 /// Writes the files, and prints the paths of the first.
-fn write_files(files: &Files, out: &Path) -> Result<(), Report> {
+fn write_files(files: &Files, folder: OutputFolder, out: &Path) -> Result<(), Report> {
     if files.is_empty() {
         return Ok(());
     }
-    let help = "no file was written; choose another folder with --out";
-    let written = files.write(out).map_err(|e| miette!(help = help, "{e}"))?;
+    let written = folder.write(files).map_err(unwritten)?;
     let shown = written.len().min(12);
     for path in &written[..shown] {
         print(&format!("  {}\n", path.display()))?;

@@ -5,7 +5,7 @@ use clap::{Args, Parser, Subcommand};
 use dwell_dynamics::Method;
 use dwell_report::TableFormat;
 use dwell_study::{FormulaFormat, Language, OperatingPoint, Pictures, Shard};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Kinetostatics and dynamics of planar mechanisms, with independent checks
 #[derive(Debug, Parser)]
@@ -191,6 +191,28 @@ pub(crate) enum Command {
     },
     /// Print the JSON schema of scene files, for editors
     Schema,
+}
+
+impl Command {
+    /// The scene file, of a command that studies one.
+    pub(crate) fn scene(&self) -> Option<&Path> {
+        match self {
+            Self::Check { scene }
+            | Self::Reduce { scene, .. }
+            | Self::Simulate { scene, .. }
+            | Self::Cycle { scene, .. }
+            | Self::WorkPrecision { scene }
+            | Self::Equilibria { scene }
+            | Self::Linearise { scene, .. }
+            | Self::Symbolic { scene, .. }
+            | Self::Calibrate { scene, .. }
+            | Self::Sweep { scene, .. } => Some(scene),
+            Self::Kinematics(arguments)
+            | Self::Statics(arguments)
+            | Self::Kinetostatics(arguments) => Some(&arguments.scene),
+            Self::Validate { .. } | Self::Schema => None,
+        }
+    }
 }
 
 /// The folder of Dwell's own cases.

@@ -81,6 +81,16 @@ pub enum ReportError {
         /// The message of the operating system.
         source: std::io::Error,
     },
+    /// Another scene has results of this name in the folder.
+    #[error("`{}` has results of another scene called `{name}`: `{}`", folder.display(), other.display())]
+    NameInUse {
+        /// The name of both scenes.
+        name: String,
+        /// The folder.
+        folder: PathBuf,
+        /// The other scene.
+        other: PathBuf,
+    },
 }
 
 /// Whether every row has the expected number of values.

@@ -27,12 +27,16 @@ impl Scene {
             Err(error) => return Err(not_utf8(&display_path, &error)),
         };
         let source = Arc::new(NamedSource::new(&display_path, text));
+        Self::build(Self::name_of_file(path), &source)
+    }
+
+    /// The name of the scene in a file: its stem, or its folder's name if it is `scene.toml`.
+    pub fn name_of_file(path: &Path) -> String {
         // `scene.toml` given without its folder is still in one.
-        let named = match path.parent().map(std::fs::canonicalize) {
+        match path.parent().map(std::fs::canonicalize) {
             Some(Ok(folder)) => scene_name(&folder.join(path.file_name().unwrap_or_default())),
             _ => scene_name(&std::path::absolute(path).unwrap_or_else(|_| path.to_owned())),
-        };
-        Self::build(named, &source)
+        }
     }
 
     /// Reads the text of a scene. `source_name` is the file's name in messages.

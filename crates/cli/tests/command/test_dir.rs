@@ -110,11 +110,13 @@ impl TestDir {
     }
 
     /// The names of the files below a folder.
+    /// Without what the command keeps for itself.
     pub(crate) fn files(&self, below: &str) -> Vec<String> {
         let prefix = format!("{below}/");
         let all = self.contents().into_iter();
         all.filter(|(_, bytes)| bytes.is_some())
             .filter_map(|(name, _)| Some(name.strip_prefix(&prefix)?.to_owned()))
+            .filter(|name| !name.starts_with(".dwell/"))
             .collect()
     }
 }

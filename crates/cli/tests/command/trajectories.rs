@@ -141,7 +141,7 @@ fn kinetostatics_writes_forces_power_and_peaks() {
         "reactions",
         "shaking-force",
         "power-balance",
-        "path-stick-W",
+        "path-stick.W",
     ] {
         let file = format!("boom-kinetostatics-{figure}.png");
         assert!(dir.files("o").contains(&file), "{file}");
@@ -186,18 +186,18 @@ fn sections_are_tables_and_a_picture() {
     let run = dir.run(&["kinetostatics", "four.toml", "--out", "o"]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     assert_eq!(
-        header(&dir, "o/four-kinetostatics-internal-forces-rocker-D-C.csv"),
+        header(&dir, "o/four-kinetostatics-internal-forces-rocker.D.C.csv"),
         ["station [m]", "axial [N]", "shear [N]", "bending [N m]"]
     );
     let envelope = header(
         &dir,
-        "o/four-kinetostatics-internal-forces-rocker-D-C-envelope.csv",
+        "o/four-kinetostatics-internal-forces-rocker.D.C.envelope.csv",
     );
     assert_eq!(
         envelope[..3],
         ["station [m]", "axial.min [N]", "axial.max [N]"]
     );
-    let picture = "four-kinetostatics-internal-forces-rocker-D-C.png".to_owned();
+    let picture = "four-kinetostatics-internal-forces-rocker.D.C.png".to_owned();
     assert!(dir.files("o").contains(&picture));
     assert!(
         run.out.contains("bending moment of rocker from D to C"),

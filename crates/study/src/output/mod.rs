@@ -1,6 +1,7 @@
 //! What the results of all analyses share when they are written: captions, drawings, provenance.
 
 mod captions;
+mod distinct_names;
 mod mechanism_drawing;
 mod pictures;
 mod provenance;
@@ -10,6 +11,7 @@ pub(crate) use captions::{
     reaction_figure_count, separating_note,
 };
 pub use captions::{caption, chart, coordinate_label, figure, scene_caption, symbol};
+pub(crate) use distinct_names::DistinctNames;
 pub use mechanism_drawing::MechanismDrawing;
 pub use pictures::{Picture, Pictures};
 pub use provenance::{provenance_line, signed_png};

@@ -2,7 +2,7 @@
 
 use super::{document, figures};
 use crate::explain::StudyError;
-use crate::output::{Outcome, Picture};
+use crate::output::{DistinctNames, Outcome, Picture};
 use crate::progress::Progress;
 use crate::trajectory::compute::{Analysis, ComputedTrajectory, compute_trajectory};
 use dwell_report::{Figure, Files, TableExport as _, TableFormat};
@@ -49,13 +49,19 @@ pub(crate) fn report(
     files.add_table(&name(""), &computed.table, &TableFormat::ALL)?;
     let document = document::Document::new(scene, computed);
     files.add(name("-extrema.csv"), document.extrema_csv());
+    let mut link_names = DistinctNames::default();
     for link in &results.sectioned_links {
         let of = link.file_name(scene.mechanism.body_name(link.request.body));
+        let of = link_names.add(of);
         let file = |rest: &str| name(&format!("-internal-forces-{of}{rest}.csv"));
         files.add(file(""), link.table().csv()?);
-        files.add(file("-envelope"), link.envelope_table().csv()?);
+        files.add(file(".envelope"), link.envelope_table().csv()?);
     }
-    let (figures, left_out) = figures::trajectory_figures(scene, computed);
+    let (mut figures, left_out) = figures::trajectory_figures(scene, computed);
+    let mut figure_names = DistinctNames::default();
+    for figure in &mut figures {
+        figure.name = figure_names.add(std::mem::take(&mut figure.name));
+    }
     let file = |figure: &Figure| name(&format!("-{}.png", figure.name));
     let page = Some((name(".md"), document.page(&figures, &file)));
     let picture = |figure: Figure| {

@@ -167,8 +167,8 @@ fn a_force_is_one_in_all_axes() {
 #[test]
 fn a_link_does_not_bend_at_its_pins() {
     let result = analyse(&scene(WEIGHTS), Analysis::Kinetostatics, 90);
-    let sections = Table::parse(&file(&result, "-internal-forces-coupler-B-C.csv"));
-    let envelope = Table::parse(&file(&result, "-internal-forces-coupler-B-C-envelope.csv"));
+    let sections = Table::parse(&file(&result, "-internal-forces-coupler.B.C.csv"));
+    let envelope = Table::parse(&file(&result, "-internal-forces-coupler.B.C.envelope.csv"));
     let bending = sections.column("bending");
     let max_bending = largest(&bending);
     assert!(max_bending > 0.1 && bending[0].abs() < 1e-12 && bending.last().unwrap().abs() < 1e-12);

@@ -75,10 +75,10 @@ impl SectionedLink {
         largest.copied()
     }
 
-    /// `body from … to …`, as part of a file's name.
+    /// `body.from.to`, as part of a file's name: no name has a dot, so no two links share one.
     pub fn file_name(&self, body: &str) -> String {
         let [from, to] = &self.request.names;
-        format!("{body}-{from}-{to}")
+        format!("{body}.{from}.{to}")
     }
 
     /// The sections where the bending moment is largest.

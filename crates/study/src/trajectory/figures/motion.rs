@@ -81,7 +81,7 @@ impl FigureContext<'_> {
             let charts: Vec<Chart> = (0..3).filter_map(chart).collect();
             let body = self.scene.mechanism.body_name(path.body);
             let title = format!("Point {body}.{}", path.name);
-            let name = format!("path-{body}-{}", path.name);
+            let name = format!("path-{body}.{}", path.name);
             let text = "Components in the ground's axes.";
             (!charts.is_empty()).then(|| self.figure(name, title, text, vec![charts.into()]))
         };

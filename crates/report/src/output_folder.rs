@@ -1,0 +1,365 @@
+//! The folder that results are written to: tested before the work, each file whole or not at all, nothing left behind.
+//!
+//! Files are first written to a folder of their own below `.dwell`, then renamed to their targets. A lock shows whether
+//! the command that owns such a folder still runs: what a killed one left is removed by the next. `.dwell` also keeps
+//! which scene has written the results of a name, so that another scene of the same name does not replace them.
+
+use crate::error::ReportError;
+use crate::files::Files;
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+
+/// Below the folder of the results.
+const INTERNAL: &str = ".dwell";
+/// Folders of unfinished files, one for each command that runs, and their locks.
+const UNFINISHED: &str = "unfinished-";
+const LOCK: &str = "lock";
+/// Commands that write to one folder at the same time.
+const MAX_COMMANDS: usize = 10_000;
+
+/// A folder to which a command writes. Dropped before [`write`](Self::write), it leaves no trace.
+#[derive(Debug)]
+pub struct OutputFolder {
+    root: PathBuf,
+    /// The name of the results, and the scene they are of.
+    owner: Option<(String, PathBuf)>,
+    unfinished: PathBuf,
+    /// Held while the command runs.
+    lock: Option<File>,
+    /// Folders that did not exist before, outer ones first.
+    created: Vec<PathBuf>,
+}
+
+fn file_error(path: &Path) -> impl FnOnce(io::Error) -> ReportError {
+    let path = path.to_owned();
+    move |source| ReportError::File { path, source }
+}
+
+impl OutputFolder {
+    /// Makes the folder if it is missing, tests that files can be written there, and removes what killed commands left.
+    ///
+    /// # Errors
+    /// [`ReportError::File`] with the path and the system's reason.
+    pub fn open(root: &Path) -> Result<Self, ReportError> {
+        let mut folder = Self {
+            root: root.to_owned(),
+            owner: None,
+            unfinished: root.join(INTERNAL),
+            lock: None,
+            created: Vec::new(),
+        };
+        let internal = root.join(INTERNAL);
+        folder.create(&internal)?;
+        remove_abandoned(&internal);
+        for number in 0..MAX_COMMANDS {
+            let unfinished = internal.join(format!("{UNFINISHED}{number}"));
+            if let Some(lock) = locked(&unfinished.with_extension(LOCK))? {
+                folder.unfinished = unfinished;
+                folder.lock = Some(lock);
+                fs::create_dir_all(&folder.unfinished).map_err(file_error(root))?;
+                return Ok(folder);
+            }
+        }
+        Err(file_error(root)(io::ErrorKind::ResourceBusy.into()))
+    }
+
+    /// Reserves a name for the results of a scene.
+    ///
+    /// # Errors
+    /// [`ReportError::NameInUse`] where those of another scene, which still exists, have it.
+    pub fn reserve(&mut self, name: &str, scene: &Path) -> Result<(), ReportError> {
+        let scene = fs::canonicalize(scene).unwrap_or_else(|_| scene.to_owned());
+        if let Ok(other) = fs::read_to_string(self.owner_file(name)) {
+            let other = PathBuf::from(other.trim_end());
+            if other != scene && other.is_file() {
+                let (name, folder) = (name.to_owned(), self.root.clone());
+                return Err(ReportError::NameInUse {
+                    name,
+                    folder,
+                    other,
+                });
+            }
+        }
+        self.owner = Some((name.to_owned(), scene));
+        Ok(())
+    }
+
+    fn owner_file(&self, name: &str) -> PathBuf {
+        self.root.join(INTERNAL).join(format!("{name}.scene"))
+    }
+
+    /// Writes the files, and returns their paths.
+    ///
+    /// All are written and stored by the system before the first is renamed to its target. A reader therefore never
+    /// meets half a file, and a full disk or a target that is a folder leaves everything as it was. Only if the system
+    /// refuses a rename after that are the files before it new already.
+    ///
+    /// # Errors
+    /// [`ReportError::File`] with the path and the system's reason.
+    pub fn write(mut self, files: &Files) -> Result<Vec<PathBuf>, ReportError> {
+        let mut staged: Vec<(PathBuf, PathBuf)> = Vec::new();
+        let owner = self.owner.take();
+        let owner = owner.map(|(name, scene)| {
+            let text = format!("{}\n", scene.display());
+            (self.owner_file(&name), text.into_bytes())
+        });
+        let owner = owner.as_ref().map(|(path, text)| (path.clone(), &text[..]));
+        let files = files
+            .iter()
+            .map(|(path, bytes)| (self.root.join(path), bytes));
+        for (target, bytes) in files.chain(owner).collect::<Vec<_>>() {
+            // Renaming onto a folder would fail too, but only after others have been renamed.
+            if target.is_dir() {
+                return Err(file_error(&target)(io::ErrorKind::IsADirectory.into()));
+            }
+            let Some(parent) = target.parent() else {
+                return Err(file_error(&target)(io::ErrorKind::InvalidFilename.into()));
+            };
+            self.create(parent)?;
+            let temporary = self.unfinished.join(staged.len().to_string());
+            store(&temporary, bytes).map_err(file_error(&target))?;
+            staged.push((temporary, target));
+        }
+        let mut written = Vec::with_capacity(staged.len());
+        for (temporary, target) in staged {
+            fs::rename(temporary, &target).map_err(file_error(&target))?;
+            written.push(target);
+        }
+        self.created.clear();
+        written.retain(|path| !path.starts_with(self.root.join(INTERNAL)));
+        Ok(written)
+    }
+
+    /// Makes a folder and those above it, and keeps which are new.
+    fn create(&mut self, folder: &Path) -> Result<(), ReportError> {
+        let is_missing = |f: &&Path| !f.as_os_str().is_empty() && !f.exists();
+        let missing: Vec<&Path> = folder.ancestors().take_while(is_missing).collect();
+        for folder in missing.into_iter().rev() {
+            match fs::create_dir(folder) {
+                Ok(()) => self.created.push(folder.to_owned()),
+                // Another command was faster.
+                Err(e) if e.kind() == io::ErrorKind::AlreadyExists && folder.is_dir() => {}
+                Err(e) => return Err(file_error(folder)(e)),
+            }
+        }
+        match folder.as_os_str().is_empty() || folder.is_dir() {
+            true => Ok(()),
+            false => Err(file_error(folder)(io::ErrorKind::NotADirectory.into())),
+        }
+    }
+}
+
+/// Writes a file until the system has stored it.
+fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = File::create(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()
+}
+
+/// The lock file, locked; none where another command holds it.
+fn locked(path: &Path) -> Result<Option<File>, ReportError> {
+    let file = File::create(path).map_err(file_error(path))?;
+    match file.try_lock() {
+        // One that was removed between its creation and its lock protects nothing.
+        Ok(()) => Ok(path.exists().then_some(file)),
+        Err(TryLockError::WouldBlock) => Ok(None),
+        // A file system without locks: commands there do not clear up after each other.
+        Err(TryLockError::Error(_)) => Ok(Some(file)),
+    }
+}
+
+/// Removes the unfinished files of commands that no longer run. What cannot be removed stays.
+fn remove_abandoned(internal: &Path) {
+    for entry in fs::read_dir(internal).into_iter().flatten().flatten() {
+        let path = entry.path();
+        let name = entry.file_name();
+        let is_lock = path.extension().is_some_and(|extension| extension == LOCK);
+        if !is_lock || !name.to_string_lossy().starts_with(UNFINISHED) {
+            continue;
+        }
+        if File::open(&path).is_ok_and(|file| file.try_lock().is_ok() && remove(&path).is_ok()) {}
+    }
+}
+
+/// Removes the unfinished files of a lock, then the lock.
+fn remove(lock: &Path) -> io::Result<()> {
+    let unfinished = lock.with_extension("");
+    if unfinished.exists() {
+        fs::remove_dir_all(unfinished)?;
+    }
+    fs::remove_file(lock)
+}
+
+impl Drop for OutputFolder {
+    fn drop(&mut self) {
+        // Folders that are in use stay: the refusal is wanted.
+        if self.lock.is_some() {
+            let _ = remove(&self.unfinished.with_extension(LOCK));
+        }
+        for folder in self.created.iter().rev() {
+            let _ = fs::remove_dir(folder);
+        }
+        let _ = fs::remove_dir(self.root.join(INTERNAL));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    /// A folder of its own for each test, removed at the end.
+    struct TestFolder(PathBuf);
+
+    impl TestFolder {
+        fn new() -> Self {
+            static COUNT: AtomicU32 = AtomicU32::new(0);
+            let number = COUNT.fetch_add(1, Ordering::Relaxed);
+            let folder =
+                std::env::temp_dir().join(format!("dwell-files-{}-{number}", std::process::id()));
+            fs::create_dir_all(&folder).unwrap();
+            Self(folder)
+        }
+
+        /// Everything below the folder, relative to it.
+        fn contents(&self) -> Vec<PathBuf> {
+            let mut found = Vec::new();
+            let mut open = vec![self.0.clone()];
+            while let Some(folder) = open.pop() {
+                for entry in fs::read_dir(folder).unwrap() {
+                    let path = entry.unwrap().path();
+                    if path.is_dir() {
+                        open.push(path.clone());
+                    }
+                    found.push(path.strip_prefix(&self.0).unwrap().to_owned());
+                }
+            }
+            found.sort();
+            found
+        }
+    }
+
+    impl Drop for TestFolder {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    #[test]
+    fn files_arrive_whole_and_alone() {
+        let folder = TestFolder::new();
+        fs::write(folder.0.join("a.txt"), "old").unwrap();
+        let mut files = Files::new();
+        files.add("a.txt", "new");
+        let mut others = Files::new();
+        others.add("m.csv", vec![0_u8; 100_000]);
+        files.extend("tables/deep", others);
+        assert_eq!(files.write(&folder.0).unwrap().len(), 2);
+        assert_eq!(fs::read(folder.0.join("a.txt")).unwrap(), b"new");
+        assert_eq!(
+            fs::read(folder.0.join("tables/deep/m.csv")).unwrap().len(),
+            100_000
+        );
+        let expected = ["a.txt", "tables", "tables/deep", "tables/deep/m.csv"];
+        assert_eq!(folder.contents(), expected.map(PathBuf::from));
+    }
+
+    #[test]
+    fn a_target_that_is_a_folder_leaves_everything_as_it_was() {
+        let folder = TestFolder::new();
+        fs::write(folder.0.join("a.txt"), "old").unwrap();
+        fs::create_dir(folder.0.join("z.png")).unwrap();
+        let before = folder.contents();
+        let mut files = Files::new();
+        files.add("a.txt", "new");
+        files.add("fresh/b.txt", "new");
+        files.add("z.png", "new");
+        let error = files.write(&folder.0).unwrap_err();
+        assert!(matches!(&error, ReportError::File { path, .. } if path.ends_with("z.png")));
+        assert!(
+            error.to_string().contains("z.png") && error.to_string().contains("directory"),
+            "{error}"
+        );
+        assert_eq!(folder.contents(), before);
+        assert_eq!(fs::read(folder.0.join("a.txt")).unwrap(), b"old");
+    }
+
+    #[test]
+    fn a_file_where_a_folder_is_needed_is_named() {
+        let folder = TestFolder::new();
+        fs::write(folder.0.join("tables"), "in the way").unwrap();
+        let mut files = Files::new();
+        files.add("a.txt", "new");
+        files.add("tables/m.csv", "new");
+        let error = files.write(&folder.0).unwrap_err();
+        assert!(
+            matches!(&error, ReportError::File { path, .. } if path.starts_with(folder.0.join("tables")))
+        );
+        assert_eq!(folder.contents(), [PathBuf::from("tables")]);
+    }
+
+    #[test]
+    fn a_late_refusal_still_clears_up() {
+        let folder = TestFolder::new();
+        let mut output = OutputFolder::open(&folder.0).unwrap();
+        let scene = folder.0.join("a.toml");
+        fs::write(&scene, "").unwrap();
+        output.reserve("a", &scene).unwrap();
+        // What keeps the name is a folder.
+        fs::create_dir(folder.0.join(".dwell/a.scene")).unwrap();
+        let mut files = Files::new();
+        files.add("b.txt", "new");
+        assert!(output.write(&files).is_err());
+        fs::remove_dir_all(folder.0.join(".dwell")).unwrap();
+        assert_eq!(folder.contents(), [PathBuf::from("a.toml")]);
+    }
+
+    #[test]
+    fn what_a_killed_command_left_is_removed_and_what_a_running_one_writes_stays() {
+        let folder = TestFolder::new();
+        let internal = folder.0.join(INTERNAL);
+        fs::create_dir_all(internal.join("unfinished-0")).unwrap();
+        fs::write(internal.join("unfinished-0/0"), "half").unwrap();
+        // Its lock is held by nobody.
+        fs::write(internal.join("unfinished-0.lock"), "").unwrap();
+        let running = OutputFolder::open(&folder.0).unwrap();
+        assert_eq!(fs::read_dir(&running.unfinished).unwrap().count(), 0);
+        fs::write(running.unfinished.join("0"), "half").unwrap();
+        let mut files = Files::new();
+        files.add("a.txt", "new");
+        files.write(&folder.0).unwrap();
+        assert!(running.unfinished.join("0").exists());
+        drop(running);
+        assert_eq!(folder.contents(), [PathBuf::from("a.txt")]);
+    }
+
+    #[test]
+    fn another_scene_of_the_same_name_does_not_replace_results() {
+        let folder = TestFolder::new();
+        let [one, two] = ["one", "two"].map(|home| folder.0.join(home).join("arm.toml"));
+        for scene in [&one, &two] {
+            fs::create_dir(scene.parent().unwrap()).unwrap();
+            fs::write(scene, "").unwrap();
+        }
+        let root = folder.0.join("reports");
+        let write = |scene: &Path| {
+            let mut output = OutputFolder::open(&root)?;
+            output.reserve("arm", scene)?;
+            let mut files = Files::new();
+            files.add("arm.csv", scene.display().to_string());
+            output.write(&files)
+        };
+        assert_eq!(write(&one).unwrap(), [root.join("arm.csv")]);
+        let refused = write(&two).unwrap_err();
+        assert!(
+            matches!(refused, ReportError::NameInUse { .. }),
+            "{refused}"
+        );
+        assert!(refused.to_string().contains("one"), "{refused}");
+        write(&one).unwrap();
+        // A scene that has been moved is the same.
+        fs::remove_file(&one).unwrap();
+        write(&two).unwrap();
+    }
+}
