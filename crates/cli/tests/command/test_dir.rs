@@ -109,8 +109,7 @@ impl TestDir {
         found
     }
 
-    /// The names of the files below a folder.
-    /// Without what the command keeps for itself.
+    /// The names of the files below a folder, without what the command keeps for itself.
     pub(crate) fn files(&self, below: &str) -> Vec<String> {
         let prefix = format!("{below}/");
         let all = self.contents().into_iter();
