@@ -45,7 +45,7 @@ impl<'a> FreeMotionProblem<'a> {
         spec: &'a FreeMotionSpec,
     ) -> Result<Self, StudyError> {
         let output_model = loaded_model(loaded_scene)?;
-        let notes = check_variables(loaded_scene, &output_model)?
+        let notes = check_variables(scene, &output_model)?
             + &branch_note(loaded_scene, output_model.plan());
         let machine = build_machine(scene, spec, &[])?;
         Ok(Self {
