@@ -128,10 +128,10 @@ impl FreeMotionProblem<'_> {
             }
             // Two runs that lose their energy alike do not show it: that the balance is zero is known without the second.
             let balances = pairs.iter().map(|(s, _)| self.energy_balance(s).abs());
-            let lost = balances.fold(0.0, f64::max) / max_kinetic;
-            if lost > LARGE_ERROR && max_kinetic > f64::MIN_POSITIVE {
+            let imbalance = balances.fold(0.0, f64::max) / max_kinetic;
+            if imbalance > LARGE_ERROR && max_kinetic > f64::MIN_POSITIVE {
                 large.get_or_insert_with(|| {
-                    format!("{lost:.1e} of the largest kinetic energy is lost or gained, with nothing that does this work")
+                    format!("the energy balance closes to {imbalance:.1e} of the largest kinetic energy only")
                 });
             }
         }
