@@ -46,6 +46,14 @@ lint:
     python3 tests/house/circles.py
     python3 tests/house/sizes.py
 
+# That the computing half compiles without pictures and files, here and for a browser (without that target: here only). Cold it takes minutes, for it builds with other features
+[group('care')]
+computing:
+    cargo check -p dwell-study --no-default-features
+    @if rustc --print target-libdir --target wasm32-unknown-unknown | xargs test -d; then \
+        cargo check -p dwell-study --no-default-features --target wasm32-unknown-unknown; \
+    else echo "wasm32 is not checked: rustup target add wasm32-unknown-unknown"; fi
+
 # Licences, sources, duplicates and advisories of the dependencies, by deny.toml. The tool: cargo install cargo-deny --locked
 [group('care')]
 deny:
@@ -65,7 +73,7 @@ peers:
 
 # What takes too long for each change: 1e5 revolutions, 1000 pulses, 200 random machines, new random draws in every property, 100 000 mutated scenes, peers, the dependencies' advisories
 [group('care')]
-nightly: validate-slow mutations
+nightly: validate-slow mutations computing
     PROPTEST_CASES=2000 cargo test --release --workspace
     just fuzz 100000 "$(date +%j)"
     just peers deny

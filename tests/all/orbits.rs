@@ -340,3 +340,47 @@ fn a_swing_within_limits() {
         assert!((at - end).abs() < 1e-12);
     }
 }
+
+/// A wheel with an unbalanced pinion of as many turns in one of its own. At 32 equally spaced positions 16, 32 or 64
+/// waves look like none; in turns of the pinion its period is the same integral for all.
+#[test]
+fn waves_that_equally_spaced_points_do_not_see_are_resolved() {
+    for waves in [15.0, 16.0, 32.0, 64.0] {
+        let text = format!(
+            r#"
+[bodies.ground]
+points = {{ A = [0, 0], B = [{centres}, 0] }}
+[bodies.wheel]
+points = {{ A = [0, 0] }}
+mass = 1
+center = "A"
+inertia = 0.5
+[bodies.pinion]
+points = {{ B = [0, 0] }}
+mass = 0.1
+center = [0.005, 0]
+inertia = 1e-6
+[joints]
+A = {{ revolute = ["ground.A", "wheel.A"] }}
+B = {{ revolute = ["ground.B", "pinion.B"] }}
+mesh = {{ gear = ["wheel.A", "pinion.B"], radii = [{waves}, 1] }}
+[actuators.phi]
+angle = ["ground", "wheel"]
+[assembly]
+phi = 0.0
+pinion = 0.0
+[loads]
+weight = {{ gravity = [0, -9.81] }}
+"#,
+            centres = waves + 1.0
+        );
+        let scene = parse(&text);
+        let found = Orbit::loaded(&machine(&scene, &[], &[]), from(0.0, 0.17)).unwrap();
+        let m = 0.5 + waves * waves * (1e-6 + 0.1 * 0.005 * 0.005);
+        let kinetic = |u: f64| 0.5 * m * 0.17 * 0.17 + 0.1 * G * 0.005 * u.sin();
+        let slowness = |k: u32| (m / (2.0 * kinetic(TAU * f64::from(k) / 997.0))).sqrt();
+        let period = TAU / 997.0 * (0..997).map(slowness).sum::<f64>();
+        let error = (found.period / period - 1.0).abs();
+        assert!(error < 1e-12, "{waves}: {} for {period}", found.period);
+    }
+}

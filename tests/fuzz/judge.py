@@ -13,6 +13,8 @@ LARGEST = 2 * 2**30
 NUMBER = r"[-−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 # A number that is none, as Rust prints it.
 NON_FINITE = re.compile(r"(?<![\w.`-])[-−]?(?:NaN|inf)(?![\w`-])")
+# What a long run prints after 10 s, and then now and then.
+GOES_ON = re.compile(r"^dwell [a-z-]+: running for \d+ (?:s|min)", re.M)
 # What miette and clap begin a message with.
 ERROR = re.compile(r"^\s*(?:×|Error:|error:)", re.M)
 
@@ -23,8 +25,6 @@ class Run:
     def __init__(self, arguments, scene, status, out, err, seconds, memory, folder):
         self.arguments, self.scene, self.status, self.out, self.err = arguments, scene, status, out, err
         self.seconds, self.memory, self.folder = seconds, memory, folder
-        # Whether a long run shows that it goes on.
-        self.goes_on = False
 
     def files(self, ending):
         return sorted(self.folder.glob(f"**/*{ending}"))
@@ -61,7 +61,7 @@ def crashed(run):
     if run.memory > LARGEST:
         return f"{run.memory / 2**20:.0f} MB of memory"
     if out_of_time(run):
-        return None if run.goes_on else f"silent for {LONGEST} s of computing"
+        return None if GOES_ON.search(run.err) else f"silent for {LONGEST} s of computing"
     return None if run.status in (0, 1, 2) else f"status {run.status}"
 
 

@@ -13,10 +13,8 @@ import collections
 import multiprocessing
 import os
 import pathlib
-import pty
 import random
 import resource
-import select
 import shlex
 import shutil
 import signal
@@ -37,8 +35,8 @@ SOURCES = scenes.sources()
 
 
 def limit():
-    """Of the child: its time of computing and its memory."""
-    resource.setrlimit(resource.RLIMIT_CPU, (judge.LONGEST, judge.LONGEST + 2))
+    """Of the child: its time of computing, a second longer than it may be silent, and its memory."""
+    resource.setrlimit(resource.RLIMIT_CPU, (judge.LONGEST + 1, judge.LONGEST + 3))
     resource.setrlimit(resource.RLIMIT_AS, (2 * judge.LARGEST, 2 * judge.LARGEST))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
@@ -54,7 +52,6 @@ def run_pair(task):
         arguments = commands.arguments_of(rng, name, text, folder)
         (folder / "scene.toml").write_text(text, encoding="utf-8", errors="surrogatepass")
         run = run_program(program, arguments, text, folder)
-        run.goes_on = judge.out_of_time(run) and shows_that_it_goes_on(program, arguments, folder)
         faults = judge.faults(run)
         if keep:
             shutil.copytree(folder, pathlib.Path(keep) / f"{seed}-{number}", dirs_exist_ok=True)
@@ -66,30 +63,6 @@ def run_pair(task):
 def environment():
     # One thread: the time of computing is then that of waiting on a free machine.
     return {"NO_COLOR": "1", "LC_ALL": "C.UTF-8", "TERM": "xterm", "RAYON_NUM_THREADS": "1"}
-
-
-def shows_that_it_goes_on(program, arguments, folder):
-    """Whether a long run shows on a terminal, second by second, that it goes on: it then is not silent."""
-    master, terminal = pty.openpty()
-    child = subprocess.Popen(
-        [program, *arguments], cwd=folder, env=environment(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=terminal,
-        preexec_fn=limit,
-    )
-    os.close(terminal)
-    seen, begin = 0, time.monotonic()
-    while (left := begin + judge.LONGEST - time.monotonic()) > 0:
-        if not select.select([master], [], [], left)[0]:
-            break
-        try:
-            shown = os.read(master, 4096)
-        except OSError:
-            break
-        # What is shown at once is no sign of life.
-        seen += bool(shown) and time.monotonic() - begin > 0.3 * judge.LONGEST
-    child.kill()
-    child.wait()
-    os.close(master)
-    return seen > 2
 
 
 def run_program(program, arguments, text, folder):

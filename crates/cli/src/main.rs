@@ -6,11 +6,12 @@
 mod cases;
 mod former;
 mod instants;
+mod long_runs;
 mod options;
 mod times;
 mod validate;
 
-use clap::Parser;
+use clap::{CommandFactory as _, FromArgMatches as _};
 use dwell_findings::all_pass;
 use dwell_report::{Files, OutputFolder, ReportError};
 use dwell_scene::{Scene, SceneError};
@@ -20,6 +21,7 @@ use dwell_study::{
 };
 use dwell_validation::ValidationError;
 use indicatif::{ProgressBar, ProgressStyle};
+use long_runs::LongRunLines;
 use miette::{Report, miette};
 use options::{Command, Options, TrajectoryArgs};
 use std::io::Write as _;
@@ -32,8 +34,9 @@ fn main() -> ExitCode {
     // clap itself exits with 2 on a bad argument, and with 0 for help.
     let (arguments, notes) = former::with_current_names(std::env::args_os());
     notes.iter().for_each(|note| print_note(note));
-    let options = Options::parse_from(arguments);
-    match run(options) {
+    let matches = Options::command().get_matches_from(arguments);
+    let options = Options::from_arg_matches(&matches).unwrap_or_else(|e| e.exit());
+    match run(options, matches.subcommand_name().unwrap_or_default()) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(report) => {
@@ -43,8 +46,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs a command, and returns whether all its checks passed.
-fn run(options: Options) -> Result<bool, Report> {
+/// Runs a command of this name, and returns whether all its checks passed.
+fn run(options: Options, name: &str) -> Result<bool, Report> {
     let Options {
         command,
         out,
@@ -56,6 +59,8 @@ fn run(options: Options) -> Result<bool, Report> {
         return Ok(true);
     }
     let folder = open_folder(&command, &out)?;
+    let bar = progress_bar();
+    let lines = LongRunLines::new(name, &bar);
     let (outcome, early_stop, failures) = match &command {
         Command::Validate {
             cases,
@@ -63,11 +68,11 @@ fn run(options: Options) -> Result<bool, Report> {
             slow,
             seed,
         } => {
-            let (outcome, failures) = validate::validate(cases, folder, *slow, *seed)?;
+            let (outcome, failures) = validate::validate(cases, folder, (*slow, *seed), &bar)?;
+            times.add("checking");
             (outcome, None, failures)
         }
         study => {
-            let bar = progress_bar();
             let done = run_study(study, &out, &bar);
             times.add("computing");
             let done = done.and_then(|done| {
@@ -81,6 +86,8 @@ fn run(options: Options) -> Result<bool, Report> {
             (outcome, early_stop, None)
         }
     };
+    // No line follows the results.
+    drop(lines);
     print(&outcome.summary)?;
     if let Some(folder) = folder {
         write_files(&outcome.files, folder, &out)?;

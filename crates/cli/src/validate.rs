@@ -1,10 +1,11 @@
 //! `dwell validate`: every case; a case that cannot be validated does not stop the others.
 
 use crate::options::DEFAULT_CASE_FOLDER;
-use crate::{as_scene_error, cases, print_warnings, progress_bar, validation_error};
+use crate::{as_scene_error, cases, print_warnings, validation_error};
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{Outcome, Step};
 use dwell_validation::{Validation, extremes, index, work_precision};
+use indicatif::ProgressBar;
 use miette::{Report, miette};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -14,15 +15,14 @@ use std::path::{Path, PathBuf};
 pub(crate) fn validate(
     names: &[String],
     folder: &Path,
-    slow: bool,
-    seed: u64,
+    (slow, seed): (bool, u64),
+    bar: &ProgressBar,
 ) -> Result<(Outcome, Option<Report>), Report> {
     let cases = cases::find(names, folder)?;
     let read = |case: &PathBuf| Scene::read(case.join("scene.toml"));
     let scenes: Vec<_> = cases.iter().map(read).collect();
     reject_duplicate_names(&cases, &scenes)?;
     scenes.iter().flatten().for_each(print_warnings);
-    let bar = progress_bar();
     let one = |(scene, case): (&Result<Scene, SceneError>, &PathBuf)| {
         let scene = scene.as_ref().map_err(Clone::clone)?;
         let progress = |step: Step<'_>| {

@@ -120,8 +120,7 @@ impl SampledLibration {
     fn double_points(&mut self, system: &mut dyn ConservativeSystem, first: usize) -> Result<()> {
         let [a, b] = self.turning_points;
         let half = 0.5 * (b - a);
-        let samples = std::mem::take(&mut self.samples);
-        self.samples = refine_samples(samples, first, |part| {
+        let mut terms_at = |part: f64| {
             // 1 − cos s, from the nearer end: the same upwards and downwards.
             let sine = (PI * part).sin();
             let cosine = (PI * part).cos();
@@ -131,11 +130,14 @@ impl SampledLibration {
                 b - 2.0 * half * cosine * cosine
             };
             system.energy_terms(q)
-        })?;
+        };
+        let samples = std::mem::take(&mut self.samples);
+        self.samples = refine_samples(samples, first, &mut terms_at)?;
         let forces: Vec<f64> = self.samples.iter().map(|h| h.force).collect();
         let size = forces.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         self.force_series = FourierSeries::new(&forces, size);
-        Ok(())
+        let series = &mut self.force_series;
+        series.check_between(size, |part| Ok(terms_at(part)?.force))
     }
 
     /// h (1 − cos s) G: the kinetic energy gained from the lower end to a phase.

@@ -51,7 +51,12 @@ impl SampledRotation {
         let max_kinetic = self.samples.iter().map(kinetic_left).fold(0.0, f64::max);
         let mut points = self.samples.len();
         let size = values.iter().sum::<f64>() / points as f64;
-        let series = FourierSeries::new(&values, size);
+        let mut series = FourierSeries::new(&values, size);
+        series.check_between::<DynamicsError>(size, |part| {
+            Ok(density(
+                &system.energy_terms(from + angle_per_period * part)?,
+            ))
+        })?;
         let is_sharp = points >= SHARP_POINTS && !series.is_resolved;
         let mut is_resolved = series.is_resolved;
         let time_density = if is_sharp && (series.tail >= accuracy || series.tail.is_nan()) {

@@ -16,6 +16,16 @@ const COEFFICIENT_ROUNDING: f64 = 1e-16;
 /// are rounding too, of values that carry more of it. (Those of a smooth function fall by 100 there.)
 const NOISY_TAIL: f64 = 1e-8;
 const FLATNESS: f64 = 0.25;
+/// Where a series is held against its function, in parts of a period: no fractions of any small number of points.
+const BETWEEN: [f64; 5] = [
+    0.107_295_316,
+    0.290_743_847,
+    0.483_198_233,
+    0.668_620_151,
+    0.886_441_529,
+];
+/// There the sum of what a series leaves out may be so many times the largest of its last coefficients, or of a rounding.
+const LEFT_OUT: f64 = 1e4;
 
 /// A function of a phase s from 0 to 2π: c₀ + Σ c_k cos ks + s_k sin ks.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -59,6 +69,33 @@ impl FourierSeries {
             // Sixteen roundings of a point remain in a coefficient.
             is_resolved: tail < 16.0 * COEFFICIENT_ROUNDING || is_rounding,
         }
+    }
+
+    /// Holds the series against its function between the points: harmonics beyond the points, of 32 waves at 32 points
+    /// for instance, look like lower ones or like none at them. Where it differs, it is not resolved, and its tail is
+    /// the difference as a part of `size`.
+    ///
+    /// # Errors
+    /// The first error of `at`, the function of the part (0 … 1) of a period.
+    pub fn check_between<E>(
+        &mut self,
+        size: f64,
+        mut at: impl FnMut(f64) -> Result<f64, E>,
+    ) -> Result<(), E> {
+        let mut difference = 0.0_f64;
+        for part in BETWEEN {
+            let error = (at(part)? - self.eval(TAU * part)[0]).abs() / size;
+            // A value that is no number differs.
+            difference = match error.is_nan() {
+                true => f64::INFINITY,
+                false => difference.max(error),
+            };
+        }
+        if difference > LEFT_OUT * self.tail.max(COEFFICIENT_ROUNDING) {
+            self.tail = difference;
+            self.is_resolved = false;
+        }
+        Ok(())
     }
 
     /// Its value and its integral from zero at a phase.
@@ -129,6 +166,22 @@ fn fourier_coefficients(values: &[f64]) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Of 16, 32 or 64 waves in a period nothing is seen at 32 points, but between them; of 15 all is.
+    #[test]
+    fn waves_beyond_the_points_are_seen_between_them() {
+        for (waves, resolved) in [(3.0, true), (16.0, false), (32.0, false), (64.0, false)] {
+            let at = |part: f64| 1.0 + 1e-9 * (waves * TAU * part + 1.5707).cos();
+            let values: Vec<f64> = (0..32).map(|k| at(f64::from(k) / 32.0)).collect();
+            let mut series = FourierSeries::new(&values, 1.0);
+            assert!(series.is_resolved, "{waves}: {}", series.tail);
+            series
+                .check_between(1.0, |part| Ok::<f64, ()>(at(part)))
+                .unwrap();
+            assert_eq!(series.is_resolved, resolved, "{waves}: {}", series.tail);
+            assert_eq!(series.tail > 1e-10, !resolved, "{waves}: {}", series.tail);
+        }
+    }
 
     /// A function with known coefficients, at a count of points that holds all of them.
     #[test]

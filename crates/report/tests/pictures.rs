@@ -13,7 +13,10 @@ struct Picture {
 }
 
 impl Picture {
-    #[allow(clippy::unwrap_used)] // Clippy knows a test by its attribute, and not the helpers beside it.
+    #[allow(
+        clippy::unwrap_used,
+        reason = "Clippy knows a test by its attribute, and not the helpers beside it"
+    )]
     fn of(figure: &Figure) -> Self {
         let bytes = png(figure).unwrap();
         let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))

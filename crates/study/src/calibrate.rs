@@ -5,6 +5,7 @@ use crate::explain::{StudyError, explain_motion, missing_section_label, scene_er
 use crate::models::{initial_reduced_state, reduced_model};
 use crate::number_format::{digits, number};
 use crate::ranges::extent;
+use crate::trajectory::compute::reject_unknown_variables;
 #[cfg(feature = "output")]
 use crate::{
     branch_note::branch_note, models::PreparedScene, number_format::digits_within, output::Outcome,
@@ -64,6 +65,7 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationR
             [(SceneLocation::Calibration, "the period of this motion")],
         ));
     }
+    reject_unknown_variables(scene)?;
     let (current_period, current_period_error) = period_with_error(scene)?;
     let period_with = |value: f64| period_of(&scene.with_value(path, value)?);
     let result = |value: f64| {

@@ -1,7 +1,10 @@
 //! Motions of very many periods, by quadrature: their end, their rows, their events and the status.
 
-use crate::test_dir::{Run, TestDir, home};
+use crate::test_dir::{Run, TestDir, four_bar_with, home};
 use std::fs;
+use std::io::{BufRead as _, BufReader};
+use std::process::Stdio;
+use std::time::{Duration, Instant};
 
 /// Half the period of the pendulum A01, released level, s (50 digits: 2.3678419475762374493 s).
 const HALF_PERIOD: f64 = 1.183_920_973_788_118_7;
@@ -139,4 +142,26 @@ fn a_release_from_rest_is_no_event_by_any_method() {
             run.out
         );
     }
+}
+
+/// After 10 s without a terminal a line says that the run goes on; what it would print is read until then.
+#[test]
+fn a_long_run_says_that_it_goes_on() {
+    let dir = TestDir::new();
+    let begin = Instant::now();
+    dir.put("long.toml", four_bar_with(&[]));
+    let slow = ["sweep", "long.toml", "--vary", "coupler.mass=1:2:1000000"];
+    let mut child = dir.command(&slow).stderr(Stdio::piped()).spawn().unwrap();
+    let mut line = String::new();
+    let mut lines = BufReader::new(child.stderr.take().unwrap());
+    lines.read_line(&mut line).unwrap();
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let (done, end) = line.split_once(" of 1000000 steps done").unwrap();
+    let done = done
+        .strip_prefix("dwell sweep: running for 10 s, ")
+        .unwrap();
+    assert!(done.parse::<u32>().unwrap() > 10, "{line}");
+    assert_eq!(end, " (last: points)\n");
+    assert!(begin.elapsed() >= Duration::from_secs(10), "{begin:?}");
 }

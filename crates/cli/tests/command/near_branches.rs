@@ -85,3 +85,43 @@ fn an_exact_change_point_is_crossed() {
         assert!(run.out.contains("over the whole motion"), "{}", run.out);
     }
 }
+
+/// A four-bar whose crank does not rotate fully, on a carriage that moves: no two coordinates are continued across a
+/// dead point. Every method ends there by name; two implicit ones stayed there with 0.7 of the energy lost and status 0,
+/// or took the scene for an invalid one.
+#[test]
+fn a_dead_point_of_two_freedoms_is_status_1() {
+    let carriage = "points = { O = [0, 0] }\n[bodies.carriage]\npoints = { O = [0, 0], A = [0, 0], D = [0.4, 0] }\n\
+                    mass = 3.0\ncenter = [0.2, 0]\ninertia = 0.1";
+    let rail = "[joints]\nrail = { prismatic = [\"ground.O\", \"carriage.O\"], axis = [1, 0] }";
+    let text = parallelogram("0.5")
+        .replace("points = { A = [0, 0], D = [0.4, 0] }", carriage)
+        .replace("[joints]", rail)
+        .replace("\"ground.A\"", "\"carriage.A\"")
+        .replace("\"ground.D\"", "\"carriage.D\"")
+        .replace("[\"ground\", \"crank\"]", "[\"carriage\", \"crank\"]")
+        .replace(
+            "[assembly]",
+            "[actuators.x]\nlength = \"rail\"\n[assembly]\nx = 0.0",
+        )
+        .replace("{ phi = 1.0 }", "{ phi = 1.0, x = 0.0 }")
+        .replace("{ phi = 10.0 }", "{ phi = 10.0, x = 0.3 }");
+    for method in ["tr-bdf2", "esdirk34", "tsit45", "dop853"] {
+        let dir = TestDir::new();
+        dir.put("bar.toml", &text);
+        let run = dir.run(&["simulate", "bar.toml", "--method", method, "--out", "o"]);
+        assert_eq!(run.status, Some(1), "{method}: {} {}", run.out, run.err);
+        let words = run.err.replace("\n  │ ", " ");
+        let said = [
+            "cannot reach",
+            "singular",
+            "too small",
+            "energy balance closes",
+        ];
+        assert!(
+            said.iter().any(|part| words.contains(part)),
+            "{method}: {words}"
+        );
+        assert!(!dir.files("o").is_empty(), "{method}");
+    }
+}

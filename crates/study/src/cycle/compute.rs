@@ -5,6 +5,7 @@ pub use crate::cycle::errors::{CycleErrors, CycleStability};
 use crate::explain::{StudyError, labels};
 use crate::models::{SceneMachine, SolverSettings, source_name};
 use crate::number_format::{coordinate_unit, count, digits};
+use crate::trajectory::compute::reject_unknown_variables;
 use dwell_dynamics::{
     Cycle, DynamicsError, Flywheel, Machine, OdeState, Options, initial_transient, size_flywheel,
     steady_cycle,
@@ -200,6 +201,7 @@ pub fn compute_cycle<'a>(
     settings: &SolverSettings,
     fluctuation: Option<f64>,
 ) -> Result<CycleSearch<'a>, StudyError> {
+    reject_unknown_variables(scene)?;
     let prepared = SceneMachine::new(scene)?;
     require_rotating(&prepared)?;
     prepared.require_autonomous("a steady cycle")?;

@@ -3,6 +3,7 @@
 use crate::explain::StudyError;
 use crate::models::SceneMachine;
 use crate::ranges::{equally_spaced, extent};
+use crate::trajectory::compute::reject_unknown_variables;
 use dwell_dynamics::{
     DynamicsError, Equilibrium, Stability, equilibria as equilibria_over, equilibria_from_starts,
     equilibrium_near, static_force_and_potential,
@@ -202,6 +203,7 @@ pub struct EquilibriaResults<'a> {
 /// # Errors
 /// As [`equilibria`](crate::equilibria()).
 pub fn compute_equilibria(scene: &Scene) -> Result<EquilibriaResults<'_>, StudyError> {
+    reject_unknown_variables(scene)?;
     let prepared = SceneMachine::new(scene)?;
     let (found, searched) = find_equilibria(&prepared)?;
     let table = equilibrium_table(&prepared, &found);

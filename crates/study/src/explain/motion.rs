@@ -396,22 +396,7 @@ mod tests {
     /// The longest step is blamed where it makes the steps many, and nothing else then; the tolerance by its own option.
     #[test]
     fn too_many_steps_are_blamed_on_what_makes_them_many() {
-        let text = r#"
-[bodies.ground]
-points = { A = [0, 0] }
-[bodies.bar]
-points = { A = [0, 0] }
-mass = 2.0
-center = [0.3, 0]
-inertia = 0.05
-[joints]
-A = { revolute = ["ground.A", "bar.A"] }
-[actuators.phi]
-angle = ["ground", "bar"]
-[motion]
-initial-velocity = 1
-duration = 10
-"#;
+        let text = include_str!("../../tests/run/pendulum.toml");
         let scene = Scene::parse("bar.toml", text).unwrap();
         let explain = |max_step, tolerance, t| {
             let limits = StepLimits {

@@ -4,6 +4,7 @@ use crate::equilibria::compute::{SearchedRange, find_equilibria, force_extent};
 use crate::explain::StudyError;
 use crate::models::{SceneMachine, build_machine, requested_reactions};
 use crate::number_format::force_unit;
+use crate::trajectory::compute::reject_unknown_variables;
 use dwell_dynamics::{
     DynamicsError, Equilibrium, Machine, StateSpace, eigenvalues_about, is_equilibrium,
     linearise as linearise_about,
@@ -115,6 +116,7 @@ pub fn compute_linearisation(
     scene: &Scene,
     point: OperatingPoint,
 ) -> Result<LinearisedMotion<'_>, StudyError> {
+    reject_unknown_variables(scene)?;
     let prepared = SceneMachine::new(scene)?;
     let [reactions, omitted] = requested_reactions(scene, prepared.machine.model().plan());
     let machine = build_machine(scene, &prepared.spec, &reactions)?;

@@ -5,6 +5,7 @@ use crate::explain::{
 };
 use crate::models::{reduced_model, requested_reactions};
 use crate::symbolic::closed_form_check::ClosedFormCheck;
+use crate::trajectory::compute::reject_unknown_variables;
 use dwell_findings::Finding;
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::ExactModel;
@@ -94,6 +95,7 @@ pub fn compute_closed_form(
     scene: &Scene,
     reaction: Option<&str>,
 ) -> Result<(ClosedForm, Vec<Finding>), StudyError> {
+    reject_unknown_variables(scene)?;
     let exact = full_reduced_model(scene)?;
     let plan = exact.model().plan();
     let reaction = match reaction {

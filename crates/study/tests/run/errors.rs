@@ -1,28 +1,12 @@
 //! No digit is printed beyond the estimated error, and what is rounding is said to be rounding.
 
-use crate::table::scene;
+use crate::table::{PENDULUM, scene};
 use dwell_dynamics::Method;
 use dwell_study::{
     OperatingPoint, SolverSettings, compute_sweep, equilibria, linearise, simulate,
     simulate_to_accuracy,
 };
 use std::f64::consts::FRAC_PI_2;
-
-const PENDULUM: &str = r#"
-[bodies.ground]
-points = { A = [0, 0] }
-[bodies.bar]
-points = { A = [0, 0] }
-mass = 2.0
-center = [0.3, 0]
-inertia = 0.05
-[joints]
-A = { revolute = ["ground.A", "bar.A"] }
-[actuators.phi]
-angle = ["ground", "bar"]
-[loads]
-weight = { gravity = [0, -9.81] }
-"#;
 
 fn moving(start: f64, duration: f64, more: &str) -> String {
     format!(

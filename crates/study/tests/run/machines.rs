@@ -1,28 +1,10 @@
 //! Cycles, equilibria and linearised motions, held against closed forms.
 
+use crate::table::PENDULUM;
 use dwell_dynamics::Method;
 use dwell_scene::Scene;
 use dwell_study::{OperatingPoint, Outcome, SolverSettings, StudyError, equilibria, linearise};
 use std::f64::consts::{FRAC_PI_2, TAU};
-
-const PENDULUM: &str = r#"
-title = "Pendulum"
-[bodies.ground]
-points = { A = [0, 0] }
-[bodies.bar]
-points = { A = [0, 0] }
-mass = 2.0
-center = [0.3, 0]
-inertia = 0.05
-[joints]
-A = { revolute = ["ground.A", "bar.A"] }
-[actuators.phi]
-angle = ["ground", "bar"]
-[assembly]
-phi = -1.0
-[loads]
-weight = { gravity = [0, -9.81] }
-"#;
 
 const MOTOR: &str = r#"
 title = "Motor under a constant torque"
@@ -44,6 +26,11 @@ motor = { motor = "phi", voltage = 24, constant = 0.05, resistance = 1.2, induct
 [motion]
 duration = 1
 "#;
+
+/// The pendulum put together at an angle (rad).
+fn pendulum_at(angle: &str) -> String {
+    format!("{PENDULUM}[assembly]\nphi = {angle}\n")
+}
 
 fn scene(text: &str) -> Scene {
     Scene::parse("machine.toml", text).unwrap()
@@ -82,7 +69,7 @@ fn assert_near(a: f64, b: f64, relative: f64) {
 
 #[test]
 fn a_pendulum_hangs_and_stands_and_swings_with_the_root_of_its_moments() {
-    let outcome = equilibria(&scene(PENDULUM)).unwrap();
+    let outcome = equilibria(&scene(&pendulum_at("-1.0"))).unwrap();
     let table = text(&outcome, "equilibria.csv");
     let phi = column(table, "phi [rad]");
     assert_eq!(phi.len(), 2, "{table}");
@@ -128,7 +115,7 @@ fn a_damped_pendulum_tells_its_damping_ratio() {
 
 #[test]
 fn a_linearised_pendulum_is_that_of_the_book() {
-    let linear = linearise(&scene(PENDULUM), OperatingPoint::Equilibrium).unwrap();
+    let linear = linearise(&scene(&pendulum_at("-1.0")), OperatingPoint::Equilibrium).unwrap();
     let table = text(&linear, "linear.csv");
     let rows: Vec<&str> = table.lines().collect();
     assert_eq!(rows[0], "matrix,row,phi [rad],phi.velocity [rad/s]");
@@ -137,7 +124,7 @@ fn a_linearised_pendulum_is_that_of_the_book() {
     let inertia = 0.05 + 2.0 * 0.3 * 0.3;
     assert_near(stiffness[1], -2.0 * 9.81 * 0.3 / inertia, 1e-14);
     // About the start, 1 rad below the level, gravity has only the part of its lever that is left.
-    let linear = linearise(&scene(PENDULUM), OperatingPoint::InitialState).unwrap();
+    let linear = linearise(&scene(&pendulum_at("-1.0")), OperatingPoint::InitialState).unwrap();
     let rows: Vec<&str> = text(&linear, "linear.csv").lines().collect();
     let stiffness = column(&rows[..3].join("\n"), "phi [rad]");
     assert_near(
@@ -164,15 +151,15 @@ fn an_equilibrium_at_the_start_is_one_within_rounding() {
         .replace("[joints]", "[bodies.load]\npoints = { P = [0.1, 0] }\nmass = 3.0\ncenter = \"P\"\ninertia = 0.1\n[joints]\nP = { weld = [\"bar.P\", \"load.P\"] }")
         .replace("points = { A = [0, 0] }\nmass = 2.0", "points = { A = [0, 0], P = [-0.2, 0] }\nmass = 2.0");
     for text in [
-        PENDULUM.replace("phi = -1.0", "phi = 1.5707963267948966"),
-        PENDULUM.replace("phi = -1.0", "phi = -1.5707963267948966"),
-        balanced.replace("phi = -1.0", "phi = 0.3"),
+        pendulum_at("1.5707963267948966"),
+        pendulum_at("-1.5707963267948966"),
+        format!("{balanced}[assembly]\nphi = 0.3\n"),
     ] {
         let summary = about_start(&text);
         assert!(summary.contains("  an equilibrium"), "{summary}");
     }
     for angle in ["1.57079632679", "0.1"] {
-        let summary = about_start(&PENDULUM.replace("phi = -1.0", &format!("phi = {angle}")));
+        let summary = about_start(&pendulum_at(angle));
         assert!(summary.contains("not an equilibrium"), "{angle}: {summary}");
     }
 }

@@ -14,3 +14,4 @@ mod motion;
 mod pruning;
 mod quadrature;
 mod table;
+mod variables;

@@ -6,7 +6,9 @@ use std::path::Path;
 
 /// A crank-rocker whose bodies' centres are named points, under weight alone.
 pub(crate) const WEIGHTS: &str = include_str!("weights.toml");
-/// Its masses, kg.
+/// A pendulum with its weight, without motion.
+pub(crate) const PENDULUM: &str = include_str!("pendulum.toml");
+/// The masses of the crank-rocker, kg.
 pub(crate) const MASSES: [(&str, f64); 3] = [("crank", 1.0), ("coupler", 2.0), ("rocker", 1.5)];
 
 pub(crate) struct Table {

@@ -126,6 +126,14 @@ impl FreeMotionProblem<'_> {
                     format!("the estimated error of the energy is {error:.1e} of the largest kinetic energy")
                 });
             }
+            // Two runs that lose their energy alike do not show it: that the balance is zero is known without the second.
+            let balances = pairs.iter().map(|(s, _)| self.energy_balance(s).abs());
+            let imbalance = balances.fold(0.0, f64::max) / max_kinetic;
+            if imbalance > LARGE_ERROR && max_kinetic > f64::MIN_POSITIVE {
+                large.get_or_insert_with(|| {
+                    format!("the energy balance closes to {imbalance:.1e} of the largest kinetic energy only")
+                });
+            }
         }
         (text, large)
     }

@@ -10,7 +10,8 @@ use dwell_dynamics::atlas::{
     Atlas, AtlasError, ChartChange, ChartChangeReason, ContinuedMotion, MachineDescription,
 };
 use dwell_dynamics::{
-    DynamicsError, Event, EventKind, Machine, OdeState, Options, Orbit, ReducedState, solve,
+    DynamicsError, Event, EventKind, Machine, OdeState, Options, Orbit, ReducedState, Solution,
+    solve,
 };
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Coordinate, Reaction};
@@ -45,7 +46,7 @@ impl<'a> FreeMotionProblem<'a> {
         spec: &'a FreeMotionSpec,
     ) -> Result<Self, StudyError> {
         let output_model = loaded_model(loaded_scene)?;
-        let notes = check_variables(loaded_scene, &output_model)?
+        let notes = check_variables(scene, &output_model)?
             + &branch_note(loaded_scene, output_model.plan());
         let machine = build_machine(scene, spec, &[])?;
         Ok(Self {
@@ -62,6 +63,26 @@ impl<'a> FreeMotionProblem<'a> {
         explain_motion(self.loaded_scene, self.output_model.plan(), error)
     }
 
+    /// Ends a motion before its first sample that the mechanism cannot take, be it by rounding: an implicit method may
+    /// stay at the end of the range of several coordinates.
+    fn end_where_impossible(&self, solution: &mut Solution) {
+        let mut workspace = self.machine.workspace();
+        let mut failure = |at: &OdeState| {
+            let evaluated = self.machine.evaluate(at.t, &at.y, &mut workspace);
+            evaluated.err().map(|e| (at.t, e))
+        };
+        let Some((t, error)) = solution.samples.iter().find_map(&mut failure) else {
+            return;
+        };
+        solution.samples.retain(|s| s.t < t);
+        solution.event_occurrences.retain(|o| o.state.t < t);
+        solution.steps.retain(|s| s.t < t);
+        while let Some((t, _)) = solution.steps.last().and_then(&mut failure) {
+            solution.steps.retain(|s| s.t < t);
+        }
+        solution.error = Some(error);
+    }
+
     /// Integrates the motion: with one degree of freedom across charts, else in its own coordinates.
     pub fn solve(
         &self,
@@ -73,7 +94,8 @@ impl<'a> FreeMotionProblem<'a> {
         if self.spec.laws.len() != 1 || self.machine.free().len() != 1 {
             let (machine, output) = (&self.machine, &self.output_model);
             let solution = solve(machine, output, &start, duration, options, &events);
-            let solution = solution.map_err(|e| self.explain(&e))?;
+            let mut solution = solution.map_err(|e| self.explain(&e))?;
+            self.end_where_impossible(&mut solution);
             return Ok(SegmentedMotion::single_segment(solution));
         }
         let configuration = scene.assembly.to_configuration();

@@ -1,11 +1,8 @@
 //! The samples and the events of a motion as tables.
 
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
-use crate::models::{drive_states, source_name};
 use crate::number_format::coordinate_unit;
-use crate::trajectory::compute::{
-    self, BALANCE, FreeTrajectory, KINETIC, POTENTIAL, Quantity, Trajectory, TrajectorySample,
-};
+use crate::trajectory::compute::{FreeTrajectory, Trajectory, TrajectorySample, extra_columns};
 use dwell_dynamics::{
     DynamicsError, EventOccurrence, Machine, MachineWorkspace, OdeState, Solution,
 };
@@ -27,7 +24,7 @@ impl FreeMotionProblem<'_> {
                 None => self.samples(motion)?,
                 Some(times) => self.samples_at(motion, times)?,
             },
-            extra_columns: self.extra_columns(),
+            extra_columns: extra_columns(self.loaded_scene, &self.machine),
             prescribed: self.spec.laws.iter().map(Option::is_some).collect(),
             charts: charts.map(|c| c.output_model.clone()).collect(),
         };
@@ -149,33 +146,6 @@ impl FreeMotionProblem<'_> {
     /// The error of the energy balance at a sample, J.
     pub(crate) fn energy_balance(&self, sample: &TrajectorySample) -> f64 {
         sample.extra_values[self.balance_index()]
-    }
-
-    /// The columns of [`TrajectorySample::extra_values`].
-    fn extra_columns(&self) -> Vec<compute::Column> {
-        let kinetic = "kinetic energy of all bodies and rotors";
-        let potential = "potential energy of gravity, springs and constant forces";
-        let balance =
-            "drift of kinetic + potential energy − work since t = 0: error of the integration";
-        let mut all = vec![
-            (KINETIC.to_owned(), "J", kinetic),
-            (POTENTIAL.to_owned(), "J", potential),
-        ];
-        let sources = self.machine.nonconservative_sources().iter();
-        all.extend(sources.map(|&source| {
-            let name = source_name(self.loaded_scene, source);
-            (format!("{name}.work"), "J", "work since t = 0")
-        }));
-        all.push((BALANCE.to_owned(), "J", balance));
-        all.extend(drive_states(self.loaded_scene));
-        let column = |(k, (name, unit, meaning)): (usize, (String, _, &str))| compute::Column {
-            name,
-            former: None,
-            unit,
-            quantity: Quantity::Extra(k),
-            meaning: meaning.to_owned(),
-        };
-        all.into_iter().enumerate().map(column).collect()
     }
 
     /// The time of each event, and the actuator coordinates and speeds then.

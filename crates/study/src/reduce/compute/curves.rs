@@ -4,7 +4,7 @@ use crate::estimate::{is_rounding, relative};
 use crate::explain::{StudyError, explain_position};
 use crate::models::PreparedScene;
 use crate::reduce::compute::UnitLoadCurves;
-use crate::trajectory::compute::force_scales;
+use crate::trajectory::compute::{force_scales, reject_unknown_variables};
 use dwell_findings::{Column, Table};
 use dwell_kinetostatics::{Batch, Coefficients};
 use dwell_scene::Scene;
@@ -187,6 +187,7 @@ pub fn compute_reduction(
     scene: &Scene,
     points: Option<usize>,
 ) -> Result<Reduction<'_>, StudyError> {
+    reject_unknown_variables(scene)?;
     let prepared = PreparedScene::for_driven_angle(scene, false)?;
     let curves = ReducedCurves::new(&prepared, points)?;
     let unit_loads = UnitLoadCurves::new(&prepared, &curves.q)?;

@@ -6,7 +6,8 @@ use crate::former_names;
 use crate::models::{compile_model, exact_model, initial_reduced_state, with_loads};
 use crate::number_format::{coordinate_unit, force_unit};
 use crate::trajectory::compute::{
-    Analysis, Point, WantedForces, default_limits, is_prefix_of, largest_between, peak_forces,
+    Analysis, Point, WantedForces, check_variables, default_limits, is_prefix_of, largest_between,
+    peak_forces,
 };
 use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Orbit, ReducedState};
 use dwell_kinetostatics::{Model, ReducedModel};
@@ -93,6 +94,7 @@ impl RequestedQuantities {
     /// [`StudyError`] where the unchanged scene cannot be assembled; [`SweepError::Result`].
     pub(crate) fn new(scene: &Scene, requests: &[String]) -> Result<Self, StudyError> {
         let model = compile_model(scene, &scene.mechanism.reactions())?;
+        check_variables(scene, &model)?;
         let mut quantities = available_quantities(scene, &model);
         for request in requests {
             if !quantities.iter().any(|q| q.matches(request)) {

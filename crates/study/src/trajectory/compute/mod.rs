@@ -6,6 +6,7 @@ mod columns;
 mod dyads;
 mod early_stop;
 mod evaluator;
+mod extra_columns;
 mod extrema;
 mod mechanical_advantage;
 mod monitor;
@@ -25,6 +26,7 @@ pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
 };
 pub(crate) use evaluator::{ForceEvaluator, PositionEvaluator};
+pub(crate) use extra_columns::extra_columns;
 pub(crate) use extrema::{BetweenRows, Extrema, ExtremaSearch, Point, largest_between};
 #[cfg(feature = "output")]
 pub(crate) use extrema::{Extremum, is_searched_in_rows};
@@ -36,7 +38,8 @@ pub(crate) use results::{MotionBetweenRows, compute_along};
 pub(crate) use rounding_error::RoundingError;
 pub use sectioned_link::SectionedLink;
 pub(crate) use selection::{
-    check_variables, is_requested, prune_model, requested_bodies, selected_columns,
+    check_variables, is_requested, prune_model, reject_unknown_variables, requested_bodies,
+    selected_columns,
 };
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{

@@ -3,13 +3,37 @@
 
 use crate::explain::{StudyError, scene_error};
 use crate::former_names;
-use crate::models::requested_reaction_bodies;
-use crate::trajectory::compute::{Column, Quantity, all_columns, is_prefix_of};
+use crate::models::{build_machine, compile_model, requested_reaction_bodies, with_drive_loads};
+use crate::trajectory::compute::{Column, Quantity, all_columns, extra_columns, is_prefix_of};
 use dwell_geometry::{BodyId, JointId};
 use dwell_kinetostatics::Model;
 use dwell_scene::{Scene, SceneLocation, choices};
 
-/// Rejects requested names that select no column, and returns a line for each former name.
+/// Rejects requested names that select no column: for analyses that write none of them, so that a scene is right for all
+/// or for none.
+///
+/// # Errors
+/// [`StudyError::Scene`] at the first of them.
+pub(crate) fn reject_unknown_variables(scene: &Scene) -> Result<(), StudyError> {
+    if scene.requests.variables.is_some() {
+        let model = compile_model(scene, &scene.mechanism.reactions())?;
+        check_variables(scene, &model)?;
+    }
+    Ok(())
+}
+
+/// Every column that any analysis of a scene can write.
+fn columns_of_all_analyses(scene: &Scene, model: &Model) -> Result<Vec<Column>, StudyError> {
+    let loaded_scene = with_drive_loads(scene)?;
+    let mut columns = all_columns(&loaded_scene, model, true);
+    // Another analysis than `simulate` does not fail where the motion's machine cannot be built.
+    let machine = scene.motion.as_ref();
+    let machine = machine.and_then(|spec| build_machine(scene, spec, &[]).ok());
+    columns.extend(machine.map_or_else(Vec::new, |m| extra_columns(&loaded_scene, &m)));
+    Ok(columns)
+}
+
+/// Rejects requested names that select no column of any analysis, and returns a line for each former name.
 ///
 /// # Errors
 /// [`StudyError::Scene`] at the first of them.
@@ -17,7 +41,7 @@ pub(crate) fn check_variables(scene: &Scene, model: &Model) -> Result<String, St
     let Some(variables) = &scene.requests.variables else {
         return Ok(String::new());
     };
-    let columns = all_columns(scene, model, true);
+    let columns = columns_of_all_analyses(scene, model)?;
     let mut notes = String::new();
     for (k, name) in variables.iter().enumerate() {
         if columns.iter().any(|c| c.matches(name)) {

@@ -1,0 +1,34 @@
+//! The columns that only a free motion has: energies, works, and the states of its drives.
+
+use crate::models::{drive_states, source_name};
+use crate::trajectory::compute::{BALANCE, Column, KINETIC, POTENTIAL, Quantity};
+use dwell_dynamics::Machine;
+use dwell_scene::Scene;
+
+/// The columns of [`TrajectorySample::extra_values`](crate::trajectory::compute::TrajectorySample), in their order; the
+/// scene is that with the loads of its drives.
+pub(crate) fn extra_columns(loaded_scene: &Scene, machine: &Machine) -> Vec<Column> {
+    let kinetic = "kinetic energy of all bodies and rotors";
+    let potential = "potential energy of gravity, springs and constant forces";
+    let balance =
+        "drift of kinetic + potential energy − work since t = 0: error of the integration";
+    let mut all = vec![
+        (KINETIC.to_owned(), "J", kinetic),
+        (POTENTIAL.to_owned(), "J", potential),
+    ];
+    let sources = machine.nonconservative_sources().iter();
+    all.extend(sources.map(|&source| {
+        let name = source_name(loaded_scene, source);
+        (format!("{name}.work"), "J", "work since t = 0")
+    }));
+    all.push((BALANCE.to_owned(), "J", balance));
+    all.extend(drive_states(loaded_scene));
+    let column = |(k, (name, unit, meaning)): (usize, (String, _, &str))| Column {
+        name,
+        former: None,
+        unit,
+        quantity: Quantity::Extra(k),
+        meaning: meaning.to_owned(),
+    };
+    all.into_iter().enumerate().map(column).collect()
+}
