@@ -159,8 +159,8 @@ impl PulseRun {
     pub fn restart_ratio(&self) -> Option<f64> {
         match self.kind {
             RunKind::Fixed(_, tolerance) => {
-                // Below a tolerance in coordinate and speed the error by hand is chance: of 1193 runs of seed 2 three had 53 to 150
-                // tolerances by the end, where it was 0.02 to 1.1, from a speed that was wrong by 2 to 5 tolerances.
+                // Below a tolerance in coordinate and speed the error by hand is chance: of 1193 runs of seed 2 three had 17 to 72
+                // times as much, from a speed that was wrong by 1.8 to 5 tolerances.
                 let floor = self.rounding + tolerance * (1.0 + self.speed_effect);
                 Some(self.error / (self.error_by_hand? + floor))
             }
