@@ -22,6 +22,7 @@ fn pulse_run(kind: RunKind) -> PulseRun {
         error_by_hand: Some(1e-8),
         estimate: 1e-7,
         rounding: 1e-12,
+        speed_effect: 1.0,
     }
 }
 
@@ -46,11 +47,12 @@ fn pulses_that_are_missed_promised_in_vain_or_refused_are_seen() {
     assert_eq!(with(&|_| ()), "");
     assert_eq!(with(&|run| run.missed = 1.0), "pulses-missed");
     assert_eq!(with(&|run| run.missed = f64::NAN), "pulses-missed");
-    let worse = with(&|run| run.error = 2e-6);
+    let worse = with(&|run| (run.error, run.estimate) = (2e-6, 3e-6));
     assert_eq!(worse, "pulses-accuracy pulses-restarts");
+    assert_eq!(with(&|run| run.estimate = 9e-9), "pulses-error-estimate");
     let refused = with(&|run| run.refused = Some("too hard".to_owned()));
     assert_eq!(refused, "pulses-refused");
-    assert_eq!(failed(&pulses::check(&[])).len(), 4);
+    assert_eq!(failed(&pulses::check(&[])).len(), 5);
 }
 
 #[test]

@@ -37,10 +37,8 @@ pub fn study(slow: bool, seed: u64) -> Result<Outcome, StudyError> {
     let mut outcome = outcome(&evaluate(all_series(slow)), name)?;
     let pulses = pulses::evaluate(pulses::count(slow), seed);
     pulses::add_to(&mut outcome, &pulses, seed, name)?;
-    if slow {
-        let machines = machines::evaluate(machines::COUNT, seed);
-        machines::add_to(&mut outcome, &machines, seed, name)?;
-    }
+    let machines = machines::evaluate(machines::count(slow), seed);
+    machines::add_to(&mut outcome, &machines, seed, name)?;
     Ok(outcome)
 }
 

@@ -4,13 +4,13 @@
 //! 2. A smooth motion is integrated by DOP853, a stiff one by BDF. A coarse run decides: by the fraction of its steps
 //!    that stability limits, and by the cost of BDF for the same motion.
 //! 3. If more evaluations are expected than building a table of the machine costs, the motion is integrated on a table.
-//! 4. The tolerance is found by trial: each run is compared with the one before, at ten times its tolerance or more,
-//!    over the whole motion, in coordinates, energy and reactions. That difference is the estimate; the finer run is
-//!    kept.
+//! 4. The tolerance is found by trial: each run is compared with a finer one, at a tenth of its tolerance or less, over
+//!    the whole motion, in coordinates, energy and reactions. The run whose error that difference shows is kept: of the
+//!    finer run nothing is known but that it is better, ten or a hundred thousand times.
 
 use crate::explain::StudyError;
 use crate::free_motion::compute::refinement::{
-    COARSE_TOLERANCE, Candidate, FIRST_TOLERANCE_RATIO, MIN_TOLERANCE, Refinement,
+    COARSE_TOLERANCE, Candidate, FIRST_TOLERANCE_RATIO, MIN_TOLERANCE, Refinement, Run,
 };
 use crate::free_motion::compute::{ComputedMotion, Difference, FreeMotionProblem, SegmentedMotion};
 use crate::ranges::extent;
@@ -82,7 +82,7 @@ impl FreeMotionProblem<'_> {
         let (motion, difference) = (found.motion, &found.difference);
         let computed = ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, difference);
         Ok(ComputedMotion {
-            comparison: Some(found.before),
+            comparison: Some(found.finer),
             ..computed
         })
     }
@@ -92,7 +92,7 @@ impl FreeMotionProblem<'_> {
         &self,
         candidates: &[Candidate],
         accuracy: f64,
-        mut last: Option<(f64, SegmentedMotion)>,
+        mut last: Option<Run>,
         solve: &dyn Fn(Candidate, f64) -> Result<Option<SegmentedMotion>, StudyError>,
     ) -> Result<Option<(Candidate, Refinement)>, StudyError> {
         let mut best: Option<(Candidate, Refinement)> = None;

@@ -147,9 +147,14 @@ impl MachineRun {
         self.refused.is_none() && !self.error.is_nan()
     }
 
-    /// The true error over the required accuracy.
+    /// The true error over the required accuracy; that of the reference counts as none.
     pub fn accuracy_ratio(&self) -> Option<f64> {
-        let beyond = (self.error - self.reference_error).max(0.0);
+        let is_known = self.error > KNOWN * self.reference_error;
+        let beyond = if is_known {
+            self.error - self.reference_error
+        } else {
+            0.0
+        };
         self.is_checked().then(|| beyond / self.accuracy)
     }
 

@@ -197,7 +197,7 @@ impl RandomMachine {
         });
         let velocities: Vec<String> = velocities.collect();
         let text = format!(
-            "{mechanism}[loads]\n{weight}[drives]\n{drives}[requests]\nreactions = []\n[motion]\n\
+            "{mechanism}[loads]\n{weight}[drives]\n{drives}[motion]\n\
              initial-velocity = {{ {} }}\nduration = {span}\n",
             velocities.join(", ")
         );

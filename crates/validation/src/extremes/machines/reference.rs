@@ -15,6 +15,8 @@ const MAX_STEPS: usize = 150_000;
 const SHORTEST: f64 = 1e-14;
 /// How far from a switch in time its sides are evaluated, in spans.
 const SWITCH_MARGIN: f64 = 4e-15;
+/// A reaction of this part of the others is rounding.
+const ROUNDING: f64 = 1e-9;
 
 const C: [f64; 7] = [0.0, 0.2, 0.3, 0.8, 8.0 / 9.0, 1.0, 1.0];
 const A: [&[f64]; 7] = [
@@ -65,6 +67,10 @@ pub(super) struct Reference {
     pub(super) travels: Vec<f64>,
     /// By coordinate: the error of the reference itself.
     pub(super) errors: Vec<f64>,
+    /// By time: the reactions, N or N m.
+    pub(super) reactions: Vec<Vec<f64>>,
+    /// By reaction: its column, its unit, and the error of the reference itself.
+    pub(super) of_reactions: Vec<(String, &'static str, f64)>,
 }
 
 impl Reference {
@@ -75,7 +81,9 @@ impl Reference {
     pub(super) fn new(random: &RandomMachine, times: &[f64]) -> Result<Self, String> {
         let scene = Scene::parse("machine.toml", &random.text).map_err(|e| e.to_string())?;
         let spec = scene.motion.as_ref().ok_or("no motion")?;
+        let components = scene.mechanism.reactions();
         let machine = build_machine(&scene, spec, &[]).map_err(|e| e.to_string())?;
+        let with_reactions = build_machine(&scene, spec, &components).map_err(|e| e.to_string())?;
         let start = machine.initial_state(&spec.initial_coordinates, &spec.initial_velocities);
         let free = machine.free().len();
         let run = |tolerance| {
@@ -91,10 +99,27 @@ impl Reference {
         };
         let [fine, coarse] = TOLERANCES.map(run);
         let (fine, coarse) = (fine?, coarse?);
+        let reactions = |states: &[Vec<f64>]| -> Result<Vec<Vec<f64>>, String> {
+            let mut workspace = with_reactions.workspace();
+            let at = |(&t, y): (&f64, &Vec<f64>)| {
+                let state = with_reactions.evaluate(t, y, &mut workspace);
+                let state = state.map_err(|e| e.to_string())?;
+                Ok(state.inverse_dynamics().reactions.clone())
+            };
+            times.iter().zip(states).map(at).collect()
+        };
+        let (reactions, others) = (reactions(&fine)?, reactions(&coarse)?);
         let largest = |of: &dyn Fn(usize) -> f64| (0..times.len()).map(of).fold(0.0, f64::max);
         let travel = |i: usize| largest(&|k| (fine[k][i] - start[i]).abs());
         let error = |i: usize| largest(&|k| (fine[k][i] - coarse[k][i]).abs());
+        let of_reactions = components.iter().enumerate().map(|(i, &component)| {
+            let error = largest(&|k| (reactions[k][i] - others[k][i]).abs());
+            let name = scene.mechanism.reaction_name(component);
+            (name, component.component.unit(), error)
+        });
+        let of_reactions = of_reactions.collect();
         Ok(Self {
+            of_reactions,
             is_angle: machine
                 .free()
                 .iter()
@@ -103,7 +128,40 @@ impl Reference {
             travels: (0..free).map(travel).collect(),
             errors: (0..free).map(error).collect(),
             coordinates: fine.iter().map(|y| y[..free].to_vec()).collect(),
+            reactions,
         })
+    }
+}
+
+impl Reference {
+    /// By reaction: the error of a column, that of the reference, and the largest reaction of the unit; only where that
+    /// is more than rounding. Beside forces (N) and energies (J) moments (N m) are, in mechanisms of about a metre.
+    pub(super) fn reaction_errors(
+        &self,
+        kinetic: f64,
+        column: &dyn Fn(&str) -> Vec<f64>,
+    ) -> Vec<(f64, f64, f64)> {
+        let largest = |i: usize| {
+            self.reactions
+                .iter()
+                .map(|at| at[i].abs())
+                .fold(0.0, f64::max)
+        };
+        let of_unit = |wanted: &str| {
+            let alike = self.of_reactions.iter().enumerate();
+            let alike = alike.filter(|(_, (_, unit, _))| *unit == wanted);
+            alike.map(|(i, _)| largest(i)).fold(0.0, f64::max)
+        };
+        let [force, moment] = ["N", "N m"].map(of_unit);
+        let all = self.of_reactions.iter().enumerate();
+        let error = |(i, (name, unit, own)): (usize, &(String, &str, f64))| {
+            let scale = if *unit == "N" { force } else { moment };
+            let rows = column(name).into_iter().zip(&self.reactions);
+            let differences = rows.map(|(value, expected)| (value - expected[i]).abs());
+            let is_rounding = scale <= ROUNDING * force.max(moment).max(kinetic);
+            (!is_rounding).then(|| (differences.fold(0.0, f64::max), *own, scale))
+        };
+        all.filter_map(error).collect()
     }
 }
 
@@ -126,18 +184,18 @@ impl Integration<'_> {
     ) -> Result<Vec<Vec<f64>>, String> {
         let mut stops: Vec<f64> = switches.iter().chain(times).copied().collect();
         stops.sort_by(f64::total_cmp);
+        // A time may be a switch, too.
+        stops.dedup();
         let (mut t, mut step, mut found) = (0.0, 1e-4 * self.span, Vec::new());
         for stop in stops {
             if stop > t {
                 self.piece([t, stop], &mut y, &mut step)?;
                 t = stop;
             }
-            if times.contains(&stop) && found.len() < times.len() {
+            if times.contains(&stop) {
                 found.push(y.clone());
             }
         }
-        // A time that is a switch, too, is there twice.
-        found.truncate(times.len());
         match found.len() == times.len() {
             true => Ok(found),
             false => Err("a time is missing".to_owned()),

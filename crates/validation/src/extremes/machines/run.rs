@@ -122,6 +122,10 @@ fn compared(accuracy: f64, found: &FreeMotion, reference: &Reference) -> Machine
         error = error.max(differences.fold(0.0, f64::max) / scale);
         reference_error = reference_error.max(reference.errors[i] / scale);
     }
+    for (difference, own, scale) in reference.reaction_errors(kinetic, &cells) {
+        error = error.max(difference / scale);
+        reference_error = reference_error.max(own / scale);
+    }
     MachineRun {
         accuracy,
         refused: found.computed.early_stop.as_ref().map(ToString::to_string),

@@ -59,6 +59,8 @@ pub struct PulseRun {
     pub estimate: f64,
     /// The error that the reference and the rounding of time allow.
     pub rounding: f64,
+    /// What an error of 1 in the speed comes to in `error` by the end.
+    pub speed_effect: f64,
 }
 
 /// The runs of some pulses of a seed.
@@ -140,6 +142,7 @@ fn failed_run(kind: RunKind, reason: String) -> PulseRun {
         error_by_hand: Some(nan),
         estimate: nan,
         rounding,
+        speed_effect: nan,
     }
 }
 
@@ -163,6 +166,11 @@ fn pulse_run(motion: &PulsedMotion, kind: RunKind, expected: &Expected) -> Pulse
         error_by_hand,
         estimate,
         rounding: expected.rounding / expected.scale,
+        speed_effect: match motion.subject {
+            PulseSubject::Wheel | PulseSubject::Slider => motion.pulse.span / expected.scale,
+            // It swings back.
+            PulseSubject::Pendulum => 1.0,
+        },
     }
 }
 
