@@ -259,16 +259,16 @@ fn open_folder(command: &Command, out: &Path) -> Result<Option<OutputFolder>, Re
             out.display()
         ));
     }
-    let mut folder = OutputFolder::open(out).map_err(unwritten)?;
+    let mut folder = OutputFolder::open(out).map_err(|e| unwritten(&e))?;
     if let Some(scene) = command.scene() {
         folder
             .reserve(&Scene::name_of_file(scene), scene)
-            .map_err(unwritten)?;
+            .map_err(|e| unwritten(&e))?;
     }
     Ok(Some(folder))
 }
 
-fn unwritten(error: ReportError) -> Report {
+fn unwritten(error: &ReportError) -> Report {
     let help = "no file was written; choose another folder with --out";
     miette!(help = help, "{error}")
 }
@@ -278,7 +278,7 @@ fn write_files(files: &Files, folder: OutputFolder, out: &Path) -> Result<(), Re
     if files.is_empty() {
         return Ok(());
     }
-    let written = folder.write(files).map_err(unwritten)?;
+    let written = folder.write(files).map_err(|e| unwritten(&e))?;
     let shown = written.len().min(12);
     for path in &written[..shown] {
         print(&format!("  {}\n", path.display()))?;

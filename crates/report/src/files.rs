@@ -1,7 +1,6 @@
 //! Files of a report: gathered in memory, written at the end.
 
 use crate::error::ReportError;
-use crate::output_folder::OutputFolder;
 use crate::table::TableExport as _;
 use crate::table::{Table, TableFormat};
 use std::collections::BTreeMap;
@@ -67,13 +66,5 @@ impl Files {
     /// Whether there is no file.
     pub fn is_empty(&self) -> bool {
         self.files.is_empty()
-    }
-
-    /// Writes the files below `folder`, each whole or not at all, as [`OutputFolder::write`] does, and returns the paths.
-    ///
-    /// # Errors
-    /// As [`OutputFolder::open`] and [`OutputFolder::write`].
-    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
-        OutputFolder::open(folder)?.write(self)
     }
 }

@@ -209,6 +209,10 @@ mod tests {
     use super::*;
     use std::sync::atomic::{AtomicU32, Ordering};
 
+    fn write(files: &Files, folder: &Path) -> Result<Vec<PathBuf>, ReportError> {
+        OutputFolder::open(folder)?.write(files)
+    }
+
     /// A folder of its own for each test, removed at the end.
     struct TestFolder(PathBuf);
 
@@ -255,7 +259,7 @@ mod tests {
         let mut others = Files::new();
         others.add("m.csv", vec![0_u8; 100_000]);
         files.extend("tables/deep", others);
-        assert_eq!(files.write(&folder.0).unwrap().len(), 2);
+        assert_eq!(write(&files, &folder.0).unwrap().len(), 2);
         assert_eq!(fs::read(folder.0.join("a.txt")).unwrap(), b"new");
         assert_eq!(
             fs::read(folder.0.join("tables/deep/m.csv")).unwrap().len(),
@@ -275,7 +279,7 @@ mod tests {
         files.add("a.txt", "new");
         files.add("fresh/b.txt", "new");
         files.add("z.png", "new");
-        let error = files.write(&folder.0).unwrap_err();
+        let error = write(&files, &folder.0).unwrap_err();
         assert!(matches!(&error, ReportError::File { path, .. } if path.ends_with("z.png")));
         assert!(
             error.to_string().contains("z.png") && error.to_string().contains("directory"),
@@ -292,7 +296,7 @@ mod tests {
         let mut files = Files::new();
         files.add("a.txt", "new");
         files.add("tables/m.csv", "new");
-        let error = files.write(&folder.0).unwrap_err();
+        let error = write(&files, &folder.0).unwrap_err();
         assert!(
             matches!(&error, ReportError::File { path, .. } if path.starts_with(folder.0.join("tables")))
         );
@@ -328,7 +332,7 @@ mod tests {
         fs::write(running.unfinished.join("0"), "half").unwrap();
         let mut files = Files::new();
         files.add("a.txt", "new");
-        files.write(&folder.0).unwrap();
+        write(&files, &folder.0).unwrap();
         assert!(running.unfinished.join("0").exists());
         drop(running);
         assert_eq!(folder.contents(), [PathBuf::from("a.txt")]);

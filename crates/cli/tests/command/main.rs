@@ -5,6 +5,7 @@ mod assembly;
 mod long_motions;
 mod messages;
 mod near_branches;
+mod output;
 mod results;
 mod rows;
 mod studies;

@@ -373,37 +373,6 @@ fn nothing_is_written_when_no_case_can_be_validated() {
 }
 
 #[test]
-fn only_the_pictures_that_are_wanted_are_drawn_and_shown() {
-    let dir = TestDir::new();
-    for (wanted, pictures) in [("none", 0), ("main", 4), ("all", 12)] {
-        let scene = case("single-dwell");
-        let run = dir.run(&["simulate", &scene, "--out", wanted, "--pictures", wanted]);
-        assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
-        let is_picture = |file: &&String| file.ends_with(".png") || file.ends_with(".gif");
-        let files = dir.files(wanted);
-        let drawn: Vec<&String> = files.iter().filter(is_picture).collect();
-        assert_eq!(drawn.len(), pictures, "{drawn:?}");
-        assert_eq!(
-            run.out.contains("--pictures all draws the others"),
-            wanted == "main"
-        );
-        let page = fs::read_to_string(dir.0.join(wanted).join("single-dwell-motion.md")).unwrap();
-        let is_shown = |file: &str| page.contains(&format!("({file})"));
-        // The animation is in no page.
-        let shown = drawn.iter().filter(|file| is_shown(file)).count();
-        assert_eq!(shown, pictures - usize::from(wanted == "all"));
-        assert_eq!(page.matches("![").count(), shown, "no picture is missing");
-        let time = run.time.unwrap();
-        for stage in ["computing", "drawing", "writing"] {
-            assert!(time.contains(stage), "{time}");
-        }
-    }
-    // Numbers do not depend on pictures.
-    let table = |folder: &str| fs::read(dir.0.join(folder).join("single-dwell-motion.csv"));
-    assert_eq!(table("none").unwrap(), table("all").unwrap());
-}
-
-#[test]
 fn a_reader_that_has_seen_enough_is_no_error() {
     let dir = TestDir::new();
     let mut child = dir

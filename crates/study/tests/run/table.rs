@@ -1,7 +1,7 @@
 //! A run's table, read back from its file.
 
 use dwell_scene::Scene;
-use dwell_study::{Analysis, TrajectoryOutcome, analyse_trajectory, no_progress};
+use dwell_study::{Analysis, Pictures, TrajectoryOutcome, analyse_trajectory, no_progress};
 use std::path::Path;
 
 /// A crank-rocker whose bodies' centres are named points, under weight alone.
@@ -52,7 +52,9 @@ pub(crate) fn scene(text: &str) -> Scene {
 }
 
 pub(crate) fn analyse(scene: &Scene, command: Analysis, points: usize) -> TrajectoryOutcome {
-    analyse_trajectory(scene, command, Some(points), &no_progress).unwrap()
+    let mut result = analyse_trajectory(scene, command, Some(points), &no_progress).unwrap();
+    result.outcome = result.outcome.draw(Pictures::None, &no_progress).unwrap();
+    result
 }
 
 /// The file of a run whose name ends so, as text.
