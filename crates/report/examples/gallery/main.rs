@@ -6,7 +6,7 @@ mod grids;
 mod kinematics;
 mod linkage;
 
-use dwell_report::{Files, ReportError, png};
+use dwell_report::{Files, OutputFolder, ReportError, png};
 use std::path::Path;
 use std::time::Instant;
 
@@ -62,5 +62,7 @@ fn main() -> Result<(), ReportError> {
         "all again on two threads",
         start.elapsed().as_secs_f64() * 1e3
     );
-    files.write(Path::new(&folder)).map(|_| ())
+    OutputFolder::open(Path::new(&folder))?
+        .write(&files)
+        .map(|_| ())
 }
