@@ -56,8 +56,9 @@ fn dry_friction(
     Magnitude::Friction(Friction {
         joint: JointId(joint),
         coefficient,
+        static_coefficient: coefficient,
         contact,
-        regularization_speed,
+        regularization_speed: Some(regularization_speed),
     })
 }
 
