@@ -142,7 +142,9 @@ fn integrate_held(
             let crossing = monitor.after_step(&mut watched_system, before, now, dense)?;
             let until = crossing.as_ref().map_or(now, |crossing| &crossing.state);
             let change = match &mut contacts {
-                Some(contacts) => contacts.first_event(&mut watched_system, before, until, dense)?,
+                Some(contacts) => {
+                    contacts.first_event(&mut watched_system, before, until, dense)?
+                }
                 None => None,
             };
             let found = match (change, crossing) {

@@ -208,10 +208,14 @@ fn check_friction_keys(fields: &TableReader<'_>, kind: JointKind, is_revolute: b
             "guide-length" if is_slot => {
                 other("the pin of a slot touches it at one point: leave it out")
             }
-            "radius" | "guide-length" | "static-coefficient" | "regularization-speed" if dry.is_none() && !misspelt => (
-                format!("{what} has a `{name}` but no `coefficient`"),
-                "it belongs to dry friction: add `coefficient`, or leave it out",
-            ),
+            "radius" | "guide-length" | "static-coefficient" | "regularization-speed"
+                if dry.is_none() && !misspelt =>
+            {
+                (
+                    format!("{what} has a `{name}` but no `coefficient`"),
+                    "it belongs to dry friction: add `coefficient`, or leave it out",
+                )
+            }
             _ if known => continue,
             _ => {
                 fields.report_unknown_key(entry, "keys here", table.names());

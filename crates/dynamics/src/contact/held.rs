@@ -63,7 +63,9 @@ pub(crate) fn solve_contacts<T: Scalar>(
         if *mode == ContactMode::Undecided {
             *mode = match *speed == 0.0 {
                 true => ContactMode::AtRest { at_limit: false },
-                false => ContactMode::Slides { forward: *speed > 0.0 },
+                false => ContactMode::Slides {
+                    forward: *speed > 0.0,
+                },
             };
         }
     }
@@ -144,9 +146,11 @@ fn hold<T: Scalar>(
     let count = workspace.forces.len();
     let is_held = |j: &usize| held.held.iter().any(|&i| contacts[i].dependent == *j);
     let others: Vec<usize> = (0..count).filter(|j| !is_held(j)).collect();
-    let mut weights: Vec<T> = held.weights(contacts, |contact| {
-        T::from_f64(contact.static_coefficient.max(f64::MIN_POSITIVE))
-    }, workspace);
+    let mut weights: Vec<T> = held.weights(
+        contacts,
+        |contact| T::from_f64(contact.static_coefficient.max(f64::MIN_POSITIVE)),
+        workspace,
+    );
     let mut last = f64::INFINITY;
     for round in 0..MAX_ROUNDS {
         let system = HoldingSystem::new(contacts, workspace, held, &weights);
@@ -181,7 +185,9 @@ fn hold<T: Scalar>(
         for (h, &i) in held.held.iter().enumerate() {
             let from_others = others.iter().zip(&by_other);
             workspace.forces[contacts[i].dependent] = from_others
-                .fold(own[h], |sum, (&j, forces)| sum + forces[h] * workspace.forces[j]);
+                .fold(own[h], |sum, (&j, forces)| {
+                    sum + forces[h] * workspace.forces[j]
+                });
         }
         workspace.reactions.copy_from_slice(unloaded.reactions);
         for (force, response) in workspace.forces.iter().zip(unloaded.responses) {
@@ -192,10 +198,14 @@ fn hold<T: Scalar>(
         if held.basis.len() == held.held.len() {
             break;
         }
-        let pressed = held.weights(contacts, |contact| {
-            let press = state.contact_force(contact.dependent, &workspace.reactions);
-            press * T::from_f64(contact.static_coefficient)
-        }, workspace);
+        let pressed = held.weights(
+            contacts,
+            |contact| {
+                let press = state.contact_force(contact.dependent, &workspace.reactions);
+                press * T::from_f64(contact.static_coefficient)
+            },
+            workspace,
+        );
         let mut change = 0.0_f64;
         let largest = pressed.iter().fold(0.0, |max, w| w.value().max(max));
         for (weight, next) in weights.iter_mut().zip(pressed) {
@@ -209,7 +219,10 @@ fn hold<T: Scalar>(
         }
         last = change;
     }
-    let forces = held.held.iter().map(|&i| (contacts[i].load, workspace.forces[contacts[i].dependent]));
+    let forces = held
+        .held
+        .iter()
+        .map(|&i| (contacts[i].load, workspace.forces[contacts[i].dependent]));
     Ok(state.set_magnitudes(forces)?)
 }
 
@@ -271,8 +284,7 @@ impl<T: Scalar> HeldContacts<T> {
         if !with.contains(&i) {
             with.push(i);
         }
-        let of_two =
-            |i: usize, j: usize| workspace.compliance[i][contacts[j].dependent].value();
+        let of_two = |i: usize, j: usize| workspace.compliance[i][contacts[j].dependent].value();
         let own = of_two(i, i);
         independent(&with, of_two).len() <= self.basis.len() && own > 0.0
     }
@@ -340,7 +352,11 @@ impl<'h, T: Scalar> HoldingSystem<'h, T> {
         };
         if !system.factor(contacts, workspace) {
             let largest = weights.iter().fold(0.0, |max, w| w.value().max(max));
-            let least = if largest > 0.0 { SMALL_WEIGHT * largest } else { 1.0 };
+            let least = if largest > 0.0 {
+                SMALL_WEIGHT * largest
+            } else {
+                1.0
+            };
             for weight in &mut system.weights {
                 if weight.value() < least {
                     *weight = T::from_f64(least);

@@ -58,7 +58,10 @@ impl ContactMode {
 
     /// Whether it is a mode of surfaces without speed.
     pub fn is_at_rest(self) -> bool {
-        matches!(self, Self::Holds | Self::AtLimit { .. } | Self::AtRest { .. })
+        matches!(
+            self,
+            Self::Holds | Self::AtLimit { .. } | Self::AtRest { .. }
+        )
     }
 }
 

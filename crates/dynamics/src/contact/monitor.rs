@@ -148,7 +148,11 @@ impl ContactMonitor {
         if !(margin_at(end)? < 0.0) {
             return Ok(None);
         }
-        let from = if end > earlier[0].0 { earlier[0] } else { earlier[1] };
+        let from = if end > earlier[0].0 {
+            earlier[0]
+        } else {
+            earlier[1]
+        };
         root::find(margin_at, from.0, end)
     }
 

@@ -37,7 +37,6 @@ pub(crate) fn pass(
     machine.evaluate(t, y, workspace)?;
     let modes = machine.contact_states();
     let before = workspace.contacts().modes.clone();
-    let mut at_rest = Vec::new();
     for (i, &mode) in before.iter().enumerate() {
         let contacts = workspace.contacts();
         let (speed, share) = (contacts.speeds[i], contacts.shares[i]);
@@ -56,39 +55,40 @@ pub(crate) fn pass(
                 ContactMode::AtRest { at_limit: false }
             }
         };
-        if next.is_at_rest() {
-            at_rest.push(i);
-        }
         y[modes.start + i] = next.code();
     }
     machine.evaluate(t, y, workspace)?;
-    stop_surfaces(machine, workspace, y, &at_rest);
     let after = &workspace.contacts().modes;
+    // Those that only pass through a speed of zero are not stopped.
+    let holds = |i: &usize| after[*i] == ContactMode::Holds;
+    let held: Vec<usize> = (0..after.len()).filter(holds).collect();
+    stop_surfaces(machine, workspace, y, &held);
     for (code, mode) in y[modes].iter_mut().zip(after) {
         *code = mode.code();
     }
     let each = machine.contacts.iter().zip(before.iter().zip(after));
     let changed = each.filter(|(_, (from, to))| from != to);
-    let event = |(contact, (from, to)): (&super::Contact, (&ContactMode, &ContactMode))| ContactEvent {
-        t,
-        y: y.to_vec(),
-        load: contact.load,
-        from: *from,
-        to: *to,
-    };
+    let event =
+        |(contact, (from, to)): (&super::Contact, (&ContactMode, &ContactMode))| ContactEvent {
+            t,
+            y: y.to_vec(),
+            load: contact.load,
+            from: *from,
+            to: *to,
+        };
     Ok(changed.map(event).collect())
 }
 
-/// Takes off the speeds that surfaces at rest have within rounding, with the least change of momentum.
+/// Takes off the speeds that surfaces that hold have within rounding, with the least change of momentum.
 fn stop_surfaces(
     machine: &Machine,
     workspace: &MachineWorkspace<f64>,
     y: &mut [f64],
-    at_rest: &[usize],
+    held: &[usize],
 ) {
     let contacts = workspace.contacts();
     let dependent = |i: usize| machine.contacts[i].dependent;
-    let basis = independent(at_rest, |i, j| contacts.compliance[i][dependent(j)]);
+    let basis = independent(held, |i, j| contacts.compliance[i][dependent(j)]);
     let n = machine.free().len();
     let speeds = &mut y[n..2 * n];
     if basis.len() == n && !machine.has_prescribed() {

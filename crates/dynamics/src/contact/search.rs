@@ -15,6 +15,8 @@ use dwell_numerics::Scalar;
 const TRIALS: usize = 8;
 /// How far beyond its limit, as a part of it, a force counts as within.
 const LIMIT_TOLERANCE: f64 = 1e-12;
+/// Contacts whose shares of their limits are the same to this part let go together.
+const TOGETHER: f64 = 1.0 - 1e-6;
 /// An acceleration below this part of its terms has no sign.
 const ACCELERATION_TOLERANCE: f64 = 1e-9;
 
@@ -29,17 +31,32 @@ pub(super) fn find_modes<T: Scalar>(
     unloaded: &Unloaded<'_, T>,
 ) -> Result<HeldContacts<T>> {
     let at_limit = |mode: &ContactMode| *mode == ContactMode::AtRest { at_limit: true };
-    let mut let_go: Vec<usize> =
-        (0..contacts.len()).filter(|&i| at_limit(&workspace.modes[i])).collect();
+    let mut let_go: Vec<usize> = (0..contacts.len())
+        .filter(|&i| at_limit(&workspace.modes[i]))
+        .collect();
     let is_open = |mode: &ContactMode| matches!(mode, ContactMode::AtRest { .. });
-    let open: Vec<usize> = (0..contacts.len()).filter(|&i| is_open(&workspace.modes[i])).collect();
+    let open: Vec<usize> = (0..contacts.len())
+        .filter(|&i| is_open(&workspace.modes[i]))
+        .collect();
     for &i in &open {
         workspace.modes[i] = ContactMode::Holds;
     }
     for _ in 0..TRIALS * (1 + open.len()) {
-        let held = solve_at_modes(contacts, state, workspace, unloaded)?;
+        let held = match solve_at_modes(contacts, state, workspace, unloaded) {
+            Ok(held) => held,
+            Err(error) => {
+                // Surfaces that others slide past can be held by forces without bounds alone.
+                let Some(i) = hardest_to_hold(&open, contacts, workspace) else {
+                    return Err(error);
+                };
+                let forward = workspace.free[i].value() > 0.0;
+                workspace.modes[i] = ContactMode::Slides { forward };
+                set_moving(&open, contacts, workspace);
+                continue;
+            }
+        };
         if let_go.is_empty() {
-            let_go.extend(beyond_its_limit(&open, &held, contacts, workspace));
+            let_go = beyond_their_limit(&open, &held, contacts, workspace);
         }
         if !let_go.is_empty() {
             for i in let_go.drain(..) {
@@ -47,7 +64,9 @@ pub(super) fn find_modes<T: Scalar>(
                 // It is pushed against the force that holds it; what no force moves goes where it goes.
                 let force = workspace.forces[contacts[i].dependent].value();
                 let push = if force == 0.0 { acceleration } else { -force };
-                workspace.modes[i] = ContactMode::Slides { forward: push > 0.0 };
+                workspace.modes[i] = ContactMode::Slides {
+                    forward: push > 0.0,
+                };
             }
             set_moving(&open, contacts, workspace);
             continue;
@@ -69,25 +88,52 @@ pub(super) fn find_modes<T: Scalar>(
     Err(DynamicsError::NoContactMode { source_index: load })
 }
 
-/// The contact that is farthest beyond its limit, or moves although it is to hold, if there is one.
-fn beyond_its_limit<T: Scalar>(
+/// The contacts that are farthest beyond their limits, or move although they are to hold; those that share a load let go
+/// together.
+fn beyond_their_limit<T: Scalar>(
     open: &[usize],
     held: &HeldContacts<T>,
     contacts: &[Contact],
     workspace: &ContactWorkspace<T>,
-) -> Option<usize> {
-    let holds = open.iter().copied().filter(|&i| workspace.modes[i] == ContactMode::Holds);
+) -> Vec<usize> {
+    let holds = open
+        .iter()
+        .copied()
+        .filter(|&i| workspace.modes[i] == ContactMode::Holds);
     let excess = |i: usize| {
         let [acceleration, terms] = workspace.acceleration(i);
         let moves = acceleration.abs() > ACCELERATION_TOLERANCE * terms
             && !held.hold_still(i, contacts, workspace);
-        if moves { f64::INFINITY } else { workspace.shares[i] }
+        match moves || workspace.shares[i].is_nan() {
+            // What is no number is beyond every limit.
+            true => f64::INFINITY,
+            false => workspace.shares[i],
+        }
     };
-    let beyond = holds.map(|i| (excess(i), i)).filter(|(share, _)| {
-        // What is no number is beyond every limit.
-        !(*share <= 1.0 + LIMIT_TOLERANCE)
-    });
-    beyond.max_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, i)| i)
+    let all: Vec<(f64, usize)> = holds.map(|i| (excess(i), i)).collect();
+    let largest = all
+        .iter()
+        .fold(1.0 + LIMIT_TOLERANCE, |max, (share, _)| share.max(max));
+    let together = |share: f64| share > 1.0 + LIMIT_TOLERANCE && share >= TOGETHER * largest;
+    let beyond = all.into_iter().filter(|(share, _)| together(*share));
+    beyond.map(|(_, i)| i).collect()
+}
+
+/// Of the contacts that are to hold, the one that takes the largest force for it; none if none does.
+fn hardest_to_hold<T: Scalar>(
+    open: &[usize],
+    contacts: &[Contact],
+    workspace: &ContactWorkspace<T>,
+) -> Option<usize> {
+    let holds = open
+        .iter()
+        .copied()
+        .filter(|&i| workspace.modes[i] == ContactMode::Holds);
+    let force = |i: &usize| {
+        let own = workspace.compliance[*i][contacts[*i].dependent].value();
+        workspace.free[*i].value().abs() / own
+    };
+    holds.max_by(|one, other| force(one).total_cmp(&force(other)))
 }
 
 /// Distinguishes contacts that slide from those that are at their limit while others hold them.

@@ -42,9 +42,12 @@ impl Friction {
             self.contact;
         let mut sizes = [self.coefficient, size].into_iter();
         let regularized = self.regularization_speed.is_none_or(|speed| speed > 0.0);
-        let holds = self.static_coefficient.is_finite() && self.static_coefficient >= self.coefficient;
+        let holds =
+            self.static_coefficient.is_finite() && self.static_coefficient >= self.coefficient;
         if !holds {
-            return Err("its static coefficient must be finite and not below its coefficient of friction");
+            return Err(
+                "its static coefficient must be finite and not below its coefficient of friction",
+            );
         }
         if !(regularized && sizes.all(|n| n.is_finite() && n >= 0.0)) {
             return Err(

@@ -126,7 +126,10 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     #[inline]
     pub fn apply_loads(self, t: f64) -> Result<LoadedState<'a, T>> {
         let workspace = &mut *self.workspace;
-        workspace.friction_workspace.known.fill(FrictionState::BySpeed);
+        workspace
+            .friction_workspace
+            .known
+            .fill(FrictionState::BySpeed);
         let Workspace { states, loads, .. } = workspace;
         self.model.loads.update_magnitudes(t, states, loads)?;
         Ok(StateWithLoads(self))

@@ -35,7 +35,10 @@ guide = {{ coefficient = 0.3, {friction} }}
 
 fn near(found: f64, expected: f64, allowed: f64) {
     let error = (found - expected).abs() / expected.abs().max(1.0);
-    assert!(error <= allowed, "{found:?} is {error:.1e} from {expected:?}");
+    assert!(
+        error <= allowed,
+        "{found:?} is {error:.1e} from {expected:?}"
+    );
 }
 
 /// Pushed up an incline at 3 m/s it stops after v/(g (sin + µ cos)), and stays where tan < µₛ: exactly.
@@ -49,7 +52,11 @@ fn a_block_pushed_up_a_gentle_incline_stays() {
         let run = run(&text, method, rtol);
         let stops = run.times(holds);
         assert_eq!((stops.len(), run.events.len()), (1, 1), "{method:?}");
-        near(stops[0], 3.0 / deceleration, allowed.min(5.0 * 1e-11 * 100.0));
+        near(
+            stops[0],
+            3.0 / deceleration,
+            allowed.min(5.0 * 1e-11 * 100.0),
+        );
         let [x, v] = run.end();
         near(x, 4.5 / deceleration, allowed);
         assert_eq!(v, 0.0);
@@ -63,7 +70,12 @@ fn a_block_pushed_up_a_gentle_incline_stays() {
 #[test]
 fn a_block_on_a_steep_incline_slides_back() {
     let (sin, cos) = 30f64.to_radians().sin_cos();
-    let text = block(30.0, "static-coefficient = 0.4", "", "initial-velocity = 3.0\nduration = 2.0");
+    let text = block(
+        30.0,
+        "static-coefficient = 0.4",
+        "",
+        "initial-velocity = 3.0\nduration = 2.0",
+    );
     let [up, down] = [G * (sin + 0.3 * cos), G * (sin - 0.3 * cos)];
     let turn = 3.0 / up;
     for method in Method::ALL {
@@ -73,7 +85,11 @@ fn a_block_on_a_steep_incline_slides_back() {
         near(run.events[0].t, turn, allowed);
         let [x, v] = run.end();
         near(v, -down * (2.0 - turn), allowed);
-        near(x, 4.5 / up - 0.5 * down * (2.0 - turn) * (2.0 - turn), allowed);
+        near(
+            x,
+            4.5 / up - 0.5 * down * (2.0 - turn) * (2.0 - turn),
+            allowed,
+        );
         assert!(run.energy_error() < allowed);
     }
 }
@@ -83,14 +99,27 @@ fn a_block_on_a_steep_incline_slides_back() {
 fn between_both_coefficients_a_block_at_rest_stays_and_a_moving_one_goes_on() {
     let friction = "static-coefficient = 0.4";
     let (sin, cos) = 20f64.to_radians().sin_cos();
-    let at_rest = run(&block(20.0, friction, "", "duration = 3.0"), Method::Dop853, 1e-12);
+    let at_rest = run(
+        &block(20.0, friction, "", "duration = 3.0"),
+        Method::Dop853,
+        1e-12,
+    );
     assert_eq!(at_rest.end(), [0.0, 0.0]);
-    let moving = block(20.0, friction, "", "initial-velocity = -1.0\nduration = 3.0");
+    let moving = block(
+        20.0,
+        friction,
+        "",
+        "initial-velocity = -1.0\nduration = 3.0",
+    );
     let moving = run(&moving, Method::Dop853, 1e-12);
     near(moving.end()[1], -1.0 - G * (sin - 0.3 * cos) * 3.0, 1e-10);
     assert!(moving.events.is_empty());
     // Without the key the static coefficient is the kinetic one.
-    let slides = run(&block(20.0, "", "", "duration = 3.0"), Method::Dop853, 1e-12);
+    let slides = run(
+        &block(20.0, "", "", "duration = 3.0"),
+        Method::Dop853,
+        1e-12,
+    );
     near(slides.end()[1], -G * (sin - 0.3 * cos) * 3.0, 1e-10);
 }
 
@@ -104,7 +133,12 @@ fn a_growing_force_lets_go_at_the_static_limit() {
         let [rtol, allowed] = tolerance(method);
         let run = run(&text, method, rtol);
         let times = run.times(slides);
-        assert_eq!((times.len(), run.events.len()), (1, 1), "{method:?} {:?}", run.events);
+        assert_eq!(
+            (times.len(), run.events.len()),
+            (1, 1),
+            "{method:?} {:?}",
+            run.events
+        );
         near(times[0], released, 4.0 * 1e-11);
         let brake = 0.3 * 2.0 * G;
         let speed = |t: f64| (2.0 * t * t - brake * t) / 2.0;
@@ -160,7 +194,11 @@ s = {{ speed = {v:?} }}
         let [rtol, allowed] = tolerance(method);
         let run = run(&text, method, rtol);
         let (freed, held) = (run.times(slides), run.times(holds));
-        println!("{method:?}: {} events, {} evaluations", run.events.len(), run.evaluations);
+        println!(
+            "{method:?}: {} events, {} evaluations",
+            run.events.len(),
+            run.evaluations
+        );
         near(freed[0], slip_start / v, allowed);
         assert!(freed.len() > 8);
         for (n, (freed, held)) in freed.iter().zip(&held).enumerate() {
@@ -168,7 +206,11 @@ s = {{ speed = {v:?} }}
             near(*freed, begins, 40.0 * allowed);
             near(*held, begins + slip, 40.0 * allowed);
         }
-        assert!(run.energy_error() < 40.0 * allowed, "{:e}", run.energy_error());
+        assert!(
+            run.energy_error() < 40.0 * allowed,
+            "{:e}",
+            run.energy_error()
+        );
     }
 }
 
@@ -180,6 +222,15 @@ fn a_thousand_events_cost_little_and_close_the_balance() {
     let text = block(0.0, "", loads, "duration = 250.0");
     let run: Run = run(&text, Method::Dop853, 1e-12);
     let (held, freed) = (run.times(holds), run.times(slides));
+    for rtol in [1e-4, 1e-6, 1e-8, 1e-10] {
+        let run = crate::run(&text, Method::Dop853, rtol);
+        println!(
+            "{rtol:e}: {} of {}, {} steps",
+            run.evaluations,
+            run.events.len(),
+            run.steps.len()
+        );
+    }
     println!(
         "{} held, {} freed, {} evaluations, {:e}",
         held.len(),

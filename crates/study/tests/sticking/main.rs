@@ -26,8 +26,11 @@ fn run(text: &str, method: Method, rtol: f64) -> Run {
     let problem = FreeMotionProblem::new(&scene, &loaded, spec).unwrap_or_else(|e| panic!("{e}"));
     let duration = problem.duration().unwrap_or_else(|e| panic!("{e}"));
     let options = Options::new(method, rtol);
-    let motion = problem.solve(&scene, duration, &options).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(motion.failure, None, "{method:?}");
+    let motion = problem
+        .solve(&scene, duration, &options)
+        .unwrap_or_else(|e| panic!("{e}"));
+    let end = motion.segments.last().and_then(|(_, s)| s.steps.last());
+    assert_eq!(motion.failure, None, "{method:?} {end:?}");
     let solutions = || motion.segments.iter().map(|(_, solution)| solution);
     Run {
         steps: solutions().flat_map(|s| s.steps.clone()).collect(),
@@ -46,17 +49,23 @@ impl Run {
 
     /// The times at which surfaces take a mode of a kind.
     fn times(&self, is: impl Fn(ContactMode) -> bool) -> Vec<f64> {
-        self.events.iter().filter(|e| is(e.to)).map(|e| e.t).collect()
+        self.events
+            .iter()
+            .filter(|e| is(e.to))
+            .map(|e| e.t)
+            .collect()
     }
 
-    /// How far kinetic and potential energy less all works vary, over the largest kinetic energy.
+    /// How far kinetic and potential energy less all works vary, over the largest of them.
     fn energy_error(&self) -> f64 {
         let mut workspace = self.machine.workspace();
         let (mut low, mut high, mut largest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
         for step in &self.steps {
             let state = self.machine.evaluate(step.t, &step.y, &mut workspace);
             let [kinetic, potential] = state.expect("a state").energy();
-            let works: f64 = step.y[self.machine.work_offset()..].iter().sum();
+            let works = &step.y[self.machine.work_offset()..];
+            largest = works.iter().fold(largest, |max, work| max.max(work.abs()));
+            let works: f64 = works.iter().sum();
             low = low.min(kinetic + potential - works);
             high = high.max(kinetic + potential - works);
             largest = largest.max(kinetic);

@@ -65,14 +65,26 @@ fn four_joints_let_go_together() {
         let held = run.steps.iter().filter(|s| s.t <= t);
         assert!(held.clone().all(|s| s.y[0] == 1.2 && s.y[1] == 0.0));
     }
-    assert!(first.iter().all(|t| (t - first[0]).abs() < 1e-11 * 3.0), "{first:?}");
+    assert!(
+        first.iter().all(|t| (t - first[0]).abs() < 1e-11 * 3.0),
+        "{first:?}"
+    );
     // The acceleration of the sliding mechanism is zero there: as the regularised friction has it at full strength.
     let smooth = |t: f64| {
         let couple = format!("{t:?}");
         let text = slider_crank(&couple, "initial-velocity = 1e-7\nduration = 1e-9");
-        let text = text.replace("radius = 0.02", "radius = 0.02, regularization-speed = 1e-12");
-        let text = text.replace("radius = 0.01", "radius = 0.01, regularization-speed = 1e-12");
-        let text = text.replace("guide = { coefficient = 0.2", "guide = { coefficient = 0.2, regularization-speed = 1e-12");
+        let text = text.replace(
+            "radius = 0.02",
+            "radius = 0.02, regularization-speed = 1e-12",
+        );
+        let text = text.replace(
+            "radius = 0.01",
+            "radius = 0.01, regularization-speed = 1e-12",
+        );
+        let text = text.replace(
+            "guide = { coefficient = 0.2",
+            "guide = { coefficient = 0.2, regularization-speed = 1e-12",
+        );
         acceleration(&text)
     };
     let (at, later) = (smooth(first[0]), smooth(first[0] + 0.01));
@@ -101,12 +113,20 @@ fn a_thrown_slider_crank_comes_to_rest_in_all_joints() {
         assert_eq!(together.len(), 4, "{method:?} {together:?}");
         assert!(together.iter().all(|e| holds(e.to)));
         assert_eq!(run.end()[1], 0.0);
-        println!("{method:?} {} {:e} {}", last.t, run.energy_error(), run.evaluations);
+        println!(
+            "{method:?} {} {:e} {}",
+            last.t,
+            run.energy_error(),
+            run.evaluations
+        );
         assert!(run.energy_error() < 1e-9, "{:e}", run.energy_error());
         ends.push((last.t, run.end()[0]));
     }
     for (t, q) in &ends {
-        assert!((t - ends[0].0).abs() < 1e-8 && (q - ends[0].1).abs() < 1e-8, "{ends:?}");
+        assert!(
+            (t - ends[0].0).abs() < 1e-8 && (q - ends[0].1).abs() < 1e-8,
+            "{ends:?}"
+        );
     }
 }
 
@@ -150,10 +170,12 @@ duration = 30.0
     );
     let run = run(&text, Method::Dop853, 1e-12);
     let of = |load: usize, to: fn(ContactMode) -> bool| {
-        run.events.iter().filter(|e| e.load == load && to(e.to)).count()
+        run.events
+            .iter()
+            .filter(|e| e.load == load && to(e.to))
+            .count()
     };
     println!("{} events {:e}", run.events.len(), run.energy_error());
-    for e in &run.events { println!("{} {} {:?} {:?}", e.t, e.load, e.from, e.to); }
     assert!(of(1, holds) >= 1 && of(2, holds) >= 2 && of(2, slides) >= 1);
     let last = run.steps.last().expect("steps");
     assert_eq!(&last.y[2..4], &[0.0, 0.0]);

@@ -55,7 +55,10 @@ impl FreeMotionProblem<'_> {
                     continue;
                 };
                 let kinds = Change::ALL.len();
-                let contact = self.machine.contact_loads().position(|load| load == event.load);
+                let contact = self
+                    .machine
+                    .contact_loads()
+                    .position(|load| load == event.load);
                 let number = self.spec.events.len() + kinds * contact.unwrap_or(0) + 1;
                 all.push(ContactOccurrence {
                     number: number + usize::from(change == Change::Slides),
@@ -86,7 +89,9 @@ impl FreeMotionProblem<'_> {
                 let number = first_number + Change::ALL.len() * c + k;
                 let times = |motion: &SegmentedMotion| -> Vec<f64> {
                     let all = self.contact_occurrences(motion).into_iter();
-                    all.filter(|o| o.number == number).map(|o| o.state.t).collect()
+                    all.filter(|o| o.number == number)
+                        .map(|o| o.state.t)
+                        .collect()
                 };
                 let own = times(&computed.motion);
                 let Some(&first) = own.first() else { continue };
@@ -105,7 +110,9 @@ impl FreeMotionProblem<'_> {
                 };
                 if let Some(others) = others.filter(|others| others.len() != count) {
                     let other = others.len();
-                    text += &format!("; {other} times in a second run: within its error it is not certain");
+                    text += &format!(
+                        "; {other} times in a second run: within its error it is not certain"
+                    );
                 }
                 text += "\n";
             }
