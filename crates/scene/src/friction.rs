@@ -138,17 +138,19 @@ fn read_friction<'a>(
     Some((fields, friction, viscous))
 }
 
-/// Refuses a static coefficient below the coefficient, or beside a regularisation speed, which leaves nothing static.
+/// Refuses a static coefficient below the coefficient; beside a regularisation speed, which leaves nothing static, it has
+/// no effect.
 fn check_static_coefficient(fields: &TableReader<'_>, friction: &Friction) -> Option<()> {
     let Some(entry) = fields.get("static-coefficient") else {
         return Some(());
     };
     if friction.regularization_speed.is_some() {
-        return entry.reject(
-            format!("{} has a `static-coefficient` and a `regularization-speed`", fields.what),
-            "without effect",
-            "leave out `regularization-speed`, so that the surfaces hold at rest; or leave this out",
+        let message = format!(
+            "{} has a `regularization-speed`, so that it does not hold at rest",
+            fields.what
         );
+        let label = "without effect";
+        fields.log().warn(message, label, entry.value.span());
     }
     if friction.static_coefficient >= friction.coefficient {
         return Some(());
