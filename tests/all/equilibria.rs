@@ -332,8 +332,9 @@ fn a_pressed_block_jams() {
             magnitude: Magnitude::Friction(Friction {
                 joint: JointId(0),
                 coefficient,
+                static_coefficient: coefficient,
                 contact: FrictionContact::Guide { length: 0.0 },
-                regularization_speed: 1e-4,
+                regularization_speed: Some(1e-4),
             }),
         };
         machine(&scene, &[friction], &[])

@@ -172,8 +172,9 @@ push = { torque = "two", magnitude = { table = [[-4, 1], [0, 2], [4, -1]], of = 
         magnitude: Magnitude::Friction(Friction {
             joint: dwell_geometry::JointId(j),
             coefficient: 0.4,
+            static_coefficient: 0.4,
             contact: FrictionContact::Pin { radius: 0.05 },
-            regularization_speed: 1.5,
+            regularization_speed: Some(1.5),
         }),
     };
     let drives = [
@@ -275,8 +276,9 @@ fn a_block_on_an_incline() {
         magnitude: Magnitude::Friction(Friction {
             joint: dwell_geometry::JointId(0),
             coefficient,
+            static_coefficient: coefficient,
             contact: FrictionContact::Guide { length: 0.0 },
-            regularization_speed: 1e-3,
+            regularization_speed: Some(1e-3),
         }),
     };
     let machine = machine(&scene, &[friction(0.3)], &[]);

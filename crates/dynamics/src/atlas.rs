@@ -326,6 +326,7 @@ impl<'s> Atlas<'s> {
         if termination.error.is_none() && exit.is_none() {
             recorder.record_end(&mut solution);
         }
+        solution.add_contact_events(ode.take_contact_events());
         solution.error = termination.error;
         solution.statistics = termination.statistics;
         Ok((solution, exit))

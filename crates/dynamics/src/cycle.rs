@@ -26,6 +26,9 @@ use dwell_numerics::root;
 use std::f64::consts::TAU;
 use variational::VariationalSystem;
 
+/// Why friction that holds has no steady cycle here.
+const NO_CYCLE: &str = "a return map of a motion that holds and lets go is not smooth";
+
 /// Highest number of steps of Newton's method, and of halvings of a step.
 const MAX_NEWTON_STEPS: usize = 30;
 const MAX_HALVINGS: usize = 8;
@@ -92,6 +95,7 @@ impl Cycle {
 /// [`DynamicsError::NoCycle`], [`DynamicsError::ComesToRest`] where the guess does not complete a cycle, and as of
 /// [`Machine::evaluate`] and [`integrate`].
 pub fn steady_cycle(machine: &Machine, guess: &[f64], options: &Options) -> Result<Cycle> {
+    machine.require_smooth(NO_CYCLE)?;
     let problem = CycleProblem::new(machine, guess, options)?;
     let mut z: Vec<f64> = guess[1..machine.work_offset()].to_vec();
     let mut return_map = problem.return_map(&z)?;
@@ -185,6 +189,7 @@ pub fn initial_transient(
     revolutions: u32,
     options: &Options,
 ) -> Result<Vec<f64>> {
+    machine.require_smooth(NO_CYCLE)?;
     let mut ode = MachineOde::new(machine, 0.0, start)?;
     let from = start[0];
     let distance = TAU * f64::from(revolutions);

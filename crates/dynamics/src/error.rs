@@ -125,6 +125,21 @@ pub enum DynamicsError {
         /// The time reached, s.
         t: f64,
     },
+    /// Surfaces with dry friction can neither hold nor slide: no mode of them agrees with the forces, or they change it
+    /// without end.
+    #[error("the surfaces of friction {source_index} can neither hold nor slide")]
+    NoContactMode {
+        /// Which: the index of a load.
+        source_index: usize,
+    },
+    /// An analysis of smooth motions was asked for, and dry friction holds.
+    #[error("friction {source_index} holds at rest: {what}")]
+    Sticks {
+        /// Which: the index of a load.
+        source_index: usize,
+        /// Why that is no subject of the analysis.
+        what: &'static str,
+    },
     /// The integrator's steps became too small to continue.
     #[error("the integrator's steps become too small at t = {t:e} s")]
     StepTooSmall {

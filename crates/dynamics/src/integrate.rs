@@ -6,6 +6,7 @@
 //! that fails stores its error in a cell and NaN in the derivative: the integrator then shortens
 //! its step or fails, and the caller gets the error of that evaluation.
 
+use crate::contact::{ContactMonitor, ContactStep};
 use crate::dop853;
 use crate::error::{DynamicsError, Result};
 use crate::integration_parts::Parts;
@@ -119,30 +120,44 @@ fn integrate_held(
     mut pieces: Option<&mut TimePieces<'_>>,
     observer: StepObserver<'_>,
 ) -> Result<Termination> {
-    if system.switch_kinds().is_empty() {
+    let mut contacts = ContactMonitor::new(system);
+    if system.switch_kinds().is_empty() && contacts.is_none() {
         return integrate_smooth(system, start, end, options, pieces, observer);
     }
-    let mut monitor = SwitchMonitor::new(system, start, end.unwrap_or(f64::INFINITY) - start.t)?;
+    let mut start = start.clone();
+    if let Some(contacts) = &mut contacts {
+        contacts.settle(system, &mut start)?;
+    }
+    let mut monitor = SwitchMonitor::new(system, &start, end.unwrap_or(f64::INFINITY) - start.t)?;
     let shared = SharedSystem {
         kinds: system.switch_kinds().to_vec(),
         size: system.size(),
         inner: RefCell::new(system),
     };
     let [mut integrated, mut watched_system] = [&shared; 2];
-    let mut parts = Parts::new(start, options);
+    let mut parts = Parts::new(&start, options);
     loop {
-        let mut crossing: Option<Crossing> = None;
+        let mut event: Option<HeldEvent> = None;
         let mut watched = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
-            let found = monitor.after_step(&mut watched_system, before, now, dense)?;
-            let Some(found) = found else {
-                return observer(before, now, dense);
+            let crossing = monitor.after_step(&mut watched_system, before, now, dense)?;
+            let until = crossing.as_ref().map_or(now, |crossing| &crossing.state);
+            let change = match &mut contacts {
+                Some(contacts) => {
+                    contacts.first_event(&mut watched_system, before, until, dense)?
+                }
+                None => None,
             };
-            let is_longer = found.state.t > before.t;
+            let found = match (change, crossing) {
+                (Some((state, touched)), _) => HeldEvent::Contacts(state, touched),
+                (None, Some(crossing)) => HeldEvent::Switch(crossing),
+                (None, None) => return observer(before, now, dense),
+            };
+            let is_longer = found.state().t > before.t;
             let control = match is_longer {
-                true => observer(before, &found.state, dense)?,
+                true => observer(before, found.state(), dense)?,
                 false => StepControl::Continue,
             };
-            crossing = (control == StepControl::Continue).then_some(found);
+            event = (control == StepControl::Continue).then_some(found);
             Ok(StepControl::Stop)
         };
         let (from, remaining) = (parts.from.clone(), parts.remaining);
@@ -156,17 +171,69 @@ fn integrate_held(
             &mut watched,
         );
         let is_ended = parts.add(part)?;
-        let Some(crossing) = crossing.filter(|_| !is_ended) else {
+        let Some(event) = event.filter(|_| !is_ended) else {
             break;
         };
-        monitor.pass(&crossing, &mut watched_system)?;
-        parts.from = crossing.state;
+        let passed = pass_event(&mut watched_system, &mut monitor, contacts.as_mut(), event);
+        match (passed, &mut parts.whole) {
+            (Ok(state), _) => parts.from = state,
+            (Err(error), Some(whole)) => {
+                whole.error = Some(error);
+                break;
+            }
+            (Err(error), None) => return Err(error),
+        }
         let rounding = 8.0 * f64::EPSILON * parts.from.t.abs();
         if end.is_some_and(|end| parts.from.t >= end - rounding) {
             break;
         }
     }
+    if let Some(whole) = &mut parts.whole {
+        // With the modes and speeds behind the last event.
+        whole.state.clone_from(&parts.from);
+    }
     parts.whole.ok_or(DynamicsError::DurationTooShort)
+}
+
+/// What ends an integration on held pieces.
+enum HeldEvent {
+    /// Switches of loads are passed.
+    Switch(Crossing),
+    /// Contacts change their modes; by contact, whether it is one of those that do.
+    Contacts(OdeState, Vec<bool>),
+}
+
+impl HeldEvent {
+    fn state(&self) -> &OdeState {
+        match self {
+            Self::Switch(crossing) => &crossing.state,
+            Self::Contacts(state, _) => state,
+        }
+    }
+}
+
+/// Goes over to the pieces and modes behind an event; the state there.
+fn pass_event(
+    system: &mut dyn OdeSystem,
+    monitor: &mut SwitchMonitor,
+    contacts: Option<&mut ContactMonitor>,
+    event: HeldEvent,
+) -> Result<OdeState> {
+    match (event, contacts) {
+        (HeldEvent::Contacts(mut state, touched), Some(contacts)) => {
+            contacts.change_modes(system, &mut state, &touched)?;
+            Ok(state)
+        }
+        (HeldEvent::Switch(crossing), contacts) => {
+            monitor.pass(&crossing, system)?;
+            let mut state = crossing.state;
+            if let Some(contacts) = contacts {
+                contacts.settle(system, &mut state)?;
+            }
+            Ok(state)
+        }
+        (HeldEvent::Contacts(state, _), None) => Ok(state),
+    }
 }
 
 /// A system that is integrated and, between its steps, looked at.
@@ -203,6 +270,22 @@ impl OdeSystem for &SharedSystem<'_> {
 
     fn hold_pieces(&mut self, pieces: &[Option<f64>]) {
         self.inner.borrow_mut().hold_pieces(pieces);
+    }
+
+    fn contact_count(&self) -> usize {
+        self.inner.borrow().contact_count()
+    }
+
+    fn contact_source(&self, contact: usize) -> usize {
+        self.inner.borrow().contact_source(contact)
+    }
+
+    fn contact_margins(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<bool> {
+        self.inner.borrow_mut().contact_margins(t, y, out)
+    }
+
+    fn pass_contacts(&mut self, t: f64, y: &mut [f64], step: &ContactStep<'_>) -> Result<()> {
+        self.inner.borrow_mut().pass_contacts(t, y, step)
     }
 
     fn error_weight(&self, state: usize) -> f64 {

@@ -45,6 +45,7 @@ pub mod atlas;
 mod change_point_fit;
 mod close_branches;
 mod conservative;
+pub mod contact;
 pub mod cycle;
 mod dop853;
 mod drive;
@@ -77,6 +78,7 @@ pub use atlas::{
     MachineDescription, Segment,
 };
 pub use change_point_fit::{ChangePointFit, ChangePointFitError};
+pub use contact::{ContactEvent, ContactMode};
 pub use cycle::{Cycle, initial_transient, steady_cycle};
 pub use drive::DriveError;
 pub use equilibrium::{

@@ -9,9 +9,9 @@
 //! of M are the responses to unit accelerations. A drive is a load along its coordinate s, and a rotor resists s̈
 //! through the drive's unit-load response. τ of a free coordinate is zero. Friction depends on the reactions, and
 //! these on q̈: the effect of each friction on the accelerations is added to its unit-load response before
-//! [`ForceState::solve_friction`] solves for all of them.
+//! [`ForceState::solve_friction`] solves for all of them; one that holds at rest is a [contact](crate::contact).
 //!
-//! The state is [q, q̇ of the free coordinates; currents and integrals of the drives; work of the nonconservative
+//! The state is [q, q̇ of the free coordinates; currents and integrals of the drives; modes of the contacts; work of the nonconservative
 //! sources], so that the energy balance is integrated with the motion.
 
 mod drives;
@@ -20,6 +20,7 @@ mod state;
 mod workspace;
 
 use crate::change_point_fit::FitWindow;
+use crate::contact::{Contact, ContactMode, Unloaded, solve_contacts};
 use crate::drive::{CompiledDrive, DriveError};
 use crate::error::{DynamicsError, Result};
 use crate::state_switches::StateSwitches;
@@ -28,6 +29,7 @@ use dwell_kinetostatics::{Drive, ForceState, Load, LoadError, LoadKind, Magnitud
 use dwell_laws::{Features, Law};
 use dwell_numerics::{Scalar, lu};
 pub use state::MachineState;
+use std::ops::Range;
 use std::sync::Arc;
 use workspace::EquationWorkspace;
 pub use workspace::MachineWorkspace;
@@ -68,6 +70,8 @@ pub struct Machine {
     nonconservative_sources: Vec<NonconservativeSource>,
     /// Where it crosses change points.
     pub(crate) fit_windows: Vec<FitWindow>,
+    /// Frictions that hold at rest.
+    pub(crate) contacts: Vec<Contact>,
     /// By free coordinate: inertia along it beside that of the bodies and rotors, kg m² or kg.
     pub(crate) flywheels: Vec<f64>,
 }
@@ -116,6 +120,11 @@ impl Machine {
             time_features: Arc::new(time_features(&model, &drives, &modes)),
             state_switches: drives::state_switches(&model, &drives),
             drive_state_count: drives.iter().filter(|d| d.state.is_some()).count(),
+            // Where everything is prescribed nothing can be held.
+            contacts: match free.is_empty() {
+                true => Vec::new(),
+                false => Contact::of_model(&model),
+            },
             model,
             flywheels: vec![0.0; free.len()],
             modes,
@@ -202,14 +211,46 @@ impl Machine {
         &self.nonconservative_sources
     }
 
-    /// Number of states: 2 for each free coordinate, those of the drives, 1 for each nonconservative source.
+    /// Number of states: 2 for each free coordinate, those of the drives, 1 for each friction that holds, 1 for each
+    /// nonconservative source.
     pub fn state_count(&self) -> usize {
-        2 * self.free.len() + self.drive_state_count + self.nonconservative_sources.len()
+        self.work_offset() + self.nonconservative_sources.len()
     }
 
     /// Index of the first work among the states.
     pub fn work_offset(&self) -> usize {
-        2 * self.free.len() + self.drive_state_count
+        self.contact_states().end
+    }
+
+    /// The states of the drives.
+    pub fn drive_states(&self) -> Range<usize> {
+        let first = 2 * self.free.len();
+        first..first + self.drive_state_count
+    }
+
+    /// The states that are the [modes](crate::ContactMode) of frictions that hold at rest.
+    pub fn contact_states(&self) -> Range<usize> {
+        let first = self.drive_states().end;
+        first..first + self.contacts.len()
+    }
+
+    /// The frictions that hold at rest, by their loads.
+    pub fn contact_loads(&self) -> impl Iterator<Item = usize> + '_ {
+        self.contacts.iter().map(|contact| contact.load)
+    }
+
+    /// Refuses an analysis of smooth motions where friction holds at rest; `what` says why.
+    pub(crate) fn require_smooth(&self, what: &'static str) -> Result<()> {
+        let first = self.contacts.first();
+        first.map_or(Ok(()), |contact| {
+            let source_index = contact.load;
+            Err(DynamicsError::Sticks { source_index, what })
+        })
+    }
+
+    /// Whether a coordinate is prescribed.
+    pub(crate) fn has_prescribed(&self) -> bool {
+        self.free.len() < self.modes.len()
     }
 
     /// An initial state from the coordinates and speeds of all actuators (rad or m, per s), with zero drive states
@@ -240,6 +281,10 @@ impl Machine {
         } = workspace;
         let n = self.free.len();
         let drive_states = &y[2 * n..];
+        let modes = equation.contacts.modes.iter_mut();
+        for (mode, code) in modes.zip(&y[self.contact_states()]) {
+            *mode = ContactMode::of_code(code.value());
+        }
         self.set_actuator_motion(t, y, equation);
         let forces = if let Some(fit) = self.fit_at(equation.q.first()) {
             self.evaluate_on_fit(fit, t, drive_states, offsets, inner, equation)?
@@ -331,6 +376,7 @@ impl Machine {
             mass_matrix,
             pivots,
             free_accelerations,
+            contacts,
             ..
         } = equation;
         let diagonal = mass_matrix.first().map_or(1.0, |m| m.value());
@@ -347,10 +393,15 @@ impl Machine {
         let responses = friction_responses
             .iter_mut()
             .zip(&mut *friction_accelerations);
-        for (load, (response, accelerations)) in self.model.frictions().zip(responses) {
+        for (j, (load, (response, accelerations))) in
+            self.model.frictions().zip(responses).enumerate()
+        {
             state.unit_load_response(load, response)?;
             for (value, &i) in accelerations.iter_mut().zip(&self.free) {
                 *value = -response.tau[i];
+            }
+            if let Some(row) = contacts.rows.get_mut(j) {
+                row.copy_from_slice(accelerations);
             }
             lu::solve(mass_matrix, pivots, accelerations);
             for (column, &q_ddot) in columns.iter().zip(accelerations.iter()) {
@@ -360,7 +411,14 @@ impl Machine {
         for (column, &q_ddot) in columns.iter().zip(free_accelerations.iter()) {
             result.add_scaled(column, q_ddot);
         }
-        if self.model.frictions().len() > 0 {
+        if !self.contacts.is_empty() {
+            let unloaded = Unloaded {
+                reactions: &result.reactions,
+                responses: friction_responses,
+            };
+            let accelerations = (&free_accelerations[..], &friction_accelerations[..]);
+            solve_contacts(&self.contacts, state, contacts, &unloaded, accelerations)?;
+        } else if self.model.frictions().len() > 0 {
             state.solve_friction(&result.reactions, friction_responses)?;
         }
         let frictions = || self.model.frictions().map(|load| state.magnitudes()[load]);
@@ -368,6 +426,9 @@ impl Machine {
             q_ddot[i] = free_accelerations[k];
             for (accelerations, friction) in friction_accelerations.iter().zip(frictions()) {
                 q_ddot[i] += accelerations[k] * friction;
+            }
+            if contacts.nothing_moves {
+                q_ddot[i] = T::from_f64(0.0);
             }
         }
         for (response, friction) in friction_responses.iter().zip(frictions()) {

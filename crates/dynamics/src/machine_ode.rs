@@ -1,5 +1,6 @@
 //! A machine as an ODE system, with its exact Jacobian by dual numbers.
 
+use crate::contact::{self, ContactEvent, ContactMode, ContactStep};
 use crate::error::Result;
 use crate::machine::{Machine, MachineState, MachineWorkspace};
 use crate::ode::{DualWorkspace, OdeSystem};
@@ -16,6 +17,7 @@ pub struct MachineOde<'m> {
     dual_workspace: DualWorkspace<MachineWorkspace<Dual>>,
     error_weights: Vec<f64>,
     held: Vec<HeldSource>,
+    contact_events: Vec<ContactEvent>,
 }
 
 impl<'m> MachineOde<'m> {
@@ -52,7 +54,13 @@ impl<'m> MachineOde<'m> {
             dual_workspace: DualWorkspace::new(machine.workspace(), machine.state_count()),
             error_weights: vec![1.0; machine.state_count()],
             held: Vec::new(),
+            contact_events: Vec::new(),
         }
+    }
+
+    /// The changes of contacts in the motion so far, in order of time; they are taken.
+    pub fn take_contact_events(&mut self) -> Vec<ContactEvent> {
+        std::mem::take(&mut self.contact_events)
     }
 
     /// The machine.
@@ -99,8 +107,8 @@ impl OdeSystem for MachineOde<'_> {
 
     fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         let machine = self.machine;
-        let columns = machine.work_offset();
-        // Nothing depends on the works.
+        let columns = machine.drive_states().end;
+        // Nothing depends on the works, and nothing smoothly on the modes of contacts.
         let rhs = |y: &[Dual], workspace: &mut MachineWorkspace<Dual>, out: &mut [Dual]| {
             machine.evaluate(t, y, workspace)?.derivative(out);
             Ok(())
@@ -141,6 +149,31 @@ impl OdeSystem for MachineOde<'_> {
             machine.hold_source(load, held, dual);
         };
         machine.state_switches.hold(pieces, &mut self.held, set);
+    }
+
+    fn contact_count(&self) -> usize {
+        self.machine.contacts.len()
+    }
+
+    fn contact_source(&self, contact: usize) -> usize {
+        self.machine.contacts[contact].load
+    }
+
+    fn contact_margins(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<bool> {
+        self.machine.evaluate(t, y, &mut self.workspace)?;
+        let contacts = self.workspace.contacts();
+        for (i, out) in out.iter_mut().enumerate() {
+            *out = contacts.margin(i);
+        }
+        let codes = y[self.machine.contact_states()].iter();
+        let mut modes = codes.map(|&code| ContactMode::of_code(code));
+        Ok(modes.any(ContactMode::is_open))
+    }
+
+    fn pass_contacts(&mut self, t: f64, y: &mut [f64], step: &ContactStep<'_>) -> Result<()> {
+        let changes = contact::pass(self.machine, &mut self.workspace, (t, y), step)?;
+        self.contact_events.extend(changes);
+        Ok(())
     }
 
     fn error_weight(&self, state: usize) -> f64 {

@@ -1,5 +1,6 @@
 //! Systems of ordinary differential equations, and what their integration hands to an observer.
 
+use crate::contact::ContactStep;
 use crate::error::{DynamicsError, Result};
 use crate::options::Statistics;
 use dwell_laws::{Features, SwitchKind};
@@ -88,6 +89,33 @@ pub trait OdeSystem {
 
     /// Holds one piece of each function, wherever the state is, until others are set; none: as the state says.
     fn hold_pieces(&mut self, _pieces: &[Option<f64>]) {}
+
+    /// Number of contacts whose surfaces hold or slide.
+    fn contact_count(&self) -> usize {
+        0
+    }
+
+    /// The index of the load to which a contact belongs.
+    fn contact_source(&self, _contact: usize) -> usize {
+        0
+    }
+
+    /// By contact: how far it is from a change of its mode, negative beyond; not a number where none is near. Whether a
+    /// mode is not decided yet.
+    ///
+    /// # Errors
+    /// As [`OdeSystem::rhs`].
+    fn contact_margins(&mut self, _t: f64, _y: &[f64], _out: &mut [f64]) -> Result<bool> {
+        Ok(false)
+    }
+
+    /// Changes the modes of contacts, and the speeds that go with them, where an event has ended an integration.
+    ///
+    /// # Errors
+    /// As [`OdeSystem::rhs`], and where no mode is found.
+    fn pass_contacts(&mut self, _t: f64, _y: &mut [f64], _step: &ContactStep<'_>) -> Result<()> {
+        Ok(())
+    }
 
     /// The factor of a state in the absolute tolerance.
     fn error_weight(&self, _state: usize) -> f64 {

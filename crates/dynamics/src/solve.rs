@@ -11,6 +11,7 @@ mod orbit_events;
 mod orbit_solution;
 mod tracker;
 
+use crate::contact::ContactEvent;
 use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
 use crate::machine::Machine;
@@ -35,6 +36,8 @@ pub struct Solution {
     pub samples: Vec<OdeState>,
     /// The events that happened, in order of time.
     pub event_occurrences: Vec<EventOccurrence>,
+    /// Where surfaces with dry friction came to rest or let go, in order of time.
+    pub contact_events: Vec<ContactEvent>,
     /// Whether a terminal event ended it.
     pub terminated_by_event: bool,
     /// The error that ended it early, if one did.
@@ -65,6 +68,13 @@ impl Solution {
         if !in_order {
             all.sort_by(|a, b| a.state.t.total_cmp(&b.state.t));
         }
+    }
+
+    /// Adds the changes of contacts up to the end.
+    pub(crate) fn add_contact_events(&mut self, mut events: Vec<ContactEvent>) {
+        let end = self.steps.last().map_or(f64::NEG_INFINITY, |step| step.t);
+        events.retain(|event| event.t <= end);
+        self.contact_events = events;
     }
 
     /// Ends at a state before the last step's end.
@@ -105,7 +115,9 @@ pub fn solve(
 ) -> Result<Solution> {
     let mut ode = MachineOde::until(machine, start.t, &start.y, Some(end))?;
     let observed = ObservedMachine::new(machine, output_model);
-    solve_system(&mut ode, observed, start, Some(end), options, events)
+    let mut solution = solve_system(&mut ode, observed, start, Some(end), options, events)?;
+    solution.add_contact_events(ode.take_contact_events());
+    Ok(solution)
 }
 
 /// Integrates any system from `start` until `end` (s), or without an end until a terminal event; `observed`

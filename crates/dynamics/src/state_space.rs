@@ -36,6 +36,7 @@ pub struct StateSpace {
 /// # Errors
 /// As [`Machine::evaluate`].
 pub fn linearise(machine: &Machine, t: f64, y: &[f64]) -> Result<StateSpace> {
+    machine.require_smooth("its force at rest is no smooth function of the state")?;
     let (states, inputs) = (machine.work_offset(), machine.drives());
     let mut workspace: MachineWorkspace<Dual> = machine.workspace();
     let mut at: Vec<Dual> = y.iter().map(|&y| Dual::from_f64(y)).collect();

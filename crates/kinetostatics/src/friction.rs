@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! F_j = −φ_j g_j(R_j),    R = R⁰ + C F                                        (1)
-//! φ = µ tanh(v/v₀) of a friction,    φ = −tan α of a separating force
+//! φ = µ sign(v) or µ tanh(v/v₀) of a friction,    φ = −tan α of a separating force
 //! ```
 //!
 //! with g the force times the radius in a pin, the sum of the forces on the ends of a guide, or the absolute tooth
@@ -35,6 +35,18 @@ pub(crate) struct DependentLoad {
     /// Indices of the reactions it depends on; none for a component that it does not need.
     reactions: [Option<usize>; 2],
     law: ReactionLaw,
+}
+
+/// What is known of a load that depends on reactions, beside its own law.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum FrictionState<T> {
+    /// Its factor φ follows from the speed of its surfaces; at rest a friction without regularisation is zero.
+    #[default]
+    BySpeed,
+    /// Its factor φ: surfaces that slide one way, or are about to.
+    Factor(f64),
+    /// Its force itself, N·m or N: surfaces that hold.
+    Force(T),
 }
 
 /// How a load depends on the reactions of its joint.
@@ -97,6 +109,8 @@ impl FrictionContact {
 /// Working memory of [`solve`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct FrictionWorkspace<T> {
+    /// By load: what is known of it.
+    pub(crate) known: Vec<FrictionState<T>>,
     /// By load: φ.
     friction_factor: Vec<T>,
     /// By load: F.
@@ -110,6 +124,7 @@ impl<T: Scalar> FrictionWorkspace<T> {
     pub(crate) fn new(count: usize) -> Self {
         let zero = T::from_f64(0.0);
         Self {
+            known: vec![FrictionState::BySpeed; count],
             friction_factor: vec![zero; count],
             force: vec![zero; count],
             jacobian: vec![zero; count * count],
@@ -160,13 +175,33 @@ impl DependentLoad {
                 coordinate,
             } => {
                 let [_, velocity, _] = states.coordinate(coordinate);
-                let speed = friction.regularization_speed;
+                let Some(speed) = friction.regularization_speed else {
+                    let speed = velocity.value();
+                    let sign = if speed == 0.0 { 0.0 } else { speed.signum() };
+                    return T::from_f64(friction.coefficient * sign);
+                };
                 let tanh = (velocity.value() / speed).tanh();
                 let slope = (1.0 - tanh * tanh) / speed;
                 velocity.compose(&[tanh, slope, 0.0, 0.0]) * T::from_f64(friction.coefficient)
             }
             ReactionLaw::Separating { tangent } => T::from_f64(-tangent),
         }
+    }
+
+    /// A friction that holds its surfaces at rest, with the coordinate along which they slide.
+    pub(crate) fn sticking(&self) -> Option<(Friction, CoordinateFunction)> {
+        match self.law {
+            ReactionLaw::Friction {
+                friction,
+                coordinate,
+            } => Some((friction, coordinate)).filter(|_| friction.regularization_speed.is_none()),
+            ReactionLaw::Separating { .. } => None,
+        }
+    }
+
+    /// g of these reactions, N·m or N: the force of a unit of φ.
+    pub(crate) fn contact_force<T: Scalar>(&self, reactions: &[T]) -> T {
+        self.law.force(self.components(reactions)).0
     }
 
     fn components<T: Scalar>(&self, reactions: &[T]) -> [T; 2] {
@@ -197,10 +232,20 @@ pub(crate) fn solve<T: Scalar>(
 ) -> Result<()> {
     let load = dependent_loads.first().map_or(0, |first| first.load);
     let self_locking = KinetostaticsError::SelfLocking { load };
-    for (dependent, factor) in dependent_loads.iter().zip(&mut workspace.friction_factor) {
-        *factor = dependent.factor(states);
+    let factors = workspace.friction_factor.iter_mut().zip(&workspace.known);
+    for (dependent, (factor, known)) in dependent_loads.iter().zip(factors) {
+        *factor = match *known {
+            FrictionState::BySpeed => dependent.factor(states),
+            FrictionState::Factor(factor) => T::from_f64(factor),
+            FrictionState::Force(_) => T::from_f64(0.0),
+        };
     }
-    workspace.force.fill(T::from_f64(0.0));
+    for (force, known) in workspace.force.iter_mut().zip(&workspace.known) {
+        *force = match *known {
+            FrictionState::Force(force) => force,
+            FrictionState::BySpeed | FrictionState::Factor(_) => T::from_f64(0.0),
+        };
+    }
     let (mut converged, mut last) = (0, f64::INFINITY);
     for _ in 0..MAX_ITERATIONS {
         let largest = workspace.linearise(dependent_loads, frictionless, responses);
@@ -247,7 +292,11 @@ impl<T: Scalar> FrictionWorkspace<T> {
             }
             let (contact_force, [by_x, by_y]) = dependent.law.force(reaction);
             let factor = self.friction_factor[j];
-            self.step[j] = -(self.force[j] + factor * contact_force);
+            let given = match self.known[j] {
+                FrictionState::Force(force) => force,
+                FrictionState::BySpeed | FrictionState::Factor(_) => T::from_f64(0.0),
+            };
+            self.step[j] = given - (self.force[j] + factor * contact_force);
             for (k, response) in responses.iter().enumerate() {
                 let [x, y] = dependent.components(&response.reactions);
                 let diagonal = if j == k { 1.0 } else { 0.0 };

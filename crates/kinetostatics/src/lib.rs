@@ -41,6 +41,7 @@ pub mod table;
 
 pub use drive::{Drive, DriveKind, Motor, SpeedController};
 pub use error::{KinetostaticsError, LoadError, ModelError};
+pub use friction::FrictionState;
 pub use load::{
     AppliedWrench, CompiledSignal, ForceSource, Friction, FrictionContact, Guide, Load, LoadKind,
     LoadState, MAX_FUNCTION_SIGNALS, Magnitude, MagnitudeFunction, Mesh, PitchLines, PressureAngle,

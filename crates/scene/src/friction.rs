@@ -11,10 +11,6 @@ use crate::wording::shorten;
 use dwell_geometry::{JointId, JointKind};
 use dwell_kinetostatics::{Friction, FrictionContact, Load, LoadKind, Magnitude};
 
-/// Regularization speed where the scene gives none, rad/s and m/s: small compared with the speeds of a machine, yet
-/// large enough that the equation of motion is not stiff for an explicit method.
-const DEFAULT_REGULARIZATION_SPEED: [f64; 2] = [0.01, 0.001];
-
 /// Appends the friction of every joint of the section, in the order of the file.
 pub(crate) fn add_friction(fields: &TableReader<'_>, joints: &Joints<'_>, loads: &mut Vec<Load>) {
     let mut assigned: Vec<(usize, Span)> = Vec::new();
@@ -106,6 +102,7 @@ fn read_friction<'a>(
     };
     let units = fields.units();
     let coefficient = number("coefficient", &SI, SignRule::NotNegative);
+    let static_coefficient = number("static-coefficient", &SI, SignRule::NotNegative);
     let radius = number("radius", &units.length, SignRule::Positive);
     let guide = number("guide-length", &units.length, SignRule::NotNegative);
     let speed_unit = units.coordinate_unit(is_revolute);
@@ -121,21 +118,51 @@ fn read_friction<'a>(
     if fields.log().count() != before {
         return None;
     }
-    let [default_of_revolute, default_of_prismatic] = DEFAULT_REGULARIZATION_SPEED;
-    let (contact, default) = if is_revolute {
+    let contact = if is_revolute {
         let radius = radius.unwrap_or(0.0);
-        (FrictionContact::Pin { radius }, default_of_revolute)
+        FrictionContact::Pin { radius }
     } else {
         let length = guide.unwrap_or(0.0);
-        (FrictionContact::Guide { length }, default_of_prismatic)
+        FrictionContact::Guide { length }
     };
     let friction = coefficient.map(|coefficient| Friction {
         joint,
         coefficient,
+        static_coefficient: static_coefficient.unwrap_or(coefficient),
         contact,
-        regularization_speed: speed.unwrap_or(default),
+        regularization_speed: speed,
     });
+    if let Some(friction) = friction {
+        check_static_coefficient(&fields, &friction)?;
+    }
     Some((fields, friction, viscous))
+}
+
+/// Refuses a static coefficient below the coefficient; beside a regularisation speed, which leaves nothing static, it has
+/// no effect.
+fn check_static_coefficient(fields: &TableReader<'_>, friction: &Friction) -> Option<()> {
+    let Some(entry) = fields.get("static-coefficient") else {
+        return Some(());
+    };
+    if friction.regularization_speed.is_some() {
+        let message = format!(
+            "{} has a `regularization-speed`, so that it does not hold at rest",
+            fields.what
+        );
+        let label = "without effect";
+        fields.log().warn(message, label, entry.value.span());
+    }
+    if friction.static_coefficient >= friction.coefficient {
+        return Some(());
+    }
+    entry.reject(
+        format!(
+            "the `static-coefficient` of {} is below its `coefficient` {}",
+            fields.what, friction.coefficient
+        ),
+        "surfaces at rest hold at least as much as they do when they slide",
+        "exchange the two, or leave this out: it is then the same as `coefficient`",
+    )
 }
 
 /// Whether the friction of a joint is that of a pin, not of a guide; an error for a joint that cannot have friction.
@@ -183,10 +210,14 @@ fn check_friction_keys(fields: &TableReader<'_>, kind: JointKind, is_revolute: b
             "guide-length" if is_slot => {
                 other("the pin of a slot touches it at one point: leave it out")
             }
-            "radius" | "guide-length" | "regularization-speed" if dry.is_none() && !misspelt => (
-                format!("{what} has a `{name}` but no `coefficient`"),
-                "it belongs to dry friction: add `coefficient`, or leave it out",
-            ),
+            "radius" | "guide-length" | "static-coefficient" | "regularization-speed"
+                if dry.is_none() && !misspelt =>
+            {
+                (
+                    format!("{what} has a `{name}` but no `coefficient`"),
+                    "it belongs to dry friction: add `coefficient`, or leave it out",
+                )
+            }
             _ if known => continue,
             _ => {
                 fields.report_unknown_key(entry, "keys here", table.names());

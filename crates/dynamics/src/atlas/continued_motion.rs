@@ -83,6 +83,7 @@ impl ContinuedMotion {
         whole.samples.extend(solution.samples);
         let occurrences = solution.event_occurrences;
         whole.event_occurrences.extend(occurrences);
+        whole.contact_events.extend(solution.contact_events);
         whole.terminated_by_event = solution.terminated_by_event;
         whole.error = solution.error;
         whole.statistics = whole.statistics.plus(solution.statistics);

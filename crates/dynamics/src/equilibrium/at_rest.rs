@@ -138,6 +138,7 @@ impl Factored {
 
 impl<'m> AtRest<'m> {
     pub(super) fn new(machine: &'m Machine) -> Result<Self> {
+        machine.require_smooth("its equilibria are no points but whole intervals")?;
         if machine.depends_on_time() {
             return none("a load, drive or prescribed motion changes with time");
         }

@@ -77,7 +77,9 @@ impl<T: Scalar> MachineState<'_, T> {
             out[k] = equation.q_dot[i];
             out[n + k] = equation.q_ddot[i];
         }
-        let (drive_state_rates, powers) = out[2 * n..].split_at_mut(machine.drive_state_count);
+        let (drive_state_rates, rest) = out[2 * n..].split_at_mut(machine.drive_state_count);
+        let (mode_rates, powers) = rest.split_at_mut(machine.contacts.len());
+        mode_rates.fill(T::from_f64(0.0));
         drive_state_rates.copy_from_slice(&equation.drive_state_rates);
         for (power, &source) in powers.iter_mut().zip(&machine.nonconservative_sources) {
             *power = match source {
@@ -131,8 +133,9 @@ impl MachineState<'_> {
         let equation = &*self.equation;
         let state = output_model.kinematic_state(&equation.q, &equation.q_dot, workspace)?;
         let mut state = state.apply_loads(self.t)?;
-        for drive in &self.machine.drives {
-            state.set_magnitude(drive.load, self.magnitudes()[drive.load]);
+        let drives = self.machine.drives.iter().map(|drive| drive.load);
+        for load in drives.chain(self.machine.contact_loads()) {
+            state.set_magnitude(load, self.magnitudes()[load]);
         }
         Ok(state.evaluate(&equation.q_ddot, result)?)
     }

@@ -2,6 +2,7 @@
 
 use super::Machine;
 use crate::change_point_fit::FitWorkspace;
+use crate::contact::ContactWorkspace;
 use crate::drive::HeldDrive;
 use dwell_kinetostatics::{InverseDynamics, Workspace};
 use dwell_numerics::Scalar;
@@ -33,6 +34,12 @@ impl Machine {
                 drive_state_rates: zeros(self.drive_state_count),
                 held_drives: vec![[None; 2]; drives],
                 fit_workspace: None,
+                contacts: ContactWorkspace::new(
+                    &self.contacts,
+                    n,
+                    frictions,
+                    &self.model.result_buffer(),
+                ),
             },
         }
     }
@@ -71,4 +78,17 @@ pub(super) struct EquationWorkspace<T> {
     /// By drive: the pieces on which it is held.
     pub(super) held_drives: Vec<HeldDrive>,
     pub(super) fit_workspace: Option<Box<FitWorkspace<T>>>,
+    pub(super) contacts: ContactWorkspace<T>,
+}
+
+impl<T> MachineWorkspace<T> {
+    /// The contacts at the last state.
+    pub(crate) fn contacts(&self) -> &ContactWorkspace<T> {
+        &self.equation.contacts
+    }
+
+    /// The accelerations of the free coordinates by one unit of a load that depends on reactions, at the last state.
+    pub(crate) fn friction_accelerations(&self, index: usize) -> &[T] {
+        &self.equation.friction_accelerations[index]
+    }
 }

@@ -56,6 +56,7 @@ pub fn solve_orbit(
         samples,
         terminated_by_event,
         event_occurrences: found.occurrences,
+        contact_events: Vec::new(),
         error,
     })
 }

@@ -3,29 +3,31 @@
 use super::LoadKind;
 use dwell_geometry::{Component, Joint, JointId, JointKind, Mechanism, Reaction};
 
-/// Coulomb friction in a joint, regularised around zero speed. The load must be a [`LoadKind::Torque`] on the bodies of
+/// Coulomb friction in a joint, which holds at zero speed or is regularised around it. The load must be a [`LoadKind::Torque`] on the bodies of
 /// a revolute joint or a [`LoadKind::SlideForce`] on those of a prismatic joint or slot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction {
     /// The joint.
     pub joint: JointId,
-    /// Coefficient of friction µ.
+    /// Coefficient of friction µ of surfaces that slide.
     pub coefficient: f64,
+    /// Coefficient µₛ up to which surfaces at rest hold, not below µ; without effect with a regularisation speed.
+    pub static_coefficient: f64,
     /// The surfaces in contact, with their size.
     pub contact: FrictionContact,
-    /// Speed ω₀ or v₀ below which the friction fades, rad/s or m/s.
-    pub regularization_speed: f64,
+    /// Speed ω₀ or v₀ below which the friction fades, rad/s or m/s; none: the surfaces stick at rest.
+    pub regularization_speed: Option<f64>,
 }
 
 /// The surfaces of a joint that rub on each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FrictionContact {
-    /// The pin of a revolute joint: the couple −µ r |R| tanh(ω/ω₀) on the second body.
+    /// The pin of a revolute joint: the couple −µ r |R| sign(ω), or −µ r |R| tanh(ω/ω₀), on the second body.
     Pin {
         /// Radius r, m.
         radius: f64,
     },
-    /// The guide of a prismatic joint or slot: the force −µ N tanh(v/v₀) along it, N the sum of the forces that press
+    /// The guide of a prismatic joint or slot: the force −µ N sign(v), or −µ N tanh(v/v₀), along it, N the sum of the forces that press
     /// on its ends.
     Guide {
         /// Distance of its ends, m; zero where it presses at one point.
@@ -39,7 +41,14 @@ impl Friction {
         let (FrictionContact::Pin { radius: size } | FrictionContact::Guide { length: size }) =
             self.contact;
         let mut sizes = [self.coefficient, size].into_iter();
-        let regularized = self.regularization_speed > 0.0;
+        let regularized = self.regularization_speed.is_none_or(|speed| speed > 0.0);
+        let holds =
+            self.static_coefficient.is_finite() && self.static_coefficient >= self.coefficient;
+        if !holds {
+            return Err(
+                "its static coefficient must be finite and not below its coefficient of friction",
+            );
+        }
         if !(regularized && sizes.all(|n| n.is_finite() && n >= 0.0)) {
             return Err(
                 "its coefficient of friction and its size must be finite and not negative, its speed positive",

@@ -3,6 +3,7 @@
 use super::loaded_state::StateWithLoads;
 use super::{LoadedState, Model, Workspace};
 use crate::error::Result;
+use crate::friction::FrictionState;
 
 use crate::pass::{AtRest, GivenMotion, InverseDynamics, UnitAcceleration};
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
@@ -93,6 +94,17 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
         [value, velocity]
     }
 
+    /// The loads that depend on reactions, as [`Model::frictions`].
+    pub fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
+        self.model.frictions()
+    }
+
+    /// Of one of these loads: the force g (N·m or N) that its factor multiplies, at reactions of the model. Of a friction
+    /// that factor is the coefficient of friction.
+    pub fn contact_force(&self, index: usize, reactions: &[T]) -> T {
+        self.model.dependent_loads[index].contact_force(reactions)
+    }
+
     /// Whether the whole revolutions of a body are counted.
     pub fn counts_revolutions(&self, body: BodyId) -> bool {
         let states = &self.workspace.states;
@@ -113,7 +125,12 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     /// [`KinetostaticsError::MagnitudeNotFinite`](crate::KinetostaticsError::MagnitudeNotFinite) where a load has no finite magnitude.
     #[inline]
     pub fn apply_loads(self, t: f64) -> Result<LoadedState<'a, T>> {
-        let Workspace { states, loads, .. } = &mut *self.workspace;
+        let workspace = &mut *self.workspace;
+        workspace
+            .friction_workspace
+            .known
+            .fill(FrictionState::BySpeed);
+        let Workspace { states, loads, .. } = workspace;
         self.model.loads.update_magnitudes(t, states, loads)?;
         Ok(StateWithLoads(self))
     }

@@ -3,8 +3,9 @@
 use super::stages::EvaluatedState;
 use super::{Model, Workspace};
 use crate::error::{LoadError, Result};
-use crate::load::{CompiledLoads, CompiledSignal, Load};
+use crate::load::{CompiledLoads, CompiledSignal, Friction, Load};
 use crate::pass::InverseDynamics;
+use dwell_geometry::body_states::CoordinateFunction;
 use dwell_numerics::Scalar;
 
 impl Model {
@@ -91,6 +92,12 @@ impl Model {
     /// indices in [`Model::loads`].
     pub fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
         self.dependent_loads.iter().map(|dependent| dependent.load)
+    }
+
+    /// One of these loads that holds its surfaces at rest, as a friction without regularisation does: its numbers, and the
+    /// coordinate whose speed is that of the surfaces.
+    pub fn sticking_friction(&self, index: usize) -> Option<(Friction, CoordinateFunction)> {
+        self.dependent_loads.get(index)?.sticking()
     }
 
     /// Whether a load has a potential energy.

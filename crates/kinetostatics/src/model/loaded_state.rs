@@ -2,7 +2,7 @@
 
 use super::{EvaluatedState, KinematicState, Workspace};
 use crate::error::Result;
-use crate::friction;
+use crate::friction::{self, DependentLoad, FrictionState};
 use crate::load::{AppliedWrench, ForceSource, Magnitude};
 use crate::pass::{GivenMotion, InverseDynamics};
 use dwell_geometry::Motion;
@@ -37,11 +37,25 @@ impl<T, const WRENCHES: bool> DerefMut for StateWithLoads<'_, T, WRENCHES> {
     }
 }
 
+impl<T> KinematicState<'_, T> {
+    /// The loads that depend on reactions, and what is known of each.
+    fn dependent_loads(&mut self) -> impl Iterator<Item = (&DependentLoad, &mut FrictionState<T>)> {
+        let known = &mut self.workspace.friction_workspace.known;
+        self.model.dependent_loads.iter().zip(known)
+    }
+}
+
 impl<'a, T: Scalar> LoadedState<'a, T> {
-    /// Sets the magnitude of a load of [`Magnitude::External`], in the unit of its kind.
+    /// Sets the magnitude of a load of [`Magnitude::External`], in the unit of its kind; of a friction, the force that
+    /// its surfaces have in a motion that was solved for.
     #[inline]
     pub fn set_magnitude(&mut self, load: usize, magnitude: T) {
         self.0.workspace.loads.magnitude[load] = magnitude;
+        for (dependent, known) in self.0.dependent_loads() {
+            if dependent.load == load {
+                *known = FrictionState::Force(magnitude);
+            }
+        }
     }
 
     /// A magnitude of the signals of a load of [`Magnitude::External`], such as the voltage of a motor, at time `t` (s).
@@ -162,6 +176,14 @@ impl<T: Scalar> ForceState<'_, T> {
     pub fn bodies_with(&mut self, set: impl FnOnce(&mut Motion<T>)) -> &BodyStates<T> {
         set(&mut self.0.workspace.motion);
         self.bodies()
+    }
+
+    /// What is known of the loads that depend on reactions, in the order of [`Model::frictions`](crate::Model::frictions),
+    /// until the next state of motion.
+    pub fn set_friction_states(&mut self, states: impl Iterator<Item = FrictionState<T>>) {
+        for ((_, known), state) in self.0.dependent_loads().zip(states) {
+            *known = state;
+        }
     }
 
     /// Solves for the [loads that depend on reactions](crate::Model::frictions): `frictionless` are the reactions

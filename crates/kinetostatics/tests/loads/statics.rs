@@ -251,8 +251,9 @@ fn friction_has_its_reactions_whichever_are_requested() {
         let friction = Friction {
             joint,
             coefficient: 0.3,
+            static_coefficient: 0.3,
             contact: FrictionContact::Pin { radius: 0.05 },
-            regularization_speed: 0.1,
+            regularization_speed: Some(0.1),
         };
         let bodies = mechanism.joints[joint.0].bodies;
         vec![

@@ -51,13 +51,14 @@ fn dry_friction(
     joint: usize,
     coefficient: f64,
     contact: FrictionContact,
-    regularization_speed: f64,
+    regularization_speed: impl Into<Option<f64>>,
 ) -> Magnitude {
     Magnitude::Friction(Friction {
         joint: JointId(joint),
         coefficient,
+        static_coefficient: coefficient,
         contact,
-        regularization_speed,
+        regularization_speed: regularization_speed.into(),
     })
 }
 
@@ -67,7 +68,7 @@ fn guide(length: f64) -> FrictionContact {
     FrictionContact::Guide { length }
 }
 
-/// Both joints of the pin B rub; a regularization speed not given is 0.01 rad/s or 0.001 m/s.
+/// Both joints of the pin B rub; friction without a regularization speed holds at rest.
 #[test]
 fn loads_and_friction() {
     let torque = |bodies| LoadKind::Torque { bodies };
@@ -88,13 +89,13 @@ fn loads_and_friction() {
         (
             "B-rod.friction",
             torque([CRANK, ROD]),
-            dry_friction(1, 0.1, PIN, 0.01),
+            dry_friction(1, 0.1, PIN, None),
         ),
         ("B-rod.viscous", damper([CRANK, ROD]), constant(0.002)),
         (
             "B-arm.friction",
             torque([CRANK, ARM]),
-            dry_friction(2, 0.1, PIN, 0.01),
+            dry_friction(2, 0.1, PIN, None),
         ),
         ("B-arm.viscous", damper([CRANK, ARM]), constant(0.002)),
         (
@@ -105,7 +106,7 @@ fn loads_and_friction() {
         (
             "groove.friction",
             LoadKind::SlideForce(groove()),
-            dry_friction(5, 0.05, guide(0.0), 0.001),
+            dry_friction(5, 0.05, guide(0.0), None),
         ),
         ("W.viscous", damper([GROUND, WHEEL]), constant(0.003)),
     ];

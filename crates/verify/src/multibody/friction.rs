@@ -70,7 +70,7 @@ impl MultibodySystem {
         (0..self.loads.len()).filter(depends).collect()
     }
 
-    /// µ tanh(v/v₀), or −tan α.
+    /// µ sign(v) or µ tanh(v/v₀), or −tan α.
     fn factor(&self, load: &Load, at: &MultibodyState) -> Option<f64> {
         if let Magnitude::Separating(teeth) = &load.magnitude {
             return Some(-teeth.angle.tan());
@@ -93,7 +93,12 @@ impl MultibodySystem {
             | LoadKind::SlideDamper(_)
             | LoadKind::SeparatingForce(_) => return None,
         };
-        Some(friction.coefficient * (velocity / friction.regularization_speed).tanh())
+        let sign = match friction.regularization_speed {
+            Some(speed) => (velocity / speed).tanh(),
+            None if velocity == 0.0 => 0.0,
+            None => velocity.signum(),
+        };
+        Some(friction.coefficient * sign)
     }
 
     /// g or |T|, with its derivative by every row that it depends on.

@@ -157,8 +157,9 @@ fn val_slider_with_friction_on_an_incline() {
     let friction = Friction {
         joint: guide,
         coefficient: mu,
+        static_coefficient: mu,
         contact: FrictionContact::Guide { length: 0.5 },
-        regularization_speed,
+        regularization_speed: Some(regularization_speed),
     };
     let along = Guide {
         bodies: [GROUND, block],

@@ -146,8 +146,9 @@ fn slider_crank() -> Plant {
         Magnitude::Friction(Friction {
             joint,
             coefficient: 0.12,
+            static_coefficient: 0.12,
             contact,
-            regularization_speed,
+            regularization_speed: Some(regularization_speed),
         })
     };
     let bodies = [crank, rod];

@@ -98,8 +98,9 @@ fn val_a_slot_that_rubs() {
         Magnitude::Friction(Friction {
             joint,
             coefficient: 0.2,
+            static_coefficient: 0.2,
             contact,
-            regularization_speed: 0.5,
+            regularization_speed: Some(0.5),
         })
     };
     plant.load(

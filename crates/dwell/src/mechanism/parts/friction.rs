@@ -41,7 +41,8 @@ impl Friction {
         Self(Keys::new("viscous", coefficient))
     }
 
-    /// The same with one more key: `viscous`, `guide-length`, `regularization-speed`.
+    /// The same with one more key: `viscous`, `guide-length`, `static-coefficient`, or `regularization-speed`, without
+    /// which dry friction holds at rest.
     ///
     /// ```
     /// let guide = dwell::Friction::slide(0.1).with("regularization-speed", 0.005);

@@ -116,6 +116,7 @@ impl FreeMotionProblem<'_> {
             };
             text += &format!("  {}: {happened}{stopped}\n", event.name);
         }
+        text += &self.describe_contacts(computed);
         for change in &motion.chart_changes {
             text += &format!("  {change}\n");
         }

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod between_samples;
+mod contacts;
 mod description;
 mod difference;
 mod error_estimate;

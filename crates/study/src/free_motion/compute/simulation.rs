@@ -110,9 +110,13 @@ pub(crate) fn compute_free_motion_at(
         let name = spec.events.get(o.event).map(|e| e.name.clone());
         (o.state.t, name.unwrap_or_default())
     };
+    let contacts = problem.contact_occurrences(motion).into_iter();
+    let contacts = contacts.map(|o| (o.state.t, o.name));
+    let mut events: Vec<(f64, String)> = motion.occurrences().map(event).chain(contacts).collect();
+    events.sort_by(|(one, _), (other, _)| one.total_cmp(other));
     Ok(FreeMotion {
         computed,
-        events: motion.occurrences().map(event).collect(),
+        events,
         event_table: problem.event_table(motion),
         estimated_error: integrated.accuracy.map(|[_, error]| error),
         summary,

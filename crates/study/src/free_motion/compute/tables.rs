@@ -124,8 +124,9 @@ impl FreeMotionProblem<'_> {
         let mut extra_values = vec![kinetic, potential];
         extra_values.extend(works);
         extra_values.push(kinetic + potential - works.iter().sum::<f64>());
-        extra_values.extend(&point.y[2 * machine.free().len()..first_work]);
+        extra_values.extend(&point.y[machine.drive_states()]);
         let (drives, magnitudes) = (loads - machine.drives()..loads, state.magnitudes());
+        let given = drives.chain(machine.contact_loads());
         Ok(TrajectorySample {
             t: point.t,
             q: state.q().to_vec(),
@@ -133,7 +134,7 @@ impl FreeMotionProblem<'_> {
             q_ddot: state.q_ddot().to_vec(),
             chart,
             actuator_coordinate: None,
-            drive_magnitudes: drives.map(|load| (load, magnitudes[load])).collect(),
+            drive_magnitudes: given.map(|load| (load, magnitudes[load])).collect(),
             extra_values,
         })
     }
@@ -148,7 +149,7 @@ impl FreeMotionProblem<'_> {
         sample.extra_values[self.balance_index()]
     }
 
-    /// The time of each event, and the actuator coordinates and speeds then.
+    /// The time of each event, of the scene and of contacts, and the actuator coordinates and speeds then.
     pub(crate) fn event_table(&self, motion: &SegmentedMotion) -> Table {
         let mut columns = vec![Column::new("t", "s"), Column::new("event", "")];
         let mechanism = &self.loaded_scene.mechanism;
@@ -158,11 +159,11 @@ impl FreeMotionProblem<'_> {
             columns.push(Column::new(name, unit));
             columns.push(Column::new(format!("{name}.velocity"), format!("{unit}/s")));
         }
-        let row = |(chart, o): (usize, &EventOccurrence)| {
+        let row = |(chart, number, at): (usize, usize, &OdeState)| {
             let machine = self.machine(motion, chart);
             let mut workspace = machine.workspace();
-            let mut row = vec![o.state.t, (o.event + 1) as f64];
-            if let Ok(state) = machine.evaluate(o.state.t, &o.state.y, &mut workspace) {
+            let mut row = vec![at.t, number as f64];
+            if let Ok(state) = machine.evaluate(at.t, &at.y, &mut workspace) {
                 for actuator in &mechanism.actuators {
                     let measured = CoordinateFunction::find(mechanism, actuator.coordinate());
                     let values = measured.map(|measured| state.coordinate(measured));
@@ -172,7 +173,11 @@ impl FreeMotionProblem<'_> {
             row.resize(columns.len(), f64::NAN);
             row
         };
-        let rows = motion.occurrences().map(row).collect();
+        let event = |(chart, o): (usize, &EventOccurrence)| row((chart, o.event + 1, &o.state));
+        let mut rows: Vec<Vec<f64>> = motion.occurrences().map(event).collect();
+        let contacts = self.contact_occurrences(motion);
+        rows.extend(contacts.iter().map(|o| row((o.chart, o.number, &o.state))));
+        rows.sort_by(|one, other| one[0].total_cmp(&other[0]));
         Table { columns, rows }
     }
 }

@@ -1,0 +1,86 @@
+//! What the surfaces of a contact do.
+
+/// What the surfaces of a friction do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ContactMode {
+    /// Not decided yet: as their speed says; at a speed of zero, whichever mode agrees with the forces.
+    #[default]
+    Undecided,
+    /// They are at rest, and their mode is to be found; at their limit, if so, they do not hold.
+    AtRest {
+        /// Whether the force has just reached its limit.
+        at_limit: bool,
+    },
+    /// They slide, to the side on which the speed has this sign.
+    Slides {
+        /// Whether the speed is positive.
+        forward: bool,
+    },
+    /// They hold, by whatever force that takes.
+    Holds,
+    /// Their force is at its limit, but others hold them: they would move to the side on which the speed has this sign.
+    AtLimit {
+        /// Whether the speed would be positive.
+        forward: bool,
+    },
+}
+
+impl ContactMode {
+    /// The number by which it is written among the states of a machine.
+    pub(crate) fn code(self) -> f64 {
+        match self {
+            Self::Undecided => 0.0,
+            Self::Slides { forward } => sign(forward),
+            Self::Holds => 2.0,
+            Self::AtLimit { forward } => 3.0 * sign(forward),
+            Self::AtRest { at_limit: false } => 4.0,
+            Self::AtRest { at_limit: true } => 5.0,
+        }
+    }
+
+    /// The mode of a number among the states; between two states of an interpolation lies a rounding.
+    pub(crate) fn of_code(code: f64) -> Self {
+        let forward = code > 0.0;
+        match code.abs().round() {
+            1.0 => Self::Slides { forward },
+            2.0 => Self::Holds,
+            3.0 => Self::AtLimit { forward },
+            4.0 => Self::AtRest { at_limit: false },
+            5.0 => Self::AtRest { at_limit: true },
+            _ => Self::Undecided,
+        }
+    }
+
+    /// Whether it is to be found yet.
+    pub(crate) fn is_open(self) -> bool {
+        matches!(self, Self::Undecided | Self::AtRest { .. })
+    }
+
+    /// Whether it is a mode of surfaces without speed.
+    pub fn is_at_rest(self) -> bool {
+        matches!(
+            self,
+            Self::Holds | Self::AtLimit { .. } | Self::AtRest { .. }
+        )
+    }
+}
+
+/// 1 or −1.
+pub(super) fn sign(forward: bool) -> f64 {
+    if forward { 1.0 } else { -1.0 }
+}
+
+/// A change of mode in a motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactEvent {
+    /// Time, s.
+    pub t: f64,
+    /// The state of the machine behind it.
+    pub y: Vec<f64>,
+    /// The load whose surfaces change their mode, by its index.
+    pub load: usize,
+    /// From which mode.
+    pub from: ContactMode,
+    /// To which mode.
+    pub to: ContactMode,
+}

@@ -1,0 +1,185 @@
+//! Locates the events of contacts during an integration: surfaces that come to rest, and forces of surfaces that hold that
+//! reach their limit. Each is the zero of a margin,
+//!
+//! ```text
+//! ±v of surfaces that slide,    1 − |F|/(µₛ g) of surfaces that hold
+//! ```
+//!
+//! on the dense output: the modes are held within a step, so that everything is smooth, and a step may lead beyond.
+
+use super::passage::ContactStep;
+use crate::error::{DynamicsError, Result};
+use crate::ode::{DenseOutput, OdeState, OdeSystem, root_subintervals, state_at};
+use crate::switch_monitor::vertex;
+use dwell_numerics::root;
+
+/// Roundings of time within which events happen together, and how many of them count as one without end.
+const TOGETHER: f64 = 16.0 * f64::EPSILON;
+const MAX_TOGETHER: usize = 64;
+/// A margin below this is beyond its limit where a motion begins.
+const BEYOND: f64 = 1e-12;
+
+/// Watches the contacts of a system during its integration.
+pub(crate) struct ContactMonitor {
+    margins: Vec<Margin>,
+    values: Vec<f64>,
+    /// When the last event was, and how many happened then.
+    last: (f64, usize),
+}
+
+/// The margin of a contact.
+#[derive(Debug, Clone, Copy)]
+struct Margin {
+    /// At the last points of the step, the latest first.
+    points: [(f64, f64); 2],
+    /// The largest in the step.
+    largest: f64,
+    /// Whether it was positive since the integration began: surfaces that have just let go have no speed yet.
+    is_inside: bool,
+}
+
+impl ContactMonitor {
+    /// None for a system without contacts.
+    pub(crate) fn new(system: &dyn OdeSystem) -> Option<Self> {
+        let count = system.contact_count();
+        let margin = Margin {
+            points: [(f64::NAN, f64::NAN); 2],
+            largest: 0.0,
+            is_inside: false,
+        };
+        (count > 0).then(|| Self {
+            margins: vec![margin; count],
+            values: vec![0.0; count],
+            last: (f64::NEG_INFINITY, 0),
+        })
+    }
+
+    /// Decides the modes that are open where an integration begins, and those that another load or drive has changed.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] where no mode is found, or the state cannot be evaluated.
+    pub(crate) fn settle(&mut self, system: &mut dyn OdeSystem, at: &mut OdeState) -> Result<()> {
+        for margin in &mut self.margins {
+            margin.is_inside = false;
+        }
+        let is_open = system.contact_margins(at.t, &at.y, &mut self.values)?;
+        if !is_open && self.values.iter().all(|margin| !(*margin < -BEYOND)) {
+            return Ok(());
+        }
+        let touched: Vec<bool> = self.values.iter().map(|margin| *margin < -BEYOND).collect();
+        self.change_modes(system, at, &touched)
+    }
+
+    /// The first event in a step that ends at `now`.
+    ///
+    /// # Errors
+    /// Where a state cannot be evaluated.
+    pub(crate) fn first_event(
+        &mut self,
+        system: &mut dyn OdeSystem,
+        before: &OdeState,
+        now: &OdeState,
+        dense: DenseOutput<'_>,
+    ) -> Result<Option<(OdeState, Vec<bool>)>> {
+        system.contact_margins(before.t, &before.y, &mut self.values)?;
+        for (margin, &value) in self.margins.iter_mut().zip(&self.values) {
+            margin.points = [(before.t, value), (f64::NAN, f64::NAN)];
+            margin.largest = value.abs();
+            margin.is_inside |= value > 0.0;
+        }
+        for t in root_subintervals(before, now) {
+            let point = state_at(t, now, dense)?;
+            system.contact_margins(t, &point.y, &mut self.values)?;
+            let mut first: Option<(f64, Vec<usize>)> = None;
+            for k in 0..self.margins.len() {
+                let Some(at) = self.crossing(k, t, system, (before, now), dense)? else {
+                    continue;
+                };
+                match &mut first {
+                    Some((t, all)) if (at - *t).abs() <= TOGETHER * at.abs() => all.push(k),
+                    Some((t, _)) if at > *t => {}
+                    _ => first = Some((at, vec![k])),
+                }
+            }
+            if let Some((at, all)) = first {
+                let state = match at > before.t {
+                    true => state_at(at, now, dense)?,
+                    false => before.clone(),
+                };
+                let touched = (0..self.margins.len()).map(|k| all.contains(&k));
+                return Ok(Some((state, touched.collect())));
+            }
+        }
+        Ok(None)
+    }
+
+    /// When the margin of a contact becomes negative between the last point of the step and `t`.
+    fn crossing(
+        &mut self,
+        k: usize,
+        t: f64,
+        system: &mut dyn OdeSystem,
+        (before, now): (&OdeState, &OdeState),
+        dense: DenseOutput<'_>,
+    ) -> Result<Option<f64>> {
+        let value = self.values[k];
+        let margin = &mut self.margins[k];
+        let earlier = margin.points;
+        margin.points = [(t, value), earlier[0]];
+        margin.largest = margin.largest.max(value.abs());
+        let was_inside = margin.is_inside;
+        margin.is_inside |= value > 0.0;
+        if value < 0.0 && !was_inside {
+            return Ok(Some(earlier[0].0));
+        }
+        let lowest = vertex([earlier[1], earlier[0], (t, value)]);
+        let Some(end) = (value < 0.0).then_some(t).or(lowest) else {
+            return Ok(None);
+        };
+        let mut values = vec![0.0; self.margins.len()];
+        let mut margin_at = |at: f64| -> Result<f64> {
+            let state = match at > before.t {
+                true => state_at(at, now, dense)?,
+                false => before.clone(),
+            };
+            system.contact_margins(at, &state.y, &mut values)?;
+            Ok(values[k])
+        };
+        if !(margin_at(end)? < 0.0) {
+            return Ok(None);
+        }
+        let from = if end > earlier[0].0 {
+            earlier[0]
+        } else {
+            earlier[1]
+        };
+        root::find(margin_at, from.0, end)
+    }
+
+    /// Changes the modes where an event has ended an integration.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] where no mode is found, or events without end happen there.
+    pub(crate) fn change_modes(
+        &mut self,
+        system: &mut dyn OdeSystem,
+        at: &mut OdeState,
+        touched: &[bool],
+    ) -> Result<()> {
+        let together = (at.t - self.last.0).abs() <= TOGETHER * at.t.abs();
+        self.last = (at.t, if together { self.last.1 + 1 } else { 0 });
+        if self.last.1 > MAX_TOGETHER {
+            let source_index = system.contact_source(touched.iter().position(|t| *t).unwrap_or(0));
+            return Err(DynamicsError::NoContactMode { source_index });
+        }
+        let largest: Vec<f64> = self.margins.iter().map(|margin| margin.largest).collect();
+        let step = ContactStep {
+            largest_speeds: &largest,
+            touched,
+        };
+        for margin in &mut self.margins {
+            margin.is_inside = false;
+        }
+        system.pass_contacts(at.t, &mut at.y, &step)
+    }
+}

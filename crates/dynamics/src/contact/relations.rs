@@ -1,0 +1,119 @@
+//! What a unit of each force does to the speeds of all surfaces:
+//!
+//! ```text
+//! aᵢ = bᵢ + Σⱼ Dᵢⱼ Fⱼ,    Dᵢⱼ = Wᵢ M⁻¹ Wⱼᵀ,    vᵢ = Wᵢ q̇ + …,    bᵢ = Wᵢ q̈⁰ + Ẇᵢ q̇ + …
+//! ```
+//!
+//! with F the loads that depend on reactions, a the accelerations of the surfaces and q̈⁰ those of the coordinates without
+//! these loads. The terms that are left out are those of prescribed coordinates.
+
+use super::mode::sign;
+use super::{Contact, ContactMode};
+use dwell_kinetostatics::{ForceState, InverseDynamics};
+use dwell_numerics::Scalar;
+
+/// Working memory for the contacts of a machine.
+#[derive(Debug, Clone)]
+pub(crate) struct ContactWorkspace<T> {
+    /// By contact: its mode, found where the state left it open.
+    pub(crate) modes: Vec<ContactMode>,
+    /// By contact that holds: its force as a part of the largest; zero where it does not.
+    pub(crate) shares: Vec<f64>,
+    /// By contact: the speed of its surfaces.
+    pub(crate) speeds: Vec<f64>,
+    /// By load that depends on reactions: the force along each free coordinate of a unit of it, Wⱼ.
+    pub(crate) rows: Vec<Vec<T>>,
+    /// By contact: b, and the part of it that is not of q̈⁰.
+    pub(super) free: Vec<T>,
+    pub(super) convective: Vec<T>,
+    /// By contact and load: D.
+    pub(super) compliance: Vec<Vec<T>>,
+    /// By load: F.
+    pub(super) forces: Vec<T>,
+    /// The reactions under all forces, and those with the contacts that hold.
+    pub(super) reactions: Vec<T>,
+    pub(super) held_reactions: Vec<T>,
+    pub(super) held_responses: Vec<InverseDynamics<T>>,
+    /// Whether no coordinate accelerates.
+    pub(crate) nothing_moves: bool,
+}
+
+impl<T: Scalar> ContactWorkspace<T> {
+    /// For these contacts, so many free coordinates and loads, and results of this size.
+    pub(crate) fn new(
+        contacts: &[Contact],
+        free: usize,
+        loads: usize,
+        result: &InverseDynamics<T>,
+    ) -> Self {
+        let zero = T::from_f64(0.0);
+        let n = contacts.len();
+        let loads = if n == 0 { 0 } else { loads };
+        Self {
+            modes: vec![ContactMode::Undecided; n],
+            shares: vec![0.0; n],
+            speeds: vec![0.0; n],
+            rows: vec![vec![zero; free]; loads],
+            free: vec![zero; n],
+            convective: vec![zero; n],
+            compliance: vec![vec![zero; loads]; n],
+            forces: vec![zero; loads],
+            reactions: result.reactions.clone(),
+            held_reactions: result.reactions.clone(),
+            held_responses: vec![result.clone(); loads],
+            nothing_moves: false,
+        }
+    }
+
+    /// Collects them at a state, whose bodies have the accelerations of prescribed coordinates alone; `accelerations` are
+    /// q̈⁰, and by load what a unit of it adds.
+    pub(super) fn collect(
+        &mut self,
+        contacts: &[Contact],
+        state: &mut ForceState<'_, T>,
+        (frictionless, by_load): (&[T], &[Vec<T>]),
+    ) {
+        let bodies = state.bodies();
+        for (i, contact) in contacts.iter().enumerate() {
+            let row = &self.rows[contact.dependent];
+            let along = |q_ddot: &[T]| {
+                let terms = row.iter().zip(q_ddot);
+                terms.fold(T::from_f64(0.0), |sum, (w, q)| sum + *w * *q)
+            };
+            let [_, speed, convective] = bodies.coordinate(contact.coordinate);
+            self.speeds[i] = speed.value();
+            self.convective[i] = convective;
+            self.free[i] = convective + along(frictionless);
+            for (entry, accelerations) in self.compliance[i].iter_mut().zip(by_load) {
+                *entry = along(accelerations);
+            }
+        }
+    }
+
+    /// How far a contact is from a change of its mode: the speed that is left of surfaces that slide, the part of the largest
+    /// force that is left of those that hold.
+    pub(crate) fn margin(&self, i: usize) -> f64 {
+        /// Far beyond its limit a force is without bounds where nothing presses.
+        const MOST: f64 = 2.0;
+        match self.modes[i] {
+            ContactMode::Slides { forward } => sign(forward) * self.speeds[i],
+            ContactMode::Holds if self.shares[i].is_nan() => 1.0 - MOST,
+            ContactMode::Holds => 1.0 - self.shares[i].min(MOST),
+            ContactMode::AtLimit { .. } | ContactMode::AtRest { .. } | ContactMode::Undecided => {
+                f64::NAN
+            }
+        }
+    }
+
+    /// The acceleration of the surfaces of a contact, and the sum of the absolute terms.
+    pub(super) fn acceleration(&self, i: usize) -> [f64; 2] {
+        let first = self.free[i].value();
+        let mut sums = [first, first.abs()];
+        for (d, force) in self.compliance[i].iter().zip(&self.forces) {
+            let term = (*d * *force).value();
+            sums[0] += term;
+            sums[1] += term.abs();
+        }
+        sums
+    }
+}
