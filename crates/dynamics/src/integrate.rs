@@ -120,7 +120,8 @@ fn integrate_held(
     mut pieces: Option<&mut TimePieces<'_>>,
     observer: StepObserver<'_>,
 ) -> Result<Termination> {
-    let mut contacts = ContactMonitor::new(system);
+    let span = end.unwrap_or(f64::INFINITY) - start.t;
+    let mut contacts = ContactMonitor::new(system, if span.is_finite() { span } else { 1.0 });
     if system.switch_kinds().is_empty() && contacts.is_none() {
         return integrate_smooth(system, start, end, options, pieces, observer);
     }

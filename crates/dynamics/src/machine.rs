@@ -15,12 +15,13 @@
 //! sources], so that the energy balance is integrated with the motion.
 
 mod drives;
+mod impact;
 mod on_fit;
 mod state;
 mod workspace;
 
 use crate::change_point_fit::FitWindow;
-use crate::contact::{Contact, ContactMode, Unloaded, solve_contacts};
+use crate::contact::{Contact, ContactMode, EndStop, Stop, Unloaded, one_sided, solve_contacts};
 use crate::drive::{CompiledDrive, DriveError};
 use crate::error::{DynamicsError, Result};
 use crate::state_switches::StateSwitches;
@@ -52,6 +53,8 @@ pub enum NonconservativeSource {
     Drive(usize),
     /// The prescribed motion of an actuator.
     Prescribed(usize),
+    /// An end stop, by its index: what its impacts lose.
+    Stop(usize),
 }
 
 /// A machine: constant, shared between threads.
@@ -72,6 +75,8 @@ pub struct Machine {
     pub(crate) fit_windows: Vec<FitWindow>,
     /// Frictions that hold at rest.
     pub(crate) contacts: Vec<Contact>,
+    /// The sides of the end stops.
+    pub(crate) stops: Vec<Stop>,
     /// By free coordinate: inertia along it beside that of the bodies and rotors, kg m² or kg.
     pub(crate) flywheels: Vec<f64>,
 }
@@ -85,6 +90,11 @@ pub enum MachineError {
     /// A load that does not fit the mechanism.
     #[error(transparent)]
     Load(#[from] LoadError),
+    /// An end stop whose coordinate is not free, or whose numbers cannot be used.
+    #[error(
+        "end stop {0}: its coordinate must be free, its limits ascending, its restitution from 0 to 1"
+    )]
+    Stop(usize),
     /// The number of coordinate modes is not that of the actuators.
     #[error("there must be one coordinate mode, free or prescribed, for each actuator")]
     CoordinateModes,
@@ -125,6 +135,7 @@ impl Machine {
                 true => Vec::new(),
                 false => Contact::of_model(&model),
             },
+            stops: Vec::new(),
             model,
             flywheels: vec![0.0; free.len()],
             modes,
@@ -133,6 +144,25 @@ impl Machine {
             nonconservative_sources: sources,
             fit_windows: Vec::new(),
         })
+    }
+
+    /// The same with end stops.
+    ///
+    /// # Errors
+    /// [`MachineError::Stop`] for one that cannot be used.
+    pub fn with_stops(mut self, stops: &[EndStop]) -> Result<Self, MachineError> {
+        for (k, stop) in stops.iter().enumerate() {
+            let low = stop.min.unwrap_or(f64::NEG_INFINITY);
+            let high = stop.max.unwrap_or(f64::INFINITY);
+            let fits = low < high && (0.0..=1.0).contains(&stop.restitution);
+            if !fits || !self.free.contains(&stop.actuator) {
+                return Err(MachineError::Stop(k));
+            }
+        }
+        self.stops = one_sided(stops, &self.free).unwrap_or_default();
+        let sources = (0..stops.len()).map(NonconservativeSource::Stop);
+        self.nonconservative_sources.extend(sources);
+        Ok(self)
     }
 
     /// The model that moves.
@@ -219,7 +249,7 @@ impl Machine {
 
     /// Index of the first work among the states.
     pub fn work_offset(&self) -> usize {
-        self.contact_states().end
+        self.stop_states().end
     }
 
     /// The states of the drives.
@@ -234,6 +264,17 @@ impl Machine {
         first..first + self.contacts.len()
     }
 
+    /// The states that say of each side of an end stop whether its coordinate rests on it.
+    pub fn stop_states(&self) -> Range<usize> {
+        let first = self.contact_states().end;
+        first..first + self.stops.len()
+    }
+
+    /// Number of frictions that hold at rest, and of sides of end stops.
+    pub(crate) fn contact_count(&self) -> usize {
+        self.contacts.len() + self.stops.len()
+    }
+
     /// The frictions that hold at rest, by their loads.
     pub fn contact_loads(&self) -> impl Iterator<Item = usize> + '_ {
         self.contacts.iter().map(|contact| contact.load)
@@ -241,6 +282,12 @@ impl Machine {
 
     /// Refuses an analysis of smooth motions where friction holds at rest; `what` says why.
     pub(crate) fn require_smooth(&self, what: &'static str) -> Result<()> {
+        if let Some(stop) = self.stops.first() {
+            return Err(DynamicsError::Stops {
+                stop: stop.stop,
+                what: "this analysis is of motions that meet no end stop",
+            });
+        }
         let first = self.contacts.first();
         first.map_or(Ok(()), |contact| {
             let source_index = contact.load;
@@ -284,6 +331,10 @@ impl Machine {
         let modes = equation.contacts.modes.iter_mut();
         for (mode, code) in modes.zip(&y[self.contact_states()]) {
             *mode = ContactMode::of_code(code.value());
+        }
+        equation.locked.fill(false);
+        for (stop, code) in self.stops.iter().zip(&y[self.stop_states()]) {
+            equation.locked[stop.free] |= ContactMode::of_code(code.value()) == ContactMode::Holds;
         }
         self.set_actuator_motion(t, y, equation);
         let forces = if let Some(fit) = self.fit_at(equation.q.first()) {
@@ -377,8 +428,12 @@ impl Machine {
             pivots,
             free_accelerations,
             contacts,
+            locked,
             ..
         } = equation;
+        if !self.stops.is_empty() {
+            lock(locked, mass_matrix, free_accelerations);
+        }
         let diagonal = mass_matrix.first().map_or(1.0, |m| m.value());
         let factored = lu::factor(mass_matrix, pivots);
         let inertia = factored.determinant_sign > 0.0 && factored.pivot_ratio > 0.0;
@@ -403,6 +458,13 @@ impl Machine {
             if let Some(row) = contacts.rows.get_mut(j) {
                 row.copy_from_slice(accelerations);
             }
+            for (value, _) in accelerations
+                .iter_mut()
+                .zip(locked.iter())
+                .filter(|(_, l)| **l)
+            {
+                *value = T::from_f64(0.0);
+            }
             lu::solve(mass_matrix, pivots, accelerations);
             for (column, &q_ddot) in columns.iter().zip(accelerations.iter()) {
                 response.add_scaled(column, q_ddot);
@@ -417,7 +479,15 @@ impl Machine {
                 responses: friction_responses,
             };
             let accelerations = (&free_accelerations[..], &friction_accelerations[..]);
-            solve_contacts(&self.contacts, state, contacts, &unloaded, accelerations)?;
+            let freedoms = locked.iter().filter(|locked| !**locked).count();
+            solve_contacts(
+                &self.contacts,
+                state,
+                contacts,
+                &unloaded,
+                accelerations,
+                freedoms,
+            )?;
         } else if self.model.frictions().len() > 0 {
             state.solve_friction(&result.reactions, friction_responses)?;
         }
@@ -435,6 +505,19 @@ impl Machine {
             result.add_scaled(response, friction);
         }
         Ok(())
+    }
+}
+
+/// Fixes coordinates: their accelerations are zero, whatever the forces.
+fn lock<T: Scalar>(locked: &[bool], mass_matrix: &mut [T], forces: &mut [T]) {
+    let n = locked.len();
+    for k in (0..n).filter(|&k| locked[k]) {
+        for i in 0..n {
+            mass_matrix[k * n + i] = T::from_f64(0.0);
+            mass_matrix[i * n + k] = T::from_f64(0.0);
+        }
+        mass_matrix[k * n + k] = T::from_f64(1.0);
+        forces[k] = T::from_f64(0.0);
     }
 }
 

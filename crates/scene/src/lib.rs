@@ -41,7 +41,7 @@
 //!   `speed`: 1 rad/s or 1 m/s.
 //! - `[requests]`, or its `reactions`: every reaction. `reactions = []` asks for none. Its
 //!   `variables`: every column; `sections`: none.
-//! - `[friction]`: none; its `regularization-speed`: 0.01 rad/s or 0.001 m/s. `[drives]`: none.
+//! - `[friction]`: none; without a `regularization-speed` it holds at rest. `[stops]`: none; their `restitution`: 0. `[drives]`: none.
 //! - `[motion]`: none; its `initial-coordinate`: that at assembly; its `initial-velocity`: 0 where loads,
 //!   drives or motion laws can move the mechanism; its `prescribed` and `events`: none.
 //!
@@ -89,6 +89,7 @@ mod requests;
 mod scene;
 mod schema;
 mod spans;
+mod stops;
 mod table_reader;
 mod unit_reader;
 mod units;
@@ -106,5 +107,6 @@ pub use scene::{
 };
 pub use schema::schema;
 pub use spans::SceneLocation;
+pub use stops::NamedStop;
 pub use value::MAX_ANGLE;
 pub use wording::choices;

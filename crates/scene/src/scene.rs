@@ -3,6 +3,7 @@
 use crate::error::SceneWarning;
 use crate::number_paths::SceneNumber;
 use crate::spans::SceneSpans;
+use crate::stops::NamedStop;
 use crate::units::Units;
 use dwell_geometry::{
     ActuatorId, AssemblyConfiguration, BodyId, Coordinate, Mechanism, Reaction, Vec2,
@@ -43,6 +44,8 @@ pub struct Scene {
     pub loads: Vec<Load>,
     /// What drives it in a free motion.
     pub drives: Vec<Drive>,
+    /// The end stops of free coordinates.
+    pub stops: Vec<NamedStop>,
     /// What is asked for.
     pub requests: Requests,
     /// The free motion.

@@ -16,8 +16,12 @@ const AT_LIMIT: f64 = 1e-9;
 pub struct ContactStep<'s> {
     /// By contact: the largest speed of its surfaces.
     pub largest_speeds: &'s [f64],
-    /// By contact: whether its surfaces come to rest, or its force to its limit.
+    /// By contact, and behind them by end stop: whether its surfaces come to rest, or its force to its limit.
     pub touched: &'s [bool],
+    /// The length of the motion, s.
+    pub span: f64,
+    /// Whether another event was at the same time.
+    pub repeated: bool,
 }
 
 /// Finds the modes anew at time `t` (s), writes them and the speeds that go with them into the state `y`, and yields what
@@ -31,8 +35,14 @@ pub(crate) fn pass(
     (t, y): (f64, &mut [f64]),
     step: &ContactStep<'_>,
 ) -> Result<Vec<ContactEvent>> {
+    let mut events = Vec::new();
+    let is_struck = super::stop::pass_stops(machine, workspace, (t, y), step, &mut events)?;
     if machine.contacts.is_empty() {
-        return Ok(Vec::new());
+        return Ok(events);
+    }
+    if is_struck {
+        // The speeds behind the impact say what the surfaces do.
+        decide_by_speeds(machine, workspace, (t, y))?;
     }
     machine.evaluate(t, y, workspace)?;
     let modes = machine.contact_states();
@@ -68,15 +78,41 @@ pub(crate) fn pass(
     }
     let each = machine.contacts.iter().zip(before.iter().zip(after));
     let changed = each.filter(|(_, (from, to))| from != to);
-    let event =
-        |(contact, (from, to)): (&super::Contact, (&ContactMode, &ContactMode))| ContactEvent {
+    let event = |(contact, (from, to)): (&super::Contact, (&ContactMode, &ContactMode))| {
+        ContactEvent::Friction {
             t,
             y: y.to_vec(),
             load: contact.load,
             from: *from,
             to: *to,
+        }
+    };
+    events.extend(changed.map(event));
+    Ok(events)
+}
+
+/// Leaves the modes open of surfaces that an impact has given a speed, or taken one from.
+fn decide_by_speeds(
+    machine: &Machine,
+    workspace: &mut MachineWorkspace<f64>,
+    (t, y): (f64, &mut [f64]),
+) -> Result<()> {
+    /// Speeds below this part of the largest are rounding.
+    const ROUNDING: f64 = 1e-12;
+    machine.evaluate(t, y, workspace)?;
+    let speeds = &workspace.contacts().speeds;
+    let largest = speeds.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+    let modes = machine.contact_states();
+    for (code, speed) in y[modes].iter_mut().zip(speeds) {
+        let next = match speed.abs() <= ROUNDING * largest {
+            true => ContactMode::AtRest { at_limit: false },
+            false => ContactMode::Slides {
+                forward: *speed > 0.0,
+            },
         };
-    Ok(changed.map(event).collect())
+        *code = next.code();
+    }
+    Ok(())
 }
 
 /// Takes off the speeds that surfaces that hold have within rounding, with the least change of momentum.
@@ -91,7 +127,7 @@ fn stop_surfaces(
     let basis = independent(held, |i, j| contacts.compliance[i][dependent(j)]);
     let n = machine.free().len();
     let speeds = &mut y[n..2 * n];
-    if basis.len() == n && !machine.has_prescribed() {
+    if basis.len() == n - workspace.locked() && !machine.has_prescribed() {
         return speeds.fill(0.0);
     }
     let r = basis.len();

@@ -32,6 +32,22 @@ pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> Stud
         } => explain_fast(scene, *source_index, [*width, *t], *max_steps),
         DynamicsError::Chatters { source_index, t } => explain_chatter(scene, *source_index, *t),
         DynamicsError::NoContactMode { source_index } => explain_no_mode(scene, *source_index),
+        DynamicsError::BeyondStop { stop, q } => explain_beyond_stop(scene, plan, *stop, *q),
+        DynamicsError::Stops { stop, what } => explain_stop(
+            scene,
+            *stop,
+            format!("end stop `{}`: {what}", stop_name(scene, *stop)),
+            "leave out [stops]; `dwell simulate` computes the motion with them",
+        ),
+        DynamicsError::StopsWithoutEnd { stop } => explain_stop(
+            scene,
+            *stop,
+            format!(
+                "the impacts on end stop `{}` follow each other without end",
+                stop_name(scene, *stop)
+            ),
+            "give it a smaller restitution",
+        ),
         DynamicsError::Sticks { source_index, what } => {
             explain_sticking(scene, *source_index, what)
         }
@@ -381,6 +397,39 @@ fn explain_sticking(scene: &Scene, load: usize, what: &str) -> StudyError {
                 motion with friction that holds";
     let label = "has no `regularization-speed`";
     scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
+}
+
+/// The motion starts beyond an end stop.
+fn explain_beyond_stop(scene: &Scene, plan: &Plan, stop: usize, q: f64) -> StudyError {
+    let actuator = scene
+        .stops
+        .get(stop)
+        .map_or(ActuatorId(0), |stop| stop.actuator);
+    let unit = coordinate_unit(plan.is_angle(actuator.0));
+    let name = stop_name(scene, stop);
+    let message = format!(
+        "the motion starts at {} {unit}, beyond end stop `{name}`",
+        number(q)
+    );
+    let help = "start between the limits, or move the stop";
+    let places = [
+        (SceneLocation::Stop(stop), "this stop"),
+        (SceneLocation::InitialCoordinate(actuator), "beyond it"),
+    ];
+    scene_error(scene, message, help, places)
+}
+
+fn explain_stop(scene: &Scene, stop: usize, message: String, help: &str) -> StudyError {
+    scene_error(
+        scene,
+        message,
+        help,
+        [(SceneLocation::Stop(stop), "this end stop")],
+    )
+}
+
+fn stop_name(scene: &Scene, stop: usize) -> &str {
+    scene.stops.get(stop).map_or("", |stop| stop.name.as_str())
 }
 
 /// The joint of a friction.
