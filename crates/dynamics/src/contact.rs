@@ -8,22 +8,16 @@
 //! End stops limit a coordinate: one that meets its stop rebounds, or rests on it until a force lifts it off (`stop`).
 //!
 //! `mode` names the modes, `relations` collects what a unit of each force does, `held` solves for the forces at given
-//! modes, `search` finds the modes of surfaces at rest, `passage` changes them at an event, and `monitor` locates the
-//! events.
+//! modes, and `search` finds the modes of surfaces at rest. Their events are in `contact_events`.
 
 mod held;
 mod mode;
-mod monitor;
-mod passage;
 mod relations;
 mod search;
 mod stop;
 
-pub(crate) use held::{Unloaded, solve_contacts};
-pub use mode::{ContactEvent, ContactMode, StopChange};
-pub(crate) use monitor::ContactMonitor;
-pub use passage::ContactStep;
-pub(crate) use passage::pass;
+pub(crate) use held::{Unloaded, independent, solve_contacts};
+pub use mode::{ContactEvent, ContactMode, ContactStep, StopChange};
 pub(crate) use relations::ContactWorkspace;
 pub use stop::EndStop;
 pub(crate) use stop::{Stop, one_sided};

@@ -14,6 +14,7 @@
 //! The state is [q, q̇ of the free coordinates; currents and integrals of the drives; modes of the contacts; work of the nonconservative
 //! sources], so that the energy balance is integrated with the motion.
 
+mod contacts;
 mod drives;
 mod impact;
 mod on_fit;
@@ -21,7 +22,7 @@ mod state;
 mod workspace;
 
 use crate::change_point_fit::FitWindow;
-use crate::contact::{Contact, ContactMode, EndStop, Stop, Unloaded, one_sided, solve_contacts};
+use crate::contact::{Contact, ContactMode, Stop, Unloaded, solve_contacts};
 use crate::drive::{CompiledDrive, DriveError};
 use crate::error::{DynamicsError, Result};
 use crate::state_switches::StateSwitches;
@@ -30,7 +31,6 @@ use dwell_kinetostatics::{Drive, ForceState, Load, LoadError, LoadKind, Magnitud
 use dwell_laws::{Features, Law};
 use dwell_numerics::{Scalar, lu};
 pub use state::MachineState;
-use std::ops::Range;
 use std::sync::Arc;
 use workspace::EquationWorkspace;
 pub use workspace::MachineWorkspace;
@@ -146,25 +146,6 @@ impl Machine {
         })
     }
 
-    /// The same with end stops.
-    ///
-    /// # Errors
-    /// [`MachineError::Stop`] for one that cannot be used.
-    pub fn with_stops(mut self, stops: &[EndStop]) -> Result<Self, MachineError> {
-        for (k, stop) in stops.iter().enumerate() {
-            let low = stop.min.unwrap_or(f64::NEG_INFINITY);
-            let high = stop.max.unwrap_or(f64::INFINITY);
-            let fits = low < high && (0.0..=1.0).contains(&stop.restitution);
-            if !fits || !self.free.contains(&stop.actuator) {
-                return Err(MachineError::Stop(k));
-            }
-        }
-        self.stops = one_sided(stops, &self.free).unwrap_or_default();
-        let sources = (0..stops.len()).map(NonconservativeSource::Stop);
-        self.nonconservative_sources.extend(sources);
-        Ok(self)
-    }
-
     /// The model that moves.
     pub fn model(&self) -> &Model {
         &self.model
@@ -250,54 +231,6 @@ impl Machine {
     /// Index of the first work among the states.
     pub fn work_offset(&self) -> usize {
         self.stop_states().end
-    }
-
-    /// The states of the drives.
-    pub fn drive_states(&self) -> Range<usize> {
-        let first = 2 * self.free.len();
-        first..first + self.drive_state_count
-    }
-
-    /// The states that are the [modes](crate::ContactMode) of frictions that hold at rest.
-    pub fn contact_states(&self) -> Range<usize> {
-        let first = self.drive_states().end;
-        first..first + self.contacts.len()
-    }
-
-    /// The states that say of each side of an end stop whether its coordinate rests on it.
-    pub fn stop_states(&self) -> Range<usize> {
-        let first = self.contact_states().end;
-        first..first + self.stops.len()
-    }
-
-    /// Number of frictions that hold at rest, and of sides of end stops.
-    pub(crate) fn contact_count(&self) -> usize {
-        self.contacts.len() + self.stops.len()
-    }
-
-    /// The frictions that hold at rest, by their loads.
-    pub fn contact_loads(&self) -> impl Iterator<Item = usize> + '_ {
-        self.contacts.iter().map(|contact| contact.load)
-    }
-
-    /// Refuses an analysis of smooth motions where friction holds at rest; `what` says why.
-    pub(crate) fn require_smooth(&self, what: &'static str) -> Result<()> {
-        if let Some(stop) = self.stops.first() {
-            return Err(DynamicsError::Stops {
-                stop: stop.stop,
-                what: "this analysis is of motions that meet no end stop",
-            });
-        }
-        let first = self.contacts.first();
-        first.map_or(Ok(()), |contact| {
-            let source_index = contact.load;
-            Err(DynamicsError::Sticks { source_index, what })
-        })
-    }
-
-    /// Whether a coordinate is prescribed.
-    pub(crate) fn has_prescribed(&self) -> bool {
-        self.free.len() < self.modes.len()
     }
 
     /// An initial state from the coordinates and speeds of all actuators (rad or m, per s), with zero drive states
@@ -412,6 +345,7 @@ impl Machine {
     }
 
     /// Solves (1) for the free accelerations, with the frictions.
+    // Long because all that the friction depends on is collected in one pass.
     fn solve_accelerations<T: Scalar>(
         &self,
         state: &mut ForceState<'_, T>,
@@ -432,7 +366,7 @@ impl Machine {
             ..
         } = equation;
         if !self.stops.is_empty() {
-            lock(locked, mass_matrix, free_accelerations);
+            contacts::lock(locked, mass_matrix, free_accelerations);
         }
         let diagonal = mass_matrix.first().map_or(1.0, |m| m.value());
         let factored = lu::factor(mass_matrix, pivots);
@@ -505,19 +439,6 @@ impl Machine {
             result.add_scaled(response, friction);
         }
         Ok(())
-    }
-}
-
-/// Fixes coordinates: their accelerations are zero, whatever the forces.
-fn lock<T: Scalar>(locked: &[bool], mass_matrix: &mut [T], forces: &mut [T]) {
-    let n = locked.len();
-    for k in (0..n).filter(|&k| locked[k]) {
-        for i in 0..n {
-            mass_matrix[k * n + i] = T::from_f64(0.0);
-            mass_matrix[i * n + k] = T::from_f64(0.0);
-        }
-        mass_matrix[k * n + k] = T::from_f64(1.0);
-        forces[k] = T::from_f64(0.0);
     }
 }
 

@@ -1,6 +1,7 @@
 //! A machine as an ODE system, with its exact Jacobian by dual numbers.
 
-use crate::contact::{self, ContactEvent, ContactMode, ContactStep};
+use crate::contact::{ContactEvent, ContactMode, ContactStep};
+use crate::contact_events::pass;
 use crate::error::Result;
 use crate::machine::{Machine, MachineState, MachineWorkspace};
 use crate::ode::{DualWorkspace, OdeSystem};
@@ -181,7 +182,7 @@ impl OdeSystem for MachineOde<'_> {
     }
 
     fn pass_contacts(&mut self, t: f64, y: &mut [f64], step: &ContactStep<'_>) -> Result<()> {
-        let changes = contact::pass(self.machine, &mut self.workspace, (t, y), step)?;
+        let changes = pass(self.machine, &mut self.workspace, (t, y), step)?;
         self.contact_events.extend(changes);
         Ok(())
     }

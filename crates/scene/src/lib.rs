@@ -102,11 +102,10 @@ mod tests;
 pub use error::{SceneError, SceneWarning};
 pub use scene::{
     Assembly, Calibration, CoordinateSweep, DwellRequest, EventTrigger, FreeMotionSpec,
-    MotionDuration, NamedCoordinate, NamedEvent, PathPoint, PrescribedMotion, Requests, Scene,
-    SectionRequest,
+    MotionDuration, NamedCoordinate, NamedEvent, NamedStop, PathPoint, PrescribedMotion, Requests,
+    Scene, SectionRequest,
 };
 pub use schema::schema;
 pub use spans::SceneLocation;
-pub use stops::NamedStop;
 pub use value::MAX_ANGLE;
 pub use wording::choices;

@@ -3,7 +3,6 @@
 use crate::error::SceneWarning;
 use crate::number_paths::SceneNumber;
 use crate::spans::SceneSpans;
-use crate::stops::NamedStop;
 use crate::units::Units;
 use dwell_geometry::{
     ActuatorId, AssemblyConfiguration, BodyId, Coordinate, Mechanism, Reaction, Vec2,
@@ -61,6 +60,21 @@ pub struct Scene {
     pub(crate) body_numbers: Vec<SceneNumber>,
     /// Those outside the bodies.
     pub(crate) section_numbers: Vec<SceneNumber>,
+}
+
+/// An end stop of an actuator's coordinate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedStop {
+    /// Its name.
+    pub name: String,
+    /// The actuator.
+    pub actuator: ActuatorId,
+    /// Lower limit, rad or m, if there is one.
+    pub min: Option<f64>,
+    /// Upper limit, rad or m, if there is one.
+    pub max: Option<f64>,
+    /// Coefficient of restitution, from 0 to 1.
+    pub restitution: f64,
 }
 
 /// Where and how the mechanism is put together at the start; it picks the branch.

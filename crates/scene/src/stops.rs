@@ -4,27 +4,13 @@ use crate::coordinates::ParsedActuator;
 use crate::keys::table;
 use crate::motion::ParsedMotion;
 use crate::names::check;
+use crate::scene::NamedStop;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
-use crate::units::SI;
+use crate::units::{SI, Unit};
 use crate::value::{NumberRule, SignRule};
 use crate::wording::shorten;
 use dwell_geometry::ActuatorId;
-
-/// An end stop of an actuator's coordinate.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NamedStop {
-    /// Its name.
-    pub name: String,
-    /// The actuator.
-    pub actuator: ActuatorId,
-    /// Lower limit, rad or m, if there is one.
-    pub min: Option<f64>,
-    /// Upper limit, rad or m, if there is one.
-    pub max: Option<f64>,
-    /// Coefficient of restitution, from 0 to 1.
-    pub restitution: f64,
-}
 
 /// The end stops of the section.
 pub(crate) fn stops(
@@ -70,46 +56,8 @@ fn stop(
         );
     }
     let unit = fields.units().coordinate_unit(actuators[k].is_angle());
-    let limit = |key: &str| {
-        let entry = fields.get(key)?;
-        let rule = NumberRule::new(unit, SignRule::Any);
-        Some(entry.value.quantity_with_sign(&rule, fields.name_of(entry)))
-    };
-    let (min, max) = (limit("min"), limit("max"));
-    let restitution = fields.number_or(
-        0.0,
-        "restitution",
-        &NumberRule::new(&SI, SignRule::NotNegative),
-    )?;
-    if restitution > 1.0 {
-        let at = fields.get("restitution")?;
-        return at.reject(
-            format!("the restitution of {} is above 1", fields.what),
-            "from 0 to 1",
-            "1 is a rebound without loss, 0 one without rebound",
-        );
-    }
-    // What could not be read is an error already.
-    let (min, max) = (
-        min.map_or(Some(None), |m| m.map(Some))?,
-        max.map_or(Some(None), |m| m.map(Some))?,
-    );
-    if min.is_none() && max.is_none() {
-        return entry.reject(
-            format!("{} has neither `min` nor `max`", fields.what),
-            "no limit is given",
-            "add the lower limit `min`, the upper limit `max`, or both",
-        );
-    }
-    if let (Some(low), Some(high)) = (min, max)
-        && low >= high
-    {
-        return entry.reject(
-            format!("the `min` of {} is not below its `max`", fields.what),
-            "no room between them",
-            "exchange the two",
-        );
-    }
+    let restitution = restitution(&fields)?;
+    let [min, max] = limits(entry, &fields, unit)?;
     Some(NamedStop {
         name: entry.name.to_owned(),
         actuator: ActuatorId(k),
@@ -117,4 +65,43 @@ fn stop(
         max,
         restitution,
     })
+}
+
+/// The coefficient of restitution, from 0 to 1.
+fn restitution(fields: &TableReader<'_>) -> Option<f64> {
+    let rule = NumberRule::new(&SI, SignRule::NotNegative);
+    let restitution = fields.number_or(0.0, "restitution", &rule)?;
+    if restitution > 1.0 {
+        return fields.get("restitution")?.reject(
+            format!("the restitution of {} is above 1", fields.what),
+            "from 0 to 1",
+            "1 is a rebound without loss, 0 one without rebound",
+        );
+    }
+    Some(restitution)
+}
+
+/// The limits, of which one at least is given, in ascending order.
+fn limits(entry: &Entry<'_>, fields: &TableReader<'_>, unit: &Unit) -> Option<[Option<f64>; 2]> {
+    let mut limits = [None; 2];
+    for (limit, key) in limits.iter_mut().zip(["min", "max"]) {
+        if let Some(given) = fields.get(key) {
+            let rule = NumberRule::new(unit, SignRule::Any);
+            let value = given.value.quantity_with_sign(&rule, fields.name_of(given));
+            *limit = Some(value?);
+        }
+    }
+    match limits {
+        [None, None] => entry.reject(
+            format!("{} has neither `min` nor `max`", fields.what),
+            "no limit is given",
+            "add the lower limit `min`, the upper limit `max`, or both",
+        ),
+        [Some(low), Some(high)] if low >= high => entry.reject(
+            format!("the `min` of {} is not below its `max`", fields.what),
+            "no room between them",
+            "exchange the two",
+        ),
+        _ => Some(limits),
+    }
 }

@@ -291,7 +291,7 @@ impl<T: Scalar> HeldContacts<T> {
 }
 
 /// A largest independent set of contacts, by the Cholesky factorisation of D with the largest pivots first.
-pub(super) fn independent(of: &[usize], compliance: impl Fn(usize, usize) -> f64) -> Vec<usize> {
+pub(crate) fn independent(of: &[usize], compliance: impl Fn(usize, usize) -> f64) -> Vec<usize> {
     let n = of.len();
     let scale: Vec<f64> = of.iter().map(|&i| compliance(i, i).sqrt()).collect();
     let mut columns: Vec<Vec<f64>> = Vec::new();

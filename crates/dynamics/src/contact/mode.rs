@@ -70,6 +70,19 @@ pub(super) fn sign(forward: bool) -> f64 {
     if forward { 1.0 } else { -1.0 }
 }
 
+/// What happened to the contacts in the step before.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactStep<'s> {
+    /// By contact: the largest speed of its surfaces.
+    pub largest_speeds: &'s [f64],
+    /// By contact, and behind them by end stop: whether its surfaces come to rest, or its force to its limit.
+    pub touched: &'s [bool],
+    /// The length of the motion, s.
+    pub span: f64,
+    /// Whether another event was at the same time.
+    pub repeated: bool,
+}
+
 /// A change of a contact in a motion.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ContactEvent {

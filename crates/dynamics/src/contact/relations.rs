@@ -27,7 +27,7 @@ pub(crate) struct ContactWorkspace<T> {
     pub(super) free: Vec<T>,
     pub(super) convective: Vec<T>,
     /// By contact and load: D.
-    pub(super) compliance: Vec<Vec<T>>,
+    pub(crate) compliance: Vec<Vec<T>>,
     /// By load: F.
     pub(super) forces: Vec<T>,
     /// The reactions under all forces, and those with the contacts that hold.

@@ -1,5 +1,8 @@
 //! Explains motions that fail, with their locations in the scene.
 
+use super::contacts::{
+    explain_beyond_stop, explain_endless_impacts, explain_no_mode, explain_sticking, explain_stop,
+};
 use crate::explain::{
     StudyError, body_names, explain_position, initial_state_location, joint_labels, labels,
     quoted_coordinate, scene_error,
@@ -33,21 +36,8 @@ pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> Stud
         DynamicsError::Chatters { source_index, t } => explain_chatter(scene, *source_index, *t),
         DynamicsError::NoContactMode { source_index } => explain_no_mode(scene, *source_index),
         DynamicsError::BeyondStop { stop, q } => explain_beyond_stop(scene, plan, *stop, *q),
-        DynamicsError::Stops { stop, what } => explain_stop(
-            scene,
-            *stop,
-            format!("end stop `{}`: {what}", stop_name(scene, *stop)),
-            "leave out [stops]; `dwell simulate` computes the motion with them",
-        ),
-        DynamicsError::StopsWithoutEnd { stop } => explain_stop(
-            scene,
-            *stop,
-            format!(
-                "the impacts on end stop `{}` follow each other without end",
-                stop_name(scene, *stop)
-            ),
-            "give it a smaller restitution",
-        ),
+        DynamicsError::Stops { stop, what } => explain_stop(scene, *stop, what),
+        DynamicsError::StopsWithoutEnd { stop } => explain_endless_impacts(scene, *stop),
         DynamicsError::Sticks { source_index, what } => {
             explain_sticking(scene, *source_index, what)
         }
@@ -374,68 +364,6 @@ fn explain_chatter(scene: &Scene, load: usize, t: f64) -> StudyError {
                 speed controller at its limit, a larger limit or no integral gain";
     let label = "switches forth and back";
     scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
-}
-
-/// Explains a joint whose surfaces can neither hold nor slide.
-fn explain_no_mode(scene: &Scene, load: usize) -> StudyError {
-    let name = joint_of(scene, load);
-    let message = format!(
-        "the surfaces of joint `{name}` can neither hold nor slide: no direction of sliding agrees with the forces, and to \
-         hold takes more than the static limit"
-    );
-    let help = "the joint jams: reduce a friction coefficient, or apply the force where the joint reactions are smaller; \
-                with a `regularization-speed` it has a force at every speed";
-    let label = "together with the other friction";
-    scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
-}
-
-/// Explains an analysis of smooth motions in which friction would hold.
-fn explain_sticking(scene: &Scene, load: usize, what: &str) -> StudyError {
-    let name = joint_of(scene, load);
-    let message = format!("the dry friction of joint `{name}` holds at rest: {what}");
-    let help = "give it a `regularization-speed`, with which it is smooth and does not hold; `dwell simulate` computes the \
-                motion with friction that holds";
-    let label = "has no `regularization-speed`";
-    scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
-}
-
-/// The motion starts beyond an end stop.
-fn explain_beyond_stop(scene: &Scene, plan: &Plan, stop: usize, q: f64) -> StudyError {
-    let actuator = scene
-        .stops
-        .get(stop)
-        .map_or(ActuatorId(0), |stop| stop.actuator);
-    let unit = coordinate_unit(plan.is_angle(actuator.0));
-    let name = stop_name(scene, stop);
-    let message = format!(
-        "the motion starts at {} {unit}, beyond end stop `{name}`",
-        number(q)
-    );
-    let help = "start between the limits, or move the stop";
-    let places = [
-        (SceneLocation::Stop(stop), "this stop"),
-        (SceneLocation::InitialCoordinate(actuator), "beyond it"),
-    ];
-    scene_error(scene, message, help, places)
-}
-
-fn explain_stop(scene: &Scene, stop: usize, message: String, help: &str) -> StudyError {
-    scene_error(
-        scene,
-        message,
-        help,
-        [(SceneLocation::Stop(stop), "this end stop")],
-    )
-}
-
-fn stop_name(scene: &Scene, stop: usize) -> &str {
-    scene.stops.get(stop).map_or("", |stop| stop.name.as_str())
-}
-
-/// The joint of a friction.
-fn joint_of(scene: &Scene, load: usize) -> &str {
-    let name = scene.loads.get(load).map_or("", |load| load.name.as_str());
-    name.strip_suffix(".friction").unwrap_or(name)
 }
 
 /// Explains a load that is undefined.

@@ -63,13 +63,15 @@ fn a_ball_bounces_and_comes_to_rest_where_its_rebounds_accumulate() {
             impacts.len(),
             run.evaluations
         );
+        // Every rebound begins anew, the multistep method with its first order.
+        let spread = 5.0 * allowed;
         let mut time = first;
         for (k, t) in impacts.iter().enumerate() {
-            near(*t, time, allowed.max(1e-10));
+            near(*t, time, spread);
             time += 2.0 * first * e.powi(1 + i32::try_from(k).expect("few"));
         }
         assert!(impacts.len() > 10 && rests.len() == 1, "{}", impacts.len());
-        near(rests[0], first * (1.0 + e) / (1.0 - e), allowed.max(1e-10));
+        near(rests[0], first * (1.0 + e) / (1.0 - e), spread);
         assert_eq!(run.end(), [0.0, 0.0]);
         // What the impacts lose is the work of the stop.
         assert!(

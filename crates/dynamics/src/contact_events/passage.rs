@@ -1,7 +1,6 @@
 //! Changes of modes at an event: which surfaces are at rest there, what they do next, and that they are exactly at rest.
 
-use super::held::independent;
-use super::{ContactEvent, ContactMode};
+use crate::contact::{Contact, ContactEvent, ContactMode, ContactStep, independent};
 use crate::error::Result;
 use crate::machine::{Machine, MachineWorkspace};
 use dwell_numerics::lu;
@@ -10,19 +9,6 @@ use dwell_numerics::lu;
 const REST: f64 = 1e-9;
 /// A force within this part of its limit is at it.
 const AT_LIMIT: f64 = 1e-9;
-
-/// What happened to the contacts in the step before.
-#[derive(Debug, Clone, Copy)]
-pub struct ContactStep<'s> {
-    /// By contact: the largest speed of its surfaces.
-    pub largest_speeds: &'s [f64],
-    /// By contact, and behind them by end stop: whether its surfaces come to rest, or its force to its limit.
-    pub touched: &'s [bool],
-    /// The length of the motion, s.
-    pub span: f64,
-    /// Whether another event was at the same time.
-    pub repeated: bool,
-}
 
 /// Finds the modes anew at time `t` (s), writes them and the speeds that go with them into the state `y`, and yields what
 /// changed.
@@ -36,7 +22,7 @@ pub(crate) fn pass(
     step: &ContactStep<'_>,
 ) -> Result<Vec<ContactEvent>> {
     let mut events = Vec::new();
-    let is_struck = super::stop::pass_stops(machine, workspace, (t, y), step, &mut events)?;
+    let is_struck = super::impacts::pass_stops(machine, workspace, (t, y), step, &mut events)?;
     if machine.contacts.is_empty() {
         return Ok(events);
     }
@@ -78,15 +64,14 @@ pub(crate) fn pass(
     }
     let each = machine.contacts.iter().zip(before.iter().zip(after));
     let changed = each.filter(|(_, (from, to))| from != to);
-    let event = |(contact, (from, to)): (&super::Contact, (&ContactMode, &ContactMode))| {
-        ContactEvent::Friction {
+    let event =
+        |(contact, (from, to)): (&Contact, (&ContactMode, &ContactMode))| ContactEvent::Friction {
             t,
             y: y.to_vec(),
             load: contact.load,
             from: *from,
             to: *to,
-        }
-    };
+        };
     events.extend(changed.map(event));
     Ok(events)
 }

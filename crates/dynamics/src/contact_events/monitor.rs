@@ -8,7 +8,7 @@
 //!
 //! on the dense output: the modes are held within a step, so that everything is smooth, and a step may lead beyond.
 
-use super::passage::ContactStep;
+use crate::contact::ContactStep;
 use crate::error::{DynamicsError, Result};
 use crate::ode::{DenseOutput, OdeState, OdeSystem, root_subintervals, state_at};
 use crate::switch_monitor::vertex;
