@@ -22,6 +22,7 @@ pub(crate) fn pass(
     step: &ContactStep<'_>,
 ) -> Result<Vec<ContactEvent>> {
     let mut events = Vec::new();
+    let entry: Vec<f64> = y[machine.contact_states()].to_vec();
     let is_struck = super::impacts::pass_stops(machine, workspace, (t, y), step, &mut events)?;
     if machine.contacts.is_empty() {
         return Ok(events);
@@ -62,8 +63,10 @@ pub(crate) fn pass(
     for (code, mode) in y[modes].iter_mut().zip(after) {
         *code = mode.code();
     }
-    let each = machine.contacts.iter().zip(before.iter().zip(after));
-    let changed = each.filter(|(_, (from, to))| from != to);
+    // At the start of a motion nothing changes.
+    let entry: Vec<ContactMode> = entry.into_iter().map(ContactMode::of_code).collect();
+    let each = machine.contacts.iter().zip(entry.iter().zip(after));
+    let changed = each.filter(|(_, (from, to))| !from.is_open() && from != to);
     let event =
         |(contact, (from, to)): (&Contact, (&ContactMode, &ContactMode))| ContactEvent::Friction {
             t,

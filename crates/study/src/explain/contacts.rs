@@ -12,7 +12,7 @@ pub(super) fn explain_no_mode(scene: &Scene, load: usize) -> StudyError {
         "the surfaces of joint `{name}` can neither hold nor slide: no direction of sliding agrees with the forces, and to \
          hold takes more than the static limit"
     );
-    let help = "the joint jams: reduce a friction coefficient, or apply the force where the joint reactions are smaller; \
+    let help = "the joint locks: reduce a friction coefficient, or apply the force where the joint reactions are smaller; \
                 with a `regularization-speed` it has a force at every speed";
     let label = "together with the other friction";
     scene_error(scene, message, help, [(SceneLocation::Load(load), label)])

@@ -49,13 +49,14 @@ impl FreeMotionProblem<'_> {
             .unwrap_or_default()
     }
 
-    /// The kind of an event of contacts; none where surfaces at their limit are held by others.
+    /// The kind of an event of contacts; none where surfaces at their limit are held by others, or turn back.
     fn kind_of(&self, event: &ContactEvent) -> Option<usize> {
         match event {
             ContactEvent::Friction { load, from, to, .. } => {
                 let moved = matches!(from, ContactMode::Slides { .. });
                 let kind = match to {
-                    ContactMode::Slides { .. } => 1,
+                    // One that turns back without a rest slides on.
+                    ContactMode::Slides { .. } if !moved => 1,
                     ContactMode::Holds | ContactMode::AtLimit { .. } if moved => 0,
                     _ => return None,
                 };
