@@ -15,6 +15,7 @@ const AT_LIMIT: f64 = 1e-9;
 ///
 /// # Errors
 /// [`DynamicsError`](crate::DynamicsError) where no mode is found, or the state cannot be evaluated.
+// Long because it is one event: what is at rest, the modes, the speeds and the report follow from each other.
 pub(crate) fn pass(
     machine: &Machine,
     workspace: &mut MachineWorkspace<f64>,
