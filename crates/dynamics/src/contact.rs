@@ -5,23 +5,22 @@
 //! both it does is its [mode](ContactMode), a part of the machine's state that the right-hand side keeps and that changes
 //! between two integrations only: where surfaces come to rest, or where the force of those that hold reaches its limit.
 //!
+//! End stops limit a coordinate: one that meets its stop rebounds, or rests on it until a force lifts it off (`stop`).
+//!
 //! `mode` names the modes, `relations` collects what a unit of each force does, `held` solves for the forces at given
-//! modes, `search` finds the modes of surfaces at rest, `passage` changes them at an event, and `monitor` locates the
-//! events.
+//! modes, and `search` finds the modes of surfaces at rest. Their events are in `contact_events`.
 
 mod held;
 mod mode;
-mod monitor;
-mod passage;
 mod relations;
 mod search;
+mod stop;
 
-pub(crate) use held::{Unloaded, solve_contacts};
-pub use mode::{ContactEvent, ContactMode};
-pub(crate) use monitor::ContactMonitor;
-pub use passage::ContactStep;
-pub(crate) use passage::pass;
+pub(crate) use held::{Unloaded, independent, solve_contacts};
+pub use mode::{ContactEvent, ContactMode, ContactStep, StopChange};
 pub(crate) use relations::ContactWorkspace;
+pub use stop::EndStop;
+pub(crate) use stop::{Stop, one_sided};
 
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_kinetostatics::Model;

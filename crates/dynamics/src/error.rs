@@ -132,6 +132,28 @@ pub enum DynamicsError {
         /// Which: the index of a load.
         source_index: usize,
     },
+    /// Impacts on end stops follow each other without end at one instant.
+    #[error("the impacts on end stop {stop} follow each other without end")]
+    StopsWithoutEnd {
+        /// Which end stop.
+        stop: usize,
+    },
+    /// A motion starts beyond an end stop.
+    #[error("the motion starts at {q}, beyond end stop {stop}")]
+    BeyondStop {
+        /// Which end stop.
+        stop: usize,
+        /// The coordinate, rad or m.
+        q: f64,
+    },
+    /// An analysis of smooth motions was asked for, and there is an end stop.
+    #[error("end stop {stop}: {what}")]
+    Stops {
+        /// Which end stop.
+        stop: usize,
+        /// Why that is no subject of the analysis.
+        what: &'static str,
+    },
     /// An analysis of smooth motions was asked for, and dry friction holds.
     #[error("friction {source_index} holds at rest: {what}")]
     Sticks {

@@ -6,12 +6,13 @@
 //! that fails stores its error in a cell and NaN in the derivative: the integrator then shortens
 //! its step or fails, and the caller gets the error of that evaluation.
 
-use crate::contact::{ContactMonitor, ContactStep};
+use crate::contact_events::ContactMonitor;
 use crate::dop853;
 use crate::error::{DynamicsError, Result};
 use crate::integration_parts::Parts;
 use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, StepObserver, Termination};
 use crate::options::{Method, Options, Statistics};
+use crate::shared_system::SharedSystem;
 use crate::switch_monitor::{Crossing, SwitchMonitor};
 use crate::time_pieces::TimePieces;
 use diffsol::error::OdeSolverError;
@@ -19,7 +20,6 @@ use diffsol::{
     DiffsolError, NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod,
     OdeSolverStopReason, VectorCommon,
 };
-use dwell_laws::SwitchKind;
 use std::cell::{Cell, RefCell};
 
 /// For few states nalgebra is 2.3 times as fast as faer, with the same steps.
@@ -112,6 +112,7 @@ fn integrate_segments(
 
 /// Integrates while nothing switches in time, from one switch of the state to the next: in between, its pieces are
 /// held.
+// Long because it is one loop: what ends an integration decides how the next one begins.
 fn integrate_held(
     system: &mut dyn OdeSystem,
     start: &OdeState,
@@ -120,7 +121,8 @@ fn integrate_held(
     mut pieces: Option<&mut TimePieces<'_>>,
     observer: StepObserver<'_>,
 ) -> Result<Termination> {
-    let mut contacts = ContactMonitor::new(system);
+    let span = end.unwrap_or(f64::INFINITY) - start.t;
+    let mut contacts = ContactMonitor::new(system, if span.is_finite() { span } else { 1.0 });
     if system.switch_kinds().is_empty() && contacts.is_none() {
         return integrate_smooth(system, start, end, options, pieces, observer);
     }
@@ -129,11 +131,7 @@ fn integrate_held(
         contacts.settle(system, &mut start)?;
     }
     let mut monitor = SwitchMonitor::new(system, &start, end.unwrap_or(f64::INFINITY) - start.t)?;
-    let shared = SharedSystem {
-        kinds: system.switch_kinds().to_vec(),
-        size: system.size(),
-        inner: RefCell::new(system),
-    };
+    let shared = SharedSystem::new(system);
     let [mut integrated, mut watched_system] = [&shared; 2];
     let mut parts = Parts::new(&start, options);
     loop {
@@ -233,63 +231,6 @@ fn pass_event(
             Ok(state)
         }
         (HeldEvent::Contacts(state, _), None) => Ok(state),
-    }
-}
-
-/// A system that is integrated and, between its steps, looked at.
-struct SharedSystem<'s> {
-    kinds: Vec<SwitchKind>,
-    size: usize,
-    inner: RefCell<&'s mut dyn OdeSystem>,
-}
-
-impl OdeSystem for &SharedSystem<'_> {
-    fn size(&self) -> usize {
-        self.size
-    }
-
-    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
-        self.inner.borrow_mut().rhs(t, y, out)
-    }
-
-    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
-        self.inner.borrow_mut().jacobian(t, y, out)
-    }
-
-    fn switch_kinds(&self) -> &[SwitchKind] {
-        &self.kinds
-    }
-
-    fn switch_source(&self, switch: usize) -> usize {
-        self.inner.borrow().switch_source(switch)
-    }
-
-    fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
-        self.inner.borrow_mut().switch_values(t, y, out)
-    }
-
-    fn hold_pieces(&mut self, pieces: &[Option<f64>]) {
-        self.inner.borrow_mut().hold_pieces(pieces);
-    }
-
-    fn contact_count(&self) -> usize {
-        self.inner.borrow().contact_count()
-    }
-
-    fn contact_source(&self, contact: usize) -> usize {
-        self.inner.borrow().contact_source(contact)
-    }
-
-    fn contact_margins(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<bool> {
-        self.inner.borrow_mut().contact_margins(t, y, out)
-    }
-
-    fn pass_contacts(&mut self, t: f64, y: &mut [f64], step: &ContactStep<'_>) -> Result<()> {
-        self.inner.borrow_mut().pass_contacts(t, y, step)
-    }
-
-    fn error_weight(&self, state: usize) -> f64 {
-        self.inner.borrow().error_weight(state)
     }
 }
 

@@ -46,6 +46,7 @@ mod change_point_fit;
 mod close_branches;
 mod conservative;
 pub mod contact;
+mod contact_events;
 pub mod cycle;
 mod dop853;
 mod drive;
@@ -65,6 +66,7 @@ pub mod orbit;
 pub mod reduced_ode;
 mod repetition;
 mod rotation;
+mod shared_system;
 pub mod solve;
 pub mod state_space;
 mod state_switches;
@@ -78,7 +80,7 @@ pub use atlas::{
     MachineDescription, Segment,
 };
 pub use change_point_fit::{ChangePointFit, ChangePointFitError};
-pub use contact::{ContactEvent, ContactMode};
+pub use contact::{ContactEvent, ContactMode, EndStop, StopChange};
 pub use cycle::{Cycle, initial_transient, steady_cycle};
 pub use drive::DriveError;
 pub use equilibrium::{

@@ -14,13 +14,15 @@
 //! The state is [q, q̇ of the free coordinates; currents and integrals of the drives; modes of the contacts; work of the nonconservative
 //! sources], so that the energy balance is integrated with the motion.
 
+mod contacts;
 mod drives;
+mod impact;
 mod on_fit;
 mod state;
 mod workspace;
 
 use crate::change_point_fit::FitWindow;
-use crate::contact::{Contact, ContactMode, Unloaded, solve_contacts};
+use crate::contact::{Contact, ContactMode, Stop, Unloaded, solve_contacts};
 use crate::drive::{CompiledDrive, DriveError};
 use crate::error::{DynamicsError, Result};
 use crate::state_switches::StateSwitches;
@@ -29,7 +31,6 @@ use dwell_kinetostatics::{Drive, ForceState, Load, LoadError, LoadKind, Magnitud
 use dwell_laws::{Features, Law};
 use dwell_numerics::{Scalar, lu};
 pub use state::MachineState;
-use std::ops::Range;
 use std::sync::Arc;
 use workspace::EquationWorkspace;
 pub use workspace::MachineWorkspace;
@@ -52,6 +53,8 @@ pub enum NonconservativeSource {
     Drive(usize),
     /// The prescribed motion of an actuator.
     Prescribed(usize),
+    /// An end stop, by its index: what its impacts lose.
+    Stop(usize),
 }
 
 /// A machine: constant, shared between threads.
@@ -72,6 +75,8 @@ pub struct Machine {
     pub(crate) fit_windows: Vec<FitWindow>,
     /// Frictions that hold at rest.
     pub(crate) contacts: Vec<Contact>,
+    /// The sides of the end stops.
+    pub(crate) stops: Vec<Stop>,
     /// By free coordinate: inertia along it beside that of the bodies and rotors, kg m² or kg.
     pub(crate) flywheels: Vec<f64>,
 }
@@ -85,6 +90,11 @@ pub enum MachineError {
     /// A load that does not fit the mechanism.
     #[error(transparent)]
     Load(#[from] LoadError),
+    /// An end stop whose coordinate is not free, or whose numbers cannot be used.
+    #[error(
+        "end stop {0}: its coordinate must be free, its limits ascending, its restitution from 0 to 1"
+    )]
+    Stop(usize),
     /// The number of coordinate modes is not that of the actuators.
     #[error("there must be one coordinate mode, free or prescribed, for each actuator")]
     CoordinateModes,
@@ -125,6 +135,7 @@ impl Machine {
                 true => Vec::new(),
                 false => Contact::of_model(&model),
             },
+            stops: Vec::new(),
             model,
             flywheels: vec![0.0; free.len()],
             modes,
@@ -219,38 +230,7 @@ impl Machine {
 
     /// Index of the first work among the states.
     pub fn work_offset(&self) -> usize {
-        self.contact_states().end
-    }
-
-    /// The states of the drives.
-    pub fn drive_states(&self) -> Range<usize> {
-        let first = 2 * self.free.len();
-        first..first + self.drive_state_count
-    }
-
-    /// The states that are the [modes](crate::ContactMode) of frictions that hold at rest.
-    pub fn contact_states(&self) -> Range<usize> {
-        let first = self.drive_states().end;
-        first..first + self.contacts.len()
-    }
-
-    /// The frictions that hold at rest, by their loads.
-    pub fn contact_loads(&self) -> impl Iterator<Item = usize> + '_ {
-        self.contacts.iter().map(|contact| contact.load)
-    }
-
-    /// Refuses an analysis of smooth motions where friction holds at rest; `what` says why.
-    pub(crate) fn require_smooth(&self, what: &'static str) -> Result<()> {
-        let first = self.contacts.first();
-        first.map_or(Ok(()), |contact| {
-            let source_index = contact.load;
-            Err(DynamicsError::Sticks { source_index, what })
-        })
-    }
-
-    /// Whether a coordinate is prescribed.
-    pub(crate) fn has_prescribed(&self) -> bool {
-        self.free.len() < self.modes.len()
+        self.stop_states().end
     }
 
     /// An initial state from the coordinates and speeds of all actuators (rad or m, per s), with zero drive states
@@ -284,6 +264,10 @@ impl Machine {
         let modes = equation.contacts.modes.iter_mut();
         for (mode, code) in modes.zip(&y[self.contact_states()]) {
             *mode = ContactMode::of_code(code.value());
+        }
+        equation.locked.fill(false);
+        for (stop, code) in self.stops.iter().zip(&y[self.stop_states()]) {
+            equation.locked[stop.free] |= ContactMode::of_code(code.value()) == ContactMode::Holds;
         }
         self.set_actuator_motion(t, y, equation);
         let forces = if let Some(fit) = self.fit_at(equation.q.first()) {
@@ -361,6 +345,7 @@ impl Machine {
     }
 
     /// Solves (1) for the free accelerations, with the frictions.
+    // Long because all that the friction depends on is collected in one pass.
     fn solve_accelerations<T: Scalar>(
         &self,
         state: &mut ForceState<'_, T>,
@@ -377,8 +362,12 @@ impl Machine {
             pivots,
             free_accelerations,
             contacts,
+            locked,
             ..
         } = equation;
+        if !self.stops.is_empty() {
+            contacts::lock(locked, mass_matrix, free_accelerations);
+        }
         let diagonal = mass_matrix.first().map_or(1.0, |m| m.value());
         let factored = lu::factor(mass_matrix, pivots);
         let inertia = factored.determinant_sign > 0.0 && factored.pivot_ratio > 0.0;
@@ -403,6 +392,13 @@ impl Machine {
             if let Some(row) = contacts.rows.get_mut(j) {
                 row.copy_from_slice(accelerations);
             }
+            for (value, _) in accelerations
+                .iter_mut()
+                .zip(locked.iter())
+                .filter(|(_, l)| **l)
+            {
+                *value = T::from_f64(0.0);
+            }
             lu::solve(mass_matrix, pivots, accelerations);
             for (column, &q_ddot) in columns.iter().zip(accelerations.iter()) {
                 response.add_scaled(column, q_ddot);
@@ -417,7 +413,15 @@ impl Machine {
                 responses: friction_responses,
             };
             let accelerations = (&free_accelerations[..], &friction_accelerations[..]);
-            solve_contacts(&self.contacts, state, contacts, &unloaded, accelerations)?;
+            let freedoms = locked.iter().filter(|locked| !**locked).count();
+            solve_contacts(
+                &self.contacts,
+                state,
+                contacts,
+                &unloaded,
+                accelerations,
+                freedoms,
+            )?;
         } else if self.model.frictions().len() > 0 {
             state.solve_friction(&result.reactions, friction_responses)?;
         }

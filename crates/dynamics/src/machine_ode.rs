@@ -1,6 +1,7 @@
 //! A machine as an ODE system, with its exact Jacobian by dual numbers.
 
-use crate::contact::{self, ContactEvent, ContactMode, ContactStep};
+use crate::contact::{ContactEvent, ContactMode, ContactStep};
+use crate::contact_events::pass;
 use crate::error::Result;
 use crate::machine::{Machine, MachineState, MachineWorkspace};
 use crate::ode::{DualWorkspace, OdeSystem};
@@ -152,18 +153,28 @@ impl OdeSystem for MachineOde<'_> {
     }
 
     fn contact_count(&self) -> usize {
-        self.machine.contacts.len()
+        self.machine.contact_count()
     }
 
     fn contact_source(&self, contact: usize) -> usize {
-        self.machine.contacts[contact].load
+        let friction = self.machine.contacts.get(contact);
+        friction.map_or(0, |friction| friction.load)
     }
 
     fn contact_margins(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<bool> {
         self.machine.evaluate(t, y, &mut self.workspace)?;
         let contacts = self.workspace.contacts();
-        for (i, out) in out.iter_mut().enumerate() {
+        let (frictions, stops) = out.split_at_mut(self.machine.contacts.len());
+        for (i, out) in frictions.iter_mut().enumerate() {
             *out = contacts.margin(i);
+        }
+        let modes = &y[self.machine.stop_states()];
+        for ((stop, code), out) in self.machine.stops.iter().zip(modes).zip(stops) {
+            *out = stop.side
+                * match ContactMode::of_code(*code) {
+                    ContactMode::Holds => self.workspace.actuator_force(stop.actuator),
+                    _ => y[stop.free] - stop.at,
+                };
         }
         let codes = y[self.machine.contact_states()].iter();
         let mut modes = codes.map(|&code| ContactMode::of_code(code));
@@ -171,7 +182,7 @@ impl OdeSystem for MachineOde<'_> {
     }
 
     fn pass_contacts(&mut self, t: f64, y: &mut [f64], step: &ContactStep<'_>) -> Result<()> {
-        let changes = contact::pass(self.machine, &mut self.workspace, (t, y), step)?;
+        let changes = pass(self.machine, &mut self.workspace, (t, y), step)?;
         self.contact_events.extend(changes);
         Ok(())
     }

@@ -36,7 +36,7 @@ pub struct Solution {
     pub samples: Vec<OdeState>,
     /// The events that happened, in order of time.
     pub event_occurrences: Vec<EventOccurrence>,
-    /// Where surfaces with dry friction came to rest or let go, in order of time.
+    /// Where surfaces with dry friction came to rest or let go, and end stops were met, in order of time.
     pub contact_events: Vec<ContactEvent>,
     /// Whether a terminal event ended it.
     pub terminated_by_event: bool,
@@ -73,7 +73,7 @@ impl Solution {
     /// Adds the changes of contacts up to the end.
     pub(crate) fn add_contact_events(&mut self, mut events: Vec<ContactEvent>) {
         let end = self.steps.last().map_or(f64::NEG_INFINITY, |step| step.t);
-        events.retain(|event| event.t <= end);
+        events.retain(|event| event.t() <= end);
         self.contact_events = events;
     }
 
@@ -113,6 +113,7 @@ pub fn solve(
     options: &Options,
     events: &[Event],
 ) -> Result<Solution> {
+    machine.check_start(&start.y)?;
     let mut ode = MachineOde::until(machine, start.t, &start.y, Some(end))?;
     let observed = ObservedMachine::new(machine, output_model);
     let mut solution = solve_system(&mut ode, observed, start, Some(end), options, events)?;

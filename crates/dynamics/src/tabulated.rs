@@ -53,6 +53,9 @@ pub enum TabulationError {
         /// The load.
         load: usize,
     },
+    /// The machine has end stops.
+    #[error("the machine has end stops: it has no table")]
+    Stops,
     /// The machine crosses change points.
     #[error(
         "the machine crosses change points, beyond which another branch follows: it has no table"
@@ -138,6 +141,9 @@ impl TabulatedMachine {
         let free = machine.free().len();
         if (actuators, free) != (1, 1) {
             return Err(TabulationError::DegreesOfFreedom { actuators, free });
+        }
+        if !machine.stops.is_empty() {
+            return Err(TabulationError::Stops);
         }
         if !machine.fit_windows.is_empty() {
             return Err(TabulationError::ChangePoints);
@@ -236,7 +242,7 @@ fn load_of(machine: &Machine, source: NonconservativeSource) -> Option<usize> {
     match source {
         NonconservativeSource::Load(load) => Some(load),
         NonconservativeSource::Drive(drive) => machine.drives.get(drive).map(|drive| drive.load),
-        NonconservativeSource::Prescribed(_) => None,
+        NonconservativeSource::Prescribed(_) | NonconservativeSource::Stop(_) => None,
     }
 }
 

@@ -18,6 +18,7 @@ use crate::prescribed::{coordinate_sweep, prescribed_motion};
 use crate::requests::requests;
 use crate::scene::{Assembly, NamedCoordinate, Scene};
 use crate::spans::SceneLocation;
+use crate::stops::stops as stops_of;
 use crate::table_reader::TableReader;
 use crate::units::Units;
 use crate::value::Context;
@@ -132,6 +133,8 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     if let Some(motion) = &motion {
         reject_drives_of_prescribed(&drives, motion, &actuators);
     }
+    let stops = section("stops");
+    let stops = stops.map_or_else(Vec::new, |f| stops_of(&f, &actuators, motion.as_ref()));
     let requests_section = section("requests");
     let requested = requests_section.as_ref();
     let requested = requested.map(|f| requests(f, &bodies, &joints));
@@ -187,6 +190,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
         sweep,
         loads,
         drives: drives.into_iter().map(|(drive, _)| drive).collect(),
+        stops,
         requests,
         calibration,
         source: Source::clone(source),

@@ -41,7 +41,7 @@
 //!   `speed`: 1 rad/s or 1 m/s.
 //! - `[requests]`, or its `reactions`: every reaction. `reactions = []` asks for none. Its
 //!   `variables`: every column; `sections`: none.
-//! - `[friction]`: none; its `regularization-speed`: 0.01 rad/s or 0.001 m/s. `[drives]`: none.
+//! - `[friction]`: none; without a `regularization-speed` it holds at rest. `[stops]`: none; their `restitution`: 0. `[drives]`: none.
 //! - `[motion]`: none; its `initial-coordinate`: that at assembly; its `initial-velocity`: 0 where loads,
 //!   drives or motion laws can move the mechanism; its `prescribed` and `events`: none.
 //!
@@ -89,6 +89,7 @@ mod requests;
 mod scene;
 mod schema;
 mod spans;
+mod stops;
 mod table_reader;
 mod unit_reader;
 mod units;
@@ -101,8 +102,8 @@ mod tests;
 pub use error::{SceneError, SceneWarning};
 pub use scene::{
     Assembly, Calibration, CoordinateSweep, DwellRequest, EventTrigger, FreeMotionSpec,
-    MotionDuration, NamedCoordinate, NamedEvent, PathPoint, PrescribedMotion, Requests, Scene,
-    SectionRequest,
+    MotionDuration, NamedCoordinate, NamedEvent, NamedStop, PathPoint, PrescribedMotion, Requests,
+    Scene, SectionRequest,
 };
 pub use schema::schema;
 pub use spans::SceneLocation;

@@ -28,11 +28,12 @@ pub(crate) struct SceneNumber {
 }
 
 /// Sections whose numbers can be varied: all that describe the mechanism and its motion.
-const SECTIONS: [&str; 8] = [
+const SECTIONS: [&str; 9] = [
     "joints",
     "loads",
     "friction",
     "drives",
+    "stops",
     "assembly",
     "motion",
     "prescribed",

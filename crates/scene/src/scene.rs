@@ -43,6 +43,8 @@ pub struct Scene {
     pub loads: Vec<Load>,
     /// What drives it in a free motion.
     pub drives: Vec<Drive>,
+    /// The end stops of free coordinates.
+    pub stops: Vec<NamedStop>,
     /// What is asked for.
     pub requests: Requests,
     /// The free motion.
@@ -58,6 +60,21 @@ pub struct Scene {
     pub(crate) body_numbers: Vec<SceneNumber>,
     /// Those outside the bodies.
     pub(crate) section_numbers: Vec<SceneNumber>,
+}
+
+/// An end stop of an actuator's coordinate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedStop {
+    /// Its name.
+    pub name: String,
+    /// The actuator.
+    pub actuator: ActuatorId,
+    /// Lower limit, rad or m, if there is one.
+    pub min: Option<f64>,
+    /// Upper limit, rad or m, if there is one.
+    pub max: Option<f64>,
+    /// Coefficient of restitution, from 0 to 1.
+    pub restitution: f64,
 }
 
 /// Where and how the mechanism is put together at the start; it picks the branch.

@@ -55,6 +55,8 @@ pub enum SceneLocation {
     Magnitude(usize),
     /// The name of the k-th of the scene's drives where it is defined.
     Drive(usize),
+    /// The name of the k-th of the scene's end stops where it is defined.
+    Stop(usize),
     /// `[requests]`.
     Requests,
     /// The request for the k-th of the scene's reactions.

@@ -57,6 +57,7 @@ pub(crate) fn solve_contacts<T: Scalar>(
     workspace: &mut ContactWorkspace<T>,
     unloaded: &Unloaded<'_, T>,
     accelerations: (&[T], &[Vec<T>]),
+    freedoms: usize,
 ) -> Result<()> {
     workspace.collect(contacts, state, accelerations);
     for (mode, speed) in workspace.modes.iter_mut().zip(&workspace.speeds) {
@@ -75,9 +76,8 @@ pub(crate) fn solve_contacts<T: Scalar>(
         false => solve_at_modes(contacts, state, workspace, unloaded)?,
     };
     // Nothing that could accelerate is free of them.
-    let rank = accelerations.0.len();
     let at_rest = |&i: &usize| workspace.convective[i].value() == 0.0;
-    workspace.nothing_moves = held.basis.len() == rank && held.basis.iter().all(at_rest);
+    workspace.nothing_moves = held.basis.len() == freedoms && held.basis.iter().all(at_rest);
     Ok(())
 }
 
@@ -291,7 +291,7 @@ impl<T: Scalar> HeldContacts<T> {
 }
 
 /// A largest independent set of contacts, by the Cholesky factorisation of D with the largest pivots first.
-pub(super) fn independent(of: &[usize], compliance: impl Fn(usize, usize) -> f64) -> Vec<usize> {
+pub(crate) fn independent(of: &[usize], compliance: impl Fn(usize, usize) -> f64) -> Vec<usize> {
     let n = of.len();
     let scale: Vec<f64> = of.iter().map(|&i| compliance(i, i).sqrt()).collect();
     let mut columns: Vec<Vec<f64>> = Vec::new();

@@ -70,17 +70,76 @@ pub(super) fn sign(forward: bool) -> f64 {
     if forward { 1.0 } else { -1.0 }
 }
 
-/// A change of mode in a motion.
+/// What happened to the contacts in the step before.
+#[derive(Debug, Clone, Copy)]
+pub struct ContactStep<'s> {
+    /// By contact: the largest speed of its surfaces.
+    pub largest_speeds: &'s [f64],
+    /// By contact, and behind them by end stop: whether its surfaces come to rest, or its force to its limit.
+    pub touched: &'s [bool],
+    /// The length of the motion, s.
+    pub span: f64,
+    /// Whether another event was at the same time.
+    pub repeated: bool,
+}
+
+/// A change of a contact in a motion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ContactEvent {
+pub enum ContactEvent {
+    /// The surfaces of a friction change their mode.
+    Friction {
+        /// Time, s.
+        t: f64,
+        /// The state of the machine behind it.
+        y: Vec<f64>,
+        /// The load whose surfaces they are, by its index.
+        load: usize,
+        /// From which mode.
+        from: ContactMode,
+        /// To which mode.
+        to: ContactMode,
+    },
+    /// A coordinate meets its end stop, rests on it or leaves it.
+    Stop {
+        /// Time, s.
+        t: f64,
+        /// The state of the machine behind it.
+        y: Vec<f64>,
+        /// Which of the machine's end stops, by its index.
+        stop: usize,
+        /// What happens.
+        change: StopChange,
+    },
+}
+
+/// What happens at an end stop.
+#[derive(Debug, Clone, PartialEq)]
+pub enum StopChange {
+    /// The coordinate strikes it.
+    Impact {
+        /// The impulse along the coordinate, N·m·s or N·s.
+        impulse: f64,
+        /// By free coordinate: the change of its speed.
+        changes: Vec<f64>,
+    },
+    /// It comes to rest on it.
+    Rests,
+    /// It is lifted off.
+    Leaves,
+}
+
+impl ContactEvent {
     /// Time, s.
-    pub t: f64,
+    pub fn t(&self) -> f64 {
+        match self {
+            Self::Friction { t, .. } | Self::Stop { t, .. } => *t,
+        }
+    }
+
     /// The state of the machine behind it.
-    pub y: Vec<f64>,
-    /// The load whose surfaces change their mode, by its index.
-    pub load: usize,
-    /// From which mode.
-    pub from: ContactMode,
-    /// To which mode.
-    pub to: ContactMode,
+    pub fn y(&self) -> &[f64] {
+        match self {
+            Self::Friction { y, .. } | Self::Stop { y, .. } => y,
+        }
+    }
 }

@@ -27,7 +27,7 @@ pub(crate) struct ContactWorkspace<T> {
     pub(super) free: Vec<T>,
     pub(super) convective: Vec<T>,
     /// By contact and load: D.
-    pub(super) compliance: Vec<Vec<T>>,
+    pub(crate) compliance: Vec<Vec<T>>,
     /// By load: F.
     pub(super) forces: Vec<T>,
     /// The reactions under all forces, and those with the contacts that hold.
@@ -94,11 +94,11 @@ impl<T: Scalar> ContactWorkspace<T> {
     /// force that is left of those that hold.
     pub(crate) fn margin(&self, i: usize) -> f64 {
         /// Far beyond its limit a force is without bounds where nothing presses.
-        const MOST: f64 = 2.0;
+        const MAX_SHARE: f64 = 2.0;
         match self.modes[i] {
             ContactMode::Slides { forward } => sign(forward) * self.speeds[i],
-            ContactMode::Holds if self.shares[i].is_nan() => 1.0 - MOST,
-            ContactMode::Holds => 1.0 - self.shares[i].min(MOST),
+            ContactMode::Holds if self.shares[i].is_nan() => 1.0 - MAX_SHARE,
+            ContactMode::Holds => 1.0 - self.shares[i].min(MAX_SHARE),
             ContactMode::AtLimit { .. } | ContactMode::AtRest { .. } | ContactMode::Undecided => {
                 f64::NAN
             }

@@ -24,6 +24,7 @@ const ACCELERATION_TOLERANCE: f64 = 1e-9;
 ///
 /// # Errors
 /// Those of [`solve_at_modes`]; [`DynamicsError::NoContactMode`] where none agree with the forces.
+// Long because it is one loop: each trial decides the next.
 pub(super) fn find_modes<T: Scalar>(
     contacts: &[Contact],
     state: &mut ForceState<'_, T>,

@@ -78,7 +78,7 @@ impl<T: Scalar> MachineState<'_, T> {
             out[n + k] = equation.q_ddot[i];
         }
         let (drive_state_rates, rest) = out[2 * n..].split_at_mut(machine.drive_state_count);
-        let (mode_rates, powers) = rest.split_at_mut(machine.contacts.len());
+        let (mode_rates, powers) = rest.split_at_mut(machine.contact_count());
         mode_rates.fill(T::from_f64(0.0));
         drive_state_rates.copy_from_slice(&equation.drive_state_rates);
         for (power, &source) in powers.iter_mut().zip(&machine.nonconservative_sources) {
@@ -88,6 +88,7 @@ impl<T: Scalar> MachineState<'_, T> {
                     let [_, speed] = self.coordinate(machine.drives[d].measured);
                     equation.drive_forces[d] * speed
                 }
+                NonconservativeSource::Stop(_) => T::from_f64(0.0),
                 NonconservativeSource::Prescribed(i) => {
                     equation.inverse_dynamics.tau[i] * equation.q_dot[i]
                 }
@@ -113,6 +114,17 @@ impl MachineState<'_> {
         let loads = 0..machine.model.loads().len();
         let potentials = loads.filter_map(|load| self.potential_energy(load));
         [kinetic, potentials.sum()]
+    }
+
+    /// The impulses that changes of the free coordinates' speeds take: by actuator, along its coordinate, N·m·s or N·s; by
+    /// reaction of the machine's model.
+    pub fn impulses(&self, changes: &[f64]) -> InverseDynamics<f64> {
+        let mut sum = self.machine.model.result_buffer();
+        let columns = self.equation.acceleration_responses.iter();
+        for (column, change) in columns.zip(changes) {
+            sum.add_scaled(column, *change);
+        }
+        sum
     }
 
     /// Evaluates another model of the same mechanism and loads at this state: its reactions are then

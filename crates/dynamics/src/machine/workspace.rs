@@ -34,6 +34,7 @@ impl Machine {
                 drive_state_rates: zeros(self.drive_state_count),
                 held_drives: vec![[None; 2]; drives],
                 fit_workspace: None,
+                locked: vec![false; n],
                 contacts: ContactWorkspace::new(
                     &self.contacts,
                     n,
@@ -79,6 +80,8 @@ pub(super) struct EquationWorkspace<T> {
     pub(super) held_drives: Vec<HeldDrive>,
     pub(super) fit_workspace: Option<Box<FitWorkspace<T>>>,
     pub(super) contacts: ContactWorkspace<T>,
+    /// By free coordinate: whether it rests on an end stop.
+    pub(super) locked: Vec<bool>,
 }
 
 impl<T> MachineWorkspace<T> {

@@ -256,6 +256,7 @@ fn every_example_of_a_key_is_read() {
                 "actuators.phi = {{ angle = [\"ground\", \"crank\"] }}\n\
                  actuators.psi = {{ angle = [\"crank\", \"rod\"] }}\nmotion = {inner}"
             ),
+            "[stops.<stop>]" => format!("stops.other = {inner}"),
             "[friction.<pin>]" => format!("friction.A = {inner}"),
             "[friction.<slide>]" => format!("friction.slide = {inner}"),
             "[prescribed.<actuator>], [motion.prescribed.<actuator>]" => {

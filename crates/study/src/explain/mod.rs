@@ -1,6 +1,7 @@
 //! Errors with their locations in the scene file. Below all analyses: nothing here depends on any of them.
 
 mod assembly;
+mod contacts;
 mod coupling;
 mod labels;
 mod motion;

@@ -1,5 +1,8 @@
 //! Explains motions that fail, with their locations in the scene.
 
+use super::contacts::{
+    explain_beyond_stop, explain_endless_impacts, explain_no_mode, explain_sticking, explain_stop,
+};
 use crate::explain::{
     StudyError, body_names, explain_position, initial_state_location, joint_labels, labels,
     quoted_coordinate, scene_error,
@@ -32,6 +35,9 @@ pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> Stud
         } => explain_fast(scene, *source_index, [*width, *t], *max_steps),
         DynamicsError::Chatters { source_index, t } => explain_chatter(scene, *source_index, *t),
         DynamicsError::NoContactMode { source_index } => explain_no_mode(scene, *source_index),
+        DynamicsError::BeyondStop { stop, q } => explain_beyond_stop(scene, plan, *stop, *q),
+        DynamicsError::Stops { stop, what } => explain_stop(scene, *stop, what),
+        DynamicsError::StopsWithoutEnd { stop } => explain_endless_impacts(scene, *stop),
         DynamicsError::Sticks { source_index, what } => {
             explain_sticking(scene, *source_index, what)
         }
@@ -358,35 +364,6 @@ fn explain_chatter(scene: &Scene, load: usize, t: f64) -> StudyError {
                 speed controller at its limit, a larger limit or no integral gain";
     let label = "switches forth and back";
     scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
-}
-
-/// Explains a joint whose surfaces can neither hold nor slide.
-fn explain_no_mode(scene: &Scene, load: usize) -> StudyError {
-    let name = joint_of(scene, load);
-    let message = format!(
-        "the surfaces of joint `{name}` can neither hold nor slide: no direction of sliding agrees with the forces, and to \
-         hold takes more than the static limit"
-    );
-    let help = "the joint jams: reduce a friction coefficient, or apply the force where the joint reactions are smaller; \
-                with a `regularization-speed` it has a force at every speed";
-    let label = "together with the other friction";
-    scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
-}
-
-/// Explains an analysis of smooth motions in which friction would hold.
-fn explain_sticking(scene: &Scene, load: usize, what: &str) -> StudyError {
-    let name = joint_of(scene, load);
-    let message = format!("the dry friction of joint `{name}` holds at rest: {what}");
-    let help = "give it a `regularization-speed`, with which it is smooth and does not hold; `dwell simulate` computes the \
-                motion with friction that holds";
-    let label = "has no `regularization-speed`";
-    scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
-}
-
-/// The joint of a friction.
-fn joint_of(scene: &Scene, load: usize) -> &str {
-    let name = scene.loads.get(load).map_or("", |load| load.name.as_str());
-    name.strip_suffix(".friction").unwrap_or(name)
 }
 
 /// Explains a load that is undefined.

@@ -1,11 +1,11 @@
 //! Compiled models of a scene: for which reactions, with which loads.
 
 use crate::explain::{StudyError, explain_machine, explain_model, not_one_actuator};
-use dwell_dynamics::{CoordinateMode, Machine, loads_with_drives};
+use dwell_dynamics::{CoordinateMode, EndStop, Machine, loads_with_drives};
 use dwell_geometry::{BodyId, Plan, Reaction};
 use dwell_kinetostatics::{ExactModel, Model};
 use dwell_laws::Law;
-use dwell_scene::{FreeMotionSpec, Scene};
+use dwell_scene::{FreeMotionSpec, NamedStop, Scene};
 use std::collections::HashSet;
 
 /// A model of a scene for some reactions.
@@ -93,6 +93,15 @@ pub fn with_drive_loads(scene: &Scene) -> Result<Scene, StudyError> {
     Ok(loaded)
 }
 
+fn end_stop(stop: &NamedStop) -> EndStop {
+    EndStop {
+        actuator: stop.actuator.0,
+        min: stop.min,
+        max: stop.max,
+        restitution: stop.restitution,
+    }
+}
+
 /// The machine of a scene, with some reactions and those that friction needs.
 pub fn build_machine(
     scene: &Scene,
@@ -105,5 +114,8 @@ pub fn build_machine(
     };
     let modes = spec.laws.iter().map(mode).collect();
     let model = compile_model(scene, reactions)?;
-    Machine::new(model, &scene.loads, modes, &scene.drives).map_err(|e| explain_machine(scene, e))
+    let machine = Machine::new(model, &scene.loads, modes, &scene.drives);
+    let stops: Vec<EndStop> = scene.stops.iter().map(end_stop).collect();
+    let machine = machine.and_then(|machine| machine.with_stops(&stops));
+    machine.map_err(|e| explain_machine(scene, e))
 }

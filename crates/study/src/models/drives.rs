@@ -26,6 +26,7 @@ pub(crate) fn source_name(scene: &Scene, source: NonconservativeSource) -> &str 
     match source {
         NonconservativeSource::Load(load) => &scene.loads[load].name,
         NonconservativeSource::Drive(drive) => &scene.drives[drive].name,
+        NonconservativeSource::Stop(stop) => &scene.stops[stop].name,
         NonconservativeSource::Prescribed(actuator) => &scene.mechanism.actuators[actuator].name,
     }
 }

@@ -4,8 +4,9 @@
 mod blocks;
 mod refusals;
 mod several;
+mod stops;
 
-use dwell_dynamics::{ContactEvent, ContactMode, Machine, Method, OdeState, Options};
+use dwell_dynamics::{ContactEvent, ContactMode, Machine, Method, OdeState, Options, StopChange};
 use dwell_scene::Scene;
 use dwell_study::free_motion::compute::FreeMotionProblem;
 use dwell_study::models::with_drive_loads;
@@ -49,11 +50,20 @@ impl Run {
 
     /// The times at which surfaces take a mode of a kind.
     fn times(&self, is: impl Fn(ContactMode) -> bool) -> Vec<f64> {
-        self.events
-            .iter()
-            .filter(|e| is(e.to))
-            .map(|e| e.t)
-            .collect()
+        let of_kind = |event: &ContactEvent| match event {
+            ContactEvent::Friction { t, to, .. } => is(*to).then_some(*t),
+            ContactEvent::Stop { .. } => None,
+        };
+        self.events.iter().filter_map(of_kind).collect()
+    }
+
+    /// The times at which stops change so.
+    fn stops(&self, is: impl Fn(&StopChange) -> bool) -> Vec<f64> {
+        let of_kind = |event: &ContactEvent| match event {
+            ContactEvent::Stop { t, change, .. } => is(change).then_some(*t),
+            ContactEvent::Friction { .. } => None,
+        };
+        self.events.iter().filter_map(of_kind).collect()
     }
 
     /// How far kinetic and potential energy less all works vary, over the largest of them.

@@ -1,7 +1,7 @@
 //! Several joints that stick at once: which of them hold, and when they let go.
 
 use crate::{Run, holds, run, slides};
-use dwell_dynamics::{ContactMode, Method};
+use dwell_dynamics::{ContactEvent, ContactMode, Method};
 
 const G: f64 = 9.81;
 
@@ -109,18 +109,22 @@ fn a_thrown_slider_crank_comes_to_rest_in_all_joints() {
     for method in [Method::Dop853, Method::Tsit45, Method::Bdf] {
         let run: Run = run(&text, method, 1e-12);
         let last = run.events.last().expect("events");
-        let together: Vec<_> = run.events.iter().filter(|e| e.t == last.t).collect();
+        let together: Vec<_> = run.events.iter().filter(|e| e.t() == last.t()).collect();
         assert_eq!(together.len(), 4, "{method:?} {together:?}");
-        assert!(together.iter().all(|e| holds(e.to)));
+        assert!(
+            together
+                .iter()
+                .all(|e| matches!(e, ContactEvent::Friction { to, .. } if holds(*to)))
+        );
         assert_eq!(run.end()[1], 0.0);
         println!(
             "{method:?} {} {:e} {}",
-            last.t,
+            last.t(),
             run.energy_error(),
             run.evaluations
         );
         assert!(run.energy_error() < 1e-9, "{:e}", run.energy_error());
-        ends.push((last.t, run.end()[0]));
+        ends.push((last.t(), run.end()[0]));
     }
     for (t, q) in &ends {
         assert!(
@@ -169,11 +173,12 @@ duration = 30.0
 "#
     );
     let run = run(&text, Method::Dop853, 1e-12);
-    let of = |load: usize, to: fn(ContactMode) -> bool| {
-        run.events
-            .iter()
-            .filter(|e| e.load == load && to(e.to))
-            .count()
+    let of = |wanted: usize, is: fn(ContactMode) -> bool| {
+        let is_it = |e: &&ContactEvent| match e {
+            ContactEvent::Friction { load, to, .. } => *load == wanted && is(*to),
+            ContactEvent::Stop { .. } => false,
+        };
+        run.events.iter().filter(is_it).count()
     };
     println!("{} events {:e}", run.events.len(), run.energy_error());
     assert!(of(1, holds) >= 1 && of(2, holds) >= 2 && of(2, slides) >= 1);

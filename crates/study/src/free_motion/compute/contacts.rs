@@ -1,121 +1,144 @@
-//! Where surfaces with dry friction come to rest and let go: lines of the summary, and events beside those of the scene.
+//! Where surfaces with dry friction come to rest and let go, and where coordinates meet their end stops: lines of the
+//! summary, and events beside those of the scene.
 
 use crate::estimate;
 use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
 use crate::number_format::{digits, digits_within};
-use dwell_dynamics::{ContactEvent, ContactMode, OdeState};
+use dwell_dynamics::{ContactEvent, ContactMode, OdeState, StopChange};
 
-/// What surfaces do from an event on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Change {
-    Holds,
-    Slides,
-}
-
-impl Change {
-    const ALL: [Self; 2] = [Self::Holds, Self::Slides];
-
-    /// The change of an event; none where surfaces at their limit are held by others.
-    fn of(event: &ContactEvent) -> Option<Self> {
-        let moved = matches!(event.from, ContactMode::Slides { .. });
-        match event.to {
-            ContactMode::Slides { .. } => Some(Self::Slides),
-            ContactMode::Holds | ContactMode::AtLimit { .. } => moved.then_some(Self::Holds),
-            ContactMode::AtRest { .. } | ContactMode::Undecided => None,
-        }
-    }
-
-    fn verb(self) -> &'static str {
-        match self {
-            Self::Holds => "holds",
-            Self::Slides => "slides",
-        }
-    }
-}
+/// What a friction does from an event on.
+const OF_FRICTION: [&str; 2] = ["holds", "slides"];
+/// What a coordinate does at its end stop.
+const OF_STOP: [&str; 3] = ["is struck", "is rested on", "is left"];
 
 /// A change of a contact, as an event.
 pub(super) struct ContactOccurrence {
     /// Its number, behind those of the scene's events.
     pub(super) number: usize,
-    /// Its name.
-    pub(super) name: String,
     /// The chart of its segment.
     pub(super) chart: usize,
     /// Its time and the state behind it.
     pub(super) state: OdeState,
+    /// Of an impact: by free coordinate, the change of its speed.
+    pub(super) speed_changes: Vec<f64>,
 }
 
 impl FreeMotionProblem<'_> {
+    /// By kind of event of contacts: its name; they are numbered behind the scene's events.
+    fn contact_event_names(&self) -> Vec<String> {
+        let frictions = self.machine.contact_loads().map(|load| {
+            let name = self.loaded_scene.loads[load].name.as_str();
+            (
+                name.strip_suffix(".friction").unwrap_or(name),
+                &OF_FRICTION[..],
+            )
+        });
+        let stops = self.loaded_scene.stops.iter();
+        let stops = stops.map(|stop| (stop.name.as_str(), &OF_STOP[..]));
+        let all = frictions.chain(stops);
+        all.flat_map(|(name, verbs)| verbs.iter().map(move |verb| format!("{name} {verb}")))
+            .collect()
+    }
+
+    /// The name of an event of contacts, by its number.
+    pub(super) fn contact_event_name(&self, number: usize) -> String {
+        let index = number - self.spec.events.len() - 1;
+        self.contact_event_names()
+            .get(index)
+            .cloned()
+            .unwrap_or_default()
+    }
+
+    /// The kind of an event of contacts; none where surfaces at their limit are held by others, or turn back.
+    fn kind_of(&self, event: &ContactEvent) -> Option<usize> {
+        match event {
+            ContactEvent::Friction { load, from, to, .. } => {
+                let moved = matches!(from, ContactMode::Slides { .. });
+                let kind = match to {
+                    // One that turns back without a rest slides on.
+                    ContactMode::Slides { .. } if !moved => 1,
+                    ContactMode::Holds | ContactMode::AtLimit { .. } if moved => 0,
+                    _ => return None,
+                };
+                let contact = self.machine.contact_loads().position(|l| l == *load)?;
+                Some(OF_FRICTION.len() * contact + kind)
+            }
+            ContactEvent::Stop { stop, change, .. } => {
+                let kind = match change {
+                    StopChange::Impact { .. } => 0,
+                    StopChange::Rests => 1,
+                    StopChange::Leaves => 2,
+                };
+                let frictions = OF_FRICTION.len() * self.machine.contact_loads().count();
+                Some(frictions + OF_STOP.len() * stop + kind)
+            }
+        }
+    }
+
     /// The changes of all contacts, in order of time.
     pub(super) fn contact_occurrences(&self, motion: &SegmentedMotion) -> Vec<ContactOccurrence> {
         let mut all = Vec::new();
         for (chart, solution) in &motion.segments {
             for event in &solution.contact_events {
-                let Some(change) = Change::of(event) else {
+                let Some(kind) = self.kind_of(event) else {
                     continue;
                 };
-                let kinds = Change::ALL.len();
-                let contact = self
-                    .machine
-                    .contact_loads()
-                    .position(|load| load == event.load);
-                let number = self.spec.events.len() + kinds * contact.unwrap_or(0) + 1;
+                let speed_changes = match event {
+                    ContactEvent::Stop {
+                        change: StopChange::Impact { changes, .. },
+                        ..
+                    } => changes.clone(),
+                    _ => Vec::new(),
+                };
                 all.push(ContactOccurrence {
-                    number: number + usize::from(change == Change::Slides),
-                    name: format!("{} {}", self.joint_name(event.load), change.verb()),
+                    number: self.spec.events.len() + kind + 1,
                     chart: *chart,
                     state: OdeState {
-                        t: event.t,
-                        y: event.y.clone(),
+                        t: event.t(),
+                        y: event.y().to_vec(),
                     },
+                    speed_changes,
                 });
             }
         }
         all
     }
 
-    /// The joint of a friction.
-    fn joint_name(&self, load: usize) -> &str {
-        let name = self.loaded_scene.loads[load].name.as_str();
-        name.strip_suffix(".friction").unwrap_or(name)
-    }
-
-    /// Lines of the summary: how often each contact holds and slides, and when first.
+    /// Lines of the summary: how often each contact changes, and when first.
     pub(super) fn describe_contacts(&self, computed: &ComputedMotion) -> String {
         let mut text = String::new();
-        let first_number = self.spec.events.len() + 1;
-        for (c, load) in self.machine.contact_loads().enumerate() {
-            for (k, change) in Change::ALL.into_iter().enumerate() {
-                let number = first_number + Change::ALL.len() * c + k;
-                let times = |motion: &SegmentedMotion| -> Vec<f64> {
-                    let all = self.contact_occurrences(motion).into_iter();
-                    all.filter(|o| o.number == number)
-                        .map(|o| o.state.t)
-                        .collect()
-                };
-                let own = times(&computed.motion);
-                let Some(&first) = own.first() else { continue };
-                let name = self.joint_name(load);
-                let verb = change.verb();
-                let count = own.len();
-                text += &format!("  {name} {verb} (event {number}): {count} times, first at t = ");
-                let others = computed.comparison.as_ref().map(times);
-                text += &match others.as_ref().and_then(|others| others.first()) {
-                    Some(other) => {
-                        let error = estimate::of_number(first, *other);
-                        let first = digits_within(first, error, 13);
-                        format!("{first} s (estimated error {error:.1e} s)")
-                    }
-                    None => format!("{} s", digits(first, 3)),
-                };
-                if let Some(others) = others.filter(|others| others.len() != count) {
-                    let other = others.len();
-                    text += &format!(
-                        "; {other} times in a second run: within its error it is not certain"
-                    );
+        let names = self.contact_event_names();
+        if names.is_empty() {
+            return text;
+        }
+        let own = self.contact_occurrences(&computed.motion);
+        let second = computed.comparison.as_ref();
+        let second = second.map(|motion| self.contact_occurrences(motion));
+        for (k, name) in names.iter().enumerate() {
+            let number = self.spec.events.len() + k + 1;
+            let times = |all: &[ContactOccurrence]| -> Vec<f64> {
+                let of_kind = all.iter().filter(|o| o.number == number);
+                of_kind.map(|o| o.state.t).collect()
+            };
+            let own = times(&own);
+            let Some(&first) = own.first() else { continue };
+            let count = own.len();
+            text += &format!("  {name} (event {number}): {count} times, first at t = ");
+            let others = second.as_deref().map(times);
+            text += &match others.as_ref().and_then(|others| others.first()) {
+                Some(other) => {
+                    let error = estimate::of_number(first, *other);
+                    let first = digits_within(first, error, 13);
+                    format!("{first} s (estimated error {error:.1e} s)")
                 }
-                text += "\n";
+                None => format!("{} s", digits(first, 3)),
+            };
+            if let Some(others) = others.filter(|others| others.len() != count) {
+                let other = others.len();
+                text +=
+                    &format!("; {other} times in a second run: within its error it is not certain");
             }
+            text += "\n";
         }
         text
     }

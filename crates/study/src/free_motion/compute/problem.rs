@@ -33,6 +33,8 @@ pub struct FreeMotionProblem<'a> {
     pub(crate) notes: String,
     /// The equations of motion.
     pub machine: Machine,
+    /// The same with the requested reactions, for their impulses where there are end stops.
+    pub(crate) impact_machine: Option<Machine>,
 }
 
 impl<'a> FreeMotionProblem<'a> {
@@ -49,7 +51,11 @@ impl<'a> FreeMotionProblem<'a> {
         let notes = check_variables(scene, &output_model)?
             + &branch_note(loaded_scene, output_model.plan());
         let machine = build_machine(scene, spec, &[])?;
+        let reactions = &scene.requests.reactions;
+        let impact_machine =
+            (!scene.stops.is_empty()).then(|| build_machine(scene, spec, reactions));
         Ok(Self {
+            impact_machine: impact_machine.transpose()?,
             loaded_scene,
             spec,
             output_model,
@@ -91,7 +97,9 @@ impl<'a> FreeMotionProblem<'a> {
         options: &Options,
     ) -> Result<SegmentedMotion, StudyError> {
         let (start, events) = (self.initial_state(), self.events());
-        if self.spec.laws.len() != 1 || self.machine.free().len() != 1 {
+        // An end stop is one of the mechanism's own coordinate, in which the motion stays.
+        let has_stops = !scene.stops.is_empty();
+        if has_stops || self.spec.laws.len() != 1 || self.machine.free().len() != 1 {
             let (machine, output) = (&self.machine, &self.output_model);
             let solution = solve(machine, output, &start, duration, options, &events);
             let mut solution = solution.map_err(|e| self.explain(&e))?;

@@ -111,7 +111,7 @@ pub(crate) fn compute_free_motion_at(
         (o.state.t, name.unwrap_or_default())
     };
     let contacts = problem.contact_occurrences(motion).into_iter();
-    let contacts = contacts.map(|o| (o.state.t, o.name));
+    let contacts = contacts.map(|o| (o.state.t, problem.contact_event_name(o.number)));
     let mut events: Vec<(f64, String)> = motion.occurrences().map(event).chain(contacts).collect();
     events.sort_by(|(one, _), (other, _)| one.total_cmp(other));
     Ok(FreeMotion {

@@ -1,5 +1,6 @@
 //! The samples and the events of a motion as tables.
 
+use crate::free_motion::compute::contacts::ContactOccurrence;
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::number_format::coordinate_unit;
 use crate::trajectory::compute::{FreeTrajectory, Trajectory, TrajectorySample, extra_columns};
@@ -159,7 +160,16 @@ impl FreeMotionProblem<'_> {
             columns.push(Column::new(name, unit));
             columns.push(Column::new(format!("{name}.velocity"), format!("{unit}/s")));
         }
-        let row = |(chart, number, at): (usize, usize, &OdeState)| {
+        let impulses = self
+            .impact_machine
+            .as_ref()
+            .map_or(&[][..], |_| &self.loaded_scene.requests.reactions[..]);
+        columns.extend(impulses.iter().map(|reaction| {
+            let name = mechanism.reaction_name(*reaction);
+            let unit = reaction.component.unit();
+            Column::new(format!("{name}.impulse"), &format!("{unit} s"))
+        }));
+        let row = |(chart, number, at): (usize, usize, &OdeState), changes: &[f64]| {
             let machine = self.machine(motion, chart);
             let mut workspace = machine.workspace();
             let mut row = vec![at.t, number as f64];
@@ -170,14 +180,31 @@ impl FreeMotionProblem<'_> {
                     row.extend(values.unwrap_or([f64::NAN; 2]));
                 }
             }
+            row.resize(columns.len() - impulses.len(), f64::NAN);
+            row.extend(self.reaction_impulses(at, changes));
             row.resize(columns.len(), f64::NAN);
             row
         };
-        let event = |(chart, o): (usize, &EventOccurrence)| row((chart, o.event + 1, &o.state));
+        let event =
+            |(chart, o): (usize, &EventOccurrence)| row((chart, o.event + 1, &o.state), &[]);
         let mut rows: Vec<Vec<f64>> = motion.occurrences().map(event).collect();
         let contacts = self.contact_occurrences(motion);
-        rows.extend(contacts.iter().map(|o| row((o.chart, o.number, &o.state))));
+        let contact = |o: &ContactOccurrence| row((o.chart, o.number, &o.state), &o.speed_changes);
+        rows.extend(contacts.iter().map(contact));
         rows.sort_by(|one, other| one[0].total_cmp(&other[0]));
         Table { columns, rows }
+    }
+
+    /// The impulses of the requested reactions at an impact that changes the free speeds; zero where none is.
+    fn reaction_impulses(&self, at: &OdeState, changes: &[f64]) -> Vec<f64> {
+        let Some(machine) = &self.impact_machine else {
+            return Vec::new();
+        };
+        let count = self.loaded_scene.requests.reactions.len();
+        let mut workspace = machine.workspace();
+        match machine.evaluate(at.t, &at.y, &mut workspace) {
+            Ok(state) => state.impulses(changes).reactions[..count].to_vec(),
+            Err(_) => vec![f64::NAN; count],
+        }
     }
 }

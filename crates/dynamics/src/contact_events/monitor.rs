@@ -3,11 +3,12 @@
 //!
 //! ```text
 //! ±v of surfaces that slide,    1 − |F|/(µₛ g) of surfaces that hold
+//! distance from an end stop,     the force that keeps a coordinate on its stop
 //! ```
 //!
 //! on the dense output: the modes are held within a step, so that everything is smooth, and a step may lead beyond.
 
-use super::passage::ContactStep;
+use crate::contact::ContactStep;
 use crate::error::{DynamicsError, Result};
 use crate::ode::{DenseOutput, OdeState, OdeSystem, root_subintervals, state_at};
 use crate::switch_monitor::vertex;
@@ -16,6 +17,8 @@ use dwell_numerics::root;
 /// Roundings of time within which events happen together, and how many of them count as one without end.
 const TOGETHER: f64 = 16.0 * f64::EPSILON;
 const MAX_TOGETHER: usize = 64;
+/// Events at one time, beside those of other contacts, after which they repeat each other.
+const REPEATED: usize = 8;
 /// A margin below this is beyond its limit where a motion begins.
 const BEYOND: f64 = 1e-12;
 
@@ -25,6 +28,8 @@ pub(crate) struct ContactMonitor {
     values: Vec<f64>,
     /// When the last event was, and how many happened then.
     last: (f64, usize),
+    /// The length of the motion, s.
+    span: f64,
 }
 
 /// The margin of a contact.
@@ -40,7 +45,7 @@ struct Margin {
 
 impl ContactMonitor {
     /// None for a system without contacts.
-    pub(crate) fn new(system: &dyn OdeSystem) -> Option<Self> {
+    pub(crate) fn new(system: &dyn OdeSystem, span: f64) -> Option<Self> {
         let count = system.contact_count();
         let margin = Margin {
             points: [(f64::NAN, f64::NAN); 2],
@@ -51,6 +56,7 @@ impl ContactMonitor {
             margins: vec![margin; count],
             values: vec![0.0; count],
             last: (f64::NEG_INFINITY, 0),
+            span,
         })
     }
 
@@ -130,7 +136,18 @@ impl ContactMonitor {
         let was_inside = margin.is_inside;
         margin.is_inside |= value > 0.0;
         if value < 0.0 && !was_inside {
-            return Ok(Some(earlier[0].0));
+            let start = earlier[0].0;
+            let first = self.first_inside(k, [start, t], system, (before, now), dense)?;
+            let Some([inside, until]) = first else {
+                return Ok(Some(start));
+            };
+            let mut values = vec![0.0; self.margins.len()];
+            let margin_at = |at: f64| -> Result<f64> {
+                let state = state_at(at, now, dense)?;
+                system.contact_margins(at, &state.y, &mut values)?;
+                Ok(values[k])
+            };
+            return root::find(margin_at, inside, until);
         }
         let lowest = vertex([earlier[1], earlier[0], (t, value)]);
         let Some(end) = (value < 0.0).then_some(t).or(lowest) else {
@@ -156,6 +173,35 @@ impl ContactMonitor {
         root::find(margin_at, from.0, end)
     }
 
+    /// A time soon after the start of a step at which the margin of a contact is positive, and a later one at which it is
+    /// not: a short rebound lies between two points of a step.
+    fn first_inside(
+        &self,
+        k: usize,
+        [start, end]: [f64; 2],
+        system: &mut dyn OdeSystem,
+        (_, now): (&OdeState, &OdeState),
+        dense: DenseOutput<'_>,
+    ) -> Result<Option<[f64; 2]>> {
+        /// Halvings of the step.
+        const HALVINGS: usize = 48;
+        let mut values = vec![0.0; self.margins.len()];
+        let mut until = end;
+        for _ in 0..HALVINGS {
+            let at = start + 0.5 * (until - start);
+            if at <= start || at >= until {
+                break;
+            }
+            let state = state_at(at, now, dense)?;
+            system.contact_margins(at, &state.y, &mut values)?;
+            if values[k] > 0.0 {
+                return Ok(Some([at, until]));
+            }
+            until = at;
+        }
+        Ok(None)
+    }
+
     /// Changes the modes where an event has ended an integration.
     ///
     /// # Errors
@@ -176,6 +222,8 @@ impl ContactMonitor {
         let step = ContactStep {
             largest_speeds: &largest,
             touched,
+            span: self.span,
+            repeated: self.last.1 > REPEATED,
         };
         for margin in &mut self.margins {
             margin.is_inside = false;

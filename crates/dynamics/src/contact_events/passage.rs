@@ -1,7 +1,6 @@
 //! Changes of modes at an event: which surfaces are at rest there, what they do next, and that they are exactly at rest.
 
-use super::held::independent;
-use super::{ContactEvent, ContactMode};
+use crate::contact::{Contact, ContactEvent, ContactMode, ContactStep, independent};
 use crate::error::Result;
 use crate::machine::{Machine, MachineWorkspace};
 use dwell_numerics::lu;
@@ -11,28 +10,27 @@ const REST: f64 = 1e-9;
 /// A force within this part of its limit is at it.
 const AT_LIMIT: f64 = 1e-9;
 
-/// What happened to the contacts in the step before.
-#[derive(Debug, Clone, Copy)]
-pub struct ContactStep<'s> {
-    /// By contact: the largest speed of its surfaces.
-    pub largest_speeds: &'s [f64],
-    /// By contact: whether its surfaces come to rest, or its force to its limit.
-    pub touched: &'s [bool],
-}
-
 /// Finds the modes anew at time `t` (s), writes them and the speeds that go with them into the state `y`, and yields what
 /// changed.
 ///
 /// # Errors
 /// [`DynamicsError`](crate::DynamicsError) where no mode is found, or the state cannot be evaluated.
+// Long because it is one event: what is at rest, the modes, the speeds and the report follow from each other.
 pub(crate) fn pass(
     machine: &Machine,
     workspace: &mut MachineWorkspace<f64>,
     (t, y): (f64, &mut [f64]),
     step: &ContactStep<'_>,
 ) -> Result<Vec<ContactEvent>> {
+    let mut events = Vec::new();
+    let entry: Vec<f64> = y[machine.contact_states()].to_vec();
+    let is_struck = super::impacts::pass_stops(machine, workspace, (t, y), step, &mut events)?;
     if machine.contacts.is_empty() {
-        return Ok(Vec::new());
+        return Ok(events);
+    }
+    if is_struck {
+        // The speeds behind the impact say what the surfaces do.
+        decide_by_speeds(machine, workspace, (t, y))?;
     }
     machine.evaluate(t, y, workspace)?;
     let modes = machine.contact_states();
@@ -66,17 +64,44 @@ pub(crate) fn pass(
     for (code, mode) in y[modes].iter_mut().zip(after) {
         *code = mode.code();
     }
-    let each = machine.contacts.iter().zip(before.iter().zip(after));
-    let changed = each.filter(|(_, (from, to))| from != to);
+    // At the start of a motion nothing changes.
+    let entry: Vec<ContactMode> = entry.into_iter().map(ContactMode::of_code).collect();
+    let each = machine.contacts.iter().zip(entry.iter().zip(after));
+    let changed = each.filter(|(_, (from, to))| !from.is_open() && from != to);
     let event =
-        |(contact, (from, to)): (&super::Contact, (&ContactMode, &ContactMode))| ContactEvent {
+        |(contact, (from, to)): (&Contact, (&ContactMode, &ContactMode))| ContactEvent::Friction {
             t,
             y: y.to_vec(),
             load: contact.load,
             from: *from,
             to: *to,
         };
-    Ok(changed.map(event).collect())
+    events.extend(changed.map(event));
+    Ok(events)
+}
+
+/// Leaves the modes open of surfaces that an impact has given a speed, or taken one from.
+fn decide_by_speeds(
+    machine: &Machine,
+    workspace: &mut MachineWorkspace<f64>,
+    (t, y): (f64, &mut [f64]),
+) -> Result<()> {
+    /// Speeds below this part of the largest are rounding.
+    const ROUNDING: f64 = 1e-12;
+    machine.evaluate(t, y, workspace)?;
+    let speeds = &workspace.contacts().speeds;
+    let largest = speeds.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+    let modes = machine.contact_states();
+    for (code, speed) in y[modes].iter_mut().zip(speeds) {
+        let next = match speed.abs() <= ROUNDING * largest {
+            true => ContactMode::AtRest { at_limit: false },
+            false => ContactMode::Slides {
+                forward: *speed > 0.0,
+            },
+        };
+        *code = next.code();
+    }
+    Ok(())
 }
 
 /// Takes off the speeds that surfaces that hold have within rounding, with the least change of momentum.
@@ -91,7 +116,7 @@ fn stop_surfaces(
     let basis = independent(held, |i, j| contacts.compliance[i][dependent(j)]);
     let n = machine.free().len();
     let speeds = &mut y[n..2 * n];
-    if basis.len() == n && !machine.has_prescribed() {
+    if basis.len() == n - workspace.locked() && !machine.has_prescribed() {
         return speeds.fill(0.0);
     }
     let r = basis.len();

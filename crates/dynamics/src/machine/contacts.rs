@@ -1,0 +1,89 @@
+//! The contacts of a machine: frictions that hold at rest, and end stops, with their place among the states.
+
+use super::{Machine, MachineError, NonconservativeSource};
+use crate::contact::{EndStop, one_sided};
+use crate::error::{DynamicsError, Result};
+use dwell_numerics::Scalar;
+use std::ops::Range;
+
+impl Machine {
+    /// The same with end stops.
+    ///
+    /// # Errors
+    /// [`MachineError::Stop`] for one that cannot be used.
+    pub fn with_stops(mut self, stops: &[EndStop]) -> Result<Self, MachineError> {
+        for (k, stop) in stops.iter().enumerate() {
+            let low = stop.min.unwrap_or(f64::NEG_INFINITY);
+            let high = stop.max.unwrap_or(f64::INFINITY);
+            let fits = low < high && (0.0..=1.0).contains(&stop.restitution);
+            if !fits || !self.free.contains(&stop.actuator) {
+                return Err(MachineError::Stop(k));
+            }
+        }
+        self.stops = one_sided(stops, &self.free).unwrap_or_default();
+        let sources = (0..stops.len()).map(NonconservativeSource::Stop);
+        self.nonconservative_sources.extend(sources);
+        Ok(self)
+    }
+
+    /// The states of the drives.
+    pub fn drive_states(&self) -> Range<usize> {
+        let first = 2 * self.free.len();
+        first..first + self.drive_state_count
+    }
+
+    /// The states that are the [modes](crate::ContactMode) of frictions that hold at rest.
+    pub fn contact_states(&self) -> Range<usize> {
+        let first = self.drive_states().end;
+        first..first + self.contacts.len()
+    }
+
+    /// The states that say of each side of an end stop whether its coordinate rests on it.
+    pub fn stop_states(&self) -> Range<usize> {
+        let first = self.contact_states().end;
+        first..first + self.stops.len()
+    }
+
+    /// Number of frictions that hold at rest, and of sides of end stops.
+    pub(crate) fn contact_count(&self) -> usize {
+        self.contacts.len() + self.stops.len()
+    }
+
+    /// The frictions that hold at rest, by their loads.
+    pub fn contact_loads(&self) -> impl Iterator<Item = usize> + '_ {
+        self.contacts.iter().map(|contact| contact.load)
+    }
+
+    /// Refuses an analysis of smooth motions where friction holds at rest; `what` says why.
+    pub(crate) fn require_smooth(&self, what: &'static str) -> Result<()> {
+        if let Some(stop) = self.stops.first() {
+            return Err(DynamicsError::Stops {
+                stop: stop.stop,
+                what: "this analysis is of motions that meet no end stop",
+            });
+        }
+        let first = self.contacts.first();
+        first.map_or(Ok(()), |contact| {
+            let source_index = contact.load;
+            Err(DynamicsError::Sticks { source_index, what })
+        })
+    }
+
+    /// Whether a coordinate is prescribed.
+    pub(crate) fn has_prescribed(&self) -> bool {
+        self.free.len() < self.modes.len()
+    }
+}
+
+/// Fixes coordinates: their accelerations are zero, whatever the forces.
+pub(super) fn lock<T: Scalar>(locked: &[bool], mass_matrix: &mut [T], forces: &mut [T]) {
+    let n = locked.len();
+    for k in (0..n).filter(|&k| locked[k]) {
+        for i in 0..n {
+            mass_matrix[k * n + i] = T::from_f64(0.0);
+            mass_matrix[i * n + k] = T::from_f64(0.0);
+        }
+        mass_matrix[k * n + k] = T::from_f64(1.0);
+        forces[k] = T::from_f64(0.0);
+    }
+}
