@@ -40,7 +40,7 @@ fn stop(
         return named.reject(
             format!("there is no actuator `{}`", shorten(name)),
             "unknown actuator",
-            &fields.log().choices(name, "actuators", names),
+            fields.log().choices(name, "actuators", names),
         );
     };
     let prescribed = motion.and_then(|motion| motion.prescribed.get(k)?.as_ref());

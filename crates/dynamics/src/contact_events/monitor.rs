@@ -69,10 +69,11 @@ impl ContactMonitor {
             margin.is_inside = false;
         }
         let is_open = system.contact_margins(at.t, &at.y, &mut self.values)?;
-        if !is_open && self.values.iter().all(|margin| !(*margin < -BEYOND)) {
+        // A margin that is not a number is none.
+        let touched: Vec<bool> = self.values.iter().map(|margin| *margin < -BEYOND).collect();
+        if !is_open && !touched.contains(&true) {
             return Ok(());
         }
-        let touched: Vec<bool> = self.values.iter().map(|margin| *margin < -BEYOND).collect();
         self.change_modes(system, at, &touched)
     }
 
@@ -162,7 +163,8 @@ impl ContactMonitor {
             system.contact_margins(at, &state.y, &mut values)?;
             Ok(values[k])
         };
-        if !(margin_at(end)? < 0.0) {
+        let is_beyond = margin_at(end)? < 0.0;
+        if !is_beyond {
             return Ok(None);
         }
         let from = if end > earlier[0].0 {

@@ -192,6 +192,7 @@ fn val_slider_crank_with_friction() {
         finds(&plant, 0.3, |wrong| {
             if let Magnitude::Friction(friction) = &mut wrong.loads[load].magnitude {
                 friction.coefficient *= 1.0 + 1e-5;
+                friction.static_coefficient = friction.coefficient;
             }
         });
     }

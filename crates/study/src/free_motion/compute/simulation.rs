@@ -3,7 +3,7 @@
 use crate::explain::{
     StepLimits, StudyError, explain_max_steps, missing_section_label, scene_error,
 };
-use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem};
+use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
 use crate::models::{SolverSettings, with_drive_loads};
 use crate::number_format::digits;
 use crate::progress::{Progress, no_progress};
@@ -106,22 +106,29 @@ pub(crate) fn compute_free_motion_at(
     let mut summary = problem.summary(&integrated, duration);
     summary += &problem.notes;
     summary += &integrated.remarks;
-    let event = |(_, o): (usize, &EventOccurrence)| {
-        let name = spec.events.get(o.event).map(|e| e.name.clone());
-        (o.state.t, name.unwrap_or_default())
-    };
-    let contacts = problem.contact_occurrences(motion).into_iter();
-    let contacts = contacts.map(|o| (o.state.t, problem.contact_event_name(o.number)));
-    let mut events: Vec<(f64, String)> = motion.occurrences().map(event).chain(contacts).collect();
-    events.sort_by(|(one, _), (other, _)| one.total_cmp(other));
     Ok(FreeMotion {
         computed,
-        events,
+        events: problem.named_events(motion),
         event_table: problem.event_table(motion),
         estimated_error: integrated.accuracy.map(|[_, error]| error),
         summary,
         loaded_scene,
     })
+}
+
+impl FreeMotionProblem<'_> {
+    /// The events of the scene and of contacts, each with its time (s) and its name, in order of time.
+    fn named_events(&self, motion: &SegmentedMotion) -> Vec<(f64, String)> {
+        let event = |(_, o): (usize, &EventOccurrence)| {
+            let name = self.spec.events.get(o.event).map(|e| e.name.clone());
+            (o.state.t, name.unwrap_or_default())
+        };
+        let contacts = self.contact_occurrences(motion).into_iter();
+        let contacts = contacts.map(|o| (o.state.t, self.contact_event_name(o.number)));
+        let mut events: Vec<_> = motion.occurrences().map(event).chain(contacts).collect();
+        events.sort_by(|(one, _), (other, _)| one.total_cmp(other));
+        events
+    }
 }
 
 /// Refuses a sample interval beyond the duration (s), or of more than the highest number of samples.

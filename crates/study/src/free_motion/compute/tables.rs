@@ -167,7 +167,7 @@ impl FreeMotionProblem<'_> {
         columns.extend(impulses.iter().map(|reaction| {
             let name = mechanism.reaction_name(*reaction);
             let unit = reaction.component.unit();
-            Column::new(format!("{name}.impulse"), &format!("{unit} s"))
+            Column::new(format!("{name}.impulse"), format!("{unit} s"))
         }));
         let row = |(chart, number, at): (usize, usize, &OdeState), changes: &[f64]| {
             let machine = self.machine(motion, chart);
