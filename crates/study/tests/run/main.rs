@@ -14,4 +14,5 @@ mod motion;
 mod pruning;
 mod quadrature;
 mod table;
+mod time_loads;
 mod variables;
