@@ -178,7 +178,12 @@ fn remove_abandoned(internal: &Path) {
         if !is_lock || !name.to_string_lossy().starts_with(UNFINISHED) {
             continue;
         }
-        if File::open(&path).is_ok_and(|file| file.try_lock().is_ok() && remove(&path).is_ok()) {}
+        // The lock is held while its files are removed.
+        if let Ok(lock) = File::open(&path)
+            && lock.try_lock().is_ok()
+        {
+            let _ = remove(&path);
+        }
     }
 }
 

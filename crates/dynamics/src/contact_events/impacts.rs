@@ -5,7 +5,7 @@
 //! ```
 //!
 //! and the other coordinates jump with it; friction during the impact is left out. Where what remains of the rebounds is
-//! shorter than a rounding of the motion the coordinate rests: it is fixed there, by a force that can only push.
+//! shorter than [`LAST_REBOUNDS`] of the motion the coordinate rests at their limit: it is fixed there, by a force that can only push.
 
 use crate::contact::{ContactEvent, ContactMode, ContactStep, Stop, StopChange};
 use crate::error::{DynamicsError, Result};
