@@ -163,14 +163,12 @@ fn a_point_that_comes_apart_is_a_row_that_says_so() {
         run.out
     );
     let rows = rows(&dir.0.join("o/four-bar-sweep.sqlite"));
-    let failed: Vec<bool> = rows
-        .iter()
-        .map(|row| row.last() != Some(&Value::Null))
-        .collect();
+    // The message is before the checksum.
+    let message = rows[1].len() - 2;
+    let failed: Vec<bool> = rows.iter().map(|row| row[message] != Value::Null).collect();
     assert_eq!(failed, [false, true, false]);
     let empty = |cell: &Value| *cell == Value::Null;
-    let last = rows[1].len() - 1;
-    assert!(rows[1][2..last].iter().all(empty), "{:?}", rows[1]);
+    assert!(rows[1][2..message].iter().all(empty), "{:?}", rows[1]);
     let csv = fs::read_to_string(dir.0.join("o/four-bar-sweep.csv")).unwrap();
     assert_eq!(csv.lines().filter(|line| line.ends_with('"')).count(), 1);
 }
@@ -185,7 +183,7 @@ fn the_file_says_what_it_is() {
     let version: i64 = connection
         .pragma_query_value(None, "user_version", |row| row.get(0))
         .unwrap();
-    assert_eq!(version, 2);
+    assert_eq!(version, 3);
     let value = |key: &str| -> String {
         let query = "SELECT value FROM study WHERE \"key\" = ?";
         connection
@@ -196,4 +194,90 @@ fn the_file_says_what_it_is() {
     assert_eq!(value("results"), "period [s]");
     assert_eq!(value("scene_text"), FOUR_BAR);
     assert_eq!(value("shard"), "all");
+}
+
+/// Runs an export of a damaged copy of a file; whether it was refused. What is accepted must be what the intact file gives.
+fn refuses(dir: &TestDir, damaged: &[u8], intact: &[u8], what: &str) -> bool {
+    let folder = dir.0.join("damaged");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir(&folder).unwrap();
+    fs::write(folder.join("four-bar-sweep.sqlite"), damaged).unwrap();
+    let run = dir.run(&arguments("10", &["--out", "damaged", "--export", "csv"]));
+    let csv = fs::read(folder.join("four-bar-sweep.csv"));
+    match run.status {
+        Some(0) => assert!(csv.unwrap() == intact, "{what}: other rows are accepted"),
+        Some(2) => {
+            assert!(csv.is_err(), "{what}: refused, and a table is written");
+            assert!(
+                run.err.contains("four-bar-sweep.sqlite"),
+                "{what}: {}",
+                run.err
+            );
+        }
+        status => panic!("{what}: status {status:?}\n{}", run.err),
+    }
+    run.status != Some(0)
+}
+
+#[test]
+fn a_damaged_file_is_refused_or_gives_the_same_rows() {
+    let dir = test_dir();
+    let run = dir.run(&arguments("10", &["--out", "whole"]));
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let file = fs::read(dir.0.join("whole/four-bar-sweep.sqlite")).unwrap();
+    let csv = fs::read(dir.0.join("whole/four-bar-sweep.csv")).unwrap();
+    // A multiplicative congruential sequence: places that follow no pattern of the pages.
+    let mut state = 20_251_123_u64;
+    let mut next = |below: usize| {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1);
+        (state >> 33) as usize % below
+    };
+    let mut refused = 0;
+    for _ in 0..200 {
+        let (place, bit) = (next(file.len()), next(8));
+        let mut damaged = file.clone();
+        damaged[place] ^= 1 << bit;
+        refused += usize::from(refuses(
+            &dir,
+            &damaged,
+            &csv,
+            &format!("bit {bit} of byte {place}"),
+        ));
+    }
+    // Most of the file is rows.
+    assert!(refused > 100, "{refused} of 200 refused");
+    for _ in 0..60 {
+        let length = 1 + next(file.len() - 1);
+        let what = format!("the first {length} of {} bytes", file.len());
+        assert!(
+            refuses(&dir, &file[..length], &csv, &what),
+            "{what} are accepted"
+        );
+    }
+}
+
+#[test]
+fn a_row_of_another_point_is_refused() {
+    let dir = test_dir();
+    let part = arguments("10", &["--out", "parts", "--shard", "1/2"]);
+    let run = dir.run(&part);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let file = dir.0.join("parts/four-bar-sweep-1-of-2.sqlite");
+    let connection = Connection::open(&file).unwrap();
+    // Point 1 belongs to the other shard; 0 and 2 are in this one.
+    connection
+        .execute("UPDATE points SET \"index\" = 1 WHERE \"index\" = 0", ())
+        .unwrap();
+    drop(connection);
+    for command in [part, arguments("10", &["--out", "parts"])] {
+        let run = dir.run(&command);
+        assert_eq!(run.status, Some(2), "{}", run.out);
+        assert!(
+            run.err.contains("the row of point 1 is damaged"),
+            "{}",
+            run.err
+        );
+    }
 }

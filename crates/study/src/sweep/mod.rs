@@ -11,6 +11,8 @@ pub(crate) mod output;
 mod spread;
 #[cfg(feature = "output")]
 mod store;
+#[cfg(feature = "output")]
+mod store_check;
 #[cfg(test)]
 #[cfg(feature = "output")]
 mod tests;

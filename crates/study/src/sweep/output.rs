@@ -12,6 +12,7 @@ use crate::output::Outcome;
 use crate::progress::{Progress, Step};
 use crate::sweep::compute::{Axis, Design, RequestedQuantities, Row, Shard, VariationKind};
 use crate::sweep::store::{SCENE_TEXT, SHARD, Store, StudyIdentity};
+use crate::sweep::store_check::ExpectedPoints;
 use dwell_report::{Column, TableFormat};
 use dwell_scene::Scene;
 use rayon::prelude::*;
@@ -106,14 +107,19 @@ impl<'a> PreparedSweep<'a> {
         })
     }
 
-    fn open(&self, path: &Path, shard: Option<&str>) -> Result<Store, SweepError> {
+    /// Opens the file of a shard, or that of the whole study.
+    fn open(&self, path: &Path, shard: Option<Shard>) -> Result<Store<'_>, SweepError> {
         let mut study = self.study.clone();
         if let Some(shard) = shard {
-            let of = study.iter_mut().filter(|(key, _)| *key == SHARD);
-            of.for_each(|(_, value)| shard.clone_into(value));
+            study.retain(|(key, _)| *key != SHARD);
+            study.push((SHARD, shard.to_string()));
         }
         let headings: [&[String]; 2] = [&self.inputs, &self.results];
-        Store::open(path, &study, headings).map_err(|e| e.with_path(path))
+        let points = ExpectedPoints {
+            design: &self.design,
+            shard,
+        };
+        Store::open(path, &study, headings, points).map_err(|e| e.with_path(path))
     }
 }
 
@@ -138,12 +144,12 @@ pub fn sweep(
         Some(Shard { part, of }) => format!("{}-sweep-{part}-of-{of}.sqlite", scene.name),
     };
     let path = sweep.folder.join(name);
-    let mut store = prepared.open(&path, None)?;
+    let mut store = prepared.open(&path, sweep.shard)?;
     let mut existing: BTreeSet<u64> = store.indices()?.into_iter().collect();
     let existing_count = existing.len();
     if sweep.shard.is_none() {
         for (path, shard) in shard_files(scene, sweep.folder) {
-            let rows = prepared.open(&path, Some(&shard))?.rows()?;
+            let rows = prepared.open(&path, Some(shard))?.rows()?;
             let new = rows.into_iter().filter(|row| existing.insert(row.index));
             let new: Vec<Row> = new.collect();
             write_from(&mut store, |sender| {
@@ -173,7 +179,7 @@ pub fn sweep(
 /// Computes points on all cores; a single writer stores them as they arrive.
 fn compute(
     prepared: &PreparedSweep<'_>,
-    store: &mut Store,
+    store: &mut Store<'_>,
     pending: &[u64],
     progress: Progress<'_>,
 ) -> Result<(), StudyError> {
@@ -194,7 +200,7 @@ fn compute(
 
 /// Writes what another thread sends.
 fn write_from(
-    store: &mut Store,
+    store: &mut Store<'_>,
     work: impl FnOnce(std::sync::mpsc::SyncSender<Row>) -> Option<()> + Send,
 ) -> Result<(), StudyError> {
     let (sender, receiver) = sync_channel(QUEUE_LENGTH);
@@ -208,21 +214,20 @@ fn write_from(
 }
 
 /// The files of shards of this scene in a folder, each with its part: `1/3`.
-fn shard_files(scene: &Scene, folder: &Path) -> Vec<(PathBuf, String)> {
+fn shard_files(scene: &Scene, folder: &Path) -> Vec<(PathBuf, Shard)> {
     let Ok(entries) = fs::read_dir(folder) else {
         return Vec::new();
     };
-    let part = |path: &Path| -> Option<String> {
+    let part = |path: &Path| -> Option<Shard> {
         let name = path.file_name()?.to_str()?;
         let name = name.strip_prefix(&format!("{}-sweep-", scene.name))?;
         let (part, of) = name.strip_suffix(".sqlite")?.split_once("-of-")?;
-        let shard: Shard = format!("{part}/{of}").parse().ok()?;
-        Some(shard.to_string())
+        format!("{part}/{of}").parse().ok()
     };
     let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
     let files = paths.filter_map(|path| part(&path).map(|shard| (path, shard)));
-    let mut files: Vec<(PathBuf, String)> = files.collect();
-    files.sort();
+    let mut files: Vec<(PathBuf, Shard)> = files.collect();
+    files.sort_by(|a, b| a.0.cmp(&b.0));
     files
 }
 

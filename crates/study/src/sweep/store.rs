@@ -1,11 +1,13 @@
 //! The results of a sweep in an SQLite file, which survive an interruption.
 //!
 //! Two tables: `study` holds the definition of the sweep by key and value, `points` one row per finished point, keyed
-//! by its index. SQLite uses a rollback journal and an exclusive lock while the file is open: both work on network
+//! by its index, with a checksum. Whatever is in an existing file is checked when it is opened, because a damaged file
+//! that SQLite can read would hand over wrong numbers. SQLite uses a rollback journal and an exclusive lock while the file is open: both work on network
 //! file systems, where the write-ahead log does not.
 
 use crate::explain::SweepError;
 use crate::sweep::compute::{PointResult, Row};
+use crate::sweep::store_check::{ExpectedPoints, check_file, checksum, damaged};
 use rusqlite::types::Value;
 use rusqlite::{Connection, ErrorCode, params_from_iter};
 use std::collections::HashMap;
@@ -15,7 +17,7 @@ use std::time::{Duration, Instant};
 
 /// SQLite application id of Dwell (`Dwel`), and the version of the tables.
 const APPLICATION: i32 = 0x4477_656c;
-const VERSION: i32 = 2;
+const VERSION: i32 = 3;
 /// Longest time until a finished point is on disk.
 const BATCH: Duration = Duration::from_millis(200);
 /// How long to wait for another process that has the file open.
@@ -29,9 +31,10 @@ pub(crate) const SCENE_TEXT: &str = "scene_text";
 pub(crate) type StudyIdentity = Vec<(&'static str, String)>;
 
 /// An open file.
-pub(crate) struct Store {
+pub(crate) struct Store<'a> {
     path: PathBuf,
     connection: Connection,
+    points: ExpectedPoints<'a>,
     inputs: usize,
     results: usize,
 }
@@ -41,16 +44,17 @@ fn quoted(name: &str) -> String {
     format!("\"{}\"", name.replace('"', "\"\""))
 }
 
-impl Store {
+impl<'a> Store<'a> {
     /// Opens the file of a study, or creates it. `headings` are those of the inputs and of the results.
     ///
     /// # Errors
-    /// [`StoreFault::Differs`] if it holds another study; [`StoreFault::Reason`] if it is not a sweep store, cannot
-    /// be read or written, or another process has it open.
+    /// [`StoreFault::Differs`] if it holds another study; [`StoreFault::Reason`] if it is not a sweep store, is damaged,
+    /// cannot be read or written, or another process has it open.
     pub(crate) fn open(
         path: &Path,
         study: &StudyIdentity,
         headings: [&[String]; 2],
+        points: ExpectedPoints<'a>,
     ) -> Result<Self, StoreFault> {
         let mut connection = Connection::open(path)?;
         connection.busy_timeout(BUSY_TIMEOUT)?;
@@ -71,49 +75,60 @@ impl Store {
             )));
         }
         compare(&connection, study)?;
+        check_file(&connection, &definitions(headings))?;
         let [inputs, results] = headings.map(<[String]>::len);
         Ok(Self {
             path: path.to_owned(),
             connection,
+            points,
             inputs,
             results,
         })
     }
 
-    /// The indices of the stored points.
+    /// The indices of the stored points, each of which is checked.
     pub(crate) fn indices(&self) -> Result<Vec<u64>, SweepError> {
-        self.query("SELECT \"index\" FROM points ORDER BY 1", |row| {
-            Ok(row.get::<_, i64>(0)? as u64)
-        })
+        self.read(|row| row.index)
     }
 
     /// All finished points, by index.
     pub(crate) fn rows(&self) -> Result<Vec<Row>, SweepError> {
-        let numbers = |row: &rusqlite::Row<'_>, from: usize, count: usize| {
+        self.read(|row| row)
+    }
+
+    /// Reads and checks all rows, by index, and keeps a part of each.
+    fn read<T>(&self, part: impl Fn(Row) -> T) -> Result<Vec<T>, SweepError> {
+        let read = || -> Result<Vec<T>, StoreFault> {
+            let mut statement = self
+                .connection
+                .prepare("SELECT * FROM points ORDER BY \"index\"")?;
+            let mut rows = statement.query(())?;
+            let mut parts = Vec::new();
+            while let Some(row) = rows.next()? {
+                parts.push(part(self.row(row)?));
+            }
+            Ok(parts)
+        };
+        read().map_err(|e| e.with_path(&self.path))
+    }
+
+    fn row(&self, row: &rusqlite::Row<'_>) -> Result<Row, StoreFault> {
+        let numbers = |from: usize, count: usize| {
             let cells = (from..from + count).map(|k| row.get::<_, Option<f64>>(k));
             let numbers = cells.map(|cell| Ok(cell?.unwrap_or(f64::NAN)));
             numbers.collect::<rusqlite::Result<Vec<f64>>>()
         };
-        self.query("SELECT * FROM points ORDER BY \"index\"", |row| {
-            Ok(Row {
-                index: row.get::<_, i64>(0)? as u64,
-                inputs: numbers(row, 1, self.inputs)?,
-                result: PointResult {
-                    values: numbers(row, 1 + self.inputs, self.results)?,
-                    message: row.get(1 + self.inputs + self.results)?,
-                },
-            })
-        })
-    }
-
-    fn query<T>(
-        &self,
-        text: &str,
-        read: impl FnMut(&rusqlite::Row<'_>) -> rusqlite::Result<T>,
-    ) -> Result<Vec<T>, SweepError> {
-        let statement = self.connection.prepare(text);
-        let all = statement.and_then(|mut statement| statement.query_map((), read)?.collect());
-        all.map_err(|e| StoreFault::from(e).with_path(&self.path))
+        let end = 1 + self.inputs + self.results;
+        let found = Row {
+            index: row.get::<_, i64>(0)? as u64,
+            inputs: numbers(1, self.inputs)?,
+            result: PointResult {
+                values: numbers(1 + self.inputs, self.results)?,
+                message: row.get(end)?,
+            },
+        };
+        self.points.check(&found, row.get(end + 1)?)?;
+        Ok(found)
     }
 
     /// Writes rows as they arrive, until the channel closes; each is on disk after at most 0.2 s.
@@ -123,7 +138,7 @@ impl Store {
     }
 
     fn write(&mut self, rows: &Receiver<Row>) -> Result<(), StoreFault> {
-        let marks = vec!["?"; 2 + self.inputs + self.results].join(", ");
+        let marks = vec!["?"; 3 + self.inputs + self.results].join(", ");
         let insert = format!("INSERT INTO points VALUES ({marks})");
         while let Ok(first) = rows.recv() {
             let until = Instant::now() + BATCH;
@@ -152,12 +167,25 @@ fn cells(row: Row) -> Vec<Value> {
         true => Value::Null,
         false => Value::Real(v),
     };
+    let checksum = checksum(&row);
     // An index is far below SQLite's largest integer.
     let mut cells = vec![Value::Integer(row.index as i64)];
     cells.extend(row.inputs.into_iter().map(real));
     cells.extend(row.result.values.into_iter().map(real));
     cells.push(row.result.message.map_or(Value::Null, Value::Text));
+    cells.push(Value::Integer(checksum));
     cells
+}
+
+/// The definitions of the tables, by name.
+fn definitions(headings: [&[String]; 2]) -> [(&'static str, String); 2] {
+    let study = "CREATE TABLE study (\"key\" TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID";
+    let column = |name: &String| format!("{} REAL, ", quoted(name));
+    let columns: String = headings.concat().iter().map(column).collect();
+    let points = format!(
+        "CREATE TABLE points (\"index\" INTEGER PRIMARY KEY, {columns}\"message\" TEXT, \"checksum\" INTEGER NOT NULL)"
+    );
+    [("study", study.to_owned()), ("points", points)]
 }
 
 /// Creates the tables in one transaction.
@@ -167,17 +195,12 @@ fn create(
     headings: [&[String]; 2],
 ) -> Result<(), StoreFault> {
     let transaction = connection.transaction()?;
-    transaction.execute_batch(
-        "CREATE TABLE study (\"key\" TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;",
-    )?;
+    for (_, definition) in definitions(headings) {
+        transaction.execute(&definition, ())?;
+    }
     for (key, value) in study {
         transaction.execute("INSERT INTO study VALUES (?, ?)", (key, value))?;
     }
-    let column = |name: &String| format!("{} REAL, ", quoted(name));
-    let columns: String = headings.concat().iter().map(column).collect();
-    transaction.execute_batch(&format!(
-        "CREATE TABLE points (\"index\" INTEGER PRIMARY KEY, {columns}\"message\" TEXT);"
-    ))?;
     transaction.pragma_update(None, "application_id", APPLICATION)?;
     transaction.pragma_update(None, "user_version", VERSION)?;
     Ok(transaction.commit()?)
@@ -190,7 +213,11 @@ fn compare(connection: &Connection, study: &StudyIdentity) -> Result<(), StoreFa
     let stored: HashMap<String, String> = rows.collect::<Result<_, _>>()?;
     for (key, expected) in study {
         let found = stored.get(*key).map_or("", String::as_str);
-        // The hash is independent of line endings, the text is not.
+        // The scene's hash is independent of line ends and a byte order mark, its text is not.
+        let text = |text: &str| text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
+        if *key == SCENE_TEXT && text(found) != text(expected) {
+            return damaged("the scene's text is not that of its hash");
+        }
         if *key != SCENE_TEXT && found != expected {
             return Err(StoreFault::Differs(match *key {
                 "scene_sha256" => "the scene has changed since".to_owned(),
@@ -238,7 +265,9 @@ impl From<rusqlite::Error> for StoreFault {
                     .to_owned()
             }
             Some(ErrorCode::NotADatabase) => "it is not an SQLite file".to_owned(),
-            Some(ErrorCode::DatabaseCorrupt) => "the file is corrupt: move it".to_owned(),
+            Some(ErrorCode::DatabaseCorrupt) => {
+                "the file is damaged: move it, and its points are computed again".to_owned()
+            }
             Some(ErrorCode::DiskFull) => "the disk is full".to_owned(),
             Some(ErrorCode::CannotOpen) => "cannot be opened".to_owned(),
             Some(ErrorCode::ReadOnly) => "cannot be written".to_owned(),
