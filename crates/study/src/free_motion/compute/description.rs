@@ -106,8 +106,13 @@ impl FreeMotionProblem<'_> {
             Some(second) if end < duration => estimate::of_number(end, second.end_time()),
             _ => 0.0,
         };
-        let end = digits_within(end, end_error, 7);
-        let mut text = format!("  {end}{of_all} s by {method_text}\n");
+        // All digits, as in the headline and the table; what they are worth stands beside them.
+        let error = match end_error > 1e-7 * end {
+            true => format!(" (estimated error {} s)", digits(end_error, 2)),
+            false => String::new(),
+        };
+        let end = digits(end, 7);
+        let mut text = format!("  {end}{of_all} s{error} by {method_text}\n");
         for (i, event) in self.spec.events.iter().enumerate() {
             let happened = event_text(computed, i);
             let stopped = match motion.occurrences().any(|(_, o)| o.event == i) {

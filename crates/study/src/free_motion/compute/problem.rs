@@ -166,7 +166,7 @@ impl<'a> FreeMotionProblem<'a> {
                 names => format!("; indeterminate there: {}", names.join(", ")),
             };
             descriptions.push(format!(
-                "change point at {}: crossed by a polynomial fit within ±{}; {} degrees of freedom there{indeterminate}",
+                "change point at {}: crossed by a polynomial fit within ±{}, where the tables have no rows; {} degrees of freedom there{indeterminate}",
                 digits(fit.center, 6),
                 digits(fit.half_width, 3),
                 fit.mobility,
