@@ -177,6 +177,10 @@ fn run_study(
         }
         Command::Equilibria { scene } => dwell_study::equilibria(&read(scene, bar)?)?,
         Command::Linearise { scene, about } => dwell_study::linearise(&read(scene, bar)?, *about)?,
+        Command::Runs { scene, points } => {
+            let points = points.map(|n| n as usize);
+            return dwell_study::unit_runs(&read(scene, bar)?, points, &progress);
+        }
         Command::Symbolic {
             scene,
             format,

@@ -111,6 +111,14 @@ pub(crate) enum Command {
         #[arg(long, value_parser = choice(OPERATING_POINTS), default_value = "equilibrium")]
         about: OperatingPoint,
     },
+    /// The two kinetostatic runs that give the reduced parameters (unit speed, unit acceleration), in time, and their combination
+    Runs {
+        /// The scene file
+        scene: PathBuf,
+        /// Number of positions of each run (default: 361)
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=10_000_000))]
+        points: Option<u32>,
+    },
     /// Closed forms for a mechanism made of dyads: positions, m, ½m′, and a and b of a reaction, as LaTeX or code
     Symbolic {
         /// The scene file
@@ -204,6 +212,7 @@ impl Command {
             | Self::WorkPrecision { scene }
             | Self::Equilibria { scene }
             | Self::Linearise { scene, .. }
+            | Self::Runs { scene, .. }
             | Self::Symbolic { scene, .. }
             | Self::Calibrate { scene, .. }
             | Self::Sweep { scene, .. } => Some(scene),

@@ -49,6 +49,7 @@ pub mod reduce;
 pub mod sweep;
 mod symbolic;
 pub mod trajectory;
+pub mod unit_runs;
 
 pub use calibrate::{CalibrationResult, find_value};
 pub use check::describe_scene;
@@ -78,4 +79,5 @@ pub use {
     sweep::output::{ParameterSweep, sweep},
     symbolic::output::{FormulaFormat, symbolic},
     trajectory::output::{TrajectoryOutcome, analyse_trajectory},
+    unit_runs::output::unit_runs,
 };

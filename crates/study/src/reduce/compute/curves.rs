@@ -34,7 +34,7 @@ pub struct RoundingErrors {
 }
 
 /// m, ½m′, every a, every b.
-fn flat(at: &Coefficients) -> Vec<f64> {
+pub(crate) fn flat(at: &Coefficients) -> Vec<f64> {
     let rest = at.a.iter().chain(&at.b).copied();
     [at.m, at.half_dm].into_iter().chain(rest).collect()
 }
@@ -89,9 +89,16 @@ impl ReducedCurves {
     /// # Errors
     /// [`StudyError::Scene`] where a position cannot be reached.
     pub fn new(prepared: &PreparedScene<'_>, points: Option<usize>) -> Result<Self, StudyError> {
-        let model = &prepared.model;
         let intervals = points.unwrap_or(DEFAULT_POINTS).max(2) - 1;
-        let q = prepared.range_positions(intervals);
+        Self::at(prepared, prepared.range_positions(intervals))
+    }
+
+    /// Evaluates the model at given coordinates, rad.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where a position cannot be reached.
+    pub(crate) fn at(prepared: &PreparedScene<'_>, q: Vec<f64>) -> Result<Self, StudyError> {
+        let model = &prepared.model;
         let mut batch = Batch::default();
         model.reduce_batch(&q, &mut batch);
         if let Some((_, error)) = batch.errors.first() {
@@ -103,7 +110,7 @@ impl ReducedCurves {
     }
 
     /// Of m, of ½m′, of every a, of every b: the largest value, and what it would come to by m and the other reactions.
-    fn scales(&self, prepared: &PreparedScene<'_>) -> [Vec<f64>; 2] {
+    pub(crate) fn scales(&self, prepared: &PreparedScene<'_>) -> [Vec<f64>; 2] {
         let reactions = prepared.model.model().reactions();
         let mut sizes = vec![0.0_f64; 2 + 2 * reactions.len()];
         for at in &self.coefficients {

@@ -4,6 +4,7 @@ mod curves;
 mod table;
 mod unit_load_curves;
 
+pub(crate) use curves::flat;
 pub use curves::{ReducedCurves, Reduction, RoundingErrors, compute_reduction};
 pub use table::{TableRequest, Tabulation, tabulate};
 pub use unit_load_curves::UnitLoadCurves;

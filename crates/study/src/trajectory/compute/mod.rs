@@ -43,7 +43,7 @@ pub(crate) use selection::{
 };
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
-    BALANCE, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, TrajectorySample,
+    BALANCE, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, Spacing, TrajectorySample,
     default_limits,
 };
 pub(crate) use unit_scales::{UnitScales, force_scales};

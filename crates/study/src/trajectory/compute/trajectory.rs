@@ -63,8 +63,27 @@ pub struct Trajectory<'a> {
     pub period: Option<f64>,
 }
 
+/// At which fractions of its duration a prescribed motion is evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Spacing {
+    /// At equal intervals of time.
+    EqualTimes,
+    /// At those that are equal distances apart for a uniformly accelerated motion from rest: it covers a fraction of its
+    /// way in the square root of this fraction of its time.
+    FromRest,
+}
+
+impl Spacing {
+    fn fraction_of_time(self, fraction: f64) -> f64 {
+        match self {
+            Self::EqualTimes => fraction,
+            Self::FromRest => fraction.sqrt(),
+        }
+    }
+}
+
 enum TrajectoryKind<'a> {
-    Prescribed(&'a PrescribedMotion),
+    Prescribed(&'a PrescribedMotion, Spacing),
     Free(FreeTrajectory),
     /// A sweep, and from where to where.
     Swept(CoordinateSweep, [f64; 2]),
@@ -100,11 +119,25 @@ impl<'a> Trajectory<'a> {
             return Self::swept(scene, plan, analysis, points);
         };
         let points = points.unwrap_or(prescribed.points);
-        let duration = digits(prescribed.duration, 6);
+        Ok(Self::prescribed(
+            (prescribed, Spacing::EqualTimes),
+            plan,
+            analysis,
+            points,
+        ))
+    }
+
+    /// A prescribed motion.
+    pub(crate) fn prescribed(
+        (motion, spacing): (&'a PrescribedMotion, Spacing),
+        plan: &Plan,
+        analysis: Analysis,
+        points: usize,
+    ) -> Self {
+        let duration = digits(motion.duration, 6);
         let description = format!("the prescribed motion of {duration} s");
-        let kind = TrajectoryKind::Prescribed(prescribed);
-        let trajectory = Self::at_positions(kind, plan, analysis, points, description);
-        Ok(trajectory)
+        let kind = TrajectoryKind::Prescribed(motion, spacing);
+        Self::at_positions(kind, plan, analysis, points, description)
     }
 
     /// The sweep of a scene; or else over the range of its only actuator.
@@ -182,7 +215,7 @@ impl<'a> Trajectory<'a> {
     /// Where the scene defines it.
     pub(crate) fn location(&self, scene: &Scene) -> SceneLocation {
         match &self.kind {
-            TrajectoryKind::Prescribed(_) => SceneLocation::Prescribed,
+            TrajectoryKind::Prescribed(..) => SceneLocation::Prescribed,
             TrajectoryKind::Free(_) => SceneLocation::Motion,
             TrajectoryKind::Swept(..) if scene.sweep.is_some() => SceneLocation::CoordinateSweep,
             TrajectoryKind::Swept(..) => SceneLocation::Whole,
@@ -192,7 +225,7 @@ impl<'a> Trajectory<'a> {
     pub(crate) fn free_motion(&self) -> Option<&FreeTrajectory> {
         match &self.kind {
             TrajectoryKind::Free(motion) => Some(motion),
-            TrajectoryKind::Prescribed(_) | TrajectoryKind::Swept(..) => None,
+            TrajectoryKind::Prescribed(..) | TrajectoryKind::Swept(..) => None,
         }
     }
 
@@ -204,7 +237,7 @@ impl<'a> Trajectory<'a> {
     /// The swept actuator; `None` if the trajectory is a motion in time.
     pub(crate) fn swept_actuator(&self) -> Option<usize> {
         match &self.kind {
-            TrajectoryKind::Prescribed(_) | TrajectoryKind::Free(_) => None,
+            TrajectoryKind::Prescribed(..) | TrajectoryKind::Free(_) => None,
             TrajectoryKind::Swept(sweep, _) => Some(sweep.actuator.0),
         }
     }
@@ -247,13 +280,13 @@ impl<'a> Trajectory<'a> {
     /// Rejects a law that has no finite value, speed or acceleration at a position, exceeds the largest
     /// angle that keeps its digits, or is discontinuous between two positions.
     pub(crate) fn check_laws(&self, scene: &Scene) -> Result<(), StudyError> {
-        let TrajectoryKind::Prescribed(prescribed) = &self.kind else {
+        let TrajectoryKind::Prescribed(prescribed, spacing) = &self.kind else {
             return Ok(());
         };
         let actuators = &scene.mechanism.actuators;
         let mut previous: Option<f64> = None;
         for k in 0..self.points {
-            let t = self.fraction_at(k) * prescribed.duration;
+            let t = spacing.fraction_of_time(self.fraction_at(k)) * prescribed.duration;
             let time = || format!("t = {} s", digits(t, 6));
             for (a, (actuator, law)) in actuators.iter().zip(&prescribed.laws).enumerate() {
                 let reject = |what: String, help: &str, label: String| {
@@ -293,8 +326,8 @@ impl<'a> Trajectory<'a> {
     /// The actuator coordinates at a completed fraction, from 0 to 1.
     pub(crate) fn sample_at(&self, fraction: f64) -> TrajectorySample {
         match &self.kind {
-            TrajectoryKind::Prescribed(prescribed) => {
-                let t = fraction * prescribed.duration;
+            TrajectoryKind::Prescribed(prescribed, spacing) => {
+                let t = spacing.fraction_of_time(fraction) * prescribed.duration;
                 let derivative = |k: usize| prescribed.laws.iter().map(|l| l.eval(t)[k]).collect();
                 TrajectorySample {
                     t,

@@ -1,0 +1,108 @@
+//! Figures of the two unit runs over the coordinate, and of their combination in the form of the paper's Figures 3a and 3b.
+
+use super::compute::{UnitRuns, values};
+use crate::number_format::count;
+use crate::output::{chart, coordinate_label, figure, inner_range, range_caption};
+use dwell_kinetostatics::Coefficients;
+use dwell_report::{Axis, Figure, Panel, Series, Stroke};
+
+/// Maximum number of reactions in a figure.
+const MAX_REACTIONS: usize = 3;
+/// About how many positions of the reduced model are marked.
+const MARKS: usize = 24;
+
+impl UnitRuns<'_> {
+    /// Both runs, then m₁ and ½m₁q₁, then m_e1 and m_e2 of the first requested reactions.
+    pub(super) fn figures(&self) -> Vec<Figure> {
+        let mut figures = vec![self.runs_figure(), self.inertia_figure()];
+        figures.extend(self.reaction_figure());
+        figures
+    }
+
+    /// Values over the coordinate, in degrees.
+    fn line(&self, name: &str, values: impl IntoIterator<Item = f64>) -> Series {
+        let points = self.combined.q.iter().zip(values);
+        Series::line(name, points.map(|(q, v)| [q.to_degrees(), v]).collect())
+    }
+
+    fn panel(&self, title: &str, label: &str, unit: &str, series: Vec<Series>) -> Panel {
+        let mut y = Axis::new(label, unit);
+        y.range = inner_range(&self.prepared, &series);
+        let x = Axis::degrees(coordinate_label(&self.prepared));
+        chart(title, x, y, series).into()
+    }
+
+    fn figure(&self, name: &str, title: &str, text: &str, panels: Vec<Panel>) -> Figure {
+        let text = range_caption(&self.prepared, text);
+        let positions = count(self.combined.q.len(), "position");
+        let provenance = format!("two kinetostatic runs, at {positions}");
+        figure(self.prepared.scene, name, title, &text, panels, provenance)
+    }
+
+    /// The actuator's moment and the first reactions of both runs.
+    fn runs_figure(&self) -> Figure {
+        let both = |name: &str, label: &str| {
+            let [one, two] = [0, 1].map(|run| values(&self.runs[run], name));
+            let of = |run: &str| match label {
+                "" => run.to_owned(),
+                label => format!("{label}, {run}"),
+            };
+            [
+                self.line(&of("run i"), one),
+                self.line(&of("run ii"), two).stroke(Stroke::Dashed),
+            ]
+        };
+        let coordinate = self.prepared.coordinate_name();
+        let moment = both(&format!("{coordinate}.actuator_force"), "");
+        let mut panels = vec![self.panel("Actuator moment", "T", "N m", moment.into())];
+        for (name, unit) in self.prepared.reaction_units().iter().take(MAX_REACTIONS) {
+            let label = if *unit == "N" { "F" } else { "M" };
+            panels.push(self.panel(name, label, unit, both(name, "").into()));
+        }
+        let text = "Run i: speed 1 rad/s, acceleration 0. Run ii: acceleration 1 rad/s² from rest at the beginning of the range.";
+        self.figure("runs", "Kinetostatic runs", text, panels)
+    }
+
+    /// A coefficient of the combined runs as a line, of the reduced model as points.
+    fn compared(&self, of: impl Fn(&Coefficients) -> f64) -> Vec<Series> {
+        let line = self.line("combined runs", self.combined.coefficients.iter().map(&of));
+        let mut marked = self.line("reduce", self.reduced.coefficients.iter().map(&of));
+        let stride = marked.points.len().div_ceil(MARKS).max(1);
+        marked.points = marked.points.into_iter().step_by(stride).collect();
+        vec![line, marked.stroke(Stroke::Points)]
+    }
+
+    fn inertia_figure(&self) -> Figure {
+        let inertia = self.compared(|at| at.m);
+        let derivative = self.compared(|at| at.half_dm);
+        let panels = vec![
+            self.panel("m₁ (generalised inertia)", "m₁", "kg m²", inertia),
+            self.panel(
+                "½m₁q₁ (half its derivative)",
+                "½m₁q₁",
+                "kg m²/rad",
+                derivative,
+            ),
+        ];
+        let text = "From both runs: ½m₁q₁ = T/q̇² of run i, m₁ = (T − ½m₁q₁ q̇²)/q̈ of run ii.";
+        let title = "Reduced parameters from the kinetostatic runs";
+        self.figure("runs-inertia", title, text, panels)
+    }
+
+    fn reaction_figure(&self) -> Option<Figure> {
+        let mut panels = Vec::new();
+        let reactions = self.prepared.reaction_units();
+        for (k, (name, unit)) in reactions.iter().take(MAX_REACTIONS).enumerate() {
+            let unit = if *unit == "N" { "kg m" } else { "kg m²" };
+            let title = |symbol: &str| format!("{symbol} of {name}");
+            let one = self.compared(|at| at.a[k]);
+            panels.push(self.panel(&title("m_e1"), "m_e1", unit, one));
+            let two = self.compared(|at| at.b[k]);
+            panels.push(self.panel(&title("m_e2"), "m_e2", unit, two));
+        }
+        let text = "From both runs: m_e2 = F/q̇² of run i, m_e1 = (F − m_e2 q̇²)/q̈ of run ii; F is the force of the joint's first body on its second.";
+        let title = "Reduced parameters of reactions from the kinetostatic runs";
+        let figure = self.figure("runs-reaction", title, text, panels);
+        (!figure.panels.is_empty()).then_some(figure)
+    }
+}

@@ -1,0 +1,154 @@
+//! Writes the two unit runs and their combination: tables, figures, page and summary.
+
+use super::compute::{ComparedCoefficient, UnitRuns, compute_unit_runs};
+use crate::explain::{Labels, StudyError, scene_error};
+use crate::number_format::{count, digits};
+use crate::output::{Outcome, Picture, provenance_line};
+use crate::progress::Progress;
+use crate::trajectory::output::TrajectoryOutcome;
+use dwell_report::{Block, Document, Figure, Files, TableFormat};
+use dwell_scene::Scene;
+
+/// The two kinetostatic runs of a scene over the range of its only actuator, at `points` positions (two or more) if given,
+/// and the reduced parameters that they give. It stops with an error where these are not those of the reduced model.
+///
+/// # Errors
+/// [`StudyError`] when the mechanism cannot be assembled, has no driven angle or several, or a position cannot be
+/// reached.
+pub fn unit_runs(
+    scene: &Scene,
+    points: Option<usize>,
+    progress: Progress<'_>,
+) -> Result<TrajectoryOutcome, StudyError> {
+    let runs = compute_unit_runs(scene, points, progress)?;
+    let comparison = runs.comparison();
+    let name = |rest: &str| format!("{}-{rest}", scene.name);
+    let mut files = Files::new();
+    for (run, table) in ["run-i", "run-ii"].into_iter().zip(&runs.runs) {
+        files.add_table(&name(run), table, &TableFormat::ALL)?;
+    }
+    files.add_table(&name("runs"), &runs.table(), &TableFormat::ALL)?;
+    let file = |figure: &Figure| name(&format!("{}.png", figure.name));
+    let figures = runs.figures();
+    let page = Some((name("runs.md"), page(&runs, &comparison, &figures, &file)));
+    let pictures = figures.into_iter();
+    let pictures = pictures.map(|figure| Picture::figure(scene, file(&figure), true, figure));
+    let outcome = Outcome {
+        summary: summary(&runs, &comparison),
+        files,
+        pictures: pictures.collect(),
+        page,
+        ..Outcome::default()
+    };
+    Ok(TrajectoryOutcome {
+        outcome,
+        early_stop: difference_error(scene, &comparison),
+    })
+}
+
+/// The coefficient that differs most, beside its tolerance.
+fn worst(comparison: &[ComparedCoefficient]) -> Option<&ComparedCoefficient> {
+    let part = |of: &ComparedCoefficient| of.relative_difference / of.tolerance;
+    comparison.iter().max_by(|a, b| part(a).total_cmp(&part(b)))
+}
+
+fn difference_error(scene: &Scene, comparison: &[ComparedCoefficient]) -> Option<StudyError> {
+    let worst = worst(comparison)?;
+    let agree = worst.relative_difference <= worst.tolerance;
+    (!agree).then(|| {
+        let message = format!(
+            "the combined runs differ from the reduced model: {} by {:.1e} of its largest value, where rounding explains {:.0e}",
+            worst.symbol, worst.relative_difference, worst.tolerance
+        );
+        let help = "the rows of the table show where: next to a dead point the runs lose digits";
+        scene_error(scene, message, help, Labels::new())
+    })
+}
+
+fn summary(runs: &UnitRuns<'_>, comparison: &[ComparedCoefficient]) -> String {
+    let (prepared, table) = (&runs.prepared, &runs.runs);
+    let name = prepared.coordinate_name();
+    let positions = count(runs.combined.q.len(), "position");
+    let range = [runs.combined.q.first(), runs.combined.q.last()];
+    let [from, to] = range.map(|q| digits(q.copied().unwrap_or(0.0), 6));
+    let mut text = format!(
+        "{}: two kinetostatic runs, {positions} of {name} from {from} to {to} rad, without loads\n",
+        prepared.scene.title
+    );
+    for (run, table, what) in [
+        ("i ", &table[0], "speed 1 rad/s, acceleration 0"),
+        ("ii", &table[1], "acceleration 1 rad/s² from rest"),
+    ] {
+        let end = table.rows.last().map_or(0.0, |row| row[0]);
+        let columns = count(table.columns.len(), "column");
+        text += &format!("  run {run}: {what}, {} s, {columns}\n", digits(end, 6));
+    }
+    if let Some(worst) = worst(comparison) {
+        text += &format!(
+            "  combined: m₁, ½m₁q₁, m_e1, m_e2 are those of `dwell reduce` within {:.0e} of the largest value of each; {} differs most\n",
+            power_of_ten_above(worst.relative_difference),
+            worst.symbol
+        );
+    }
+    text
+}
+
+/// A power of ten that is no less than a positive number; zero for zero.
+fn power_of_ten_above(value: f64) -> f64 {
+    match value {
+        0.0 => 0.0,
+        value => 10_f64.powf(value.log10().ceil()),
+    }
+}
+
+fn page(
+    runs: &UnitRuns<'_>,
+    comparison: &[ComparedCoefficient],
+    figures: &[Figure],
+    file: &dyn Fn(&Figure) -> String,
+) -> Document {
+    let row = |of: &ComparedCoefficient| {
+        vec![
+            of.symbol.clone(),
+            digits(of.largest, 6),
+            of.unit.to_owned(),
+            format!("{:.1e}", of.relative_difference),
+            format!("{:.0e}", of.tolerance),
+        ]
+    };
+    let head = [
+        "coefficient",
+        "largest value",
+        "unit",
+        "difference, relative",
+    ];
+    let mut blocks = vec![
+        Block::Text(
+            "The procedure of Jordi, Zayas and Cardona (2008): two kinetostatic analyses of prescribed motions give the \
+             reduced parameters, m₁ and ½m₁q₁ from the actuator's moment T, m_e1 and m_e2 from a reaction F. Loads are left \
+             out: each has a run of its own (`dwell reduce` gives w and c)."
+                .to_owned(),
+        ),
+        Block::Text(
+            "Run i, q̇ = 1 and q̈ = 0: ½m₁q₁ = T/q̇², m_e2 = F/q̇². Run ii, q̈ = 1 from rest: m₁ = (T − ½m₁q₁ q̇²)/q̈, \
+             m_e1 = (F − m_e2 q̇²)/q̈, with the values of run i at the same position."
+                .to_owned(),
+        ),
+        Block::Heading("Compared with the reduced model".to_owned()),
+        Block::Table {
+            header: head.map(str::to_owned).to_vec(),
+            rows: comparison.iter().map(row).collect(),
+        },
+        Block::Heading("Figures".to_owned()),
+    ];
+    blocks.extend(figures.iter().map(|figure| Block::Figure {
+        file: file(figure),
+        alt: figure.title.clone(),
+        caption: figure.caption.clone(),
+    }));
+    blocks.push(Block::Text(provenance_line(runs.prepared.scene)));
+    Document {
+        title: format!("{}: kinetostatic runs", runs.prepared.scene.title),
+        blocks,
+    }
+}
