@@ -410,8 +410,14 @@ impl StepLoop<'_, '_> {
             }
             // A trial point that step control recovered from is no failure.
             self.failure.borrow_mut().take();
+            // It cannot step to an end that is within its rounding of time: it is there.
+            let rounding = INTEGRATOR_ROUNDING * (now.t.abs() + state.h.abs());
+            let reached = state.t;
+            if let Some(end) = self.end.filter(|end| (end - now.t).abs() < rounding) {
+                now.t = end;
+            }
             let mut dense = |t: f64, out: &mut [f64]| -> Result<()> {
-                let inside = solver.interpolate_inplace(t, &mut scratch);
+                let inside = solver.interpolate_inplace(t.min(reached), &mut scratch);
                 inside.map_err(|e| solver_error(&e, t))?;
                 out.copy_from_slice(scratch.inner().as_slice());
                 Ok(())

@@ -258,3 +258,30 @@ fn a_motion_with_a_large_error_is_a_failure() {
         run.out
     );
 }
+
+#[test]
+fn the_last_row_is_the_end_itself_however_the_steps_are_limited() {
+    // The first ended at 3.9999999999999925 s, and said 4 of 4 s.
+    for (method, step, duration) in [
+        ("tsit45", "0.01", "4"),
+        ("tsit45", "0.0125", "7.3"),
+        ("bdf", "0.1", "4"),
+        ("esdirk34", "0.1", "7.3"),
+        ("tr-bdf2", "0.1", "2"),
+        ("dop853", "0.01", "4"),
+    ] {
+        let text = pendulum("").replace("duration = 2\n", &format!("duration = {duration}\n"));
+        let options = ["--method", method, "--max-step", step, "--rtol", "1e-6"];
+        let (dir, run_of) = run(&text, &[&["simulate"], &options[..]].concat());
+        let what = format!("{method} {step} {duration}");
+        assert_eq!(
+            (run_of.status, run_of.err.as_str()),
+            (Some(0), ""),
+            "{what}"
+        );
+        let rows = times(&dir, "o/moved-motion.csv");
+        assert_eq!(rows.last().copied(), duration.parse().ok(), "{what}");
+        let printed = format!("\n  {duration} s by ");
+        assert!(run_of.out.contains(&printed), "{what}: {}", run_of.out);
+    }
+}

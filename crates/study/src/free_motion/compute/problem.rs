@@ -86,6 +86,10 @@ impl<'a> FreeMotionProblem<'a> {
         while let Some((t, _)) = solution.steps.last().and_then(&mut failure) {
             solution.steps.retain(|s| s.t < t);
         }
+        // The last sample may be in a step whose end is impossible: the motion ends with it.
+        let last_step = solution.steps.last().map_or(f64::NEG_INFINITY, |s| s.t);
+        let end = solution.samples.last().filter(|last| last.t > last_step);
+        solution.steps.extend(end.cloned());
         solution.error = Some(error);
     }
 
