@@ -27,8 +27,8 @@ const DEFAULT_POINTS: usize = 361;
 /// Largest admissible difference from the reduced model, relative to what is subtracted: 5e-14 or less is measured where no
 /// dead point is near.
 const TOLERANCE: f64 = 1e-12;
-/// Next to a dead point the difference is up to this number of rounding errors of the reduced model: both runs pass a
-/// position in two ways that differ in the last digit.
+/// Next to a dead point the difference is up to this number of rounding errors of the reduced model: the positions of both
+/// runs differ in the last digit.
 const ROUNDINGS: f64 = 100.0;
 
 /// The runs, what follows from them, and the reduced model at the same positions.

@@ -68,8 +68,8 @@ pub struct Trajectory<'a> {
 pub(crate) enum Spacing {
     /// At equal intervals of time.
     EqualTimes,
-    /// At those that are equal distances apart for a uniformly accelerated motion from rest: it covers a fraction of its
-    /// way in the square root of this fraction of its time.
+    /// At equal distances of a uniformly accelerated motion from rest: it covers a fraction of the distance in the square
+    /// root of this fraction of the time.
     FromRest,
 }
 
