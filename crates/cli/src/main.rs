@@ -16,8 +16,8 @@ use dwell_findings::all_pass;
 use dwell_report::{Files, OutputFolder, ReportError};
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{
-    Analysis, MotionSolver, Outcome, ParameterSweep, SolverSettings, Step, StudyError,
-    TableRequest, TrajectoryOutcome,
+    Analysis, MotionSolver, Outcome, ParameterSweep, PictureFormat, Pictures, SolverSettings, Step, StudyError,
+    TableRequest, TrajectoryOutcome, no_progress,
 };
 use dwell_validation::ValidationError;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -52,6 +52,7 @@ fn run(options: Options, name: &str) -> Result<bool, Report> {
         command,
         out,
         pictures,
+        picture_format,
     } = options;
     let mut times = Times::new();
     if let Command::Schema = command {
@@ -70,6 +71,13 @@ fn run(options: Options, name: &str) -> Result<bool, Report> {
         } => {
             let (outcome, failures) = validate::validate(cases, folder, (*slow, *seed), &bar)?;
             times.add("checking");
+            let format = match picture_format {
+                PictureFormat::Svg => PictureFormat::Both,
+                format => format,
+            };
+            let drawn = outcome.draw((Pictures::All, format), &no_progress);
+            let outcome = drawn.map_err(|e| Report::new(as_scene_error(e)))?;
+            times.add("drawing");
             (outcome, None, failures)
         }
         study => {
@@ -77,7 +85,9 @@ fn run(options: Options, name: &str) -> Result<bool, Report> {
             times.add("computing");
             let done = done.and_then(|done| {
                 bar.set_position(0);
-                let outcome = done.outcome.draw(pictures, &|step| show_step(&bar, step))?;
+                let outcome = done
+                    .outcome
+                    .draw((pictures, picture_format), &|step| show_step(&bar, step))?;
                 Ok((outcome, done.early_stop))
             });
             times.add("drawing");

@@ -4,7 +4,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use dwell_dynamics::Method;
 use dwell_report::TableFormat;
-use dwell_study::{FormulaFormat, Language, OperatingPoint, Pictures, Shard};
+use dwell_study::{FormulaFormat, Language, OperatingPoint, PictureFormat, Pictures, Shard};
 use std::path::{Path, PathBuf};
 
 /// Kinetostatics and dynamics of planar mechanisms, with independent checks
@@ -19,6 +19,9 @@ pub(crate) struct Options {
     /// Pictures to draw; they take most of the time. Validation draws all of its own
     #[arg(long, global = true, value_parser = choice(PICTURES), default_value = "main", value_name = "PICTURES")]
     pub(crate) pictures: Pictures,
+    /// Format of the pictures; animations are always GIF. Validation always draws its PNG, too
+    #[arg(long, global = true, value_parser = choice(PICTURE_FORMATS), default_value = "png", value_name = "FORMAT")]
+    pub(crate) picture_format: PictureFormat,
 }
 
 #[derive(Debug, Subcommand)]
@@ -266,6 +269,16 @@ const PICTURES: Choices<Pictures> = &[
         Pictures::All,
         "All, and the animation of the mechanism",
     ),
+];
+
+const PICTURE_FORMATS: Choices<PictureFormat> = &[
+    ("png", PictureFormat::Png, "Pixels, for screens"),
+    (
+        "svg",
+        PictureFormat::Svg,
+        "Lines and letters, for papers",
+    ),
+    ("both", PictureFormat::Both, "PNG and SVG"),
 ];
 
 const OPERATING_POINTS: Choices<OperatingPoint> = &[

@@ -7,6 +7,7 @@ use crate::curve::{clipped, clipped_area};
 use crate::end_labels::{self, EndLabel};
 use crate::extent::{Extent, has_markers};
 use crate::figure::{Chart, Series, Stroke};
+use crate::layout::LayoutRecord;
 use crate::legend::{self, LegendEntry, LegendHandle, PlacedLegend};
 use crate::linear_ticks::Ticks;
 use crate::marks;
@@ -145,9 +146,12 @@ impl<'a> PreparedChart<'a> {
         for (series, style) in self.series() {
             draw_area(canvas, &frame, series, style);
         }
+        canvas.note(LayoutRecord::begin_plot);
         for (series, style) in self.series() {
+            canvas.note(|record| record.begin_curve(Some(&series.name)));
             draw_series(canvas, &frame, series, style);
         }
+        canvas.note(|record| record.begin_curve(None));
         marks::rings(canvas, &frame, &chart.marks);
         axes::title(canvas, &chart.title, &frame.plot, cell);
         if let Some(end_labels) = &end_labels {

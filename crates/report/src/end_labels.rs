@@ -98,7 +98,9 @@ pub(crate) fn room(labels: &[EndLabel]) -> f64 {
 pub(crate) fn draw(canvas: &mut Canvas<'_>, labels: &[EndLabel], plot: &Rect) {
     for label in labels {
         let x = plot.x1 + GAP;
-        canvas.line(&[[x, label.y], [x + SAMPLE, label.y]], label.line);
+        let sample = label.line.sample(SAMPLE);
+        canvas.line(&[[x, label.y], [x + SAMPLE, label.y]], sample);
+        canvas.note(|record| record.legend_entry(&label.name));
         let style = TextStyle::new(TICK_SIZE, INK, Align::Start);
         canvas.text_centred(&label.name, [x + SAMPLE + GAP, label.y], style);
     }

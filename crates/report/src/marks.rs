@@ -1,7 +1,7 @@
 //! Markers, and the reference lines, bands and points of a chart with their words.
 
 use crate::axes::PlotFrame;
-use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
+use crate::canvas::{Align, Canvas, Dash, LineStyle, TextStyle};
 use crate::curve::clipped;
 use crate::figure::Mark;
 use crate::fonts;
@@ -101,7 +101,7 @@ pub(crate) fn lines(canvas: &mut Canvas<'_>, frame: &PlotFrame, marks: &[Mark]) 
     let line = LineStyle {
         color: GREY,
         width: MARK_WIDTH,
-        dashed: true,
+        dash: Some(Dash::of_width(MARK_WIDTH)),
     };
     for run in marks.iter().flat_map(|mark| path(frame, mark)) {
         canvas.line(&run, line);

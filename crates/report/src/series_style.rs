@@ -1,7 +1,7 @@
 //! What a series looks like: its colour, line and marker.
 
 use crate::axis::Paint;
-use crate::canvas::LineStyle;
+use crate::canvas::{Dash, LineStyle};
 use crate::figure::{Series, Stroke};
 use crate::marks;
 use crate::theme::{CURVE_WIDTH, default_paint, rgb};
@@ -28,7 +28,7 @@ pub(crate) fn series_style(series: &Series, index: usize) -> SeriesStyle {
         line: LineStyle {
             color: rgb(paint),
             width: CURVE_WIDTH,
-            dashed: series.stroke == Stroke::Dashed,
+            dash: (series.stroke == Stroke::Dashed).then(|| Dash::of_width(CURVE_WIDTH)),
         },
         marker,
     }

@@ -1,7 +1,7 @@
 //! Single shapes of a drawing: their points, what they cover, how they are drawn.
 
 use crate::axes::PlotFrame;
-use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
+use crate::canvas::{Align, Canvas, Dash, LineStyle, TextStyle};
 use crate::curve::clipped;
 use crate::fonts;
 use crate::occupancy::Occupancy;
@@ -153,7 +153,7 @@ fn line(pen: &Pen) -> LineStyle {
     LineStyle {
         color: lightened(rgb(pen.color), pen.lightness),
         width,
-        dashed: pen.dashed,
+        dash: pen.dashed.then(|| Dash::of_width(width)),
     }
 }
 

@@ -73,7 +73,7 @@ pub use {
     equilibria::output::equilibria,
     free_motion::output::{simulate, simulate_to_accuracy, simulate_with},
     linearise::output::linearise,
-    output::{Outcome, Pictures},
+    output::{Outcome, PictureFormat, Pictures},
     reduce::output::reduce,
     sweep::output::{ParameterSweep, sweep},
     symbolic::output::{FormulaFormat, symbolic},

@@ -1,0 +1,214 @@
+//! Where everything on a page is: its words, and how much of each curve is left to see. Drawing records it only when it is
+//! asked for.
+
+use crate::error::ReportError;
+use crate::figure::Figure;
+use crate::ink::{Ink, Owner};
+use crate::rect::Rect;
+use crate::{animation::Animation, png};
+
+/// A curve of a legend is seen if so much of it is left, in pixels of area: the length of three letters.
+const MIN_VISIBLE: f64 = 100.0;
+/// Or so large a part of it, which is enough of a pin or of a single marker.
+const MIN_VISIBLE_SHARE: f64 = 0.2;
+/// Boxes of words that overlap by less than this, in pixels, only touch.
+const TOUCH: f64 = 0.5;
+
+/// Words on a page and the box they fill.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Label {
+    /// The words.
+    pub text: String,
+    /// Left, top, right and bottom, in pixels; y grows downwards.
+    pub area: [f64; 4],
+}
+
+/// A curve or a body that has a name, and what can be seen of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedCurve {
+    /// Its name.
+    pub name: String,
+    /// Which of the plots of the page it is in.
+    pub plot: usize,
+    /// Area that it fills where it is drawn, square pixels.
+    pub drawn: f64,
+    /// What of this nothing hides, square pixels.
+    pub visible: f64,
+}
+
+/// Where everything on a page is.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Layout {
+    /// Width and height of the page, pixels.
+    pub page: [f64; 2],
+    /// All words.
+    pub labels: Vec<Label>,
+    /// The curves with names.
+    pub curves: Vec<NamedCurve>,
+    /// The names in legends and at the ends of curves, with the plot they belong to.
+    pub legend: Vec<(usize, String)>,
+    /// Words for which there was no room.
+    pub left_out: Vec<String>,
+    /// Left, top, right and bottom of all that is drawn, pixels.
+    pub drawn: [f64; 4],
+}
+
+impl Layout {
+    /// The layout of a figure, as it is drawn.
+    ///
+    /// # Errors
+    /// [`ReportError::Size`] if the page is too large.
+    pub fn of(figure: &Figure) -> Result<Self, ReportError> {
+        let page = png::page_of(figure)?;
+        let size = [page.width as u32, page.height as u32];
+        let record = crate::raster::recorded(size, |canvas| page.draw(canvas));
+        Ok(record.layout(size))
+    }
+
+    /// The layout of every frame of an animation.
+    ///
+    /// # Errors
+    /// As [`Animation::gif`].
+    pub fn of_animation(animation: &Animation) -> Result<Vec<Self>, ReportError> {
+        let size = animation.page_size()?;
+        let recorded = animation.records()?.into_iter();
+        Ok(recorded.map(|record| record.layout(size)).collect())
+    }
+
+    /// What a reader would object to: words on words, words or lines that are cut, a legend without its curve, and words that
+    /// found no room. Empty if all is well.
+    pub fn faults(&self) -> Vec<String> {
+        let mut faults = self.words_on_words();
+        faults.extend(self.cut());
+        faults.extend(self.legends_without_a_curve());
+        let left_out = self.left_out.iter();
+        faults.extend(left_out.map(|text| format!("no room for `{text}`")));
+        faults
+    }
+
+    fn words_on_words(&self) -> Vec<String> {
+        let mut faults = Vec::new();
+        for (i, one) in self.labels.iter().enumerate() {
+            for other in &self.labels[..i] {
+                let [a, b] = [one.area, other.area];
+                let apart = |k: usize| a[k] + TOUCH > b[k + 2] || b[k] + TOUCH > a[k + 2];
+                if !apart(0) && !apart(1) {
+                    faults.push(format!("`{}` lies on `{}`", one.text, other.text));
+                }
+            }
+        }
+        faults
+    }
+
+    fn cut(&self) -> Vec<String> {
+        let [width, height] = self.page;
+        let outside = |[x0, y0, x1, y1]: [f64; 4]| x0 < 0.0 || y0 < 0.0 || x1 > width || y1 > height;
+        let labels = self.labels.iter().filter(|label| outside(label.area));
+        let mut faults: Vec<String> = labels.map(|l| format!("`{}` is cut", l.text)).collect();
+        if outside(self.drawn) {
+            faults.push(format!("something is drawn outside: {:?}", self.drawn));
+        }
+        faults
+    }
+
+    fn legends_without_a_curve(&self) -> Vec<String> {
+        let mut faults = Vec::new();
+        for (plot, name) in &self.legend {
+            let curves = self.curves.iter();
+            let own = curves.filter(|c| c.plot == *plot && c.name == *name);
+            let seen = |c: &NamedCurve| {
+                c.visible >= MIN_VISIBLE || c.visible > MIN_VISIBLE_SHARE * c.drawn.max(1.0)
+            };
+            let own: Vec<&NamedCurve> = own.collect();
+            if !own.iter().any(|c| seen(c)) {
+                let areas: Vec<String> = own
+                    .iter()
+                    .map(|c| format!("{:.0} of {:.0}", c.visible, c.drawn))
+                    .collect();
+                let areas = areas.join(", ");
+                faults.push(format!(
+                    "legend entry `{name}` has no visible curve ({areas} px²)"
+                ));
+            }
+        }
+        faults
+    }
+}
+
+/// What a canvas notes while it draws.
+#[derive(Debug)]
+pub(crate) struct LayoutRecord {
+    labels: Vec<Label>,
+    curves: Vec<(usize, String)>,
+    legend: Vec<(usize, String)>,
+    left_out: Vec<String>,
+    plot: usize,
+    pub(crate) ink: Ink,
+}
+
+impl LayoutRecord {
+    /// Of an empty page.
+    pub(crate) fn new([width, height]: [u32; 2]) -> Self {
+        Self {
+            labels: Vec::new(),
+            curves: Vec::new(),
+            legend: Vec::new(),
+            left_out: Vec::new(),
+            plot: 0,
+            ink: Ink::new([width, height].map(f64::from)),
+        }
+    }
+
+    pub(crate) fn begin_plot(&mut self) {
+        self.plot += 1;
+    }
+
+    /// From now on ink is that of a curve of this name, or of none.
+    pub(crate) fn begin_curve(&mut self, name: Option<&str>) {
+        let Some(name) = name.map(str::trim).filter(|name| !name.is_empty()) else {
+            self.ink.owner = Owner::NOBODY;
+            return;
+        };
+        let curve = (self.plot, name.to_owned());
+        let known = self.curves.iter().position(|known| *known == curve);
+        let index = known.unwrap_or_else(|| {
+            self.curves.push(curve);
+            self.curves.len() - 1
+        });
+        self.ink.owner = Owner::curve(index);
+    }
+
+    pub(crate) fn legend_entry(&mut self, name: &str) {
+        self.legend.push((self.plot, name.trim().to_owned()));
+    }
+
+    pub(crate) fn left_out(&mut self, text: &str) {
+        self.left_out.push(text.to_owned());
+    }
+
+    pub(crate) fn label(&mut self, text: &str, area: Rect) {
+        self.labels.push(Label {
+            text: text.to_owned(),
+            area: [area.x0, area.y0, area.x1, area.y1],
+        });
+    }
+
+    fn layout(self, size: [u32; 2]) -> Layout {
+        let areas = self.ink.areas(self.curves.len());
+        let curves = self.curves.into_iter().zip(areas);
+        let curve = |((plot, name), [drawn, visible]): ((usize, String), [f64; 2])| NamedCurve {
+            name,
+            plot,
+            drawn,
+            visible,
+        };
+        Layout {
+            page: size.map(f64::from),
+            labels: self.labels,
+            curves: curves.map(curve).collect(),
+            legend: self.legend,
+            left_out: self.left_out,
+            drawn: self.ink.extent(),
+        }
+    }
+}
