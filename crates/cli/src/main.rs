@@ -16,8 +16,8 @@ use dwell_findings::all_pass;
 use dwell_report::{Files, OutputFolder, ReportError};
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{
-    Analysis, MotionSolver, Outcome, ParameterSweep, PictureFormat, Pictures, SolverSettings, Step, StudyError,
-    TableRequest, TrajectoryOutcome, no_progress,
+    Analysis, MotionSolver, Outcome, ParameterSweep, PictureFormat, Pictures, SolverSettings, Step,
+    StudyError, TableRequest, TrajectoryOutcome, no_progress,
 };
 use dwell_validation::ValidationError;
 use indicatif::{ProgressBar, ProgressStyle};

@@ -273,11 +273,7 @@ const PICTURES: Choices<Pictures> = &[
 
 const PICTURE_FORMATS: Choices<PictureFormat> = &[
     ("png", PictureFormat::Png, "Pixels, for screens"),
-    (
-        "svg",
-        PictureFormat::Svg,
-        "Lines and letters, for papers",
-    ),
+    ("svg", PictureFormat::Svg, "Lines and letters, for papers"),
     ("both", PictureFormat::Both, "PNG and SVG"),
 ];
 

@@ -4,6 +4,7 @@ use crate::axes::{self, PlotFrame};
 use crate::axis::{Axis, Scale};
 use crate::axis_range::AxisRange;
 use crate::canvas::{Canvas, Dash, LineStyle};
+use crate::drawn_words;
 use crate::layout::LayoutRecord;
 use crate::legend::{self, LegendEntry, LegendHandle, PlacedLegend};
 use crate::marks::Marker;
@@ -97,6 +98,8 @@ impl DrawingLayout {
             shape_drawing::draw(canvas, frame, shape);
         }
         canvas.note(|record| record.begin_curve(None));
+        let legend = self.legend.as_ref().map(|legend| legend.area);
+        drawn_words::draw(canvas, frame, &drawing.shapes, legend);
         axes::horizontal_axis(canvas, frame, cell, Some(&drawing.x), &x);
         let style = axes::VerticalAxisStyle {
             ticks: &y,

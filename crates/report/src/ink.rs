@@ -68,7 +68,10 @@ impl Ink {
         self.extent = [left.min(x0), top.min(y0), right.max(x1), bottom.max(y1)];
         // Below zero saturates; a cell counts if its middle is covered.
         let first = |v: f64| ((v / CELL + 0.5).floor().max(0.0)) as usize;
-        let (columns, rows) = (first(x0)..first(x1).min(self.columns), first(y0)..first(y1).min(self.rows));
+        let (columns, rows) = (
+            first(x0)..first(x1).min(self.columns),
+            first(y0)..first(y1).min(self.rows),
+        );
         for row in rows {
             for column in columns.clone() {
                 self.cell(row * self.columns + column);
@@ -79,10 +82,18 @@ impl Ink {
     /// A filled polygon, by the even-odd rule.
     pub(crate) fn polygon(&mut self, points: &[[f64; 2]]) {
         let ys = || points.iter().map(|p| p[1]);
-        let (top, bottom) = (ys().fold(f64::INFINITY, f64::min), ys().fold(-f64::INFINITY, f64::max));
+        let (top, bottom) = (
+            ys().fold(f64::INFINITY, f64::min),
+            ys().fold(-f64::INFINITY, f64::max),
+        );
         for p in points {
             let [left, top, right, bottom] = self.extent;
-            self.extent = [left.min(p[0]), top.min(p[1]), right.max(p[0]), bottom.max(p[1])];
+            self.extent = [
+                left.min(p[0]),
+                top.min(p[1]),
+                right.max(p[0]),
+                bottom.max(p[1]),
+            ];
         }
         let mut y = (top.max(0.0) / CELL).floor() * CELL + 0.5 * CELL;
         while y < bottom.min(self.rows as f64 * CELL) {
@@ -126,7 +137,9 @@ impl Ink {
         }
         let drawn = |k: usize| self.drawn.get(k).copied().unwrap_or(0);
         let area = |cells: usize| cells as f64 * CELL * CELL;
-        (1..=curves).map(|k| [area(drawn(k)), area(visible[k])]).collect()
+        (1..=curves)
+            .map(|k| [area(drawn(k)), area(visible[k])])
+            .collect()
     }
 
     /// Left, top, right and bottom of all ink.

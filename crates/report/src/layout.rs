@@ -65,14 +65,30 @@ impl Layout {
         Ok(record.layout(size))
     }
 
-    /// The layout of every frame of an animation.
+    /// The layout of every frame of an animation. All frames share one legend, so each counts what is seen of a curve in the
+    /// frame that shows most of it.
     ///
     /// # Errors
     /// As [`Animation::gif`].
     pub fn of_animation(animation: &Animation) -> Result<Vec<Self>, ReportError> {
         let size = animation.page_size()?;
         let recorded = animation.records()?.into_iter();
-        Ok(recorded.map(|record| record.layout(size)).collect())
+        let mut frames: Vec<Self> = recorded.map(|record| record.layout(size)).collect();
+        let mut most: Vec<NamedCurve> = Vec::new();
+        for curve in frames.iter().flat_map(|frame| &frame.curves) {
+            match most
+                .iter_mut()
+                .find(|c| c.name == curve.name && c.plot == curve.plot)
+            {
+                Some(known) if known.visible < curve.visible => *known = curve.clone(),
+                Some(_) => {}
+                None => most.push(curve.clone()),
+            }
+        }
+        frames
+            .iter_mut()
+            .for_each(|frame| frame.curves.clone_from(&most));
+        Ok(frames)
     }
 
     /// What a reader would object to: words on words, words or lines that are cut, a legend without its curve, and words that
@@ -102,7 +118,8 @@ impl Layout {
 
     fn cut(&self) -> Vec<String> {
         let [width, height] = self.page;
-        let outside = |[x0, y0, x1, y1]: [f64; 4]| x0 < 0.0 || y0 < 0.0 || x1 > width || y1 > height;
+        let outside =
+            |[x0, y0, x1, y1]: [f64; 4]| x0 < 0.0 || y0 < 0.0 || x1 > width || y1 > height;
         let labels = self.labels.iter().filter(|label| outside(label.area));
         let mut faults: Vec<String> = labels.map(|l| format!("`{}` is cut", l.text)).collect();
         if outside(self.drawn) {

@@ -55,6 +55,7 @@ mod color_bar;
 mod colormap;
 mod curve;
 mod drawing;
+mod drawn_words;
 mod end_labels;
 mod error;
 mod extent;

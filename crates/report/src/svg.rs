@@ -114,7 +114,13 @@ mod tests {
     #[test]
     fn any_letter_is_drawn_or_is_a_box() {
         // What the font lacks, what has no width, what is no letter at all.
-        for title in ["漢字 🚀", "e\u{301}\u{200b}\u{fe0f}", "\u{0}\u{1b}[0m\u{fffe}\n\t", "שלום", "𝔸\u{10ffff}"] {
+        for title in [
+            "漢字 🚀",
+            "e\u{301}\u{200b}\u{fe0f}",
+            "\u{0}\u{1b}[0m\u{fffe}\n\t",
+            "שלום",
+            "𝔸\u{10ffff}",
+        ] {
             let document = svg(&figure(title)).unwrap();
             Tree::from_str(&document, &fonts::options()).unwrap();
             crate::png(&figure(title)).unwrap();

@@ -117,7 +117,9 @@ impl Picture {
     fn files(&self, format: PictureFormat) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
         let figure = match &self.content {
             Content::Figure(figure) => figure,
-            Content::Animation(animation) => return Ok(vec![(self.path.clone(), animation.gif()?)]),
+            Content::Animation(animation) => {
+                return Ok(vec![(self.path.clone(), animation.gif()?)]);
+            }
         };
         let mut files = Vec::new();
         if format.has_png() {

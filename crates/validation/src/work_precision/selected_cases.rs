@@ -41,7 +41,10 @@ pub fn selected_case_reports(scenes: &[&Scene]) -> Result<Outcome, StudyError> {
         let text = found.quadrature().map(|_| snapshot(scene, &found));
         Ok((files, picture, text.unwrap_or_default()))
     };
-    let done: Vec<_> = selected.par_iter().map(one).collect::<Result<_, StudyError>>()?;
+    let done: Vec<_> = selected
+        .par_iter()
+        .map(one)
+        .collect::<Result<_, StudyError>>()?;
     let mut outcome = Outcome::default();
     let mut text = "Work–precision study\n".to_owned();
     for (files, picture, text_of_case) in done {
