@@ -3,6 +3,7 @@
 mod captions;
 mod distinct_names;
 mod mechanism_drawing;
+mod mechanism_symbols;
 mod pictures;
 mod provenance;
 

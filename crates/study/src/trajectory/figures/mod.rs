@@ -71,7 +71,9 @@ pub(crate) fn trajectory_figures(
 pub(crate) fn animation(scene: &Scene, computed: &ComputedTrajectory<'_>) -> Animation {
     let context = FigureContext::new(scene, computed);
     let results = context.results;
-    let drawing = MechanismDrawing::new(scene, &results.body_poses).with_visible(&results.modelled);
+    let drawing = MechanismDrawing::new(scene, &results.body_poses)
+        .with_visible(&results.modelled)
+        .with_paths(context.path_lines());
     let last = last_drawn(computed);
     let count = MAX_FRAMES.min(last + 1);
     // Over a whole period the last position equals the first.
@@ -79,7 +81,7 @@ pub(crate) fn animation(scene: &Scene, computed: &ComputedTrajectory<'_>) -> Ani
     let steps = count.saturating_sub(usize::from(!is_closed));
     let frame = |i: usize| {
         let k = (i * last) / steps.max(1);
-        let mut shapes = context.path_lines();
+        let mut shapes = Vec::new();
         drawing.draw(&results.body_poses[k], 0.0, &mut shapes);
         // Moving labels would distract.
         shapes.retain(|s| !matches!(s, Shape::Text { .. }));
@@ -267,7 +269,8 @@ impl<'a> FigureContext<'a> {
     /// The mechanism in several positions up to the `last`th.
     fn mechanism(&self, last: usize) -> Figure {
         let drawing = MechanismDrawing::new(self.scene, &self.results.body_poses)
-            .with_visible(&self.results.modelled);
+            .with_visible(&self.results.modelled)
+            .with_paths(self.path_lines());
         let body_poses = &self.results.body_poses[..=last];
         let mut shapes = Vec::new();
         let drawn = DRAWN_POSITIONS - usize::from(!is_closed(body_poses));
@@ -275,8 +278,6 @@ impl<'a> FigureContext<'a> {
             let lightness = 0.62 + 0.04 * k as f64;
             drawing.draw(&body_poses[k * last / drawn], lightness, &mut shapes);
         }
-        // Drawn before the first position, above the slots of the others.
-        shapes.extend(self.path_lines());
         if let Some(first) = body_poses.first() {
             drawing.draw(first, 0.0, &mut shapes);
         }
