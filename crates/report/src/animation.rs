@@ -10,6 +10,7 @@ use crate::raster::{SvgPicture, recorded};
 use crate::rect::Rect;
 use crate::shape::Drawing;
 use crate::theme::{CAPTION_GREY, Rgb, WHITE};
+use crate::typeset::typeset;
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -115,7 +116,7 @@ impl Animation {
             });
         }
         let (cell, layout) = self.layout();
-        let footer = fonts::wrapped(&self.provenance, FOOTER_SIZE, false, cell.width());
+        let footer = fonts::wrapped(&typeset(&self.provenance), FOOTER_SIZE, false, cell.width());
         let lowest = cell.y1 + LEADING * FOOTER_SIZE * footer.len() as f64;
         Ok(FilmPage {
             size: [PAGE_WIDTH, (lowest + MARGIN).ceil()].map(|side| side as u32),

@@ -16,6 +16,7 @@ use crate::occupancy::Occupancy;
 use crate::rect::{Insets, Rect};
 use crate::series_style::{SeriesStyle, series_style};
 use crate::theme::{CURVE_WIDTH, GREY, INK, LABEL_SIZE, Rgb, SPINE_WIDTH, lightened};
+use crate::typeset::typeset;
 
 /// Height of a chart's cell as a share of its width.
 pub(crate) const HEIGHT: f64 = 0.68;
@@ -152,7 +153,7 @@ impl<'a> PreparedChart<'a> {
         }
         canvas.note(LayoutRecord::begin_plot);
         for (series, style) in chart.series.iter().zip(&styles) {
-            canvas.note(|record| record.begin_curve(Some(&series.name)));
+            canvas.note(|record| record.begin_curve(Some(&typeset(&series.name))));
             draw_series(canvas, &frame, series, style);
         }
         canvas.note(|record| record.begin_curve(None));
@@ -273,7 +274,7 @@ impl<'a> PreparedChart<'a> {
         let series = self.chart.series.iter().zip(styles);
         let named = series.filter(|(s, _)| !s.name.trim().is_empty() && is_visible(frame, s));
         let entry = |(series, style): (&Series, &SeriesStyle)| {
-            let mut name = series.name.trim().to_owned();
+            let mut name = typeset(series.name.trim());
             if ambiguous {
                 name.push_str(if series.right_axis { " →" } else { " ←" });
             }

@@ -10,6 +10,8 @@ use crate::series_style::SeriesStyle;
 const HIDDEN_SHARE: f64 = 0.85;
 /// A later curve is one of those that hide it if it covers so much of it.
 const COVERING_SHARE: f64 = 0.25;
+/// How often curves are looked for that others hide.
+const PASSES: usize = 3;
 /// Length of a dash in pixels: of two curves, and the least of many.
 const DASH: f64 = 20.0;
 const MIN_DASH: f64 = 10.0;
@@ -27,6 +29,13 @@ struct Cover {
 
 /// Gives curves that would hide each other dashes in turn; `lines` are those of each curve.
 pub(crate) fn separate(styles: &mut [SeriesStyle], lines: &[Lines], plot: &Rect) {
+    // Dashes in turn leave no gaps for a third curve below them, which is found only then.
+    for _ in 0..PASSES {
+        separate_once(styles, lines, plot);
+    }
+}
+
+fn separate_once(styles: &mut [SeriesStyle], lines: &[Lines], plot: &Rect) {
     let covers = styles.iter().zip(lines);
     let covers: Vec<Cover> = covers
         .map(|(style, lines)| Cover::of(style, lines, plot))

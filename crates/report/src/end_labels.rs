@@ -8,6 +8,7 @@ use crate::fonts;
 use crate::rect::Rect;
 use crate::series_style::SeriesStyle;
 use crate::theme::{INK, TICK_SIZE};
+use crate::typeset::typeset;
 
 /// Length of the sample before a name.
 const SAMPLE: f64 = 26.0;
@@ -55,7 +56,7 @@ pub(crate) fn at_ends(
             return None;
         }
         labels.push(EndLabel {
-            name: series.name.trim().to_owned(),
+            name: typeset(series.name.trim()),
             line: style.line,
             y,
         });

@@ -90,6 +90,7 @@ mod svg;
 mod table;
 mod theme;
 mod ticks;
+mod typeset;
 mod wrapped_text;
 
 pub use animation::Animation;
@@ -100,7 +101,7 @@ pub use files::Files;
 pub use grid::{Cell, Grid, Group, Row};
 pub use json::{FindingRecord, Number, json};
 pub use layout::{Label, Layout, NamedCurve};
-pub use markdown::{Block, Document, reproducible_text};
+pub use markdown::{Block, Document, markdown_text, reproducible_text};
 pub use npz::{Array, npz};
 pub use output_folder::OutputFolder;
 pub use png::png;

@@ -8,6 +8,7 @@ use crate::fonts;
 use crate::occupancy::Occupancy;
 use crate::rect::Rect;
 use crate::theme::{BAND, GREY, INK, MARK_WIDTH, MARKER_RADIUS, Rgb, TICK_SIZE, WHITE};
+use crate::typeset::typeset;
 
 /// The marker of what is drawn in ink: it stands apart from all curves.
 pub(crate) const CROSS: usize = usize::MAX;
@@ -167,7 +168,8 @@ pub(crate) fn draw_labels(
         | Mark::Slope { label, .. }
         | Mark::Point { label, .. }
         | Mark::Text { label, .. }) = mark;
-        let label = label.trim();
+        let label = typeset(label.trim());
+        let label = label.as_str();
         if label.is_empty() {
             continue;
         }
@@ -280,13 +282,18 @@ fn label_candidates(frame: &PlotFrame, mark: &Mark, [width, height]: [f64; 2]) -
                     [x - d - width, y - 0.5 * height],
                     [x - 0.5 * width, y - d - height],
                     [x - 0.5 * width, y + d],
+                    // Beside the left or the right edge there is room for no other.
+                    [x - MARKER_RADIUS, y - d - height],
+                    [x - MARKER_RADIUS, y + d],
+                    [x + MARKER_RADIUS - width, y - d - height],
+                    [x + MARKER_RADIUS - width, y + d],
                     [x + 0.7 * d, y - 0.7 * d - height],
                     [x - 0.7 * d - width, y - 0.7 * d - height],
                     [x + 0.7 * d, y + 0.7 * d],
                     [x - 0.7 * d - width, y + 0.7 * d],
                 ]
             };
-            [1.0, 2.0, 3.5, 5.0, 7.0, 9.0, 12.0]
+            [1.0, 2.0, 3.5, 5.0, 7.0, 9.0, 12.0, 15.0]
                 .into_iter()
                 .flat_map(around)
                 .collect()

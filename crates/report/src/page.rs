@@ -10,6 +10,7 @@ use crate::rect::{Insets, Rect};
 use crate::shape::Drawing;
 use crate::stack::Stack;
 use crate::theme::{CAPTION_GREY, CAPTION_SIZE, INK, PROVENANCE_SIZE, TITLE_SIZE, WHITE};
+use crate::typeset::typeset;
 use std::slice::from_ref;
 
 /// Around the page.
@@ -111,7 +112,7 @@ impl<'a> Page<'a> {
         } else {
             CELL * columns as f64 + gaps
         };
-        let title = wrapped(&figure.title, TITLE_SIZE, true, inner);
+        let title = wrapped(&typeset(&figure.title), TITLE_SIZE, true, inner);
         let mut y = MARGIN;
         if !title.is_empty() {
             y += title.len() as f64 * TITLE_LEADING * TITLE_SIZE + 0.55 * TITLE_SIZE;
@@ -142,7 +143,10 @@ impl<'a> Page<'a> {
             (&figure.caption, CAPTION_SIZE),
             (&figure.provenance, PROVENANCE_SIZE),
         ] {
-            for (k, line) in wrapped(text, size, false, inner).into_iter().enumerate() {
+            for (k, line) in wrapped(&typeset(text), size, false, inner)
+                .into_iter()
+                .enumerate()
+            {
                 if k == 0 && !footer.is_empty() {
                     y += FOOTER_GAP;
                 }

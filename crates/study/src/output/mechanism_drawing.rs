@@ -258,7 +258,11 @@ impl DrawnPosition<'_> {
         let drawing = self.drawing;
         for cam in drawing.cams.iter().filter(|cam| drawing.visible[cam.body]) {
             let body = BodyId(cam.body);
-            let points = cam.points.iter().map(|p| array(self.point(body, *p))).collect();
+            let points = cam
+                .points
+                .iter()
+                .map(|p| array(self.point(body, *p)))
+                .collect();
             let pen = self.pen(drawing.color(body), 3.0);
             let shape = match cam.closed {
                 true => Shape::area(points, pen, 0.2),
@@ -504,7 +508,10 @@ fn drawn_size(scene: &Scene, positions: &[Vec<BodyPose>]) -> f64 {
     let all: Vec<[f64; 2]> = all.collect();
     let sides = [0, 1].map(|i| extent(all.iter().map(|p| p[i])));
     let sides = sides.map(|[low, high]| high - low);
-    sides.into_iter().filter(|side| side.is_finite()).fold(0.0, f64::max)
+    sides
+        .into_iter()
+        .filter(|side| side.is_finite())
+        .fold(0.0, f64::max)
 }
 
 fn axis_of(kind: JointKind) -> Option<Vec2> {

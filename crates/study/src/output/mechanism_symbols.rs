@@ -96,7 +96,13 @@ pub(super) fn rack_outline([from, to]: [Vec2; 2], normal: Vec2, tooth: f64) -> V
     }
     let teeth = (length / (4.0 * tooth)).round().clamp(1.0, 200.0) as usize;
     // A foot, two flanks and a tip for each tooth.
-    let profile = [(0.0, -1.0), (0.25, -1.0), (0.4, 1.0), (0.6, 1.0), (0.75, -1.0)];
+    let profile = [
+        (0.0, -1.0),
+        (0.25, -1.0),
+        (0.4, 1.0),
+        (0.6, 1.0),
+        (0.75, -1.0),
+    ];
     let place = |s: f64, height: f64| from + along * (s / teeth as f64) + normal * (height * tooth);
     let mut outline: Vec<Vec2> = (0..teeth)
         .flat_map(|k| profile.map(|(s, height)| place(k as f64 + s, height)))
@@ -124,13 +130,18 @@ mod tests {
 
     #[test]
     fn the_pitch_curve_of_a_cam_is_at_the_follower_s_travel() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation/cam/scene.toml");
+        let path = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../validation/cam/scene.toml"
+        );
         let scene = Scene::read(path).expect("a scene");
         let coupling = scene.mechanism.couplings.first().expect("a cam");
         let rise = |q: f64| 0.04 + 0.012 * (1.0 - q.cos()) + 0.003 * (1.0 - (2.0 * q).cos());
         let bodies = |name: &str| {
             let all = scene.mechanism.bodies.iter();
-            all.map(|b| b.name.as_str()).position(|n| n == name).expect("a body")
+            all.map(|b| b.name.as_str())
+                .position(|n| n == name)
+                .expect("a body")
         };
         let (cam, follower) = (bodies("cam"), bodies("follower"));
         let pose = |k: usize| {

@@ -5,7 +5,7 @@ mod figure;
 use crate::case_report::validate::Validation;
 use crate::report_parts::{describe_failure, pass_or_fail, table};
 use dwell_findings::{Check, Finding, all_pass};
-use dwell_report::{Block, Document};
+use dwell_report::{Block, Document, markdown_text};
 use dwell_scene::Scene;
 use dwell_study::Outcome;
 use dwell_study::output::Picture;
@@ -99,7 +99,7 @@ pub fn index(results: &[CaseResult<'_>]) -> Outcome {
 }
 
 fn link(scene: &Scene) -> String {
-    format!("[{}]({}.md)", scene.title, scene.name)
+    format!("[{}]({}.md)", markdown_text(&scene.title), scene.name)
 }
 
 /// A row of the table of digits.
