@@ -16,8 +16,8 @@ use dwell_findings::all_pass;
 use dwell_report::{Files, OutputFolder, ReportError};
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{
-    Analysis, MotionSolver, Outcome, ParameterSweep, PictureFormat, Pictures, SolverSettings, Step,
-    StudyError, TableRequest, TrajectoryOutcome, no_progress,
+    Analysis, MotionSolver, Outcome, ParameterSweep, PictureFormat, PictureSpan, Pictures,
+    SolverSettings, Step, StudyError, TableRequest, TrajectoryOutcome, no_progress,
 };
 use dwell_validation::ValidationError;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -149,6 +149,8 @@ fn run_study(
             accuracy,
             sample_interval,
             times,
+            from,
+            to,
         } => {
             let solver = match *accuracy {
                 Some(accuracy) => MotionSolver::Accuracy {
@@ -165,7 +167,17 @@ fn run_study(
             };
             let scene = read(scene, bar)?;
             let times = times.as_deref().map(instants::read).transpose()?;
-            return dwell_study::simulate_with(&scene, &solver, times.as_deref(), &progress);
+            let span = PictureSpan {
+                from: *from,
+                to: *to,
+            };
+            return dwell_study::simulate_within(
+                &scene,
+                &solver,
+                times.as_deref(),
+                span,
+                &progress,
+            );
         }
         Command::Cycle {
             scene,
@@ -254,7 +266,11 @@ fn run_trajectory(
     let scene = read(&arguments.scene, bar)?;
     let points = arguments.points.map(|n| n as usize);
     let progress = |step: Step<'_>| show_step(bar, step);
-    dwell_study::analyse_trajectory(&scene, analysis, points, &progress)
+    let span = PictureSpan {
+        from: arguments.from,
+        to: arguments.to,
+    };
+    dwell_study::analyse_trajectory_within(&scene, analysis, points, span, &progress)
 }
 
 /// The folder of the results, tested before the work; none for a command that writes nothing.

@@ -81,6 +81,12 @@ pub(crate) enum Command {
         /// The last instant of the motion is a row, too
         #[arg(long, value_name = "FILE", conflicts_with = "sample_interval")]
         times: Option<PathBuf>,
+        /// Time at which curves begin in the pictures, s; files keep all rows
+        #[arg(long, value_parser = parse_finite, value_name = "SECONDS", allow_hyphen_values = true)]
+        from: Option<f64>,
+        /// Time at which they end, s
+        #[arg(long, value_parser = parse_finite, value_name = "SECONDS", allow_hyphen_values = true)]
+        to: Option<f64>,
     },
     /// Steady cycle of a driven machine, and the flywheel for a given coefficient of fluctuation
     Cycle {
@@ -228,6 +234,12 @@ pub(crate) struct TrajectoryArgs {
     /// Number of positions, both ends included (default: the scene's `points`, or 361)
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1_000_000), value_name = "COUNT", allow_hyphen_values = true)]
     pub(crate) points: Option<u32>,
+    /// Where curves begin in the pictures: the time in s, or the swept coordinate in the scene's unit; files keep all rows
+    #[arg(long, value_parser = parse_finite, value_name = "ABSCISSA", allow_hyphen_values = true)]
+    pub(crate) from: Option<f64>,
+    /// Where they end
+    #[arg(long, value_parser = parse_finite, value_name = "ABSCISSA", allow_hyphen_values = true)]
+    pub(crate) to: Option<f64>,
 }
 
 /// The values of an option: name, value, help.
