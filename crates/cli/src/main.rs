@@ -71,25 +71,14 @@ fn run(options: Options, name: &str) -> Result<bool, Report> {
         } => {
             let (outcome, failures) = validate::validate(cases, folder, (*slow, *seed), &bar)?;
             times.add("checking");
-            let format = match picture_format {
-                PictureFormat::Svg => PictureFormat::Both,
-                format => format,
-            };
-            let drawn = outcome.draw((Pictures::All, format), &no_progress);
-            let outcome = drawn.map_err(|e| Report::new(as_scene_error(e)))?;
+            let outcome = draw_validation(outcome, picture_format)?;
             times.add("drawing");
             (outcome, None, failures)
         }
         study => {
             let done = run_study(study, &out, &bar);
             times.add("computing");
-            let done = done.and_then(|done| {
-                bar.set_position(0);
-                let outcome = done
-                    .outcome
-                    .draw((pictures, picture_format), &|step| show_step(&bar, step))?;
-                Ok((outcome, done.early_stop))
-            });
+            let done = done.and_then(|done| draw_study(done, (pictures, picture_format), &bar));
             times.add("drawing");
             bar.finish_and_clear();
             let (outcome, early_stop) = done.map_err(|e| Report::new(as_scene_error(e)))?;
@@ -113,6 +102,27 @@ fn run(options: Options, name: &str) -> Result<bool, Report> {
         Some(report) => Err(report),
         None => Ok(!ended_early && all_pass(&outcome.findings)),
     }
+}
+
+/// Draws the pictures of a study that are wanted.
+fn draw_study(
+    done: TrajectoryOutcome,
+    wanted: (Pictures, PictureFormat),
+    bar: &ProgressBar,
+) -> Result<(Outcome, Option<StudyError>), StudyError> {
+    bar.set_position(0);
+    let outcome = done.outcome.draw(wanted, &|step| show_step(bar, step))?;
+    Ok((outcome, done.early_stop))
+}
+
+/// Draws all pictures of a validation. Its pages show those in pixels.
+fn draw_validation(outcome: Outcome, format: PictureFormat) -> Result<Outcome, Report> {
+    let format = match format {
+        PictureFormat::Svg => PictureFormat::Both,
+        format => format,
+    };
+    let drawn = outcome.draw((Pictures::All, format), &no_progress);
+    drawn.map_err(|e| Report::new(as_scene_error(e)))
 }
 
 /// Runs a study of one scene: one arm for each command, so longer than a screen.

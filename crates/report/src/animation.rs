@@ -4,7 +4,7 @@ use crate::canvas::{Align, Canvas, TextStyle};
 use crate::drawing::{self, DrawingLayout};
 use crate::error::ReportError;
 use crate::fonts;
-use crate::layout::LayoutRecord;
+use crate::layout_record::LayoutRecord;
 use crate::palette::Palette;
 use crate::raster::{SvgPicture, recorded};
 use crate::rect::Rect;

@@ -8,7 +8,7 @@ use crate::curve::{clipped, clipped_area};
 use crate::end_labels::{self, EndLabel};
 use crate::extent::{Extent, has_markers};
 use crate::figure::{Chart, Series, Stroke};
-use crate::layout::LayoutRecord;
+use crate::layout_record::LayoutRecord;
 use crate::legend::{self, LegendEntry, LegendHandle, PlacedLegend};
 use crate::linear_ticks::Ticks;
 use crate::marks;

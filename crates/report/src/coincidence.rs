@@ -1,7 +1,7 @@
 //! Curves that lie on each other: they are drawn with dashes in turn, so that each of them is seen.
 
-use crate::canvas::Dash;
 use crate::curve::dashes;
+use crate::dash::Dash;
 use crate::occupancy::Occupancy;
 use crate::rect::Rect;
 use crate::series_style::SeriesStyle;

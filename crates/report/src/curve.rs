@@ -1,6 +1,6 @@
 //! Curves in page pixels: cut at a rectangle, thinned to what can be seen, broken into dashes.
 
-use crate::canvas::Dash;
+use crate::dash::Dash;
 use crate::rect::Rect;
 
 /// Width of the strips within which neighbouring points cannot be distinguished.

@@ -3,9 +3,10 @@
 use crate::axes::{self, PlotFrame};
 use crate::axis::{Axis, Scale};
 use crate::axis_range::AxisRange;
-use crate::canvas::{Canvas, Dash, LineStyle};
+use crate::canvas::{Canvas, LineStyle};
+use crate::dash::Dash;
 use crate::drawn_words;
-use crate::layout::LayoutRecord;
+use crate::layout_record::LayoutRecord;
 use crate::legend::{self, LegendEntry, LegendHandle, PlacedLegend};
 use crate::marks::Marker;
 use crate::occupancy::Occupancy;

@@ -3,7 +3,7 @@
 
 use crate::error::ReportError;
 use crate::figure::Figure;
-use crate::ink::{Ink, Owner};
+use crate::layout_record::LayoutRecord;
 use crate::rect::Rect;
 use crate::{animation::Animation, png};
 
@@ -62,7 +62,7 @@ impl Layout {
         let page = png::page_of(figure)?;
         let size = [page.width as u32, page.height as u32];
         let record = crate::raster::recorded(size, |canvas| page.draw(canvas));
-        Ok(record.layout(size))
+        Ok(Self::from_record(record, size))
     }
 
     /// The layout of every frame of an animation. All frames share one legend, so each counts what is seen of a curve in the
@@ -73,7 +73,9 @@ impl Layout {
     pub fn of_animation(animation: &Animation) -> Result<Vec<Self>, ReportError> {
         let size = animation.page_size()?;
         let recorded = animation.records()?.into_iter();
-        let mut frames: Vec<Self> = recorded.map(|record| record.layout(size)).collect();
+        let mut frames: Vec<Self> = recorded
+            .map(|record| Self::from_record(record, size))
+            .collect();
         let mut most: Vec<NamedCurve> = Vec::new();
         for curve in frames.iter().flat_map(|frame| &frame.curves) {
             match most
@@ -100,6 +102,29 @@ impl Layout {
         let left_out = self.left_out.iter();
         faults.extend(left_out.map(|text| format!("no room for `{text}`")));
         faults
+    }
+
+    fn from_record(record: LayoutRecord, size: [u32; 2]) -> Self {
+        let areas = record.ink.areas(record.curves.len());
+        let curves = record.curves.into_iter().zip(areas);
+        let curve = |((plot, name), [drawn, visible]): ((usize, String), [f64; 2])| NamedCurve {
+            name,
+            plot,
+            drawn,
+            visible,
+        };
+        let label = |(text, area): (String, Rect)| Label {
+            text,
+            area: [area.x0, area.y0, area.x1, area.y1],
+        };
+        Self {
+            page: size.map(f64::from),
+            labels: record.labels.into_iter().map(label).collect(),
+            curves: curves.map(curve).collect(),
+            legend: record.legend,
+            left_out: record.left_out,
+            drawn: record.ink.extent(),
+        }
     }
 
     fn words_on_words(&self) -> Vec<String> {
@@ -149,83 +174,5 @@ impl Layout {
             }
         }
         faults
-    }
-}
-
-/// What a canvas notes while it draws.
-#[derive(Debug)]
-pub(crate) struct LayoutRecord {
-    labels: Vec<Label>,
-    curves: Vec<(usize, String)>,
-    legend: Vec<(usize, String)>,
-    left_out: Vec<String>,
-    plot: usize,
-    pub(crate) ink: Ink,
-}
-
-impl LayoutRecord {
-    /// Of an empty page.
-    pub(crate) fn new([width, height]: [u32; 2]) -> Self {
-        Self {
-            labels: Vec::new(),
-            curves: Vec::new(),
-            legend: Vec::new(),
-            left_out: Vec::new(),
-            plot: 0,
-            ink: Ink::new([width, height].map(f64::from)),
-        }
-    }
-
-    pub(crate) fn begin_plot(&mut self) {
-        self.plot += 1;
-    }
-
-    /// From now on ink is that of a curve of this name, or of none.
-    pub(crate) fn begin_curve(&mut self, name: Option<&str>) {
-        let Some(name) = name.map(str::trim).filter(|name| !name.is_empty()) else {
-            self.ink.owner = Owner::NOBODY;
-            return;
-        };
-        let curve = (self.plot, name.to_owned());
-        let known = self.curves.iter().position(|known| *known == curve);
-        let index = known.unwrap_or_else(|| {
-            self.curves.push(curve);
-            self.curves.len() - 1
-        });
-        self.ink.owner = Owner::curve(index);
-    }
-
-    pub(crate) fn legend_entry(&mut self, name: &str) {
-        self.legend.push((self.plot, name.trim().to_owned()));
-    }
-
-    pub(crate) fn left_out(&mut self, text: &str) {
-        self.left_out.push(text.to_owned());
-    }
-
-    pub(crate) fn label(&mut self, text: &str, area: Rect) {
-        self.labels.push(Label {
-            text: text.to_owned(),
-            area: [area.x0, area.y0, area.x1, area.y1],
-        });
-    }
-
-    fn layout(self, size: [u32; 2]) -> Layout {
-        let areas = self.ink.areas(self.curves.len());
-        let curves = self.curves.into_iter().zip(areas);
-        let curve = |((plot, name), [drawn, visible]): ((usize, String), [f64; 2])| NamedCurve {
-            name,
-            plot,
-            drawn,
-            visible,
-        };
-        Layout {
-            page: size.map(f64::from),
-            labels: self.labels,
-            curves: curves.map(curve).collect(),
-            legend: self.legend,
-            left_out: self.left_out,
-            drawn: self.ink.extent(),
-        }
     }
 }

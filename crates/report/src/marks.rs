@@ -1,8 +1,9 @@
 //! Markers, and the reference lines, bands and points of a chart with their words.
 
 use crate::axes::PlotFrame;
-use crate::canvas::{Align, Canvas, Dash, LineStyle, TextStyle};
+use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::curve::clipped;
+use crate::dash::Dash;
 use crate::figure::Mark;
 use crate::fonts;
 use crate::occupancy::Occupancy;

@@ -102,6 +102,27 @@ fn prepared(panel: &Panel, width: f64) -> PreparedPanel<'_> {
     }
 }
 
+/// Caption and provenance as lines with size and baseline, from `y` on, which goes on below them.
+fn footer(figure: &Figure, inner: f64, y: &mut f64) -> Vec<(String, f64, f64)> {
+    let mut footer = Vec::new();
+    for (text, size) in [
+        (&figure.caption, CAPTION_SIZE),
+        (&figure.provenance, PROVENANCE_SIZE),
+    ] {
+        for (k, line) in wrapped(&typeset(text), size, false, inner)
+            .into_iter()
+            .enumerate()
+        {
+            if k == 0 && !footer.is_empty() {
+                *y += FOOTER_GAP;
+            }
+            footer.push((line, size, *y + 0.8 * size));
+            *y += CAPTION_LEADING * size;
+        }
+    }
+    footer
+}
+
 impl<'a> Page<'a> {
     /// Lays everything out.
     pub(crate) fn new(figure: &'a Figure) -> Self {
@@ -138,22 +159,7 @@ impl<'a> Page<'a> {
             }
             y += height + ROW_GAP;
         }
-        let mut footer = Vec::new();
-        for (text, size) in [
-            (&figure.caption, CAPTION_SIZE),
-            (&figure.provenance, PROVENANCE_SIZE),
-        ] {
-            for (k, line) in wrapped(&typeset(text), size, false, inner)
-                .into_iter()
-                .enumerate()
-            {
-                if k == 0 && !footer.is_empty() {
-                    y += FOOTER_GAP;
-                }
-                footer.push((line, size, y + 0.8 * size));
-                y += CAPTION_LEADING * size;
-            }
-        }
+        let footer = footer(figure, inner, &mut y);
         if footer.is_empty() {
             y -= ROW_GAP;
         }

@@ -3,7 +3,7 @@
 use crate::canvas::{Canvas, UNITS_PER_PIXEL};
 use crate::error::ReportError;
 use crate::fonts;
-use crate::layout::LayoutRecord;
+use crate::layout_record::LayoutRecord;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::Tree;
 

@@ -1,7 +1,8 @@
 //! What a series looks like: its colour, line and marker.
 
 use crate::axis::Paint;
-use crate::canvas::{Dash, LineStyle};
+use crate::canvas::LineStyle;
+use crate::dash::Dash;
 use crate::figure::{Series, Stroke};
 use crate::marks;
 use crate::theme::{CURVE_WIDTH, default_paint, rgb};

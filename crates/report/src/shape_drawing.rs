@@ -1,8 +1,9 @@
 //! Single shapes of a drawing: their points, what they cover, how they are drawn.
 
 use crate::axes::PlotFrame;
-use crate::canvas::{Canvas, Dash, LineStyle};
+use crate::canvas::{Canvas, LineStyle};
 use crate::curve::clipped;
+use crate::dash::Dash;
 use crate::fonts;
 use crate::occupancy::Occupancy;
 use crate::rect::Rect;

@@ -1,13 +1,14 @@
 //! Drawing of a mechanism in one position: bodies as bars, plates and blocks, joints and springs.
 
-use super::mechanism_symbols::{PitchCurve, pitch_curve, rack_outline};
+use super::mechanism_symbols::{
+    PitchCurve, axis_of, circle, drawn_size, pitch_curve, rack_outline, spring_outline,
+};
 use crate::bodies::{BodyPose, point_position};
 use crate::ranges::extent;
 use dwell_geometry::{ActuatorKind, BodyId, Joint, JointId, JointKind, Vec2, vec2};
 use dwell_kinetostatics::LoadKind;
 use dwell_report::{Paint, Pen, Shape, TextPlacement};
 use dwell_scene::Scene;
-use std::f64::consts::TAU;
 
 /// Reference length of the symbols, in sizes of the mechanism.
 const SYMBOL_RATIO: f64 = 0.6;
@@ -17,10 +18,6 @@ const MIN_SYMBOL_RATIO: f64 = 0.4;
 const RAIL_DISTANCE: f64 = 0.055;
 const SLOT_DISTANCE: f64 = 0.035;
 const TOOTH: f64 = 0.012;
-/// Number of corners of a circle.
-const CIRCLE_POINTS: usize = 72;
-/// Number of coils of a spring.
-const SPRING_COILS: usize = 7;
 
 /// Draws a mechanism in some of its positions.
 pub struct MechanismDrawing<'a> {
@@ -494,62 +491,4 @@ impl DrawnPosition<'_> {
             }
         }
     }
-}
-
-/// The larger side of what all points of all bodies go through, m.
-fn drawn_size(scene: &Scene, positions: &[Vec<BodyPose>]) -> f64 {
-    let all = positions.iter().flat_map(|poses| {
-        let bodies = scene.points.iter().take(poses.len()).enumerate();
-        bodies.flat_map(move |(b, points)| {
-            let points = points.iter();
-            points.map(move |(_, p)| point_position(poses, b, *p))
-        })
-    });
-    let all: Vec<[f64; 2]> = all.collect();
-    let sides = [0, 1].map(|i| extent(all.iter().map(|p| p[i])));
-    let sides = sides.map(|[low, high]| high - low);
-    sides
-        .into_iter()
-        .filter(|side| side.is_finite())
-        .fold(0.0, f64::max)
-}
-
-fn axis_of(kind: JointKind) -> Option<Vec2> {
-    match kind {
-        JointKind::Prismatic { axes } => Some(axes[0]),
-        JointKind::Slot { axis }
-        | JointKind::Rack { axis, .. }
-        | JointKind::Rolling { axis, .. } => Some(axis),
-        JointKind::Revolute
-        | JointKind::Weld { .. }
-        | JointKind::Gear { .. }
-        | JointKind::Distance { .. }
-        | JointKind::Coupling(_) => None,
-    }
-}
-
-fn circle(at: Vec2, radius: f64) -> Vec<Vec2> {
-    let corner = |k: usize| {
-        let (sin, cos) = (TAU * k as f64 / CIRCLE_POINTS as f64).sin_cos();
-        vec2(at.x + radius * cos, at.y + radius * sin)
-    };
-    (0..=CIRCLE_POINTS).map(corner).collect()
-}
-
-/// A zigzag between two points.
-fn spring_outline(a: Vec2, b: Vec2, half: f64) -> Vec<Vec2> {
-    let gap = b - a;
-    if gap.norm() == 0.0 {
-        return Vec::new();
-    }
-    let across = gap.perp() * (half / gap.norm());
-    let zigzag_point = |k: usize| {
-        let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let fraction = 0.15 + 0.7 * (k as f64 + 0.5) / (2 * SPRING_COILS) as f64;
-        a + gap * fraction + across * sign
-    };
-    let mut points = vec![a, a + gap * 0.15];
-    points.extend((0..2 * SPRING_COILS).map(zigzag_point));
-    points.extend([a + gap * 0.85, b]);
-    points
 }

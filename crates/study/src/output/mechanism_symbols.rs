@@ -10,6 +10,11 @@ use std::f64::consts::{PI, TAU};
 /// A relation that is straight to this part of its range is that of a gear or a screw, and no cam.
 const STRAIGHT: f64 = 1e-6;
 
+/// Number of corners of a circle.
+const CIRCLE_POINTS: usize = 72;
+/// Number of coils of a spring.
+const SPRING_COILS: usize = 7;
+
 /// The pitch curve of a cam: the path of the follower's point in the cam's frame.
 #[derive(Debug, Clone)]
 pub(super) struct PitchCurve {
@@ -110,6 +115,66 @@ pub(super) fn rack_outline([from, to]: [Vec2; 2], normal: Vec2, tooth: f64) -> V
     let end = teeth as f64;
     outline.extend([place(end, -1.0), place(end, -3.0), place(0.0, -3.0)]);
     outline
+}
+
+/// The larger side of what all points of all bodies go through, m.
+pub(super) fn drawn_size(scene: &Scene, positions: &[Vec<BodyPose>]) -> f64 {
+    let all = positions.iter().flat_map(|poses| {
+        let bodies = scene.points.iter().take(poses.len()).enumerate();
+        bodies.flat_map(move |(b, points)| {
+            let points = points.iter();
+            points.map(move |(_, p)| point_position(poses, b, *p))
+        })
+    });
+    let all: Vec<[f64; 2]> = all.collect();
+    let sides = [0, 1].map(|i| extent(all.iter().map(|p| p[i])));
+    let sides = sides.map(|[low, high]| high - low);
+    sides
+        .into_iter()
+        .filter(|side| side.is_finite())
+        .fold(0.0, f64::max)
+}
+
+/// The corners of a circle.
+pub(super) fn circle(at: Vec2, radius: f64) -> Vec<Vec2> {
+    let corner = |k: usize| {
+        let (sin, cos) = (TAU * k as f64 / CIRCLE_POINTS as f64).sin_cos();
+        vec2(at.x + radius * cos, at.y + radius * sin)
+    };
+    (0..=CIRCLE_POINTS).map(corner).collect()
+}
+
+/// A zigzag between two points.
+pub(super) fn spring_outline(a: Vec2, b: Vec2, half: f64) -> Vec<Vec2> {
+    let gap = b - a;
+    if gap.norm() == 0.0 {
+        return Vec::new();
+    }
+    let across = gap.perp() * (half / gap.norm());
+    let zigzag_point = |k: usize| {
+        let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let fraction = 0.15 + 0.7 * (k as f64 + 0.5) / (2 * SPRING_COILS) as f64;
+        a + gap * fraction + across * sign
+    };
+    let mut points = vec![a, a + gap * 0.15];
+    points.extend((0..2 * SPRING_COILS).map(zigzag_point));
+    points.extend([a + gap * 0.85, b]);
+    points
+}
+
+/// The axis of a joint along which a point goes.
+pub(super) fn axis_of(kind: JointKind) -> Option<Vec2> {
+    match kind {
+        JointKind::Prismatic { axes } => Some(axes[0]),
+        JointKind::Slot { axis }
+        | JointKind::Rack { axis, .. }
+        | JointKind::Rolling { axis, .. } => Some(axis),
+        JointKind::Revolute
+        | JointKind::Weld { .. }
+        | JointKind::Gear { .. }
+        | JointKind::Distance { .. }
+        | JointKind::Coupling(_) => None,
+    }
 }
 
 #[cfg(test)]
