@@ -14,40 +14,40 @@ use rayon::prelude::*;
 use std::fmt::Write as _;
 
 /// How many pictures there are of a study, and what is wrong with them.
-#[derive(Debug, Default)]
+#[derive(Debug, Dedefect)]
 struct Checked {
     pictures: usize,
-    faults: String,
+    defects: String,
 }
 
 fn checked(study: &str, pictures: &[Picture]) -> Checked {
     let mut all = Checked {
         pictures: pictures.len(),
-        ..Checked::default()
+        ..Checked::dedefect()
     };
     for picture in pictures {
         let layouts = picture.layouts().expect("a layout");
-        let mut faults: Vec<String> = layouts.iter().flat_map(|layout| layout.faults()).collect();
+        let mut defects: Vec<String> = layouts.iter().flat_map(|layout| layout.defects()).collect();
         // The frames of a film are much alike.
-        faults.sort();
-        faults.dedup();
-        for fault in faults {
-            let _ = writeln!(all.faults, "{study}: {}: {fault}", picture.path);
+        defects.sort();
+        defects.dedup();
+        for defect in defects {
+            let _ = writeln!(all.defects, "{study}: {}: {defect}", picture.path);
         }
     }
     all
 }
 
 fn sum(all: impl Iterator<Item = Checked>) -> Checked {
-    all.fold(Checked::default(), |sum, one| Checked {
+    all.fold(Checked::dedefect(), |sum, one| Checked {
         pictures: sum.pictures + one.pictures,
-        faults: sum.faults + &one.faults,
+        defects: sum.defects + &one.defects,
     })
 }
 
 fn of_outcome(study: &str, outcome: Result<Outcome, StudyError>) -> Checked {
     // Not every study is one of every mechanism.
-    outcome.map_or_else(|_| Checked::default(), |o| checked(study, &o.pictures))
+    outcome.map_or_else(|_| Checked::dedefect(), |o| checked(study, &o.pictures))
 }
 
 fn of_trajectory(study: &str, done: Result<TrajectoryOutcome, StudyError>) -> Checked {
@@ -57,7 +57,7 @@ fn of_trajectory(study: &str, done: Result<TrajectoryOutcome, StudyError>) -> Ch
 fn all_studies(scene: &Scene) -> Checked {
     let settings = SolverSettings {
         method: Method::Bdf,
-        ..SolverSettings::default()
+        ..SolverSettings::dedefect()
     };
     let trajectory = |analysis| analyse_trajectory(scene, analysis, None, &no_progress);
     let kinds = [
@@ -77,7 +77,7 @@ fn the_pictures_of_every_case_are_legible() {
     let of_case = |case: &String| all_studies(&scene(case));
     let all: Vec<Checked> = case_names().par_iter().map(of_case).collect();
     let all = sum(all.into_iter());
-    assert!(all.faults.is_empty(), "{}", all.faults);
+    assert!(all.defects.is_empty(), "{}", all.defects);
     assert!(all.pictures > 700, "{} pictures", all.pictures);
 }
 
@@ -102,7 +102,7 @@ fn the_pictures_of_the_validation_are_legible() {
     let costs = work_precision::selected_case_reports(&scenes);
     all.push(of_outcome("work-precision", costs));
     let all = sum(all.into_iter());
-    assert!(all.faults.is_empty(), "{}", all.faults);
+    assert!(all.defects.is_empty(), "{}", all.defects);
     assert!(all.pictures > 200, "{} pictures", all.pictures);
 }
 
@@ -142,7 +142,7 @@ fn the_pictures_of_crowded_scenes_are_legible() {
     let chain = folded_chain(14);
     let done = analyse_trajectory(&chain, Analysis::Kinematics, Some(61), &no_progress);
     let all = of_trajectory("chain", done);
-    assert!(all.faults.is_empty(), "{}", all.faults);
+    assert!(all.defects.is_empty(), "{}", all.defects);
     assert!(all.pictures > 2, "{} pictures", all.pictures);
 }
 
@@ -185,6 +185,6 @@ fn the_pictures_of_sweeps_are_legible() {
     ];
     let all = sum(kinds.into_iter());
     std::fs::remove_dir_all(folder).expect("a folder of ours");
-    assert!(all.faults.is_empty(), "{}", all.faults);
+    assert!(all.defects.is_empty(), "{}", all.defects);
     assert_eq!(all.pictures, 4);
 }

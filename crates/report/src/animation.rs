@@ -109,7 +109,7 @@ impl Animation {
         Ok(self.frames.iter().map(record).collect())
     }
 
-    fn page(&self) -> Result<FilmPage, ReportError> {
+    fn page(&self) -> Result<FramePage, ReportError> {
         if self.frames.is_empty() {
             return Err(ReportError::NoFrames {
                 animation: self.name.clone(),
@@ -118,7 +118,7 @@ impl Animation {
         let (cell, layout) = self.layout();
         let footer = fonts::wrapped(&typeset(&self.provenance), FOOTER_SIZE, false, cell.width());
         let lowest = cell.y1 + LEADING * FOOTER_SIZE * footer.len() as f64;
-        Ok(FilmPage {
+        Ok(FramePage {
             size: [PAGE_WIDTH, (lowest + MARGIN).ceil()].map(|side| side as u32),
             cell,
             layout,
@@ -165,14 +165,14 @@ impl Animation {
 }
 
 /// The page of every frame.
-struct FilmPage {
+struct FramePage {
     size: [u32; 2],
     cell: Rect,
     layout: DrawingLayout,
     footer: Vec<String>,
 }
 
-impl FilmPage {
+impl FramePage {
     fn draw(&self, canvas: &mut Canvas<'_>, drawing: &Drawing) {
         let (cell, [width, height]) = (&self.cell, self.size.map(f64::from));
         canvas.rect(&Rect::sized(0.0, 0.0, width, height), WHITE);

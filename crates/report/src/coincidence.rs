@@ -138,11 +138,11 @@ mod tests {
     }
 
     #[test]
-    fn each_of_several_equal_curves_is_seen() {
+    fn each_of_several_equal_curves_is_visible() {
         for stroke in [Stroke::Solid, Stroke::Dashed] {
             for heights in [&[0.0; 2][..], &[0.0; 3], &[0.0, 5.0, 0.0], &[0.0; 8]] {
                 let layout = Layout::of(&figure(heights, stroke)).unwrap();
-                assert_eq!(layout.faults(), Vec::<String>::new());
+                assert_eq!(layout.defects(), Vec::<String>::new());
                 assert_eq!(layout.legend.len(), heights.len());
                 let equal = heights.iter().filter(|h| **h == 0.0).count() as f64;
                 for curve in &layout.curves {

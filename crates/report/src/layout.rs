@@ -76,7 +76,7 @@ impl Layout {
         let mut frames: Vec<Self> = recorded
             .map(|record| Self::from_record(record, size))
             .collect();
-        let mut most: Vec<NamedCurve> = Vec::new();
+        let mut largest: Vec<NamedCurve> = Vec::new();
         for curve in frames.iter().flat_map(|frame| &frame.curves) {
             match most
                 .iter_mut()
@@ -84,24 +84,24 @@ impl Layout {
             {
                 Some(known) if known.visible < curve.visible => *known = curve.clone(),
                 Some(_) => {}
-                None => most.push(curve.clone()),
+                None => largest.push(curve.clone()),
             }
         }
         frames
             .iter_mut()
-            .for_each(|frame| frame.curves.clone_from(&most));
+            .for_each(|frame| frame.curves.clone_from(&largest));
         Ok(frames)
     }
 
     /// What a reader would object to: words on words, words or lines that are cut, a legend without its curve, and words that
     /// found no room. Empty if all is well.
-    pub fn faults(&self) -> Vec<String> {
-        let mut faults = self.words_on_words();
-        faults.extend(self.cut());
-        faults.extend(self.legends_without_a_curve());
+    pub fn defects(&self) -> Vec<String> {
+        let mut defects = self.words_on_words();
+        defects.extend(self.cut());
+        defects.extend(self.legends_without_a_curve());
         let left_out = self.left_out.iter();
-        faults.extend(left_out.map(|text| format!("no room for `{text}`")));
-        faults
+        defects.extend(left_out.map(|text| format!("no room for `{text}`")));
+        defects
     }
 
     fn from_record(record: LayoutRecord, size: [u32; 2]) -> Self {
@@ -128,17 +128,17 @@ impl Layout {
     }
 
     fn words_on_words(&self) -> Vec<String> {
-        let mut faults = Vec::new();
+        let mut defects = Vec::new();
         for (i, one) in self.labels.iter().enumerate() {
             for other in &self.labels[..i] {
                 let [a, b] = [one.area, other.area];
                 let apart = |k: usize| a[k] + TOUCH > b[k + 2] || b[k] + TOUCH > a[k + 2];
                 if !apart(0) && !apart(1) {
-                    faults.push(format!("`{}` lies on `{}`", one.text, other.text));
+                    defects.push(format!("`{}` lies on `{}`", one.text, other.text));
                 }
             }
         }
-        faults
+        defects
     }
 
     fn cut(&self) -> Vec<String> {
@@ -146,33 +146,33 @@ impl Layout {
         let outside =
             |[x0, y0, x1, y1]: [f64; 4]| x0 < 0.0 || y0 < 0.0 || x1 > width || y1 > height;
         let labels = self.labels.iter().filter(|label| outside(label.area));
-        let mut faults: Vec<String> = labels.map(|l| format!("`{}` is cut", l.text)).collect();
+        let mut defects: Vec<String> = labels.map(|l| format!("`{}` is cut", l.text)).collect();
         if outside(self.drawn) {
-            faults.push(format!("something is drawn outside: {:?}", self.drawn));
+            defects.push(format!("something is drawn outside: {:?}", self.drawn));
         }
-        faults
+        defects
     }
 
     fn legends_without_a_curve(&self) -> Vec<String> {
-        let mut faults = Vec::new();
+        let mut defects = Vec::new();
         for (plot, name) in &self.legend {
             let curves = self.curves.iter();
             let own = curves.filter(|c| c.plot == *plot && c.name == *name);
-            let seen = |c: &NamedCurve| {
+            let is_visible = |c: &NamedCurve| {
                 c.visible >= MIN_VISIBLE || c.visible > MIN_VISIBLE_SHARE * c.drawn.max(1.0)
             };
             let own: Vec<&NamedCurve> = own.collect();
-            if !own.iter().any(|c| seen(c)) {
+            if !own.iter().any(|c| is_visible(c)) {
                 let areas: Vec<String> = own
                     .iter()
                     .map(|c| format!("{:.0} of {:.0}", c.visible, c.drawn))
                     .collect();
                 let areas = areas.join(", ");
-                faults.push(format!(
+                defects.push(format!(
                     "legend entry `{name}` has no visible curve ({areas} px²)"
                 ));
             }
         }
-        faults
+        defects
     }
 }

@@ -174,7 +174,7 @@ impl Outcome {
             files.add(path, bytes);
         }
         if let Some((path, page)) = page {
-            files.add(path, shown(page, &left, format).markdown());
+            files.add(path, with_drawn_pictures(page, &left, format).markdown());
         }
         if wanted == Pictures::Main && !left.is_empty() {
             summary += &format!(
@@ -193,7 +193,7 @@ impl Outcome {
 }
 
 /// A page without some pictures, with the others as they have been drawn.
-fn shown(mut page: Document, left: &[Picture], format: PictureFormat) -> Document {
+fn with_drawn_pictures(mut page: Document, left: &[Picture], format: PictureFormat) -> Document {
     let is_left = |file: &str| left.iter().any(|picture| picture.path == file);
     page.blocks
         .retain(|block| !matches!(block, Block::Figure { file, .. } if is_left(file)));

@@ -7,7 +7,7 @@ mod span;
 
 pub use span::PictureSpan;
 
-use self::span::ShownRows;
+use self::span::DrawnRows;
 use crate::bodies::{BodyPose, point_position};
 use crate::explain::StudyError;
 use crate::number_format::digits;
@@ -45,7 +45,7 @@ pub(crate) struct FigureContext<'a> {
     x: Axis,
     abscissa_values: Vec<f64>,
     /// The part of the rows that curves show.
-    shown: ShownRows,
+    drawn: DrawnRows,
     /// Whether the trajectory starts and ends next to a limit position.
     limits: [bool; 2],
 }
@@ -161,19 +161,21 @@ impl<'a> FigureContext<'a> {
         // The span is in the scene's unit, and the axis in degrees or m.
         let swept = trajectory.swept_actuator();
         let swept = swept.map(|k| scene.mechanism.actuators[k].coordinate().is_angle());
-        let rows = results.rows.iter().map(|row| row[abscissa]);
+        let abscissae = results.rows.iter().map(|row| row[abscissa]);
         let given: Vec<f64> = match swept {
-            None => rows.collect(),
-            Some(is_angle) => rows.map(|q| scene.to_scene_unit(q, is_angle).0).collect(),
+            None => abscissae.collect(),
+            Some(is_angle) => abscissae
+                .map(|q| scene.to_scene_unit(q, is_angle).0)
+                .collect(),
         };
         let unit = swept.map_or("s", |is_angle| scene.to_scene_unit(0.0, is_angle).1);
-        let shown = ShownRows::new(scene, span, &given, unit)?;
-        let drawn = |end: f64| match swept {
+        let rows = DrawnRows::new(scene, span, &given, unit)?;
+        let on_axis = |end: f64| match swept {
             None => end,
             Some(true) => scene.to_si(end, true).to_degrees(),
             Some(false) => scene.to_si(end, false),
         };
-        x.range = shown.ends.map(|ends| ends.map(drawn));
+        x.range = rows.ends.map(|ends| ends.map(on_axis));
         let [start, end] = trajectory.ends_at_limit_position;
         Ok(Self {
             scene,
@@ -182,7 +184,7 @@ impl<'a> FigureContext<'a> {
             method_text: trajectory.method_text.clone(),
             x,
             abscissa_values,
-            shown,
+            drawn: rows,
             limits: [start, end || computed.early_stop.is_some()],
         })
     }
@@ -230,16 +232,16 @@ impl<'a> FigureContext<'a> {
     }
 
     /// The rows that curves show.
-    fn shown_rows(&self) -> impl Iterator<Item = &Vec<f64>> {
-        self.results.rows[self.shown.rows.clone()].iter()
+    fn drawn_rows(&self) -> impl Iterator<Item = &Vec<f64>> {
+        self.results.rows[self.drawn.rows.clone()].iter()
     }
 
     /// A curve over the trajectory; angles in degrees.
     fn curve(&self, name: &str, k: usize) -> Series {
         let degrees = self.results.columns[k].unit == "rad";
         let value = |row: &Vec<f64>| if degrees { row[k].to_degrees() } else { row[k] };
-        let values = self.shown_rows().map(value);
-        let points = self.abscissa_values[self.shown.rows.clone()]
+        let values = self.drawn_rows().map(value);
+        let points = self.abscissa_values[self.drawn.rows.clone()]
             .iter()
             .zip(values);
         Series::line(name, points.map(|(x, y)| [*x, y]).collect())

@@ -16,13 +16,13 @@ pub struct PictureSpan {
 
 /// The part of the rows that is shown, and its ends on the axis.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct ShownRows {
+pub(super) struct DrawnRows {
     pub(super) rows: Range<usize>,
     /// None if all are shown.
     pub(super) ends: Option<[f64; 2]>,
 }
 
-impl ShownRows {
+impl DrawnRows {
     /// The rows within a span, with one more at either side; `values` are the abscissae of all rows in the unit of the span.
     ///
     /// # Errors
@@ -96,24 +96,24 @@ mod tests {
         Scene::parse("crank.toml", text).expect("a scene")
     }
 
-    fn shown(from: f64, to: f64, values: &[f64]) -> Result<ShownRows, String> {
+    fn drawn_rows(from: f64, to: f64, values: &[f64]) -> Result<DrawnRows, String> {
         let span = PictureSpan {
             from: Some(from),
             to: Some(to),
         };
-        ShownRows::new(&scene(), span, values, "s").map_err(|e| e.to_string())
+        DrawnRows::new(&scene(), span, values, "s").map_err(|e| e.to_string())
     }
 
     #[test]
-    fn rows_within_the_span_and_their_neighbours_are_shown() {
+    fn rows_within_the_span_and_their_neighbours_are_drawn() {
         let rising: Vec<f64> = (0..=10).map(f64::from).collect();
         let falling: Vec<f64> = rising.iter().rev().copied().collect();
-        assert_eq!(shown(2.5, 6.0, &rising).expect("rows").rows, 2..8);
-        assert_eq!(shown(2.5, 6.0, &falling).expect("rows").rows, 3..9);
-        assert_eq!(shown(0.0, 10.0, &rising).expect("rows").rows, 0..11);
+        assert_eq!(drawn_rows(2.5, 6.0, &rising).expect("rows").rows, 2..8);
+        assert_eq!(drawn_rows(2.5, 6.0, &falling).expect("rows").rows, 3..9);
+        assert_eq!(drawn_rows(0.0, 10.0, &rising).expect("rows").rows, 0..11);
         // Between two rows.
-        assert_eq!(shown(4.2, 4.8, &rising).expect("rows").rows, 3..6);
-        let all = ShownRows::new(&scene(), PictureSpan::default(), &rising, "s").expect("rows");
+        assert_eq!(drawn_rows(4.2, 4.8, &rising).expect("rows").rows, 3..6);
+        let all = DrawnRows::new(&scene(), PictureSpan::default(), &rising, "s").expect("rows");
         assert_eq!((all.rows, all.ends), (0..11, None));
     }
 
@@ -126,11 +126,11 @@ mod tests {
             (f64::NAN, 1.0),
             (0.0, f64::INFINITY),
         ] {
-            let error = shown(from, to, &values).expect_err("a reversed span");
+            let error = drawn_rows(from, to, &values).expect_err("a reversed span");
             assert!(error.contains("cannot go from"), "{error}");
         }
         for (from, to) in [(-1.0, 1.0), (1.0, 3.0), (2.0, 2.5), (5.0, 6.0)] {
-            let error = shown(from, to, &values).expect_err("a span outside");
+            let error = drawn_rows(from, to, &values).expect_err("a span outside");
             assert!(error.contains("not within the motion"), "{error}");
         }
     }
