@@ -78,7 +78,7 @@ impl Layout {
             .collect();
         let mut largest: Vec<NamedCurve> = Vec::new();
         for curve in frames.iter().flat_map(|frame| &frame.curves) {
-            match most
+            match largest
                 .iter_mut()
                 .find(|c| c.name == curve.name && c.plot == curve.plot)
             {
