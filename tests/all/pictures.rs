@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use std::fmt::Write as _;
 
 /// How many pictures there are of a study, and what is wrong with them.
-#[derive(Debug, Dedefect)]
+#[derive(Debug, Default)]
 struct Checked {
     pictures: usize,
     defects: String,
@@ -23,7 +23,7 @@ struct Checked {
 fn checked(study: &str, pictures: &[Picture]) -> Checked {
     let mut all = Checked {
         pictures: pictures.len(),
-        ..Checked::dedefect()
+        ..Checked::default()
     };
     for picture in pictures {
         let layouts = picture.layouts().expect("a layout");
@@ -39,7 +39,7 @@ fn checked(study: &str, pictures: &[Picture]) -> Checked {
 }
 
 fn sum(all: impl Iterator<Item = Checked>) -> Checked {
-    all.fold(Checked::dedefect(), |sum, one| Checked {
+    all.fold(Checked::default(), |sum, one| Checked {
         pictures: sum.pictures + one.pictures,
         defects: sum.defects + &one.defects,
     })
@@ -47,7 +47,7 @@ fn sum(all: impl Iterator<Item = Checked>) -> Checked {
 
 fn of_outcome(study: &str, outcome: Result<Outcome, StudyError>) -> Checked {
     // Not every study is one of every mechanism.
-    outcome.map_or_else(|_| Checked::dedefect(), |o| checked(study, &o.pictures))
+    outcome.map_or_else(|_| Checked::default(), |o| checked(study, &o.pictures))
 }
 
 fn of_trajectory(study: &str, done: Result<TrajectoryOutcome, StudyError>) -> Checked {
@@ -57,7 +57,7 @@ fn of_trajectory(study: &str, done: Result<TrajectoryOutcome, StudyError>) -> Ch
 fn all_studies(scene: &Scene) -> Checked {
     let settings = SolverSettings {
         method: Method::Bdf,
-        ..SolverSettings::dedefect()
+        ..SolverSettings::default()
     };
     let trajectory = |analysis| analyse_trajectory(scene, analysis, None, &no_progress);
     let kinds = [
