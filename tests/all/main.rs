@@ -35,6 +35,7 @@ mod motor;
 mod multibody;
 mod mutations;
 mod orbits;
+mod pictures;
 mod published;
 mod random;
 mod range_limits;

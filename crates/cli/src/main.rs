@@ -16,8 +16,8 @@ use dwell_findings::all_pass;
 use dwell_report::{Files, OutputFolder, ReportError};
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{
-    Analysis, MotionSolver, Outcome, ParameterSweep, SolverSettings, Step, StudyError,
-    TableRequest, TrajectoryOutcome,
+    Analysis, MotionSolver, Outcome, ParameterSweep, PictureFormat, PictureSpan, Pictures,
+    SolverSettings, Step, StudyError, TableRequest, TrajectoryOutcome, no_progress,
 };
 use dwell_validation::ValidationError;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -52,6 +52,7 @@ fn run(options: Options, name: &str) -> Result<bool, Report> {
         command,
         out,
         pictures,
+        picture_format,
     } = options;
     let mut times = Times::new();
     if let Command::Schema = command {
@@ -70,16 +71,14 @@ fn run(options: Options, name: &str) -> Result<bool, Report> {
         } => {
             let (outcome, failures) = validate::validate(cases, folder, (*slow, *seed), &bar)?;
             times.add("checking");
+            let outcome = draw_validation(outcome, picture_format)?;
+            times.add("drawing");
             (outcome, None, failures)
         }
         study => {
             let done = run_study(study, &out, &bar);
             times.add("computing");
-            let done = done.and_then(|done| {
-                bar.set_position(0);
-                let outcome = done.outcome.draw(pictures, &|step| show_step(&bar, step))?;
-                Ok((outcome, done.early_stop))
-            });
+            let done = done.and_then(|done| draw_study(done, (pictures, picture_format), &bar));
             times.add("drawing");
             bar.finish_and_clear();
             let (outcome, early_stop) = done.map_err(|e| Report::new(as_scene_error(e)))?;
@@ -103,6 +102,27 @@ fn run(options: Options, name: &str) -> Result<bool, Report> {
         Some(report) => Err(report),
         None => Ok(!ended_early && all_pass(&outcome.findings)),
     }
+}
+
+/// Draws the pictures of a study that are wanted.
+fn draw_study(
+    done: TrajectoryOutcome,
+    wanted: (Pictures, PictureFormat),
+    bar: &ProgressBar,
+) -> Result<(Outcome, Option<StudyError>), StudyError> {
+    bar.set_position(0);
+    let outcome = done.outcome.draw(wanted, &|step| show_step(bar, step))?;
+    Ok((outcome, done.early_stop))
+}
+
+/// Draws all pictures of a validation. Its pages show those in pixels.
+fn draw_validation(outcome: Outcome, format: PictureFormat) -> Result<Outcome, Report> {
+    let format = match format {
+        PictureFormat::Svg => PictureFormat::Both,
+        format => format,
+    };
+    let drawn = outcome.draw((Pictures::All, format), &no_progress);
+    drawn.map_err(|e| Report::new(as_scene_error(e)))
 }
 
 /// Runs a study of one scene: one arm for each command, so longer than a screen.
@@ -139,6 +159,8 @@ fn run_study(
             accuracy,
             sample_interval,
             times,
+            from,
+            to,
         } => {
             let solver = match *accuracy {
                 Some(accuracy) => MotionSolver::Accuracy {
@@ -155,7 +177,17 @@ fn run_study(
             };
             let scene = read(scene, bar)?;
             let times = times.as_deref().map(instants::read).transpose()?;
-            return dwell_study::simulate_with(&scene, &solver, times.as_deref(), &progress);
+            let span = PictureSpan {
+                from: *from,
+                to: *to,
+            };
+            return dwell_study::simulate_within(
+                &scene,
+                &solver,
+                times.as_deref(),
+                span,
+                &progress,
+            );
         }
         Command::Cycle {
             scene,
@@ -248,7 +280,11 @@ fn run_trajectory(
     let scene = read(&arguments.scene, bar)?;
     let points = arguments.points.map(|n| n as usize);
     let progress = |step: Step<'_>| show_step(bar, step);
-    dwell_study::analyse_trajectory(&scene, analysis, points, &progress)
+    let span = PictureSpan {
+        from: arguments.from,
+        to: arguments.to,
+    };
+    dwell_study::analyse_trajectory_within(&scene, analysis, points, span, &progress)
 }
 
 /// The folder of the results, tested before the work; none for a command that writes nothing.

@@ -4,7 +4,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use dwell_dynamics::Method;
 use dwell_report::TableFormat;
-use dwell_study::{FormulaFormat, Language, OperatingPoint, Pictures, Shard};
+use dwell_study::{FormulaFormat, Language, OperatingPoint, PictureFormat, Pictures, Shard};
 use std::path::{Path, PathBuf};
 
 /// Kinetostatics and dynamics of planar mechanisms, with independent checks
@@ -19,6 +19,9 @@ pub(crate) struct Options {
     /// Pictures to draw; they take most of the time. Validation draws all of its own
     #[arg(long, global = true, value_parser = choice(PICTURES), default_value = "main", value_name = "PICTURES")]
     pub(crate) pictures: Pictures,
+    /// Format of the pictures; animations are always GIF. Validation always draws its PNG, too
+    #[arg(long, global = true, value_parser = choice(PICTURE_FORMATS), default_value = "png", value_name = "FORMAT")]
+    pub(crate) picture_format: PictureFormat,
 }
 
 #[derive(Debug, Subcommand)]
@@ -78,6 +81,12 @@ pub(crate) enum Command {
         /// The last instant of the motion is a row, too
         #[arg(long, value_name = "FILE", conflicts_with = "sample_interval")]
         times: Option<PathBuf>,
+        /// Time at which curves begin in the pictures, s; files keep all rows
+        #[arg(long, value_parser = parse_finite, value_name = "SECONDS", allow_hyphen_values = true)]
+        from: Option<f64>,
+        /// Time at which they end, s
+        #[arg(long, value_parser = parse_finite, value_name = "SECONDS", allow_hyphen_values = true)]
+        to: Option<f64>,
     },
     /// Steady cycle of a driven machine, and the flywheel for a given coefficient of fluctuation
     Cycle {
@@ -234,6 +243,12 @@ pub(crate) struct TrajectoryArgs {
     /// Number of positions, both ends included (default: the scene's `points`, or 361)
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1_000_000), value_name = "COUNT", allow_hyphen_values = true)]
     pub(crate) points: Option<u32>,
+    /// Where curves begin in the pictures: the time in s, or the swept coordinate in the scene's unit; files keep all rows
+    #[arg(long, value_parser = parse_finite, value_name = "ABSCISSA", allow_hyphen_values = true)]
+    pub(crate) from: Option<f64>,
+    /// Where they end
+    #[arg(long, value_parser = parse_finite, value_name = "ABSCISSA", allow_hyphen_values = true)]
+    pub(crate) to: Option<f64>,
 }
 
 /// The values of an option: name, value, help.
@@ -275,6 +290,12 @@ const PICTURES: Choices<Pictures> = &[
         Pictures::All,
         "All, and the animation of the mechanism",
     ),
+];
+
+const PICTURE_FORMATS: Choices<PictureFormat> = &[
+    ("png", PictureFormat::Png, "Pixels, for screens"),
+    ("svg", PictureFormat::Svg, "Lines and letters, for papers"),
+    ("both", PictureFormat::Both, "PNG and SVG"),
 ];
 
 const OPERATING_POINTS: Choices<OperatingPoint> = &[

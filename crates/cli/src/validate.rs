@@ -50,6 +50,7 @@ pub(crate) fn validate(
         all.summary += &added.summary;
         all.findings.extend(added.findings);
         all.files.extend("", added.files);
+        all.pictures.extend(added.pictures);
     }
     Ok((all, failures))
 }
@@ -89,10 +90,9 @@ fn collect_reports(
     let case_results: Vec<_> = names.iter().map(String::as_str).zip(results_of).collect();
     let mut failures = Vec::new();
     if cases.len() > 1 && results.iter().any(Result::is_ok) {
-        match index(&case_results) {
-            Ok(overview) => all.files.extend("", overview),
-            Err(error) => failures.push(as_scene_error(error)),
-        }
+        let overview = index(&case_results);
+        all.files.extend("", overview.files);
+        all.pictures.extend(overview.pictures);
     }
     for result in results {
         match result {
@@ -100,6 +100,7 @@ fn collect_reports(
                 all.summary += &one.outcome.summary;
                 all.findings.extend(one.outcome.findings);
                 all.files.extend("", one.outcome.files);
+                all.pictures.extend(one.outcome.pictures);
             }
             Err(error) => failures.push(error),
         }

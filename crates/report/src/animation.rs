@@ -4,11 +4,13 @@ use crate::canvas::{Align, Canvas, TextStyle};
 use crate::drawing::{self, DrawingLayout};
 use crate::error::ReportError;
 use crate::fonts;
+use crate::layout_record::LayoutRecord;
 use crate::palette::Palette;
-use crate::raster::SvgPicture;
+use crate::raster::{SvgPicture, recorded};
 use crate::rect::Rect;
 use crate::shape::Drawing;
 use crate::theme::{CAPTION_GREY, Rgb, WHITE};
+use crate::typeset::typeset;
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -78,27 +80,10 @@ impl Animation {
     }
 
     fn pictures(&self) -> Result<Pictures, ReportError> {
-        if self.frames.is_empty() {
-            return Err(ReportError::NoFrames {
-                animation: self.name.clone(),
-            });
-        }
-        let (cell, layout) = self.layout();
-        let footer = fonts::wrapped(&self.provenance, FOOTER_SIZE, false, cell.width());
-        let lowest = cell.y1 + LEADING * FOOTER_SIZE * footer.len() as f64;
-        let page = [PAGE_WIDTH, (lowest + MARGIN).ceil()].map(|side| side as u32);
-        let size = self.size(page)?;
+        let page = self.page()?;
+        let size = self.size(page.size)?;
         let picture = |drawing: &Drawing| {
-            let svg = SvgPicture::new(page, |canvas: &mut Canvas<'_>| {
-                let [width, height] = page.map(f64::from);
-                canvas.rect(&Rect::sized(0.0, 0.0, width, height), WHITE);
-                layout.draw(canvas, drawing, &cell);
-                let style = TextStyle::new(FOOTER_SIZE, CAPTION_GREY, Align::Start);
-                for (i, line) in footer.iter().enumerate() {
-                    let baseline = cell.y1 + LEADING * FOOTER_SIZE * (i as f64 + 1.0);
-                    canvas.text(line, [cell.x0, baseline], style);
-                }
-            });
+            let svg = SvgPicture::new(page.size, |canvas| page.draw(canvas, drawing));
             let pixels = svg.rasterize(&self.name, size.map(u32::from))?;
             // The page is opaque.
             let colors = pixels.data().chunks_exact(4).map(|p| [p[0], p[1], p[2]]);
@@ -110,6 +95,35 @@ impl Animation {
             .map(picture)
             .collect::<Result<_, ReportError>>()?;
         Ok(Pictures { size, frames })
+    }
+
+    /// Width and height of the page that is drawn, in pixels.
+    pub(crate) fn page_size(&self) -> Result<[u32; 2], ReportError> {
+        Ok(self.page()?.size)
+    }
+
+    /// Notes on the layout of every frame.
+    pub(crate) fn records(&self) -> Result<Vec<LayoutRecord>, ReportError> {
+        let page = self.page()?;
+        let record = |drawing| recorded(page.size, |canvas| page.draw(canvas, drawing));
+        Ok(self.frames.iter().map(record).collect())
+    }
+
+    fn page(&self) -> Result<FramePage, ReportError> {
+        if self.frames.is_empty() {
+            return Err(ReportError::NoFrames {
+                animation: self.name.clone(),
+            });
+        }
+        let (cell, layout) = self.layout();
+        let footer = fonts::wrapped(&typeset(&self.provenance), FOOTER_SIZE, false, cell.width());
+        let lowest = cell.y1 + LEADING * FOOTER_SIZE * footer.len() as f64;
+        Ok(FramePage {
+            size: [PAGE_WIDTH, (lowest + MARGIN).ceil()].map(|side| side as u32),
+            cell,
+            layout,
+            footer,
+        })
     }
 
     /// The cell of all frames, and what they share.
@@ -146,6 +160,27 @@ impl Animation {
                 width: self.width_px.into(),
                 height: high,
             }),
+        }
+    }
+}
+
+/// The page of every frame.
+struct FramePage {
+    size: [u32; 2],
+    cell: Rect,
+    layout: DrawingLayout,
+    footer: Vec<String>,
+}
+
+impl FramePage {
+    fn draw(&self, canvas: &mut Canvas<'_>, drawing: &Drawing) {
+        let (cell, [width, height]) = (&self.cell, self.size.map(f64::from));
+        canvas.rect(&Rect::sized(0.0, 0.0, width, height), WHITE);
+        self.layout.draw(canvas, drawing, cell);
+        let style = TextStyle::new(FOOTER_SIZE, CAPTION_GREY, Align::Start);
+        for (i, line) in self.footer.iter().enumerate() {
+            let baseline = cell.y1 + LEADING * FOOTER_SIZE * (i as f64 + 1.0);
+            canvas.text(line, [cell.x0, baseline], style);
         }
     }
 }

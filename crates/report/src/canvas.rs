@@ -1,6 +1,9 @@
 //! Drawing in page pixels on plotters' SVG backend.
 
-use crate::fonts::FAMILY;
+use crate::curve::dashes;
+use crate::dash::Dash;
+use crate::fonts::{self, FAMILY};
+use crate::layout_record::LayoutRecord;
 use crate::rect::Rect;
 use crate::theme::{Rgb, WHITE};
 use plotters::backend::{DrawingBackend, SVGBackend};
@@ -26,7 +29,8 @@ const HALO_WIDTH: f64 = 2.4;
 pub(crate) struct LineStyle {
     pub(crate) color: Rgb,
     pub(crate) width: f64,
-    pub(crate) dashed: bool,
+    /// None for a solid line.
+    pub(crate) dash: Option<Dash>,
 }
 
 impl LineStyle {
@@ -34,8 +38,14 @@ impl LineStyle {
         Self {
             color,
             width,
-            dashed: false,
+            dash: None,
         }
+    }
+
+    /// The same as a sample of a length.
+    pub(crate) fn sample(self, length: f64) -> Self {
+        let dash = self.dash.map(|dash| dash.within(length));
+        Self { dash, ..self }
     }
 }
 
@@ -74,6 +84,7 @@ impl TextStyle {
 /// A page being drawn. The backend writes into a string, which cannot fail, so its results are dropped.
 pub(crate) struct Canvas<'a> {
     backend: SVGBackend<'a>,
+    record: Option<LayoutRecord>,
 }
 
 fn to_units(v: f64) -> i32 {
@@ -94,12 +105,45 @@ fn shape_style([r, g, b]: Rgb, width: f64, opacity: f64) -> ShapeStyle {
     }
 }
 
+/// The box of a text by its baseline, from the tops of tall letters to the feet of those that hang down.
+fn text_area(text: &str, [x, y]: [f64; 2], style: TextStyle) -> Rect {
+    let width = fonts::width(text, style.size, style.bold);
+    let left = match style.align {
+        Align::Start => x,
+        Align::Middle => x - 0.5 * width,
+        Align::End => x - width,
+    };
+    Rect::sized(left, y - TOP_SHIFT * style.size, width, style.size)
+}
+
 impl<'a> Canvas<'a> {
     /// A page of the given size in pixels, written into `svg`.
     pub(crate) fn new(svg: &'a mut String, width: u32, height: u32) -> Self {
         let size = [width, height].map(|side| side.saturating_mul(UNITS_PER_PIXEL as u32));
         Self {
             backend: SVGBackend::with_string(svg, size.into()),
+            record: None,
+        }
+    }
+
+    /// The same page, with notes on where everything is.
+    pub(crate) fn recording(svg: &'a mut String, size: [u32; 2]) -> Self {
+        let [width, height] = size;
+        Self {
+            record: Some(LayoutRecord::new(size)),
+            ..Self::new(svg, width, height)
+        }
+    }
+
+    /// What has been noted.
+    pub(crate) fn into_record(self) -> Option<LayoutRecord> {
+        self.record
+    }
+
+    /// A note on the layout, if it is recorded.
+    pub(crate) fn note(&mut self, note: impl FnOnce(&mut LayoutRecord)) {
+        if let Some(record) = &mut self.record {
+            note(record);
         }
     }
 
@@ -113,12 +157,12 @@ impl<'a> Canvas<'a> {
         if points.len() < 2 {
             return;
         }
-        if line.dashed {
-            let (dash, gap) = (4.0 * line.width + 2.0, 2.6 * line.width + 2.0);
+        if let Some(dash) = line.dash {
             let solid = LineStyle::solid(line.color, line.width);
-            let dashes = crate::curve::dashes(points, dash, gap);
+            let dashes = dashes(points, dash);
             return dashes.iter().for_each(|dash| self.line(dash, solid));
         }
+        self.note(|record| record.ink.line(points, line.width));
         let path = points.iter().copied().map(point_to_units);
         let style = shape_style(line.color, line.width, 1.0);
         let _ = self.backend.draw_path(path, &style);
@@ -126,6 +170,10 @@ impl<'a> Canvas<'a> {
 
     /// A filled polygon.
     pub(crate) fn polygon(&mut self, points: &[[f64; 2]], color: Rgb, opacity: f64) {
+        // What is seen through hides nothing.
+        if opacity >= 1.0 {
+            self.note(|record| record.ink.polygon(points));
+        }
         let path = points.iter().copied().map(point_to_units);
         let style = shape_style(color, 1.0, opacity);
         let _ = self.backend.fill_polygon(path, &style);
@@ -133,6 +181,7 @@ impl<'a> Canvas<'a> {
 
     /// A filled rectangle.
     pub(crate) fn rect(&mut self, rect: &Rect, color: Rgb) {
+        self.note(|record| record.ink.block(rect));
         let [from, to] = [[rect.x0, rect.y0], [rect.x1, rect.y1]].map(point_to_units);
         let style = shape_style(color, 1.0, 1.0);
         let _ = self.backend.draw_rect(from, to, &style, true);
@@ -146,13 +195,19 @@ impl<'a> Canvas<'a> {
 
     /// A filled disc.
     pub(crate) fn disc(&mut self, centre: [f64; 2], radius: f64, color: Rgb) {
+        self.note(|record| record.ink.block(&Rect::around(centre, radius)));
         let radius = (radius * UNITS_PER_PIXEL).round().max(0.0) as u32;
         let (centre, style) = (point_to_units(centre), shape_style(color, 1.0, 1.0));
         let _ = self.backend.draw_circle(centre, radius, &style, true);
     }
 
     /// Text with its baseline at `y`.
-    pub(crate) fn text(&mut self, text: &str, [x, y]: [f64; 2], style: TextStyle) {
+    pub(crate) fn text(&mut self, text: &str, at: [f64; 2], style: TextStyle) {
+        self.note(|record| record.label(text, text_area(text, at, style)));
+        self.unnoted_text(text, at, style);
+    }
+
+    fn unnoted_text(&mut self, text: &str, [x, y]: [f64; 2], style: TextStyle) {
         let at = [x, y - TOP_SHIFT * style.size];
         self.put(text, at, style, FontTransform::None);
     }
@@ -170,7 +225,8 @@ impl<'a> Canvas<'a> {
         };
         for dy in [-HALO_WIDTH, HALO_WIDTH] {
             for dx in [-HALO_WIDTH, HALO_WIDTH] {
-                self.text_centred(text, [x + dx, y + dy], rim);
+                let at = [x + dx, y + dy + HALF_DIGIT_HEIGHT * style.size];
+                self.unnoted_text(text, at, rim);
             }
         }
         self.text_centred(text, [x, y], style);
@@ -178,13 +234,24 @@ impl<'a> Canvas<'a> {
 
     /// Text that reads upwards, with its baseline at `x`.
     pub(crate) fn text_upwards(&mut self, text: &str, [x, y]: [f64; 2], style: TextStyle) {
+        self.note(|record| {
+            // Turned by a quarter: along the page's y, against its direction.
+            let Rect { x0, y0, x1, y1 } = text_area(text, [0.0; 2], style);
+            let area = Rect {
+                x0: x + y0,
+                y0: y - x1,
+                x1: x + y1,
+                y1: y - x0,
+            };
+            record.label(text, area);
+        });
         let at = [x - TOP_SHIFT * style.size, y];
         self.put(text, at, style, FontTransform::Rotate270);
     }
 
     fn put(&mut self, text: &str, at: [f64; 2], style: TextStyle, rotation: FontTransform) {
-        // XML has no control characters; one in a name must not cost the whole page.
-        let text = text.replace(char::is_control, " ");
+        // XML has no control characters; one in a name must not cost the whole page. What the font lacks is a box.
+        let text: String = text.chars().map(fonts::drawable).collect();
         if text.trim().is_empty() {
             return;
         }

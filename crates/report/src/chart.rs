@@ -3,10 +3,12 @@
 use crate::axes::{self, PlotFrame, VerticalAxisStyle};
 use crate::axis::Axis;
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
+use crate::coincidence;
 use crate::curve::{clipped, clipped_area};
 use crate::end_labels::{self, EndLabel};
 use crate::extent::{Extent, has_markers};
 use crate::figure::{Chart, Series, Stroke};
+use crate::layout_record::LayoutRecord;
 use crate::legend::{self, LegendEntry, LegendHandle, PlacedLegend};
 use crate::linear_ticks::Ticks;
 use crate::marks;
@@ -14,6 +16,7 @@ use crate::occupancy::Occupancy;
 use crate::rect::{Insets, Rect};
 use crate::series_style::{SeriesStyle, series_style};
 use crate::theme::{CURVE_WIDTH, GREY, INK, LABEL_SIZE, Rgb, SPINE_WIDTH, lightened};
+use crate::typeset::typeset;
 
 /// Height of a chart's cell as a share of its width.
 pub(crate) const HEIGHT: f64 = 0.68;
@@ -42,6 +45,8 @@ pub(crate) struct PreparedChart<'a> {
 /// Where things go in the cell.
 struct Layout {
     frame: PlotFrame,
+    /// Those of the curves, such that none hides another.
+    styles: Vec<SeriesStyle>,
     end_labels: Option<Vec<EndLabel>>,
     legend: Option<PlacedLegend>,
     occupied: Occupancy,
@@ -129,6 +134,7 @@ impl<'a> PreparedChart<'a> {
         let chart = self.chart;
         let Layout {
             frame,
+            styles,
             end_labels,
             legend,
             occupied,
@@ -145,9 +151,12 @@ impl<'a> PreparedChart<'a> {
         for (series, style) in self.series() {
             draw_area(canvas, &frame, series, style);
         }
-        for (series, style) in self.series() {
+        canvas.note(LayoutRecord::begin_plot);
+        for (series, style) in chart.series.iter().zip(&styles) {
+            canvas.note(|record| record.begin_curve(Some(&typeset(&series.name))));
             draw_series(canvas, &frame, series, style);
         }
+        canvas.note(|record| record.begin_curve(None));
         marks::rings(canvas, &frame, &chart.marks);
         axes::title(canvas, &chart.title, &frame.plot, cell);
         if let Some(end_labels) = &end_labels {
@@ -202,10 +211,11 @@ impl<'a> PreparedChart<'a> {
 
     fn layout(&self, cell: &Rect, insets: Insets) -> Layout {
         let mut frame = self.frame(cell.inset(insets));
+        let styles = self.separated(&frame);
         let mut occupied = self.occupied(&frame);
-        let end_labels = end_labels::at_ends(self.chart, &self.styles, &frame)
+        let end_labels = end_labels::at_ends(self.chart, &styles, &frame)
             .filter(|end_labels| end_labels::room(end_labels) <= insets.right + 0.5);
-        let entries = self.entries(&frame);
+        let entries = self.entries(&frame, &styles);
         let mut legend = None;
         if end_labels.is_none() && !entries.is_empty() {
             legend = legend::place_inside(&entries, &frame.plot, &occupied);
@@ -217,10 +227,23 @@ impl<'a> PreparedChart<'a> {
         }
         Layout {
             frame,
+            styles,
             end_labels,
             legend,
             occupied,
         }
+    }
+
+    /// The styles, with dashes in turn for curves that lie on each other.
+    fn separated(&self, frame: &PlotFrame) -> Vec<SeriesStyle> {
+        let lines = |series: &Series| match has_markers(series.stroke) {
+            true => Vec::new(),
+            false => polylines(frame, series),
+        };
+        let lines: Vec<_> = self.chart.series.iter().map(lines).collect();
+        let mut styles = self.styles.clone();
+        coincidence::separate(&mut styles, &lines, &frame.plot);
+        styles
     }
 
     fn has_data(&self, frame: &PlotFrame) -> bool {
@@ -244,17 +267,16 @@ impl<'a> PreparedChart<'a> {
         occupied
     }
 
-    fn entries(&self, frame: &PlotFrame) -> Vec<LegendEntry> {
+    fn entries(&self, frame: &PlotFrame, styles: &[SeriesStyle]) -> Vec<LegendEntry> {
         let ambiguous = frame.y2.is_some()
             && (self.axis_color(false).is_none() || self.axis_color(true).is_none());
-        let named = self.series().filter(|(s, _)| !s.name.trim().is_empty());
+        // What nobody can see is in no legend.
+        let series = self.chart.series.iter().zip(styles);
+        let named = series.filter(|(s, _)| !s.name.trim().is_empty() && is_visible(frame, s));
         let entry = |(series, style): (&Series, &SeriesStyle)| {
-            let mut name = series.name.trim().to_owned();
+            let mut name = typeset(series.name.trim());
             if ambiguous {
                 name.push_str(if series.right_axis { " →" } else { " ←" });
-            }
-            if !is_visible(frame, series) {
-                name.push_str(" (no points)");
             }
             let color = style.line.color;
             let patch = lightened(color, 1.0 - FILL_OPACITY);

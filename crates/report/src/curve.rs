@@ -1,5 +1,6 @@
 //! Curves in page pixels: cut at a rectangle, thinned to what can be seen, broken into dashes.
 
+use crate::dash::Dash;
 use crate::rect::Rect;
 
 /// Width of the strips within which neighbouring points cannot be distinguished.
@@ -119,11 +120,15 @@ fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     kept
 }
 
-/// The line broken into dashes of the given length and gap.
-pub(crate) fn dashes(points: &[[f64; 2]], dash: f64, gap: f64) -> Vec<Vec<[f64; 2]>> {
+/// The line broken into dashes.
+pub(crate) fn dashes(points: &[[f64; 2]], dash: Dash) -> Vec<Vec<[f64; 2]>> {
     let mut all = Vec::new();
-    let mut current: Vec<[f64; 2]> = points.first().copied().into_iter().collect();
-    let (mut drawing, mut remaining) = (true, dash.max(1.0));
+    let (length_of_dash, gap) = (dash.length.max(1.0), dash.gap.max(1.0));
+    // Before the first dash is a part of a gap.
+    let mut drawing = dash.offset <= 0.0;
+    let mut remaining = if drawing { length_of_dash } else { dash.offset };
+    let first = points.first().filter(|_| drawing);
+    let mut current: Vec<[f64; 2]> = first.copied().into_iter().collect();
     for pair in points.windows(2) {
         let [mut a, b] = [pair[0], pair[1]];
         let mut length = (b[0] - a[0]).hypot(b[1] - a[1]);
@@ -138,7 +143,7 @@ pub(crate) fn dashes(points: &[[f64; 2]], dash: f64, gap: f64) -> Vec<Vec<[f64; 
                 current = vec![a];
             }
             drawing = !drawing;
-            remaining = if drawing { dash.max(1.0) } else { gap.max(1.0) };
+            remaining = if drawing { length_of_dash } else { gap };
         }
         remaining -= length;
         if drawing {
@@ -217,7 +222,14 @@ mod tests {
     #[test]
     fn dashes_cover_their_share_of_the_length() {
         let line: Vec<[f64; 2]> = (0..=90).map(|i| [f64::from(i), 0.0]).collect();
-        let dashed = dashes(&line, 20.0, 10.0);
+        let dashed = dashes(
+            &line,
+            Dash {
+                length: 20.0,
+                gap: 10.0,
+                offset: 0.0,
+            },
+        );
         assert_eq!(dashed.len(), 3);
         let drawn: f64 = dashed.iter().map(|d| d[d.len() - 1][0] - d[0][0]).sum();
         assert!((drawn - 60.0).abs() < 1e-9);

@@ -4,6 +4,9 @@ use crate::axes::{self, PlotFrame};
 use crate::axis::{Axis, Scale};
 use crate::axis_range::AxisRange;
 use crate::canvas::{Canvas, LineStyle};
+use crate::dash::Dash;
+use crate::drawn_words;
+use crate::layout_record::LayoutRecord;
 use crate::legend::{self, LegendEntry, LegendHandle, PlacedLegend};
 use crate::marks::Marker;
 use crate::occupancy::Occupancy;
@@ -90,9 +93,14 @@ impl DrawingLayout {
         let x = axes::horizontal_ticks(&frame.x, frame.plot.width());
         let y = axes::vertical_ticks(&frame.y, frame.plot.height());
         axes::grid_lines(canvas, frame, &x, &y);
+        canvas.note(LayoutRecord::begin_plot);
         for shape in &drawing.shapes {
+            canvas.note(|record| record.begin_curve(shape.name()));
             shape_drawing::draw(canvas, frame, shape);
         }
+        canvas.note(|record| record.begin_curve(None));
+        let legend = self.legend.as_ref().map(|legend| legend.area);
+        drawn_words::draw(canvas, frame, &drawing.shapes, legend);
         axes::horizontal_axis(canvas, frame, cell, Some(&drawing.x), &x);
         let style = axes::VerticalAxisStyle {
             ticks: &y,
@@ -167,13 +175,12 @@ fn fitted([[x0, x1], [y0, y1]]: [[f64; 2]; 2], plot: Rect) -> PlotFrame {
 fn entries(drawings: &[Drawing]) -> Vec<LegendEntry> {
     let mut entries: Vec<LegendEntry> = Vec::new();
     for shape in drawings.iter().flat_map(|d| &d.shapes) {
-        let (Shape::Polyline { pen, name, .. }
-        | Shape::Disc { pen, name, .. }
-        | Shape::Arrow { pen, name, .. }) = shape
+        let (Shape::Polyline { pen, .. } | Shape::Disc { pen, .. } | Shape::Arrow { pen, .. }) =
+            shape
         else {
             continue;
         };
-        let name = name.as_deref().unwrap_or_default();
+        let name = shape.name().unwrap_or_default();
         if name.trim().is_empty() || entries.iter().any(|entry| entry.name == name) {
             continue;
         }
@@ -181,7 +188,7 @@ fn entries(drawings: &[Drawing]) -> Vec<LegendEntry> {
         let line = LineStyle {
             color,
             width: pen.width.clamp(1.0, 12.0),
-            dashed: pen.dashed,
+            dash: pen.dashed.then(|| Dash::of_width(pen.width)),
         };
         let is_disc = matches!(shape, Shape::Disc { .. });
         let fill = match shape {

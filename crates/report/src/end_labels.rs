@@ -8,6 +8,7 @@ use crate::fonts;
 use crate::rect::Rect;
 use crate::series_style::SeriesStyle;
 use crate::theme::{INK, TICK_SIZE};
+use crate::typeset::typeset;
 
 /// Length of the sample before a name.
 const SAMPLE: f64 = 26.0;
@@ -55,7 +56,7 @@ pub(crate) fn at_ends(
             return None;
         }
         labels.push(EndLabel {
-            name: series.name.trim().to_owned(),
+            name: typeset(series.name.trim()),
             line: style.line,
             y,
         });
@@ -98,7 +99,9 @@ pub(crate) fn room(labels: &[EndLabel]) -> f64 {
 pub(crate) fn draw(canvas: &mut Canvas<'_>, labels: &[EndLabel], plot: &Rect) {
     for label in labels {
         let x = plot.x1 + GAP;
-        canvas.line(&[[x, label.y], [x + SAMPLE, label.y]], label.line);
+        let sample = label.line.sample(SAMPLE);
+        canvas.line(&[[x, label.y], [x + SAMPLE, label.y]], sample);
+        canvas.note(|record| record.legend_entry(&label.name));
         let style = TextStyle::new(TICK_SIZE, INK, Align::Start);
         canvas.text_centred(&label.name, [x + SAMPLE + GAP, label.y], style);
     }

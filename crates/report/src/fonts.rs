@@ -30,6 +30,24 @@ pub(crate) fn options() -> Options<'static> {
     }
 }
 
+/// Stands for a letter that the fonts lack.
+const MISSING: char = '□';
+
+/// The letter as it is drawn: a box for what the fonts lack, and a blank for what is no letter.
+pub(crate) fn drawable(c: char) -> char {
+    if c.is_control() {
+        return ' ';
+    }
+    let has = |face: &Option<Face<'_>>| {
+        let face = face.as_ref();
+        face.is_some_and(|face| face.glyph_index(c).is_some())
+    };
+    match FACES.iter().all(has) {
+        true => c,
+        false => MISSING,
+    }
+}
+
 /// Width of the text in pixels, at a size in pixels per em: the advances of its glyphs and the kerning between them.
 pub(crate) fn width(text: &str, size: f64, bold: bool) -> f64 {
     // The embedded fonts can be read: a test measures with both.
@@ -38,7 +56,7 @@ pub(crate) fn width(text: &str, size: f64, bold: bool) -> f64 {
     };
     let mut units = 0_i64;
     let mut previous = None;
-    for c in text.chars() {
+    for c in text.chars().map(drawable) {
         let glyph = face.glyph_index(c).unwrap_or_default();
         units += i64::from(face.glyph_hor_advance(glyph).unwrap_or_default());
         units += previous.map_or(0, |previous| i64::from(kerning(face, previous, glyph)));

@@ -38,6 +38,13 @@ pub(crate) struct LegendEntry {
     pub(crate) handle: LegendHandle,
 }
 
+impl LegendEntry {
+    /// The name of the curve, without the arrow to its axis.
+    fn curve_name(&self) -> &str {
+        self.name.trim_end_matches([' ', '→', '←'])
+    }
+}
+
 /// A legend set in a number of columns.
 #[derive(Debug, Clone)]
 pub(crate) struct Legend {
@@ -101,11 +108,12 @@ impl Legend {
                     canvas.rect(&Rect::sized(x, y - 9.0, HANDLE_WIDTH, 18.0), color);
                 }
                 if let Some(line) = line {
-                    canvas.line(&[[x, y], [x + HANDLE_WIDTH, y]], line);
+                    canvas.line(&[[x, y], [x + HANDLE_WIDTH, y]], line.sample(HANDLE_WIDTH));
                 }
                 if let Some((shape, color)) = shape {
                     draw_marker(canvas, shape, [x + 0.5 * HANDLE_WIDTH, y], color);
                 }
+                canvas.note(|record| record.legend_entry(entry.curve_name()));
                 let style = TextStyle::new(self.size, INK, Align::Start);
                 canvas.text_centred(&entry.name, [x + HANDLE_WIDTH + GAP, y], style);
                 y += ROW_HEIGHT;

@@ -15,7 +15,8 @@
 //! # Ok::<(), dwell_report::ReportError>(())
 //! ```
 //!
-//! - [`Figure`] (charts, stacks of charts, drawings and grids on one page) → [`png()`]
+//! - [`Figure`] (charts, stacks of charts, drawings and grids on one page) → [`png()`], [`svg()`]; [`Layout`] says where its words
+//!   are and what is left to see of its curves
 //! - [`Animation`] (drawings one after another) → [`Animation::gif`]
 //! - [`Table`] → [`TableExport::csv`] to read, [`TableExport::npz`] to compute with: both give back every bit
 //! - named matrices → [`npz()`]
@@ -49,10 +50,13 @@ mod axis_range;
 mod canvas;
 mod cell_marks;
 mod chart;
+mod coincidence;
 mod color_bar;
 mod colormap;
 mod curve;
+mod dash;
 mod drawing;
+mod drawn_words;
 mod end_labels;
 mod error;
 mod extent;
@@ -62,7 +66,10 @@ mod fonts;
 mod grid;
 mod header;
 mod heat_map;
+mod ink;
 mod json;
+mod layout;
+mod layout_record;
 mod legend;
 mod linear_ticks;
 mod log_ticks;
@@ -81,9 +88,11 @@ mod series_style;
 mod shape;
 mod shape_drawing;
 mod stack;
+mod svg;
 mod table;
 mod theme;
 mod ticks;
+mod typeset;
 mod wrapped_text;
 
 pub use animation::Animation;
@@ -93,9 +102,11 @@ pub use figure::{Chart, Figure, Mark, Panel, Series, Stroke};
 pub use files::Files;
 pub use grid::{Cell, Grid, Group, Row};
 pub use json::{FindingRecord, Number, json};
-pub use markdown::{Block, Document, reproducible_text};
+pub use layout::{Label, Layout, NamedCurve};
+pub use markdown::{Block, Document, markdown_text, reproducible_text};
 pub use npz::{Array, npz};
 pub use output_folder::OutputFolder;
 pub use png::png;
 pub use shape::{Drawing, Pen, Shape, TextPlacement};
+pub use svg::svg;
 pub use table::{Column, Table, TableExport, TableFormat};

@@ -2,6 +2,7 @@
 
 use crate::number::one_line;
 use crate::number::scientific;
+use crate::typeset::typeset;
 use dwell_findings::Finding;
 use std::fmt::Write as _;
 
@@ -44,7 +45,7 @@ pub enum Block {
 impl Document {
     /// The document as Markdown.
     pub fn markdown(&self) -> String {
-        let mut text = format!("# {}\n", one_line(&self.title));
+        let mut text = format!("# {}\n", markdown_text(&self.title));
         for block in &self.blocks {
             text.push('\n');
             match block {
@@ -129,17 +130,31 @@ fn table(header: &[String], rows: &[Vec<String>]) -> String {
 }
 
 fn image(file: &str, alt: &str, caption: &str) -> String {
-    let alt = one_line(alt).replace('[', "\\[").replace(']', "\\]");
+    let alt = markdown_text(alt);
     // In angle brackets a path may hold blanks and brackets.
     let file = one_line(file).replace('<', "%3C").replace('>', "%3E");
     let target = match file.contains([' ', '(', ')']) {
         true => format!("<{file}>"),
         false => file,
     };
-    match one_line(caption).as_str() {
+    match markdown_text(&typeset(caption)).as_str() {
         "" => format!("![{alt}]({target})\n"),
         caption => format!("![{alt}]({target})\n\n*{caption}*\n"),
     }
+}
+
+/// Words of a user, such as the title of a scene, as words in Markdown: what would be markup there is escaped.
+pub fn markdown_text(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '<' => out.push_str("&lt;"),
+            '&' => out.push_str("&amp;"),
+            '`' | '*' | '[' | ']' | '\\' => out.extend(['\\', c]),
+            c => out.push(c),
+        }
+    }
+    one_line(&out)
 }
 
 /// Text that cannot end its cell.

@@ -3,11 +3,13 @@
 use crate::axes::PlotFrame;
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::curve::clipped;
+use crate::dash::Dash;
 use crate::figure::Mark;
 use crate::fonts;
 use crate::occupancy::Occupancy;
 use crate::rect::Rect;
 use crate::theme::{BAND, GREY, INK, MARK_WIDTH, MARKER_RADIUS, Rgb, TICK_SIZE, WHITE};
+use crate::typeset::typeset;
 
 /// The marker of what is drawn in ink: it stands apart from all curves.
 pub(crate) const CROSS: usize = usize::MAX;
@@ -101,7 +103,7 @@ pub(crate) fn lines(canvas: &mut Canvas<'_>, frame: &PlotFrame, marks: &[Mark]) 
     let line = LineStyle {
         color: GREY,
         width: MARK_WIDTH,
-        dashed: true,
+        dash: Some(Dash::of_width(MARK_WIDTH)),
     };
     for run in marks.iter().flat_map(|mark| path(frame, mark)) {
         canvas.line(&run, line);
@@ -167,7 +169,8 @@ pub(crate) fn draw_labels(
         | Mark::Slope { label, .. }
         | Mark::Point { label, .. }
         | Mark::Text { label, .. }) = mark;
-        let label = label.trim();
+        let label = typeset(label.trim());
+        let label = label.as_str();
         if label.is_empty() {
             continue;
         }
@@ -179,9 +182,20 @@ pub(crate) fn draw_labels(
         // The first of the best: the positions are given in the order of preference.
         let hidden = |area: &Rect| occupied.count(&area.grown(3.0));
         let candidates = label_candidates(frame, mark, size).into_iter();
-        let Some(area) = candidates.filter(free).min_by_key(hidden) else {
+        let best = candidates.filter(free).min_by_key(hidden);
+        // The name of a point that is one of many may be missing; that of a line that is drawn for its name may not.
+        let is_optional = matches!(mark, Mark::Text { .. });
+        let Some(area) = best.filter(|area| !is_optional || hidden(area) == 0) else {
+            if !is_optional && has_place(frame, mark) {
+                canvas.note(|record| record.left_out(label));
+            }
             continue;
         };
+        if let Mark::Point { at, .. } | Mark::Text { at, .. } = mark
+            && let Some(at) = frame.point_to_px(*at, false)
+        {
+            leader(canvas, at, &area, MARKER_RADIUS + 2.0);
+        }
         let middle = [area.x0, area.centre()[1]];
         let style = TextStyle::new(TICK_SIZE, GREY, Align::Start);
         // On a band a rim would show, so it has to be needed.
@@ -193,6 +207,38 @@ pub(crate) fn draw_labels(
         written.push(area);
     }
 }
+
+/// Whether anything of a mark is in the plot.
+fn has_place(frame: &PlotFrame, mark: &Mark) -> bool {
+    match mark {
+        Mark::Band { from, to, .. } => band(frame, *from, *to).is_some(),
+        Mark::Point { at, .. } | Mark::Text { at, .. } => {
+            let at = frame.point_to_px(*at, false);
+            at.is_some_and(|at| frame.plot.contains(at))
+        }
+        Mark::Vertical { .. } | Mark::Horizontal { .. } | Mark::Slope { .. } => {
+            !path(frame, mark).is_empty()
+        }
+    }
+}
+
+/// Beyond this distance words need a line to what they name.
+const MAX_GAP: f64 = 34.0;
+
+/// A thin line from a point to the words that name it, where they stand away from it.
+pub(crate) fn leader(canvas: &mut Canvas<'_>, [x, y]: [f64; 2], words: &Rect, clearance: f64) {
+    let words = words.grown(4.0);
+    let end = [x.clamp(words.x0, words.x1), y.clamp(words.y0, words.y1)];
+    let [dx, dy] = [end[0] - x, end[1] - y];
+    let length = dx.hypot(dy);
+    if length > MAX_GAP {
+        let start = [x + dx / length * clearance, y + dy / length * clearance];
+        canvas.line(&[start, end], LineStyle::solid(GREY, LEADER_WIDTH));
+    }
+}
+
+/// Width of the line from words to what they name.
+const LEADER_WIDTH: f64 = 1.4;
 
 /// Places for the words of a mark, the best first.
 //
@@ -237,13 +283,21 @@ fn label_candidates(frame: &PlotFrame, mark: &Mark, [width, height]: [f64; 2]) -
                     [x - d - width, y - 0.5 * height],
                     [x - 0.5 * width, y - d - height],
                     [x - 0.5 * width, y + d],
+                    // Beside the left or the right edge there is room for no other.
+                    [x - MARKER_RADIUS, y - d - height],
+                    [x - MARKER_RADIUS, y + d],
+                    [x + MARKER_RADIUS - width, y - d - height],
+                    [x + MARKER_RADIUS - width, y + d],
                     [x + 0.7 * d, y - 0.7 * d - height],
                     [x - 0.7 * d - width, y - 0.7 * d - height],
                     [x + 0.7 * d, y + 0.7 * d],
                     [x - 0.7 * d - width, y + 0.7 * d],
                 ]
             };
-            [1.0, 2.0, 3.5].into_iter().flat_map(around).collect()
+            [1.0, 2.0, 3.5, 5.0, 7.0, 9.0, 12.0, 15.0]
+                .into_iter()
+                .flat_map(around)
+                .collect()
         }
         Mark::Slope { .. } => {
             let runs = path(frame, mark);

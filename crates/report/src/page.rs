@@ -10,6 +10,7 @@ use crate::rect::{Insets, Rect};
 use crate::shape::Drawing;
 use crate::stack::Stack;
 use crate::theme::{CAPTION_GREY, CAPTION_SIZE, INK, PROVENANCE_SIZE, TITLE_SIZE, WHITE};
+use crate::typeset::typeset;
 use std::slice::from_ref;
 
 /// Around the page.
@@ -101,6 +102,27 @@ fn prepared(panel: &Panel, width: f64) -> PreparedPanel<'_> {
     }
 }
 
+/// Caption and provenance as lines with size and baseline, from `y` on, which goes on below them.
+fn footer(figure: &Figure, inner: f64, y: &mut f64) -> Vec<(String, f64, f64)> {
+    let mut footer = Vec::new();
+    for (text, size) in [
+        (&figure.caption, CAPTION_SIZE),
+        (&figure.provenance, PROVENANCE_SIZE),
+    ] {
+        for (k, line) in wrapped(&typeset(text), size, false, inner)
+            .into_iter()
+            .enumerate()
+        {
+            if k == 0 && !footer.is_empty() {
+                *y += FOOTER_GAP;
+            }
+            footer.push((line, size, *y + 0.8 * size));
+            *y += CAPTION_LEADING * size;
+        }
+    }
+    footer
+}
+
 impl<'a> Page<'a> {
     /// Lays everything out.
     pub(crate) fn new(figure: &'a Figure) -> Self {
@@ -111,7 +133,7 @@ impl<'a> Page<'a> {
         } else {
             CELL * columns as f64 + gaps
         };
-        let title = wrapped(&figure.title, TITLE_SIZE, true, inner);
+        let title = wrapped(&typeset(&figure.title), TITLE_SIZE, true, inner);
         let mut y = MARGIN;
         if !title.is_empty() {
             y += title.len() as f64 * TITLE_LEADING * TITLE_SIZE + 0.55 * TITLE_SIZE;
@@ -137,19 +159,7 @@ impl<'a> Page<'a> {
             }
             y += height + ROW_GAP;
         }
-        let mut footer = Vec::new();
-        for (text, size) in [
-            (&figure.caption, CAPTION_SIZE),
-            (&figure.provenance, PROVENANCE_SIZE),
-        ] {
-            for (k, line) in wrapped(text, size, false, inner).into_iter().enumerate() {
-                if k == 0 && !footer.is_empty() {
-                    y += FOOTER_GAP;
-                }
-                footer.push((line, size, y + 0.8 * size));
-                y += CAPTION_LEADING * size;
-            }
-        }
+        let footer = footer(figure, inner, &mut y);
         if footer.is_empty() {
             y -= ROW_GAP;
         }

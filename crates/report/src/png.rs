@@ -48,7 +48,8 @@ fn encoded(pixels: &Pixmap) -> Result<Vec<u8>, EncodingError> {
     Ok(bytes)
 }
 
-fn svg_picture(figure: &Figure) -> Result<SvgPicture, ReportError> {
+/// The page of a figure, unless it is too large.
+pub(crate) fn page_of(figure: &Figure) -> Result<Page<'_>, ReportError> {
     let page = Page::new(figure);
     let (width, height) = (page.width as u32, page.height as u32);
     if width.max(height) > MAX_SIDE {
@@ -58,7 +59,14 @@ fn svg_picture(figure: &Figure) -> Result<SvgPicture, ReportError> {
             height,
         });
     }
-    Ok(SvgPicture::new([width, height], |canvas| page.draw(canvas)))
+    Ok(page)
+}
+
+/// The page of a figure, drawn.
+pub(crate) fn svg_picture(figure: &Figure) -> Result<SvgPicture, ReportError> {
+    let page = page_of(figure)?;
+    let size = [page.width as u32, page.height as u32];
+    Ok(SvgPicture::new(size, |canvas| page.draw(canvas)))
 }
 
 #[cfg(test)]

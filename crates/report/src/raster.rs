@@ -3,8 +3,19 @@
 use crate::canvas::{Canvas, UNITS_PER_PIXEL};
 use crate::error::ReportError;
 use crate::fonts;
+use crate::layout_record::LayoutRecord;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::Tree;
+
+/// What a page notes on its layout while it is drawn.
+pub(crate) fn recorded(size: [u32; 2], draw: impl FnOnce(&mut Canvas<'_>)) -> LayoutRecord {
+    let mut svg = String::new();
+    let mut canvas = Canvas::recording(&mut svg, size);
+    draw(&mut canvas);
+    canvas
+        .into_record()
+        .unwrap_or_else(|| LayoutRecord::new(size))
+}
 
 /// A page as SVG in fractions of a pixel, and its size in page pixels.
 pub(crate) struct SvgPicture {

@@ -2,6 +2,7 @@
 
 use crate::axis::Paint;
 use crate::canvas::LineStyle;
+use crate::dash::Dash;
 use crate::figure::{Series, Stroke};
 use crate::marks;
 use crate::theme::{CURVE_WIDTH, default_paint, rgb};
@@ -28,7 +29,7 @@ pub(crate) fn series_style(series: &Series, index: usize) -> SeriesStyle {
         line: LineStyle {
             color: rgb(paint),
             width: CURVE_WIDTH,
-            dashed: series.stroke == Stroke::Dashed,
+            dash: (series.stroke == Stroke::Dashed).then(|| Dash::of_width(CURVE_WIDTH)),
         },
         marker,
     }

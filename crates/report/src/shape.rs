@@ -163,6 +163,16 @@ impl Shape {
         }
     }
 
+    /// Its name in the legend, if it has one.
+    pub fn name(&self) -> Option<&str> {
+        match self {
+            Self::Polyline { name, .. } | Self::Disc { name, .. } | Self::Arrow { name, .. } => {
+                name.as_deref()
+            }
+            Self::GroundPin { .. } | Self::GroundLine { .. } | Self::Text { .. } => None,
+        }
+    }
+
     /// The same shape with a name in the legend; words and supports have none.
     pub fn named(mut self, label: impl Into<String>) -> Self {
         match &mut self {

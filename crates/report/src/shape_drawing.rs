@@ -1,8 +1,9 @@
 //! Single shapes of a drawing: their points, what they cover, how they are drawn.
 
 use crate::axes::PlotFrame;
-use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
+use crate::canvas::{Canvas, LineStyle};
 use crate::curve::clipped;
+use crate::dash::Dash;
 use crate::fonts;
 use crate::occupancy::Occupancy;
 use crate::rect::Rect;
@@ -73,7 +74,7 @@ pub(crate) fn mark_occupied(frame: &PlotFrame, shape: &Shape, occupied: &mut Occ
             ..
         } => {
             if let Some(at) = place(at) {
-                occupied.block(&text_box(at, text, *placement));
+                occupied.block(&text_box(at, text, *placement, 1.0));
             }
         }
     }
@@ -131,17 +132,8 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, frame: &PlotFrame, shape: &Shape) {
                 arrow(canvas, from, to, pen);
             }
         }
-        Shape::Text {
-            at,
-            text,
-            placement,
-            color,
-        } => {
-            let Some(at) = place(at) else { return };
-            let place = text_box(at, text, *placement);
-            let style = TextStyle::new(TICK_SIZE, rgb(*color), Align::Start);
-            canvas.text_with_halo(text, [place.x0, place.centre()[1]], style);
-        }
+        // Words are placed when everything else is.
+        Shape::Text { .. } => {}
     }
 }
 
@@ -153,7 +145,7 @@ fn line(pen: &Pen) -> LineStyle {
     LineStyle {
         color: lightened(rgb(pen.color), pen.lightness),
         width,
-        dashed: pen.dashed,
+        dash: pen.dashed.then(|| Dash::of_width(width)),
     }
 }
 
@@ -233,14 +225,15 @@ fn arrow(canvas: &mut Canvas<'_>, from: [f64; 2], to: [f64; 2], pen: &Pen) {
     canvas.polygon(&[to, barbs[0], barbs[1]], line.color, 1.0);
 }
 
-/// Where the words stand.
-fn text_box([x, y]: [f64; 2], text: &str, placement: TextPlacement) -> Rect {
+/// Where the words stand: so many gaps from their point.
+pub(crate) fn text_box([x, y]: [f64; 2], text: &str, placement: TextPlacement, gaps: f64) -> Rect {
     const GAP: f64 = 15.0;
+    let gap = GAP * gaps;
     let (width, height) = (fonts::width(text, TICK_SIZE, false), TICK_SIZE);
-    let (left, right, middle) = (x - GAP - width, x + GAP, x - 0.5 * width);
-    let (above, below, level) = (y - GAP - height, y + GAP, y - 0.5 * height);
+    let (left, right, middle) = (x - gap - width, x + gap, x - 0.5 * width);
+    let (above, below, level) = (y - gap - height, y + gap, y - 0.5 * height);
     // Corners are nearer than sides, or they would look further away.
-    let corner_shift = 0.35 * GAP;
+    let corner_shift = 0.35 * gap;
     let [x0, y0] = match placement {
         TextPlacement::Centre => [middle, level],
         TextPlacement::Left => [left, level],

@@ -7,6 +7,7 @@ use crate::linear_ticks::Ticks;
 use crate::number::power_of_ten;
 use crate::rect::Rect;
 use crate::theme::{LABEL_SIZE, PANEL_TITLE_SIZE};
+use crate::typeset::typeset;
 
 /// Distance of baselines, in font sizes.
 const LEADING: f64 = 1.25;
@@ -78,7 +79,12 @@ impl WrappedText {
 
 /// The title of a panel.
 pub(crate) fn title(text: &str, cell: &Rect) -> WrappedText {
-    WrappedText::new(text.trim(), PANEL_TITLE_SIZE, true, cell.width() - MARGINS)
+    WrappedText::new(
+        &typeset(text.trim()),
+        PANEL_TITLE_SIZE,
+        true,
+        cell.width() - MARGINS,
+    )
 }
 
 /// The label of a horizontal axis.
@@ -93,7 +99,7 @@ pub(crate) fn fitted_label(axis: &Axis, ticks: &Ticks, room: f64) -> WrappedText
 
 /// What an axis shows: its label, what has been subtracted, power of ten and unit.
 fn label(axis: &Axis, ticks: &Ticks) -> String {
-    let mut text = axis.label.trim().to_owned();
+    let mut text = typeset(axis.label.trim());
     if let Some(offset) = &ticks.offset {
         let negative = offset.strip_prefix('−');
         let change = negative.map_or(format!("− {offset}"), |positive| format!("+ {positive}"));

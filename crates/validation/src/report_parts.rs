@@ -1,8 +1,8 @@
 //! Parts that the reports of cases and studies share.
 
 use dwell_findings::Finding;
-use dwell_report::{Block, Figure, Files, ReportError};
-use rayon::prelude::*;
+use dwell_report::{Block, Figure};
+use dwell_study::output::Picture;
 
 /// A table of a document.
 pub(crate) fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Block {
@@ -12,18 +12,15 @@ pub(crate) fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>
     }
 }
 
-/// Draws figures, each as `FOLDER/NAME.png`.
-pub(crate) fn draw_figures(
-    files: &mut Files,
-    folder: &str,
-    figures: &[Figure],
-    draw: impl Fn(&Figure) -> Result<Vec<u8>, ReportError> + Sync,
-) -> Result<(), ReportError> {
-    let pictures: Vec<Vec<u8>> = figures.par_iter().map(&draw).collect::<Result<_, _>>()?;
-    for (figure, picture) in figures.iter().zip(pictures) {
-        files.add(format!("{folder}/{}.png", figure.name), picture);
-    }
-    Ok(())
+/// Figures as pictures, each to be drawn as `FOLDER/NAME.png`.
+pub(crate) fn pictures<'a>(
+    folder: &'a str,
+    figures: &'a [Figure],
+) -> impl Iterator<Item = Picture> + 'a {
+    let path = move |figure: &Figure| format!("{folder}/{}.png", figure.name);
+    figures
+        .iter()
+        .map(move |figure| Picture::of_no_scene(path(figure), figure.clone()))
 }
 
 /// The drawn figures in a document, each with its caption or else its title below it.

@@ -6,6 +6,7 @@ mod long_motions;
 mod messages;
 mod near_branches;
 mod output;
+mod pictures;
 mod results;
 mod rows;
 mod studies;

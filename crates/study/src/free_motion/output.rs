@@ -4,6 +4,7 @@ use crate::explain::StudyError;
 use crate::free_motion::compute::{MotionSolver, compute_free_motion_at};
 use crate::models::SolverSettings;
 use crate::progress::Progress;
+use crate::trajectory::figures::PictureSpan;
 use crate::trajectory::output::{TrajectoryOutcome, report};
 use dwell_report::TableExport as _;
 use dwell_scene::Scene;
@@ -50,9 +51,23 @@ pub fn simulate_with(
     times: Option<&[f64]>,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
+    simulate_within(scene, solver, times, PictureSpan::default(), progress)
+}
+
+/// The same, with curves that show a part of the motion.
+///
+/// # Errors
+/// As [`simulate_with`]; [`StudyError::Scene`] where the part is not within the motion.
+pub fn simulate_within(
+    scene: &Scene,
+    solver: &MotionSolver,
+    times: Option<&[f64]>,
+    span: PictureSpan,
+    progress: Progress<'_>,
+) -> Result<TrajectoryOutcome, StudyError> {
     let motion = compute_free_motion_at(scene, solver, times, progress)?;
     let (scene, computed) = (&motion.loaded_scene, motion.computed);
-    let mut outcome = report(scene, &computed)?;
+    let mut outcome = report(scene, &computed, span)?;
     if !motion.events.is_empty() {
         let name = format!("{}-motion-events.csv", scene.name);
         outcome.files.add(name, motion.event_table.csv()?);

@@ -1,19 +1,23 @@
 //! Drawing of a mechanism in one position: bodies as bars, plates and blocks, joints and springs.
 
+use super::mechanism_symbols::{
+    PitchCurve, axis_of, circle, drawn_size, pitch_curve, rack_outline, spring_outline,
+};
 use crate::bodies::{BodyPose, point_position};
 use crate::ranges::extent;
 use dwell_geometry::{ActuatorKind, BodyId, Joint, JointId, JointKind, Vec2, vec2};
 use dwell_kinetostatics::LoadKind;
 use dwell_report::{Paint, Pen, Shape, TextPlacement};
 use dwell_scene::Scene;
-use std::f64::consts::TAU;
 
 /// Reference length of the symbols, in sizes of the mechanism.
 const SYMBOL_RATIO: f64 = 0.6;
-/// Number of corners of a circle.
-const CIRCLE_POINTS: usize = 72;
-/// Number of coils of a spring.
-const SPRING_COILS: usize = 7;
+/// The same of the whole drawing, below which symbols could not be recognised.
+const MIN_SYMBOL_RATIO: f64 = 0.4;
+/// Half the distance of the rails of a guide, and of a slot, and the height of the teeth of a rack, in reference lengths.
+const RAIL_DISTANCE: f64 = 0.055;
+const SLOT_DISTANCE: f64 = 0.035;
+const TOOTH: f64 = 0.012;
 
 /// Draws a mechanism in some of its positions.
 pub struct MechanismDrawing<'a> {
@@ -24,6 +28,10 @@ pub struct MechanismDrawing<'a> {
     travels: Vec<Option<[f64; 2]>>,
     /// By body: whether it is drawn.
     visible: Vec<bool>,
+    /// The pitch curves of cams.
+    cams: Vec<PitchCurve>,
+    /// What is drawn over the bodies and under the joints.
+    paths: Vec<Shape>,
 }
 
 fn vector([x, y]: [f64; 2]) -> Vec2 {
@@ -48,12 +56,23 @@ impl<'a> MechanismDrawing<'a> {
             let limits = extent(positions.iter().map(travel_along));
             (limits[0] <= limits[1]).then_some(limits)
         };
+        let couplings = scene.mechanism.couplings.iter();
+        let cams = couplings.filter_map(|coupling| pitch_curve(scene, coupling, positions));
         Self {
+            cams: cams.collect(),
+            paths: Vec::new(),
             scene,
-            size: SYMBOL_RATIO * scene.mechanism.size(),
+            size: (SYMBOL_RATIO * scene.mechanism.size())
+                .max(MIN_SYMBOL_RATIO * drawn_size(scene, positions)),
             travels: scene.mechanism.joints.iter().map(travel).collect(),
             visible: vec![true; scene.mechanism.bodies.len()],
         }
+    }
+
+    /// Draws these lines, too, over the bodies of the position that is drawn in full.
+    pub fn with_paths(mut self, paths: Vec<Shape>) -> Self {
+        self.paths = paths;
+        self
     }
 
     /// Draws only these bodies, and the joints between them.
@@ -76,10 +95,14 @@ impl<'a> MechanismDrawing<'a> {
             lightness,
             shapes,
         };
+        if lightness == 0.0 {
+            position.name_bodies();
+        }
         position.draw_background();
         position.draw_bodies();
         if lightness == 0.0 {
             position.draw_loads();
+            position.shapes.extend(self.paths.iter().cloned());
         }
         position.draw_joints();
     }
@@ -196,8 +219,8 @@ impl DrawnPosition<'_> {
                 JointKind::Prismatic { axes } if drawing.is_cylinder(j) => {
                     let min_travel = travel.map_or(0.0, |[low, _]| 0.85 * low);
                     let end = at[0] + axes[0].rotate(self.rotation(one)) * min_travel;
-                    self.line(&at, self.pen(drawing.color(two), 5.0));
-                    self.line(&[at[0], end], self.pen(drawing.color(one), 12.0));
+                    self.named_line(two, &at, 5.0);
+                    self.named_line(one, &[at[0], end], 12.0);
                 }
                 JointKind::Prismatic { axes }
                     if is_first || !joint.bodies.iter().any(|b| drawing.is_ground(*b)) =>
@@ -214,6 +237,9 @@ impl DrawnPosition<'_> {
                 | JointKind::Coupling(_) => {}
             }
         }
+        if is_first {
+            self.draw_cams();
+        }
         let actuators = mechanism.actuators.iter();
         for actuator in actuators.filter(|a| drawing.is_visible(a.bodies)) {
             if let ActuatorKind::Length(points) = actuator.kind {
@@ -224,10 +250,56 @@ impl DrawnPosition<'_> {
         }
     }
 
+    /// The curves that the followers' points follow on their cams.
+    fn draw_cams(&mut self) {
+        let drawing = self.drawing;
+        for cam in drawing.cams.iter().filter(|cam| drawing.visible[cam.body]) {
+            let body = BodyId(cam.body);
+            let points = cam
+                .points
+                .iter()
+                .map(|p| array(self.point(body, *p)))
+                .collect();
+            let pen = self.pen(drawing.color(body), 3.0);
+            let shape = match cam.closed {
+                true => Shape::area(points, pen, 0.2),
+                false => Shape::line(points, pen),
+            };
+            self.shapes.push(self.named(body, shape));
+        }
+    }
+
+    /// The shape with the name of its body, in the position that is drawn in full.
+    fn named(&self, body: BodyId, shape: Shape) -> Shape {
+        let mechanism = &self.drawing.scene.mechanism;
+        match self.lightness == 0.0 && !self.drawing.is_ground(body) {
+            true => shape.named(mechanism.body_name(body)),
+            false => shape,
+        }
+    }
+
+    /// A line that is a part of a body.
+    fn named_line(&mut self, body: BodyId, points: &[Vec2], width: f64) {
+        let pen = self.pen(self.drawing.color(body), width);
+        let line = Shape::line(points.iter().copied().map(array).collect(), pen);
+        self.shapes.push(self.named(body, line));
+    }
+
+    /// The bodies in their order for the legend: they are drawn in another.
+    fn name_bodies(&mut self) {
+        for body in self.drawn_bodies() {
+            let mut shape = self.named(BodyId(body), self.body_shape(body));
+            if let Shape::Polyline { points, .. } = &mut shape {
+                points.clear();
+            }
+            self.shapes.push(shape);
+        }
+    }
+
     /// A disc, with a line that shows how it rotates unless it is fixed.
     fn disc(&mut self, body: BodyId, at: Vec2, radius: f64) {
         let color = self.drawing.color(body);
-        self.line(&circle(at, radius), self.pen(color, 2.5));
+        self.named_line(body, &circle(at, radius), 2.5);
         if !self.drawing.is_ground(body) {
             let rim = at + self.rotation(body) * radius;
             self.line(&[at, rim], self.pen(color, 2.0));
@@ -246,32 +318,64 @@ impl DrawnPosition<'_> {
             JointKind::Rack { radius, .. } | JointKind::Rolling { radius, .. } => Some(radius),
             _ => None,
         };
-        if !self.drawing.is_ground(one) {
+        let is_first = self.lightness == 0.0;
+        if let (JointKind::Rack { radius, .. }, true) = (&joint.kind, is_first) {
+            // The wheel is on the left of the track where its radius is positive.
+            let normal = direction.perp() * radius.signum();
+            let outline = rack_outline([from, to], normal, TOOTH * self.drawing.size);
+            let pen = Pen::new(self.drawing.color(one), 2.5);
+            let rack = Shape::area(outline.into_iter().map(array).collect(), pen, 0.2);
+            self.shapes.push(self.named(one, rack));
+        } else if !self.drawing.is_ground(one) {
             let color = self.drawing.color(one);
             let wide = Pen::new(color, if radius.is_some() { 3.0 } else { 17.0 });
             self.line(&[from, to], wide.lightness(self.lightness.max(0.55)));
             if radius.is_none() {
                 self.line(&[from, to], Pen::new(color, 11.0).lightness(1.0));
             }
-        } else if self.lightness == 0.0 {
+        } else if let (Some(radius), true) = (radius, is_first) {
             // The hatching is on the right of the track: away from the disc.
-            let is_left = radius.is_some_and(|radius| radius < 0.0);
-            let [from, to] = if is_left { [to, from] } else { [from, to] }.map(array);
-            self.shapes.push(Shape::GroundLine { from, to });
+            self.ground_line(if radius < 0.0 { [to, from] } else { [from, to] });
+        } else if is_first {
+            // Two rails, each hatched on its outer side.
+            let share = match joint.kind {
+                JointKind::Slot { .. } => SLOT_DISTANCE,
+                _ => RAIL_DISTANCE,
+            };
+            let across = direction.perp() * (share * self.drawing.size);
+            self.ground_line([from - across, to - across]);
+            self.ground_line([to + across, from + across]);
         }
     }
 
+    fn ground_line(&mut self, ends: [Vec2; 2]) {
+        let [from, to] = ends.map(array);
+        self.shapes.push(Shape::GroundLine { from, to });
+    }
+
+    fn drawn_bodies(&self) -> Vec<usize> {
+        let drawing = self.drawing;
+        let is_drawn = |b: &usize| !drawing.is_ground(BodyId(*b)) && drawing.visible[*b];
+        (0..drawing.visible.len()).filter(is_drawn).collect()
+    }
+
+    /// The large ones first: where two lie on each other, the small one stays in sight.
     fn draw_bodies(&mut self) {
-        let mechanism = &self.drawing.scene.mechanism;
-        for (b, body) in mechanism.bodies.iter().enumerate() {
-            if self.drawing.is_ground(BodyId(b)) || !self.drawing.visible[b] {
-                continue;
-            }
-            let shape = self.body_shape(b);
-            self.shapes.push(match self.lightness == 0.0 {
-                true => shape.named(body.name.clone()),
-                false => shape,
-            });
+        let points = |b: usize| &self.drawing.scene.points[b];
+        let reach = |b: usize| {
+            let all = points(b).iter();
+            let pairs = all.flat_map(|(_, p)| points(b).iter().map(move |(_, q)| (*p - *q).norm()));
+            pairs.fold(0.0, f64::max)
+        };
+        let is_block = |b: &usize| reach(*b) == 0.0;
+        let mut bodies = self.drawn_bodies();
+        bodies.sort_by(|a, b| {
+            let blocks = is_block(a).cmp(&is_block(b));
+            blocks.then(reach(*b).total_cmp(&reach(*a)))
+        });
+        for b in bodies {
+            let shape = self.named(BodyId(b), self.body_shape(b));
+            self.shapes.push(shape);
         }
     }
 
@@ -387,44 +491,4 @@ impl DrawnPosition<'_> {
             }
         }
     }
-}
-
-fn axis_of(kind: JointKind) -> Option<Vec2> {
-    match kind {
-        JointKind::Prismatic { axes } => Some(axes[0]),
-        JointKind::Slot { axis }
-        | JointKind::Rack { axis, .. }
-        | JointKind::Rolling { axis, .. } => Some(axis),
-        JointKind::Revolute
-        | JointKind::Weld { .. }
-        | JointKind::Gear { .. }
-        | JointKind::Distance { .. }
-        | JointKind::Coupling(_) => None,
-    }
-}
-
-fn circle(at: Vec2, radius: f64) -> Vec<Vec2> {
-    let corner = |k: usize| {
-        let (sin, cos) = (TAU * k as f64 / CIRCLE_POINTS as f64).sin_cos();
-        vec2(at.x + radius * cos, at.y + radius * sin)
-    };
-    (0..=CIRCLE_POINTS).map(corner).collect()
-}
-
-/// A zigzag between two points.
-fn spring_outline(a: Vec2, b: Vec2, half: f64) -> Vec<Vec2> {
-    let gap = b - a;
-    if gap.norm() == 0.0 {
-        return Vec::new();
-    }
-    let across = gap.perp() * (half / gap.norm());
-    let zigzag_point = |k: usize| {
-        let sign = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let fraction = 0.15 + 0.7 * (k as f64 + 0.5) / (2 * SPRING_COILS) as f64;
-        a + gap * fraction + across * sign
-    };
-    let mut points = vec![a, a + gap * 0.15];
-    points.extend((0..2 * SPRING_COILS).map(zigzag_point));
-    points.extend([a + gap * 0.85, b]);
-    points
 }

@@ -3,6 +3,7 @@
 mod captions;
 mod distinct_names;
 mod mechanism_drawing;
+mod mechanism_symbols;
 mod pictures;
 mod provenance;
 
@@ -13,8 +14,8 @@ pub(crate) use captions::{
 pub use captions::{caption, chart, coordinate_label, figure, scene_caption, symbol};
 pub(crate) use distinct_names::DistinctNames;
 pub use mechanism_drawing::MechanismDrawing;
-pub use pictures::{Picture, Pictures};
-pub use provenance::{provenance_line, signed_png};
+pub use pictures::{Picture, PictureFormat, Pictures};
+pub use provenance::provenance_line;
 
 use dwell_findings::Finding;
 use dwell_report::{Document, Files};

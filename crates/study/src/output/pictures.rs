@@ -5,7 +5,7 @@ use super::provenance::signature;
 use crate::explain::StudyError;
 use crate::number_format::count;
 use crate::progress::{Progress, Step};
-use dwell_report::{Animation, Block, Document, Figure, ReportError, png};
+use dwell_report::{Animation, Block, Document, Figure, Layout, ReportError, png, svg};
 use dwell_scene::Scene;
 use rayon::prelude::*;
 
@@ -19,6 +19,28 @@ pub enum Pictures {
     Main,
     /// All, and the animation of the mechanism.
     All,
+}
+
+/// The formats in which figures are drawn; animations are always GIF.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PictureFormat {
+    /// Pixels, for pages and screens.
+    #[default]
+    Png,
+    /// Lines and letters, for papers.
+    Svg,
+    /// Both.
+    Both,
+}
+
+impl PictureFormat {
+    fn has_png(self) -> bool {
+        self != Self::Svg
+    }
+
+    fn has_svg(self) -> bool {
+        self != Self::Png
+    }
 }
 
 /// A picture that is not drawn yet.
@@ -39,7 +61,7 @@ enum Content {
 
 impl Picture {
     /// A figure of a scene, with its provenance.
-    pub(crate) fn figure(scene: &Scene, path: String, is_main: bool, figure: Figure) -> Self {
+    pub fn figure(scene: &Scene, path: String, is_main: bool, figure: Figure) -> Self {
         let provenance = signature(scene, &figure.provenance);
         Self {
             path,
@@ -48,6 +70,26 @@ impl Picture {
                 provenance,
                 ..figure
             }),
+        }
+    }
+
+    /// A main figure that belongs to no single scene.
+    pub fn of_no_scene(path: String, figure: Figure) -> Self {
+        Self {
+            path,
+            is_main: true,
+            content: Content::Figure(figure),
+        }
+    }
+
+    /// Where everything in it is; of an animation, in each frame.
+    ///
+    /// # Errors
+    /// [`ReportError::Size`], [`ReportError::NoFrames`] or [`ReportError::AnimationSize`] where it cannot be drawn.
+    pub fn layouts(&self) -> Result<Vec<Layout>, ReportError> {
+        match &self.content {
+            Content::Figure(figure) => Ok(vec![Layout::of(figure)?]),
+            Content::Animation(animation) => Layout::of_animation(animation),
         }
     }
 
@@ -71,12 +113,28 @@ impl Picture {
         }
     }
 
-    fn bytes(&self) -> Result<Vec<u8>, ReportError> {
-        match &self.content {
-            Content::Figure(figure) => png(figure),
-            Content::Animation(animation) => animation.gif(),
+    /// The files of the picture, drawn.
+    fn files(&self, format: PictureFormat) -> Result<Vec<(String, Vec<u8>)>, ReportError> {
+        let figure = match &self.content {
+            Content::Figure(figure) => figure,
+            Content::Animation(animation) => {
+                return Ok(vec![(self.path.clone(), animation.gif()?)]);
+            }
+        };
+        let mut files = Vec::new();
+        if format.has_png() {
+            files.push((self.path.clone(), png(figure)?));
         }
+        if format.has_svg() {
+            files.push((svg_path(&self.path), svg(figure)?.into_bytes()));
+        }
+        Ok(files)
     }
+}
+
+/// The path of the SVG beside a PNG.
+fn svg_path(png: &str) -> String {
+    format!("{}.svg", png.strip_suffix(".png").unwrap_or(png))
 }
 
 impl Outcome {
@@ -84,7 +142,11 @@ impl Outcome {
     ///
     /// # Errors
     /// [`StudyError::Report`] where one cannot be drawn.
-    pub fn draw(self, wanted: Pictures, progress: Progress<'_>) -> Result<Self, StudyError> {
+    pub fn draw(
+        self,
+        (wanted, format): (Pictures, PictureFormat),
+        progress: Progress<'_>,
+    ) -> Result<Self, StudyError> {
         let Self {
             mut summary,
             mut files,
@@ -99,19 +161,20 @@ impl Outcome {
                 Pictures::Main => picture.is_main,
                 Pictures::All => true,
             });
-        let bytes = drawn.par_iter().map(|picture| {
-            let bytes = picture.bytes()?;
+        let picture_files = drawn.par_iter().map(|picture| {
+            let files = picture.files(format)?;
             progress(Step {
                 total: drawn.len(),
                 done: picture.name(),
             });
-            Ok((picture.path.clone(), bytes))
+            Ok(files)
         });
-        for (path, bytes) in bytes.collect::<Result<Vec<_>, ReportError>>()? {
+        let picture_files = picture_files.collect::<Result<Vec<_>, ReportError>>()?;
+        for (path, bytes) in picture_files.into_iter().flatten() {
             files.add(path, bytes);
         }
         if let Some((path, page)) = page {
-            files.add(path, without(page, &left).markdown());
+            files.add(path, with_drawn_pictures(page, &left, format).markdown());
         }
         if wanted == Pictures::Main && !left.is_empty() {
             summary += &format!(
@@ -129,10 +192,18 @@ impl Outcome {
     }
 }
 
-/// A page without some pictures.
-fn without(mut page: Document, left: &[Picture]) -> Document {
+/// A page without some pictures, with the others as they have been drawn.
+fn with_drawn_pictures(mut page: Document, left: &[Picture], format: PictureFormat) -> Document {
     let is_left = |file: &str| left.iter().any(|picture| picture.path == file);
     page.blocks
         .retain(|block| !matches!(block, Block::Figure { file, .. } if is_left(file)));
+    for block in &mut page.blocks {
+        if let Block::Figure { file, .. } = block
+            && !format.has_png()
+            && file.ends_with(".png")
+        {
+            *file = svg_path(file);
+        }
+    }
     page
 }

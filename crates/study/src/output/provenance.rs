@@ -1,6 +1,5 @@
 //! Provenance of results: version, scene and method, without dates and host names.
 
-use dwell_report::{Figure, ReportError, png};
 use dwell_scene::Scene;
 
 /// Digits of a hash in figures; documents have all of them.
@@ -23,14 +22,6 @@ pub(super) fn signature(scene: &Scene, method_text: &str) -> String {
         "" => line,
         method_text => format!("{line} · {method_text}"),
     }
-}
-
-/// Draws a figure of a scene with its provenance; its `provenance` field holds the method and tolerance.
-pub fn signed_png(scene: &Scene, figure: &Figure) -> Result<Vec<u8>, ReportError> {
-    png(&Figure {
-        provenance: signature(scene, &figure.provenance),
-        ..figure.clone()
-    })
 }
 
 #[cfg(test)]

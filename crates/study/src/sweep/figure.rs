@@ -141,7 +141,7 @@ fn title_and_label(name: &str) -> (String, &str) {
 
 /// A unit as a reader writes it.
 fn unit_text(unit: &str) -> String {
-    unit.replace("m2", "m²").replace("N m", "N·m")
+    unit.replace("m2", "m²")
 }
 
 fn axis_of(varied: &SweepAxis) -> Axis {

@@ -5,6 +5,6 @@ pub mod compute;
 #[cfg(feature = "output")]
 mod document;
 #[cfg(feature = "output")]
-mod figures;
+pub(crate) mod figures;
 #[cfg(feature = "output")]
 pub(crate) mod output;

@@ -1,5 +1,6 @@
 //! Writes the results along a trajectory: tables, figures, document and animation.
 
+use super::figures::PictureSpan;
 use super::{document, figures};
 use crate::explain::StudyError;
 use crate::output::{DistinctNames, Outcome, Picture};
@@ -28,8 +29,22 @@ pub fn analyse_trajectory(
     points: Option<usize>,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
+    analyse_trajectory_within(scene, analysis, points, PictureSpan::default(), progress)
+}
+
+/// The same, with curves that show a part of the trajectory.
+///
+/// # Errors
+/// As [`compute_trajectory`]; [`StudyError::Scene`] where the part is not within the trajectory.
+pub fn analyse_trajectory_within(
+    scene: &Scene,
+    analysis: Analysis,
+    points: Option<usize>,
+    span: PictureSpan,
+    progress: Progress<'_>,
+) -> Result<TrajectoryOutcome, StudyError> {
     let computed = compute_trajectory(scene, analysis, points, progress)?;
-    let mut outcome = report(scene, &computed)?;
+    let mut outcome = report(scene, &computed, span)?;
     outcome.summary += &computed.notes;
     Ok(TrajectoryOutcome {
         outcome,
@@ -41,6 +56,7 @@ pub fn analyse_trajectory(
 pub(crate) fn report(
     scene: &Scene,
     computed: &ComputedTrajectory<'_>,
+    span: PictureSpan,
 ) -> Result<Outcome, StudyError> {
     let (trajectory, results) = (&computed.trajectory, &computed.results);
     let analysis = trajectory.analysis.name();
@@ -57,7 +73,7 @@ pub(crate) fn report(
         files.add(file(""), link.table().csv()?);
         files.add(file(".envelope"), link.envelope_table().csv()?);
     }
-    let (mut figures, left_out) = figures::trajectory_figures(scene, computed);
+    let (mut figures, left_out) = figures::trajectory_figures(scene, computed, span)?;
     let mut figure_names = DistinctNames::default();
     for figure in &mut figures {
         figure.name = figure_names.add(std::mem::take(&mut figure.name));
@@ -69,7 +85,7 @@ pub(crate) fn report(
         Picture::figure(scene, file(&figure), is_main, figure)
     };
     let mut pictures: Vec<Picture> = figures.into_iter().map(picture).collect();
-    let animation = figures::animation(scene, computed);
+    let animation = figures::animation(scene, computed)?;
     pictures.push(Picture::animation(scene, name("-mechanism.gif"), animation));
     let note = left_out.map(|note| format!("  {note}\n"));
     Ok(Outcome {

@@ -1,7 +1,9 @@
 //! A run's table, read back from its file.
 
 use dwell_scene::Scene;
-use dwell_study::{Analysis, Pictures, TrajectoryOutcome, analyse_trajectory, no_progress};
+use dwell_study::{
+    Analysis, PictureFormat, Pictures, TrajectoryOutcome, analyse_trajectory, no_progress,
+};
 use std::path::Path;
 
 /// A crank-rocker whose bodies' centres are named points, under weight alone.
@@ -53,7 +55,10 @@ pub(crate) fn scene(text: &str) -> Scene {
 
 pub(crate) fn analyse(scene: &Scene, command: Analysis, points: usize) -> TrajectoryOutcome {
     let mut result = analyse_trajectory(scene, command, Some(points), &no_progress).unwrap();
-    result.outcome = result.outcome.draw(Pictures::None, &no_progress).unwrap();
+    result.outcome = result
+        .outcome
+        .draw((Pictures::None, PictureFormat::Png), &no_progress)
+        .unwrap();
     result
 }
 

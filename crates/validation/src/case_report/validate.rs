@@ -7,11 +7,11 @@ use super::snapshot::snapshot;
 use crate::cases::reference::Reference;
 use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis, analyse};
 use crate::error::ValidationError;
-use crate::report_parts::{describe_failure, draw_figures};
+use crate::report_parts::describe_failure;
 use dwell_findings::{Check, Finding};
 use dwell_report::{Figure, Files, TableExport as _};
 use dwell_scene::Scene;
-use dwell_study::output::signed_png;
+use dwell_study::output::Picture;
 use dwell_study::{Outcome, Progress, Step, reduce};
 use std::path::Path;
 
@@ -46,9 +46,6 @@ pub fn validate(
     let (figures, dwell) = case_figures(scene, &analysis)?;
     let mut files = Files::new();
     let name = &scene.name;
-    draw_figures(&mut files, name, &figures, |figure| {
-        signed_png(scene, figure)
-    })?;
     done("figures");
     for (file, table) in analysis.reduced.iter().flat_map(tables) {
         files.add(format!("{name}/{file}.csv"), table.csv()?);
@@ -59,11 +56,16 @@ pub fn validate(
     files.add(format!("{name}.json"), numbers(scene, &analysis)?);
     files.add(format!("{name}.md"), document.markdown());
     done("report");
+    let picture = |figure: Figure| {
+        let path = format!("{name}/{}.png", figure.name);
+        Picture::figure(scene, path, true, figure)
+    };
     Ok(Validation {
         outcome: Outcome {
             summary: summary(scene, &analysis) + &reference.notes + &reference.tolerances.notes,
             files,
             findings: analysis.findings,
+            pictures: figures.into_iter().map(picture).collect(),
             ..Outcome::default()
         },
         snapshot,

@@ -2,11 +2,11 @@
 
 use super::check::check;
 use super::series::{MAX_ESTIMATE_RATIO, ResultCell, SeriesResult};
-use crate::report_parts::{draw_figures, figure_blocks, pass_or_fail, table};
+use crate::report_parts::{figure_blocks, pass_or_fail, pictures, table};
 use dwell_findings::{Finding, all_pass};
 use dwell_report::{
     Axis, Block, Chart, Column, Document, Figure, Files, Mark, Paint, Series, Stroke, Table,
-    TableExport as _, png, reproducible_text,
+    TableExport as _, reproducible_text,
 };
 use dwell_study::output::chart;
 use dwell_study::ranges::extent;
@@ -22,12 +22,11 @@ const RATIO_RANGE: [f64; 2] = [0.1, 1e5];
 /// The report of the grid: `NAME.md`, `NAME.txt` and the folder `NAME/`.
 ///
 /// # Errors
-/// [`StudyError`] where a picture cannot be drawn.
+/// [`StudyError`] where a table cannot be written.
 pub fn outcome(results: &[SeriesResult], name: &str) -> Result<Outcome, StudyError> {
     let findings = check(results);
     let figures = figures(results);
     let mut files = Files::new();
-    draw_figures(&mut files, name, &figures, png)?;
     for result in results {
         let file = format!("{name}/{}.csv", result.series.key);
         files.add(file, csv_table(result).csv()?);
@@ -44,6 +43,7 @@ pub fn outcome(results: &[SeriesResult], name: &str) -> Result<Outcome, StudyErr
         ),
         files,
         findings,
+        pictures: pictures(name, &figures).collect(),
         ..Outcome::default()
     })
 }

@@ -5,9 +5,10 @@ mod figure;
 use crate::case_report::validate::Validation;
 use crate::report_parts::{describe_failure, pass_or_fail, table};
 use dwell_findings::{Check, Finding, all_pass};
-use dwell_report::{Block, Document, Files, png};
+use dwell_report::{Block, Document, markdown_text};
 use dwell_scene::Scene;
-use dwell_study::StudyError;
+use dwell_study::Outcome;
+use dwell_study::output::Picture;
 
 /// A case and its result: its report, or why there is none.
 pub type CaseResult<'a> = (&'a str, Result<(&'a Scene, &'a Validation), String>);
@@ -44,11 +45,8 @@ pub(crate) fn check_cells(done: &Validation) -> [CheckCell; Check::ALL.len()] {
     })
 }
 
-/// The report on all cases beside their own: `index.md` and the picture of its table, `index.png`.
-///
-/// # Errors
-/// [`StudyError::Report`] when the picture cannot be drawn.
-pub fn index(results: &[CaseResult<'_>]) -> Result<Files, StudyError> {
+/// The report on all cases beside their own: `index.md`, and the picture of its table, `index.png`, to be drawn.
+pub fn index(results: &[CaseResult<'_>]) -> Outcome {
     let good = |(_, result): &&CaseResult<'_>| match result {
         Ok((_, done)) => all_pass(&done.outcome.findings),
         Err(_) => false,
@@ -93,14 +91,15 @@ pub fn index(results: &[CaseResult<'_>]) -> Result<Files, StudyError> {
         title: "Cases".to_owned(),
         blocks,
     };
-    let mut files = Files::new();
-    files.add("index.md", document.markdown());
-    files.add("index.png", png(&figure::overview(results))?);
-    Ok(files)
+    let mut outcome = Outcome::default();
+    outcome.files.add("index.md", document.markdown());
+    let overview = Picture::of_no_scene("index.png".to_owned(), figure::overview(results));
+    outcome.pictures.push(overview);
+    outcome
 }
 
 fn link(scene: &Scene) -> String {
-    format!("[{}]({}.md)", scene.title, scene.name)
+    format!("[{}]({}.md)", markdown_text(&scene.title), scene.name)
 }
 
 /// A row of the table of digits.
@@ -253,7 +252,7 @@ mod tests {
             ("cases/bar", Ok((&scene, &done))),
             ("cases/lost", Err("it cannot be read".to_owned())),
         ];
-        let files = index(&results).unwrap();
+        let files = index(&results).files;
         let text = files.iter().find(|(path, _)| path.ends_with("index.md"));
         let text = String::from_utf8(text.unwrap().1.to_vec()).unwrap();
         for part in [

@@ -94,12 +94,12 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
         false => (MIN_LABEL_GAP_CROWDED, "time / one exact evaluation"),
     };
     marks.extend(named_points(&front, label_gap, &at));
-    let coordinate = format!("largest error of the free coordinates, {}", found.unit);
+    let coordinate = "largest error of the free coordinates";
     let (title, label) = match (quantity, measure) {
         (ErrorQuantity::Coordinate, CostMeasure::Evaluations) => {
-            ("Coordinate, counted", coordinate.as_str())
+            ("Coordinate, counted", coordinate)
         }
-        (ErrorQuantity::Coordinate, _) => ("Coordinate, timed", coordinate.as_str()),
+        (ErrorQuantity::Coordinate, _) => ("Coordinate, timed", coordinate),
         (ErrorQuantity::Energy, _) => ("Energy", "largest energy drift / largest kinetic energy"),
         (ErrorQuantity::Reaction, _) => (
             "Worst reaction",
@@ -148,9 +148,13 @@ fn error_axis(found: &WorkPrecision, quantity: ErrorQuantity, label: &str) -> Ax
     let all = found.points.iter().map(|p| found.error_bound(p, quantity));
     let [min, max] = extent(all.filter(|e| e.is_finite() && *e > 0.0));
     let max = max.min(MAX_ERROR);
+    let unit = match quantity {
+        ErrorQuantity::Coordinate => found.unit,
+        ErrorQuantity::Energy | ErrorQuantity::Reaction => "",
+    };
     match min < max {
-        true => Axis::log(label, "").with_range(min / AXIS_MARGIN, max * AXIS_MARGIN),
-        false => Axis::log(label, ""),
+        true => Axis::log(label, unit).with_range(min / AXIS_MARGIN, max * AXIS_MARGIN),
+        false => Axis::log(label, unit),
     }
 }
 

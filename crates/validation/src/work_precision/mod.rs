@@ -23,7 +23,7 @@ use dwell_kinetostatics::{ExactModel, ReducedModel, TableDomain, TabulatedModel}
 use dwell_report::TableExport as _;
 use dwell_scene::{Scene, SceneLocation};
 use dwell_study::StudyError;
-use dwell_study::output::signed_png;
+use dwell_study::output::Picture;
 use dwell_study::{Outcome, Progress, Step};
 use evaluator::{MachineEvaluator, SinglePrecisionModel};
 use reference_solution::ReferenceSolution;
@@ -41,7 +41,7 @@ const TIMING_PASSES: usize = 20;
 /// The full study of a scene: `NAME-work-precision.md`, `.csv`, `.npz` and `.png`.
 ///
 /// # Errors
-/// As [`measure`]; [`StudyError::Report`] when the picture cannot be drawn.
+/// As [`measure`]; [`StudyError::Report`] when a table cannot be written.
 pub fn work_precision(scene: &Scene, progress: Progress<'_>) -> Result<Outcome, StudyError> {
     let found = measure(scene, &Effort::full(), progress)?;
     let name = format!("{}-work-precision", scene.name);
@@ -50,12 +50,13 @@ pub fn work_precision(scene: &Scene, progress: Progress<'_>) -> Result<Outcome, 
         ..Outcome::default()
     };
     let figure = figure::figure(scene, &found, &name);
+    let picture = Picture::figure(scene, format!("{name}.png"), true, figure);
+    outcome.pictures.push(picture);
     let files = &mut outcome.files;
-    files.add(format!("{name}.png"), signed_png(scene, &figure)?);
     files.add(format!("{name}.csv"), report::csv(&found)?);
     files.add(format!("{name}.npz"), report::table(&found).npz()?);
     let document = report::document(scene, &found, &name);
-    files.add(format!("{name}.md"), document.markdown());
+    outcome.page = Some((format!("{name}.md"), document));
     Ok(outcome)
 }
 

@@ -8,7 +8,7 @@ use dwell_report::Files;
 use dwell_scene::Scene;
 use dwell_study::StudyError;
 use dwell_study::number_format::digits;
-use dwell_study::output::signed_png;
+use dwell_study::output::Picture;
 use dwell_study::{Outcome, no_progress};
 use rayon::prelude::*;
 use std::fmt::Write as _;
@@ -24,28 +24,32 @@ const ACCURACIES: [f64; 3] = [1e-3, 1e-6, 1e-9];
 /// and `work-precision.txt`, which holds counts and errors and no times.
 ///
 /// # Errors
-/// As [`measure`]; [`StudyError::Report`] when a picture cannot be drawn.
+/// As [`measure`].
 pub fn selected_case_reports(scenes: &[&Scene]) -> Result<Outcome, StudyError> {
     let is_selected = |scene: &&&Scene| SELECTED_CASES.contains(&scene.name.as_str());
     let selected: Vec<&Scene> = scenes.iter().filter(is_selected).copied().collect();
-    let one = |scene: &&Scene| -> Result<(Files, String), StudyError> {
+    let one = |scene: &&Scene| -> Result<(Files, Picture, String), StudyError> {
         let found = measure(scene, &Effort::brief(), &no_progress)?;
         let name = &scene.name;
         let mut files = Files::new();
         let figure = figure::figure(scene, &found, name);
-        let picture = signed_png(scene, &figure)?;
-        files.add(format!("work-precision/{name}.png"), picture);
+        let path = format!("work-precision/{name}.png");
+        let picture = Picture::figure(scene, path, true, figure);
         let document = report::document(scene, &found, name);
         files.add(format!("work-precision/{name}.md"), document.markdown());
         // Under dry friction the last bit of a sine decides which steps are rejected: not reproducible.
         let text = found.quadrature().map(|_| snapshot(scene, &found));
-        Ok((files, text.unwrap_or_default()))
+        Ok((files, picture, text.unwrap_or_default()))
     };
-    let done: Vec<(Files, String)> = selected.par_iter().map(one).collect::<Result<_, _>>()?;
+    let done: Vec<_> = selected
+        .par_iter()
+        .map(one)
+        .collect::<Result<_, StudyError>>()?;
     let mut outcome = Outcome::default();
     let mut text = "Work–precision study\n".to_owned();
-    for (files, text_of_case) in done {
+    for (files, picture, text_of_case) in done {
         outcome.files.extend("", files);
+        outcome.pictures.push(picture);
         text += &text_of_case;
     }
     outcome.files.add("work-precision.txt", text);

@@ -75,7 +75,7 @@ impl FigureContext<'_> {
                 [x, row[speed]]
             };
             let y = Axis::new(format!("d{name}/dt"), if angle { "rad/s" } else { "m/s" });
-            let line = Series::line("", self.results.rows.iter().map(at).collect());
+            let line = Series::line("", self.drawn_rows().map(at).collect());
             Some(chart("", coordinate_axis(&name, angle), y, vec![line]).into())
         };
         let panels: Vec<Panel> = actuators.take(4).filter_map(panel).collect();

@@ -3,8 +3,13 @@
 mod forces;
 mod free;
 mod motion;
+mod span;
 
+pub use span::PictureSpan;
+
+use self::span::DrawnRows;
 use crate::bodies::{BodyPose, point_position};
+use crate::explain::StudyError;
 use crate::number_format::digits;
 use crate::output::{MechanismDrawing, chart, coordinate_axis, figure, symbol};
 use crate::ranges::extent;
@@ -39,16 +44,22 @@ pub(crate) struct FigureContext<'a> {
     method_text: String,
     x: Axis,
     abscissa_values: Vec<f64>,
+    /// The part of the rows that curves show.
+    drawn: DrawnRows,
     /// Whether the trajectory starts and ends next to a limit position.
     limits: [bool; 2],
 }
 
 /// The figures of a trajectory without the animation, and a note if some are left out.
+///
+/// # Errors
+/// [`StudyError::Scene`] where the span of the curves is not within the trajectory.
 pub(crate) fn trajectory_figures(
     scene: &Scene,
     computed: &ComputedTrajectory<'_>,
-) -> (Vec<Figure>, Option<String>) {
-    let context = FigureContext::new(scene, computed);
+    span: PictureSpan,
+) -> Result<(Vec<Figure>, Option<String>), StudyError> {
+    let context = FigureContext::new(scene, computed, span)?;
     let mut figures = vec![context.mechanism(last_drawn(computed))];
     figures.extend(context.angles());
     figures.extend(context.paths());
@@ -64,14 +75,22 @@ pub(crate) fn trajectory_figures(
     figures.extend(context.phase_portraits());
     let links = context.results.sectioned_links.iter();
     figures.extend(links.filter_map(|link| context.internal_forces(link)));
-    (figures, note)
+    Ok((figures, note))
 }
 
 /// The animation of the mechanism, with the requested paths.
-pub(crate) fn animation(scene: &Scene, computed: &ComputedTrajectory<'_>) -> Animation {
-    let context = FigureContext::new(scene, computed);
+///
+/// # Errors
+/// None: it shows the whole trajectory.
+pub(crate) fn animation(
+    scene: &Scene,
+    computed: &ComputedTrajectory<'_>,
+) -> Result<Animation, StudyError> {
+    let context = FigureContext::new(scene, computed, PictureSpan::default())?;
     let results = context.results;
-    let drawing = MechanismDrawing::new(scene, &results.body_poses).with_visible(&results.modelled);
+    let drawing = MechanismDrawing::new(scene, &results.body_poses)
+        .with_visible(&results.modelled)
+        .with_paths(context.path_lines());
     let last = last_drawn(computed);
     let count = MAX_FRAMES.min(last + 1);
     // Over a whole period the last position equals the first.
@@ -79,19 +98,19 @@ pub(crate) fn animation(scene: &Scene, computed: &ComputedTrajectory<'_>) -> Ani
     let steps = count.saturating_sub(usize::from(!is_closed));
     let frame = |i: usize| {
         let k = (i * last) / steps.max(1);
-        let mut shapes = context.path_lines();
+        let mut shapes = Vec::new();
         drawing.draw(&results.body_poses[k], 0.0, &mut shapes);
         // Moving labels would distract.
         shapes.retain(|s| !matches!(s, Shape::Text { .. }));
         plane(context.describe_position(k), shapes)
     };
-    Animation {
+    Ok(Animation {
         name: "mechanism".to_owned(),
         frames: (0..count).map(frame).collect(),
         delay_ms: DELAY_MS,
         width_px: WIDTH_PX,
         provenance: context.method_text,
-    }
+    })
 }
 
 /// The last position that is drawn: the end of the trajectory, or of the first period of the only actuator.
@@ -121,11 +140,15 @@ fn is_closed(body_poses: &[Vec<BodyPose>]) -> bool {
 }
 
 impl<'a> FigureContext<'a> {
-    fn new(scene: &'a Scene, computed: &'a ComputedTrajectory<'_>) -> Self {
+    fn new(
+        scene: &'a Scene,
+        computed: &'a ComputedTrajectory<'_>,
+        span: PictureSpan,
+    ) -> Result<Self, StudyError> {
         let (trajectory, results) = (&computed.trajectory, &computed.results);
         let abscissa = results.abscissa(trajectory);
         let values = results.rows.iter().map(|row| row[abscissa]);
-        let (x, abscissa_values) = match trajectory.swept_actuator() {
+        let (mut x, abscissa_values) = match trajectory.swept_actuator() {
             None => (Axis::new("time", "s"), values.collect()),
             Some(actuator) => {
                 let swept = &scene.mechanism.actuators[actuator];
@@ -135,16 +158,35 @@ impl<'a> FigureContext<'a> {
                 (axis, drawn.collect())
             }
         };
+        // The span is in the scene's unit, and the axis in degrees or m.
+        let swept = trajectory.swept_actuator();
+        let swept = swept.map(|k| scene.mechanism.actuators[k].coordinate().is_angle());
+        let abscissae = results.rows.iter().map(|row| row[abscissa]);
+        let given: Vec<f64> = match swept {
+            None => abscissae.collect(),
+            Some(is_angle) => abscissae
+                .map(|q| scene.to_scene_unit(q, is_angle).0)
+                .collect(),
+        };
+        let unit = swept.map_or("s", |is_angle| scene.to_scene_unit(0.0, is_angle).1);
+        let rows = DrawnRows::new(scene, span, &given, unit)?;
+        let on_axis = |end: f64| match swept {
+            None => end,
+            Some(true) => scene.to_si(end, true).to_degrees(),
+            Some(false) => scene.to_si(end, false),
+        };
+        x.range = rows.ends.map(|ends| ends.map(on_axis));
         let [start, end] = trajectory.ends_at_limit_position;
-        Self {
+        Ok(Self {
             scene,
             results,
             analysis: trajectory.analysis,
             method_text: trajectory.method_text.clone(),
             x,
             abscissa_values,
+            drawn: rows,
             limits: [start, end || computed.early_stop.is_some()],
-        }
+        })
     }
 
     /// The abscissa of the `k`th position: `time = 0.25 s`, `φ = −12.5°`.
@@ -170,16 +212,38 @@ impl<'a> FigureContext<'a> {
             [false, false] => "",
             _ => " Towards a limit position quantities may grow without bound.",
         };
-        let text = format!("{text}{limit_note}");
+        let span_note = self.span_note();
+        let text = format!("{text}{limit_note}{span_note}");
         figure(self.scene, name, title, &text, panels, &self.method_text)
+    }
+
+    /// Which part of the trajectory the curves show, if not all of it.
+    fn span_note(&self) -> String {
+        let Some([from, to]) = self.x.range else {
+            return String::new();
+        };
+        let unit = match self.x.scale {
+            Scale::Degrees => "°".to_owned(),
+            _ => format!(" {}", self.x.unit),
+        };
+        let [from, to] = [from, to].map(|v| digits(v, 6).replace('-', "−"));
+        let label = &self.x.label;
+        format!(" Shown: {label} from {from} to {to}{unit}; the files hold all rows.")
+    }
+
+    /// The rows that curves show.
+    fn drawn_rows(&self) -> impl Iterator<Item = &Vec<f64>> {
+        self.results.rows[self.drawn.rows.clone()].iter()
     }
 
     /// A curve over the trajectory; angles in degrees.
     fn curve(&self, name: &str, k: usize) -> Series {
         let degrees = self.results.columns[k].unit == "rad";
         let value = |row: &Vec<f64>| if degrees { row[k].to_degrees() } else { row[k] };
-        let values = self.results.rows.iter().map(value);
-        let points = self.abscissa_values.iter().zip(values);
+        let values = self.drawn_rows().map(value);
+        let points = self.abscissa_values[self.drawn.rows.clone()]
+            .iter()
+            .zip(values);
         Series::line(name, points.map(|(x, y)| [*x, y]).collect())
     }
 
@@ -267,7 +331,8 @@ impl<'a> FigureContext<'a> {
     /// The mechanism in several positions up to the `last`th.
     fn mechanism(&self, last: usize) -> Figure {
         let drawing = MechanismDrawing::new(self.scene, &self.results.body_poses)
-            .with_visible(&self.results.modelled);
+            .with_visible(&self.results.modelled)
+            .with_paths(self.path_lines());
         let body_poses = &self.results.body_poses[..=last];
         let mut shapes = Vec::new();
         let drawn = DRAWN_POSITIONS - usize::from(!is_closed(body_poses));
@@ -275,8 +340,6 @@ impl<'a> FigureContext<'a> {
             let lightness = 0.62 + 0.04 * k as f64;
             drawing.draw(&body_poses[k * last / drawn], lightness, &mut shapes);
         }
-        // Drawn before the first position, above the slots of the others.
-        shapes.extend(self.path_lines());
         if let Some(first) = body_poses.first() {
             drawing.draw(first, 0.0, &mut shapes);
         }

@@ -81,9 +81,7 @@ pub(crate) fn mechanism(
     let full = prepared.model.range() == Range::Full;
     let request = scene.requests.dwell.as_ref();
     let dwell = request.map(|d| find_dwell(&poses, d.body, d.relative_band, full));
-    let mut shapes = paths(scene, &poses);
-    let faded = faded_positions(prepared, &poses, full, dwell.as_ref());
-    shapes.extend(faded);
+    let shapes = faded_positions(prepared, &poses, full, dwell.as_ref());
     let mut panels = vec![drawing(shapes)];
     if let Some(dwell) = &dwell {
         panels.push(body_angle_panel(prepared, &poses, dwell));
@@ -128,7 +126,13 @@ fn faded_positions(
     dwell: Option<&Dwell>,
 ) -> Vec<Shape> {
     let mut shapes = Vec::new();
-    let drawing = MechanismDrawing::new(prepared.scene, &poses.body_poses);
+    let mut lines = paths(prepared.scene, poses);
+    lines.extend(
+        dwell
+            .into_iter()
+            .flat_map(|dwell| dwell_paths(prepared.scene, poses, dwell)),
+    );
+    let drawing = MechanismDrawing::new(prepared.scene, &poses.body_poses).with_paths(lines);
     let start = prepared.model.model().plan().assembly_coordinates()[0];
     let last = poses.q.len() - 1;
     let nearest = |q: f64| {
@@ -145,9 +149,6 @@ fn faded_positions(
             (_, true) => nearest(start + TAU * k as f64 / DRAWN as f64),
             (_, false) => k * last / (DRAWN - 1),
         };
-        if let (0, Some(dwell)) = (k, dwell) {
-            shapes.extend(dwell_paths(prepared.scene, poses, dwell));
-        }
         let lightness = if k == 0 { 0.0 } else { 0.62 + 0.04 * k as f64 };
         drawing.draw(&poses.body_poses[position], lightness, &mut shapes);
     }

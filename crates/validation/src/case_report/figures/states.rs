@@ -22,8 +22,9 @@ pub(crate) fn states_drawing(scene: &Scene, checked: &CheckedStates) -> Figure {
         q: Vec::new(),
         body_poses: body_poses.collect(),
     };
-    let mechanism = MechanismDrawing::new(scene, &poses.body_poses);
-    let mut shapes = paths(scene, &poses);
+    let mechanism =
+        MechanismDrawing::new(scene, &poses.body_poses).with_paths(paths(scene, &poses));
+    let mut shapes = Vec::new();
     let positions = distinct_positions(&poses.body_poses);
     for (k, &position) in positions.iter().enumerate().rev() {
         let lightness = if k == 0 { 0.0 } else { 0.62 + 0.05 * k as f64 };

@@ -3,11 +3,11 @@
 use super::check::check;
 use super::run::{ACCURACIES, MachineResult, MachineRun};
 use crate::extremes::series::MAX_ESTIMATE_RATIO;
-use crate::report_parts::{draw_figures, figure_blocks, pass_or_fail, table};
+use crate::report_parts::{figure_blocks, pass_or_fail, pictures, table};
 use dwell_findings::all_pass;
 use dwell_report::{
     Axis, Block, Chart, Column, Document, Figure, Mark, Paint, Series, Stroke, Table,
-    TableExport as _, png, reproducible_text,
+    TableExport as _, reproducible_text,
 };
 use dwell_study::output::chart;
 use dwell_study::{Outcome, StudyError};
@@ -18,7 +18,7 @@ const ERROR_RANGE: [f64; 2] = [1e-16, 1e-2];
 /// Adds the report of the machines, `NAME-machines.md` with its text, its table and its picture, to an outcome.
 ///
 /// # Errors
-/// [`StudyError`] where the picture cannot be drawn.
+/// [`StudyError`] where a table cannot be written.
 // Longer than a screen, with the text of the page.
 pub(in crate::extremes) fn add_to(
     outcome: &mut Outcome,
@@ -29,7 +29,7 @@ pub(in crate::extremes) fn add_to(
     let findings = check(results);
     let name = format!("{name}-machines");
     let figures = [figure(results, seed)];
-    draw_figures(&mut outcome.files, &name, &figures, png)?;
+    outcome.pictures.extend(pictures(&name, &figures));
     outcome
         .files
         .add(format!("{name}/machines.csv"), csv_table(results).csv()?);

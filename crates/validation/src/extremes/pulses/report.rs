@@ -3,12 +3,12 @@
 use super::check::{MAX_ERROR_RATIO, check};
 use super::pulse::PulseShape;
 use super::run::{PulseResult, PulseRun, RunKind};
-use crate::report_parts::{draw_figures, figure_blocks, pass_or_fail, table};
+use crate::report_parts::{figure_blocks, pass_or_fail, pictures, table};
 use dwell_dynamics::Method;
 use dwell_findings::all_pass;
 use dwell_report::{
     Axis, Block, Chart, Column, Document, Figure, Mark, Paint, Series, Stroke, Table,
-    TableExport as _, png, reproducible_text,
+    TableExport as _, reproducible_text,
 };
 use dwell_study::output::chart;
 use dwell_study::{Outcome, StudyError};
@@ -19,7 +19,7 @@ const RATIO_RANGE: [f64; 2] = [1e-6, 1e2];
 /// Adds the report of the pulses, `NAME-pulses.md` with its text, its table and its picture, to an outcome.
 ///
 /// # Errors
-/// [`StudyError`] where the picture cannot be drawn.
+/// [`StudyError`] where a table cannot be written.
 // Longer than a screen, with the text of the page.
 pub(in crate::extremes) fn add_to(
     outcome: &mut Outcome,
@@ -30,7 +30,7 @@ pub(in crate::extremes) fn add_to(
     let findings = check(results);
     let name = format!("{name}-pulses");
     let figures = [figure(results, seed)];
-    draw_figures(&mut outcome.files, &name, &figures, png)?;
+    outcome.pictures.extend(pictures(&name, &figures));
     outcome
         .files
         .add(format!("{name}/pulses.csv"), csv_table(results).csv()?);

@@ -1,0 +1,165 @@
+//! Curves that lie on each other: they are drawn with dashes in turn, so that each of them is seen.
+
+use crate::curve::dashes;
+use crate::dash::Dash;
+use crate::occupancy::Occupancy;
+use crate::rect::Rect;
+use crate::series_style::SeriesStyle;
+
+/// A curve is hidden if the later ones cover so much of it.
+const HIDDEN_SHARE: f64 = 0.85;
+/// A later curve is one of those that hide it if it covers so much of it.
+const COVERING_SHARE: f64 = 0.25;
+/// How often curves are looked for that others hide.
+const PASSES: usize = 3;
+/// Length of a dash in pixels: of two curves, and the least of many.
+const DASH: f64 = 20.0;
+const MIN_DASH: f64 = 10.0;
+/// Half the width of what a curve covers, beside the cells that it goes through.
+const REACH: f64 = 1.0;
+
+/// The lines of a curve in pixels: its parts in the plot.
+pub(crate) type Lines = Vec<Vec<[f64; 2]>>;
+
+/// What a curve covers, and the places where it is drawn.
+struct Cover {
+    occupied: Occupancy,
+    points: Vec<[f64; 2]>,
+}
+
+/// Gives curves that would hide each other dashes in turn; `lines` are those of each curve.
+pub(crate) fn separate(styles: &mut [SeriesStyle], lines: &[Lines], plot: &Rect) {
+    // Dashes in turn leave no gaps for a third curve below them, which is found only then.
+    for _ in 0..PASSES {
+        separate_once(styles, lines, plot);
+    }
+}
+
+fn separate_once(styles: &mut [SeriesStyle], lines: &[Lines], plot: &Rect) {
+    let covers = styles.iter().zip(lines);
+    let covers: Vec<Cover> = covers
+        .map(|(style, lines)| Cover::of(style, lines, plot))
+        .collect();
+    // By curve: the first of its group.
+    let mut group: Vec<usize> = (0..covers.len()).collect();
+    for i in 0..covers.len() {
+        let later = i + 1..covers.len();
+        if !covers[i].is_hidden_by(&covers[later.clone()]) {
+            continue;
+        }
+        for j in later.filter(|&j| covers[i].share_under(&covers[j]) > COVERING_SHARE) {
+            let (one, other) = (group[i].min(group[j]), group[i].max(group[j]));
+            group
+                .iter_mut()
+                .filter(|g| **g == other)
+                .for_each(|g| *g = one);
+        }
+    }
+    for first in 0..group.len() {
+        let members: Vec<usize> = (0..group.len()).filter(|&k| group[k] == first).collect();
+        let count = members.len() as f64;
+        let length = (DASH - 2.0 * (count - 2.0)).max(MIN_DASH);
+        for (k, &member) in members.iter().enumerate().filter(|_| members.len() > 1) {
+            // The lowest may be solid: the others leave gaps.
+            if k > 0 || styles[member].line.dash.is_some() {
+                styles[member].line.dash = Some(Dash {
+                    length,
+                    gap: (count - 1.0) * length,
+                    offset: k as f64 * length,
+                });
+            }
+        }
+    }
+}
+
+impl Cover {
+    fn of(style: &SeriesStyle, lines: &Lines, plot: &Rect) -> Self {
+        let drawn: Lines = match style.line.dash {
+            None => lines.clone(),
+            Some(dash) => lines.iter().flat_map(|line| dashes(line, dash)).collect(),
+        };
+        let mut cover = Self {
+            occupied: Occupancy::new(plot.grown(10.0)),
+            points: Vec::new(),
+        };
+        for pair in drawn.iter().flat_map(|line| line.windows(2)) {
+            let [a, b] = [pair[0], pair[1]];
+            let steps = ((b[0] - a[0]).hypot(b[1] - a[1]) / 4.0)
+                .ceil()
+                .clamp(1.0, 1e3) as u32;
+            for i in 0..steps {
+                let t = f64::from(i) / f64::from(steps);
+                let at = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
+                cover.occupied.block(&Rect::around(at, REACH));
+                cover.points.push(at);
+            }
+        }
+        cover
+    }
+
+    fn is_under(at: [f64; 2], other: &Self) -> bool {
+        other.occupied.count(&Rect::around(at, 0.0)) > 0
+    }
+
+    fn is_hidden_by(&self, later: &[Self]) -> bool {
+        let hidden = |at: &&[f64; 2]| later.iter().any(|other| Self::is_under(**at, other));
+        let count = self.points.iter().filter(hidden).count();
+        !self.points.is_empty() && count as f64 > HIDDEN_SHARE * self.points.len() as f64
+    }
+
+    fn share_under(&self, other: &Self) -> f64 {
+        let count = self
+            .points
+            .iter()
+            .filter(|at| Self::is_under(**at, other))
+            .count();
+        count as f64 / self.points.len().max(1) as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::figure::{Chart, Figure, Series, Stroke};
+    use crate::layout::Layout;
+
+    fn figure(heights: &[f64], stroke: Stroke) -> Figure {
+        let series = |(k, height): (usize, &f64)| {
+            let points = (0..=100).map(|i| [f64::from(i), height + (0.1 * f64::from(i)).sin()]);
+            Series::line(format!("curve {k}"), points.collect()).stroke(stroke)
+        };
+        let chart = Chart {
+            series: heights.iter().enumerate().map(series).collect(),
+            ..Chart::default()
+        };
+        Figure {
+            panels: vec![chart.into()],
+            ..Figure::default()
+        }
+    }
+
+    #[test]
+    fn each_of_several_equal_curves_is_visible() {
+        for stroke in [Stroke::Solid, Stroke::Dashed] {
+            for heights in [&[0.0; 2][..], &[0.0; 3], &[0.0, 5.0, 0.0], &[0.0; 8]] {
+                let layout = Layout::of(&figure(heights, stroke)).unwrap();
+                assert_eq!(layout.defects(), Vec::<String>::new());
+                assert_eq!(layout.legend.len(), heights.len());
+                let equal = heights.iter().filter(|h| **h == 0.0).count() as f64;
+                for curve in &layout.curves {
+                    assert!(curve.visible > 0.5 * curve.drawn / equal, "{curve:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn curves_apart_stay_solid() {
+        let layout = Layout::of(&figure(&[0.0, 1.0, 3.0], Stroke::Solid)).unwrap();
+        let areas: Vec<f64> = layout.curves.iter().map(|c| c.drawn).collect();
+        let mean = areas.iter().sum::<f64>() / 3.0;
+        assert!(
+            areas.iter().all(|area| (area / mean - 1.0).abs() < 0.05),
+            "{areas:?}"
+        );
+    }
+}

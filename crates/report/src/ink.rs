@@ -1,0 +1,167 @@
+//! Which curve of a page each pixel shows: later ink hides earlier ink.
+
+use crate::rect::Rect;
+
+/// Side of a cell in pixels: finer than the width of a line.
+const CELL: f64 = 1.0;
+
+/// Whose ink it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Owner(u16);
+
+impl Owner {
+    /// Axes, words, curves without a name.
+    pub(crate) const NOBODY: Self = Self(0);
+
+    /// A curve by its index.
+    pub(crate) fn curve(index: usize) -> Self {
+        Self(u16::try_from(index + 1).unwrap_or(0))
+    }
+}
+
+/// The ink of a page, cell by cell.
+#[derive(Debug)]
+pub(crate) struct Ink {
+    columns: usize,
+    rows: usize,
+    cells: Vec<Owner>,
+    /// By curve: how many cells it filled when it was drawn.
+    drawn: Vec<usize>,
+    /// Left, top, right, bottom of all ink.
+    extent: [f64; 4],
+    /// Whose ink the next is.
+    pub(crate) owner: Owner,
+}
+
+impl Ink {
+    pub(crate) fn new(size: [f64; 2]) -> Self {
+        let [columns, rows] = size.map(|side| (side / CELL).ceil().clamp(1.0, 20_000.0) as usize);
+        Self {
+            columns,
+            rows,
+            cells: vec![Owner::NOBODY; columns * rows],
+            drawn: Vec::new(),
+            extent: [f64::INFINITY, f64::INFINITY, -f64::INFINITY, -f64::INFINITY],
+            owner: Owner::NOBODY,
+        }
+    }
+
+    /// A line of a width.
+    pub(crate) fn line(&mut self, points: &[[f64; 2]], width: f64) {
+        let half = 0.5 * width;
+        for pair in points.windows(2) {
+            let [a, b] = [pair[0], pair[1]];
+            let length = (b[0] - a[0]).hypot(b[1] - a[1]);
+            let steps = (length / CELL).ceil().clamp(1.0, 1e5) as u32;
+            for i in 0..=steps {
+                let t = f64::from(i) / f64::from(steps);
+                let at = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
+                self.block(&Rect::around(at, half));
+            }
+        }
+    }
+
+    /// A block of cells, such as the box of a disc.
+    pub(crate) fn block(&mut self, block: &Rect) {
+        let Rect { x0, y0, x1, y1 } = *block;
+        let [left, top, right, bottom] = self.extent;
+        self.extent = [left.min(x0), top.min(y0), right.max(x1), bottom.max(y1)];
+        // Below zero saturates; a cell counts if its middle is covered.
+        let first = |v: f64| ((v / CELL + 0.5).floor().max(0.0)) as usize;
+        let (columns, rows) = (
+            first(x0)..first(x1).min(self.columns),
+            first(y0)..first(y1).min(self.rows),
+        );
+        for row in rows {
+            for column in columns.clone() {
+                self.cell(row * self.columns + column);
+            }
+        }
+    }
+
+    /// A filled polygon, by the even-odd rule.
+    pub(crate) fn polygon(&mut self, points: &[[f64; 2]]) {
+        let ys = || points.iter().map(|p| p[1]);
+        let (top, bottom) = (
+            ys().fold(f64::INFINITY, f64::min),
+            ys().fold(-f64::INFINITY, f64::max),
+        );
+        for p in points {
+            let [left, top, right, bottom] = self.extent;
+            self.extent = [
+                left.min(p[0]),
+                top.min(p[1]),
+                right.max(p[0]),
+                bottom.max(p[1]),
+            ];
+        }
+        let mut y = (top.max(0.0) / CELL).floor() * CELL + 0.5 * CELL;
+        while y < bottom.min(self.rows as f64 * CELL) {
+            let edges = (0..points.len()).map(|k| [points[k], points[(k + 1) % points.len()]]);
+            let crossing = |[a, b]: [[f64; 2]; 2]| {
+                let crosses = (a[1] <= y) != (b[1] <= y);
+                crosses.then(|| a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+            };
+            let mut xs: Vec<f64> = edges.filter_map(crossing).collect();
+            xs.sort_by(f64::total_cmp);
+            for span in xs.chunks_exact(2) {
+                let row = (y / CELL) as usize;
+                let first = |v: f64| ((v / CELL + 0.5).floor().max(0.0)) as usize;
+                for column in first(span[0])..first(span[1]).min(self.columns) {
+                    self.cell(row * self.columns + column);
+                }
+            }
+            y += CELL;
+        }
+    }
+
+    fn cell(&mut self, index: usize) {
+        if self.cells[index] == self.owner {
+            return;
+        }
+        self.cells[index] = self.owner;
+        let curve = usize::from(self.owner.0);
+        if curve >= self.drawn.len() {
+            self.drawn.resize(curve + 1, 0);
+        }
+        self.drawn[curve] += 1;
+    }
+
+    /// Of each of so many curves: the area that it filled, and what of it is left.
+    pub(crate) fn areas(&self, curves: usize) -> Vec<[f64; 2]> {
+        let mut visible = vec![0_usize; curves + 1];
+        for owner in &self.cells {
+            if let Some(count) = visible.get_mut(usize::from(owner.0)) {
+                *count += 1;
+            }
+        }
+        let drawn = |k: usize| self.drawn.get(k).copied().unwrap_or(0);
+        let area = |cells: usize| cells as f64 * CELL * CELL;
+        (1..=curves)
+            .map(|k| [area(drawn(k)), area(visible[k])])
+            .collect()
+    }
+
+    /// Left, top, right and bottom of all ink.
+    pub(crate) fn extent(&self) -> [f64; 4] {
+        self.extent
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn later_ink_hides_earlier_ink() {
+        let mut ink = Ink::new([100.0, 50.0]);
+        ink.owner = Owner::curve(0);
+        ink.line(&[[10.0, 25.0], [90.0, 25.0]], 4.0);
+        ink.owner = Owner::curve(1);
+        ink.polygon(&[[50.0, 0.0], [120.0, 0.0], [120.0, 50.0], [50.0, 50.0]]);
+        let areas = ink.areas(2);
+        assert_eq!(areas[0], [84.0 * 4.0, 42.0 * 4.0]);
+        assert_eq!(areas[1], [50.0 * 50.0; 2]);
+        assert_eq!(ink.extent(), [8.0, 0.0, 120.0, 50.0]);
+    }
+}

@@ -1,0 +1,178 @@
+//! Where everything on a page is: its words, and how much of each curve is left to see. Drawing records it only when it is
+//! asked for.
+
+use crate::error::ReportError;
+use crate::figure::Figure;
+use crate::layout_record::LayoutRecord;
+use crate::rect::Rect;
+use crate::{animation::Animation, png};
+
+/// A curve of a legend is seen if so much of it is left, in pixels of area: the length of three letters.
+const MIN_VISIBLE: f64 = 100.0;
+/// Or so large a part of it, which is enough of a pin or of a single marker.
+const MIN_VISIBLE_SHARE: f64 = 0.2;
+/// Boxes of words that overlap by less than this, in pixels, only touch.
+const TOUCH: f64 = 0.5;
+
+/// Words on a page and the box they fill.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Label {
+    /// The words.
+    pub text: String,
+    /// Left, top, right and bottom, in pixels; y grows downwards.
+    pub area: [f64; 4],
+}
+
+/// A curve or a body that has a name, and what can be seen of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedCurve {
+    /// Its name.
+    pub name: String,
+    /// Which of the plots of the page it is in.
+    pub plot: usize,
+    /// Area that it fills where it is drawn, square pixels.
+    pub drawn: f64,
+    /// What of this nothing hides, square pixels.
+    pub visible: f64,
+}
+
+/// Where everything on a page is.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Layout {
+    /// Width and height of the page, pixels.
+    pub page: [f64; 2],
+    /// All words.
+    pub labels: Vec<Label>,
+    /// The curves with names.
+    pub curves: Vec<NamedCurve>,
+    /// The names in legends and at the ends of curves, with the plot they belong to.
+    pub legend: Vec<(usize, String)>,
+    /// Words for which there was no room.
+    pub left_out: Vec<String>,
+    /// Left, top, right and bottom of all that is drawn, pixels.
+    pub drawn: [f64; 4],
+}
+
+impl Layout {
+    /// The layout of a figure, as it is drawn.
+    ///
+    /// # Errors
+    /// [`ReportError::Size`] if the page is too large.
+    pub fn of(figure: &Figure) -> Result<Self, ReportError> {
+        let page = png::page_of(figure)?;
+        let size = [page.width as u32, page.height as u32];
+        let record = crate::raster::recorded(size, |canvas| page.draw(canvas));
+        Ok(Self::from_record(record, size))
+    }
+
+    /// The layout of every frame of an animation. All frames share one legend, so each counts what is seen of a curve in the
+    /// frame that shows most of it.
+    ///
+    /// # Errors
+    /// As [`Animation::gif`].
+    pub fn of_animation(animation: &Animation) -> Result<Vec<Self>, ReportError> {
+        let size = animation.page_size()?;
+        let recorded = animation.records()?.into_iter();
+        let mut frames: Vec<Self> = recorded
+            .map(|record| Self::from_record(record, size))
+            .collect();
+        let mut largest: Vec<NamedCurve> = Vec::new();
+        for curve in frames.iter().flat_map(|frame| &frame.curves) {
+            match largest
+                .iter_mut()
+                .find(|c| c.name == curve.name && c.plot == curve.plot)
+            {
+                Some(known) if known.visible < curve.visible => *known = curve.clone(),
+                Some(_) => {}
+                None => largest.push(curve.clone()),
+            }
+        }
+        frames
+            .iter_mut()
+            .for_each(|frame| frame.curves.clone_from(&largest));
+        Ok(frames)
+    }
+
+    /// What a reader would object to: words on words, words or lines that are cut, a legend without its curve, and words that
+    /// found no room. Empty if all is well.
+    pub fn defects(&self) -> Vec<String> {
+        let mut defects = self.words_on_words();
+        defects.extend(self.cut());
+        defects.extend(self.legends_without_a_curve());
+        let left_out = self.left_out.iter();
+        defects.extend(left_out.map(|text| format!("no room for `{text}`")));
+        defects
+    }
+
+    fn from_record(record: LayoutRecord, size: [u32; 2]) -> Self {
+        let areas = record.ink.areas(record.curves.len());
+        let curves = record.curves.into_iter().zip(areas);
+        let curve = |((plot, name), [drawn, visible]): ((usize, String), [f64; 2])| NamedCurve {
+            name,
+            plot,
+            drawn,
+            visible,
+        };
+        let label = |(text, area): (String, Rect)| Label {
+            text,
+            area: [area.x0, area.y0, area.x1, area.y1],
+        };
+        Self {
+            page: size.map(f64::from),
+            labels: record.labels.into_iter().map(label).collect(),
+            curves: curves.map(curve).collect(),
+            legend: record.legend,
+            left_out: record.left_out,
+            drawn: record.ink.extent(),
+        }
+    }
+
+    fn words_on_words(&self) -> Vec<String> {
+        let mut defects = Vec::new();
+        for (i, one) in self.labels.iter().enumerate() {
+            for other in &self.labels[..i] {
+                let [a, b] = [one.area, other.area];
+                let apart = |k: usize| a[k] + TOUCH > b[k + 2] || b[k] + TOUCH > a[k + 2];
+                if !apart(0) && !apart(1) {
+                    defects.push(format!("`{}` lies on `{}`", one.text, other.text));
+                }
+            }
+        }
+        defects
+    }
+
+    fn cut(&self) -> Vec<String> {
+        let [width, height] = self.page;
+        let outside =
+            |[x0, y0, x1, y1]: [f64; 4]| x0 < 0.0 || y0 < 0.0 || x1 > width || y1 > height;
+        let labels = self.labels.iter().filter(|label| outside(label.area));
+        let mut defects: Vec<String> = labels.map(|l| format!("`{}` is cut", l.text)).collect();
+        if outside(self.drawn) {
+            defects.push(format!("something is drawn outside: {:?}", self.drawn));
+        }
+        defects
+    }
+
+    fn legends_without_a_curve(&self) -> Vec<String> {
+        let mut defects = Vec::new();
+        for (plot, name) in &self.legend {
+            let curves = self.curves.iter();
+            let own = curves.filter(|c| c.plot == *plot && c.name == *name);
+            let is_visible = |c: &NamedCurve| {
+                c.visible >= MIN_VISIBLE || c.visible > MIN_VISIBLE_SHARE * c.drawn.max(1.0)
+            };
+            let own: Vec<&NamedCurve> = own.collect();
+            if !own.iter().any(|c| is_visible(c)) {
+                let areas: Vec<String> = own
+                    .iter()
+                    .map(|c| format!("{:.0} of {:.0}", c.visible, c.drawn))
+                    .collect();
+                let areas = areas.join(", ");
+                defects.push(format!(
+                    "legend entry `{name}` has no visible curve ({areas} px²)"
+                ));
+            }
+        }
+        defects
+    }
+}
