@@ -11,11 +11,13 @@ mod extrema;
 mod mechanical_advantage;
 mod monitor;
 mod peak_forces;
+mod requested_columns;
 mod results;
 mod rounding_error;
 mod sectioned_link;
 mod selection;
 mod trajectory;
+mod unit_references;
 mod unit_scales;
 
 pub use analysis::Analysis;
@@ -33,17 +35,18 @@ pub(crate) use extrema::{Extremum, is_searched_in_rows};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryMonitor, table_of};
 pub(crate) use peak_forces::{WantedForces, peak_forces};
+pub(crate) use requested_columns::{RequestedColumns, is_requested};
 pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
 pub(crate) use results::{MotionBetweenRows, compute_along};
 pub(crate) use rounding_error::RoundingError;
 pub use sectioned_link::SectionedLink;
 pub(crate) use selection::{
-    check_variables, is_requested, prune_model, reject_unknown_variables, requested_bodies,
-    selected_columns,
+    check_variables, prune_model, reject_unknown_variables, requested_bodies,
 };
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
     BALANCE, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, TrajectorySample,
     default_limits,
 };
+pub(crate) use unit_references::UnitReferences;
 pub(crate) use unit_scales::{UnitScales, force_scales};

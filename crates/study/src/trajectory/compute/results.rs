@@ -8,8 +8,8 @@ use crate::models::loaded_model;
 use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
     Analysis, BetweenRows, Column, Extrema, ExtremaSearch, POSITIONS_PER_STEP, PositionEvaluator,
-    Quantity, RoundingError, SectionedLink, Trajectory, TrajectorySample, UnitScales, all_columns,
-    check_variables, is_requested, prune_model, selected_columns,
+    Quantity, RequestedColumns, RoundingError, SectionedLink, Trajectory, TrajectorySample,
+    UnitReferences, all_columns, check_variables, is_requested, prune_model,
 };
 use dwell_findings::{self as findings, Table};
 use dwell_geometry::Plan;
@@ -19,8 +19,14 @@ use std::f64::consts::TAU;
 
 /// What is evaluated at the positions of a trajectory.
 pub struct TrajectoryResults {
-    /// All columns of the analysis.
+    /// The columns of the analysis that the scene requests, and those that its pictures need.
     pub(crate) columns: Vec<Column>,
+    /// The indices of those in the tables.
+    pub(crate) written: Vec<usize>,
+    /// Whether the scene requests less than everything.
+    pub(crate) is_limited: bool,
+    /// What all columns of the analysis come to.
+    pub(crate) references: UnitReferences,
     /// By position: a value for each column.
     pub(crate) rows: Vec<Vec<f64>>,
     /// By column, of those that unwrap: the last angle, its rate and its time.
@@ -48,7 +54,12 @@ pub struct TrajectoryResults {
 }
 
 impl TrajectoryResults {
-    fn new(scene: &Scene, model: &Model, columns: Vec<Column>, analysis: Analysis) -> Self {
+    fn new(scene: &Scene, model: &Model, all: Vec<Column>, analysis: Analysis) -> Self {
+        let requested = RequestedColumns::new(scene, model.reactions(), analysis);
+        let is_kept = |c: &&Column| requested.are_with(c) || requested.draw(c);
+        let columns: Vec<Column> = all.iter().filter(is_kept).cloned().collect();
+        let written = 0..columns.len();
+        let written = written.filter(|&k| requested.are_with(&columns[k]));
         let sections = match analysis {
             Analysis::Kinematics => &[],
             _ => scene.requests.sections.as_slice(),
@@ -59,6 +70,9 @@ impl TrajectoryResults {
         let names = indeterminate.map(|(_, r)| scene.mechanism.reaction_name(*r));
         Self {
             last_angles: vec![None; columns.len()],
+            written: written.collect(),
+            is_limited: requested.is_limited(),
+            references: UnitReferences::new(all, &columns),
             columns,
             rows: Vec::new(),
             power_terms: Vec::new(),
@@ -74,11 +88,11 @@ impl TrajectoryResults {
         }
     }
 
-    /// Some columns as a table.
-    fn table(&self, selected: &[usize]) -> Table {
-        let columns = selected.iter().map(|&k| &self.columns[k]);
+    /// The requested columns as a table.
+    fn table(&self) -> Table {
+        let columns = self.written.iter().map(|&k| &self.columns[k]);
         let columns = columns.map(|c| findings::Column::new(&c.name, c.unit));
-        let row = |row: &Vec<f64>| selected.iter().map(|&k| row[k]).collect();
+        let row = |row: &Vec<f64>| self.written.iter().map(|&k| row[k]).collect();
         Table {
             columns: columns.collect(),
             rows: self.rows.iter().map(row).collect(),
@@ -101,7 +115,10 @@ impl TrajectoryResults {
             unwrap_angle(last, value, speed, sample.t)
         };
         let columns = self.columns.iter().zip(&mut self.last_angles);
-        self.rows.push(columns.map(value).collect());
+        let row: Vec<f64> = columns.map(value).collect();
+        self.references
+            .add_row(&row, &|quantity| evaluator.value(quantity, sample));
+        self.rows.push(row);
         self.body_poses.push(evaluator.body_poses());
         let position = &evaluator.position;
         let links = self.sectioned_links.iter_mut().zip(&position.link_forces);
@@ -124,7 +141,7 @@ fn unwrap_angle(last: &mut Option<[f64; 3]>, value: f64, speed: f64, t: f64) -> 
     unwrapped
 }
 
-/// The columns of an analysis along a trajectory, of the bodies that `model` places.
+/// All columns of an analysis along a trajectory, of the bodies that `model` places.
 fn computed_columns(scene: &Scene, model: &Model, trajectory: &Trajectory<'_>) -> Vec<Column> {
     let modelled = model.plan().placed_bodies();
     let is_modelled = |column: &Column| {
@@ -155,28 +172,14 @@ pub(crate) struct MotionBetweenRows<'s> {
 impl TrajectoryResults {
     /// Finds which columns are zero but for rounding, in a mechanism of this size (m), and the residual of the power balance.
     fn find_rounding(&mut self, size: f64) {
-        let largest = |k: usize| {
-            let values = self.rows.iter().map(|row| row[k].abs());
-            values.filter(|v| v.is_finite()).fold(0.0, f64::max)
-        };
-        let largest: Vec<f64> = (0..self.columns.len()).map(largest).collect();
-        let scales = UnitScales::new(&self.columns, &largest, size);
-        let columns = self.columns.iter().zip(&largest);
-        let is_rounding = columns.map(|(c, &largest)| scales.is_rounding(c.unit, largest));
-        self.is_rounding = is_rounding.collect();
+        let scales = self.references.scales(size);
+        self.is_rounding = self.references.is_rounding(&scales, self.columns.len());
         let power = self.power_terms.iter().map(|[_, scale]| *scale);
         let power = power.fold(scales.of("W"), f64::max);
         let residuals = self.power_terms.iter();
         let residuals =
             residuals.map(|&[residual, scale]| relative(residual, error_scale(scale, power)));
         self.power_residual = residuals.fold(0.0, f64::max);
-        for k in 0..self.columns.len() {
-            // A force that is only rounding has no direction.
-            if let Quantity::ForceDirection(joint) = self.columns[k].quantity {
-                let magnitude = self.column_index(Quantity::ForceMagnitude(joint));
-                self.is_rounding[k] |= magnitude.is_some_and(|k| self.is_rounding[k]);
-            }
-        }
     }
 
     /// The index of the column of a quantity.
@@ -200,8 +203,8 @@ impl TrajectoryResults {
         motion: Option<MotionBetweenRows<'_>>,
     ) {
         self.find_rounding(scene.mechanism.size());
-        let selected = selected_columns(scene, &self.columns).into_iter();
-        let wanted: Vec<usize> = selected.filter(|&k| !self.is_rounding[k]).collect();
+        let written = self.written.iter().copied();
+        let wanted: Vec<usize> = written.filter(|&k| !self.is_rounding[k]).collect();
         let at_fraction = |u: f64| Some(trajectory.sample_at(u));
         let between = match (trajectory.free_motion(), motion) {
             (None, _) => {
@@ -357,7 +360,7 @@ pub(crate) fn compute_along<'a>(
     results.find_extrema(scene, &trajectory, &mut evaluators, between);
     results.rounding_error = rounding_error.map(|error| error.max_relative());
     Ok(ComputedTrajectory {
-        table: results.table(&selected_columns(scene, &results.columns)),
+        table: results.table(),
         early_stop,
         trajectory,
         results,
