@@ -1,5 +1,6 @@
 //! Simulates a free motion: integration, samples, energies and forces.
 
+use crate::estimate;
 use crate::explain::{
     StepLimits, StudyError, explain_max_steps, missing_section_label, scene_error,
 };
@@ -99,11 +100,22 @@ pub(crate) fn compute_free_motion_at(
         sample: &sample,
     });
     let followed = (trajectory, between);
-    let mut computed = compute_along(&loaded_scene, model, followed, notes, progress)?;
-    problem.set_errors(&mut computed, &integrated, times);
+    let mut beside = None;
+    let computed = rayon::in_place_scope(|scope| {
+        // On another core: the rows of the second computation, and what is said of the motion.
+        scope.spawn(|_| {
+            let second = problem.comparison_rows(&integrated, times);
+            beside = Some((second, problem.summary(&integrated, duration)));
+        });
+        compute_along(&loaded_scene, model, followed, notes, progress)
+    });
+    let mut computed = computed?;
+    let (second, mut summary) = beside.unwrap_or_default();
+    if integrated.comparison.is_some() {
+        computed.set_errors(second.as_ref());
+    }
     let shortfall = problem.shortfall(scene, &integrated, solver);
     computed.early_stop = shortfall.or(computed.early_stop);
-    let mut summary = problem.summary(&integrated, duration);
     summary += &problem.notes;
     summary += &integrated.remarks;
     Ok(FreeMotion {
@@ -224,8 +236,19 @@ impl FreeMotionProblem<'_> {
             sample_interval: Some(interval),
             ..Options::new(settings.method, settings.rtol)
         };
-        let motion = self.solve(scene, duration, &options)?;
-        let estimate = self.estimate_error(scene, &motion, &options, duration)?;
+        let finer = estimate::comparison_options(&options);
+        // The second run is the same unless the first one fails.
+        let (motion, second) = rayon::join(
+            || self.solve(scene, duration, &options),
+            || self.solve(scene, duration, &finer).ok(),
+        );
+        let motion = motion?;
+        let second = match &motion.failure {
+            None => second,
+            Some(_) if motion.end_time() == 0.0 => None,
+            Some(_) => self.solve(scene, motion.end_time(), &finer).ok(),
+        };
+        let estimate = self.estimate_error(&motion, second, &options)?;
         let unstable = self.leaves_unstable_equilibrium(&motion).then(|| {
             "it starts in an unstable equilibrium, and rounding alone decides when and where it leaves it".to_owned()
         });
@@ -240,24 +263,17 @@ impl FreeMotionProblem<'_> {
         })
     }
 
-    /// Sets the errors of a motion's columns from its second computation, with rows at the same times.
-    fn set_errors(
+    /// The rows of a motion's second computation, at the same times; none where it has none.
+    fn comparison_rows(
         &self,
-        computed: &mut ComputedTrajectory<'_>,
         integrated: &ComputedMotion,
         times: Option<&[f64]>,
-    ) {
-        let Some(second) = &integrated.comparison else {
-            return;
-        };
-        // What has no rows has no errors.
-        let (scene, model) = (self.loaded_scene, &self.output_model);
+    ) -> Option<ComputedTrajectory<'static>> {
+        let second = integrated.comparison.as_ref()?;
         let second = self.trajectory(second, &integrated.method_text, times);
-        let second = second.ok().map(|trajectory| (trajectory, None));
-        let second = second.and_then(|followed| {
-            compute_along(scene, model, followed, String::new(), &no_progress).ok()
-        });
-        computed.set_errors(second.as_ref());
+        let (scene, model) = (self.loaded_scene, &self.output_model);
+        let followed = (second.ok()?, None);
+        compute_along(scene, model, followed, String::new(), &no_progress).ok()
     }
 
     /// Why a motion is not what was required: it ended early, or is less accurate.

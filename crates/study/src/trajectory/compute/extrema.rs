@@ -7,6 +7,7 @@
 use crate::trajectory::compute::{
     BALANCE, Column, PositionEvaluator, Quantity, Trajectory, TrajectorySample,
 };
+use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Positions that a trajectory is looked at in at least.
@@ -121,11 +122,7 @@ impl ExtremaSearch<'_, '_> {
         let mut extrema = self.in_rows();
         let is_searched = |&k: &usize| is_continuous(&self.columns[k]);
         let wanted: Vec<usize> = wanted.iter().copied().filter(is_searched).collect();
-        let further: Vec<(f64, Vec<f64>)> = between
-            .further
-            .iter()
-            .filter_map(|(u, sample)| Some((*u, self.evaluate(&wanted, sample)?)))
-            .collect();
+        let further = self.evaluate_all(&wanted, &between.further);
         let refined = (MAX_REFINED_OF_ALL / wanted.len().max(1)).clamp(1, MAX_REFINED);
         for (i, &k) in wanted.iter().enumerate() {
             let Some(ends) = &mut extrema.of_columns[k] else {
@@ -152,6 +149,34 @@ impl ExtremaSearch<'_, '_> {
         }
         extrema.are_between_rows = true;
         extrema
+    }
+
+    /// Some columns at many positions, on all cores.
+    fn evaluate_all(
+        &self,
+        columns: &[usize],
+        positions: &[(f64, TrajectorySample)],
+    ) -> Vec<(f64, Vec<f64>)> {
+        let (trajectory, all) = (self.trajectory, self.columns);
+        let part = positions
+            .len()
+            .div_ceil(rayon::current_num_threads())
+            .max(1);
+        let parts = positions.par_chunks(part).map(|positions| {
+            let mut evaluators = self.evaluators.to_vec();
+            let mut search = ExtremaSearch {
+                trajectory,
+                columns: all,
+                abscissa: self.abscissa,
+                rows: self.rows,
+                evaluators: &mut evaluators,
+            };
+            let values = positions
+                .iter()
+                .filter_map(|(u, sample)| Some((*u, search.evaluate(columns, sample)?)));
+            values.collect::<Vec<_>>()
+        });
+        parts.flatten().collect()
     }
 
     /// Some columns at a position.

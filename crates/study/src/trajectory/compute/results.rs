@@ -325,10 +325,11 @@ pub(crate) fn compute_along<'a>(
         [] => std::slice::from_ref(model),
         charts => charts,
     };
-    let evaluators = charts.iter();
-    let evaluators = evaluators.map(|chart| PositionEvaluator::new(scene, plan, chart, analysis));
-    let mut evaluators = evaluators.collect::<Result<Vec<_>, _>>()?;
     let mut results = TrajectoryResults::new(scene, model, columns, analysis);
+    let evaluators = charts
+        .iter()
+        .map(|chart| PositionEvaluator::new(scene, plan, chart, analysis, &results.columns));
+    let mut evaluators = evaluators.collect::<Result<Vec<_>, _>>()?;
     let mut rounding_error = matches!(analysis, Analysis::Statics | Analysis::Kinetostatics)
         .then(|| RoundingError::new(scene, model, trajectory.points));
     let early_stop = trajectory.follow(plan, |k, sample| {
