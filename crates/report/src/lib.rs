@@ -66,6 +66,7 @@ mod json;
 mod legend;
 mod linear_ticks;
 mod log_ticks;
+mod long_export;
 mod markdown;
 mod marks;
 mod npz;

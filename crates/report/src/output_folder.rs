@@ -5,9 +5,9 @@
 //! which scene has written the results of a name, so that another scene of the same name does not replace them.
 
 use crate::error::ReportError;
-use crate::files::Files;
+use crate::files::{Content, Files};
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Write as _};
+use std::io;
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::thread;
@@ -108,12 +108,13 @@ impl OutputFolder {
             let text = format!("{}\n", scene.display());
             (self.owner_file(&name), text.into_bytes())
         });
-        let owner = owner.as_ref().map(|(path, text)| (path.clone(), &text[..]));
+        let owner = owner.map(|(path, text)| (path, Content::Bytes(text)));
+        let owner = owner.as_ref().map(|(path, text)| (path.clone(), text));
         let files = files
-            .iter()
-            .map(|(path, bytes)| (self.root.join(path), bytes));
+            .contents()
+            .map(|(path, content)| (self.root.join(path), content));
         let mut unwritten = Vec::new();
-        for (target, bytes) in files.chain(owner).collect::<Vec<_>>() {
+        for (target, content) in files.chain(owner).collect::<Vec<_>>() {
             // Renaming onto a folder would fail too, but only after others have been renamed.
             if target.is_dir() {
                 return Err(file_error(&target)(io::ErrorKind::IsADirectory.into()));
@@ -124,7 +125,7 @@ impl OutputFolder {
             self.create(parent)?;
             let temporary = self.unfinished.join(staged.len().to_string());
             staged.push((temporary, target));
-            unwritten.push(bytes);
+            unwritten.push(content);
         }
         store_all(&staged, &unwritten)?;
         let mut written = Vec::with_capacity(staged.len());
@@ -157,13 +158,13 @@ impl OutputFolder {
 }
 
 /// Stores files under their temporary names, several at a time: the system stores those that wait together at once.
-fn store_all(staged: &[(PathBuf, PathBuf)], contents: &[&[u8]]) -> Result<(), ReportError> {
+fn store_all(staged: &[(PathBuf, PathBuf)], contents: &[&Content]) -> Result<(), ReportError> {
     let files: Vec<_> = staged.iter().zip(contents).collect();
     for some in files.chunks(MAX_STORED_AT_ONCE) {
         let stored: Vec<Result<(), ReportError>> = thread::scope(|scope| {
             let mut threads = Vec::new();
-            for &((temporary, target), bytes) in some {
-                let store_one = move || store(temporary, bytes).map_err(file_error(target));
+            for &((temporary, target), content) in some {
+                let store_one = move || store(temporary, content).map_err(file_error(target));
                 threads.push(scope.spawn(store_one));
             }
             let threads = threads.into_iter().map(thread::ScopedJoinHandle::join);
@@ -177,9 +178,9 @@ fn store_all(staged: &[(PathBuf, PathBuf)], contents: &[&[u8]]) -> Result<(), Re
 }
 
 /// Writes a file until the system has stored it.
-fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn store(path: &Path, content: &Content) -> io::Result<()> {
     let mut file = File::create(path)?;
-    file.write_all(bytes)?;
+    content.write(&mut file)?;
     file.sync_all()
 }
 

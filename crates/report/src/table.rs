@@ -72,7 +72,7 @@ impl TableExport for Table {
 }
 
 /// The header of a table as CSV.
-fn csv_header(columns: &[Column]) -> Result<String, ReportError> {
+pub(crate) fn csv_header(columns: &[Column]) -> Result<String, ReportError> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let header = |c: &Column| match c.unit.as_str() {
         "" => c.name.clone(),
@@ -87,7 +87,7 @@ fn csv_header(columns: &[Column]) -> Result<String, ReportError> {
 }
 
 /// Rows as CSV, some lines at a time, made on all cores: most of the time of a large table is that of its digits.
-fn csv_lines(rows: &[Vec<f64>]) -> Vec<String> {
+pub(crate) fn csv_lines(rows: &[Vec<f64>]) -> Vec<String> {
     let lines = |rows: &[Vec<f64>]| {
         let mut text = String::new();
         for row in rows {

@@ -36,7 +36,7 @@ pub(crate) struct Document<'a> {
     abscissa: (&'a str, &'static str),
     /// `at` the abscissa, with its unit, as the heading of a column.
     at: String,
-    abscissa_values: Vec<f64>,
+    abscissa_column: usize,
 }
 
 impl<'a> Document<'a> {
@@ -57,7 +57,7 @@ impl<'a> Document<'a> {
             extrema: sorted_extrema(results, &listed, abscissa, scene.mechanism.size()),
             abscissa: (name, unit),
             at: format!("at {name} [{unit}]"),
-            abscissa_values: results.rows.iter().map(|row| row[abscissa]).collect(),
+            abscissa_column: abscissa,
         }
     }
 
@@ -98,7 +98,7 @@ impl<'a> Document<'a> {
     }
 
     fn first_line(&self) -> String {
-        let (reached, points) = (self.results.rows.len(), self.trajectory.points);
+        let (reached, points) = (self.results.len(), self.trajectory.points);
         let mut all = count(points, "position");
         if reached != points {
             all = format!("{reached} of {all}");
@@ -115,7 +115,7 @@ impl<'a> Document<'a> {
         for (link, row, section) in self.bending_moments() {
             let (link, from) = (&link.name, &link.request.names[0]);
             let [bending, station, at] =
-                [section.bending, section.station, self.abscissa_values[row]].map(number);
+                [section.bending, section.station, self.abscissa_at(row)].map(number);
             text += &format!(
                 "  bending moment of {link}: {bending} N m, {station} m from {from}, at {abscissa} = {at} {unit}, the largest of the rows\n"
             );
@@ -128,7 +128,7 @@ impl<'a> Document<'a> {
 
     /// How to ask for less, where everything is much.
     fn less_note(&self) -> String {
-        let values = self.results.written.len() * self.results.rows.len();
+        let values = self.results.written.len() * self.results.len();
         if self.results.is_limited || values < MUCH {
             return String::new();
         }
@@ -198,6 +198,11 @@ impl<'a> Document<'a> {
             text += &format!("  {LARGEST_OF_ROWS}\n");
         }
         text
+    }
+
+    /// The abscissa at a row.
+    fn abscissa_at(&self, row: usize) -> f64 {
+        self.results.value_at(row, self.abscissa_column)
     }
 
     /// The links whose internal forces are computed, with the position and the section of the largest bending moment.
@@ -325,7 +330,7 @@ impl<'a> Document<'a> {
                 Distribution::Lumped => "lumped at the centre of mass",
             };
             let [bending, station, at] =
-                [peak.bending, peak.station, self.abscissa_values[row]].map(number);
+                [peak.bending, peak.station, self.abscissa_at(row)].map(number);
             let (link, distribution) = (link.name.clone(), distribution.to_owned());
             vec![link, bending, station, at, distribution]
         };

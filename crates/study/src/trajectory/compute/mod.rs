@@ -8,6 +8,7 @@ mod early_stop;
 mod evaluator;
 mod extra_columns;
 mod extrema;
+mod long_rows;
 mod mechanical_advantage;
 mod monitor;
 mod peak_forces;
@@ -32,10 +33,13 @@ pub(crate) use extra_columns::extra_columns;
 pub(crate) use extrema::{BetweenRows, Extrema, ExtremaSearch, Point, largest_between};
 #[cfg(feature = "output")]
 pub(crate) use extrema::{Extremum, is_searched_in_rows};
+pub(crate) use long_rows::{LongRows, RowMemory, not_stored};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryMonitor, table_of};
 pub(crate) use peak_forces::{WantedForces, peak_forces};
 pub(crate) use requested_columns::{RequestedColumns, is_requested};
+#[cfg(feature = "output")]
+pub(crate) use results::compute_trajectory_in;
 pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
 pub(crate) use results::{MotionBetweenRows, compute_along};
 pub(crate) use rounding_error::RoundingError;

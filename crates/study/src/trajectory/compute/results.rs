@@ -7,15 +7,17 @@ use crate::explain::StudyError;
 use crate::models::loaded_model;
 use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
-    Analysis, BetweenRows, Column, Extrema, ExtremaSearch, POSITIONS_PER_STEP, PositionEvaluator,
-    Quantity, RequestedColumns, RoundingError, SectionedLink, Trajectory, TrajectorySample,
-    UnitReferences, all_columns, check_variables, is_requested, prune_model,
+    Analysis, BetweenRows, Column, Extrema, ExtremaSearch, LongRows, POSITIONS_PER_STEP,
+    PositionEvaluator, Quantity, RequestedColumns, RoundingError, RowMemory, SectionedLink,
+    Trajectory, TrajectorySample, UnitReferences, all_columns, check_variables, is_requested,
+    not_stored, prune_model,
 };
 use dwell_findings::{self as findings, Table};
 use dwell_geometry::Plan;
 use dwell_kinetostatics::Model;
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
+use std::io;
 
 /// What is evaluated at the positions of a trajectory.
 pub struct TrajectoryResults {
@@ -27,13 +29,15 @@ pub struct TrajectoryResults {
     pub(crate) is_limited: bool,
     /// What all columns of the analysis come to.
     pub(crate) references: UnitReferences,
-    /// By position: a value for each column.
+    /// By position: a value for each column. Of a long trajectory only of some positions.
     pub(crate) rows: Vec<Vec<f64>>,
+    /// All rows of a long trajectory.
+    pub(crate) long_rows: Option<LongRows>,
     /// By column, of those that unwrap: the last angle, its rate and its time.
     last_angles: Vec<Option<[f64; 3]>>,
     /// By position: the residual of the power balance, and the sum of its absolute terms, W.
     power_terms: Vec<[f64; 2]>,
-    /// By position and body.
+    /// By position and body; of the positions of `rows`.
     pub body_poses: Vec<Vec<BodyPose>>,
     /// The links whose internal forces are requested.
     pub sectioned_links: Vec<SectionedLink>,
@@ -75,6 +79,7 @@ impl TrajectoryResults {
             references: UnitReferences::new(all, &columns),
             columns,
             rows: Vec::new(),
+            long_rows: None,
             power_terms: Vec::new(),
             body_poses: Vec::new(),
             sectioned_links: links.collect(),
@@ -95,7 +100,33 @@ impl TrajectoryResults {
         let row = |row: &Vec<f64>| self.written.iter().map(|&k| row[k]).collect();
         Table {
             columns: columns.collect(),
-            rows: self.rows.iter().map(row).collect(),
+            rows: match &self.long_rows {
+                Some(_) => Vec::new(),
+                None => self.rows.iter().map(row).collect(),
+            },
+        }
+    }
+
+    /// Number of positions that were evaluated.
+    pub(crate) fn len(&self) -> usize {
+        let long = self.long_rows.as_ref();
+        long.map_or(self.rows.len(), |long| long.table.len())
+    }
+
+    /// All values of a column.
+    pub(crate) fn values(&self, column: usize) -> io::Result<Vec<f64>> {
+        match &self.long_rows {
+            Some(long) => long.table.column(column),
+            None => Ok(self.rows.iter().map(|row| row[column]).collect()),
+        }
+    }
+
+    /// The value of a column at the `k`th position; NaN where it cannot be read.
+    #[cfg(feature = "output")]
+    pub(crate) fn value_at(&self, k: usize, column: usize) -> f64 {
+        match &self.long_rows {
+            Some(long) => long.table.value(k, column).unwrap_or(f64::NAN),
+            None => self.rows.get(k).map_or(f64::NAN, |row| row[column]),
         }
     }
 
@@ -118,8 +149,15 @@ impl TrajectoryResults {
         let row: Vec<f64> = columns.map(value).collect();
         self.references
             .add_row(&row, &|quantity| evaluator.value(quantity, sample));
-        self.rows.push(row);
-        self.body_poses.push(evaluator.body_poses());
+        let poses = evaluator.body_poses();
+        let kept = match &mut self.long_rows {
+            Some(long) => long.add(row, poses),
+            None => Some((row, poses)),
+        };
+        if let Some((row, poses)) = kept {
+            self.rows.push(row);
+            self.body_poses.push(poses);
+        }
         let position = &evaluator.position;
         let links = self.sectioned_links.iter_mut().zip(&position.link_forces);
         for (link, forces) in links {
@@ -201,14 +239,14 @@ impl TrajectoryResults {
         trajectory: &Trajectory<'_>,
         evaluators: &mut [PositionEvaluator<'_>],
         motion: Option<MotionBetweenRows<'_>>,
-    ) {
+    ) -> Result<(), StudyError> {
         self.find_rounding(scene.mechanism.size());
         let written = self.written.iter().copied();
         let wanted: Vec<usize> = written.filter(|&k| !self.is_rounding[k]).collect();
         let at_fraction = |u: f64| Some(trajectory.sample_at(u));
         let between = match (trajectory.free_motion(), motion) {
             (None, _) => {
-                let fractions = (0..self.rows.len()).map(|k| trajectory.fraction_at(k));
+                let fractions = (0..self.len()).map(|k| trajectory.fraction_at(k));
                 Some(BetweenRows::new(
                     fractions.collect(),
                     Vec::new(),
@@ -226,18 +264,20 @@ impl TrajectoryResults {
             trajectory,
             columns: &self.columns,
             abscissa: self.abscissa(trajectory),
-            rows: &self.rows,
+            values: &|k| self.values(k),
             evaluators,
         };
-        self.extrema = match between {
+        let extrema = match between {
             Some(between) => search.between_rows(&wanted, &between),
             None => search.in_rows(),
         };
+        self.extrema = extrema.map_err(|e| not_stored(&e))?;
         for (extrema, &is_rounding) in self.extrema.of_columns.iter_mut().zip(&self.is_rounding) {
             if let Some(extrema) = extrema.as_mut().filter(|_| is_rounding) {
                 extrema.iter_mut().for_each(|extremum| extremum.value = 0.0);
             }
         }
+        Ok(())
     }
 }
 
@@ -247,7 +287,8 @@ pub struct ComputedTrajectory<'a> {
     pub trajectory: Trajectory<'a>,
     /// What was evaluated at each position.
     pub results: TrajectoryResults,
-    /// A row for each position: time, actuator coordinates and the requested columns.
+    /// A row for each position: time, actuator coordinates and the requested columns. Without rows where a command keeps
+    /// them in a temporary file.
     pub table: Table,
     /// Why the trajectory ended early, if it did.
     pub early_stop: Option<StudyError>,
@@ -299,10 +340,21 @@ pub fn compute_trajectory<'a>(
     points: Option<usize>,
     progress: Progress<'_>,
 ) -> Result<ComputedTrajectory<'a>, StudyError> {
+    compute_trajectory_in(RowMemory::Whole, scene, analysis, points, progress)
+}
+
+/// The same with the rows in memory, or where they are bounded.
+pub(crate) fn compute_trajectory_in<'a>(
+    memory: RowMemory,
+    scene: &'a Scene,
+    analysis: Analysis,
+    points: Option<usize>,
+    progress: Progress<'_>,
+) -> Result<ComputedTrajectory<'a>, StudyError> {
     let model = loaded_model(scene)?;
     let notes = check_variables(scene, &model)? + &branch_note(scene, model.plan());
     let trajectory = Trajectory::new(scene, model.plan(), analysis, points)?;
-    compute_along(scene, &model, (trajectory, None), notes, progress)
+    compute_in(memory, scene, &model, (trajectory, None), notes, progress)
 }
 
 /// Evaluates a scene along a trajectory; of a free motion also with what is known between its rows.
@@ -310,6 +362,25 @@ pub fn compute_trajectory<'a>(
 /// # Errors
 /// [`StudyError`] where not even the first position can be reached.
 pub(crate) fn compute_along<'a>(
+    scene: &Scene,
+    full_model: &Model,
+    followed: (Trajectory<'a>, Option<MotionBetweenRows<'_>>),
+    notes: String,
+    progress: Progress<'_>,
+) -> Result<ComputedTrajectory<'a>, StudyError> {
+    compute_in(
+        RowMemory::Whole,
+        scene,
+        full_model,
+        followed,
+        notes,
+        progress,
+    )
+}
+
+/// As [`compute_along`], with the rows in memory or where they are bounded.
+fn compute_in<'a>(
+    memory: RowMemory,
     scene: &Scene,
     full_model: &Model,
     (trajectory, between): (Trajectory<'a>, Option<MotionBetweenRows<'_>>),
@@ -326,6 +397,9 @@ pub(crate) fn compute_along<'a>(
         charts => charts,
     };
     let mut results = TrajectoryResults::new(scene, model, columns, analysis);
+    if memory == RowMemory::Bounded {
+        results.long_rows = LongRows::new(&results.columns, trajectory.points)?;
+    }
     let evaluators = charts
         .iter()
         .map(|chart| PositionEvaluator::new(scene, plan, chart, analysis, &results.columns));
@@ -358,7 +432,13 @@ pub(crate) fn compute_along<'a>(
     if let Some(error) = early_stop.take_if(|_| !has_begun) {
         return Err(error);
     }
-    results.find_extrema(scene, &trajectory, &mut evaluators, between);
+    if let Some(long) = &mut results.long_rows
+        && let Some((row, poses)) = long.finish()?
+    {
+        results.rows.push(row);
+        results.body_poses.push(poses);
+    }
+    results.find_extrema(scene, &trajectory, &mut evaluators, between)?;
     results.rounding_error = rounding_error.map(|error| error.max_relative());
     Ok(ComputedTrajectory {
         table: results.table(),
