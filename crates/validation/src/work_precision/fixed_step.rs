@@ -73,3 +73,37 @@ fn runge_kutta(
         .map(|i| (slopes[0][i] + 2.0 * slopes[1][i] + 2.0 * slopes[2][i] + slopes[3][i]) / 6.0);
     Ok(moved(&mean.collect::<Vec<f64>>(), 1.0))
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::*;
+
+    /// y′ = y.
+    struct Growth;
+
+    impl OdeSystem for Growth {
+        fn size(&self) -> usize {
+            1
+        }
+
+        fn rhs(&mut self, _: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+            out[0] = y[0];
+            Ok(())
+        }
+
+        fn jacobian(&mut self, _: f64, _: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+            out[0] = 1.0;
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_step_is_the_series_up_to_the_fourth_power() {
+        let h: f64 = 0.25;
+        let found = runge_kutta(&mut Growth, 0.0, &[1.0], h).unwrap()[0];
+        let series = 1.0 + h + h * h / 2.0 + h.powi(3) / 6.0 + h.powi(4) / 24.0;
+        assert!((found - series).abs() < 1e-15, "{found} and {series}");
+        assert!((found - h.exp()).abs() > 1e-6);
+    }
+}

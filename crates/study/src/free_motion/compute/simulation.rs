@@ -8,7 +8,9 @@ use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMo
 use crate::models::{SolverSettings, with_drive_loads};
 use crate::number_format::digits;
 use crate::progress::{Progress, no_progress};
-use crate::trajectory::compute::{ComputedTrajectory, MotionBetweenRows, compute_along};
+use crate::trajectory::compute::{
+    ComputedTrajectory, MotionBetweenRows, Trajectory, compute_along,
+};
 use dwell_dynamics::{DynamicsError, EventOccurrence, Options};
 use dwell_findings::Table;
 use dwell_scene::{Scene, SceneError, SceneLocation};
@@ -48,6 +50,9 @@ pub struct FreeMotion {
     /// What the integration reports: method, events, cost, motion class, energy balance and estimated error.
     pub summary: String,
 }
+
+/// A motion at its rows, and what is known between them.
+type Followed<'s> = (Trajectory<'static>, Option<MotionBetweenRows<'s>>);
 
 /// The free motion of a scene.
 ///
@@ -89,31 +94,20 @@ pub(crate) fn compute_free_motion_at(
     if let Some(error) = failure.filter(|_| motion.end_time() == 0.0) {
         return Err(problem.explain(error));
     }
-    let trajectory = problem.trajectory(motion, &integrated.method_text, times);
+    let (trajectory, steps) = rayon::join(
+        || problem.trajectory(motion, &integrated.method_text, times),
+        || problem.steps_as_samples(motion),
+    );
     let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
-    let (model, notes) = (&problem.output_model, String::new());
     let sampler = problem.sampler(motion);
     let sample = |t: f64| sampler.sample_at(t);
-    let between = problem.steps_as_samples(motion);
-    let between = between.map(|further| MotionBetweenRows {
+    let between = steps.map(|further| MotionBetweenRows {
         further,
         sample: &sample,
     });
     let followed = (trajectory, between);
-    let mut beside = None;
-    let computed = rayon::in_place_scope(|scope| {
-        // On another core: the rows of the second computation, and what is said of the motion.
-        scope.spawn(|_| {
-            let second = problem.comparison_rows(&integrated, times);
-            beside = Some((second, problem.summary(&integrated, duration)));
-        });
-        compute_along(&loaded_scene, model, followed, notes, progress)
-    });
-    let mut computed = computed?;
-    let (second, mut summary) = beside.unwrap_or_default();
-    if integrated.comparison.is_some() {
-        computed.set_errors(second.as_ref());
-    }
+    let rows = problem.rows_and_summary(&integrated, (followed, times), duration, progress);
+    let (mut computed, mut summary) = rows?;
     let shortfall = problem.shortfall(scene, &integrated, solver);
     computed.early_stop = shortfall.or(computed.early_stop);
     summary += &problem.notes;
@@ -248,19 +242,47 @@ impl FreeMotionProblem<'_> {
             Some(_) if motion.end_time() == 0.0 => None,
             Some(_) => self.solve(scene, motion.end_time(), &finer).ok(),
         };
-        let estimate = self.estimate_error(&motion, second, &options)?;
+        let (estimate, hint) = rayon::join(
+            || self.estimate_error(&motion, second, &options),
+            || self.method_hint(&motion, settings),
+        );
+        let estimate = estimate?;
         let unstable = self.leaves_unstable_equilibrium(&motion).then(|| {
             "it starts in an unstable equilibrium, and rounding alone decides when and where it leaves it".to_owned()
         });
         Ok(ComputedMotion {
             method_text: settings.describe(),
-            remarks: self.method_hint(&motion, settings) + &estimate.text,
+            remarks: hint + &estimate.text,
             accuracy: None,
             inaccuracy: unstable.or(estimate.inaccuracy),
             comparison: estimate.second,
             delay: None,
             motion,
         })
+    }
+
+    /// The rows of a motion with the errors of their columns, and what is said of it.
+    fn rows_and_summary(
+        &self,
+        integrated: &ComputedMotion,
+        (followed, times): (Followed<'_>, Option<&[f64]>),
+        duration: f64,
+        progress: Progress<'_>,
+    ) -> Result<(ComputedTrajectory<'static>, String), StudyError> {
+        let mut beside = None;
+        let computed = rayon::in_place_scope(|scope| {
+            // On another core: the rows of the second computation, and the summary.
+            scope.spawn(|_| {
+                let second = self.comparison_rows(integrated, times);
+                beside = Some((second, self.summary(integrated, duration)));
+            });
+            let (scene, model) = (self.loaded_scene, &self.output_model);
+            compute_along(scene, model, followed, String::new(), progress)
+        });
+        let mut computed = computed?;
+        let (second, summary) = beside.unwrap_or_default();
+        computed.set_errors(second.as_ref());
+        Ok((computed, summary))
     }
 
     /// The rows of a motion's second computation, at the same times; none where it has none.

@@ -26,6 +26,7 @@ pub struct TrajectoryResults {
     /// The indices of those in the tables.
     pub(crate) written: Vec<usize>,
     /// Whether the scene requests less than everything.
+    #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for summaries"))]
     pub(crate) is_limited: bool,
     /// What all columns of the analysis come to.
     pub(crate) references: UnitReferences,
@@ -105,6 +106,25 @@ impl TrajectoryResults {
                 None => self.rows.iter().map(row).collect(),
             },
         }
+    }
+
+    /// Prepares the memory for the rows of so many positions.
+    fn keep_rows_in(&mut self, memory: RowMemory, points: usize) -> Result<(), StudyError> {
+        if memory == RowMemory::Bounded {
+            self.long_rows = LongRows::new(&self.columns, points)?;
+        }
+        Ok(())
+    }
+
+    /// Ends the rows: the last one is always in memory.
+    fn finish_rows(&mut self) -> Result<(), StudyError> {
+        if let Some(long) = &mut self.long_rows
+            && let Some((row, poses)) = long.finish()?
+        {
+            self.rows.push(row);
+            self.body_poses.push(poses);
+        }
+        Ok(())
     }
 
     /// Number of positions that were evaluated.
@@ -397,9 +417,7 @@ fn compute_in<'a>(
         charts => charts,
     };
     let mut results = TrajectoryResults::new(scene, model, columns, analysis);
-    if memory == RowMemory::Bounded {
-        results.long_rows = LongRows::new(&results.columns, trajectory.points)?;
-    }
+    results.keep_rows_in(memory, trajectory.points)?;
     let evaluators = charts
         .iter()
         .map(|chart| PositionEvaluator::new(scene, plan, chart, analysis, &results.columns));
@@ -413,10 +431,7 @@ fn compute_in<'a>(
         results.add_position(k, evaluator, sample);
         if let Some(rounding_error) = &mut rounding_error {
             let rest = vec![0.0; sample.q.len()];
-            let at = match analysis {
-                Analysis::Statics => [sample.q.as_slice(), &rest, &rest],
-                _ => [&sample.q, &sample.q_dot, &sample.q_ddot].map(Vec::as_slice),
-            };
+            let at = evaluated_state(analysis, sample, &rest);
             rounding_error.add_position(k, model, t, at, &evaluator.forces.results);
         }
         if k.is_multiple_of(POSITIONS_PER_STEP) {
@@ -432,12 +447,7 @@ fn compute_in<'a>(
     if let Some(error) = early_stop.take_if(|_| !has_begun) {
         return Err(error);
     }
-    if let Some(long) = &mut results.long_rows
-        && let Some((row, poses)) = long.finish()?
-    {
-        results.rows.push(row);
-        results.body_poses.push(poses);
-    }
+    results.finish_rows()?;
     results.find_extrema(scene, &trajectory, &mut evaluators, between)?;
     results.rounding_error = rounding_error.map(|error| error.max_relative());
     Ok(ComputedTrajectory {
@@ -447,4 +457,16 @@ fn compute_in<'a>(
         results,
         notes,
     })
+}
+
+/// Coordinates, velocities and accelerations at which an analysis evaluates a position: those of statics are at rest.
+fn evaluated_state<'s>(
+    analysis: Analysis,
+    sample: &'s TrajectorySample,
+    rest: &'s [f64],
+) -> [&'s [f64]; 3] {
+    match analysis {
+        Analysis::Statics => [sample.q.as_slice(), rest, rest],
+        _ => [&sample.q, &sample.q_dot, &sample.q_ddot].map(Vec::as_slice),
+    }
 }
