@@ -50,7 +50,7 @@ impl LongExport {
                 }
             }
             TableFormat::Npz => {
-                let values = |i: usize| Ok(self.table.column(self.columns[i])?);
+                let values = |i: usize| self.table.column(self.columns[i]);
                 out = table_archive(out, &described, self.table.len(), &values)?;
             }
         }

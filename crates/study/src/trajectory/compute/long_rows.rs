@@ -21,6 +21,9 @@ pub(crate) enum RowMemory {
     Bounded,
 }
 
+/// A row and the poses of the bodies there.
+type RowAndPoses = (Vec<f64>, Vec<BodyPose>);
+
 /// All rows of a long trajectory.
 pub(crate) struct LongRows {
     /// The rows of the columns that are kept.
@@ -28,7 +31,7 @@ pub(crate) struct LongRows {
     /// Every so many-th row is in memory, too.
     stride: usize,
     /// The row and the poses that were added last, if they are not in memory otherwise.
-    last: Option<(Vec<f64>, Vec<BodyPose>)>,
+    last: Option<RowAndPoses>,
     /// Why a row could not be stored.
     failure: Option<io::Error>,
 }
@@ -53,11 +56,7 @@ impl LongRows {
     }
 
     /// Adds a row and its poses; gives them back where they belong in memory, too.
-    pub(crate) fn add(
-        &mut self,
-        row: Vec<f64>,
-        poses: Vec<BodyPose>,
-    ) -> Option<(Vec<f64>, Vec<BodyPose>)> {
+    pub(crate) fn add(&mut self, row: Vec<f64>, poses: Vec<BodyPose>) -> Option<RowAndPoses> {
         let is_kept = self.table.len().is_multiple_of(self.stride);
         // While rows are added, nobody else has the table.
         if let Some(table) = Arc::get_mut(&mut self.table)
@@ -73,7 +72,7 @@ impl LongRows {
     ///
     /// # Errors
     /// Where a row could not be stored.
-    pub(crate) fn finish(&mut self) -> Result<Option<(Vec<f64>, Vec<BodyPose>)>, StudyError> {
+    pub(crate) fn finish(&mut self) -> Result<Option<RowAndPoses>, StudyError> {
         match self.failure.take() {
             Some(error) => Err(not_stored(&error)),
             None => Ok(self.last.take()),
