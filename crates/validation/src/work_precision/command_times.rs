@@ -4,7 +4,8 @@ use super::subject::Subject;
 use dwell_report::{OutputFolder, ReportError};
 use dwell_scene::Scene;
 use dwell_study::{
-    MotionSolver, Pictures, StudyError, compute_free_motion, no_progress, simulate_to_accuracy,
+    MotionSolver, Outcome, Pictures, StudyError, compute_free_motion, no_progress,
+    simulate_to_accuracy,
 };
 use std::fs;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -12,8 +13,6 @@ use std::time::Instant;
 
 /// The accuracies that are measured.
 const ACCURACIES: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
-/// Runs of which the least times count.
-const REPETITIONS: usize = 3;
 
 /// The command at one accuracy.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,45 +31,44 @@ pub(super) struct CommandTime {
 pub(super) fn command_times(scene: &Scene) -> Result<Vec<CommandTime>, StudyError> {
     let scene = Subject::new(scene)?.scene;
     let one = |accuracy: f64| {
-        let mut found = CommandTime {
+        let started = Instant::now();
+        let solver = MotionSolver::Accuracy {
             accuracy,
-            estimated_error: None,
-            computing: f64::INFINITY,
-            with_files: f64::INFINITY,
-            with_pictures: f64::INFINITY,
+            sample_interval: None,
         };
-        for _ in 0..REPETITIONS {
-            let started = Instant::now();
-            let solver = MotionSolver::Accuracy {
-                accuracy,
-                sample_interval: None,
-            };
-            let motion = compute_free_motion(&scene, &solver, &no_progress)?;
-            found.estimated_error = motion.estimated_error;
-            found.computing = found.computing.min(started.elapsed().as_secs_f64());
-            let files = whole_command(&scene, accuracy, Pictures::None)?;
-            found.with_files = found.with_files.min(files);
-            let pictures = whole_command(&scene, accuracy, Pictures::Main)?;
-            found.with_pictures = found.with_pictures.min(pictures);
-        }
-        Ok(found)
+        let motion = compute_free_motion(&scene, &solver, &no_progress)?;
+        let computing = started.elapsed().as_secs_f64();
+        let [with_files, with_pictures] = whole_command(&scene, accuracy)?;
+        Ok(CommandTime {
+            accuracy,
+            estimated_error: motion.estimated_error,
+            computing,
+            with_files,
+            with_pictures,
+        })
     };
     ACCURACIES.into_iter().map(one).collect()
 }
 
-/// The seconds from the scene in memory to its files in a folder, which is removed afterwards.
-fn whole_command(scene: &Scene, accuracy: f64, pictures: Pictures) -> Result<f64, StudyError> {
+/// The seconds from the scene in memory to its files in a folder, which is removed afterwards: without pictures, and with
+/// the main ones.
+fn whole_command(scene: &Scene, accuracy: f64) -> Result<[f64; 2], StudyError> {
     static NUMBER: AtomicU64 = AtomicU64::new(0);
     let number = NUMBER.fetch_add(1, Ordering::Relaxed);
     let name = format!("dwell-work-precision-{}-{number}", std::process::id());
     let path = std::env::temp_dir().join(name);
     let started = Instant::now();
-    let folder = OutputFolder::open(&path)?;
     let outcome = simulate_to_accuracy(scene, accuracy, None, &no_progress)?.outcome;
-    let files = outcome.draw(pictures, &no_progress)?.files;
-    folder.write(&files)?;
-    let seconds = started.elapsed().as_secs_f64();
+    let computing = started.elapsed().as_secs_f64();
+    let written = |outcome: Outcome, pictures: Pictures| -> Result<f64, StudyError> {
+        let started = Instant::now();
+        let files = outcome.draw(pictures, &no_progress)?.files;
+        OutputFolder::open(&path)?.write(&files)?;
+        Ok(computing + started.elapsed().as_secs_f64())
+    };
+    let without = written(outcome.clone(), Pictures::None);
+    let seconds = without.and_then(|without| Ok([without, written(outcome, Pictures::Main)?]));
     let removed = fs::remove_dir_all(&path);
     removed.map_err(|source| ReportError::File { path, source })?;
-    Ok(seconds)
+    seconds
 }
