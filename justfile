@@ -65,6 +65,7 @@ deny:
 bench:
     cargo bench -p dwell-kinetostatics --bench reduced --bench batches --bench table --bench kinds
     cargo bench -p dwell-dynamics --bench motion
+    cargo bench -p dwell-cli --bench wait
 
 # Beside Exudyn, Pinocchio and MuJoCo: installs them into a scratch environment; reports/peers.md and .png
 [group('care')]

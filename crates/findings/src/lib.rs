@@ -17,9 +17,11 @@
 //! ```
 
 mod check;
+mod long_table;
 mod table;
 
 pub use check::Check;
+pub use long_table::LongTable;
 pub use table::{Column, Table};
 
 /// One comparison of a result with an independent reference.

@@ -1,15 +1,39 @@
-//! Files of a report: gathered in memory, written at the end.
+//! Files of a report: gathered in memory, written at the end. A long table is written from where its rows are.
 
 use crate::error::ReportError;
+use crate::long_export::LongExport;
 use crate::table::TableExport as _;
 use crate::table::{Table, TableFormat};
+use dwell_findings::LongTable;
 use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Files by their path relative to a folder that is chosen when they are written.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Files {
-    files: BTreeMap<PathBuf, Vec<u8>>,
+    files: BTreeMap<PathBuf, Content>,
+}
+
+/// What is in a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Content {
+    /// These bytes.
+    Bytes(Vec<u8>),
+    /// A table that is not in memory.
+    LongTable(LongExport),
+}
+
+impl Content {
+    /// Writes a new file.
+    pub(crate) fn write(&self, file: &mut File) -> io::Result<()> {
+        match self {
+            Self::Bytes(bytes) => file.write_all(bytes),
+            Self::LongTable(table) => table.write(file).map_err(io::Error::other),
+        }
+    }
 }
 
 impl Files {
@@ -20,7 +44,8 @@ impl Files {
 
     /// Adds a file; one of the same path is replaced.
     pub fn add(&mut self, path: impl Into<PathBuf>, bytes: impl Into<Vec<u8>>) {
-        self.files.insert(path.into(), bytes.into());
+        let content = Content::Bytes(bytes.into());
+        self.files.insert(path.into(), content);
     }
 
     /// Adds a table in some formats: `stem.csv`, `stem.npz`.
@@ -44,6 +69,21 @@ impl Files {
         Ok(())
     }
 
+    /// Adds some columns of a long table in some formats: the same files as [`add_table`](Self::add_table) makes.
+    pub fn add_long_table(
+        &mut self,
+        stem: &str,
+        table: &Arc<LongTable>,
+        columns: &[usize],
+        formats: &[TableFormat],
+    ) {
+        for &format in formats {
+            let export = LongExport::new(table, columns, format);
+            let path = format!("{stem}.{}", format.extension());
+            self.files.insert(path.into(), Content::LongTable(export));
+        }
+    }
+
     /// Takes over the files of another set, under a folder of their own (or none, if it is empty).
     pub fn extend(&mut self, folder: impl AsRef<Path>, others: Self) {
         for (path, bytes) in others.files {
@@ -51,11 +91,20 @@ impl Files {
         }
     }
 
-    /// Paths and contents, in the order of the paths.
+    /// Paths and contents, in the order of the paths; without long tables, whose contents are made while they are
+    /// written.
     pub fn iter(&self) -> impl Iterator<Item = (&Path, &[u8])> {
+        self.contents().filter_map(|(path, content)| match content {
+            Content::Bytes(bytes) => Some((path, bytes.as_slice())),
+            Content::LongTable(_) => None,
+        })
+    }
+
+    /// All paths and contents.
+    pub(crate) fn contents(&self) -> impl Iterator<Item = (&Path, &Content)> {
         self.files
             .iter()
-            .map(|(path, bytes)| (path.as_path(), bytes.as_slice()))
+            .map(|(path, content)| (path.as_path(), content))
     }
 
     /// Number of files.

@@ -73,6 +73,7 @@ mod layout_record;
 mod legend;
 mod linear_ticks;
 mod log_ticks;
+mod long_export;
 mod markdown;
 mod marks;
 mod npz;

@@ -1,9 +1,9 @@
 //! Tables of numbers as NumPy archives.
 
 use crate::error::{ReportError, check_rows};
-use dwell_findings::Table;
+use dwell_findings::{Column, Table};
 use std::collections::BTreeSet;
-use std::io::{Cursor, Write as _};
+use std::io::{self, Cursor, Seek, Write};
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, System, ZipWriter};
@@ -45,46 +45,58 @@ pub fn npz(arrays: &[(&str, Array)]) -> Result<Vec<u8>, ReportError> {
             }
         })
     };
-    archive(
-        arrays
-            .iter()
-            .map(|(name, array)| Ok((file_name(name), bytes(array)?))),
-    )
+    let arrays = arrays.iter();
+    let arrays = arrays.map(|(name, array)| Ok((file_name(name), bytes(array)?)));
+    Ok(archive(Cursor::new(Vec::new()), arrays)?.into_inner())
 }
 
-/// Arrays under their keys.
-fn archive(
+/// Arrays under their keys, in an archive that is written to `out`.
+fn archive<W: Write + Seek>(
+    out: W,
     arrays: impl Iterator<Item = Result<(String, Vec<u8>), ReportError>>,
-) -> Result<Vec<u8>, ReportError> {
-    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+) -> Result<W, ReportError> {
+    let mut archive = ZipWriter::new(out);
     for array in arrays {
         let (key, bytes) = array?;
         archive.start_file(format!("{key}.npy"), options())?;
         archive.write_all(&bytes).map_err(ZipError::Io)?;
     }
-    Ok(archive.finish()?.into_inner())
+    Ok(archive.finish()?)
 }
 
 /// See [`TableExport::npz`](crate::TableExport::npz).
 pub(crate) fn table_npz(table: &Table) -> Result<Vec<u8>, ReportError> {
     check_rows(&table.rows, table.columns.len())?;
-    let keys = array_keys(table);
-    let units: Vec<&str> = table.columns.iter().map(|c| c.unit.as_str()).collect();
+    let values = |k: usize| Ok(table.rows.iter().map(|row| row[k]).collect());
+    let out = Cursor::new(Vec::new());
+    Ok(table_archive(out, &table.columns, table.rows.len(), &values)?.into_inner())
+}
+
+/// A table of so many rows as an archive, written to `out` column by column.
+pub(crate) fn table_archive<W: Write + Seek>(
+    out: W,
+    columns: &[Column],
+    rows: usize,
+    values: &dyn Fn(usize) -> io::Result<Vec<f64>>,
+) -> Result<W, ReportError> {
+    let keys = array_keys(columns);
+    let units: Vec<&str> = columns.iter().map(|c| c.unit.as_str()).collect();
     let described = [
         (COLUMNS.to_owned(), string_array(&keys)),
         (UNITS.to_owned(), string_array(&units)),
     ];
-    let shape = format!("({},)", table.rows.len());
-    let column = |i: usize| number_array(&shape, table.rows.iter().map(|row| &row[i]));
-    let columns = keys
-        .into_iter()
-        .enumerate()
-        .map(|(i, key)| (key, column(i)));
-    archive(columns.chain(described).map(Ok))
+    let shape = format!("({rows},)");
+    let column = |i: usize| {
+        let values = values(i).map_err(ZipError::Io)?;
+        Ok::<_, ReportError>(number_array(&shape, values.iter()))
+    };
+    let numbers = keys.into_iter().enumerate();
+    let numbers = numbers.map(|(i, key)| Ok((key, column(i)?)));
+    archive(out, numbers.chain(described.map(Ok)))
 }
 
 /// The columns' names as keys: file names, and each but once.
-fn array_keys(table: &Table) -> Vec<String> {
+fn array_keys(columns: &[Column]) -> Vec<String> {
     let mut used: BTreeSet<String> = [COLUMNS, UNITS].map(str::to_owned).into();
     let mut unused = |name: &str| {
         let numbered = (2_usize..).map(|n| format!("{name}_{n}"));
@@ -93,8 +105,7 @@ fn array_keys(table: &Table) -> Vec<String> {
         used.insert(key.clone());
         key
     };
-    table
-        .columns
+    columns
         .iter()
         .map(|c| unused(&file_name(&c.name)))
         .collect()
@@ -157,7 +168,7 @@ fn header(dtype: &str, shape: &str) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::{Column, TableExport as _};
+    use crate::table::TableExport as _;
     use std::io::Read as _;
     use zip::ZipArchive;
 

@@ -5,10 +5,12 @@
 //! which scene has written the results of a name, so that another scene of the same name does not replace them.
 
 use crate::error::ReportError;
-use crate::files::Files;
+use crate::files::{Content, Files};
 use std::fs::{self, File, TryLockError};
-use std::io::{self, Write as _};
+use std::io;
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
+use std::thread;
 
 /// Below the folder of the results.
 const INTERNAL: &str = ".dwell";
@@ -17,6 +19,8 @@ const UNFINISHED: &str = "unfinished-";
 const LOCK: &str = "lock";
 /// Commands that write to one folder at the same time.
 const MAX_COMMANDS: usize = 10_000;
+/// Files that are stored at the same time.
+const MAX_STORED_AT_ONCE: usize = 16;
 
 /// A folder to which a command writes. Dropped before [`write`](Self::write), it leaves no trace.
 #[derive(Debug)]
@@ -104,11 +108,13 @@ impl OutputFolder {
             let text = format!("{}\n", scene.display());
             (self.owner_file(&name), text.into_bytes())
         });
-        let owner = owner.as_ref().map(|(path, text)| (path.clone(), &text[..]));
+        let owner = owner.map(|(path, text)| (path, Content::Bytes(text)));
+        let owner = owner.as_ref().map(|(path, text)| (path.clone(), text));
         let files = files
-            .iter()
-            .map(|(path, bytes)| (self.root.join(path), bytes));
-        for (target, bytes) in files.chain(owner).collect::<Vec<_>>() {
+            .contents()
+            .map(|(path, content)| (self.root.join(path), content));
+        let mut unwritten = Vec::new();
+        for (target, content) in files.chain(owner).collect::<Vec<_>>() {
             // Renaming onto a folder would fail too, but only after others have been renamed.
             if target.is_dir() {
                 return Err(file_error(&target)(io::ErrorKind::IsADirectory.into()));
@@ -118,9 +124,10 @@ impl OutputFolder {
             };
             self.create(parent)?;
             let temporary = self.unfinished.join(staged.len().to_string());
-            store(&temporary, bytes).map_err(file_error(&target))?;
             staged.push((temporary, target));
+            unwritten.push(content);
         }
+        store_all(&staged, &unwritten)?;
         let mut written = Vec::with_capacity(staged.len());
         for (temporary, target) in staged {
             fs::rename(temporary, &target).map_err(file_error(&target))?;
@@ -150,10 +157,30 @@ impl OutputFolder {
     }
 }
 
+/// Stores files under their temporary names, several at a time: the system stores those that wait together at once.
+fn store_all(staged: &[(PathBuf, PathBuf)], contents: &[&Content]) -> Result<(), ReportError> {
+    let files: Vec<_> = staged.iter().zip(contents).collect();
+    for some in files.chunks(MAX_STORED_AT_ONCE) {
+        let stored: Vec<Result<(), ReportError>> = thread::scope(|scope| {
+            let mut threads = Vec::new();
+            for &((temporary, target), content) in some {
+                let store_one = move || store(temporary, content).map_err(file_error(target));
+                threads.push(scope.spawn(store_one));
+            }
+            let threads = threads.into_iter().map(thread::ScopedJoinHandle::join);
+            threads
+                .map(|stored| stored.unwrap_or_else(|panic| resume_unwind(panic)))
+                .collect()
+        });
+        stored.into_iter().collect::<Result<(), _>>()?;
+    }
+    Ok(())
+}
+
 /// Writes a file until the system has stored it.
-fn store(path: &Path, bytes: &[u8]) -> io::Result<()> {
+fn store(path: &Path, content: &Content) -> io::Result<()> {
     let mut file = File::create(path)?;
-    file.write_all(bytes)?;
+    content.write(&mut file)?;
     file.sync_all()
 }
 

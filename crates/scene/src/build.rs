@@ -157,7 +157,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
         couplings: joints.couplings,
     };
     let mut requests = requested.unwrap_or_default();
-    if requests_section.is_none_or(|f| f.get("reactions").is_none()) {
+    if !requests.lists_reactions {
         requests.reactions = mechanism.reactions();
     }
     let coordinate = |c: &ParsedCoordinate<'_>| {

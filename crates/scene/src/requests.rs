@@ -27,6 +27,7 @@ pub(crate) fn requests(
     let sections = fields.get("sections");
     let sections = sections.map(|e| sections_of(e.value, bodies));
     Requests {
+        lists_reactions: reactions.is_some(),
         reactions: reactions.unwrap_or_default(),
         paths: paths.unwrap_or_default(),
         dwell,

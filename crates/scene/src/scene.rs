@@ -104,6 +104,8 @@ impl Assembly {
 pub struct Requests {
     /// Reactions: those named, in that order and each once, or else all of the mechanism's.
     pub reactions: Vec<Reaction>,
+    /// Whether the scene names reactions: an analysis of forces then yields these, and no column that is not requested.
+    pub lists_reactions: bool,
     /// Points whose paths are drawn.
     pub paths: Vec<PathPoint>,
     /// A body whose dwell is marked.

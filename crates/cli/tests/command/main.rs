@@ -3,6 +3,7 @@
 
 mod assembly;
 mod long_motions;
+mod many_rows;
 mod messages;
 mod near_branches;
 mod output;

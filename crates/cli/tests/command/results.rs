@@ -157,6 +157,8 @@ fn work_precision_writes_every_combination_and_the_front() {
         header.starts_with("evaluation,integrator,tolerance"),
         "{header}"
     );
+    let says = |words: &str| run.out.contains(words);
+    assert!(says("fixed step of 1 ms") && says("with the main pictures"));
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::output::{indeterminate_note, provenance_line};
 use crate::ranges::extent;
 use crate::trajectory::compute::{
     Analysis, ComputedTrajectory, Extremum, Quantity, SectionedLink, Trajectory, TrajectoryResults,
-    is_searched_in_rows, selected_columns,
+    is_searched_in_rows,
 };
 use dwell_kinetostatics::{Distribution, Section};
 use dwell_report::{Block, Document as Page, Figure};
@@ -17,6 +17,9 @@ const MAX_LISTED: usize = 3;
 const SAME_WITHIN: f64 = 1e-9;
 /// Largest relative residual of the power balance that is not commented on.
 const MAX_BALANCE_RESIDUAL: f64 = 1e-9;
+
+/// Values in a table from which on fewer columns save a noticeable time.
+const MUCH: usize = 50_000;
 
 /// What the largest values are where none could be looked for between the rows.
 const LARGEST_OF_ROWS: &str =
@@ -33,14 +36,14 @@ pub(crate) struct Document<'a> {
     abscissa: (&'a str, &'static str),
     /// `at` the abscissa, with its unit, as the heading of a column.
     at: String,
-    abscissa_values: Vec<f64>,
+    abscissa_column: usize,
 }
 
 impl<'a> Document<'a> {
     pub(crate) fn new(scene: &'a Scene, computed: &'a ComputedTrajectory<'a>) -> Self {
         let (trajectory, results) = (&computed.trajectory, &computed.results);
         let columns = &results.columns;
-        let selected = selected_columns(scene, columns);
+        let selected = results.written.clone();
         let abscissa = results.abscissa(trajectory);
         let (name, unit) = (&columns[abscissa].name, columns[abscissa].unit);
         // The abscissa itself is not a result, nor is the time.
@@ -51,10 +54,10 @@ impl<'a> Document<'a> {
             results,
             trajectory,
             selected,
-            extrema: sorted_extrema(results, &listed, abscissa),
+            extrema: sorted_extrema(results, &listed, abscissa, scene.mechanism.size()),
             abscissa: (name, unit),
             at: format!("at {name} [{unit}]"),
-            abscissa_values: results.rows.iter().map(|row| row[abscissa]).collect(),
+            abscissa_column: abscissa,
         }
     }
 
@@ -95,7 +98,7 @@ impl<'a> Document<'a> {
     }
 
     fn first_line(&self) -> String {
-        let (reached, points) = (self.results.rows.len(), self.trajectory.points);
+        let (reached, points) = (self.results.len(), self.trajectory.points);
         let mut all = count(points, "position");
         if reached != points {
             all = format!("{reached} of {all}");
@@ -112,14 +115,31 @@ impl<'a> Document<'a> {
         for (link, row, section) in self.bending_moments() {
             let (link, from) = (&link.name, &link.request.names[0]);
             let [bending, station, at] =
-                [section.bending, section.station, self.abscissa_values[row]].map(number);
+                [section.bending, section.station, self.abscissa_at(row)].map(number);
             text += &format!(
                 "  bending moment of {link}: {bending} N m, {station} m from {from}, at {abscissa} = {at} {unit}, the largest of the rows\n"
             );
         }
         text += &self.power_balance_text();
         text += &self.remarks().concat();
+        text += &self.less_note();
         text
+    }
+
+    /// How to ask for less, where everything is much.
+    fn less_note(&self) -> String {
+        let values = self.results.written.len() * self.results.len();
+        if self.results.is_limited || values < MUCH {
+            return String::new();
+        }
+        let lists = match self.trajectory.analysis {
+            Analysis::Kinematics => "`variables`",
+            _ => "`reactions` or `variables`",
+        };
+        format!(
+            "  all {} columns are computed: {lists} in [requests] of the scene selects fewer\n",
+            self.results.written.len()
+        )
     }
 
     /// The lines about the largest values of each unit.
@@ -178,6 +198,11 @@ impl<'a> Document<'a> {
             text += &format!("  {LARGEST_OF_ROWS}\n");
         }
         text
+    }
+
+    /// The abscissa at a row.
+    fn abscissa_at(&self, row: usize) -> f64 {
+        self.results.value_at(row, self.abscissa_column)
     }
 
     /// The links whose internal forces are computed, with the position and the section of the largest bending moment.
@@ -305,7 +330,7 @@ impl<'a> Document<'a> {
                 Distribution::Lumped => "lumped at the centre of mass",
             };
             let [bending, station, at] =
-                [peak.bending, peak.station, self.abscissa_values[row]].map(number);
+                [peak.bending, peak.station, self.abscissa_at(row)].map(number);
             let (link, distribution) = (link.name.clone(), distribution.to_owned());
             vec![link, bending, station, at, distribution]
         };
@@ -383,6 +408,7 @@ fn sorted_extrema(
     results: &TrajectoryResults,
     listed: &[usize],
     abscissa: usize,
+    size: f64,
 ) -> Vec<ColumnExtrema> {
     let [from, to] = extent(results.rows.iter().map(|row| row[abscissa]));
     // Of the forces along a prescribed motion the rounding is known, relative to the largest of their unit.
@@ -391,7 +417,10 @@ fn sorted_extrema(
         let alike =
             columns.filter(|(column, _)| column.unit == unit && matches!(unit, "N" | "N m"));
         let sizes = alike.filter_map(|(_, ends)| Some(ends.as_ref()?.map(|end| end.value.abs())));
-        results.rounding_error.unwrap_or(0.0) * sizes.flatten().fold(0.0, f64::max)
+        let sizes = sizes
+            .flatten()
+            .chain([results.references.largest_of(unit, size)]);
+        results.rounding_error.unwrap_or(0.0) * sizes.fold(0.0, f64::max)
     };
     let entry = |&k: &usize| {
         let unit = results.columns[k].unit;

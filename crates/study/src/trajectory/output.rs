@@ -5,7 +5,7 @@ use super::{document, figures};
 use crate::explain::StudyError;
 use crate::output::{DistinctNames, Outcome, Picture};
 use crate::progress::Progress;
-use crate::trajectory::compute::{Analysis, ComputedTrajectory, compute_trajectory};
+use crate::trajectory::compute::{Analysis, ComputedTrajectory, RowMemory, compute_trajectory_in};
 use dwell_report::{Figure, Files, TableExport as _, TableFormat};
 use dwell_scene::Scene;
 
@@ -22,7 +22,7 @@ pub struct TrajectoryOutcome {
 /// `points` positions (two or more) if given.
 ///
 /// # Errors
-/// As [`compute_trajectory`].
+/// As [`compute_trajectory`](crate::compute_trajectory); [`StudyError::Scene`] where many rows cannot be stored.
 pub fn analyse_trajectory(
     scene: &Scene,
     analysis: Analysis,
@@ -43,7 +43,7 @@ pub fn analyse_trajectory_within(
     span: PictureSpan,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
-    let computed = compute_trajectory(scene, analysis, points, progress)?;
+    let computed = compute_trajectory_in(RowMemory::Bounded, scene, analysis, points, progress)?;
     let mut outcome = report(scene, &computed, span)?;
     outcome.summary += &computed.notes;
     Ok(TrajectoryOutcome {
@@ -62,7 +62,12 @@ pub(crate) fn report(
     let analysis = trajectory.analysis.name();
     let name = |rest: &str| format!("{}-{analysis}{rest}", scene.name);
     let mut files = Files::new();
-    files.add_table(&name(""), &computed.table, &TableFormat::ALL)?;
+    match &results.long_rows {
+        Some(long) => {
+            files.add_long_table(&name(""), &long.table, &results.written, &TableFormat::ALL);
+        }
+        None => files.add_table(&name(""), &computed.table, &TableFormat::ALL)?,
+    }
     let document = document::Document::new(scene, computed);
     files.add(name("-extrema.csv"), document.extrema_csv());
     let mut link_names = DistinctNames::default();

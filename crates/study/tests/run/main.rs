@@ -13,6 +13,7 @@ mod mechanical_advantage;
 mod motion;
 mod pruning;
 mod quadrature;
+mod requests;
 mod table;
 mod time_loads;
 mod variables;

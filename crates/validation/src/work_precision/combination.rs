@@ -1,5 +1,6 @@
 //! Combinations of evaluation, integrator and tolerance, and their results: plain data.
 
+use super::fixed_step::FixedStep;
 use dwell_dynamics::Method;
 use dwell_study::number_format::digits;
 
@@ -205,6 +206,8 @@ pub struct ReferenceInfo {
 pub struct WorkPrecision {
     /// All results.
     pub points: Vec<CombinationResult>,
+    /// The classical Runge–Kutta method at a fixed step of 1 ms, where it reaches the end.
+    pub fixed_step: Option<FixedStep>,
     /// What was not run or not finished, and why.
     pub omitted: Vec<String>,
     /// The reference of the errors.

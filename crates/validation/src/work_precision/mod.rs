@@ -2,8 +2,10 @@
 //! the motion of a scene; its true error is compared with its cost.
 
 mod combination;
+mod command_times;
 mod evaluator;
 mod figure;
+mod fixed_step;
 mod reference_solution;
 mod report;
 mod run;
@@ -15,6 +17,7 @@ pub use combination::{
     Integrator, ReferenceInfo, WorkPrecision,
 };
 pub use evaluator::{Evaluator, ModelEvaluator, ReactionFn};
+pub use fixed_step::FixedStep;
 pub use selected_cases::selected_case_reports;
 
 use dwell_dynamics::{DynamicsError, Method, TabulatedMachine, TabulationError};
@@ -44,9 +47,10 @@ const TIMING_PASSES: usize = 20;
 /// As [`measure`]; [`StudyError::Report`] when a table cannot be written.
 pub fn work_precision(scene: &Scene, progress: Progress<'_>) -> Result<Outcome, StudyError> {
     let found = measure(scene, &Effort::full(), progress)?;
+    let times = command_times::command_times(scene)?;
     let name = format!("{}-work-precision", scene.name);
     let mut outcome = Outcome {
-        summary: report::summary(scene, &found),
+        summary: report::summary(scene, &found) + &report::command_summary(&times),
         ..Outcome::default()
     };
     let figure = figure::figure(scene, &found, &name);
@@ -55,7 +59,8 @@ pub fn work_precision(scene: &Scene, progress: Progress<'_>) -> Result<Outcome, 
     let files = &mut outcome.files;
     files.add(format!("{name}.csv"), report::csv(&found)?);
     files.add(format!("{name}.npz"), report::table(&found).npz()?);
-    let document = report::document(scene, &found, &name);
+    let mut document = report::document(scene, &found, &name);
+    document.blocks.extend(report::command_blocks(&times));
     outcome.page = Some((format!("{name}.md"), document));
     Ok(outcome)
 }
@@ -121,9 +126,12 @@ pub fn measure_with(
     let timed = || done("times");
     let unit_times = time_runs(&subject, &reference, exact, &mut trials, effort, &timed);
     let [evaluation_time, jacobian_time] = unit_times.map_err(|e| subject.explain(&e))?;
+    let fixed_step = fixed_step_result(&mut reference, exact, &subject, evaluation_time);
+    let fixed_step = fixed_step.map_err(|e| omitted.push(format!("fixed step: {e}")));
     let points = results(&mut reference, trials, evaluation_time, &mut omitted);
     Ok(WorkPrecision {
         points,
+        fixed_step: fixed_step.ok(),
         omitted,
         reference: ReferenceInfo {
             method: reference.method,
@@ -135,6 +143,21 @@ pub fn measure_with(
         repetitions: effort.repetitions.max(1),
         evaluation_time,
         jacobian_cost: jacobian_time / evaluation_time,
+    })
+}
+
+/// The error and the cost of fixed steps.
+fn fixed_step_result(
+    reference: &mut ReferenceSolution<'_>,
+    exact: &dyn Evaluator,
+    subject: &Subject,
+    evaluation_time: f64,
+) -> Result<FixedStep, DynamicsError> {
+    let (states, steps, seconds) = fixed_step::solve(exact, subject)?;
+    Ok(FixedStep {
+        steps,
+        time: seconds / evaluation_time,
+        errors: reference.errors(&states, &mut exact.reactions())?,
     })
 }
 

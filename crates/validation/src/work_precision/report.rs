@@ -4,6 +4,7 @@ use super::combination::{
     CombinationResult, CostMeasure, ErrorQuantity, Evaluation, Integrator, WorkPrecision,
     digits_or_dash,
 };
+use super::command_times::CommandTime;
 use crate::report_parts;
 use dwell_dynamics::Method;
 use dwell_report::{Block, Column, Document, Table, TableExport as _};
@@ -180,6 +181,9 @@ pub(super) fn document(scene: &Scene, found: &WorkPrecision, file: &str) -> Docu
         ),
         Block::Text(quadrature(found)),
     ];
+    if let Some(fixed) = fixed_step(found) {
+        blocks.push(Block::Text(format!("For comparison, {fixed}.")));
+    }
     for (quantity, measure) in [
         (ErrorQuantity::Coordinate, CostMeasure::Evaluations),
         (ErrorQuantity::Coordinate, CostMeasure::TimeWithBuild),
@@ -254,6 +258,59 @@ fn quadrature(found: &WorkPrecision) -> String {
     }
 }
 
+/// What a fixed step comes to.
+fn fixed_step(found: &WorkPrecision) -> Option<String> {
+    let fixed = found.fixed_step?;
+    let [coordinate, energy, reaction] =
+        ErrorQuantity::ALL.map(|quantity| digits_or_dash(fixed.errors.of(quantity), 2));
+    Some(format!(
+        "fixed step of 1 ms (classical Runge–Kutta, {}, in time {}): errors {coordinate} {} in the coordinate, {energy} of the energy, {reaction} of the worst reaction",
+        count(fixed.steps, "step"),
+        digits(fixed.time, 3),
+        found.unit,
+    ))
+}
+
+/// The seconds of the whole command, as lines of the summary.
+pub(super) fn command_summary(times: &[CommandTime]) -> String {
+    let line = |of: &CommandTime| {
+        let [computing, files, pictures] =
+            [of.computing, of.with_files, of.with_pictures].map(|s| digits(1e3 * s, 2));
+        format!(
+            "  simulate --accuracy {:.0e}: computing {computing} ms, with files {files} ms, with the main pictures {pictures} ms\n",
+            of.accuracy
+        )
+    };
+    times.iter().map(line).collect()
+}
+
+/// The seconds of the whole command, as a part of the document.
+pub(super) fn command_blocks(times: &[CommandTime]) -> [Block; 3] {
+    let header = [
+        "accuracy",
+        "estimated error",
+        "computing, s",
+        "with files, s",
+        "with the main pictures, s",
+    ];
+    let row = |of: &CommandTime| {
+        let seconds = [of.computing, of.with_files, of.with_pictures];
+        let mut row = vec![format!("{:.0e}", of.accuracy)];
+        row.push(digits_or_dash(of.estimated_error.unwrap_or(f64::NAN), 2));
+        row.extend(seconds.map(|s| digits(s, 2)));
+        row
+    };
+    [
+        Block::Heading("The whole command".to_owned()),
+        Block::Text(
+            "`dwell simulate --accuracy`, from the scene in memory: the motion with its rows, extrema and error; the same with tables and page \
+             written; and with the main pictures. One run each; here the motion has the duration that the scene gives."
+                .to_owned(),
+        ),
+        report_parts::table(&header, times.iter().map(row)),
+    ]
+}
+
 /// The summary.
 pub(super) fn summary(scene: &Scene, found: &WorkPrecision) -> String {
     let reference_error = found.reference.error;
@@ -295,6 +352,9 @@ pub(super) fn summary(scene: &Scene, found: &WorkPrecision) -> String {
             point.cost.weighted_evaluations,
             digits(point.cost.time, 3)
         );
+    }
+    if let Some(fixed) = fixed_step(found) {
+        let _ = writeln!(text, "  {fixed}");
     }
     for why in found.omitted.iter().take(8) {
         let _ = writeln!(text, "  left out: {why}");

@@ -8,7 +8,6 @@ use crate::number_format::{coordinate_unit, digits};
 use crate::ranges::extent;
 use crate::trajectory::compute::TrajectorySample;
 use dwell_dynamics::Options;
-use dwell_scene::Scene;
 
 /// An error of this part of a coordinate's change, or of the largest kinetic energy, is no result: its second digit
 /// is wrong.
@@ -29,29 +28,27 @@ pub(crate) struct ErrorEstimate {
 type SamplePair<'a> = (&'a TrajectorySample, &'a TrajectorySample);
 
 impl FreeMotionProblem<'_> {
-    /// The estimated error of a motion of which a duration (s) was requested, by a second run.
+    /// The estimated error of a motion by a second run, by [`estimate::comparison_options`], over its duration.
     pub(crate) fn estimate_error(
         &self,
-        scene: &Scene,
         motion: &SegmentedMotion,
+        second: Option<SegmentedMotion>,
         options: &Options,
-        requested: f64,
     ) -> Result<ErrorEstimate, StudyError> {
-        let duration = motion.end_time();
-        if duration == 0.0 {
+        if motion.end_time() == 0.0 {
             return Ok(ErrorEstimate::default());
         }
-        let samples = self.samples(motion).map_err(|e| self.explain(&e))?;
+        let (samples, others) = rayon::join(
+            || self.samples(motion),
+            || second.as_ref().and_then(|motion| self.samples(motion).ok()),
+        );
+        let samples = samples.map_err(|e| self.explain(&e))?;
         let finer = estimate::comparison_options(options);
         let refinement = if finer.method == options.method {
             "a tenth of the tolerance".to_owned()
         } else {
             format!("the same tolerance by {}", finer.method.name())
         };
-        // An event that ends the motion may happen later in the second run.
-        let duration = motion.failure.as_ref().map_or(requested, |_| duration);
-        let second = self.solve(scene, duration, &finer).ok();
-        let others = second.as_ref().and_then(|motion| self.samples(motion).ok());
         // The last samples may be missing if an event ends one of the runs earlier.
         let others = others.unwrap_or_default();
         let pairs: Vec<SamplePair<'_>> = pair_by_time(&samples, &others);

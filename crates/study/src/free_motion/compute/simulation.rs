@@ -1,5 +1,6 @@
 //! Simulates a free motion: integration, samples, energies and forces.
 
+use crate::estimate;
 use crate::explain::{
     StepLimits, StudyError, explain_max_steps, missing_section_label, scene_error,
 };
@@ -7,7 +8,9 @@ use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMo
 use crate::models::{SolverSettings, with_drive_loads};
 use crate::number_format::digits;
 use crate::progress::{Progress, no_progress};
-use crate::trajectory::compute::{ComputedTrajectory, MotionBetweenRows, compute_along};
+use crate::trajectory::compute::{
+    ComputedTrajectory, MotionBetweenRows, Trajectory, compute_along,
+};
 use dwell_dynamics::{DynamicsError, EventOccurrence, Options};
 use dwell_findings::Table;
 use dwell_scene::{Scene, SceneError, SceneLocation};
@@ -47,6 +50,9 @@ pub struct FreeMotion {
     /// What the integration reports: method, events, cost, motion class, energy balance and estimated error.
     pub summary: String,
 }
+
+/// A motion at its rows, and what is known between them.
+type Followed<'s> = (Trajectory<'static>, Option<MotionBetweenRows<'s>>);
 
 /// The free motion of a scene.
 ///
@@ -88,22 +94,22 @@ pub(crate) fn compute_free_motion_at(
     if let Some(error) = failure.filter(|_| motion.end_time() == 0.0) {
         return Err(problem.explain(error));
     }
-    let trajectory = problem.trajectory(motion, &integrated.method_text, times);
+    let (trajectory, steps) = rayon::join(
+        || problem.trajectory(motion, &integrated.method_text, times),
+        || problem.steps_as_samples(motion),
+    );
     let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
-    let (model, notes) = (&problem.output_model, String::new());
     let sampler = problem.sampler(motion);
     let sample = |t: f64| sampler.sample_at(t);
-    let between = problem.steps_as_samples(motion);
-    let between = between.map(|further| MotionBetweenRows {
+    let between = steps.map(|further| MotionBetweenRows {
         further,
         sample: &sample,
     });
     let followed = (trajectory, between);
-    let mut computed = compute_along(&loaded_scene, model, followed, notes, progress)?;
-    problem.set_errors(&mut computed, &integrated, times);
+    let rows = problem.rows_and_summary(&integrated, (followed, times), duration, progress);
+    let (mut computed, mut summary) = rows?;
     let shortfall = problem.shortfall(scene, &integrated, solver);
     computed.early_stop = shortfall.or(computed.early_stop);
-    let mut summary = problem.summary(&integrated, duration);
     summary += &problem.notes;
     summary += &integrated.remarks;
     Ok(FreeMotion {
@@ -224,14 +230,29 @@ impl FreeMotionProblem<'_> {
             sample_interval: Some(interval),
             ..Options::new(settings.method, settings.rtol)
         };
-        let motion = self.solve(scene, duration, &options)?;
-        let estimate = self.estimate_error(scene, &motion, &options, duration)?;
+        let finer = estimate::comparison_options(&options);
+        // The second run is the same unless the first one fails.
+        let (motion, second) = rayon::join(
+            || self.solve(scene, duration, &options),
+            || self.solve(scene, duration, &finer).ok(),
+        );
+        let motion = motion?;
+        let second = match &motion.failure {
+            None => second,
+            Some(_) if motion.end_time() == 0.0 => None,
+            Some(_) => self.solve(scene, motion.end_time(), &finer).ok(),
+        };
+        let (estimate, hint) = rayon::join(
+            || self.estimate_error(&motion, second, &options),
+            || self.method_hint(&motion, settings),
+        );
+        let estimate = estimate?;
         let unstable = self.leaves_unstable_equilibrium(&motion).then(|| {
             "it starts in an unstable equilibrium, and rounding alone decides when and where it leaves it".to_owned()
         });
         Ok(ComputedMotion {
             method_text: settings.describe(),
-            remarks: self.method_hint(&motion, settings) + &estimate.text,
+            remarks: hint + &estimate.text,
             accuracy: None,
             inaccuracy: unstable.or(estimate.inaccuracy),
             comparison: estimate.second,
@@ -240,24 +261,41 @@ impl FreeMotionProblem<'_> {
         })
     }
 
-    /// Sets the errors of a motion's columns from its second computation, with rows at the same times.
-    fn set_errors(
+    /// The rows of a motion with the errors of their columns, and what is said of it.
+    fn rows_and_summary(
         &self,
-        computed: &mut ComputedTrajectory<'_>,
+        integrated: &ComputedMotion,
+        (followed, times): (Followed<'_>, Option<&[f64]>),
+        duration: f64,
+        progress: Progress<'_>,
+    ) -> Result<(ComputedTrajectory<'static>, String), StudyError> {
+        let mut beside = None;
+        let computed = rayon::in_place_scope(|scope| {
+            // On another core: the rows of the second computation, and the summary.
+            scope.spawn(|_| {
+                let second = self.comparison_rows(integrated, times);
+                beside = Some((second, self.summary(integrated, duration)));
+            });
+            let (scene, model) = (self.loaded_scene, &self.output_model);
+            compute_along(scene, model, followed, String::new(), progress)
+        });
+        let mut computed = computed?;
+        let (second, summary) = beside.unwrap_or_default();
+        computed.set_errors(second.as_ref());
+        Ok((computed, summary))
+    }
+
+    /// The rows of a motion's second computation, at the same times; none where it has none.
+    fn comparison_rows(
+        &self,
         integrated: &ComputedMotion,
         times: Option<&[f64]>,
-    ) {
-        let Some(second) = &integrated.comparison else {
-            return;
-        };
-        // What has no rows has no errors.
-        let (scene, model) = (self.loaded_scene, &self.output_model);
+    ) -> Option<ComputedTrajectory<'static>> {
+        let second = integrated.comparison.as_ref()?;
         let second = self.trajectory(second, &integrated.method_text, times);
-        let second = second.ok().map(|trajectory| (trajectory, None));
-        let second = second.and_then(|followed| {
-            compute_along(scene, model, followed, String::new(), &no_progress).ok()
-        });
-        computed.set_errors(second.as_ref());
+        let (scene, model) = (self.loaded_scene, &self.output_model);
+        let followed = (second.ok()?, None);
+        compute_along(scene, model, followed, String::new(), &no_progress).ok()
     }
 
     /// Why a motion is not what was required: it ended early, or is less accurate.

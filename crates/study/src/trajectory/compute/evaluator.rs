@@ -3,7 +3,7 @@
 use crate::bodies::BodyPose;
 use crate::explain::{StudyError, explain_model};
 use crate::trajectory::compute::{
-    Analysis, Quantity, SpeedScale, StopCause, TrajectoryMonitor, TrajectorySample,
+    Analysis, Column, Quantity, SpeedScale, StopCause, TrajectoryMonitor, TrajectorySample,
 };
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{BodyId, Motion, Plan, Pose, Vec2};
@@ -14,6 +14,7 @@ use dwell_kinetostatics::{
 use dwell_scene::Scene;
 
 /// Evaluates the forces at one position after another.
+#[derive(Clone)]
 pub(crate) struct ForceEvaluator<'a> {
     pub(crate) model: &'a Model,
     analysis: Analysis,
@@ -78,6 +79,7 @@ impl<'a> ForceEvaluator<'a> {
 }
 
 /// What the forces at one position are computed into.
+#[derive(Clone)]
 pub(crate) struct PositionForces<'a> {
     scene: &'a Scene,
     body_forces: FreeBodyForces,
@@ -136,13 +138,25 @@ impl<'a> PositionForces<'a> {
     }
 }
 
+/// Whether a column is a quotient of velocities.
+fn is_quotient(column: &Column) -> bool {
+    use Quantity::{MechanicalAdvantage, Pole, VelocityRatio};
+    matches!(
+        column.quantity,
+        VelocityRatio(_) | MechanicalAdvantage(..) | Pole(..)
+    )
+}
+
 /// Evaluates all quantities at one position after another.
+#[derive(Clone)]
 pub(crate) struct PositionEvaluator<'a> {
     scene: &'a Scene,
     pub(crate) forces: ForceEvaluator<'a>,
     pub(crate) position: PositionForces<'a>,
     /// With several actuators, the unpruned mechanism: the trajectory ends where any of its groups cannot be assembled.
     whole_mechanism: Option<(&'a Plan, Pose<f64>)>,
+    /// Whether a requested quantity is a quotient of velocities.
+    has_quotients: bool,
     /// The bodies at q̇ = 1 of a single actuator.
     unit_speed_states: BodyStates,
     /// Size of the mechanism, m; and the scales at q̇ = 1 of a single actuator, and along the trajectory.
@@ -156,6 +170,7 @@ impl<'a> PositionEvaluator<'a> {
         whole_plan: &'a Plan,
         model: &'a Model,
         analysis: Analysis,
+        columns: &[Column],
     ) -> Result<Self, StudyError> {
         let is_pruned = model.plan().pruned_groups().contains(&true);
         let checks_whole = is_pruned && whole_plan.actuators() > 1;
@@ -164,6 +179,7 @@ impl<'a> PositionEvaluator<'a> {
             scene,
             forces: ForceEvaluator::new(scene, model, analysis),
             whole_mechanism: checks_whole.then(|| (whole_plan, whole_plan.pose())),
+            has_quotients: columns.iter().any(is_quotient),
             size: scene.mechanism.size(),
             speed_scales: [SpeedScale::default(); 2],
             unit_speed_states: BodyStates::new(model.plan()),
@@ -180,14 +196,16 @@ impl<'a> PositionEvaluator<'a> {
         }
         let forces = &mut self.forces;
         let plan = forces.model.plan();
-        if plan.actuators() == 1 {
+        if self.has_quotients && plan.actuators() == 1 {
             let (pose, motion) = (&forces.pose, &mut forces.motion_buffer);
             plan.velocities(pose, &[1.0], motion);
             self.unit_speed_states.fill(plan, pose, motion);
         }
         forces.fill_states(sample)?;
-        self.speed_scales = [&self.unit_speed_states, &forces.body_states]
-            .map(|states| SpeedScale::new(states, self.size));
+        if self.has_quotients {
+            self.speed_scales = [&self.unit_speed_states, &forces.body_states]
+                .map(|states| SpeedScale::new(states, self.size));
+        }
         Ok(())
     }
 

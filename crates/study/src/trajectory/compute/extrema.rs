@@ -7,7 +7,9 @@
 use crate::trajectory::compute::{
     BALANCE, Column, PositionEvaluator, Quantity, Trajectory, TrajectorySample,
 };
+use rayon::prelude::*;
 use std::f64::consts::TAU;
+use std::io;
 
 /// Positions that a trajectory is looked at in at least.
 const MIN_POSITIONS: usize = 720;
@@ -93,47 +95,52 @@ pub(crate) struct ExtremaSearch<'a, 'e> {
     pub(crate) columns: &'a [Column],
     /// The index of the abscissa's column.
     pub(crate) abscissa: usize,
-    pub(crate) rows: &'a [Vec<f64>],
+    /// All values of a column.
+    pub(crate) values: &'a dyn Fn(usize) -> io::Result<Vec<f64>>,
     pub(crate) evaluators: &'a mut [PositionEvaluator<'e>],
 }
 
 impl ExtremaSearch<'_, '_> {
     /// The extrema in the rows.
-    pub(crate) fn in_rows(&self) -> Extrema {
-        let extremum = |k: usize, sign: f64| {
-            let values = self.rows.iter().filter(|row| !row[k].is_nan());
-            // Of equal values the first.
-            let row = values.reduce(|a, b| if sign * b[k] > sign * a[k] { b } else { a })?;
-            Some(Extremum {
-                value: row[k],
-                at: row[self.abscissa],
-            })
+    pub(crate) fn in_rows(&self) -> io::Result<Extrema> {
+        let at = (self.values)(self.abscissa)?;
+        let both = |k| -> io::Result<Option<[Extremum; 2]>> {
+            let values = (self.values)(k)?;
+            let extremum = |sign: f64| {
+                let values = values.iter().zip(&at).filter(|(value, _)| !value.is_nan());
+                // Of equal values the first.
+                let better = |a: (_, _), b: (_, _)| if sign * b.0 > sign * a.0 { b } else { a };
+                let (value, at) = values.map(|(&value, &at)| (value, at)).reduce(better)?;
+                Some(Extremum { value, at })
+            };
+            Ok(extremum(-1.0).zip(extremum(1.0)).map(Into::into))
         };
-        let both = |k| Some([extremum(k, -1.0)?, extremum(k, 1.0)?]);
-        Extrema {
-            of_columns: (0..self.columns.len()).map(both).collect(),
+        Ok(Extrema {
+            of_columns: (0..self.columns.len())
+                .map(both)
+                .collect::<io::Result<_>>()?,
             are_between_rows: false,
-        }
+        })
     }
 
     /// The extrema of some columns along the whole trajectory; of the others in the rows.
-    pub(crate) fn between_rows(&mut self, wanted: &[usize], between: &BetweenRows<'_>) -> Extrema {
-        let mut extrema = self.in_rows();
+    pub(crate) fn between_rows(
+        &mut self,
+        wanted: &[usize],
+        between: &BetweenRows<'_>,
+    ) -> io::Result<Extrema> {
+        let mut extrema = self.in_rows()?;
         let is_searched = |&k: &usize| is_continuous(&self.columns[k]);
         let wanted: Vec<usize> = wanted.iter().copied().filter(is_searched).collect();
-        let further: Vec<(f64, Vec<f64>)> = between
-            .further
-            .iter()
-            .filter_map(|(u, sample)| Some((*u, self.evaluate(&wanted, sample)?)))
-            .collect();
+        let further = self.evaluate_all(&wanted, &between.further);
         let refined = (MAX_REFINED_OF_ALL / wanted.len().max(1)).clamp(1, MAX_REFINED);
         for (i, &k) in wanted.iter().enumerate() {
             let Some(ends) = &mut extrema.of_columns[k] else {
                 continue;
             };
             let [lowest, highest] = *ends;
-            let rows = between.parameters.iter().zip(self.rows);
-            let mut points: Vec<Point> = rows.map(|(&u, row)| [u, row[k]]).collect();
+            let rows = between.parameters.iter().zip((self.values)(k)?);
+            let mut points: Vec<Point> = rows.map(|(&u, value)| [u, value]).collect();
             // An angle's revolutions are counted from row to row.
             if !self.columns[k].unwraps() {
                 points.extend(further.iter().map(|(u, values)| [*u, values[i]]));
@@ -151,17 +158,33 @@ impl ExtremaSearch<'_, '_> {
             }
         }
         extrema.are_between_rows = true;
-        extrema
+        Ok(extrema)
+    }
+
+    /// Some columns at many positions, on all cores.
+    fn evaluate_all(
+        &self,
+        columns: &[usize],
+        positions: &[(f64, TrajectorySample)],
+    ) -> Vec<(f64, Vec<f64>)> {
+        let (trajectory, all) = (self.trajectory, self.columns);
+        let evaluators = &*self.evaluators;
+        let part = positions.len().div_ceil(rayon::current_num_threads());
+        let parts = positions.par_chunks(part.max(1)).map(|positions| {
+            let mut evaluators = evaluators.to_vec();
+            let mut value = |(u, sample): &(f64, TrajectorySample)| {
+                let values = evaluate(trajectory, &mut evaluators, (all, columns), sample);
+                Some((*u, values?))
+            };
+            positions.iter().filter_map(&mut value).collect::<Vec<_>>()
+        });
+        parts.flatten().collect()
     }
 
     /// Some columns at a position.
     fn evaluate(&mut self, columns: &[usize], sample: &TrajectorySample) -> Option<Vec<f64>> {
-        let evaluator = self.evaluators.get_mut(sample.chart)?;
-        let t = self.trajectory.load_time(sample);
-        evaluator.evaluate(sample, t).ok()?;
-        let values = columns.iter();
-        let values = values.map(|&k| evaluator.value(self.columns[k].quantity, sample));
-        Some(values.collect())
+        let all = (self.columns, columns);
+        evaluate(self.trajectory, self.evaluators, all, sample)
     }
 
     /// The largest value times `sign` of a column; `points` are some of its values.
@@ -205,6 +228,21 @@ impl ExtremaSearch<'_, '_> {
             at,
         })
     }
+}
+
+/// Some of all columns at a position.
+fn evaluate(
+    trajectory: &Trajectory<'_>,
+    evaluators: &mut [PositionEvaluator<'_>],
+    (all, columns): (&[Column], &[usize]),
+    sample: &TrajectorySample,
+) -> Option<Vec<f64>> {
+    let evaluator = evaluators.get_mut(sample.chart)?;
+    let t = trajectory.load_time(sample);
+    evaluator.evaluate(sample, t).ok()?;
+    let values = columns.iter();
+    let values = values.map(|&k| evaluator.value(all[k].quantity, sample));
+    Some(values.collect())
 }
 
 /// Whether a column has its extrema between rows: not the error of the integration, and nothing that is infinite in

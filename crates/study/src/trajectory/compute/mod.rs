@@ -8,14 +8,17 @@ mod early_stop;
 mod evaluator;
 mod extra_columns;
 mod extrema;
+mod long_rows;
 mod mechanical_advantage;
 mod monitor;
 mod peak_forces;
+mod requested_columns;
 mod results;
 mod rounding_error;
 mod sectioned_link;
 mod selection;
 mod trajectory;
+mod unit_references;
 mod unit_scales;
 
 pub use analysis::Analysis;
@@ -30,20 +33,24 @@ pub(crate) use extra_columns::extra_columns;
 pub(crate) use extrema::{BetweenRows, Extrema, ExtremaSearch, Point, largest_between};
 #[cfg(feature = "output")]
 pub(crate) use extrema::{Extremum, is_searched_in_rows};
+pub(crate) use long_rows::{LongRows, RowMemory, not_stored};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryMonitor, table_of};
 pub(crate) use peak_forces::{WantedForces, peak_forces};
+pub(crate) use requested_columns::{RequestedColumns, is_requested};
+#[cfg(feature = "output")]
+pub(crate) use results::compute_trajectory_in;
 pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
 pub(crate) use results::{MotionBetweenRows, compute_along};
 pub(crate) use rounding_error::RoundingError;
 pub use sectioned_link::SectionedLink;
 pub(crate) use selection::{
-    check_variables, is_requested, prune_model, reject_unknown_variables, requested_bodies,
-    selected_columns,
+    check_variables, prune_model, reject_unknown_variables, requested_bodies,
 };
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
     BALANCE, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, Spacing, TrajectorySample,
     default_limits,
 };
+pub(crate) use unit_references::UnitReferences;
 pub(crate) use unit_scales::{UnitScales, force_scales};

@@ -10,6 +10,7 @@ use dwell_laws::{Law, Spline};
 use dwell_scene::Scene;
 
 /// The table of a load and its argument.
+#[derive(Clone)]
 struct MonitoredTable<'a> {
     load: usize,
     spline: &'a Spline,
@@ -18,6 +19,7 @@ struct MonitoredTable<'a> {
 }
 
 /// A coupling function, with its variable at the position before.
+#[derive(Clone)]
 struct MonitoredCoupling<'a> {
     joint: JointId,
     law: &'a Law,
@@ -26,6 +28,7 @@ struct MonitoredCoupling<'a> {
 }
 
 /// Checks one position after another.
+#[derive(Clone)]
 pub(crate) struct TrajectoryMonitor<'a> {
     tables: Vec<MonitoredTable<'a>>,
     couplings: Vec<MonitoredCoupling<'a>>,

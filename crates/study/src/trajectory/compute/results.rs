@@ -7,27 +7,38 @@ use crate::explain::StudyError;
 use crate::models::loaded_model;
 use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
-    Analysis, BetweenRows, Column, Extrema, ExtremaSearch, POSITIONS_PER_STEP, PositionEvaluator,
-    Quantity, RoundingError, SectionedLink, Trajectory, TrajectorySample, UnitScales, all_columns,
-    check_variables, is_requested, prune_model, selected_columns,
+    Analysis, BetweenRows, Column, Extrema, ExtremaSearch, LongRows, POSITIONS_PER_STEP,
+    PositionEvaluator, Quantity, RequestedColumns, RoundingError, RowMemory, SectionedLink,
+    Trajectory, TrajectorySample, UnitReferences, all_columns, check_variables, is_requested,
+    not_stored, prune_model,
 };
 use dwell_findings::{self as findings, Table};
 use dwell_geometry::Plan;
 use dwell_kinetostatics::Model;
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
+use std::io;
 
 /// What is evaluated at the positions of a trajectory.
 pub struct TrajectoryResults {
-    /// All columns of the analysis.
+    /// The columns of the analysis that the scene requests, and those that its pictures need.
     pub(crate) columns: Vec<Column>,
-    /// By position: a value for each column.
+    /// The indices of those in the tables.
+    pub(crate) written: Vec<usize>,
+    /// Whether the scene requests less than everything.
+    #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for summaries"))]
+    pub(crate) is_limited: bool,
+    /// What all columns of the analysis come to.
+    pub(crate) references: UnitReferences,
+    /// By position: a value for each column. Of a long trajectory only of some positions.
     pub(crate) rows: Vec<Vec<f64>>,
+    /// All rows of a long trajectory.
+    pub(crate) long_rows: Option<LongRows>,
     /// By column, of those that unwrap: the last angle, its rate and its time.
     last_angles: Vec<Option<[f64; 3]>>,
     /// By position: the residual of the power balance, and the sum of its absolute terms, W.
     power_terms: Vec<[f64; 2]>,
-    /// By position and body.
+    /// By position and body; of the positions of `rows`.
     pub body_poses: Vec<Vec<BodyPose>>,
     /// The links whose internal forces are requested.
     pub sectioned_links: Vec<SectionedLink>,
@@ -48,7 +59,12 @@ pub struct TrajectoryResults {
 }
 
 impl TrajectoryResults {
-    fn new(scene: &Scene, model: &Model, columns: Vec<Column>, analysis: Analysis) -> Self {
+    fn new(scene: &Scene, model: &Model, all: Vec<Column>, analysis: Analysis) -> Self {
+        let requested = RequestedColumns::new(scene, model.reactions(), analysis);
+        let is_kept = |c: &&Column| requested.are_with(c) || requested.draw(c);
+        let columns: Vec<Column> = all.iter().filter(is_kept).cloned().collect();
+        let written = 0..columns.len();
+        let written = written.filter(|&k| requested.are_with(&columns[k]));
         let sections = match analysis {
             Analysis::Kinematics => &[],
             _ => scene.requests.sections.as_slice(),
@@ -59,8 +75,12 @@ impl TrajectoryResults {
         let names = indeterminate.map(|(_, r)| scene.mechanism.reaction_name(*r));
         Self {
             last_angles: vec![None; columns.len()],
+            written: written.collect(),
+            is_limited: requested.is_limited(),
+            references: UnitReferences::new(all, &columns),
             columns,
             rows: Vec::new(),
+            long_rows: None,
             power_terms: Vec::new(),
             body_poses: Vec::new(),
             sectioned_links: links.collect(),
@@ -74,14 +94,59 @@ impl TrajectoryResults {
         }
     }
 
-    /// Some columns as a table.
-    fn table(&self, selected: &[usize]) -> Table {
-        let columns = selected.iter().map(|&k| &self.columns[k]);
+    /// The requested columns as a table.
+    fn table(&self) -> Table {
+        let columns = self.written.iter().map(|&k| &self.columns[k]);
         let columns = columns.map(|c| findings::Column::new(&c.name, c.unit));
-        let row = |row: &Vec<f64>| selected.iter().map(|&k| row[k]).collect();
+        let row = |row: &Vec<f64>| self.written.iter().map(|&k| row[k]).collect();
         Table {
             columns: columns.collect(),
-            rows: self.rows.iter().map(row).collect(),
+            rows: match &self.long_rows {
+                Some(_) => Vec::new(),
+                None => self.rows.iter().map(row).collect(),
+            },
+        }
+    }
+
+    /// Prepares the memory for the rows of so many positions.
+    fn keep_rows_in(&mut self, memory: RowMemory, points: usize) -> Result<(), StudyError> {
+        if memory == RowMemory::Bounded {
+            self.long_rows = LongRows::new(&self.columns, points)?;
+        }
+        Ok(())
+    }
+
+    /// Ends the rows: the last one is always in memory.
+    fn finish_rows(&mut self) -> Result<(), StudyError> {
+        if let Some(long) = &mut self.long_rows
+            && let Some((row, poses)) = long.finish()?
+        {
+            self.rows.push(row);
+            self.body_poses.push(poses);
+        }
+        Ok(())
+    }
+
+    /// Number of positions that were evaluated.
+    pub(crate) fn len(&self) -> usize {
+        let long = self.long_rows.as_ref();
+        long.map_or(self.rows.len(), |long| long.table.len())
+    }
+
+    /// All values of a column.
+    pub(crate) fn values(&self, column: usize) -> io::Result<Vec<f64>> {
+        match &self.long_rows {
+            Some(long) => long.table.column(column),
+            None => Ok(self.rows.iter().map(|row| row[column]).collect()),
+        }
+    }
+
+    /// The value of a column at the `k`th position; NaN where it cannot be read.
+    #[cfg(feature = "output")]
+    pub(crate) fn value_at(&self, k: usize, column: usize) -> f64 {
+        match &self.long_rows {
+            Some(long) => long.table.value(k, column).unwrap_or(f64::NAN),
+            None => self.rows.get(k).map_or(f64::NAN, |row| row[column]),
         }
     }
 
@@ -101,8 +166,18 @@ impl TrajectoryResults {
             unwrap_angle(last, value, speed, sample.t)
         };
         let columns = self.columns.iter().zip(&mut self.last_angles);
-        self.rows.push(columns.map(value).collect());
-        self.body_poses.push(evaluator.body_poses());
+        let row: Vec<f64> = columns.map(value).collect();
+        self.references
+            .add_row(&row, &|quantity| evaluator.value(quantity, sample));
+        let poses = evaluator.body_poses();
+        let kept = match &mut self.long_rows {
+            Some(long) => long.add(row, poses),
+            None => Some((row, poses)),
+        };
+        if let Some((row, poses)) = kept {
+            self.rows.push(row);
+            self.body_poses.push(poses);
+        }
         let position = &evaluator.position;
         let links = self.sectioned_links.iter_mut().zip(&position.link_forces);
         for (link, forces) in links {
@@ -124,7 +199,7 @@ fn unwrap_angle(last: &mut Option<[f64; 3]>, value: f64, speed: f64, t: f64) -> 
     unwrapped
 }
 
-/// The columns of an analysis along a trajectory, of the bodies that `model` places.
+/// All columns of an analysis along a trajectory, of the bodies that `model` places.
 fn computed_columns(scene: &Scene, model: &Model, trajectory: &Trajectory<'_>) -> Vec<Column> {
     let modelled = model.plan().placed_bodies();
     let is_modelled = |column: &Column| {
@@ -155,28 +230,14 @@ pub(crate) struct MotionBetweenRows<'s> {
 impl TrajectoryResults {
     /// Finds which columns are zero but for rounding, in a mechanism of this size (m), and the residual of the power balance.
     fn find_rounding(&mut self, size: f64) {
-        let largest = |k: usize| {
-            let values = self.rows.iter().map(|row| row[k].abs());
-            values.filter(|v| v.is_finite()).fold(0.0, f64::max)
-        };
-        let largest: Vec<f64> = (0..self.columns.len()).map(largest).collect();
-        let scales = UnitScales::new(&self.columns, &largest, size);
-        let columns = self.columns.iter().zip(&largest);
-        let is_rounding = columns.map(|(c, &largest)| scales.is_rounding(c.unit, largest));
-        self.is_rounding = is_rounding.collect();
+        let scales = self.references.scales(size);
+        self.is_rounding = self.references.is_rounding(&scales, self.columns.len());
         let power = self.power_terms.iter().map(|[_, scale]| *scale);
         let power = power.fold(scales.of("W"), f64::max);
         let residuals = self.power_terms.iter();
         let residuals =
             residuals.map(|&[residual, scale]| relative(residual, error_scale(scale, power)));
         self.power_residual = residuals.fold(0.0, f64::max);
-        for k in 0..self.columns.len() {
-            // A force that is only rounding has no direction.
-            if let Quantity::ForceDirection(joint) = self.columns[k].quantity {
-                let magnitude = self.column_index(Quantity::ForceMagnitude(joint));
-                self.is_rounding[k] |= magnitude.is_some_and(|k| self.is_rounding[k]);
-            }
-        }
     }
 
     /// The index of the column of a quantity.
@@ -198,14 +259,14 @@ impl TrajectoryResults {
         trajectory: &Trajectory<'_>,
         evaluators: &mut [PositionEvaluator<'_>],
         motion: Option<MotionBetweenRows<'_>>,
-    ) {
+    ) -> Result<(), StudyError> {
         self.find_rounding(scene.mechanism.size());
-        let selected = selected_columns(scene, &self.columns).into_iter();
-        let wanted: Vec<usize> = selected.filter(|&k| !self.is_rounding[k]).collect();
+        let written = self.written.iter().copied();
+        let wanted: Vec<usize> = written.filter(|&k| !self.is_rounding[k]).collect();
         let at_fraction = |u: f64| Some(trajectory.sample_at(u));
         let between = match (trajectory.free_motion(), motion) {
             (None, _) => {
-                let fractions = (0..self.rows.len()).map(|k| trajectory.fraction_at(k));
+                let fractions = (0..self.len()).map(|k| trajectory.fraction_at(k));
                 Some(BetweenRows::new(
                     fractions.collect(),
                     Vec::new(),
@@ -223,18 +284,20 @@ impl TrajectoryResults {
             trajectory,
             columns: &self.columns,
             abscissa: self.abscissa(trajectory),
-            rows: &self.rows,
+            values: &|k| self.values(k),
             evaluators,
         };
-        self.extrema = match between {
+        let extrema = match between {
             Some(between) => search.between_rows(&wanted, &between),
             None => search.in_rows(),
         };
+        self.extrema = extrema.map_err(|e| not_stored(&e))?;
         for (extrema, &is_rounding) in self.extrema.of_columns.iter_mut().zip(&self.is_rounding) {
             if let Some(extrema) = extrema.as_mut().filter(|_| is_rounding) {
                 extrema.iter_mut().for_each(|extremum| extremum.value = 0.0);
             }
         }
+        Ok(())
     }
 }
 
@@ -244,7 +307,8 @@ pub struct ComputedTrajectory<'a> {
     pub trajectory: Trajectory<'a>,
     /// What was evaluated at each position.
     pub results: TrajectoryResults,
-    /// A row for each position: time, actuator coordinates and the requested columns.
+    /// A row for each position: time, actuator coordinates and the requested columns. Without rows where a command keeps
+    /// them in a temporary file.
     pub table: Table,
     /// Why the trajectory ended early, if it did.
     pub early_stop: Option<StudyError>,
@@ -296,10 +360,21 @@ pub fn compute_trajectory<'a>(
     points: Option<usize>,
     progress: Progress<'_>,
 ) -> Result<ComputedTrajectory<'a>, StudyError> {
+    compute_trajectory_in(RowMemory::Whole, scene, analysis, points, progress)
+}
+
+/// The same with the rows in memory, or where they are bounded.
+pub(crate) fn compute_trajectory_in<'a>(
+    memory: RowMemory,
+    scene: &'a Scene,
+    analysis: Analysis,
+    points: Option<usize>,
+    progress: Progress<'_>,
+) -> Result<ComputedTrajectory<'a>, StudyError> {
     let model = loaded_model(scene)?;
     let notes = check_variables(scene, &model)? + &branch_note(scene, model.plan());
     let trajectory = Trajectory::new(scene, model.plan(), analysis, points)?;
-    compute_along(scene, &model, (trajectory, None), notes, progress)
+    compute_in(memory, scene, &model, (trajectory, None), notes, progress)
 }
 
 /// Evaluates a scene along a trajectory; of a free motion also with what is known between its rows.
@@ -307,6 +382,25 @@ pub fn compute_trajectory<'a>(
 /// # Errors
 /// [`StudyError`] where not even the first position can be reached.
 pub(crate) fn compute_along<'a>(
+    scene: &Scene,
+    full_model: &Model,
+    followed: (Trajectory<'a>, Option<MotionBetweenRows<'_>>),
+    notes: String,
+    progress: Progress<'_>,
+) -> Result<ComputedTrajectory<'a>, StudyError> {
+    compute_in(
+        RowMemory::Whole,
+        scene,
+        full_model,
+        followed,
+        notes,
+        progress,
+    )
+}
+
+/// As [`compute_along`], with the rows in memory or where they are bounded.
+fn compute_in<'a>(
+    memory: RowMemory,
     scene: &Scene,
     full_model: &Model,
     (trajectory, between): (Trajectory<'a>, Option<MotionBetweenRows<'_>>),
@@ -322,10 +416,12 @@ pub(crate) fn compute_along<'a>(
         [] => std::slice::from_ref(model),
         charts => charts,
     };
-    let evaluators = charts.iter();
-    let evaluators = evaluators.map(|chart| PositionEvaluator::new(scene, plan, chart, analysis));
-    let mut evaluators = evaluators.collect::<Result<Vec<_>, _>>()?;
     let mut results = TrajectoryResults::new(scene, model, columns, analysis);
+    results.keep_rows_in(memory, trajectory.points)?;
+    let evaluators = charts
+        .iter()
+        .map(|chart| PositionEvaluator::new(scene, plan, chart, analysis, &results.columns));
+    let mut evaluators = evaluators.collect::<Result<Vec<_>, _>>()?;
     let mut rounding_error = matches!(analysis, Analysis::Statics | Analysis::Kinetostatics)
         .then(|| RoundingError::new(scene, model, trajectory.points));
     let early_stop = trajectory.follow(plan, |k, sample| {
@@ -335,10 +431,7 @@ pub(crate) fn compute_along<'a>(
         results.add_position(k, evaluator, sample);
         if let Some(rounding_error) = &mut rounding_error {
             let rest = vec![0.0; sample.q.len()];
-            let at = match analysis {
-                Analysis::Statics => [sample.q.as_slice(), &rest, &rest],
-                _ => [&sample.q, &sample.q_dot, &sample.q_ddot].map(Vec::as_slice),
-            };
+            let at = evaluated_state(analysis, sample, &rest);
             rounding_error.add_position(k, model, t, at, &evaluator.forces.results);
         }
         if k.is_multiple_of(POSITIONS_PER_STEP) {
@@ -354,13 +447,26 @@ pub(crate) fn compute_along<'a>(
     if let Some(error) = early_stop.take_if(|_| !has_begun) {
         return Err(error);
     }
-    results.find_extrema(scene, &trajectory, &mut evaluators, between);
+    results.finish_rows()?;
+    results.find_extrema(scene, &trajectory, &mut evaluators, between)?;
     results.rounding_error = rounding_error.map(|error| error.max_relative());
     Ok(ComputedTrajectory {
-        table: results.table(&selected_columns(scene, &results.columns)),
+        table: results.table(),
         early_stop,
         trajectory,
         results,
         notes,
     })
+}
+
+/// Coordinates, velocities and accelerations at which an analysis evaluates a position: those of statics are at rest.
+fn evaluated_state<'s>(
+    analysis: Analysis,
+    sample: &'s TrajectorySample,
+    rest: &'s [f64],
+) -> [&'s [f64]; 3] {
+    match analysis {
+        Analysis::Statics => [sample.q.as_slice(), rest, rest],
+        _ => [&sample.q, &sample.q_dot, &sample.q_ddot].map(Vec::as_slice),
+    }
 }

@@ -4,7 +4,7 @@
 use crate::explain::{StudyError, scene_error};
 use crate::former_names;
 use crate::models::{build_machine, compile_model, requested_reaction_bodies, with_drive_loads};
-use crate::trajectory::compute::{Column, Quantity, all_columns, extra_columns, is_prefix_of};
+use crate::trajectory::compute::{Column, all_columns, extra_columns, is_prefix_of};
 use dwell_geometry::{BodyId, JointId};
 use dwell_kinetostatics::Model;
 use dwell_scene::{Scene, SceneLocation, choices};
@@ -97,22 +97,6 @@ fn suggestion(name: &str, columns: &[Column]) -> String {
     } else {
         choices(name, &format!("columns of `{first}`"), below.into_iter())
     }
-}
-
-/// Whether a scene requests a column by name.
-pub(crate) fn is_requested(scene: &Scene, column: &Column) -> bool {
-    let names = scene.requests.variables.iter().flatten();
-    names.into_iter().any(|n| column.matches(n))
-}
-
-/// The indices of the columns of the tables: time, actuator coordinates and those requested.
-pub(crate) fn selected_columns(scene: &Scene, columns: &[Column]) -> Vec<usize> {
-    let is_selected = |column: &Column| match (&scene.requests.variables, column.quantity) {
-        (None, _) | (_, Quantity::Time | Quantity::ActuatorCoordinate(_, 0)) => true,
-        (Some(_), _) => is_requested(scene, column),
-    };
-    let all = 0..columns.len();
-    all.filter(|&k| is_selected(&columns[k])).collect()
 }
 
 /// The bodies that the requests of a scene need; `None` if no `variables` are named, so that every

@@ -34,16 +34,23 @@ pub(crate) fn force_scales(arm: f64, [force, moment]: [f64; 2], kinetic: f64) ->
 }
 
 impl UnitScales {
-    /// From the columns of a trajectory and the largest magnitude of each; `size` is that of the mechanism, m.
-    pub(crate) fn new(columns: &[Column], largest: &[f64], size: f64) -> Self {
+    /// Whether the references depend on the columns of a unit.
+    pub(crate) fn depend_on(unit: &str) -> bool {
+        matches!(
+            unit,
+            "m/s" | "rad/s" | "m/s2" | "rad/s2" | "N" | "N m" | "W" | "J"
+        )
+    }
+
+    /// From the columns of a trajectory, each with its largest magnitude; `size` is that of the mechanism, m.
+    pub(crate) fn new(columns: &[(&Column, f64)], size: f64) -> Self {
         let of_unit = |unit: &str| {
-            let all = columns.iter().zip(largest);
-            let alike = all.filter(|(column, _)| column.unit == unit);
-            alike.fold(0.0_f64, |scale, (_, &value)| scale.max(value))
+            let alike = columns.iter().filter(|(column, _)| column.unit == unit);
+            alike.fold(0.0_f64, |scale, &(_, value)| scale.max(value))
         };
         let is_kinetic = |column: &Column| column.quantity == Quantity::Power(4);
-        let kinetic = columns.iter().zip(largest).find(|(c, _)| is_kinetic(c));
-        let kinetic = kinetic.map_or(0.0, |(_, &value)| value);
+        let kinetic = columns.iter().find(|(column, _)| is_kinetic(column));
+        let kinetic = kinetic.map_or(0.0, |&(_, value)| value);
         let [velocity, angular] = with_arm(size, ["m/s", "rad/s"].map(of_unit));
         let [acceleration, angular_acceleration] = with_arm(
             size,

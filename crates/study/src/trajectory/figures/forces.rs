@@ -151,7 +151,7 @@ impl FigureContext<'_> {
         let charts = vec![axial, shear, chart(2, "bending moment", "N m")];
         let text = format!(
             "At {}, where the bending moment is largest; dashed: smallest and largest values over the whole trajectory.",
-            self.describe_position(*row),
+            self.describe_row(*row),
         );
         let name = format!("internal-forces-{}", link.file_name(body));
         let title = format!("Internal forces of {}", link.name);

@@ -43,6 +43,8 @@ pub(crate) struct FigureContext<'a> {
     /// The method that computed the positions.
     method_text: String,
     x: Axis,
+    /// The index of the abscissa's column.
+    abscissa: usize,
     abscissa_values: Vec<f64>,
     /// The part of the rows that curves show.
     drawn: DrawnRows,
@@ -183,16 +185,30 @@ impl<'a> FigureContext<'a> {
             analysis: trajectory.analysis,
             method_text: trajectory.method_text.clone(),
             x,
+            abscissa,
             abscissa_values,
             drawn: rows,
             limits: [start, end || computed.early_stop.is_some()],
         })
     }
 
-    /// The abscissa of the `k`th position: `time = 0.25 s`, `φ = −12.5°`.
+    /// The abscissa of the `k`th position that is drawn: `time = 0.25 s`, `φ = −12.5°`.
     fn describe_position(&self, k: usize) -> String {
+        self.describe(self.abscissa_values.get(k).copied().unwrap_or(0.0))
+    }
+
+    /// The abscissa of the `row`th position, drawn or not.
+    fn describe_row(&self, row: usize) -> String {
+        let at = self.results.value_at(row, self.abscissa);
+        self.describe(match self.x.scale {
+            Scale::Degrees => at.to_degrees(),
+            _ => at,
+        })
+    }
+
+    /// A drawn value of the abscissa: `time = 0.25 s`, `φ = −12.5°`.
+    fn describe(&self, at: f64) -> String {
         let label = &self.x.label;
-        let at = self.abscissa_values.get(k).copied().unwrap_or(0.0);
         let text = match self.x.scale {
             Scale::Degrees => format!("{label} = {at:.1}°"),
             _ => format!("{label} = {} {}", digits(at, 4), self.x.unit),

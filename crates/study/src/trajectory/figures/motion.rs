@@ -11,7 +11,8 @@ impl FigureContext<'_> {
         let angle = |body, order| self.results.column_index(Quantity::BodyAngle(body, order));
         let rotates = |body: &BodyId| {
             let Some(k) = angle(*body, 0) else {
-                return false;
+                // Only its velocity or acceleration is requested.
+                return (1..3).any(|order| angle(*body, order).is_some());
             };
             let mut rows = self.results.rows.iter();
             let start = self.results.rows.first().map_or(0.0, |row| row[k]);

@@ -1,0 +1,74 @@
+//! The seconds of the whole command `dwell simulate --accuracy …`, beside those of its computation.
+
+use super::subject::Subject;
+use dwell_report::{OutputFolder, ReportError};
+use dwell_scene::Scene;
+use dwell_study::{
+    MotionSolver, Outcome, Pictures, StudyError, compute_free_motion, no_progress,
+    simulate_to_accuracy,
+};
+use std::fs;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+/// The accuracies that are measured.
+const ACCURACIES: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
+
+/// The command at one accuracy.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct CommandTime {
+    pub(super) accuracy: f64,
+    /// The estimated error that it reports; none where it fails.
+    pub(super) estimated_error: Option<f64>,
+    /// The motion with its rows and extrema, without anything written, s.
+    pub(super) computing: f64,
+    /// The same with tables and page, and with the main pictures too, all in their files, s.
+    pub(super) with_files: f64,
+    pub(super) with_pictures: f64,
+}
+
+/// The command at each accuracy, on the motion of a scene.
+pub(super) fn command_times(scene: &Scene) -> Result<Vec<CommandTime>, StudyError> {
+    let scene = Subject::new(scene)?.scene;
+    let one = |accuracy: f64| {
+        let started = Instant::now();
+        let solver = MotionSolver::Accuracy {
+            accuracy,
+            sample_interval: None,
+        };
+        let motion = compute_free_motion(&scene, &solver, &no_progress)?;
+        let computing = started.elapsed().as_secs_f64();
+        let [with_files, with_pictures] = whole_command(&scene, accuracy)?;
+        Ok(CommandTime {
+            accuracy,
+            estimated_error: motion.estimated_error,
+            computing,
+            with_files,
+            with_pictures,
+        })
+    };
+    ACCURACIES.into_iter().map(one).collect()
+}
+
+/// The seconds from the scene in memory to its files in a folder, which is removed afterwards: without pictures, and with
+/// the main ones.
+fn whole_command(scene: &Scene, accuracy: f64) -> Result<[f64; 2], StudyError> {
+    static NUMBER: AtomicU64 = AtomicU64::new(0);
+    let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+    let name = format!("dwell-work-precision-{}-{number}", std::process::id());
+    let path = std::env::temp_dir().join(name);
+    let started = Instant::now();
+    let outcome = simulate_to_accuracy(scene, accuracy, None, &no_progress)?.outcome;
+    let computing = started.elapsed().as_secs_f64();
+    let written = |outcome: Outcome, pictures: Pictures| -> Result<f64, StudyError> {
+        let started = Instant::now();
+        let files = outcome.draw(pictures, &no_progress)?.files;
+        OutputFolder::open(&path)?.write(&files)?;
+        Ok(computing + started.elapsed().as_secs_f64())
+    };
+    let without = written(outcome.clone(), Pictures::None);
+    let seconds = without.and_then(|without| Ok([without, written(outcome, Pictures::Main)?]));
+    let removed = fs::remove_dir_all(&path);
+    removed.map_err(|source| ReportError::File { path, source })?;
+    seconds
+}
