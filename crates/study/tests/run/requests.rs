@@ -2,7 +2,7 @@
 
 use crate::table::{Table, WEIGHTS, analyse, case, file, scene};
 use dwell_scene::Scene;
-use dwell_study::{Analysis, Pictures, analyse_trajectory, no_progress};
+use dwell_study::{Analysis, PictureFormat, Pictures, analyse_trajectory, no_progress};
 use std::collections::BTreeMap;
 
 /// The crank-rocker with these requests.
@@ -96,7 +96,7 @@ fn no_picture_shows_what_is_not_requested() {
         let scene = with_requests(requests);
         let result =
             analyse_trajectory(&scene, Analysis::Kinetostatics, Some(41), &no_progress).unwrap();
-        let drawn = result.outcome.draw(Pictures::All, &no_progress).unwrap();
+        let drawn = result.outcome.draw((Pictures::All, PictureFormat::Png), &no_progress).unwrap();
         let paths = drawn
             .files
             .iter()

@@ -4,7 +4,7 @@ use super::subject::Subject;
 use dwell_report::{OutputFolder, ReportError};
 use dwell_scene::Scene;
 use dwell_study::{
-    MotionSolver, Outcome, Pictures, StudyError, compute_free_motion, no_progress,
+    MotionSolver, Outcome, PictureFormat, Pictures, StudyError, compute_free_motion, no_progress,
     simulate_to_accuracy,
 };
 use std::fs;
@@ -62,7 +62,7 @@ fn whole_command(scene: &Scene, accuracy: f64) -> Result<[f64; 2], StudyError> {
     let computing = started.elapsed().as_secs_f64();
     let written = |outcome: Outcome, pictures: Pictures| -> Result<f64, StudyError> {
         let started = Instant::now();
-        let files = outcome.draw(pictures, &no_progress)?.files;
+        let files = outcome.draw((pictures, PictureFormat::Png), &no_progress)?.files;
         OutputFolder::open(&path)?.write(&files)?;
         Ok(computing + started.elapsed().as_secs_f64())
     };
