@@ -17,9 +17,11 @@
 //! ```
 
 mod check;
+mod record;
 mod table;
 
 pub use check::Check;
+pub use record::{Record, RecordedEvent, RecordedExtrema, RecordedNumber};
 pub use table::{Column, Table};
 
 /// One comparison of a result with an independent reference.

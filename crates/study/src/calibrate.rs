@@ -11,6 +11,8 @@ use crate::{
     branch_note::branch_note, models::PreparedScene, number_format::digits_within, output::Outcome,
 };
 use dwell_dynamics::{Orbit, ReducedState};
+#[cfg(feature = "output")]
+use dwell_findings::Record;
 use dwell_kinetostatics::ExactModel;
 use dwell_numerics::root;
 use dwell_scene::{Scene, SceneLocation};
@@ -34,6 +36,22 @@ pub struct CalibrationResult {
     pub value_error: f64,
     /// The required period, s.
     pub period: f64,
+}
+
+#[cfg(feature = "output")]
+impl CalibrationResult {
+    /// The numbers that are printed.
+    fn record(&self) -> Record {
+        let mut record = Record::default();
+        record.add("required_period", "s", self.period);
+        record.add_within(&self.path, &self.unit, self.value, self.value_error);
+        record.add("error.value", &self.unit, self.value_error);
+        record.add("scene.value", &self.unit, self.current);
+        let (period, error) = (self.current_period, self.current_period_error);
+        record.add_within("scene.period", "s", period, error);
+        record.add("error.period", "s", error);
+        record
+    }
 }
 
 /// Largest factor between the value in the scene and a trial value, and the first factor.
@@ -264,6 +282,7 @@ pub fn calibrate(
     let current_period = digits_within(result.current_period, result.current_period_error, 13);
     let [value_error, period_error] = [result.value_error, result.current_period_error];
     Ok(Outcome {
+        record: result.record(),
         summary: format!(
             "{title}: {path} = {value} {unit} gives the period {period} s\n  the scene has {current} {unit}, which gives \
              {current_period} s\n  estimated errors: {value_error:.1e} {unit}, {period_error:.1e} s\n{note}"

@@ -9,6 +9,7 @@ mod output;
 mod results;
 mod rows;
 mod studies;
+mod summaries;
 mod sweep;
 mod test_dir;
 mod trajectories;

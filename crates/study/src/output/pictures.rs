@@ -87,6 +87,7 @@ impl Outcome {
     pub fn draw(self, wanted: Pictures, progress: Progress<'_>) -> Result<Self, StudyError> {
         let Self {
             mut summary,
+            mut record,
             mut files,
             findings,
             pictures,
@@ -119,9 +120,12 @@ impl Outcome {
                 drawn.len(),
                 count(all, "picture")
             );
+            record.add_count("pictures", all);
+            record.add_count("pictures_drawn", drawn.len());
         }
         Ok(Self {
             summary,
+            record,
             files,
             findings,
             ..Self::default()

@@ -10,6 +10,7 @@ use crate::ranges::extent;
 use crate::reduce::compute::{
     Reduction, RoundingErrors, TableRequest, compute_reduction, tabulate,
 };
+use dwell_findings::Record;
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Figure, Files, TableFormat};
 use dwell_scene::Scene;
@@ -49,15 +50,18 @@ pub fn reduce(
     };
     let pictures = figures.into_iter().map(picture).collect();
     let mut summary = summary(&reduction, note.as_deref());
+    let mut record = record(&reduction);
     if let Some(request) = table {
         let tabulation = tabulate(prepared, &request)?;
         summary += &tabulation.summary;
+        record.extend(tabulation.record);
         if let Some(text) = tabulation.text {
             files.add(format!("{}.table", scene.name), text);
         }
     }
     Ok(Outcome {
         summary,
+        record,
         files,
         pictures,
         ..Outcome::default()
@@ -73,6 +77,39 @@ fn describe_rounding(errors: &RoundingErrors) -> String {
     format!(
         "  estimated rounding errors, compared with 32-digit arithmetic: below {m} of the largest m, {half_dm} of ½m′, {rest} of any a or b\n"
     )
+}
+
+/// The numbers of the summary.
+fn record(reduction: &Reduction<'_>) -> Record {
+    let curves = &reduction.curves;
+    let mut record = Record::default();
+    record.add_count("positions", curves.q.len());
+    let is_rounding = reduction.errors.is_rounding[1];
+    let [m_error, half_dm_error, rest] = reduction.errors.max_errors;
+    let picks: [(&str, &str, fn(&Coefficients) -> f64, f64, bool); 2] = [
+        ("m", "kg m2", |c| c.m, m_error, false),
+        (
+            "half_dm",
+            "kg m2/rad",
+            |c| c.half_dm,
+            half_dm_error,
+            is_rounding,
+        ),
+    ];
+    for (name, unit, pick, error, is_zero) in picks {
+        let ends = match is_zero {
+            true => [0.0; 2],
+            false => extent(curves.coefficients.iter().map(pick)),
+        };
+        let largest = ends[0].abs().max(ends[1].abs());
+        for (end, value) in ["min", "max"].into_iter().zip(ends) {
+            record.add_within(format!("{name}.{end}"), unit, value, error * largest);
+        }
+    }
+    record.add("rounding_error.m", "", m_error);
+    record.add("rounding_error.half_dm", "", half_dm_error);
+    record.add("rounding_error.reactions", "", rest);
+    record
 }
 
 /// The printed summary.

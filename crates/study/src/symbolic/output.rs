@@ -4,7 +4,7 @@ use crate::explain::StudyError;
 use crate::number_format::{count, digits};
 use crate::output::{Outcome, separating_note};
 use crate::symbolic::compute::compute_closed_form;
-use dwell_findings::Finding;
+use dwell_findings::{Finding, Record};
 use dwell_report::{Block, Document};
 use dwell_scene::Scene;
 use dwell_symbolic::{ClosedForm, Constant, FormulaSection, Language};
@@ -29,8 +29,15 @@ pub fn symbolic(
     reaction: Option<&str>,
 ) -> Result<Outcome, StudyError> {
     let (form, findings) = compute_closed_form(scene, reaction)?;
+    let mut record = Record::default();
+    record.add_count("steps", form.assignment_count());
+    for f in &findings {
+        record.add(&f.key, "", f.relative_difference);
+        record.add(format!("{}.tolerance", f.key), "", f.tolerance);
+    }
     let mut outcome = Outcome {
         summary: summary(scene, &form, &findings),
+        record,
         findings,
         ..Outcome::default()
     };

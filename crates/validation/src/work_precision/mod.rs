@@ -47,6 +47,7 @@ pub fn work_precision(scene: &Scene, progress: Progress<'_>) -> Result<Outcome, 
     let name = format!("{}-work-precision", scene.name);
     let mut outcome = Outcome {
         summary: report::summary(scene, &found),
+        record: report::record(&found),
         ..Outcome::default()
     };
     let figure = figure::figure(scene, &found, &name);

@@ -9,7 +9,7 @@ use crate::number_format::digits;
 use crate::progress::{Progress, no_progress};
 use crate::trajectory::compute::{ComputedTrajectory, MotionBetweenRows, compute_along};
 use dwell_dynamics::{DynamicsError, EventOccurrence, Options};
-use dwell_findings::Table;
+use dwell_findings::{Record, Table};
 use dwell_scene::{Scene, SceneError, SceneLocation};
 
 /// Number of samples if no sample interval is given.
@@ -46,6 +46,8 @@ pub struct FreeMotion {
     pub estimated_error: Option<f64>,
     /// What the integration reports: method, events, cost, motion class, energy balance and estimated error.
     pub summary: String,
+    /// The numbers in it.
+    pub record: Record,
 }
 
 /// The free motion of a scene.
@@ -103,7 +105,9 @@ pub(crate) fn compute_free_motion_at(
     problem.set_errors(&mut computed, &integrated, times);
     let shortfall = problem.shortfall(scene, &integrated, solver);
     computed.early_stop = shortfall.or(computed.early_stop);
-    let mut summary = problem.summary(&integrated, duration);
+    let mut record = Record::default();
+    let mut summary = problem.summary(&integrated, duration, &mut record);
+    record.extend(integrated.record.clone());
     summary += &problem.notes;
     summary += &integrated.remarks;
     Ok(FreeMotion {
@@ -112,6 +116,7 @@ pub(crate) fn compute_free_motion_at(
         event_table: problem.event_table(motion),
         estimated_error: integrated.accuracy.map(|[_, error]| error),
         summary,
+        record,
         loaded_scene,
     })
 }
@@ -232,6 +237,7 @@ impl FreeMotionProblem<'_> {
         Ok(ComputedMotion {
             method_text: settings.describe(),
             remarks: self.method_hint(&motion, settings) + &estimate.text,
+            record: estimate.record,
             accuracy: None,
             inaccuracy: unstable.or(estimate.inaccuracy),
             comparison: estimate.second,
