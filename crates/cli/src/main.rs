@@ -134,8 +134,11 @@ fn finish(
         status,
         errors: &errors.collect::<Vec<_>>(),
     };
-    let added = add_summary(&mut done.outcome, &result);
-    added.map_err(|e| Report::new(as_scene_error(e)))?;
+    // Where no case could be validated there is nothing to write.
+    if status < 2 || !done.outcome.files.is_empty() {
+        let added = add_summary(&mut done.outcome, &result);
+        added.map_err(|e| Report::new(as_scene_error(e)))?;
+    }
     print(&done.outcome.summary)?;
     write_files(&done.outcome.files, folder, out)?;
     times.add("writing");

@@ -177,6 +177,7 @@ fn describe_groups(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> S
         let joints = joints.iter().map(|j| mechanism.joints[j.0].name.as_str());
         let (joints, unknowns) = (list_or(joints, "its actuator"), count(size, "unknown"));
         let (number, bodies) = (g + 1, group_bodies(mechanism, plan, g));
+        record.add_count(format!("group.{number}.unknowns"), size);
         text += &match size {
             0 => format!("    {number}. {joints}: redundant, closes no group of its own\n"),
             _ => format!("    {number}. {bodies} closed by {joints}: {unknowns}, {kind}\n"),

@@ -4,16 +4,16 @@ use crate::number_format::{coordinate_unit, count, digits, force_unit, number};
 use dwell_findings::Record;
 use dwell_geometry::{BodyId, Plan, Vec2, vec2};
 use dwell_kinetostatics::{DriveKind, LoadKind, Magnitude, Signal};
-use dwell_scene::{MotionDuration, Scene};
+use dwell_scene::{CoordinateSweep, FreeMotionSpec, MotionDuration, Scene};
 
 /// Its size, masses, loads, drives, stops and motions as lines of text; the numbers go into the record.
 pub(crate) fn describe_contents(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
     describe_size(scene, plan, record)
         + &describe_masses(scene, plan, record)
-        + &describe_loads(scene)
-        + &describe_drives(scene)
-        + &describe_stops(scene)
-        + &describe_motions(scene)
+        + &describe_loads(scene, record)
+        + &describe_drives(scene, record)
+        + &describe_stops(scene, record)
+        + &describe_motions(scene, record)
 }
 
 /// The frames of all bodies at the start: origin, m, and angle, rad.
@@ -136,9 +136,17 @@ fn load_unit(kind: &LoadKind) -> &'static str {
 }
 
 /// A constant, or what a magnitude depends on.
-fn magnitude(scene: &Scene, of: &Magnitude, unit: &str) -> String {
+fn magnitude(
+    scene: &Scene,
+    of: &Magnitude,
+    (name, unit): (&str, &str),
+    record: &mut Record,
+) -> String {
     match of {
-        Magnitude::Constant(value) => format!("{} {unit}", number(*value)),
+        Magnitude::Constant(value) => {
+            record.add(name, unit, *value);
+            format!("{} {unit}", number(*value))
+        }
         Magnitude::Friction(_) => "dry friction".to_owned(),
         Magnitude::Separating(_) => "from the tooth force".to_owned(),
         other => {
@@ -161,19 +169,20 @@ fn signal_name(scene: &Scene, signal: &Signal) -> String {
     }
 }
 
-fn describe_loads(scene: &Scene) -> String {
+fn describe_loads(scene: &Scene, record: &mut Record) -> String {
     if scene.loads.is_empty() {
         return "  no loads\n".to_owned();
     }
     let lines = scene.loads.iter().map(|load| {
         let (kind, unit) = (load_kind(scene, &load.kind), load_unit(&load.kind));
-        let magnitude = magnitude(scene, &load.magnitude, unit);
+        let name = format!("load.{}", load.name);
+        let magnitude = magnitude(scene, &load.magnitude, (&name, unit), record);
         format!("    {}: {kind}, {magnitude}\n", load.name)
     });
     "  loads:\n".to_owned() + &lines.collect::<String>()
 }
 
-fn describe_drives(scene: &Scene) -> String {
+fn describe_drives(scene: &Scene, record: &mut Record) -> String {
     if scene.drives.is_empty() {
         return "  no drives\n".to_owned();
     }
@@ -185,14 +194,15 @@ fn describe_drives(scene: &Scene) -> String {
             DriveKind::Motor(_) => ("direct-current motor", "V"),
             DriveKind::SpeedController(_) => ("speed controller", speed_unit.as_str()),
         };
-        let input = magnitude(scene, drive.kind.input(), unit);
+        let name = format!("drive.{}", drive.name);
+        let input = magnitude(scene, drive.kind.input(), (&name, unit), record);
         let on = scene.name_of(drive.coordinate);
         format!("    {}: {kind} on {on}, {input}\n", drive.name)
     });
     "  drives:\n".to_owned() + &lines.collect::<String>()
 }
 
-fn describe_stops(scene: &Scene) -> String {
+fn describe_stops(scene: &Scene, record: &mut Record) -> String {
     let lines = scene.stops.iter().map(|stop| {
         let actuator = &scene.mechanism.actuators[stop.actuator.0];
         let is_angle = actuator.coordinate().is_angle();
@@ -203,6 +213,13 @@ fn describe_stops(scene: &Scene) -> String {
         let limits = [("from", stop.min), ("to", stop.max)];
         let limits = limits.map(|(words, value)| value.map(|v| limit(words, v)));
         let limits: String = limits.into_iter().flatten().collect();
+        let of = |what: &str| format!("stop.{}.{what}", stop.name);
+        for (what, value) in [("min", stop.min), ("max", stop.max)] {
+            if let Some(value) = value {
+                record.add(of(what), coordinate_unit(is_angle), value);
+            }
+        }
+        record.add(of("restitution"), "", stop.restitution);
         let restitution = number(stop.restitution);
         let (name, on) = (&stop.name, &actuator.name);
         format!("  end stop {name}: {on}{limits}, coefficient of restitution {restitution}\n")
@@ -211,7 +228,7 @@ fn describe_stops(scene: &Scene) -> String {
 }
 
 /// The prescribed motion or sweep, and the free motion.
-fn describe_motions(scene: &Scene) -> String {
+fn describe_motions(scene: &Scene, record: &mut Record) -> String {
     let actuators = &scene.mechanism.actuators;
     let coordinate = |i: usize, value: f64| {
         let (value, unit) = scene.to_scene_unit(value, actuators[i].coordinate().is_angle());
@@ -219,20 +236,17 @@ fn describe_motions(scene: &Scene) -> String {
     };
     let mut text = String::new();
     if let Some(prescribed) = &scene.prescribed {
+        record.add("prescribed.duration", "s", prescribed.duration);
+        record.add_count("prescribed.positions", prescribed.points);
         let (duration, points) = (digits(prescribed.duration, 6), prescribed.points);
         let points = count(points, "position");
         text += &format!("  prescribed motion: {duration} s, {points}\n");
     }
     if let Some(sweep) = &scene.sweep {
-        let (i, points) = (sweep.actuator.0, count(sweep.points, "position"));
-        let over = match sweep.range {
-            Some([from, to]) => format!("from {} to {}", coordinate(i, from), coordinate(i, to)),
-            None => "over its range".to_owned(),
-        };
-        let (name, speed) = (&actuators[i].name, coordinate(i, sweep.speed));
-        text += &format!("  coordinate sweep: {name} {over}, {points}, at {speed}/s\n");
+        text += &describe_sweep(scene, sweep, record);
     }
     if let Some(motion) = &scene.motion {
+        record_motion(scene, motion, record);
         let starts = actuators.iter().enumerate().map(|(i, actuator)| {
             let name = &actuator.name;
             let [q, speed] = [
@@ -262,4 +276,45 @@ fn describe_motions(scene: &Scene) -> String {
         true => "  no motion: add [prescribed], [coordinate-sweep] or [motion]\n".to_owned(),
         false => text,
     }
+}
+
+/// The coordinate sweep.
+fn describe_sweep(scene: &Scene, sweep: &CoordinateSweep, record: &mut Record) -> String {
+    let actuator = &scene.mechanism.actuators[sweep.actuator.0];
+    let is_angle = actuator.coordinate().is_angle();
+    let unit = coordinate_unit(is_angle);
+    let coordinate = |value: f64| {
+        let (value, unit) = scene.to_scene_unit(value, is_angle);
+        format!("{} {unit}", number(value))
+    };
+    let over = match sweep.range {
+        Some([from, to]) => {
+            record.add("coordinate_sweep.from", unit, from);
+            record.add("coordinate_sweep.to", unit, to);
+            format!("from {} to {}", coordinate(from), coordinate(to))
+        }
+        None => "over its range".to_owned(),
+    };
+    record.add_count("coordinate_sweep.positions", sweep.points);
+    record.add("coordinate_sweep.speed", &format!("{unit}/s"), sweep.speed);
+    let points = count(sweep.points, "position");
+    let (name, speed) = (&actuator.name, coordinate(sweep.speed));
+    format!("  coordinate sweep: {name} {over}, {points}, at {speed}/s\n")
+}
+
+/// The numbers of a free motion.
+fn record_motion(scene: &Scene, motion: &FreeMotionSpec, record: &mut Record) {
+    let actuators = scene.mechanism.actuators.iter().enumerate();
+    for (i, actuator) in actuators.filter(|(i, _)| motion.laws[*i].is_none()) {
+        let unit = coordinate_unit(actuator.coordinate().is_angle());
+        let name = format!("free_motion.{}", actuator.name);
+        let [q, speed] = [&motion.initial_coordinates, &motion.initial_velocities].map(|of| of[i]);
+        record.add(&name, unit, q);
+        record.add(format!("{name}.velocity"), &format!("{unit}/s"), speed);
+    }
+    match motion.duration {
+        MotionDuration::Seconds(seconds) => record.add("free_motion.duration", "s", seconds),
+        MotionDuration::Periods(periods) => record.add("free_motion.periods", "", periods),
+    }
+    record.add_count("free_motion.events", motion.events.len());
 }

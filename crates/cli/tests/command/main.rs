@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 mod assembly;
+mod lengths;
 mod long_motions;
 mod messages;
 mod near_branches;

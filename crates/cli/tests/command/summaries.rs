@@ -19,7 +19,12 @@ const COMMANDS: [&str; 10] = [
     "symbolic",
 ];
 /// Lines of advice, whose numbers are no results.
-const ADVICE: [&str; 5] = [
+const ADVICE: [&str; 9] = [
+    // Where a motion changes its coordinate, and how far a period was looked for.
+    ": coordinate changed from",
+    "change point at",
+    " more changes",
+    "not periodic within",
     "note: ",
     "hint: ",
     "--pictures all",
@@ -240,6 +245,62 @@ fn sweeps_and_calibrations_have_summaries_too() {
         assert_ne!(run.status, Some(2), "{run:?}");
         let fault = fault(&dir, command, &run, &format!("arm-{command}.json"));
         assert_eq!(fault, None, "{run:?}");
+    }
+}
+
+/// The centre of mass and the size, of a mechanism whose ground does not begin at the origin.
+#[test]
+fn check_lists_masses_loads_drives_and_motions() {
+    let dir = TestDir::new();
+    let scene = "[units]\nlength = \"mm\"\ninertia = \"kg m2\"\n[bodies.ground]\npoints = { O = [1000, 2000] }\n[bodies.bar]\n\
+                 points = { O = [0, 0], P = [300, 0] }\nmass = 2\ncenter = [200, 0]\ninertia = 0.1\n[bodies.tip]\n\
+                 points = { P = [0, 0] }\nmass = 6\ncenter = [0, 0]\n[joints]\n\
+                 O = { revolute = [\"ground.O\", \"bar.O\"] }\nP = { weld = [\"bar.P\", \"tip.P\"] }\n[actuators]\n\
+                 phi = { angle = [\"ground\", \"bar\"] }\n[loads]\nweight = { gravity = [0, -9.81] }\n\
+                 wind = { torque = [\"ground\", \"bar\"], magnitude = \"2*t\" }\n[drives]\nmotor = { applied-force = \"phi\", magnitude = 3 }\n\
+                 [motion]\ninitial-velocity = 4\nduration = 0.5\n";
+    dir.put("pendulum.toml", scene);
+    let run = dir.run(&["check", "pendulum.toml"]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    for line in [
+        "overall size at the start: 300 by 0 mm",
+        "moving mass 8 kg, its centre at the start at (1275, 2000) mm",
+        "bar: 2 kg, 0.1 kg m²",
+        "weight: gravity, 9.81 m/s²",
+        "wind: couple of ground on bar, a function of t, in N m",
+        "motor: applied force on phi, 3 N m",
+        "free motion: phi from 0 rad at 4 rad/s, for 0.5 s",
+    ] {
+        assert!(run.out.contains(line), "{line}: {}", run.out);
+    }
+}
+
+/// A crank-slider of 60 and 220 mm whose guide passes 20 mm beside the pin: the piston travels by the difference of the
+/// two stretched positions, and the transmission angle, from the normal of the guide, is least where the crank is across it.
+#[test]
+fn kinematics_prints_swings_and_transmission_angles_in_the_scenes_units() {
+    let dir = TestDir::new();
+    assert_eq!(dir.run(&["init", "pump"]).status, Some(0));
+    let run = dir.run(&["kinematics", "pump.toml", "--pictures", "none"]);
+    let travel = 280.0_f64.mul_add(280.0, -400.0).sqrt() - 160.0_f64.mul_add(160.0, -400.0).sqrt();
+    let number_after = |before: &str| -> f64 {
+        let (_, rest) = run
+            .out
+            .split_once(before)
+            .unwrap_or_else(|| panic!("{before}: {}", run.out));
+        rest.split(' ').next().unwrap().parse().unwrap()
+    };
+    let printed = number_after("guide.travel travels by ");
+    assert!((printed - travel).abs() < 1e-3, "{printed} {travel}");
+    // The rod leans by asin((60 ± 20)/220) at most.
+    let swing = (80.0_f64 / 220.0).asin() + (40.0_f64 / 220.0).asin();
+    let printed = number_after("rod turns by ");
+    assert!((printed - swing.to_degrees()).abs() < 1e-3, "{printed}");
+    let least = 90.0 - (80.0_f64 / 220.0).asin().to_degrees();
+    let printed = number_after("transmission angle at C from ");
+    assert!((printed - least).abs() < 1e-3, "{printed} {least}");
+    for unit in [" deg/s at", " mm/s at", " mm/s2 at"] {
+        assert!(run.out.contains(unit), "{unit}: {}", run.out);
     }
 }
 

@@ -8,7 +8,7 @@ use crate::number_format::digits_within;
 use crate::output::{Outcome, Picture, indeterminate_note, separating_note};
 use crate::ranges::extent;
 use crate::reduce::compute::{
-    Reduction, RoundingErrors, TableRequest, compute_reduction, tabulate,
+    Reduction, RoundingErrors, TableRequest, compute_reduction, inertia_units, tabulate,
 };
 use dwell_findings::Record;
 use dwell_kinetostatics::Coefficients;
@@ -85,12 +85,13 @@ fn record(reduction: &Reduction<'_>) -> Record {
     let mut record = Record::default();
     record.add_count("positions", curves.q.len());
     let is_rounding = reduction.errors.is_rounding[1];
+    let [m_unit, half_dm_unit] = inertia_units(reduction.prepared.is_angle());
     let [m_error, half_dm_error, rest] = reduction.errors.max_errors;
     let picks: [(&str, &str, fn(&Coefficients) -> f64, f64, bool); 2] = [
-        ("m", "kg m2", |c| c.m, m_error, false),
+        ("m", m_unit, |c| c.m, m_error, false),
         (
             "half_dm",
-            "kg m2/rad",
+            half_dm_unit,
             |c| c.half_dm,
             half_dm_error,
             is_rounding,
@@ -130,9 +131,13 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
     let ([m_min, m_max], [h_min, h_max]) = (texts(m, m_error), texts(half_dm, half_dm_error));
     let (title, count) = (&prepared.scene.title, curves.q.len());
     let name = prepared.coordinate_name();
+    let [m_unit, half_dm_unit] = match prepared.is_angle() {
+        true => ["kg m²", "kg m²/rad"],
+        false => inertia_units(false),
+    };
     let mut summary = format!(
-        "{title}: {count} positions of {name}, and there\n  m    from {m_min} to {m_max} kg m²\n  ½m′  from {h_min} to \
-         {h_max} kg m²/rad\n"
+        "{title}: {count} positions of {name}, and there\n  m    from {m_min} to {m_max} {m_unit}\n  ½m′  from {h_min} to \
+         {h_max} {half_dm_unit}\n"
     );
     summary += &describe_rounding(&reduction.errors);
     if let Some(note) = note {

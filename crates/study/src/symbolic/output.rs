@@ -3,6 +3,7 @@
 use crate::explain::StudyError;
 use crate::number_format::{count, digits};
 use crate::output::{Outcome, separating_note};
+use crate::symbolic::closed_form_check::POSITIONS;
 use crate::symbolic::compute::compute_closed_form;
 use dwell_findings::{Finding, Record};
 use dwell_report::{Block, Document};
@@ -31,6 +32,7 @@ pub fn symbolic(
     let (form, findings) = compute_closed_form(scene, reaction)?;
     let mut record = Record::default();
     record.add_count("steps", form.assignment_count());
+    record.add_count("positions", POSITIONS);
     for f in &findings {
         record.add(&f.key, "", f.relative_difference);
         record.add(format!("{}.tolerance", f.key), "", f.tolerance);

@@ -210,10 +210,8 @@ impl<'a> Document<'a> {
             listed.push((unit, value));
             let is_known = of.error < size;
             let (factor, shown_unit) = self.in_scene_unit(1.0, unit);
-            let [value, at] = of.scaled(factor, at_factor).texts(Extremum {
-                value: of.largest().value * factor,
-                at: of.largest().at * at_factor,
-            });
+            let shown = of.scaled(factor, at_factor);
+            let [value, at] = shown.texts(shown.largest());
             text += &match is_known {
                 true => {
                     largest_error = largest_error.max(of.error / size);

@@ -65,6 +65,8 @@ impl Movement<'_> {
                 let name = column.name.strip_suffix(".angle").unwrap_or(&column.name);
                 let [by, from, to] = [range(ends), ends[0], ends[1]];
                 record.add(format!("{name}.range"), column.unit, by);
+                record.add(format!("{name}.range.from"), column.unit, from);
+                record.add(format!("{name}.range.to"), column.unit, to);
                 let [by, from, to] = [by, from, to].map(|value| self.text(value, is_angle));
                 text += &format!("  {name} {verb} by {by}, from {from} to {to}\n");
             }
@@ -108,7 +110,7 @@ impl Movement<'_> {
         let [low, high] = crate::ranges::extent(angles.iter().copied());
         let band = request.relative_band * (high - low);
         let name = self.scene.mechanism.body_name(request.body);
-        let Some([first, last]) = longest_within(&angles, band).filter(|[a, b]| b > a) else {
+        let Some([first, last]) = max_window(&angles, band).filter(|[a, b]| b > a) else {
             return String::new();
         };
         let percent = digits(100.0 * request.relative_band, DIGITS);
@@ -143,7 +145,7 @@ impl Movement<'_> {
 }
 
 /// The first and the last index of the longest run of values whose extent is within a band; the first of several.
-fn longest_within(values: &[f64], band: f64) -> Option<[usize; 2]> {
+fn max_window(values: &[f64], band: f64) -> Option<[usize; 2]> {
     // The indices of candidates for the smallest and the largest value of the window, in order.
     let mut ends: [VecDeque<usize>; 2] = [VecDeque::new(), VecDeque::new()];
     let mut first = 0;
@@ -184,16 +186,16 @@ mod tests {
     #[test]
     fn the_longest_rest_is_found() {
         let values = [0.0, 1.0, 1.05, 1.02, 1.06, 2.0, 2.01, 3.0];
-        assert_eq!(longest_within(&values, 0.1), Some([1, 4]));
-        assert_eq!(longest_within(&values, 0.02), Some([5, 6]));
-        assert_eq!(longest_within(&values, 10.0), Some([0, 7]));
-        assert_eq!(longest_within(&[], 1.0), None);
+        assert_eq!(max_window(&values, 0.1), Some([1, 4]));
+        assert_eq!(max_window(&values, 0.02), Some([5, 6]));
+        assert_eq!(max_window(&values, 10.0), Some([0, 7]));
+        assert_eq!(max_window(&[], 1.0), None);
         // Against all windows, of a curve whose rest is known: sin stays within 1 − cos w about its crest.
         let curve: Vec<f64> = (0..=1000)
             .map(|k| (f64::from(k) * 0.002 * std::f64::consts::PI).sin())
             .collect();
         let band = 0.01;
-        let [a, b] = longest_within(&curve, band).expect("a window");
+        let [a, b] = max_window(&curve, band).expect("a window");
         let half_width = (1.0_f64 - band).acos() / (0.002 * std::f64::consts::PI);
         assert!(
             (((b - a) as f64) - 2.0 * half_width).abs() <= 2.0,

@@ -230,7 +230,8 @@ impl FreeMotionProblem<'_> {
             ..Options::new(settings.method, settings.rtol)
         };
         let motion = self.solve(scene, duration, &options)?;
-        let estimate = self.estimate_error(scene, &motion, &options, duration)?;
+        let mut estimate = self.estimate_error(scene, &motion, &options, duration)?;
+        estimate.record.add("tolerance", "", settings.rtol);
         let unstable = self.leaves_unstable_equilibrium(&motion).then(|| {
             "it starts in an unstable equilibrium, and rounding alone decides when and where it leaves it".to_owned()
         });

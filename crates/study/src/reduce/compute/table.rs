@@ -38,6 +38,14 @@ pub fn tabulate(
     request: &TableRequest,
 ) -> Result<Tabulation, StudyError> {
     let scene = prepared.scene;
+    if !prepared.is_angle() {
+        return Err(scene_error(
+            scene,
+            "tables are of driven angles: this actuator drives a length",
+            "leave --table-accuracy and --accuracy out, and use the rows of the file; or drive an angle",
+            [(SceneLocation::Actuator(ActuatorId(0)), "drives a length")],
+        ));
+    }
     let exact = exact_model(scene, loaded_determinate_model(scene)?)?;
     let plan = exact.model().plan();
     // Without a period the curves cover one revolution, and so does the table.

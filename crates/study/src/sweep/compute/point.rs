@@ -106,7 +106,14 @@ impl RequestedQuantities {
         for request in requests {
             if !quantities.iter().any(|q| q.matches(request)) {
                 let name = request.clone();
-                let known = quantities.into_iter().map(|q| q.name).collect();
+                // Of the many results of motions and cycles the first word is enough.
+                let short = |q: SweepQuantity| match q.kind {
+                    ResultKind::Motion => "motion".to_owned(),
+                    ResultKind::Cycle => "cycle".to_owned(),
+                    _ => q.name,
+                };
+                let mut known: Vec<String> = quantities.into_iter().map(short).collect();
+                known.dedup();
                 return Err(SweepError::Result { name, known }.into());
             }
         }
