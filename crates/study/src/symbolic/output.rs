@@ -82,6 +82,14 @@ pub(crate) fn summary(scene: &Scene, form: &ClosedForm, findings: &[Finding]) ->
     if form.reaction.is_some() {
         text += &separating_note(scene);
     }
+    let loads = scene.loads.iter().filter(|load| load.does_work());
+    let loads: Vec<&str> = loads.map(|load| load.name.as_str()).collect();
+    if !loads.is_empty() {
+        text += &format!(
+            "  without the loads {}: `dwell reduce` computes w and c, their parts of the motion and of the reaction\n",
+            loads.join(", ")
+        );
+    }
     for f in findings {
         let result = if f.pass { "pass" } else { "FAIL" };
         text += &format!(

@@ -63,7 +63,9 @@ impl Movement<'_> {
             all.dedup_by(|(_, a), (_, b)| (range(*a) - range(*b)).abs() < ROUNDING);
             for (column, ends) in all.into_iter().take(MAX_LISTED) {
                 let name = column.name.strip_suffix(".angle").unwrap_or(&column.name);
-                let [by, from, to] = [range(ends), ends[0], ends[1]];
+                let by = range(ends);
+                // An end that is but rounding is zero.
+                let [from, to] = ends.map(|end| if end.abs() < 1e-12 * by { 0.0 } else { end });
                 record.add(format!("{name}.range"), column.unit, by);
                 record.add(format!("{name}.range.from"), column.unit, from);
                 record.add(format!("{name}.range.to"), column.unit, to);
