@@ -176,6 +176,7 @@ impl<'a> Trajectory<'a> {
     }
 
     /// The abscissa at the wanted beginning and end: s, or rad or m of a swept coordinate.
+    #[cfg(feature = "output")]
     pub(crate) fn wanted_extent(&self) -> [f64; 2] {
         match &self.kind {
             TrajectoryKind::Prescribed(prescribed) => [0.0, prescribed.duration],
