@@ -62,7 +62,7 @@ impl Movement<'_> {
             // What turns exactly as another is named once.
             all.dedup_by(|(_, a), (_, b)| (range(*a) - range(*b)).abs() < ROUNDING);
             for (column, ends) in all.into_iter().take(MAX_LISTED) {
-                let name = column.name.strip_suffix(".angle").unwrap_or(&column.name);
+                let name = &column.name;
                 let by = range(ends);
                 // An end that is but rounding is zero.
                 let [from, to] = ends.map(|end| if end.abs() < 1e-12 * by { 0.0 } else { end });
@@ -70,6 +70,8 @@ impl Movement<'_> {
                 record.add(format!("{name}.range.from"), column.unit, from);
                 record.add(format!("{name}.range.to"), column.unit, to);
                 let [by, from, to] = [by, from, to].map(|value| self.text(value, is_angle));
+                let ending = if is_angle { ".angle" } else { ".travel" };
+                let name = name.strip_suffix(ending).unwrap_or(name);
                 text += &format!("  {name} {verb} by {by}, from {from} to {to}\n");
             }
         }
