@@ -230,11 +230,16 @@ def extrema_bound_rows(run):
             return f"{name}: extrema {low} and {high}, rows from {min(cells)} to {max(cells)}"
     stated = re.search(rf"estimated error of these values: at most ({NUMBER}) of each", run.out)
     error = float(stated[1]) if stated else 0.0
-    for name, printed in re.findall(rf"^  (\S+) reaches ({NUMBER}) ", run.out, re.M):
-        ends = [float(of[name][end]) for end in ("min", "max")] if name in of else []
+    for name, printed, unit in re.findall(rf"^  (\S+) reaches ({NUMBER}) (\S+)", run.out, re.M):
+        factor = IN_SCENE_UNIT.get(unit.split("/")[0], 1.0)
+        ends = [float(of[name][end]) * factor for end in ("min", "max")] if name in of else []
         if ends and not any(digits_agree(printed, end, error * abs(end)) for end in ends):
             return f"{name} reaches {printed}, and in the file {of[name]['min']} and {of[name]['max']}"
     return None
+
+
+# What is printed is in the scene's units of lengths and angles; files are in SI.
+IN_SCENE_UNIT = {"deg": 180 / math.pi, "mm": 1e3, "cm": 1e2, "um": 1e6, "km": 1e-3, "in": 1 / 0.0254, "ft": 1 / 0.3048}
 
 
 def largest_of_unit(extrema, unit):

@@ -8,7 +8,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Seconds after which the first lines are printed; then one follows each minute. A shorter run prints none.
-const FIRST_LINES: [u64; 3] = [10, 30, 60];
+const FIRST_LINES: [u64; 4] = [2, 10, 30, 60];
 
 /// Prints the lines of a run until it is dropped.
 pub(crate) struct LongRunLines {
@@ -84,9 +84,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_come_after_10_30_and_60_seconds_and_then_each_minute() {
-        let times: Vec<u64> = line_times().take(6).collect();
-        assert_eq!(times, [10, 30, 60, 120, 180, 240]);
+    fn lines_come_after_2_10_30_and_60_seconds_and_then_each_minute() {
+        let times: Vec<u64> = line_times().take(7).collect();
+        assert_eq!(times, [2, 10, 30, 60, 120, 180, 240]);
     }
 
     #[test]

@@ -5,6 +5,7 @@
 
 mod cases;
 mod former;
+mod init;
 mod instants;
 mod long_runs;
 mod options;
@@ -16,14 +17,15 @@ use dwell_findings::all_pass;
 use dwell_report::{Files, OutputFolder, ReportError};
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{
-    Analysis, MotionSolver, Outcome, ParameterSweep, PictureFormat, PictureSpan, Pictures,
-    SolverSettings, Step, StudyError, TableRequest, TrajectoryOutcome, no_progress,
+    Analysis, CommandResult, MotionSolver, Outcome, ParameterSweep, PictureFormat, PictureSpan,
+    Pictures, Shard, SolverSettings, Step, StudyError, TableRequest, TrajectoryOutcome,
+    add_summary, no_progress,
 };
 use dwell_validation::ValidationError;
 use indicatif::{ProgressBar, ProgressStyle};
 use long_runs::LongRunLines;
 use miette::{Report, miette};
-use options::{Command, Options, TrajectoryArgs};
+use options::{Command, Options, STANDARD_INPUT, STANDARD_INPUT_NAME, TrajectoryArgs};
 use std::io::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
@@ -48,21 +50,17 @@ fn main() -> ExitCode {
 
 /// Runs a command of this name, and returns whether all its checks passed.
 fn run(options: Options, name: &str) -> Result<bool, Report> {
-    let Options {
-        command,
-        out,
-        pictures,
-        picture_format,
-    } = options;
+    let Options { command, .. } = &options;
     let mut times = Times::new();
-    if let Command::Schema = command {
-        print(&dwell_scene::schema())?;
-        return Ok(true);
+    match command {
+        Command::Schema => return print(&dwell_scene::schema()).map(|()| true),
+        Command::Init { scene } => return init::write(scene).map(|()| true),
+        _ => {}
     }
-    let folder = open_folder(&command, &out)?;
+    let folder = open_folder(&options)?;
     let bar = progress_bar();
     let lines = LongRunLines::new(name, &bar);
-    let (outcome, early_stop, failures) = match &command {
+    let done = match command {
         Command::Validate {
             cases,
             folder,
@@ -71,48 +69,92 @@ fn run(options: Options, name: &str) -> Result<bool, Report> {
         } => {
             let (outcome, failures) = validate::validate(cases, folder, (*slow, *seed), &bar)?;
             times.add("checking");
-            let outcome = draw_validation(outcome, picture_format)?;
+            let outcome = draw_validation(outcome, options.picture_format)?;
             times.add("drawing");
-            (outcome, None, failures)
+            Done {
+                outcome,
+                failures,
+                ..Done::default()
+            }
         }
         study => {
-            let done = run_study(study, &out, &bar);
-            times.add("computing");
-            let done = done.and_then(|done| draw_study(done, (pictures, picture_format), &bar));
+            let done = read(&options, study, &bar);
+            let done = done.and_then(|scene| {
+                let done = run_study(study, &scene, &options.out, &bar);
+                times.add("computing");
+                let TrajectoryOutcome {
+                    outcome,
+                    early_stop,
+                } = done?;
+                bar.set_position(0);
+                let wanted = (options.pictures, options.picture_format);
+                let outcome = outcome.draw(wanted, &|step| show_step(&bar, step))?;
+                Ok(Done {
+                    outcome,
+                    early_stop: early_stop.map(as_scene_error),
+                    scene: Some(scene),
+                    failures: None,
+                })
+            });
             times.add("drawing");
             bar.finish_and_clear();
-            let (outcome, early_stop) = done.map_err(|e| Report::new(as_scene_error(e)))?;
-            (outcome, early_stop, None)
+            done.map_err(|e| Report::new(as_scene_error(e)))?
         }
     };
     // No line follows the results.
     drop(lines);
-    print(&outcome.summary)?;
-    if let Some(folder) = folder {
-        write_files(&outcome.files, folder, &out)?;
-    }
-    times.add("writing");
-    print_note(&times.text());
-    let ended_early = early_stop.is_some();
-    if let Some(reason) = early_stop {
-        print_note(&format!("{:?}", Report::new(as_scene_error(reason))));
-    }
-    match failures {
-        // Printed last, so that it is not overlooked.
-        Some(report) => Err(report),
-        None => Ok(!ended_early && all_pass(&outcome.findings)),
-    }
+    finish(done, (command, name), (folder, &options.out), times)
 }
 
-/// Draws the pictures of a study that are wanted.
-fn draw_study(
-    done: TrajectoryOutcome,
-    wanted: (Pictures, PictureFormat),
-    bar: &ProgressBar,
-) -> Result<(Outcome, Option<StudyError>), StudyError> {
-    bar.set_position(0);
-    let outcome = done.outcome.draw(wanted, &|step| show_step(bar, step))?;
-    Ok((outcome, done.early_stop))
+/// What a command came to.
+#[derive(Default)]
+struct Done {
+    outcome: Outcome,
+    /// The scene, of a command that studies one.
+    scene: Option<Scene>,
+    /// Why a trajectory ended early.
+    early_stop: Option<SceneError>,
+    /// The cases that could not be validated.
+    failures: Option<SceneError>,
+}
+
+/// Prints and writes the results, and returns whether all checks passed.
+fn finish(
+    mut done: Done,
+    (command, name): (&Command, &str),
+    (folder, out): (OutputFolder, &Path),
+    mut times: Times,
+) -> Result<bool, Report> {
+    let passed = done.early_stop.is_none() && all_pass(&done.outcome.findings);
+    let status = match (&done.failures, passed) {
+        (Some(_), _) => 2,
+        (None, passed) => u8::from(!passed),
+    };
+    let errors = done.early_stop.iter().chain(&done.failures).cloned();
+    let result = CommandResult {
+        command: name,
+        scene: done.scene.as_ref(),
+        path: &summary_path(command, name, done.scene.as_ref()),
+        status,
+        errors: &errors.collect::<Vec<_>>(),
+    };
+    // Where no case could be validated there is nothing to write.
+    if status < 2 || !done.outcome.files.is_empty() {
+        let added = add_summary(&mut done.outcome, &result);
+        added.map_err(|e| Report::new(as_scene_error(e)))?;
+    }
+    print(&done.outcome.summary)?;
+    write_files(&done.outcome.files, folder, out)?;
+    times.add("writing");
+    print_note(&times.text());
+    if let Some(reason) = done.early_stop {
+        print_note(&format!("{:?}", Report::new(reason)));
+    }
+    match done.failures {
+        // Printed last, so that it is not overlooked.
+        Some(error) => Err(Report::new(error)),
+        None => Ok(passed),
+    }
 }
 
 /// Draws all pictures of a validation. Its pages show those in pixels.
@@ -125,22 +167,36 @@ fn draw_validation(outcome: Outcome, format: PictureFormat) -> Result<Outcome, R
     drawn.map_err(|e| Report::new(as_scene_error(e)))
 }
 
+/// The path of the summary in the output folder. Each part of a sweep has one of its own.
+fn summary_path(command: &Command, name: &str, scene: Option<&Scene>) -> String {
+    let of_scene = scene.map_or(String::new(), |scene| format!("{}-", scene.name));
+    let part = match command {
+        Command::Sweep {
+            shard: Some(Shard { part, of }),
+            ..
+        } => format!("-{part}-of-{of}"),
+        _ => String::new(),
+    };
+    format!("{of_scene}{name}{part}.json")
+}
+
 /// Runs a study of one scene: one arm for each command, so longer than a screen.
 fn run_study(
     command: &Command,
+    scene: &Scene,
     out: &Path,
     bar: &ProgressBar,
 ) -> Result<TrajectoryOutcome, StudyError> {
     let progress = |step: Step<'_>| show_step(bar, step);
     let outcome = match command {
-        Command::Check { scene } => dwell_study::check(&read(scene, bar)?)?,
+        Command::Check { .. } => dwell_study::check(scene)?,
         Command::Reduce {
-            scene,
             table_accuracy,
             accuracy,
             points,
             from,
             to,
+            ..
         } => {
             let points = points.map(|n| n as usize);
             let tabulation = table_accuracy.or(*accuracy).map(|accuracy| TableRequest {
@@ -148,10 +204,9 @@ fn run_study(
                 interval: from.zip(*to),
                 required: table_accuracy.is_some(),
             });
-            dwell_study::reduce(&read(scene, bar)?, points, tabulation)?
+            dwell_study::reduce(scene, points, tabulation)?
         }
         Command::Simulate {
-            scene,
             method,
             rtol,
             atol,
@@ -161,6 +216,7 @@ fn run_study(
             times,
             from,
             to,
+            ..
         } => {
             let solver = match *accuracy {
                 Some(accuracy) => MotionSolver::Accuracy {
@@ -175,25 +231,18 @@ fn run_study(
                     sample_interval: *sample_interval,
                 }),
             };
-            let scene = read(scene, bar)?;
             let times = times.as_deref().map(instants::read).transpose()?;
             let span = PictureSpan {
                 from: *from,
                 to: *to,
             };
-            return dwell_study::simulate_within(
-                &scene,
-                &solver,
-                times.as_deref(),
-                span,
-                &progress,
-            );
+            return dwell_study::simulate_within(scene, &solver, times.as_deref(), span, &progress);
         }
         Command::Cycle {
-            scene,
             fluctuation,
             method,
             rtol,
+            ..
         } => {
             let settings = SolverSettings {
                 method: *method,
@@ -201,54 +250,47 @@ fn run_study(
                 atol: *rtol,
                 ..SolverSettings::default()
             };
-            return dwell_study::cycle(&read(scene, bar)?, &settings, *fluctuation);
+            return dwell_study::cycle(scene, &settings, *fluctuation);
         }
-        Command::WorkPrecision { scene } => {
-            let scene = read(scene, bar)?;
-            dwell_validation::work_precision(&scene, &progress)?
-        }
-        Command::Equilibria { scene } => dwell_study::equilibria(&read(scene, bar)?)?,
-        Command::Linearise { scene, about } => dwell_study::linearise(&read(scene, bar)?, *about)?,
-        Command::Runs { scene, points } => {
+        Command::WorkPrecision { .. } => dwell_validation::work_precision(scene, &progress)?,
+        Command::Equilibria { .. } => dwell_study::equilibria(scene)?,
+        Command::Linearise { about, .. } => dwell_study::linearise(scene, *about)?,
+        Command::Runs { points, .. } => {
             let points = points.map(|n| n as usize);
-            return dwell_study::unit_runs(&read(scene, bar)?, points, &progress);
+            return dwell_study::unit_runs(scene, points, &progress);
         }
         Command::Symbolic {
-            scene,
-            format,
-            reaction,
-        } => dwell_study::symbolic(&read(scene, bar)?, *format, reaction.as_deref())?,
+            format, reaction, ..
+        } => dwell_study::symbolic(scene, *format, reaction.as_deref())?,
         Command::Kinematics(arguments) => {
-            return run_trajectory(arguments, Analysis::Kinematics, bar);
+            return run_trajectory(arguments, scene, Analysis::Kinematics, bar);
         }
-        Command::Statics(arguments) => return run_trajectory(arguments, Analysis::Statics, bar),
+        Command::Statics(arguments) => {
+            return run_trajectory(arguments, scene, Analysis::Statics, bar);
+        }
         Command::Kinetostatics(arguments) => {
-            return run_trajectory(arguments, Analysis::Kinetostatics, bar);
+            return run_trajectory(arguments, scene, Analysis::Kinetostatics, bar);
         }
         Command::Calibrate {
-            scene,
-            parameter,
-            period,
+            parameter, period, ..
         } => {
-            let scene = read(scene, bar)?;
             if let Some(path) = parameter {
-                note_former_path(&scene, path);
+                note_former_path(scene, path);
             }
-            dwell_study::calibrate(&scene, parameter.as_deref(), *period)?
+            dwell_study::calibrate(scene, parameter.as_deref(), *period)?
         }
         Command::Sweep {
-            scene,
             vary,
             samples,
             seed,
             results,
             shard,
             export,
+            ..
         } => {
-            let scene = read(scene, bar)?;
             for axis in vary {
                 let path = axis.split(['=', '~', '±']).next().unwrap_or_default();
-                note_former_path(&scene, path.trim());
+                note_former_path(scene, path.trim());
             }
             let sweep = ParameterSweep {
                 vary,
@@ -259,10 +301,10 @@ fn run_study(
                 export: *export,
                 folder: out,
             };
-            dwell_study::sweep(&scene, &sweep, &progress)?
+            dwell_study::sweep(scene, &sweep, &progress)?
         }
         // They are no studies of a scene.
-        Command::Validate { .. } | Command::Schema => Outcome::default(),
+        Command::Validate { .. } | Command::Schema | Command::Init { .. } => Outcome::default(),
     };
     let early_stop = None;
     Ok(TrajectoryOutcome {
@@ -274,24 +316,22 @@ fn run_study(
 /// Analyses a scene along its trajectory.
 fn run_trajectory(
     arguments: &TrajectoryArgs,
+    scene: &Scene,
     analysis: Analysis,
     bar: &ProgressBar,
 ) -> Result<TrajectoryOutcome, StudyError> {
-    let scene = read(&arguments.scene, bar)?;
     let points = arguments.points.map(|n| n as usize);
     let progress = |step: Step<'_>| show_step(bar, step);
     let span = PictureSpan {
         from: arguments.from,
         to: arguments.to,
     };
-    dwell_study::analyse_trajectory_within(&scene, analysis, points, span, &progress)
+    dwell_study::analyse_trajectory_within(scene, analysis, points, span, &progress)
 }
 
-/// The folder of the results, tested before the work; none for a command that writes nothing.
-fn open_folder(command: &Command, out: &Path) -> Result<Option<OutputFolder>, Report> {
-    if let Command::Check { .. } = command {
-        return Ok(None);
-    }
+/// The folder of the results, tested before the work.
+fn open_folder(options: &Options) -> Result<OutputFolder, Report> {
+    let out = &options.out;
     if out.exists() && !out.is_dir() {
         return Err(miette!(
             help = "give a folder with --out; it is created if it does not exist",
@@ -300,12 +340,21 @@ fn open_folder(command: &Command, out: &Path) -> Result<Option<OutputFolder>, Re
         ));
     }
     let mut folder = OutputFolder::open(out).map_err(|e| unwritten(&e))?;
-    if let Some(scene) = command.scene() {
+    if let Some(scene) = options.command.scene() {
         folder
-            .reserve(&Scene::name_of_file(scene), scene)
+            .reserve(&scene_name(options, scene), scene)
             .map_err(|e| unwritten(&e))?;
     }
-    Ok(Some(folder))
+    Ok(folder)
+}
+
+/// The name of the scene in a file, or of that on standard input.
+fn scene_name(options: &Options, scene: &Path) -> String {
+    match &options.name {
+        Some(name) => name.clone(),
+        None if scene == Path::new(STANDARD_INPUT) => STANDARD_INPUT_NAME.to_owned(),
+        None => Scene::name_of_file(scene),
+    }
 }
 
 fn unwritten(error: &ReportError) -> Report {
@@ -344,8 +393,14 @@ fn progress_bar() -> ProgressBar {
     bar
 }
 
-fn read(path: &Path, bar: &ProgressBar) -> Result<Scene, StudyError> {
-    let scene = Scene::read(path)?;
+/// Reads the scene of a command.
+fn read(options: &Options, command: &Command, bar: &ProgressBar) -> Result<Scene, StudyError> {
+    let path = command.scene().unwrap_or_else(|| Path::new(STANDARD_INPUT));
+    let mut scene = match path == Path::new(STANDARD_INPUT) {
+        true => Scene::read_from(std::io::stdin().lock(), STANDARD_INPUT_NAME, "<stdin>")?,
+        false => Scene::read(path)?,
+    };
+    scene.name = scene_name(options, path);
     print_warnings(&scene);
     // From now on a terminal shows every second that the study goes on.
     bar.enable_steady_tick(Duration::from_secs(1));

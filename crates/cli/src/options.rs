@@ -22,18 +22,21 @@ pub(crate) struct Options {
     /// Format of the pictures; animations are always GIF. Validation always draws its PNG, too
     #[arg(long, global = true, value_parser = choice(PICTURE_FORMATS), default_value = "png", value_name = "FORMAT")]
     pub(crate) picture_format: PictureFormat,
+    /// Name of the scene, which the names of its files begin with (default: that of its file, or `stdin`)
+    #[arg(long, global = true, value_parser = parse_name, value_name = "NAME")]
+    pub(crate) name: Option<String>,
 }
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Degrees of freedom, groups, assembly mode and range of the mechanism in a scene
     Check {
-        /// The scene file
+        /// The scene file, or `-` for standard input
         scene: PathBuf,
     },
     /// Reduced model (m, ½m′, a, b, w, c) over the range: table and figures
     Reduce {
-        /// The scene file
+        /// The scene file, or `-` for standard input
         scene: PathBuf,
         /// Also write an interpolation table with this accuracy, relative to the largest value of each function, such
         /// as 1e-12
@@ -54,7 +57,7 @@ pub(crate) enum Command {
     },
     /// Free motion under loads and drives, with energies and reactions: tables and figures
     Simulate {
-        /// The scene file
+        /// The scene file, or `-` for standard input
         scene: PathBuf,
         /// The integrator
         #[arg(long, value_parser = choice(METHODS), default_value = "bdf")]
@@ -90,7 +93,7 @@ pub(crate) enum Command {
     },
     /// Steady cycle of a driven machine, and the flywheel for a given coefficient of fluctuation
     Cycle {
-        /// The scene file
+        /// The scene file, or `-` for standard input
         scene: PathBuf,
         /// Target coefficient of speed fluctuation, such as 0.02; sizes the flywheel that reaches it
         #[arg(long, value_parser = parse_fluctuation, value_name = "RATIO", allow_hyphen_values = true)]
@@ -104,17 +107,17 @@ pub(crate) enum Command {
     },
     /// Work–precision diagram: cost against error for every combination of model, integrator and tolerance
     WorkPrecision {
-        /// The scene file
+        /// The scene file, or `-` for standard input
         scene: PathBuf,
     },
     /// Equilibria of a machine, with their stability and natural frequencies
     Equilibria {
-        /// The scene file
+        /// The scene file, or `-` for standard input
         scene: PathBuf,
     },
     /// State-space model linearised about an equilibrium or the initial state: A, B, C, D and eigenvalues
     Linearise {
-        /// The scene file
+        /// The scene file, or `-` for standard input
         scene: PathBuf,
         /// State to linearise about
         #[arg(long, value_parser = choice(OPERATING_POINTS), default_value = "equilibrium")]
@@ -130,7 +133,7 @@ pub(crate) enum Command {
     },
     /// Closed forms for a mechanism made of dyads: positions, m, ½m′, and a and b of a reaction, as LaTeX or code
     Symbolic {
-        /// The scene file
+        /// The scene file, or `-` for standard input
         scene: PathBuf,
         /// Output format
         #[arg(long, value_parser = choice(FORMATS), default_value = "latex")]
@@ -148,7 +151,7 @@ pub(crate) enum Command {
     Kinetostatics(TrajectoryArgs),
     /// Find the value of a scene parameter that gives the free motion a target period
     Calibrate {
-        /// The scene file
+        /// The scene file, or `-` for standard input
         scene: PathBuf,
         /// The parameter to fit, such as crank.inertia (default: that of [calibration])
         #[arg(long, value_name = "PATH")]
@@ -160,7 +163,7 @@ pub(crate) enum Command {
     /// Parameter study over many variants of a scene, on all cores, stored in an SQLite file; an interrupted run can be
     /// resumed
     Sweep {
-        /// The scene file
+        /// The scene file, or `-` for standard input
         scene: PathBuf,
         /// Parameter to vary, in the scene's unit: PATH=FROM:TO:COUNT, PATH=A,B,C, PATH~normal(MEAN,SD),
         /// PATH~uniform(FROM,TO), PATH±TOLERANCE or PATH±PERCENT%; may be given several times
@@ -208,6 +211,12 @@ pub(crate) enum Command {
     },
     /// Print the JSON schema of scene files, for editors
     Schema,
+    /// Write a commented scene to begin with; an existing file is not replaced
+    Init {
+        /// The scene file to write, with or without `.toml`
+        #[arg(default_value = "slider-crank.toml")]
+        scene: PathBuf,
+    },
 }
 
 impl Command {
@@ -228,17 +237,23 @@ impl Command {
             Self::Kinematics(arguments)
             | Self::Statics(arguments)
             | Self::Kinetostatics(arguments) => Some(&arguments.scene),
-            Self::Validate { .. } | Self::Schema => None,
+            Self::Validate { .. } | Self::Schema | Self::Init { .. } => None,
         }
     }
 }
+
+/// Longest name of a scene, bytes: the name of a file has at most 255.
+const MAX_NAME: usize = 100;
+/// The scene that is read from standard input, and its name.
+pub(crate) const STANDARD_INPUT: &str = "-";
+pub(crate) const STANDARD_INPUT_NAME: &str = "stdin";
 
 /// The folder of Dwell's own cases.
 pub(crate) const DEFAULT_CASE_FOLDER: &str = "validation";
 
 #[derive(Debug, Args)]
 pub(crate) struct TrajectoryArgs {
-    /// The scene file
+    /// The scene file, or `-` for standard input
     pub(crate) scene: PathBuf,
     /// Number of positions, both ends included (default: the scene's `points`, or 361)
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1_000_000), value_name = "COUNT", allow_hyphen_values = true)]
@@ -364,6 +379,17 @@ fn parse_number(text: &str) -> Result<f64, String> {
 fn parse_checked(text: &str, is_valid: impl Fn(f64) -> bool, message: &str) -> Result<f64, String> {
     let value = Some(parse_number(text)?).filter(|value| is_valid(*value));
     value.ok_or_else(|| message.to_owned())
+}
+
+/// The name of a scene: part of the names of its files.
+fn parse_name(text: &str) -> Result<String, String> {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_ ".contains(c);
+    match !text.trim().is_empty() && text.len() <= MAX_NAME && text.chars().all(is_plain) {
+        true => Ok(text.to_owned()),
+        false => Err(format!(
+            "a name has letters, digits, `-`, `_` and spaces, at most {MAX_NAME} bytes"
+        )),
+    }
 }
 
 fn parse_count(text: &str) -> Result<u64, String> {

@@ -17,7 +17,7 @@ pub(crate) fn validate(
     folder: &Path,
     (slow, seed): (bool, u64),
     bar: &ProgressBar,
-) -> Result<(Outcome, Option<Report>), Report> {
+) -> Result<(Outcome, Option<SceneError>), Report> {
     let cases = cases::find(names, folder)?;
     let read = |case: &PathBuf| Scene::read(case.join("scene.toml"));
     let scenes: Vec<_> = cases.iter().map(read).collect();
@@ -45,6 +45,7 @@ pub(crate) fn validate(
     );
     bar.finish_and_clear();
     let (mut all, failures) = collect_reports(&cases, &scenes, results);
+    all.record.add_count("cases", cases.len());
     for added in [extremes, costs].into_iter().flatten() {
         let added = added.map_err(as_scene_error)?;
         all.summary += &added.summary;
@@ -52,6 +53,9 @@ pub(crate) fn validate(
         all.files.extend("", added.files);
         all.pictures.extend(added.pictures);
     }
+    let failed = all.findings.iter().filter(|finding| !finding.pass).count();
+    all.record.add_count("findings", all.findings.len());
+    all.record.add_count("findings.failed", failed);
     Ok((all, failures))
 }
 
@@ -80,7 +84,7 @@ fn collect_reports(
     cases: &[PathBuf],
     scenes: &[Result<Scene, SceneError>],
     results: Vec<Result<Validation, SceneError>>,
-) -> (Outcome, Option<Report>) {
+) -> (Outcome, Option<SceneError>) {
     let mut all = Outcome::default();
     let names: Vec<String> = cases.iter().map(|c| c.display().to_string()).collect();
     let results_of = scenes.iter().zip(&results).map(|of_case| match of_case {
@@ -108,14 +112,14 @@ fn collect_reports(
     (all, combined_error(failures))
 }
 
-/// All the errors in one report.
-fn combined_error(mut errors: Vec<SceneError>) -> Option<Report> {
+/// All the errors in one.
+fn combined_error(mut errors: Vec<SceneError>) -> Option<SceneError> {
     match errors.len() {
         0 => None,
-        1 => Some(Report::new(errors.remove(0))),
-        n => Some(Report::new(SceneError {
+        1 => Some(errors.remove(0)),
+        n => Some(SceneError {
             related: errors,
             ..SceneError::without_labels(format!("{n} cases cannot be validated"), None)
-        })),
+        }),
     }
 }

@@ -18,10 +18,12 @@
 
 mod check;
 mod long_table;
+mod record;
 mod table;
 
 pub use check::Check;
 pub use long_table::LongTable;
+pub use record::{Record, RecordedEvent, RecordedExtrema, RecordedNumber};
 pub use table::{Column, Table};
 
 /// One comparison of a result with an independent reference.

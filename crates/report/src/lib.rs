@@ -22,6 +22,7 @@
 //! - named matrices → [`npz()`]
 //! - [`Document`] (a study in words, tables, figures and findings) → [`Document::markdown`]
 //! - anything serialisable → [`json()`], with [`Number`] for numbers that may not be finite
+//! - [`Summary`] (what a command came to, for programs) → [`Summary::json`]
 //! - findings → [`reproducible_text`], the text that every machine reproduces
 //! - [`Files`]: all of these by relative path, written at the end, each file whole or not at all
 //!
@@ -89,6 +90,7 @@ mod series_style;
 mod shape;
 mod shape_drawing;
 mod stack;
+mod summary;
 mod svg;
 mod table;
 mod theme;
@@ -109,5 +111,6 @@ pub use npz::{Array, npz};
 pub use output_folder::OutputFolder;
 pub use png::png;
 pub use shape::{Drawing, Pen, Shape, TextPlacement};
+pub use summary::{Message, SceneRecord, Summary};
 pub use svg::svg;
 pub use table::{Column, Table, TableExport, TableFormat};

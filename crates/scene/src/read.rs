@@ -20,14 +20,33 @@ impl Scene {
         let path = path.as_ref();
         let display_path = path.display().to_string();
         let bytes = bytes(path, &display_path)?;
-        let text = match String::from_utf8(bytes) {
-            Ok(text) if text.contains('\0') => return Err(not_text(&display_path)),
-            Ok(text) => text,
-            Err(error) if error.as_bytes().contains(&0) => return Err(not_text(&display_path)),
-            Err(error) => return Err(not_utf8(&display_path, &error)),
+        Self::from_bytes(Self::name_of_file(path), &display_path, bytes)
+    }
+
+    /// Reads a scene from a stream, such as standard input: `name` is the scene's, `source_name` that of the stream in
+    /// messages.
+    pub fn read_from(
+        stream: impl std::io::Read,
+        name: impl Into<String>,
+        source_name: &str,
+    ) -> Result<Self, SceneError> {
+        let unreadable = |e: &std::io::Error| {
+            let message = format!("`{source_name}` cannot be read: {e}");
+            SceneError::without_labels(message, None)
         };
-        let source = Arc::new(NamedSource::new(&display_path, text));
-        Self::build(Self::name_of_file(path), &source)
+        let bytes = limited_bytes(stream, source_name, &unreadable)?;
+        Self::from_bytes(name.into(), source_name, bytes)
+    }
+
+    fn from_bytes(name: String, source_name: &str, bytes: Vec<u8>) -> Result<Self, SceneError> {
+        let text = match String::from_utf8(bytes) {
+            Ok(text) if text.contains('\0') => return Err(not_text(source_name)),
+            Ok(text) => text,
+            Err(error) if error.as_bytes().contains(&0) => return Err(not_text(source_name)),
+            Err(error) => return Err(not_utf8(source_name, &error)),
+        };
+        let source = Arc::new(NamedSource::new(source_name, text));
+        Self::build(name, &source)
     }
 
     /// The name of the scene in a file: its stem, or its folder's name if it is `scene.toml`.
@@ -78,9 +97,19 @@ fn bytes(path: &Path, display_path: &str) -> Result<Vec<u8>, SceneError> {
         _ => error(format!("`{display_path}` cannot be read: {e}"), None),
     };
     let file = File::open(path).map_err(|e| unreadable(&e))?;
+    limited_bytes(file, display_path, &unreadable)
+}
+
+/// The bytes of a stream, unless it is too long for a scene.
+fn limited_bytes(
+    stream: impl std::io::Read,
+    display_path: &str,
+    unreadable: &dyn Fn(&std::io::Error) -> SceneError,
+) -> Result<Vec<u8>, SceneError> {
+    let error = SceneError::without_labels;
     let mut bytes = Vec::new();
     // One byte more than allowed shows that a file is longer, even one that never ends.
-    let read = file.take(MAX_SCENE_BYTES + 1).read_to_end(&mut bytes);
+    let read = stream.take(MAX_SCENE_BYTES + 1).read_to_end(&mut bytes);
     let length = read.map_err(|e| unreadable(&e))?;
     if length as u64 > MAX_SCENE_BYTES {
         let limit = MAX_SCENE_BYTES >> 20;

@@ -1,17 +1,20 @@
 //! `dwell calibrate`: the scene value that gives a required period of the free motion.
 
 use crate::estimate;
-use crate::explain::{StudyError, explain_motion, missing_section_label, scene_error};
-use crate::models::{initial_reduced_state, reduced_model};
+use crate::explain::{
+    StudyError, explain_machine, explain_motion, missing_section_label, scene_error,
+};
+use crate::models::{compile_model, initial_reduced_state, reduced_model};
 use crate::number_format::{digits, number};
 use crate::ranges::extent;
 use crate::trajectory::compute::reject_unknown_variables;
 #[cfg(feature = "output")]
-use crate::{
-    branch_note::branch_note, models::PreparedScene, number_format::digits_within, output::Outcome,
-};
-use dwell_dynamics::{Orbit, ReducedState};
-use dwell_kinetostatics::ExactModel;
+use crate::{branch_note::branch_note, number_format::digits_within, output::Outcome};
+use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Orbit, ReducedState};
+#[cfg(feature = "output")]
+use dwell_findings::Record;
+use dwell_geometry::Plan;
+use dwell_kinetostatics::{ExactModel, Load};
 use dwell_numerics::root;
 use dwell_scene::{Scene, SceneLocation};
 
@@ -34,6 +37,22 @@ pub struct CalibrationResult {
     pub value_error: f64,
     /// The required period, s.
     pub period: f64,
+}
+
+#[cfg(feature = "output")]
+impl CalibrationResult {
+    /// The numbers that are printed.
+    fn record(&self) -> Record {
+        let mut record = Record::default();
+        record.add("required_period", "s", self.period);
+        record.add_within(&self.path, &self.unit, self.value, self.value_error);
+        record.add("error.value", &self.unit, self.value_error);
+        record.add("scene.value", &self.unit, self.current);
+        let (period, error) = (self.current_period, self.current_period_error);
+        record.add_within("scene.period", "s", period, error);
+        record.add("error.period", "s", error);
+        record
+    }
 }
 
 /// Largest factor between the value in the scene and a trial value, and the first factor.
@@ -206,20 +225,77 @@ fn period_of(scene: &Scene) -> Result<f64, StudyError> {
     Ok(orbit_of(scene)?.0.period)
 }
 
+/// The equation of motion of a scene without losses, drives and prescribed motions.
+enum ConservativeMotion {
+    /// That of a driven angle without loads.
+    Unloaded(ExactModel),
+    /// That of a length, or with loads, all of which have a potential.
+    Loaded(Machine),
+}
+
+impl ConservativeMotion {
+    fn new(scene: &Scene) -> Result<Self, StudyError> {
+        // A separating force changes no motion.
+        let is_loaded = scene.loads.iter().any(Load::does_work);
+        if let Some(drive) = (0..scene.drives.len()).next() {
+            return Err(scene_error(
+                scene,
+                "calibration needs the period of a motion without drives",
+                "remove the drives, or try values with `dwell simulate` or `dwell sweep --result cycle`",
+                [(SceneLocation::Drive(drive), "this drive would be ignored")],
+            ));
+        }
+        let has_no_potential = |load: &Load| load.does_work() && !load.is_conservative();
+        if let Some(load) = scene.loads.iter().position(has_no_potential) {
+            return Err(scene_error(
+                scene,
+                format!(
+                    "calibration needs the period of a motion without losses: `{}` has no potential",
+                    scene.loads[load].name
+                ),
+                "remove it, or try values with `dwell sweep --result motion`",
+                [(SceneLocation::Load(load), "no potential")],
+            ));
+        }
+        let exact = reduced_model(scene, &[])?;
+        if !is_loaded && exact.model().plan().is_angle(0) {
+            return Ok(Self::Unloaded(exact));
+        }
+        let model = compile_model(scene, &[])?;
+        let machine = Machine::new(model, &scene.loads, vec![CoordinateMode::Free], &[]);
+        let machine = machine.map_err(|e| explain_machine(scene, e))?;
+        Ok(Self::Loaded(machine))
+    }
+
+    fn orbit(&self, start: ReducedState) -> Result<Orbit, DynamicsError> {
+        match self {
+            Self::Unloaded(exact) => Orbit::new(exact, start),
+            Self::Loaded(machine) => Orbit::loaded(machine, start),
+        }
+    }
+
+    fn plan(&self) -> &Plan {
+        match self {
+            Self::Unloaded(exact) => exact.model().plan(),
+            Self::Loaded(machine) => machine.model().plan(),
+        }
+    }
+}
+
 /// The period of a scene's motion, and its error, s.
 fn period_with_error(scene: &Scene) -> Result<(f64, f64), StudyError> {
-    let (orbit, exact, start) = orbit_of(scene)?;
+    let (orbit, motion, start) = orbit_of(scene)?;
     let perturbed = |factor: f64| {
         let q_dot = start.q_dot * factor;
-        Orbit::new(&exact, ReducedState { q_dot, ..start })
+        motion.orbit(ReducedState { q_dot, ..start })
     };
     let error = estimate::of_period(&orbit, perturbed);
-    let error = error.map_err(|e| explain_motion(scene, exact.model().plan(), &e))?;
+    let error = error.map_err(|e| explain_motion(scene, motion.plan(), &e))?;
     Ok((orbit.period, error))
 }
 
-fn orbit_of(scene: &Scene) -> Result<(Orbit, ExactModel, ReducedState), StudyError> {
-    let exact = reduced_model(scene, &[])?;
+fn orbit_of(scene: &Scene) -> Result<(Orbit, ConservativeMotion, ReducedState), StudyError> {
+    let motion = ConservativeMotion::new(scene)?;
     let Some(start) = initial_reduced_state(scene) else {
         return Err(scene_error(
             scene,
@@ -228,24 +304,24 @@ fn orbit_of(scene: &Scene) -> Result<(Orbit, ExactModel, ReducedState), StudyErr
             missing_section_label("motion"),
         ));
     };
-    let orbit = Orbit::new(&exact, start);
-    let orbit = orbit.map_err(|e| explain_motion(scene, exact.model().plan(), &e))?;
-    Ok((orbit, exact, start))
+    let orbit = motion.orbit(start);
+    let orbit = orbit.map_err(|e| explain_motion(scene, motion.plan(), &e))?;
+    Ok((orbit, motion, start))
 }
 
 /// `dwell calibrate`, with the path and the period of the scene's `[calibration]` where none is given.
 ///
 /// # Errors
-/// As [`find_value`]; when neither the caller nor the scene gives path and period; when a length is
-/// driven or there are loads.
+/// As [`find_value`]; when neither the caller nor the scene gives path and period; when there are drives, or loads without
+/// a potential.
 #[cfg(feature = "output")]
 pub fn calibrate(
     scene: &Scene,
     path: Option<&str>,
     period: Option<f64>,
 ) -> Result<Outcome, StudyError> {
-    let prepared = PreparedScene::for_driven_angle(scene, true)?;
-    let note = branch_note(scene, prepared.model.model().plan());
+    let motion = ConservativeMotion::new(scene)?;
+    let note = branch_note(scene, motion.plan());
     let section = scene.calibration.as_ref();
     let path = path.or(section.map(|c| c.path.as_str()));
     let period = period.or(section.map(|c| c.period));
@@ -264,6 +340,7 @@ pub fn calibrate(
     let current_period = digits_within(result.current_period, result.current_period_error, 13);
     let [value_error, period_error] = [result.value_error, result.current_period_error];
     Ok(Outcome {
+        record: result.record(),
         summary: format!(
             "{title}: {path} = {value} {unit} gives the period {period} s\n  the scene has {current} {unit}, which gives \
              {current_period} s\n  estimated errors: {value_error:.1e} {unit}, {period_error:.1e} s\n{note}"

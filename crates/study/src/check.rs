@@ -1,12 +1,14 @@
 //! `dwell check`: mobility, range, groups and assembly modes of a scene, before anything moves.
 
 use crate::branch_note::branch_note;
+use crate::contents::describe_contents;
 use crate::explain::{StudyError, describe_ends, describe_limit};
 use crate::models::{loaded_model, requested_reaction_bodies};
 use crate::number_format::{coordinate_unit, count, digits, number};
 #[cfg(feature = "output")]
 use crate::output::Outcome;
 use crate::trajectory::compute::{check_variables, requested_bodies};
+use dwell_findings::Record;
 use dwell_geometry::mobility::mobility;
 use dwell_geometry::plan::GroupModes;
 use dwell_geometry::{BodyId, BranchHint, JointId, Mechanism, Plan, Range};
@@ -20,8 +22,10 @@ use dwell_scene::Scene;
 /// [`StudyError::Scene`] when the mechanism cannot be assembled, or a requested column does not exist.
 #[cfg(feature = "output")]
 pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
+    let mut record = Record::default();
     Ok(Outcome {
-        summary: describe_scene(scene)?,
+        summary: description(scene, &mut record)?,
+        record,
         ..Outcome::default()
     })
 }
@@ -31,6 +35,10 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
 /// # Errors
 /// [`StudyError::Scene`] when the mechanism cannot be assembled, or a requested column does not exist.
 pub fn describe_scene(scene: &Scene) -> Result<String, StudyError> {
+    description(scene, &mut Record::default())
+}
+
+fn description(scene: &Scene, record: &mut Record) -> Result<String, StudyError> {
     let mechanism = &scene.mechanism;
     let model = loaded_model(scene)?;
     let notes = check_variables(scene, &model)?;
@@ -43,10 +51,14 @@ pub fn describe_scene(scene: &Scene) -> Result<String, StudyError> {
         count(plan.actuators(), "degree of freedom"),
         list(mechanism.actuators.iter().map(|a| a.name.as_str())),
     );
-    text += &describe_freedom(scene, plan);
-    text += &describe_range(mechanism, plan);
-    text += &describe_groups(mechanism, plan);
-    text += &(describe_branch(mechanism, plan) + &branch_note(scene, plan));
+    record.add_count("moving_bodies", mechanism.bodies.len() - 1);
+    record.add_count("joints", mechanism.joints.len());
+    record.add_count("degrees_of_freedom", plan.actuators());
+    text += &describe_freedom(scene, plan, record);
+    text += &describe_range(mechanism, plan, record);
+    text += &describe_groups(mechanism, plan, record);
+    text += &(describe_branch(mechanism, plan, record) + &branch_note(scene, plan));
+    text += &describe_contents(scene, plan, record);
     text += &describe_pruning(scene, &model);
     text += &describe_teeth(scene);
     text += &describe_requests(scene);
@@ -80,7 +92,7 @@ fn group_bodies(mechanism: &Mechanism, plan: &Plan, g: usize) -> String {
 }
 
 /// Redundant constraints, which counting does not show.
-fn describe_freedom(scene: &Scene, plan: &Plan) -> String {
+fn describe_freedom(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
     let mechanism = &scene.mechanism;
     let reactions = mechanism.reactions().into_iter().enumerate();
     let indeterminate = reactions.filter(|&(k, _)| !plan.is_determinate(k));
@@ -96,6 +108,8 @@ fn describe_freedom(scene: &Scene, plan: &Plan) -> String {
             n => format!("{n} constraints are redundant"),
         };
         let (counted, by_rank) = (found.grubler_count(), found.degrees_of_freedom());
+        record.add("degrees_of_freedom.counted", "", counted as f64);
+        record.add_count("redundant_constraints", found.redundant_count);
         text = format!(
             "  {counted} degrees of freedom by counting (Grübler), {by_rank} by rank: {redundant}, consistently\n"
         );
@@ -107,16 +121,21 @@ fn describe_freedom(scene: &Scene, plan: &Plan) -> String {
 }
 
 /// The range of the actuator.
-fn describe_range(mechanism: &Mechanism, plan: &Plan) -> String {
+fn describe_range(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> String {
     let [actuator] = mechanism.actuators.as_slice() else {
         return "  several actuators: limit positions are found along a motion or a sweep only\n"
             .to_owned();
     };
     let name = &actuator.name;
     let angle = plan.is_angle(0);
+    if let Some((from, to)) = plan.range().limits() {
+        record.add("range.lower", coordinate_unit(angle), from);
+        record.add("range.upper", coordinate_unit(angle), to);
+    }
     let text = match plan.range() {
         Range::Full => "rotates fully".to_owned(),
         Range::Revolutions(revolutions) => {
+            record.add("period.revolutions", "", f64::from(revolutions));
             format!("rotates fully; the mechanism is periodic after {revolutions} revolutions")
         }
         Range::Unbounded if angle => {
@@ -147,7 +166,7 @@ fn describe_range(mechanism: &Mechanism, plan: &Plan) -> String {
     format!("  {name} {text}\n{}", limits.collect::<String>())
 }
 
-fn describe_groups(mechanism: &Mechanism, plan: &Plan) -> String {
+fn describe_groups(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> String {
     let groups = plan.group_methods();
     if groups.is_empty() {
         return String::new();
@@ -158,6 +177,7 @@ fn describe_groups(mechanism: &Mechanism, plan: &Plan) -> String {
         let joints = joints.iter().map(|j| mechanism.joints[j.0].name.as_str());
         let (joints, unknowns) = (list_or(joints, "its actuator"), count(size, "unknown"));
         let (number, bodies) = (g + 1, group_bodies(mechanism, plan, g));
+        record.add_count(format!("group.{number}.unknowns"), size);
         text += &match size {
             0 => format!("    {number}. {joints}: redundant, closes no group of its own\n"),
             _ => format!("    {number}. {bodies} closed by {joints}: {unknowns}, {kind}\n"),
@@ -169,15 +189,31 @@ fn describe_groups(mechanism: &Mechanism, plan: &Plan) -> String {
                 0 => "assembly mode in use:",
                 _ => "other assembly mode:",
             };
-            text += &format!("       {label} {}\n", describe_mode(mechanism, found, mode));
+            let mode_name = format!("group.{}.mode.{}", g + 1, k + 1);
+            let mode = describe_mode(mechanism, found, mode, (&mode_name, record));
+            text += &format!("       {label} {mode}\n");
         }
     }
     text
 }
 
 /// The angles and travels that distinguish an assembly mode of a group.
-fn describe_mode(mechanism: &Mechanism, found: &GroupModes, mode: &[f64]) -> String {
+fn describe_mode(
+    mechanism: &Mechanism,
+    found: &GroupModes,
+    mode: &[f64],
+    (mode_name, record): (&str, &mut Record),
+) -> String {
     let (angles, values) = mode.split_at(found.bodies.len().min(mode.len()));
+    for (body, angle) in found.bodies.iter().zip(angles) {
+        let body = mechanism.body_name(*body);
+        record.add(format!("{mode_name}.{body}"), "rad", *angle);
+    }
+    for (joint, value) in found.joints.iter().zip(values) {
+        let joint = &mechanism.joints[joint.0];
+        let unit = coordinate_unit(joint.kind.branch_hint() == Some(BranchHint::Direction));
+        record.add(format!("{mode_name}.{}", joint.name), unit, *value);
+    }
     let angles = found.bodies.iter().zip(angles);
     let angles = angles.map(|(b, a)| format!("{} = {:.4}", mechanism.body_name(*b), a + 0.0));
     let angles = angles.collect::<Vec<_>>().join(", ");
@@ -192,11 +228,15 @@ fn describe_mode(mechanism: &Mechanism, found: &GroupModes, mode: &[f64]) -> Str
 }
 
 /// The angles of all bodies at the start.
-fn describe_branch(mechanism: &Mechanism, plan: &Plan) -> String {
+fn describe_branch(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> String {
     let mut pose = plan.pose();
     let start = plan.assembly_coordinates();
     if plan.positions(start, &mut pose).is_err() {
         return String::new();
+    }
+    for (i, (actuator, &q)) in mechanism.actuators.iter().zip(start).enumerate() {
+        let unit = coordinate_unit(plan.is_angle(i));
+        record.add(format!("start.{}", actuator.name), unit, q);
     }
     let at = mechanism.actuators.iter().zip(start).enumerate();
     let at = at.map(|(i, (a, &q))| {
@@ -211,6 +251,7 @@ fn describe_branch(mechanism: &Mechanism, plan: &Plan) -> String {
     for body in bodies {
         let name = mechanism.body_name(body);
         let angle = plan.body_rotation(body, &pose).angle();
+        record.add(format!("start.{name}.angle"), "rad", angle);
         // Rounded first, so that no zero keeps a minus sign.
         let [radians, degrees] = [(angle, 1e6), (angle.to_degrees(), 1e3)]
             .map(|(value, parts)| (value * parts).round() / parts + 0.0);
@@ -317,10 +358,6 @@ fn describe_requests(scene: &Scene) -> String {
         others => format!(" ({others} others are not computed: not requested)"),
     };
     let names = list_or(names.iter().map(String::as_str), "none");
-    let mut text = format!("  reactions requested: {names}{others}\n");
-    if !scene.loads.is_empty() {
-        let loads = list(scene.loads.iter().map(|l| l.name.as_str()));
-        text += &format!("  loads: {loads}\n");
-    }
+    let text = format!("  reactions requested: {names}{others}\n");
     text
 }

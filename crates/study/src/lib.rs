@@ -41,6 +41,7 @@ pub mod ranges;
 
 mod calibrate;
 mod check;
+mod contents;
 pub mod cycle;
 pub mod equilibria;
 pub mod free_motion;
@@ -74,7 +75,7 @@ pub use {
     equilibria::output::equilibria,
     free_motion::output::{simulate, simulate_to_accuracy, simulate_with, simulate_within},
     linearise::output::linearise,
-    output::{Outcome, PictureFormat, Pictures},
+    output::{CommandResult, Outcome, PictureFormat, Pictures, add_summary},
     reduce::output::reduce,
     sweep::output::{ParameterSweep, sweep},
     symbolic::output::{FormulaFormat, symbolic},

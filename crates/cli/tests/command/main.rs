@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 mod assembly;
+mod lengths;
 mod long_motions;
 mod many_rows;
 mod messages;
@@ -11,6 +12,7 @@ mod pictures;
 mod results;
 mod rows;
 mod studies;
+mod summaries;
 mod sweep;
 mod test_dir;
 mod trajectories;

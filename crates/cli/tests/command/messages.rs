@@ -282,12 +282,15 @@ fn calibrations() {
         "1",
     ];
     group.refused("at rest", &arguments);
-    // A free motion knows no loads: a value fitted without them would be another one.
-    let weight = "[loads]\nweight = { gravity = [0, -9.81] }\n[motion]";
-    group
-        .dir
-        .put("scene.toml", four_bar_with(&[("[motion]", weight)]));
-    group.refused("under its weight", &arguments);
+    let damper =
+        "[loads]\nbrake = { rotational-damper = [\"ground\", \"rocker\"], damping = 1 }\n[motion]";
+    let drive = "[drives]\npush = { applied-force = \"phi\", magnitude = 3 }\n[motion]";
+    for (title, added) in [("with a damper", damper), ("with a drive", drive)] {
+        group
+            .dir
+            .put("scene.toml", four_bar_with(&[("[motion]", added)]));
+        group.refused(title, &arguments);
+    }
     group.check("calibrations");
 }
 

@@ -16,11 +16,11 @@ fn first_line(dir: &TestDir, file: &str) -> String {
 }
 
 #[test]
-fn check_describes_the_single_dwell_and_writes_nothing() {
+fn check_describes_the_single_dwell_and_writes_its_summary_alone() {
     let dir = TestDir::new();
     let run = dir.run(&["check", &case("single-dwell")]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
-    assert!(dir.contents().is_empty());
+    assert_eq!(dir.files("reports"), ["single-dwell-check.json"]);
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path("../snapshots");
     settings.set_prepend_module_to_snapshot(false);
@@ -78,6 +78,7 @@ fn reduce_writes_a_table_with_units_and_pictures() {
         dir.files("o"),
         [
             "single-dwell-reaction.png",
+            "single-dwell-reduce.json",
             "single-dwell-reduced.csv",
             "single-dwell-reduced.npz",
             "single-dwell-reduced.png"
@@ -87,8 +88,7 @@ fn reduce_writes_a_table_with_units_and_pictures() {
         first_line(&dir, "o/single-dwell-reduced.csv"),
         "phi [rad],m [kg m2],half_dm [kg m2/rad],slide.normal.a [kg m],slide.normal.b [kg m],relative_error"
     );
-    assert!(run.out.contains("o/single-dwell-reduced.csv"));
-    assert!(run.out.contains("kg m²/rad"));
+    assert!(run.out.contains("o/single-dwell-reduced.csv") && run.out.contains("kg m²/rad"));
     assert!(run.out.contains(
         "estimated rounding errors, compared with 32-digit arithmetic: below 1e-15 of the largest m"
     ));
@@ -150,7 +150,7 @@ fn work_precision_writes_every_combination_and_the_front() {
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     assert_eq!(
         dir.files("o"),
-        ["csv", "md", "npz", "png"].map(|end| format!("driven-work-precision.{end}"))
+        ["csv", "json", "md", "npz", "png"].map(|end| format!("driven-work-precision.{end}"))
     );
     let header = first_line(&dir, "o/driven-work-precision.csv");
     assert!(
@@ -182,6 +182,8 @@ fn cycle_tells_the_steady_cycle_and_its_flywheel() {
             "driven-cycle-flywheel.npz",
             "driven-cycle-work.csv",
             "driven-cycle.csv",
+            "driven-cycle.json",
+            "driven-cycle.md",
             "driven-cycle.npz",
             "driven-cycle.png"
         ]
@@ -224,10 +226,13 @@ fn equilibria_and_linearise_need_no_motion() {
         dir.files("o"),
         [
             "hung-equilibria.csv",
+            "hung-equilibria.json",
+            "hung-equilibria.md",
             "hung-equilibria.png",
             "hung-linear.csv",
             "hung-linear.md",
-            "hung-linear.npz"
+            "hung-linear.npz",
+            "hung-linearise.json"
         ]
     );
 }
@@ -245,7 +250,7 @@ fn calibrate_finds_the_inertia_of_the_single_dwell() {
     let run = dir.run(&[&["calibrate", &case("single-dwell")], &arguments[..]].concat());
     assert_eq!(run.status, Some(0));
     assert!(run.out.contains("coupler.mass = 1.497607"), "{}", run.out);
-    assert!(dir.contents().is_empty());
+    assert_eq!(dir.files("reports"), ["single-dwell-calibrate.json"]);
 }
 
 #[test]
@@ -394,7 +399,7 @@ fn a_reader_that_has_seen_enough_is_no_error() {
     assert_eq!(child.wait().unwrap().code(), Some(0));
     assert!(messages.starts_with("time: "), "{messages}");
     assert_eq!(messages.lines().count(), 1, "{messages}");
-    assert_eq!(dir.files("o").len(), 4);
+    assert_eq!(dir.files("o").len(), 5);
 }
 
 #[test]

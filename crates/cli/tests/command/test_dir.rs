@@ -36,7 +36,7 @@ pub(crate) fn four_bar_with(changes: &[(&str, &str)]) -> String {
 pub(crate) struct Run {
     pub(crate) status: Option<i32>,
     pub(crate) out: String,
-    /// Without the line about its time, which differs from run to run.
+    /// Without the lines about its time, which differ from run to run.
     pub(crate) err: String,
     pub(crate) time: Option<String>,
 }
@@ -78,12 +78,13 @@ impl TestDir {
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
         let err = text(done.stderr);
         let is_time = |line: &&str| line.starts_with("time: ");
+        let is_of_long_run = |line: &&str| line.contains(": running for ");
         Run {
             status: done.status.code(),
             out: text(done.stdout),
             err: err
                 .split_inclusive('\n')
-                .filter(|line| !is_time(line))
+                .filter(|line| !is_time(line) && !is_of_long_run(line))
                 .collect(),
             time: err.lines().find(is_time).map(str::to_owned),
         }

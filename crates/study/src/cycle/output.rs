@@ -7,9 +7,10 @@ use crate::cycle::compute::{
 use crate::explain::StudyError;
 use crate::models::{SceneMachine, SolverSettings, source_name};
 use crate::number_format::{count, digits, digits_within};
-use crate::output::{Outcome, Picture};
+use crate::output::{Outcome, Picture, results_page};
 use crate::trajectory::output::TrajectoryOutcome;
 use dwell_dynamics::Cycle;
+use dwell_findings::Record;
 use dwell_report::TableFormat;
 use dwell_scene::Scene;
 use std::f64::consts::{PI, TAU};
@@ -51,13 +52,17 @@ pub fn cycle(
     if let Some(samples) = &results.flywheel_samples {
         files.add_table(&name("-flywheel"), samples, &TableFormat::ALL)?;
     }
-    let figure = figures::cycle(&results, settings);
-    let picture = Picture::figure(scene, name(".png"), true, figure);
-    outcome.pictures.push(picture);
     outcome.summary = summary(&results);
+    outcome.record = record(&results);
     if let Some(flywheel) = &results.flywheel {
         outcome.summary += &flywheel_text(&results.prepared, flywheel);
     }
+    let figure = figures::cycle(&results, settings);
+    let text = (outcome.summary.as_str(), &outcome.record);
+    let page = results_page(scene, "steady cycle", text, &[(&figure, name(".png"))]);
+    outcome.page = Some((name(".md"), page));
+    let picture = Picture::figure(scene, name(".png"), true, figure);
+    outcome.pictures.push(picture);
     Ok(TrajectoryOutcome {
         outcome,
         early_stop: None,
@@ -100,6 +105,62 @@ pub(crate) fn summary(results: &CycleResults<'_>) -> String {
     text + &stability_text(cycle, errors)
         + &work_text(prepared, cycle, errors)
         + &prepared.branch_note()
+}
+
+/// The numbers of the summary.
+fn record(results: &CycleResults<'_>) -> Record {
+    let (prepared, cycle, errors) = (&results.prepared, &results.steady, &results.errors);
+    let mut record = Record::default();
+    let speed_of = |record: &mut Record, name: &str, speed: f64, error: f64| {
+        record.add_within(name, "rad/s", speed, error * speed.abs());
+    };
+    record.add_count("revolutions", (cycle.cycle_angle / TAU).round() as usize);
+    record.add_within("period", "s", cycle.period, errors.speed * cycle.period);
+    speed_of(&mut record, "mean_speed", cycle.mean_speed, errors.speed);
+    let ends = [("slowest", cycle.slowest), ("fastest", cycle.fastest)];
+    for ((name, [at, speed]), error) in ends.into_iter().zip(errors.positions) {
+        speed_of(&mut record, &format!("{name}_speed"), speed, errors.speed);
+        record.add_within(format!("{name}_speed.at"), "rad", at, error);
+    }
+    let fluctuation = ("coefficient_of_fluctuation", cycle.fluctuation);
+    record.add_within(fluctuation.0, "", fluctuation.1, errors.fluctuation);
+    let multipliers = cycle.floquet_multipliers.iter().zip(&errors.multipliers);
+    for (k, ([re, im], error)) in multipliers.enumerate() {
+        let name = |part: &str| format!("floquet_multiplier.{}.{part}", k + 1);
+        record.add_within(name("re"), "", *re, *error);
+        record.add_within(name("im"), "", *im, *error);
+    }
+    let sources = prepared.machine.nonconservative_sources().iter();
+    for (&source, &work) in sources.zip(&cycle.works) {
+        let name = source_name(prepared.scene, source);
+        record.add_within(format!("{name}.work"), "J", work, errors.work);
+    }
+    let sum: f64 = cycle.works.iter().sum();
+    let size: f64 = cycle.works.iter().map(|work| work.abs()).sum();
+    record.add("work_sum", "J", sum);
+    if size > errors.work {
+        record.add("work_sum.relative", "", (sum / size).abs());
+    }
+    record.add("error.speeds", "", errors.speed);
+    record.add("error.coefficient_of_fluctuation", "", errors.fluctuation);
+    record.add("error.works", "J", errors.work);
+    let multiplier = errors.multipliers.iter().copied().fold(0.0, f64::max);
+    record.add("error.floquet_multipliers", "", multiplier);
+    if let Some(sized) = &results.flywheel {
+        let (flywheel, errors) = (&sized.flywheel, &sized.errors);
+        record.add("flywheel.coefficient_of_fluctuation", "", sized.target);
+        let inertia = flywheel.inertia;
+        record.add_within("flywheel.inertia", "kg m2", inertia, sized.inertia_error);
+        let cycle = &flywheel.cycle;
+        for (name, speed) in [
+            ("flywheel.mean_speed", cycle.mean_speed),
+            ("flywheel.slowest_speed", cycle.slowest[1]),
+            ("flywheel.fastest_speed", cycle.fastest[1]),
+        ] {
+            speed_of(&mut record, name, speed, errors.speed);
+        }
+    }
+    record
 }
 
 /// The multipliers, and whether the cycle is stable.

@@ -5,9 +5,10 @@ use crate::equilibria::compute::{EquilibriaResults, SearchedRange, compute_equil
 use crate::explain::StudyError;
 use crate::models::SceneMachine;
 use crate::number_format::{coordinate_unit, count, digits, digits_within, force_unit, number};
-use crate::output::{Outcome, Picture};
+use crate::output::{Outcome, Picture, results_page};
 use crate::ranges::extent;
 use dwell_dynamics::{Equilibrium, Stability};
+use dwell_findings::Record;
 use dwell_report::TableExport as _;
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
@@ -22,12 +23,18 @@ pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
     let mut outcome = Outcome::default();
     let name = |rest: &str| format!("{}-equilibria.{rest}", scene.name);
     outcome.files.add(name("csv"), results.table.csv()?);
-    if let Some(curves) = &results.curves {
-        let figure = figures::equilibria(&results, curves);
-        let picture = Picture::figure(scene, name("png"), true, figure);
-        outcome.pictures.push(picture);
-    }
     outcome.summary = summary(&results);
+    outcome.record = record(&results);
+    let figure = results.curves.as_ref();
+    let figure = figure.map(|curves| figures::equilibria(&results, curves));
+    let figures: Vec<_> = figure.iter().map(|figure| (figure, name("png"))).collect();
+    let text = (outcome.summary.as_str(), &outcome.record);
+    let page = results_page(scene, "equilibria", text, &figures);
+    outcome.page = Some((name("md"), page));
+    outcome.pictures = figure
+        .into_iter()
+        .map(|figure| Picture::figure(scene, name("png"), true, figure))
+        .collect();
     Ok(outcome)
 }
 
@@ -80,6 +87,104 @@ fn summary(results: &EquilibriaResults<'_>) -> String {
         text += &describe_equilibrium(prepared, equilibrium);
     }
     text + &prepared.branch_note()
+}
+
+/// The numbers of the summary.
+fn record(results: &EquilibriaResults<'_>) -> Record {
+    let (prepared, found) = (&results.prepared, &results.found);
+    let mut record = Record::default();
+    record.add_count("equilibria", found.len());
+    let mut range = |i: usize, [from, to]: [f64; 2]| {
+        let (name, unit) = coordinate(prepared, i);
+        record.add(format!("searched.{name}.from"), unit, from);
+        record.add(format!("searched.{name}.to"), unit, to);
+    };
+    match &results.searched {
+        SearchedRange::Interval(interval) => range(prepared.first_free_coordinate().0, *interval),
+        SearchedRange::Starts { starts, ranges } => {
+            let free = prepared.machine.free().iter();
+            free.zip(ranges).for_each(|(&i, of)| range(i, *of));
+            record.add_count("starts", *starts);
+            record.add_count("free_coordinates", ranges.len());
+        }
+    }
+    if let Some(curves) = results.curves.as_ref().filter(|_| found.is_empty()) {
+        let (_, is_angle) = prepared.first_free_coordinate();
+        let forces = curves.force_and_potential.iter().map(|[force, _]| *force);
+        let [low, high] = extent(forces);
+        record.add("static_force.min", force_unit(is_angle), low);
+        record.add("static_force.max", force_unit(is_angle), high);
+    }
+    for (k, equilibrium) in found.iter().enumerate() {
+        record_equilibrium(
+            prepared,
+            equilibrium,
+            &format!("equilibrium.{}", k + 1),
+            &mut record,
+        );
+    }
+    record
+}
+
+/// The name of a coordinate, and its unit.
+fn coordinate<'a>(prepared: &'a SceneMachine<'_>, i: usize) -> (&'a str, &'static str) {
+    (
+        prepared.coordinate_name(i),
+        coordinate_unit(prepared.is_angle(i)),
+    )
+}
+
+/// The numbers of an equilibrium, under names that begin with `of`.
+pub(crate) fn record_equilibrium(
+    prepared: &SceneMachine<'_>,
+    equilibrium: &Equilibrium,
+    of: &str,
+    record: &mut Record,
+) {
+    let start = prepared.initial_state();
+    for (k, &i) in prepared.machine.free().iter().enumerate() {
+        let (name, unit) = coordinate(prepared, i);
+        let (q, error) = (equilibrium.y[k], equilibrium.errors[k]);
+        record.add_within(format!("{of}.{name}"), unit, q, error);
+        let error_from_start = error + f64::EPSILON * q.abs().max(start[k].abs());
+        let name = format!("{of}.{name}.from_start");
+        record.add_within(name, unit, q - start[k], error_from_start);
+    }
+    for (n, neutral) in equilibrium.neutral.iter().enumerate() {
+        let free = prepared.machine.free().iter().zip(&neutral.direction);
+        for (&i, &part) in free.filter(|(_, part)| **part != 0.0) {
+            let (name, unit) = coordinate(prepared, i);
+            let of = format!("{of}.neutral.{}.{name}", n + 1);
+            record.add(&of, unit, part);
+            if let Some([from, to]) = neutral.extent {
+                record.add(format!("{of}.from"), unit, from);
+                record.add(format!("{of}.to"), unit, to);
+            }
+        }
+    }
+    let (values, errors) = (&equilibrium.eigenvalues, &equilibrium.eigenvalue_errors);
+    record_eigenvalues(values, errors, of, record);
+}
+
+/// Eigenvalues under names that begin with `of`: a complex pair also with its frequency and damping.
+pub(crate) fn record_eigenvalues(
+    values: &[[f64; 2]],
+    errors: &[f64],
+    of: &str,
+    record: &mut Record,
+) {
+    for (k, (&[re, im], &error)) in values.iter().zip(errors).enumerate() {
+        let name = |what: &str| format!("{of}.eigenvalue.{}.{what}", k + 1);
+        record.add_within(name("re"), "1/s", re, error);
+        record.add_within(name("im"), "1/s", im, error);
+        let size = re.hypot(im);
+        if im > error {
+            record.add_within(name("angular_frequency"), "rad/s", size, error);
+            record.add_within(name("frequency"), "Hz", size / TAU, error / TAU);
+            record.add_within(name("damping_ratio"), "", -re / size, error / size);
+        }
+    }
+    record.add(format!("{of}.error.eigenvalues"), "1/s", largest(errors));
 }
 
 /// `phi between 10° and 20°`.

@@ -6,6 +6,7 @@ use crate::models::SolverSettings;
 use crate::progress::Progress;
 use crate::trajectory::figures::PictureSpan;
 use crate::trajectory::output::{TrajectoryOutcome, report};
+use dwell_findings::RecordedEvent;
 use dwell_report::TableExport as _;
 use dwell_scene::Scene;
 
@@ -73,6 +74,9 @@ pub fn simulate_within(
         outcome.files.add(name, motion.event_table.csv()?);
     }
     outcome.summary += &motion.summary;
+    let event = |(t, name): (f64, String)| RecordedEvent { name, t };
+    outcome.record.extend(motion.record);
+    outcome.record.events = motion.events.into_iter().map(event).collect();
     Ok(TrajectoryOutcome {
         outcome,
         early_stop: computed.early_stop,

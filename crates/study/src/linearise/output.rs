@@ -1,12 +1,15 @@
 //! Writes a linearised motion: matrices, document and summary.
 
-use crate::equilibria::output::{describe_eigenvalues, describe_equilibrium, largest};
+use crate::equilibria::output::{
+    describe_eigenvalues, describe_equilibrium, largest, record_eigenvalues, record_equilibrium,
+};
 use crate::explain::StudyError;
 use crate::linearise::compute::{
     LinearisedMotion, OperatingPoint, StateSpaceNames, compute_linearisation,
 };
 use crate::number_format::number;
 use crate::output::{Outcome, indeterminate_note, provenance_line};
+use dwell_findings::Record;
 use dwell_report::{Array, Block, Column, Document, npz};
 use dwell_scene::Scene;
 
@@ -22,6 +25,7 @@ pub fn linearise(scene: &Scene, point: OperatingPoint) -> Result<Outcome, StudyE
     outcome.files.add(name("csv"), csv(&motion));
     outcome.files.add(name("md"), document(&motion));
     outcome.summary = summary(&motion);
+    outcome.record = record(&motion);
     Ok(outcome)
 }
 
@@ -63,6 +67,22 @@ fn row_name(matrix: &str, column: &Column) -> String {
     } else {
         format!("{} [{}]", column.name, column.unit)
     }
+}
+
+/// The numbers of the summary, and the state.
+fn record(motion: &LinearisedMotion<'_>) -> Record {
+    let mut record = Record::default();
+    match &motion.equilibrium {
+        Some(found) => record_equilibrium(&motion.prepared, found, "equilibrium", &mut record),
+        None => {
+            let (values, errors) = (&motion.eigenvalues, &motion.eigenvalue_errors);
+            record_eigenvalues(values, errors, "initial", &mut record);
+        }
+    }
+    for (column, value) in motion.names.states.iter().zip(&motion.state) {
+        record.add(format!("state.{}", column.name), &column.unit, *value);
+    }
+    record
 }
 
 /// The printed summary.

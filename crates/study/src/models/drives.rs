@@ -2,7 +2,7 @@
 
 use crate::number_format::coordinate_unit;
 use dwell_dynamics::NonconservativeSource;
-use dwell_kinetostatics::DriveKind;
+use dwell_kinetostatics::{Drive, DriveKind, Motor};
 use dwell_scene::Scene;
 
 /// Name, unit and meaning of each state of the drives.
@@ -19,6 +19,34 @@ pub(crate) fn drive_states(scene: &Scene) -> Vec<(String, &'static str, &'static
         DriveKind::Motor(_) | DriveKind::SpeedController(_) | DriveKind::AppliedForce(_) => None,
     };
     scene.drives.iter().filter_map(state).collect()
+}
+
+/// The motor of a drive that is one; none of a motor whose current makes no torque.
+pub(crate) fn motor_of(drive: &Drive) -> Option<&Motor> {
+    match &drive.kind {
+        DriveKind::Motor(motor) if motor.torque_constant * motor.gear_ratio != 0.0 => Some(motor),
+        DriveKind::Motor(_) | DriveKind::SpeedController(_) | DriveKind::AppliedForce(_) => None,
+    }
+}
+
+/// Name, unit and meaning of what motors have besides their states: the current of one without inductance, the
+/// electrical power and the efficiency.
+pub(crate) fn motor_columns(scene: &Scene) -> Vec<(String, &'static str, &'static str)> {
+    let mut all = Vec::new();
+    for drive in &scene.drives {
+        let Some(motor) = motor_of(drive) else {
+            continue;
+        };
+        let name = |what: &str| format!("{}.{what}", drive.name);
+        if motor.inductance <= 0.0 {
+            all.push((name("current"), "A", "current of the motor"));
+        }
+        let power = "voltage times current; negative where the motor gives back";
+        all.push((name("electrical_power"), "W", power));
+        let efficiency = "mechanical over electrical power, before the rotor's inertia; 0 where the motor takes or delivers none";
+        all.push((name("efficiency"), "", efficiency));
+    }
+    all
 }
 
 /// The name of what does work on a machine.

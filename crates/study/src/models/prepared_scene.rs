@@ -1,12 +1,12 @@
 //! A scene with the exact reduced model of what it requests.
 
-use crate::explain::{StudyError, scene_error};
+use crate::explain::StudyError;
 use crate::models::{determinate_model, exact_model, requested_reaction_bodies};
 use crate::ranges::equally_spaced;
 use dwell_dynamics::ReducedState;
-use dwell_geometry::{ActuatorId, Reaction};
-use dwell_kinetostatics::{ExactModel, Load, ReducedModel};
-use dwell_scene::{Scene, SceneLocation};
+use dwell_geometry::Reaction;
+use dwell_kinetostatics::{ExactModel, ReducedModel};
+use dwell_scene::Scene;
 use std::f64::consts::TAU;
 
 /// A scene and the reduced model of what it requests.
@@ -30,34 +30,20 @@ impl<'a> PreparedScene<'a> {
     }
 
     /// Compiles what a scene requests, without the groups that affect neither inertia nor a requested
-    /// reaction. For analyses of a driven angle that ignore loads.
+    /// reaction. For analyses that ignore loads.
     ///
     /// # Errors
-    /// As [`PreparedScene::new`]; where a length is driven, or (for a period, which they would change)
-    /// where there are loads.
-    pub fn for_driven_angle(scene: &'a Scene, for_period: bool) -> Result<Self, StudyError> {
+    /// As [`PreparedScene::new`].
+    pub fn without_loads(scene: &'a Scene) -> Result<Self, StudyError> {
         let model = determinate_model(scene)?;
         let pruned = model.pruned_for(&requested_reaction_bodies(scene));
         let model = exact_model(scene, pruned)?;
-        if !model.model().plan().is_angle(0) {
-            return Err(scene_error(
-                scene,
-                "the reduced model is available for driven angles only",
-                "use `dwell simulate` or `dwell kinetostatics`, which support driven lengths, or drive an angle",
-                [(SceneLocation::Actuator(ActuatorId(0)), "drives a length")],
-            ));
-        }
-        // A separating force changes no motion.
-        let ignored = scene.loads.iter().position(Load::does_work);
-        if let Some(load) = ignored.filter(|_| for_period) {
-            return Err(scene_error(
-                scene,
-                "calibration needs the period of a motion without loads",
-                "remove the loads, or try values with `dwell simulate`",
-                [(SceneLocation::Load(load), "this load would be ignored")],
-            ));
-        }
         Ok(Self { scene, model })
+    }
+
+    /// Whether the coordinate is an angle; otherwise it is a length.
+    pub fn is_angle(&self) -> bool {
+        self.model.model().plan().is_angle(0)
     }
 
     /// The name of the coordinate.
@@ -78,8 +64,8 @@ impl<'a> PreparedScene<'a> {
         initial_reduced_state(self.scene)
     }
 
-    /// `count` + 1 equally spaced coordinates over the range, rad: over a revolution from 0, or between
-    /// the limit positions, of which a thousandth is left out where everything grows.
+    /// `count` + 1 equally spaced coordinates over the range, rad, of an angle: over a revolution from 0, or
+    /// between the limit positions, of which a thousandth is left out where everything grows.
     pub fn range_positions(&self, count: usize) -> Vec<f64> {
         let (from, to) = match self.model.range().limits() {
             None => (0.0, TAU),

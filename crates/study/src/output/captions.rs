@@ -112,6 +112,9 @@ pub fn coordinate_label(prepared: &PreparedScene<'_>) -> String {
     let mechanism = &prepared.scene.mechanism;
     let bodies = mechanism.actuators[0].bodies;
     let symbol = symbol(prepared.coordinate_name());
+    if !prepared.is_angle() {
+        return symbol;
+    }
     // The angle of the second body; from another than the ground, both are named.
     let [from, body] = bodies.map(|b| mechanism.body_name(b));
     if bodies[0].0 == mechanism.ground {

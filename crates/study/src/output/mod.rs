@@ -6,6 +6,8 @@ mod mechanism_drawing;
 mod mechanism_symbols;
 mod pictures;
 mod provenance;
+mod results_page;
+mod summary_file;
 
 pub(crate) use captions::{
     add_note, coordinate_axis, indeterminate_note, inner_range, range_caption,
@@ -16,8 +18,10 @@ pub(crate) use distinct_names::DistinctNames;
 pub use mechanism_drawing::MechanismDrawing;
 pub use pictures::{Picture, PictureFormat, Pictures};
 pub use provenance::provenance_line;
+pub(crate) use results_page::results_page;
+pub use summary_file::{CommandResult, add_summary};
 
-use dwell_findings::Finding;
+use dwell_findings::{Finding, Record};
 use dwell_report::{Document, Files};
 
 /// The result of an analysis, in memory: nothing is drawn until the caller [draws](Self::draw) the pictures, and nothing
@@ -26,6 +30,8 @@ use dwell_report::{Document, Files};
 pub struct Outcome {
     /// Text to print.
     pub summary: String,
+    /// The numbers in it, with all their digits.
+    pub record: Record,
     /// Files to write, relative to the output folder.
     pub files: Files,
     /// Results of checks.

@@ -149,6 +149,7 @@ impl Outcome {
     ) -> Result<Self, StudyError> {
         let Self {
             mut summary,
+            mut record,
             mut files,
             findings,
             pictures,
@@ -182,9 +183,12 @@ impl Outcome {
                 drawn.len(),
                 count(all, "picture")
             );
+            record.add_count("pictures", all);
+            record.add_count("pictures_drawn", drawn.len());
         }
         Ok(Self {
             summary,
+            record,
             files,
             findings,
             ..Self::default()

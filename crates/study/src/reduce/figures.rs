@@ -9,10 +9,10 @@
 use crate::models::PreparedScene;
 use crate::number_format::count;
 use crate::output::{
-    add_note, chart, coordinate_label, figure, inner_range, range_caption, reaction_figure_count,
-    symbol,
+    add_note, chart, coordinate_axis, coordinate_label, figure, inner_range, range_caption,
+    reaction_figure_count, symbol,
 };
-use crate::reduce::compute::{ReducedCurves, UnitLoadCurves};
+use crate::reduce::compute::{ReducedCurves, UnitLoadCurves, coefficient_units, inertia_units};
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Axis, Figure, Panel, Series};
 
@@ -29,14 +29,19 @@ impl RangeFigures<'_> {
     /// A curve over the range.
     fn line(&self, name: &str, values: impl IntoIterator<Item = f64>) -> Series {
         let points = self.q.iter().zip(values);
-        Series::line(name, points.map(|(q, v)| [q.to_degrees(), v]).collect())
+        let x = |q: f64| match self.prepared.is_angle() {
+            true => q.to_degrees(),
+            false => q,
+        };
+        Series::line(name, points.map(|(q, v)| [x(*q), v]).collect())
     }
 
     /// Curves over the range; next to a limit position they may leave the chart.
     fn panel(&self, title: &str, label: &str, unit: &str, series: Vec<Series>) -> Panel {
         let mut y = Axis::new(label, unit);
         y.range = inner_range(self.prepared, &series);
-        let x = Axis::degrees(coordinate_label(self.prepared));
+        let label = coordinate_label(self.prepared);
+        let x = coordinate_axis(&label, self.prepared.is_angle());
         chart(title, x, y, series).into()
     }
 
@@ -63,11 +68,15 @@ pub fn reduced(
 ) -> Figure {
     let (q, at) = (&curves.q, &curves.coefficients);
     let range = RangeFigures { prepared, q };
+    let [m_unit, half_dm_unit] = match prepared.is_angle() {
+        true => ["kg m²", "kg m²/rad"],
+        false => inertia_units(false),
+    };
     let inertia = vec![range.line("", at.iter().map(|c| c.m))];
-    let inertia = range.panel("m (generalised inertia)", "m", "kg m²", inertia);
+    let inertia = range.panel("m (generalised inertia)", "m", m_unit, inertia);
     let derivative = vec![range.line("", at.iter().map(|c| c.half_dm))];
     let title = "½m′ (half its derivative)";
-    let derivative = range.panel(title, "½m′", "kg m²/rad", derivative);
+    let derivative = range.panel(title, "½m′", half_dm_unit, derivative);
     let text = "m is the actuator force at unit acceleration and zero speed, ½m′ at unit speed and zero acceleration.";
     let title = "Reduced inertia and half its derivative";
     let panels = match is_rounding[1] {
@@ -86,17 +95,16 @@ pub fn coefficients(
 ) -> (Vec<Figure>, Option<String>) {
     let reactions = prepared.reaction_units();
     let mut pages: Vec<(Vec<usize>, &str)> = Vec::new();
-    for (of, unit) in [("N", "kg m"), ("N m", "kg m²")] {
+    for of in ["N", "N m"] {
         let is_drawn = |k: usize| coefficients_of(is_rounding, k).contains(&false);
         let of_unit = (0..reactions.len()).filter(|&k| reactions[k].1 == of && is_drawn(k));
         let of_unit: Vec<usize> = of_unit.collect();
-        pages.extend(of_unit.chunks(MAX_CURVES).map(|some| (some.to_vec(), unit)));
+        pages.extend(of_unit.chunks(MAX_CURVES).map(|some| (some.to_vec(), of)));
     }
     let (drawn, note) = reaction_figure_count(prepared.scene, pages.len());
     let pages = pages.iter().take(drawn).enumerate();
-    let figures = pages.map(|(k, (some, unit))| {
-        coefficient_figure((prepared, curves), is_rounding, some, unit, k)
-    });
+    let figures = pages
+        .map(|(k, (some, of))| coefficient_figure((prepared, curves), is_rounding, some, of, k));
     let mut figures: Vec<Figure> = figures.collect();
     add_note(&mut figures, note.as_deref());
     (figures, note)
@@ -112,7 +120,7 @@ fn coefficient_figure(
     (prepared, curves): (&PreparedScene<'_>, &ReducedCurves),
     is_rounding: &[bool],
     group: &[usize],
-    unit: &str,
+    of: &str,
     index: usize,
 ) -> Figure {
     let q = &curves.q;
@@ -144,7 +152,14 @@ fn coefficient_figure(
         ),
     ];
     let kinds = kinds.into_iter().filter(|(.., lines)| !lines.is_empty());
-    let panels = kinds.map(|(label, title, lines)| range.panel(&title, label, unit, lines));
+    let units = match (of, prepared.is_angle()) {
+        ("N m", true) => ["kg m²"; 2],
+        (of, is_angle) => coefficient_units(of, is_angle),
+    };
+    let panels = kinds.map(|(label, title, lines)| {
+        let unit = units[usize::from(label == "b")];
+        range.panel(&title, label, unit, lines)
+    });
     let panels = panels.collect();
     let title = match group {
         [k] => format!("Reduced parameters of the reaction {}", reactions[*k].0),

@@ -8,8 +8,9 @@ use crate::number_format::digits_within;
 use crate::output::{Outcome, Picture, indeterminate_note, separating_note};
 use crate::ranges::extent;
 use crate::reduce::compute::{
-    Reduction, RoundingErrors, TableRequest, compute_reduction, tabulate,
+    Reduction, RoundingErrors, TableRequest, compute_reduction, inertia_units, tabulate,
 };
+use dwell_findings::Record;
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Figure, Files, TableFormat};
 use dwell_scene::Scene;
@@ -49,15 +50,18 @@ pub fn reduce(
     };
     let pictures = figures.into_iter().map(picture).collect();
     let mut summary = summary(&reduction, note.as_deref());
+    let mut record = record(&reduction);
     if let Some(request) = table {
         let tabulation = tabulate(prepared, &request)?;
         summary += &tabulation.summary;
+        record.extend(tabulation.record);
         if let Some(text) = tabulation.text {
             files.add(format!("{}.table", scene.name), text);
         }
     }
     Ok(Outcome {
         summary,
+        record,
         files,
         pictures,
         ..Outcome::default()
@@ -73,6 +77,40 @@ fn describe_rounding(errors: &RoundingErrors) -> String {
     format!(
         "  estimated rounding errors, compared with 32-digit arithmetic: below {m} of the largest m, {half_dm} of ½m′, {rest} of any a or b\n"
     )
+}
+
+/// The numbers of the summary.
+fn record(reduction: &Reduction<'_>) -> Record {
+    let curves = &reduction.curves;
+    let mut record = Record::default();
+    record.add_count("positions", curves.q.len());
+    let is_rounding = reduction.errors.is_rounding[1];
+    let [m_unit, half_dm_unit] = inertia_units(reduction.prepared.is_angle());
+    let [m_error, half_dm_error, rest] = reduction.errors.max_errors;
+    let picks: [(&str, &str, fn(&Coefficients) -> f64, f64, bool); 2] = [
+        ("m", m_unit, |c| c.m, m_error, false),
+        (
+            "half_dm",
+            half_dm_unit,
+            |c| c.half_dm,
+            half_dm_error,
+            is_rounding,
+        ),
+    ];
+    for (name, unit, pick, error, is_zero) in picks {
+        let ends = match is_zero {
+            true => [0.0; 2],
+            false => extent(curves.coefficients.iter().map(pick)),
+        };
+        let largest = ends[0].abs().max(ends[1].abs());
+        for (end, value) in ["min", "max"].into_iter().zip(ends) {
+            record.add_within(format!("{name}.{end}"), unit, value, error * largest);
+        }
+    }
+    record.add("rounding_error.m", "", m_error);
+    record.add("rounding_error.half_dm", "", half_dm_error);
+    record.add("rounding_error.reactions", "", rest);
+    record
 }
 
 /// The printed summary.
@@ -93,9 +131,13 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
     let ([m_min, m_max], [h_min, h_max]) = (texts(m, m_error), texts(half_dm, half_dm_error));
     let (title, count) = (&prepared.scene.title, curves.q.len());
     let name = prepared.coordinate_name();
+    let [m_unit, half_dm_unit] = match prepared.is_angle() {
+        true => ["kg m²", "kg m²/rad"],
+        false => inertia_units(false),
+    };
     let mut summary = format!(
-        "{title}: {count} positions of {name}, and there\n  m    from {m_min} to {m_max} kg m²\n  ½m′  from {h_min} to \
-         {h_max} kg m²/rad\n"
+        "{title}: {count} positions of {name}, and there\n  m    from {m_min} to {m_max} {m_unit}\n  ½m′  from {h_min} to \
+         {h_max} {half_dm_unit}\n"
     );
     summary += &describe_rounding(&reduction.errors);
     if let Some(note) = note {

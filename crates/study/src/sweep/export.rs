@@ -7,6 +7,7 @@ use crate::sweep::compute::{Row, SweepQuantity};
 use crate::sweep::figure::figure;
 use crate::sweep::output::PreparedSweep;
 use crate::sweep::spread::Spread;
+use dwell_findings::Record;
 use dwell_report::{Column, TableExport as _, TableFormat};
 use std::path::Path;
 
@@ -30,6 +31,7 @@ pub(crate) fn report_sweep(
 ) -> Result<Outcome, StudyError> {
     let mut outcome = Outcome {
         summary: summary(prepared, path, rows, counts),
+        record: record(prepared, path, rows, counts),
         ..Outcome::default()
     };
     let (scene, sweep) = (prepared.scene, prepared.sweep);
@@ -123,9 +125,67 @@ fn summary(prepared: &PreparedSweep<'_>, path: &Path, rows: &[Row], counts: Coun
     for (k, heading) in prepared.results.iter().enumerate() {
         if let Some(spread) = Spread::of(rows.iter().map(|row| row.result.values[k])) {
             text += &spread_text(heading, &spread, design.is_random());
+            text += &best_text(prepared, rows, k);
         }
     }
     text + &failures(rows) + &prepared.requested.notes
+}
+
+/// The numbers of the summary.
+fn record(prepared: &PreparedSweep<'_>, path: &Path, rows: &[Row], counts: Counts) -> Record {
+    let (design, quantities) = (&prepared.design, &prepared.requested.quantities);
+    let mut record = Record::default();
+    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    record.files.push(file.into_owned());
+    let failed = rows.iter().filter(|row| row.result.message.is_some());
+    for (name, count) in [
+        (
+            "points",
+            usize::try_from(design.points).unwrap_or(usize::MAX),
+        ),
+        ("rows", rows.len()),
+        ("rows.already_stored", counts.existing),
+        ("rows.imported", counts.imported),
+        ("rows.computed", counts.computed),
+        ("points.missing", counts.missing),
+        ("points.failed", failed.count()),
+    ] {
+        record.add_count(name, count);
+    }
+    if design.is_random() {
+        record.add("samples", "", design.samples as f64);
+        record.add("seed", "", design.seed as f64);
+    }
+    for (k, quantity) in quantities.iter().enumerate() {
+        let values = rows.iter().map(|row| row.result.values[k]);
+        if let Some(spread) = Spread::of(values) {
+            let mut add = |what: &str, value| {
+                let name = format!("{}.{what}", quantity.name);
+                record.add(name, &quantity.unit, value);
+            };
+            add("smallest", spread.min);
+            add("largest", spread.max);
+            add("rms", spread.rms);
+            add("mean", spread.mean);
+            if let Some(deviation) = spread.deviation.filter(|_| design.is_random()) {
+                add("mean.standard_error", spread.sampling_errors(deviation)[0]);
+                add("standard_deviation", deviation);
+                add("quantile_2.5", spread.quantiles[0]);
+                add("quantile_97.5", spread.quantiles[1]);
+            }
+            let ends = ends(rows, k).filter(|_| spread.min < spread.max);
+            for (end, row) in ["smallest", "largest"]
+                .into_iter()
+                .zip(ends.into_iter().flatten())
+            {
+                for (axis, value) in design.axes.iter().zip(&row.inputs) {
+                    let name = format!("{}.{end}.{}", quantity.name, axis.path);
+                    record.add(name, &axis.unit, *value);
+                }
+            }
+        }
+    }
+    record
 }
 
 /// The line about a result.
@@ -133,7 +193,10 @@ fn spread_text(heading: &str, spread: &Spread, random: bool) -> String {
     let [min, max] = [spread.min, spread.max].map(number);
     let text = format!("  {heading}: from {min} to {max}");
     match spread.deviation.filter(|_| random) {
-        None => text + "\n",
+        None => {
+            let [mean, rms] = [spread.mean, spread.rms].map(number);
+            format!("{text}, mean {mean}, RMS {rms}\n")
+        }
         Some(deviation) => {
             let [low, high] = spread.quantiles.map(number);
             let [mean_error, deviation_error] = spread.sampling_errors(deviation);
@@ -145,6 +208,31 @@ fn spread_text(heading: &str, spread: &Spread, random: bool) -> String {
             )
         }
     }
+}
+
+/// The points at which a result is smallest and largest; the first of several.
+fn ends(rows: &[Row], k: usize) -> Option<[&Row; 2]> {
+    let value = |row: &&Row| row.result.values[k];
+    let known = || rows.iter().filter(|row| row.result.values[k].is_finite());
+    let smallest = known().min_by(|a, b| value(a).total_cmp(&value(b)))?;
+    let largest = known().reduce(|a, b| if value(&b) > value(&a) { b } else { a })?;
+    Some([smallest, largest])
+}
+
+/// The line about where a result is smallest and largest.
+fn best_text(prepared: &PreparedSweep<'_>, rows: &[Row], k: usize) -> String {
+    let Some(ends) = ends(rows, k).filter(|[a, b]| a.result.values[k] < b.result.values[k]) else {
+        return String::new();
+    };
+    let [smallest, largest] = ends.map(|row| {
+        let inputs = prepared.design.axes.iter().zip(&row.inputs);
+        let inputs = inputs.map(|(axis, value)| {
+            let value = format!("{} = {} {}", axis.path, number(*value), axis.unit);
+            value.trim_end().to_owned()
+        });
+        inputs.collect::<Vec<_>>().join(", ")
+    });
+    format!("    smallest at {smallest}; largest at {largest}\n")
 }
 
 /// The number of failed points, and the first messages.

@@ -16,7 +16,7 @@ const BIN_COUNTS: [usize; 2] = [8, 40];
 /// Results that share a chart, such as minimum and maximum of one quantity.
 struct ChartGroup<'a> {
     title: &'a str,
-    unit: &'static str,
+    unit: &'a str,
     /// Their indices among the results, and their names within the chart.
     members: Vec<(usize, &'a str)>,
 }
@@ -105,7 +105,7 @@ fn chart_groups(quantities: &[SweepQuantity]) -> Vec<ChartGroup<'_>> {
             Some(last) => last.members.push((index, member)),
             None => all.push(ChartGroup {
                 title,
-                unit: quantity.unit,
+                unit: &quantity.unit,
                 members: vec![(index, member)],
             }),
         }
@@ -249,7 +249,7 @@ fn band(
         line("2.5 %", &|s| s.quantiles[0]).stroke(Stroke::Dashed),
     ];
     let x = axis_of(&axes[abscissa]);
-    chart(&quantity.name, quantity.unit, x, series)
+    chart(&quantity.name, &quantity.unit, x, series)
 }
 
 /// The histogram of a result.
@@ -279,7 +279,7 @@ fn histogram(rows: &[Row], index: usize, quantity: &SweepQuantity) -> Option<Cha
     points.push([edge(bins), 0.0]);
     let ([from, to], mean) = (spread.quantiles, number(spread.mean).replace('-', "−"));
     let (title, label) = title_and_label(&quantity.name);
-    let x = Axis::new(label, unit_text(quantity.unit));
+    let x = Axis::new(label, unit_text(&quantity.unit));
     let bars = Series::line("", points).stroke(Stroke::Filled);
     let mut chart = output::chart(title, x, Axis::new("samples", "%"), vec![bars]);
     chart.marks = vec![

@@ -6,6 +6,8 @@ pub(crate) struct Spread {
     pub(crate) min: f64,
     pub(crate) max: f64,
     pub(crate) mean: f64,
+    /// Root mean square.
+    pub(crate) rms: f64,
     /// Standard deviation with n − 1 in the denominator; `None` for a single value.
     pub(crate) deviation: Option<f64>,
     /// The 2.5 % and 97.5 % quantiles.
@@ -28,6 +30,7 @@ impl Spread {
             min,
             max,
             mean,
+            rms: (sorted.iter().map(|v| v * v).sum::<f64>() / count).sqrt(),
             deviation: (sorted.len() > 1).then(|| (squares / (count - 1.0)).sqrt()),
             quantiles: [0.025, 0.975].map(|probability| quantile(&sorted, probability)),
             count,
@@ -59,6 +62,8 @@ mod tests {
         let spread = Spread::of(values).expect("values");
         assert_eq!([spread.min, spread.mean, spread.max], [0.0, 20.0, 40.0]);
         assert_eq!(spread.quantiles, [1.0, 39.0]);
+        // Σ k² over 0 … 40 is 40 · 41 · 81 / 6 = 22140.
+        assert!((spread.rms - 540.0_f64.sqrt()).abs() < 1e-13);
         // Σ (k − 20)² over 0 … 40 is 2 · 20 · 21 · 41 / 6 = 5740, over n − 1 = 40; one rounding of a root.
         let deviation = spread.deviation.expect("two values");
         assert!((deviation - 143.5_f64.sqrt()).abs() < 1e-14);

@@ -251,3 +251,52 @@ fn nonsense_is_refused() {
     refused("crank.inertia=1,2", Some(3));
     refused("crank.inertia±1%", Some(u64::MAX));
 }
+
+/// Results of `simulate` and `cycle`, at the scene's own numbers, are those of these analyses; the mean speed times the
+/// period is a revolution, and the mean of a speed over time the change of its coordinate.
+#[test]
+fn results_of_motions_and_cycles_are_those_of_the_analyses() {
+    let scene = case("slider-crank-friction");
+    let requests = words(&["motion", "cycle"]);
+    let requested = RequestedQuantities::new(&scene, &requests).expect("results");
+    let result = requested.evaluate(&scene, &[("crank.inertia", 0.004)]);
+    assert_eq!(result.message, None);
+    let value = |name: &str| {
+        let found = requested.quantities.iter().position(|q| q.name == name);
+        result.values[found.unwrap_or_else(|| panic!("no {name}"))]
+    };
+    assert!(result.values.iter().all(|value| value.is_finite()));
+    assert_eq!(value("motion.end"), 0.25);
+    let turned = value("motion.phi.end") - 0.5;
+    // The trapezoids of 1000 intervals, against the exact mean.
+    let mean = value("motion.phi.velocity.mean");
+    assert!(
+        (mean - turned / 0.25).abs() < 1e-4 * mean,
+        "{mean} {turned}"
+    );
+    assert!(value("motion.phi.velocity.rms") >= mean);
+    assert!(value("motion.phi.velocity.max_abs") >= value("motion.phi.velocity.rms"));
+    let revolution = value("cycle.mean_speed") * value("cycle.period");
+    assert!((revolution - std::f64::consts::TAU).abs() < 1e-9);
+    let (slow, fast) = (value("cycle.slowest_speed"), value("cycle.fastest_speed"));
+    let fluctuation = (fast - slow) / value("cycle.mean_speed");
+    assert!((fluctuation - value("cycle.coefficient_of_fluctuation")).abs() < 1e-9);
+    assert!(value("cycle.motor.work") > 0.0 && value("cycle.motor.max_abs") > 0.0);
+    // They take an integration each: none is computed unless it is requested.
+    let all = RequestedQuantities::new(&scene, &[]).expect("results");
+    assert!(
+        names(&all)
+            .iter()
+            .all(|name| !name.starts_with("motion") && !name.starts_with("cycle"))
+    );
+}
+
+/// A variant without a steady cycle, or whose motion ends early, has a message and no value.
+#[test]
+fn a_variant_without_a_cycle_is_named() {
+    let scene = case("slider-crank-friction");
+    let requested = RequestedQuantities::new(&scene, &words(&["cycle"])).expect("results");
+    let weak = requested.evaluate(&scene, &[("drives.motor.voltage", 0.5)]);
+    assert!(weak.message.is_some());
+    assert!(weak.values.iter().all(|value| value.is_nan()));
+}

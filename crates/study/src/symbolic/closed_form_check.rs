@@ -10,7 +10,7 @@ use dwell_symbolic::{ClosedForm, QuantityOrigin};
 use dwell_verify::spread;
 
 /// Number of positions of the comparison.
-const POSITIONS: usize = 24;
+pub(crate) const POSITIONS: usize = 24;
 /// Tolerance relative to the largest quantity of its kind: some thousands of roundings.
 const TOLERANCE: f64 = 1e-12;
 /// The rounding error of the closed forms widens the tolerance, up to this.

@@ -3,8 +3,9 @@
 use crate::explain::StudyError;
 use crate::number_format::{count, digits};
 use crate::output::{Outcome, separating_note};
+use crate::symbolic::closed_form_check::POSITIONS;
 use crate::symbolic::compute::compute_closed_form;
-use dwell_findings::Finding;
+use dwell_findings::{Finding, Record};
 use dwell_report::{Block, Document};
 use dwell_scene::Scene;
 use dwell_symbolic::{ClosedForm, Constant, FormulaSection, Language};
@@ -29,8 +30,16 @@ pub fn symbolic(
     reaction: Option<&str>,
 ) -> Result<Outcome, StudyError> {
     let (form, findings) = compute_closed_form(scene, reaction)?;
+    let mut record = Record::default();
+    record.add_count("steps", form.assignment_count());
+    record.add_count("positions", POSITIONS);
+    for f in &findings {
+        record.add(&f.key, "", f.relative_difference);
+        record.add(format!("{}.tolerance", f.key), "", f.tolerance);
+    }
     let mut outcome = Outcome {
         summary: summary(scene, &form, &findings),
+        record,
         findings,
         ..Outcome::default()
     };
@@ -72,6 +81,14 @@ pub(crate) fn summary(scene: &Scene, form: &ClosedForm, findings: &[Finding]) ->
     );
     if form.reaction.is_some() {
         text += &separating_note(scene);
+    }
+    let loads = scene.loads.iter().filter(|load| load.does_work());
+    let loads: Vec<&str> = loads.map(|load| load.name.as_str()).collect();
+    if !loads.is_empty() {
+        text += &format!(
+            "  without the loads {}: `dwell reduce` computes w and c, their parts of the motion and of the reaction\n",
+            loads.join(", ")
+        );
     }
     for f in findings {
         let result = if f.pass { "pass" } else { "FAIL" };

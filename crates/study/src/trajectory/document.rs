@@ -1,12 +1,15 @@
 //! The text of a trajectory analysis: the printed summary, and the Markdown page with extrema, column meanings and figures.
 
-use crate::number_format::{count, digits_within, number};
+use crate::number_format::{count, number};
 use crate::output::{indeterminate_note, provenance_line};
 use crate::ranges::extent;
+use crate::trajectory::column_extrema::{ColumnExtrema, sorted_extrema};
 use crate::trajectory::compute::{
     Analysis, ComputedTrajectory, Extremum, Quantity, SectionedLink, Trajectory, TrajectoryResults,
     is_searched_in_rows,
 };
+use crate::trajectory::highlights::Movement;
+use dwell_findings::{Column, Record, RecordedExtrema};
 use dwell_kinetostatics::{Distribution, Section};
 use dwell_report::{Block, Document as Page, Figure};
 use dwell_scene::Scene;
@@ -76,6 +79,47 @@ impl<'a> Document<'a> {
         text
     }
 
+    /// The numbers of the summary, and all extrema.
+    pub(crate) fn record(&self) -> Record {
+        let mut record = Record::default();
+        record.add_count("positions", self.results.len());
+        record.add_count("wanted_positions", self.trajectory.points);
+        let (name, unit) = self.abscissa;
+        record.abscissa = Some(Column::new(name, unit));
+        let last = self.results.len().saturating_sub(1);
+        let [from, to] = extent([0, last].map(|row| self.abscissa_at(row)).into_iter());
+        record.add("from", unit, from);
+        record.add("to", unit, to);
+        let [from, to] = self.trajectory.wanted_extent();
+        record.add("wanted_from", unit, from);
+        record.add("wanted_to", unit, to);
+        record.extrema = self
+            .extrema
+            .iter()
+            .map(|of| RecordedExtrema {
+                column: Column::new(&of.name, of.unit),
+                ends: of.ends.map(|end| [end.value, end.at]),
+                error: (of.error > 0.0).then_some(of.error),
+            })
+            .collect();
+        for (link, row, section) in self.bending_moments() {
+            let of = |what: &str| format!("{}.{what}", link.name);
+            record.add(of("bending_moment"), "N m", section.bending);
+            record.add(of("bending_moment.station"), "m", section.station);
+            let at = self.abscissa_at(row);
+            record.add(of("bending_moment.at"), unit, at);
+        }
+        use Analysis::{FreeMotion, Kinetostatics};
+        if matches!(self.trajectory.analysis, Kinetostatics | FreeMotion) {
+            let residual = self.results.power_residual;
+            record.add("power_balance_residual", "", residual);
+        }
+        if let Some(error) = self.results.rounding_error.filter(|error| *error > 0.0) {
+            record.add("rounding_error", "", error);
+        }
+        record
+    }
+
     /// The extrema as a text table.
     fn extrema_table(&self) -> Block {
         let at = &self.at;
@@ -107,17 +151,29 @@ impl<'a> Document<'a> {
         format!("{}, {all} over {over}", self.title())
     }
 
-    /// What is printed.
-    pub(crate) fn summary(&self) -> String {
+    /// What is printed; the numbers go into the record.
+    pub(crate) fn summary(&self, record: &mut Record) -> String {
         let mut text = format!("{}\n", self.first_line());
-        text += &self.largest_values();
-        let (abscissa, unit) = self.abscissa;
+        if self.trajectory.analysis == Analysis::Kinematics {
+            let movement = Movement {
+                scene: self.scene,
+                results: self.results,
+                abscissa: self.results.abscissa(self.trajectory),
+            };
+            text += &movement.describe(record);
+        }
+        text += &self.largest_values(record);
+        let (abscissa, _) = self.abscissa;
         for (link, row, section) in self.bending_moments() {
             let (link, from) = (&link.name, &link.request.names[0]);
-            let [bending, station, at] =
-                [section.bending, section.station, self.abscissa_at(row)].map(number);
+            let bending = number(section.bending);
+            let [(station, station_unit), (at, unit)] = [
+                self.in_scene_unit(section.station, "m"),
+                self.in_scene_unit(self.abscissa_at(row), self.abscissa.1),
+            ];
+            let [station, at] = [station, at].map(number);
             text += &format!(
-                "  bending moment of {link}: {bending} N m, {station} m from {from}, at {abscissa} = {at} {unit}, the largest of the rows\n"
+                "  bending moment of {link}: {bending} N m, {station} {station_unit} from {from}, at {abscissa} = {at} {unit}, the largest of the rows\n"
             );
         }
         text += &self.power_balance_text();
@@ -143,13 +199,14 @@ impl<'a> Document<'a> {
     }
 
     /// The lines about the largest values of each unit.
-    fn largest_values(&self) -> String {
+    fn largest_values(&self, record: &mut Record) -> String {
         let mut text = String::new();
         let is_interesting = |unit: &str| match self.trajectory.analysis {
             Analysis::Kinematics => matches!(unit, "rad/s" | "m/s" | "rad/s2" | "m/s2"),
             _ => matches!(unit, "N" | "N m" | "W"),
         };
         let (abscissa, abscissa_unit) = self.abscissa;
+        let (at_factor, abscissa_unit) = self.in_scene_unit(1.0, abscissa_unit);
         let mut listed: Vec<(&str, f64)> = Vec::new();
         let mut largest_error = 0.0_f64;
         for of in &self.extrema {
@@ -173,12 +230,14 @@ impl<'a> Document<'a> {
             }
             listed.push((unit, value));
             let is_known = of.error < size;
-            let [value, at] = of.texts(of.largest());
+            let (factor, shown_unit) = self.in_scene_unit(1.0, unit);
+            let shown = of.scaled(factor, at_factor);
+            let [value, at] = shown.texts(shown.largest());
             text += &match is_known {
                 true => {
                     largest_error = largest_error.max(of.error / size);
                     format!(
-                        "  {name} reaches {value} {unit} at {abscissa} = {at} {abscissa_unit}\n"
+                        "  {name} reaches {value} {shown_unit} at {abscissa} = {at} {abscissa_unit}\n"
                     )
                 }
                 false => {
@@ -190,6 +249,7 @@ impl<'a> Document<'a> {
             };
         }
         if largest_error > 0.0 && self.trajectory.analysis == Analysis::FreeMotion {
+            record.add("error.printed_extrema", "", largest_error);
             text += &format!(
                 "  estimated error of these values: at most {largest_error:.1e} of each\n"
             );
@@ -203,6 +263,20 @@ impl<'a> Document<'a> {
     /// The abscissa at a row.
     fn abscissa_at(&self, row: usize) -> f64 {
         self.results.value_at(row, self.abscissa_column)
+    }
+
+    /// A number of this unit in the scene's unit of angles and lengths, and that unit; forces stay in those of SI.
+    fn in_scene_unit(&self, value: f64, unit: &str) -> (f64, String) {
+        for (si, is_angle) in [("rad", true), ("m", false)] {
+            let Some(rest) = unit.strip_prefix(si) else {
+                continue;
+            };
+            if rest.is_empty() || rest.starts_with("/s") {
+                let (value, unit) = self.scene.to_scene_unit(value, is_angle);
+                return (value, format!("{unit}{rest}"));
+            }
+        }
+        (value, unit.to_owned())
     }
 
     /// The links whose internal forces are computed, with the position and the section of the largest bending moment.
@@ -354,93 +428,4 @@ impl<'a> Document<'a> {
             },
         ]
     }
-}
-
-/// The minimum and maximum of a column, and where they occur.
-struct ColumnExtrema {
-    name: String,
-    unit: &'static str,
-    /// The smallest and the largest value.
-    ends: [Extremum; 2],
-    /// The estimated error of its values, in its unit.
-    error: f64,
-    /// Extent of the abscissa.
-    span: f64,
-}
-
-/// An extremum is found to this part of the abscissa: there, a rounding of its value is the change of a parabola.
-const FOUND_WITHIN: f64 = 1e-6;
-
-impl ColumnExtrema {
-    /// An extremum and where it occurs, to the digits that their errors leave.
-    fn texts(&self, Extremum { value, at }: Extremum) -> [String; 2] {
-        let size = self
-            .ends
-            .iter()
-            .map(|end| end.value.abs())
-            .fold(0.0, f64::max);
-        let relative = if self.error > 0.0 {
-            self.error / size
-        } else {
-            0.0
-        };
-        let error_at = self.span * (FOUND_WITHIN + relative).min(1.0);
-        let value = match self.error.is_finite() {
-            true => digits_within(value, self.error, 6),
-            false => number(value),
-        };
-        [value, digits_within(at, error_at, 6)]
-    }
-
-    /// The extremum of larger magnitude.
-    fn largest(&self) -> Extremum {
-        let [min, max] = self.ends;
-        if min.value.abs() > max.value.abs() {
-            min
-        } else {
-            max
-        }
-    }
-}
-
-/// The extrema of some columns, grouped by unit, largest absolute value first.
-fn sorted_extrema(
-    results: &TrajectoryResults,
-    listed: &[usize],
-    abscissa: usize,
-    size: f64,
-) -> Vec<ColumnExtrema> {
-    let [from, to] = extent(results.rows.iter().map(|row| row[abscissa]));
-    // Of the forces along a prescribed motion the rounding is known, relative to the largest of their unit.
-    let rounding = |unit: &str| {
-        let columns = results.columns.iter().zip(&results.extrema.of_columns);
-        let alike =
-            columns.filter(|(column, _)| column.unit == unit && matches!(unit, "N" | "N m"));
-        let sizes = alike.filter_map(|(_, ends)| Some(ends.as_ref()?.map(|end| end.value.abs())));
-        let sizes = sizes
-            .flatten()
-            .chain([results.references.largest_of(unit, size)]);
-        results.rounding_error.unwrap_or(0.0) * sizes.fold(0.0, f64::max)
-    };
-    let entry = |&k: &usize| {
-        let unit = results.columns[k].unit;
-        Some(ColumnExtrema {
-            name: results.columns[k].name.clone(),
-            unit,
-            ends: results.extrema.of_columns[k]?,
-            error: results
-                .errors
-                .get(k)
-                .copied()
-                .unwrap_or_else(|| rounding(unit)),
-            span: to - from,
-        })
-    };
-    let mut all: Vec<ColumnExtrema> = listed.iter().filter_map(entry).collect();
-    let units: Vec<&str> = all.iter().map(|entry| entry.unit).collect();
-    let unit_order = |p: &ColumnExtrema| units.iter().position(|u| *u == p.unit);
-    // One quantity under two names differs by rounding, about 1e-16; so the last bits do not order them.
-    let size = |p: &ColumnExtrema| p.largest().value.abs().to_bits() >> 20;
-    all.sort_by_key(|of| (unit_order(of), std::cmp::Reverse(size(of))));
-    all
 }

@@ -1,10 +1,14 @@
 //! `dwell kinematics`, `dwell statics`, `dwell kinetostatics`: a mechanism along a prescribed motion or a
 //! coordinate sweep.
 
+#[cfg(feature = "output")]
+mod column_extrema;
 pub mod compute;
 #[cfg(feature = "output")]
 mod document;
 #[cfg(feature = "output")]
 pub(crate) mod figures;
+#[cfg(feature = "output")]
+mod highlights;
 #[cfg(feature = "output")]
 pub(crate) mod output;

@@ -92,9 +92,11 @@ pub(crate) fn report(
     let mut pictures: Vec<Picture> = figures.into_iter().map(picture).collect();
     let animation = figures::animation(scene, computed)?;
     pictures.push(Picture::animation(scene, name("-mechanism.gif"), animation));
+    let mut record = document.record();
     let note = left_out.map(|note| format!("  {note}\n"));
     Ok(Outcome {
-        summary: document.summary() + &note.unwrap_or_default(),
+        summary: document.summary(&mut record) + &note.unwrap_or_default(),
+        record,
         files,
         pictures,
         page,

@@ -13,7 +13,9 @@ use crate::estimate::relative;
 use crate::explain::StudyError;
 use crate::models::{PreparedScene, loaded_model};
 use crate::progress::Progress;
-use crate::reduce::compute::{ReducedCurves, RoundingErrors, flat};
+use crate::reduce::compute::{
+    ReducedCurves, RoundingErrors, coefficient_units, flat, inertia_units,
+};
 use crate::trajectory::compute::{
     Analysis, Spacing, Trajectory, compute_along, default_limits, reject_unknown_variables,
 };
@@ -48,15 +50,14 @@ pub struct UnitRuns<'a> {
 /// Computes both runs over the range of the only actuator, at `points` positions (two or more) if given.
 ///
 /// # Errors
-/// [`StudyError`] when the mechanism cannot be assembled, has no driven angle or several, or a position cannot be
-/// reached.
+/// [`StudyError`] when the mechanism cannot be assembled, has several actuators, or a position cannot be reached.
 pub fn compute_unit_runs<'a>(
     scene: &'a Scene,
     points: Option<usize>,
     progress: Progress<'_>,
 ) -> Result<UnitRuns<'a>, StudyError> {
     reject_unknown_variables(scene)?;
-    let prepared = PreparedScene::for_driven_angle(scene, false)?;
+    let prepared = PreparedScene::without_loads(scene)?;
     let points = points.unwrap_or(DEFAULT_POINTS).max(2);
     let runs = [Run::UnitSpeed, Run::UnitAcceleration];
     let [one, two] = runs.map(|run| run.table(scene, points, progress));
@@ -250,20 +251,19 @@ impl UnitRuns<'_> {
 
     /// The paper's symbols and the units of m₁, ½m₁q₁, every m_e1, every m_e2.
     fn symbols(&self) -> Vec<(String, &'static str)> {
+        let is_angle = self.prepared.is_angle();
         let reactions = self.prepared.reaction_units();
-        let of_reactions = |symbol: &str| -> Vec<(String, &'static str)> {
+        let of_reactions = |symbol: &str, part: usize| -> Vec<(String, &'static str)> {
             let of = reactions.iter().map(|(name, unit)| {
-                let unit = if *unit == "N" { "kg m" } else { "kg m²" };
+                let unit = coefficient_units(unit, is_angle)[part];
                 (format!("{symbol} of {name}"), unit)
             });
             of.collect()
         };
-        let inertia = [
-            ("m₁".to_owned(), "kg m²"),
-            ("½m₁q₁".to_owned(), "kg m²/rad"),
-        ];
-        let inertia = inertia.into_iter().chain(of_reactions("m_e1"));
-        inertia.chain(of_reactions("m_e2")).collect()
+        let [m, half_dm] = inertia_units(is_angle);
+        let inertia = [("m₁".to_owned(), m), ("½m₁q₁".to_owned(), half_dm)];
+        let inertia = inertia.into_iter().chain(of_reactions("m_e1", 0));
+        inertia.chain(of_reactions("m_e2", 1)).collect()
     }
 
     /// The table: coordinate, combined coefficients by the paper's symbols, and beside them the columns of `dwell reduce`.

@@ -2,7 +2,8 @@
 
 use super::compute::{UnitRuns, values};
 use crate::number_format::count;
-use crate::output::{chart, coordinate_label, figure, inner_range, range_caption};
+use crate::output::{chart, coordinate_axis, coordinate_label, figure, inner_range, range_caption};
+use crate::reduce::compute::{coefficient_units, inertia_units};
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Axis, Figure, Panel, Series, Stroke};
 
@@ -22,13 +23,17 @@ impl UnitRuns<'_> {
     /// Values over the coordinate, in degrees.
     fn line(&self, name: &str, values: impl IntoIterator<Item = f64>) -> Series {
         let points = self.combined.q.iter().zip(values);
-        Series::line(name, points.map(|(q, v)| [q.to_degrees(), v]).collect())
+        let x = |q: f64| match self.prepared.is_angle() {
+            true => q.to_degrees(),
+            false => q,
+        };
+        Series::line(name, points.map(|(q, v)| [x(*q), v]).collect())
     }
 
     fn panel(&self, title: &str, label: &str, unit: &str, series: Vec<Series>) -> Panel {
-        let mut y = Axis::new(label, unit);
+        let mut y = Axis::new(label, unit.replace('2', "²"));
         y.range = inner_range(&self.prepared, &series);
-        let x = Axis::degrees(coordinate_label(&self.prepared));
+        let x = coordinate_axis(&coordinate_label(&self.prepared), self.prepared.is_angle());
         chart(title, x, y, series).into()
     }
 
@@ -41,25 +46,25 @@ impl UnitRuns<'_> {
 
     /// The actuator's moment and the first reactions of both runs.
     fn runs_figure(&self) -> Figure {
-        let both = |name: &str, label: &str| {
+        let both = |name: &str| {
             let [one, two] = [0, 1].map(|run| values(&self.runs[run], name));
-            let of = |run: &str| match label {
-                "" => run.to_owned(),
-                label => format!("{label}, {run}"),
-            };
             [
-                self.line(&of("run i"), one),
-                self.line(&of("run ii"), two).stroke(Stroke::Dashed),
+                self.line("run i", one),
+                self.line("run ii", two).stroke(Stroke::Dashed),
             ]
         };
         let coordinate = self.prepared.coordinate_name();
-        let moment = both(&format!("{coordinate}.actuator_force"), "");
-        let mut panels = vec![self.panel("Actuator moment", "T", "N m", moment.into())];
+        let moment = both(&format!("{coordinate}.actuator_force"));
+        let (title, unit) = match self.prepared.is_angle() {
+            true => ("Actuator moment", "N m"),
+            false => ("Actuator force", "N"),
+        };
+        let mut panels = vec![self.panel(title, "T", unit, moment.into())];
         for (name, unit) in self.prepared.reaction_units().iter().take(MAX_REACTIONS) {
             let label = if *unit == "N" { "F" } else { "M" };
-            panels.push(self.panel(name, label, unit, both(name, "").into()));
+            panels.push(self.panel(name, label, unit, both(name).into()));
         }
-        let text = "Run i: speed 1 rad/s, acceleration 0. Run ii: acceleration 1 rad/s² from rest at the beginning of the range.";
+        let text = "Run i: unit speed, no acceleration. Run ii: unit acceleration from rest at the beginning of the range.";
         self.figure("runs", "Kinetostatic runs", text, panels)
     }
 
@@ -73,16 +78,12 @@ impl UnitRuns<'_> {
     }
 
     fn inertia_figure(&self) -> Figure {
+        let [m, half_dm] = inertia_units(self.prepared.is_angle());
         let inertia = self.compared(|at| at.m);
         let derivative = self.compared(|at| at.half_dm);
         let panels = vec![
-            self.panel("m₁ (generalised inertia)", "m₁", "kg m²", inertia),
-            self.panel(
-                "½m₁q₁ (half its derivative)",
-                "½m₁q₁",
-                "kg m²/rad",
-                derivative,
-            ),
+            self.panel("m₁ (generalised inertia)", "m₁", m, inertia),
+            self.panel("½m₁q₁ (half its derivative)", "½m₁q₁", half_dm, derivative),
         ];
         let text = "From both runs: ½m₁q₁ = T/q̇² of run i, m₁ = (T − ½m₁q₁ q̇²)/q̈ of run ii.";
         let title = "Reduced parameters from the kinetostatic runs";
@@ -93,12 +94,12 @@ impl UnitRuns<'_> {
         let mut panels = Vec::new();
         let reactions = self.prepared.reaction_units();
         for (k, (name, unit)) in reactions.iter().take(MAX_REACTIONS).enumerate() {
-            let unit = if *unit == "N" { "kg m" } else { "kg m²" };
+            let units = coefficient_units(unit, self.prepared.is_angle());
             let title = |symbol: &str| format!("{symbol} of {name}");
             let one = self.compared(|at| at.a[k]);
-            panels.push(self.panel(&title("m_e1"), "m_e1", unit, one));
+            panels.push(self.panel(&title("m_e1"), "m_e1", units[0], one));
             let two = self.compared(|at| at.b[k]);
-            panels.push(self.panel(&title("m_e2"), "m_e2", unit, two));
+            panels.push(self.panel(&title("m_e2"), "m_e2", units[1], two));
         }
         let text = "From both runs: m_e2 = F/q̇² of run i, m_e1 = (F − m_e2 q̇²)/q̈ of run ii; F is the force of the joint's first body on its second.";
         let title = "Reduced parameters of reactions from the kinetostatic runs";

@@ -2,7 +2,7 @@
 
 use super::compute::{ComparedCoefficient, UnitRuns, compute_unit_runs};
 use crate::explain::{Labels, StudyError, scene_error};
-use crate::number_format::{count, digits};
+use crate::number_format::{coordinate_unit, count, digits};
 use crate::output::{Outcome, Picture, provenance_line};
 use crate::progress::Progress;
 use crate::trajectory::output::TrajectoryOutcome;
@@ -13,7 +13,7 @@ use dwell_scene::Scene;
 /// and the reduced parameters that they give. It stops with an error where these are not those of the reduced model.
 ///
 /// # Errors
-/// [`StudyError`] when the mechanism cannot be assembled, has no driven angle or several, or a position cannot be
+/// [`StudyError`] when the mechanism cannot be assembled, has several actuators, or a position cannot be
 /// reached.
 pub fn unit_runs(
     scene: &Scene,
@@ -68,16 +68,21 @@ fn difference_error(scene: &Scene, comparison: &[ComparedCoefficient]) -> Option
 fn summary(runs: &UnitRuns<'_>, comparison: &[ComparedCoefficient]) -> String {
     let (prepared, table) = (&runs.prepared, &runs.runs);
     let name = prepared.coordinate_name();
+    let unit = coordinate_unit(prepared.is_angle());
     let positions = count(runs.combined.q.len(), "position");
     let range = [runs.combined.q.first(), runs.combined.q.last()];
     let [from, to] = range.map(|q| digits(q.copied().unwrap_or(0.0), 6));
     let mut text = format!(
-        "{}: two kinetostatic runs, {positions} of {name} from {from} to {to} rad, without loads\n",
+        "{}: two kinetostatic runs, {positions} of {name} from {from} to {to} {unit}, without loads\n",
         prepared.scene.title
     );
     for (run, table, what) in [
-        ("i ", &table[0], "speed 1 rad/s, acceleration 0"),
-        ("ii", &table[1], "acceleration 1 rad/s² from rest"),
+        ("i", &table[0], format!("speed 1 {unit}/s, no acceleration")),
+        (
+            "ii",
+            &table[1],
+            format!("acceleration 1 {unit}/s² from rest"),
+        ),
     ] {
         let end = table.rows.last().map_or(0.0, |row| row[0]);
         let columns = count(table.columns.len(), "column");

@@ -96,7 +96,10 @@ fn no_picture_shows_what_is_not_requested() {
         let scene = with_requests(requests);
         let result =
             analyse_trajectory(&scene, Analysis::Kinetostatics, Some(41), &no_progress).unwrap();
-        let drawn = result.outcome.draw((Pictures::All, PictureFormat::Png), &no_progress).unwrap();
+        let drawn = result
+            .outcome
+            .draw((Pictures::All, PictureFormat::Png), &no_progress)
+            .unwrap();
         let paths = drawn
             .files
             .iter()

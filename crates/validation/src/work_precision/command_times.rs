@@ -62,7 +62,9 @@ fn whole_command(scene: &Scene, accuracy: f64) -> Result<[f64; 2], StudyError> {
     let computing = started.elapsed().as_secs_f64();
     let written = |outcome: Outcome, pictures: Pictures| -> Result<f64, StudyError> {
         let started = Instant::now();
-        let files = outcome.draw((pictures, PictureFormat::Png), &no_progress)?.files;
+        let files = outcome
+            .draw((pictures, PictureFormat::Png), &no_progress)?
+            .files;
         OutputFolder::open(&path)?.write(&files)?;
         Ok(computing + started.elapsed().as_secs_f64())
     };

@@ -51,6 +51,7 @@ pub fn work_precision(scene: &Scene, progress: Progress<'_>) -> Result<Outcome, 
     let name = format!("{}-work-precision", scene.name);
     let mut outcome = Outcome {
         summary: report::summary(scene, &found) + &report::command_summary(&times),
+        record: report::record(&found),
         ..Outcome::default()
     };
     let figure = figure::figure(scene, &found, &name);

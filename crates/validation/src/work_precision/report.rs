@@ -7,6 +7,7 @@ use super::combination::{
 use super::command_times::CommandTime;
 use crate::report_parts;
 use dwell_dynamics::Method;
+use dwell_findings::Record;
 use dwell_report::{Block, Column, Document, Table, TableExport as _};
 use dwell_scene::Scene;
 use dwell_study::StudyError;
@@ -309,6 +310,39 @@ pub(super) fn command_blocks(times: &[CommandTime]) -> [Block; 3] {
         ),
         report_parts::table(&header, times.iter().map(row)),
     ]
+}
+
+/// The numbers of the summary.
+pub(super) fn record(found: &WorkPrecision) -> Record {
+    let mut record = Record::default();
+    record.add_count("combinations", found.points.len());
+    record.add("duration", "s", found.duration);
+    let error = found.reference.error;
+    record.add("reference.error.coordinate", found.unit, error.coordinate);
+    record.add("reference.error.energy", "", error.energy);
+    record.add("reference.error.reaction", "", error.reaction);
+    for accuracy in ACCURACIES {
+        for (measure, name) in
+            CostMeasure::ALL
+                .into_iter()
+                .zip(["evaluations", "time", "time_with_build"])
+        {
+            let cheapest = found.cheapest(ErrorQuantity::Coordinate, measure, accuracy);
+            if let Some(k) = cheapest {
+                let name = format!("cheapest.{accuracy:.0e}.{name}");
+                record.add(name, "", found.points[k].cost.of(measure));
+            }
+        }
+    }
+    if let Some(point) = found.quadrature() {
+        record.add(
+            "quadrature.evaluations",
+            "",
+            point.cost.weighted_evaluations as f64,
+        );
+        record.add("quadrature.time", "", point.cost.time);
+    }
+    record
 }
 
 /// The summary.

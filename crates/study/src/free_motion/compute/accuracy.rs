@@ -15,6 +15,7 @@ use crate::free_motion::compute::refinement::{
 use crate::free_motion::compute::{ComputedMotion, Difference, FreeMotionProblem, SegmentedMotion};
 use crate::ranges::extent;
 use dwell_dynamics::{DynamicsError, Method, Options, Statistics};
+use dwell_findings::Record;
 use dwell_scene::Scene;
 
 /// Error of BDF relative to DOP853 at the same tolerance: 2 to 240 in ten revolutions of m = 2 + cos q, growing
@@ -171,10 +172,16 @@ impl ComputedMotion {
             "  accuracy {required}: {how}\n  estimated errors over the whole motion: {coordinate:.1e} in the coordinates, \
              {energy:.1e} of the largest kinetic energy, {reactions:.1e} of the largest reaction\n"
         );
+        let mut record = Record::default();
+        record.add("accuracy", "", accuracy);
+        record.add("error.coordinates", "", coordinate);
+        record.add("error.kinetic_energy", "", energy);
+        record.add("error.reactions", "", reactions);
         Self {
             motion,
             method_text,
             remarks,
+            record,
             accuracy: Some([accuracy, difference.largest()]),
             inaccuracy: None,
             comparison: None,

@@ -5,6 +5,7 @@ use crate::estimate;
 use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
 use crate::number_format::{digits, digits_within};
 use dwell_dynamics::{ContactEvent, ContactMode, OdeState, StopChange};
+use dwell_findings::Record;
 
 /// What a friction does from an event on.
 const OF_FRICTION: [&str; 2] = ["holds", "slides"];
@@ -105,7 +106,11 @@ impl FreeMotionProblem<'_> {
     }
 
     /// Lines of the summary: how often each contact changes, and when first.
-    pub(super) fn describe_contacts(&self, computed: &ComputedMotion) -> String {
+    pub(super) fn describe_contacts(
+        &self,
+        computed: &ComputedMotion,
+        record: &mut Record,
+    ) -> String {
         let mut text = String::new();
         let names = self.contact_event_names();
         if names.is_empty() {
@@ -123,18 +128,26 @@ impl FreeMotionProblem<'_> {
             let own = times(&own);
             let Some(&first) = own.first() else { continue };
             let count = own.len();
+            record.add_count(format!("event.{name}.number"), number);
+            record.add_count(format!("event.{name}.count"), count);
+            let first_name = format!("event.{name}.first");
             text += &format!("  {name} (event {number}): {count} times, first at t = ");
             let others = second.as_deref().map(times);
             text += &match others.as_ref().and_then(|others| others.first()) {
                 Some(other) => {
                     let error = estimate::of_number(first, *other);
+                    record.add_within(first_name, "s", first, error);
                     let first = digits_within(first, error, 13);
                     format!("{first} s (estimated error {error:.1e} s)")
                 }
-                None => format!("{} s", digits(first, 3)),
+                None => {
+                    record.add(first_name, "s", first);
+                    format!("{} s", digits(first, 3))
+                }
             };
             if let Some(others) = others.filter(|others| others.len() != count) {
                 let other = others.len();
+                record.add_count(format!("event.{name}.count_in_second_run"), other);
                 text +=
                     &format!("; {other} times in a second run: within its error it is not certain");
             }

@@ -9,6 +9,7 @@ use dwell_dynamics::{
     Orbit, ReducedState, Statistics, eigenvalues_about, is_equilibrium, linearise, motion_class,
     solve,
 };
+use dwell_findings::Record;
 
 /// Largest relative error of the energy balance that is not commented on.
 const MAX_ENERGY_LOSS: f64 = 1e-6;
@@ -20,7 +21,7 @@ const HINT_COST_RATIO: f64 = 4.0;
 
 impl FreeMotionProblem<'_> {
     /// The motion class of a conservative motion of one degree of freedom, from its energy.
-    fn describe_motion_class(&self) -> String {
+    fn describe_motion_class(&self, record: &mut Record) -> String {
         let is_prescribed = self.spec.laws.iter().any(Option::is_some);
         if is_prescribed || self.machine.free().len() != 1 || !self.loaded_scene.drives.is_empty() {
             return String::new();
@@ -28,8 +29,11 @@ impl FreeMotionProblem<'_> {
         let name = &self.loaded_scene.mechanism.actuators[0].name;
         let unit = coordinate_unit(self.output_model.plan().is_angle(0));
         let start = self.initial_reduced_state();
-        let period = || match Orbit::loaded(&self.machine, start) {
-            Ok(orbit) => format!("; period {} by quadrature", self.period_text(&orbit, start)),
+        let period = |record: &mut Record| match Orbit::loaded(&self.machine, start) {
+            Ok(orbit) => {
+                let period = self.period_text(&orbit, start, record);
+                format!("; period {period} by quadrature")
+            }
             Err(_) => String::new(),
         };
         let class = match motion_class(&self.machine, start) {
@@ -37,15 +41,28 @@ impl FreeMotionProblem<'_> {
                 kinetic_at_maximum, ..
             }) => {
                 let kinetic = digits(kinetic_at_maximum, 6);
-                let period = period();
+                record.add(
+                    "kinetic_energy_at_potential_maximum",
+                    "J",
+                    kinetic_at_maximum,
+                );
+                let period = period(record);
                 format!("rotation; kinetic energy at the potential maximum {kinetic} J{period}")
             }
             Ok(MotionClass::Libration { turning_points }) => {
                 let errors = self.turning_point_errors(start, turning_points);
                 let [a, b] = [0, 1].map(|k| digits_within(turning_points[k], errors[k], 10));
-                format!("libration between {name} = {a} and {b} {unit}{}", period())
+                for (k, end) in ["lower", "upper"].into_iter().enumerate() {
+                    let end = format!("turning_point.{end}");
+                    record.add_within(end, unit, turning_points[k], errors[k]);
+                }
+                format!(
+                    "libration between {name} = {a} and {b} {unit}{}",
+                    period(record)
+                )
             }
             Ok(MotionClass::Asymptotic { to }) => {
+                record.add("asymptotic_to", unit, to);
                 let to = digits(to, 10);
                 format!("asymptotic to {name} = {to} {unit} (separatrix)")
             }
@@ -55,17 +72,21 @@ impl FreeMotionProblem<'_> {
     }
 
     /// A period (s) with its error.
-    fn period_text(&self, orbit: &Orbit, start: ReducedState) -> String {
+    fn period_text(&self, orbit: &Orbit, start: ReducedState, record: &mut Record) -> String {
         let perturbed = |factor: f64| {
             let q_dot = start.q_dot * factor;
             Orbit::loaded(&self.machine, ReducedState { q_dot, ..start })
         };
         match estimate::of_period(orbit, perturbed) {
             Ok(error) => {
+                record.add_within("period", "s", orbit.period, error);
                 let period = digits_within(orbit.period, error, 13);
                 format!("{period} s (estimated error {error:.1e} s)")
             }
-            Err(_) => format!("{} s (its error is not known)", digits(orbit.period, 3)),
+            Err(_) => {
+                record.add("period", "s", orbit.period);
+                format!("{} s (its error is not known)", digits(orbit.period, 3))
+            }
         }
     }
 
@@ -95,7 +116,12 @@ impl FreeMotionProblem<'_> {
         errors
     }
 
-    pub(crate) fn summary(&self, computed: &ComputedMotion, duration: f64) -> String {
+    pub(crate) fn summary(
+        &self,
+        computed: &ComputedMotion,
+        duration: f64,
+        record: &mut Record,
+    ) -> String {
         let (motion, method_text) = (&computed.motion, &computed.method_text);
         let end = motion.end_time();
         let of_all = match end < duration {
@@ -106,6 +132,8 @@ impl FreeMotionProblem<'_> {
             Some(second) if end < duration => estimate::of_number(end, second.end_time()),
             _ => 0.0,
         };
+        record.add_within("end", "s", end, end_error);
+        record.add("duration", "s", duration);
         // All digits, as in the headline and the table; what they are worth stands beside them.
         let error = match end_error > 1e-7 * end {
             true => format!(" (estimated error {} s)", digits(end_error, 2)),
@@ -114,25 +142,35 @@ impl FreeMotionProblem<'_> {
         let end = digits(end, 7);
         let mut text = format!("  {end}{of_all} s{error} by {method_text}\n");
         for (i, event) in self.spec.events.iter().enumerate() {
-            let happened = event_text(computed, i);
+            let happened = event_text(computed, (i, &event.name), record);
             let stopped = match motion.occurrences().any(|(_, o)| o.event == i) {
                 true if event.terminal => "; the motion ends there",
                 _ => "",
             };
             text += &format!("  {}: {happened}{stopped}\n", event.name);
         }
-        text += &self.describe_contacts(computed);
+        text += &self.describe_contacts(computed, record);
         for change in &motion.chart_changes {
             text += &format!("  {change}\n");
         }
         let cost = motion.statistics;
+        for (name, count) in [
+            ("steps", cost.steps),
+            ("rejected_steps", cost.rejected_steps),
+            ("evaluations", cost.evaluations),
+            ("jacobians", cost.jacobians),
+            ("factorisations", cost.factorisations),
+        ] {
+            record.add_count(name, count);
+        }
         text += &format!("  {} steps, {} rejected, ", cost.steps, cost.rejected_steps);
         text += &format!(
             "{} evaluations, {} Jacobians, ",
             cost.evaluations, cost.jacobians
         );
         text += &format!("{} factorisations\n", cost.factorisations);
-        text + &self.describe_motion_class() + &self.describe_energy_balance(motion, duration)
+        text + &self.describe_motion_class(record)
+            + &self.describe_energy_balance(motion, duration, record)
     }
 
     /// What the loads and the initial speed can do over a duration (s), J: the energies beside which others are rounding.
@@ -186,7 +224,12 @@ impl FreeMotionProblem<'_> {
     }
 
     /// The error of the energy balance.
-    fn describe_energy_balance(&self, motion: &SegmentedMotion, duration: f64) -> String {
+    fn describe_energy_balance(
+        &self,
+        motion: &SegmentedMotion,
+        duration: f64,
+        record: &mut Record,
+    ) -> String {
         let (mut initial, mut max_difference) = (None, 0.0_f64);
         let (mut max_kinetic, mut max_potential) = (0.0_f64, 0.0_f64);
         let mut workspaces: Vec<Option<MachineWorkspace>> = Vec::new();
@@ -221,6 +264,13 @@ impl FreeMotionProblem<'_> {
             false => ("kinetic", max_kinetic),
         };
         let relative_loss = max_difference / largest;
+        record.add("energy_balance_error", "", relative_loss);
+        record.add_within(
+            format!("largest_{kind}_energy"),
+            "J",
+            largest,
+            max_difference,
+        );
         let energy = digits_within(largest, max_difference, 6);
         let mut text = format!(
             "  energy balance closes to {relative_loss:.1e} of the largest {kind} energy, {energy} J\n"
@@ -287,7 +337,11 @@ impl FreeMotionProblem<'_> {
 }
 
 /// How often an event happens in a motion and when first, with the error of that time.
-fn event_text(computed: &ComputedMotion, event: usize) -> String {
+fn event_text(
+    computed: &ComputedMotion,
+    (event, name): (usize, &str),
+    record: &mut Record,
+) -> String {
     let times = |motion: &SegmentedMotion| -> Vec<f64> {
         let all = motion.occurrences().map(|(_, o): (_, &EventOccurrence)| o);
         let of_event = all.filter(|o| o.event == event);
@@ -295,12 +349,14 @@ fn event_text(computed: &ComputedMotion, event: usize) -> String {
     };
     let own = times(&computed.motion);
     let others = computed.comparison.as_ref().map(times);
+    record.add_count(format!("event.{name}.count"), own.len());
     let mut text = format!("{} times", own.len());
     if let Some(others) = others.as_ref().filter(|others| others.len() != own.len()) {
         text += &format!(
             " ({} in a second run: within its error it is not certain)",
             others.len()
         );
+        record.add_count(format!("event.{name}.count_in_second_run"), others.len());
     }
     let Some(&first) = own.first() else {
         return text;
@@ -308,11 +364,16 @@ fn event_text(computed: &ComputedMotion, event: usize) -> String {
     let delay = computed.delay.unwrap_or_default();
     let other = others.as_ref().and_then(|others| others.first());
     let error = other.map(|other| estimate::of_number(first, *other) + delay * first);
+    let first_name = format!("event.{name}.first");
     text + &match error {
         Some(error) => {
+            record.add_within(first_name, "s", first, error);
             let first = digits_within(first, error, 13);
             format!(", first at t = {first} s (estimated error {error:.1e} s)")
         }
-        None => format!(", first at t = {} s", digits(first, 3)),
+        None => {
+            record.add(first_name, "s", first);
+            format!(", first at t = {} s", digits(first, 3))
+        }
     }
 }

@@ -8,6 +8,7 @@ use crate::number_format::{coordinate_unit, digits};
 use crate::ranges::extent;
 use crate::trajectory::compute::TrajectorySample;
 use dwell_dynamics::Options;
+use dwell_findings::Record;
 
 /// An error of this part of a coordinate's change, or of the largest kinetic energy, is no result: its second digit
 /// is wrong.
@@ -18,6 +19,8 @@ const LARGE_ERROR: f64 = 0.01;
 pub(crate) struct ErrorEstimate {
     /// The line of the summary about the error.
     pub(crate) text: String,
+    /// The numbers in it, each relative to what the line says.
+    pub(crate) record: Record,
     /// Why the motion is no result: the error is large, or holds for a part of it only.
     pub(crate) inaccuracy: Option<String>,
     /// The second run.
@@ -58,7 +61,7 @@ impl FreeMotionProblem<'_> {
             return Ok(ErrorEstimate {
                 text,
                 inaccuracy: Some(inaccuracy),
-                second: None,
+                ..ErrorEstimate::default()
             });
         };
         // An event may end one of the runs a sample earlier.
@@ -73,13 +76,16 @@ impl FreeMotionProblem<'_> {
             let energies = samples.iter().map(|s| s.extra_values[k].abs());
             energies.fold(0.0, f64::max)
         });
-        let (errors, large) = self.errors(&pairs, energies, options.atol);
+        let mut record = Record::default();
+        let (errors, large) = self.errors(&pairs, energies, options.atol, &mut record);
+        record.add("error.known_until", "s", last.t);
         let text = format!("  estimated error {part}:{errors} from a second run at {refinement}\n");
         let ends = (!is_whole).then(|| {
             format!("its error is known until t = {until} s only, where a second run ends")
         });
         Ok(ErrorEstimate {
             text,
+            record,
             inaccuracy: large.or(ends),
             second,
         })
@@ -91,6 +97,7 @@ impl FreeMotionProblem<'_> {
         pairs: &[SamplePair<'_>],
         [max_kinetic, max_potential]: [f64; 2],
         atol: f64,
+        record: &mut Record,
     ) -> (String, Option<String>) {
         let error_of = |of: &dyn Fn(&TrajectorySample) -> f64, rounding: f64| {
             let values = pairs.iter().map(|(a, b)| (of(a), of(b)));
@@ -106,6 +113,7 @@ impl FreeMotionProblem<'_> {
             let unit = coordinate_unit(self.output_model.plan().is_angle(i));
             let name = &self.loaded_scene.mechanism.actuators[i].name;
             text += &format!(" {error:.1e} {unit} in {name},");
+            record.add(format!("error.{name}"), unit, error);
             // What hardly moves may have an error as large as its tolerance.
             if error > LARGE_ERROR * (to - from) + 100.0 * atol {
                 let change = digits(to - from, 3);
@@ -118,6 +126,7 @@ impl FreeMotionProblem<'_> {
             let rounding = 4.0 * f64::EPSILON * max_kinetic;
             let error = error_of(&|s| self.energy_balance(s), rounding) / max_kinetic;
             text += &format!(" {error:.1e} of the largest kinetic energy,");
+            record.add("error.kinetic_energy", "", error);
             if error > LARGE_ERROR && max_kinetic > f64::MIN_POSITIVE {
                 large.get_or_insert_with(|| {
                     format!("the estimated error of the energy is {error:.1e} of the largest kinetic energy")

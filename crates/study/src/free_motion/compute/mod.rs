@@ -6,6 +6,7 @@ mod contacts;
 mod description;
 mod difference;
 mod error_estimate;
+mod motors;
 mod problem;
 mod quadrature;
 mod refinement;

@@ -2,6 +2,7 @@
 
 use dwell_dynamics::atlas::{Chart, CoordinateHistory};
 use dwell_dynamics::{DynamicsError, EventOccurrence, OdeState, Orbit, Solution, Statistics};
+use dwell_findings::Record;
 
 /// A computed motion and its description.
 pub(crate) struct ComputedMotion {
@@ -10,6 +11,8 @@ pub(crate) struct ComputedMotion {
     pub(crate) method_text: String,
     /// Further lines of the summary.
     pub(crate) remarks: String,
+    /// The numbers in them.
+    pub(crate) record: Record,
     /// The required accuracy and the estimated error, if an accuracy was required.
     pub(crate) accuracy: Option<[f64; 2]>,
     /// Why it is no result although nothing failed, if so.

@@ -12,7 +12,7 @@ use crate::trajectory::compute::{
     ComputedTrajectory, MotionBetweenRows, Trajectory, compute_along,
 };
 use dwell_dynamics::{DynamicsError, EventOccurrence, Options};
-use dwell_findings::Table;
+use dwell_findings::{Record, Table};
 use dwell_scene::{Scene, SceneError, SceneLocation};
 
 /// Number of samples if no sample interval is given.
@@ -49,6 +49,8 @@ pub struct FreeMotion {
     pub estimated_error: Option<f64>,
     /// What the integration reports: method, events, cost, motion class, energy balance and estimated error.
     pub summary: String,
+    /// The numbers in it.
+    pub record: Record,
 }
 
 /// A motion at its rows, and what is known between them.
@@ -107,9 +109,10 @@ pub(crate) fn compute_free_motion_at(
     });
     let followed = (trajectory, between);
     let rows = problem.rows_and_summary(&integrated, (followed, times), duration, progress);
-    let (mut computed, mut summary) = rows?;
+    let (mut computed, (mut summary, mut record)) = rows?;
     let shortfall = problem.shortfall(scene, &integrated, solver);
     computed.early_stop = shortfall.or(computed.early_stop);
+    record.extend(integrated.record.clone());
     summary += &problem.notes;
     summary += &integrated.remarks;
     Ok(FreeMotion {
@@ -118,6 +121,7 @@ pub(crate) fn compute_free_motion_at(
         event_table: problem.event_table(motion),
         estimated_error: integrated.accuracy.map(|[_, error]| error),
         summary,
+        record,
         loaded_scene,
     })
 }
@@ -246,13 +250,15 @@ impl FreeMotionProblem<'_> {
             || self.estimate_error(&motion, second, &options),
             || self.method_hint(&motion, settings),
         );
-        let estimate = estimate?;
+        let mut estimate = estimate?;
+        estimate.record.add("tolerance", "", settings.rtol);
         let unstable = self.leaves_unstable_equilibrium(&motion).then(|| {
             "it starts in an unstable equilibrium, and rounding alone decides when and where it leaves it".to_owned()
         });
         Ok(ComputedMotion {
             method_text: settings.describe(),
             remarks: hint + &estimate.text,
+            record: estimate.record,
             accuracy: None,
             inaccuracy: unstable.or(estimate.inaccuracy),
             comparison: estimate.second,
@@ -268,13 +274,15 @@ impl FreeMotionProblem<'_> {
         (followed, times): (Followed<'_>, Option<&[f64]>),
         duration: f64,
         progress: Progress<'_>,
-    ) -> Result<(ComputedTrajectory<'static>, String), StudyError> {
+    ) -> Result<(ComputedTrajectory<'static>, (String, Record)), StudyError> {
         let mut beside = None;
         let computed = rayon::in_place_scope(|scope| {
             // On another core: the rows of the second computation, and the summary.
             scope.spawn(|_| {
                 let second = self.comparison_rows(integrated, times);
-                beside = Some((second, self.summary(integrated, duration)));
+                let mut record = Record::default();
+                let text = self.summary(integrated, duration, &mut record);
+                beside = Some((second, (text, record)));
             });
             let (scene, model) = (self.loaded_scene, &self.output_model);
             compute_along(scene, model, followed, String::new(), progress)

@@ -126,6 +126,9 @@ impl FreeMotionProblem<'_> {
         extra_values.extend(works);
         extra_values.push(kinetic + potential - works.iter().sum::<f64>());
         extra_values.extend(&point.y[machine.drive_states()]);
+        let mut rates = vec![0.0; machine.state_count()];
+        state.derivative(&mut rates);
+        extra_values.extend(self.motor_values(machine, &state, (&point.y, &rates)));
         let (drives, magnitudes) = (loads - machine.drives()..loads, state.magnitudes());
         let given = drives.chain(machine.contact_loads());
         Ok(TrajectorySample {

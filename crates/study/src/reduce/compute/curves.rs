@@ -3,8 +3,10 @@
 use crate::estimate::{is_rounding, relative};
 use crate::explain::{StudyError, explain_position};
 use crate::models::PreparedScene;
+use crate::number_format::coordinate_unit;
+use crate::ranges::equally_spaced;
 use crate::reduce::compute::UnitLoadCurves;
-use crate::trajectory::compute::{force_scales, reject_unknown_variables};
+use crate::trajectory::compute::{default_limits, force_scales, reject_unknown_variables};
 use dwell_findings::{Column, Table};
 use dwell_kinetostatics::{Batch, Coefficients};
 use dwell_scene::Scene;
@@ -16,7 +18,7 @@ const DEFAULT_POINTS: usize = 721;
 /// The reduced coefficients over the range.
 #[derive(Debug, Clone)]
 pub struct ReducedCurves {
-    /// Coordinates, rad.
+    /// Coordinates, rad or m.
     pub q: Vec<f64>,
     /// The coefficients at each.
     pub coefficients: Vec<Coefficients>,
@@ -90,10 +92,19 @@ impl ReducedCurves {
     /// [`StudyError::Scene`] where a position cannot be reached.
     pub fn new(prepared: &PreparedScene<'_>, points: Option<usize>) -> Result<Self, StudyError> {
         let intervals = points.unwrap_or(DEFAULT_POINTS).max(2) - 1;
-        Self::at(prepared, prepared.range_positions(intervals))
+        let q = match prepared.is_angle() {
+            true => prepared.range_positions(intervals),
+            // As `dwell kinematics` follows a length.
+            false => {
+                let plan = prepared.model.model().plan();
+                let (limits, ..) = default_limits(prepared.scene, plan);
+                equally_spaced(limits, intervals)
+            }
+        };
+        Self::at(prepared, q)
     }
 
-    /// Evaluates the model at given coordinates, rad.
+    /// Evaluates the model at given coordinates, rad or m.
     ///
     /// # Errors
     /// [`StudyError::Scene`] where a position cannot be reached.
@@ -146,14 +157,17 @@ impl ReducedCurves {
     /// The table: coordinate, m, ½m′, then a and b of each requested reaction.
     pub fn table(&self, prepared: &PreparedScene<'_>) -> Table {
         let mut columns = vec![
-            Column::new(prepared.coordinate_name(), "rad"),
-            Column::new("m", "kg m2"),
-            Column::new("half_dm", "kg m2/rad"),
+            Column::new(
+                prepared.coordinate_name(),
+                coordinate_unit(prepared.is_angle()),
+            ),
+            Column::new("m", inertia_units(prepared.is_angle())[0]),
+            Column::new("half_dm", inertia_units(prepared.is_angle())[1]),
         ];
         for (name, unit) in prepared.reaction_units() {
-            let unit = coefficient_unit(unit);
-            columns.push(Column::new(format!("{name}.a"), unit));
-            columns.push(Column::new(format!("{name}.b"), unit));
+            let [a, b] = coefficient_units(unit, prepared.is_angle());
+            columns.push(Column::new(format!("{name}.a"), a));
+            columns.push(Column::new(format!("{name}.b"), b));
         }
         let row = |(q, at): (&f64, &Coefficients)| {
             let mut row = vec![*q, at.m, at.half_dm];
@@ -169,9 +183,22 @@ impl ReducedCurves {
     }
 }
 
-/// Unit of a and b for a reaction in N or N m: per rad/s² and per (rad/s)².
-fn coefficient_unit(unit: &str) -> &'static str {
-    if unit == "N" { "kg m" } else { "kg m2" }
+/// Units of m and of ½m′ of an angle or a length.
+pub(crate) fn inertia_units(is_angle: bool) -> [&'static str; 2] {
+    match is_angle {
+        true => ["kg m2", "kg m2/rad"],
+        false => ["kg", "kg/m"],
+    }
+}
+
+/// Units of a and b for a reaction in N or N m: per rad/s² and per (rad/s)², or per m/s² and per (m/s)².
+pub(crate) fn coefficient_units(unit: &str, is_angle: bool) -> [&'static str; 2] {
+    match (unit, is_angle) {
+        ("N", true) => ["kg m"; 2],
+        (_, true) => ["kg m2"; 2],
+        ("N", false) => ["kg", "kg/m"],
+        (_, false) => ["kg m", "kg"],
+    }
 }
 
 /// The reduced parameters of a scene over its range.
@@ -195,7 +222,7 @@ pub fn compute_reduction(
     points: Option<usize>,
 ) -> Result<Reduction<'_>, StudyError> {
     reject_unknown_variables(scene)?;
-    let prepared = PreparedScene::for_driven_angle(scene, false)?;
+    let prepared = PreparedScene::without_loads(scene)?;
     let curves = ReducedCurves::new(&prepared, points)?;
     let unit_loads = UnitLoadCurves::new(&prepared, &curves.q)?;
     let errors = RoundingErrors::new(&prepared, &curves)?;

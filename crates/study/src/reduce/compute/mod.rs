@@ -6,5 +6,7 @@ mod unit_load_curves;
 
 pub(crate) use curves::flat;
 pub use curves::{ReducedCurves, Reduction, RoundingErrors, compute_reduction};
+#[cfg(feature = "output")]
+pub(crate) use curves::{coefficient_units, inertia_units};
 pub use table::{TableRequest, Tabulation, tabulate};
 pub use unit_load_curves::UnitLoadCurves;

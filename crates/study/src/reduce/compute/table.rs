@@ -3,6 +3,7 @@
 use crate::explain::{self, StudyError, explain_motion, scene_error};
 use crate::models::{PreparedScene, exact_model, loaded_determinate_model};
 use crate::number_format::number;
+use dwell_findings::Record;
 use dwell_geometry::{ActuatorId, Plan, Range};
 use dwell_kinetostatics::table::Labels;
 use dwell_kinetostatics::{TableDomain, TableError, TableQuantity, TabulatedModel};
@@ -24,6 +25,8 @@ pub struct TableRequest {
 pub struct Tabulation {
     /// Lines of the summary.
     pub summary: String,
+    /// The numbers in them.
+    pub record: Record,
     /// The table; `None` if none could be built and none was required.
     pub text: Option<String>,
 }
@@ -35,6 +38,14 @@ pub fn tabulate(
     request: &TableRequest,
 ) -> Result<Tabulation, StudyError> {
     let scene = prepared.scene;
+    if !prepared.is_angle() {
+        return Err(scene_error(
+            scene,
+            "tables are of driven angles: this actuator drives a length",
+            "leave --table-accuracy and --accuracy out, and use the rows of the file; or drive an angle",
+            [(SceneLocation::Actuator(ActuatorId(0)), "drives a length")],
+        ));
+    }
     let exact = exact_model(scene, loaded_determinate_model(scene)?)?;
     let plan = exact.model().plan();
     // Without a period the curves cover one revolution, and so does the table.
@@ -53,6 +64,8 @@ pub fn tabulate(
     };
     let accuracy = request.accuracy;
     let rows = format!("  accuracy {accuracy:e}: all rows evaluated exactly");
+    let mut record = Record::default();
+    record.add("table.accuracy", "", accuracy);
     let table = match TabulatedModel::new(&exact, request.accuracy, extent) {
         Ok(table) => table,
         Err(error) => {
@@ -61,6 +74,7 @@ pub fn tabulate(
                 true => Err(error),
                 false => Ok(Tabulation {
                     summary: format!("{rows}; no table for values between them: {error}\n"),
+                    record,
                     text: None,
                 }),
             };
@@ -73,14 +87,17 @@ pub fn tabulate(
     let text = table.to_text(&labels);
     let text = text.map_err(|e| scene_error(scene, e.to_string(), "", explain::Labels::new()))?;
     Ok(Tabulation {
-        summary: cheaper + &describe_table(scene, &table),
+        summary: cheaper + &describe_table(scene, &table, &mut record),
+        record,
         text: Some(text),
     })
 }
 
 /// Domain, cells, memory and error bound.
-fn describe_table(scene: &Scene, table: &TabulatedModel) -> String {
+fn describe_table(scene: &Scene, table: &TabulatedModel, record: &mut Record) -> String {
     let [from, to] = table.domain();
+    record.add("table.from", "rad", from);
+    record.add("table.to", "rad", to);
     let kind = match table.revolutions() {
         Some(1) => "over a full revolution".to_owned(),
         Some(revolutions) => format!("over a period of {revolutions} revolutions"),
@@ -92,6 +109,15 @@ fn describe_table(scene: &Scene, table: &TabulatedModel) -> String {
     let cells = counts.map(|(cells, of)| format!("{cells} of {of}"));
     let cells: Vec<String> = cells.collect();
     let [inertia, all] = table.bytes().map(|bytes| bytes.div_ceil(1024));
+    for (cells, of) in table.cells().into_iter().zip(["m", "a", "w"]) {
+        record.add_count(format!("table.cells.{of}"), cells);
+    }
+    record.add("table.size.m", "kB", inertia as f64);
+    record.add("table.size", "kB", all as f64);
+    record.add("table.error", "", table.max_bound());
+    if let Some(revolutions) = table.revolutions() {
+        record.add("table.revolutions", "", f64::from(revolutions));
+    }
     format!(
         "  table {kind}: cells {}; {inertia} kB for m and ½m′, {all} kB in all; error at most {:.1e} of the largest value of each\n",
         cells.join(", "),

@@ -21,10 +21,24 @@ pub struct UnitLoadCurves {
     /// By position: the potential of all conservative loads, J.
     pub(crate) potential: Vec<f64>,
     pub(crate) conservative: bool,
+    is_angle: bool,
 }
 
-/// Unit of w and of c (of a force and of a moment) for a load.
-fn units(kind: LoadKind) -> [&'static str; 3] {
+/// Unit of w and of c (of a force and of a moment) for a load; w is along an angle or a length.
+fn units(kind: LoadKind, is_angle: bool) -> [&'static str; 3] {
+    let [w, force, moment] = units_of_angle(kind);
+    let per_length = match w {
+        "kg m" => "kg",
+        "m2" => "m",
+        "rad" => "rad/m",
+        "" => "1/m",
+        _ => "",
+    };
+    [if is_angle { w } else { per_length }, force, moment]
+}
+
+/// The same along an angle.
+fn units_of_angle(kind: LoadKind) -> [&'static str; 3] {
     match kind {
         LoadKind::Gravity { .. } => ["kg m", "kg", "kg m"],
         LoadKind::Spring { .. } => ["m2", "m", "m2"],
@@ -42,7 +56,7 @@ fn units(kind: LoadKind) -> [&'static str; 3] {
 impl UnitLoadCurves {
     /// The unit of w of a load.
     pub fn unit(&self, load: usize) -> &'static str {
-        units(self.loads[load].kind)[0]
+        units(self.loads[load].kind, self.is_angle)[0]
     }
 
     /// The indices of the loads that have a w.
@@ -51,7 +65,7 @@ impl UnitLoadCurves {
         all.filter(|&l| self.loads[l].does_work())
     }
 
-    /// The unit-load response at the coordinates `q` (rad); `None` without loads.
+    /// The unit-load response at the coordinates `q` (rad or m); `None` without loads.
     pub(crate) fn new(prepared: &PreparedScene<'_>, q: &[f64]) -> Result<Option<Self>, StudyError> {
         let scene = prepared.scene;
         if scene.loads.is_empty() {
@@ -69,6 +83,7 @@ impl UnitLoadCurves {
                 let load = &scene.loads[l];
                 load.does_work() && load.is_conservative()
             }),
+            is_angle: prepared.is_angle(),
         };
         for &q in q {
             let state = model.kinematic_state(&[q], &[1.0], &mut workspace);
@@ -99,12 +114,12 @@ impl UnitLoadCurves {
         }
         let value = |load: usize, k: usize| self.rows.iter().map(|row| row[load][k]).collect();
         for (l, load) in self.working().map(|l| (l, &self.loads[l])) {
-            let [unit, ..] = units(load.kind);
+            let [unit, ..] = units(load.kind, self.is_angle);
             all.push((Column::new(format!("{}.w", load.name), unit), value(l, 0)));
         }
         for (k, (name, of)) in prepared.reaction_units().into_iter().enumerate() {
             for (l, load) in self.loads.iter().enumerate() {
-                let [_, force, moment] = units(load.kind);
+                let [_, force, moment] = units(load.kind, self.is_angle);
                 let unit = if of == "N" { force } else { moment };
                 let name = format!("{name}.c.{}", load.name);
                 all.push((Column::new(name, unit), value(l, k + 1)));

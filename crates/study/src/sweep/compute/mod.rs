@@ -2,6 +2,7 @@
 
 mod axis;
 mod design;
+mod motions;
 mod point;
 mod random;
 mod table;

@@ -5,6 +5,9 @@ use crate::explain::{StudyError, SweepError, explain_machine, explain_motion, ex
 use crate::former_names;
 use crate::models::{compile_model, exact_model, initial_reduced_state, with_loads};
 use crate::number_format::{coordinate_unit, force_unit};
+use crate::sweep::compute::motions::{
+    cycle_quantities, cycle_values, motion_quantities, motion_values,
+};
 use crate::trajectory::compute::{
     Analysis, Point, WantedForces, check_variables, default_limits, is_prefix_of, largest_between,
     peak_forces,
@@ -31,6 +34,10 @@ enum ResultKind {
     Reaction,
     /// Largest absolute values, by actuator.
     ActuatorForce,
+    /// Results of the free motion: computed only on request, as they take an integration.
+    Motion,
+    /// Results of the steady cycle: computed only on request.
+    Cycle,
 }
 
 /// A result by its name and unit.
@@ -39,7 +46,7 @@ pub(crate) struct SweepQuantity {
     pub(crate) name: String,
     /// The name it had before it was renamed, which a request may still use.
     former: Option<String>,
-    pub(crate) unit: &'static str,
+    pub(crate) unit: String,
     kind: ResultKind,
     /// Its index among the results of its kind.
     index: usize,
@@ -99,7 +106,14 @@ impl RequestedQuantities {
         for request in requests {
             if !quantities.iter().any(|q| q.matches(request)) {
                 let name = request.clone();
-                let known = quantities.into_iter().map(|q| q.name).collect();
+                // Of the many results of motions and cycles the first word is enough.
+                let short = |q: SweepQuantity| match q.kind {
+                    ResultKind::Motion => "motion".to_owned(),
+                    ResultKind::Cycle => "cycle".to_owned(),
+                    _ => q.name,
+                };
+                let mut known: Vec<String> = quantities.into_iter().map(short).collect();
+                known.dedup();
                 return Err(SweepError::Result { name, known }.into());
             }
         }
@@ -113,8 +127,13 @@ impl RequestedQuantities {
         });
         let mut notes: String = notes.collect();
         notes += &branch_note(scene, model.plan());
-        if !requests.is_empty() {
-            quantities.retain(|q| requests.iter().any(|request| q.matches(request)));
+        quantities.retain(|q| match requests {
+            [] => !matches!(q.kind, ResultKind::Motion | ResultKind::Cycle),
+            requests => requests.iter().any(|request| q.matches(request)),
+        });
+        if quantities.is_empty() {
+            let message = "no result is computed unless it is requested: name some with --result, as in --result motion or --result cycle";
+            return Err(SweepError::Design(message.to_owned()).into());
         }
         Ok(Self { quantities, notes })
     }
@@ -150,6 +169,12 @@ impl RequestedQuantities {
         };
         if let Some((from, to)) = model.plan().range().limits() {
             set(ResultKind::Range, Ok(vec![from, to]));
+        }
+        if includes(ResultKind::Motion) {
+            set(ResultKind::Motion, motion_values(scene, &model));
+        }
+        if includes(ResultKind::Cycle) {
+            set(ResultKind::Cycle, cycle_values(scene));
         }
         if includes(ResultKind::Inertia) {
             set(ResultKind::Inertia, inertia_extrema(scene, &model));
@@ -207,11 +232,11 @@ fn peak_analysis(scene: &Scene) -> Option<Analysis> {
 /// Every quantity that the sections of a scene allow.
 fn available_quantities(scene: &Scene, model: &Model) -> Vec<SweepQuantity> {
     let mut all = Vec::new();
-    let mut add = |name: String, unit, kind, index| {
+    let mut add = |name: String, unit: &str, kind, index| {
         all.push(SweepQuantity {
             former: former_names::former_result(&name),
             name,
-            unit,
+            unit: unit.to_owned(),
             kind,
             index,
         });
@@ -248,6 +273,14 @@ fn available_quantities(scene: &Scene, model: &Model) -> Vec<SweepQuantity> {
                 let name = format!("{}.max_abs", mechanism.reaction_name(*reaction));
                 add(name, reaction.component.unit(), ResultKind::Reaction, k);
             }
+        }
+    }
+    for (kind, quantities) in [
+        (ResultKind::Motion, motion_quantities(scene, model)),
+        (ResultKind::Cycle, cycle_quantities(scene)),
+    ] {
+        for (index, (name, unit)) in quantities.into_iter().enumerate() {
+            add(name, &unit, kind, index);
         }
     }
     all

@@ -45,7 +45,10 @@ impl RequestedQuantities {
     /// The columns of a table: the varied numbers, then the results.
     pub(crate) fn columns(&self, design: &Design) -> Vec<Column> {
         let inputs = design.axes.iter().map(|a| Column::new(&a.path, &a.unit));
-        let results = self.quantities.iter().map(|q| Column::new(&q.name, q.unit));
+        let results = self
+            .quantities
+            .iter()
+            .map(|q| Column::new(&q.name, &q.unit));
         inputs.chain(results).collect()
     }
 

@@ -1,6 +1,6 @@
 //! The columns that only a free motion has: energies, works, and the states of its drives.
 
-use crate::models::{drive_states, source_name};
+use crate::models::{drive_states, motor_columns, source_name};
 use crate::trajectory::compute::{BALANCE, Column, KINETIC, POTENTIAL, Quantity};
 use dwell_dynamics::Machine;
 use dwell_scene::Scene;
@@ -23,6 +23,7 @@ pub(crate) fn extra_columns(loaded_scene: &Scene, machine: &Machine) -> Vec<Colu
     }));
     all.push((BALANCE.to_owned(), "J", balance));
     all.extend(drive_states(loaded_scene));
+    all.extend(motor_columns(loaded_scene));
     let column = |(k, (name, unit, meaning)): (usize, (String, _, &str))| Column {
         name,
         former: None,

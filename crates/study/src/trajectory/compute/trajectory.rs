@@ -1,7 +1,7 @@
 //! The coordinates that an analysis follows: a prescribed motion, a free motion, or a sweep.
 
 use crate::explain::{StudyError, actuator_labels, scene_error};
-use crate::number_format::{coordinate_unit, count, digits};
+use crate::number_format::{count, digits};
 use crate::trajectory::compute::{
     Analysis, CONTINUITY_HELP, Column, EarlyStop, StopCause, jump_location, unreachable_error,
 };
@@ -169,8 +169,9 @@ impl<'a> Trajectory<'a> {
             None => return Err(open_sweep_error(scene, actuator)),
         };
         let name = &scene.mechanism.actuators[actuator].name;
-        let unit = coordinate_unit(plan.is_angle(actuator));
-        let [first, last] = [from, to].map(|q| digits(q, 6));
+        let in_scene_unit = |q| scene.to_scene_unit(q, plan.is_angle(actuator));
+        let [(first, unit), (last, _)] = [from, to].map(in_scene_unit);
+        let [first, last] = [first, last].map(|q| digits(q, 6));
         let description = format!("{what} of {name} from {first} to {last} {unit}");
         let points = points.unwrap_or(sweep.points);
         let kind = TrajectoryKind::Swept(sweep, [from, to]);
@@ -204,6 +205,19 @@ impl<'a> Trajectory<'a> {
             method_text: format!("the mechanism at {}", count(points, "position")),
             ends_at_limit_position: [false; 2],
             period: plan.range().period(),
+        }
+    }
+
+    /// The abscissa at the wanted beginning and end: s, or rad or m of a swept coordinate.
+    #[cfg(feature = "output")]
+    pub(crate) fn wanted_extent(&self) -> [f64; 2] {
+        match &self.kind {
+            TrajectoryKind::Prescribed(prescribed, _) => [0.0, prescribed.duration],
+            TrajectoryKind::Swept(_, extent) => *extent,
+            TrajectoryKind::Free(motion) => {
+                let end = motion.samples.last();
+                [0.0, end.map_or(0.0, |sample| sample.t)]
+            }
         }
     }
 

@@ -25,6 +25,32 @@ impl FigureContext<'_> {
         (!panels.is_empty()).then(|| self.figure("coordinates", title, "Over time.", panels))
     }
 
+    /// Currents of motors, electrical and mechanical power of drives, and efficiencies.
+    pub(crate) fn drives(&self) -> Option<Figure> {
+        let is_drive = |name: &str| self.scene.drives.iter().any(|drive| drive.name == name);
+        let of_drives = |ending: &str| {
+            let columns = self.columns_where(|c| c.name.strip_suffix(ending).is_some_and(is_drive));
+            let mut curves = self.labelled(&columns, ending);
+            curves.retain(|(_, k)| !self.is_zero(*k));
+            curves
+        };
+        let mut powers = of_drives(".power");
+        let electrical = of_drives(".electrical_power").into_iter();
+        powers.extend(electrical.map(|(name, k)| (format!("{name}, electrical"), k)));
+        let mut panels: Vec<Panel> = Vec::new();
+        for (title, label, curves) in [
+            ("Currents", "current", of_drives(".current")),
+            ("Power", "power", powers),
+            ("Efficiency", "efficiency", of_drives(".efficiency")),
+        ] {
+            let charts = curves.chunks(MAX_CURVES);
+            panels.extend(charts.map(|some| self.chart(title, label, some).into()));
+        }
+        let text = "Power: what drives deliver to the mechanism, and what motors take from the supply. Efficiency: delivered \
+                    over taken power, 0 where a motor brakes.";
+        (!panels.is_empty()).then(|| self.figure("drives", "Drives", text, panels))
+    }
+
     /// Kinetic and potential energy, work of nonconservative loads, and the error of the balance.
     pub(crate) fn energies(&self) -> Option<Figure> {
         let named = |name: &str| self.results.columns.iter().position(|c| c.name == name);

@@ -1,0 +1,176 @@
+//! Results of the free motion and of the steady cycle of a variant.
+
+use crate::cycle::compute::{CycleResults, CycleSearch, compute_cycle};
+use crate::explain::StudyError;
+use crate::free_motion::compute::{FreeMotion, MotionSolver, compute_free_motion};
+use crate::models::{SolverSettings, source_name};
+use crate::number_format::{coordinate_unit, force_unit};
+use crate::progress::no_progress;
+use dwell_kinetostatics::Model;
+use dwell_scene::{Scene, SceneError};
+
+/// A result by its name and unit.
+pub(crate) type NamedUnit = (String, String);
+
+/// What is computed of a column of a motion.
+const STATISTICS: [&str; 4] = ["end", "max_abs", "mean", "rms"];
+
+/// The columns of a free motion whose results can be swept: coordinates with their speeds, requested reactions, forces and
+/// powers of drives.
+fn motion_columns(scene: &Scene, model: &Model) -> Vec<NamedUnit> {
+    let mut all: Vec<NamedUnit> = Vec::new();
+    let mechanism = &scene.mechanism;
+    for actuator in &mechanism.actuators {
+        let unit = coordinate_unit(actuator.coordinate().is_angle());
+        all.push((actuator.name.clone(), unit.to_owned()));
+        all.push((format!("{}.velocity", actuator.name), format!("{unit}/s")));
+    }
+    for (k, reaction) in model.reactions().iter().enumerate() {
+        if model.plan().is_determinate(k) && scene.requests.reactions.contains(reaction) {
+            let unit = reaction.component.unit().to_owned();
+            all.push((mechanism.reaction_name(*reaction), unit));
+        }
+    }
+    for drive in &scene.drives {
+        let is_angle = drive.coordinate.is_angle();
+        let kind = if is_angle { "moment" } else { "force" };
+        let force = format!("{}.load_{kind}", drive.name);
+        all.push((force, force_unit(is_angle).to_owned()));
+        all.push((format!("{}.power", drive.name), "W".to_owned()));
+    }
+    all
+}
+
+/// The results of a free motion, in their order.
+pub(crate) fn motion_quantities(scene: &Scene, model: &Model) -> Vec<NamedUnit> {
+    if scene.motion.is_none() {
+        return Vec::new();
+    }
+    let mut all = vec![("motion.end".to_owned(), "s".to_owned())];
+    for (column, unit) in motion_columns(scene, model) {
+        let of_column = STATISTICS.map(|of| (format!("motion.{column}.{of}"), unit.clone()));
+        all.extend(of_column);
+    }
+    all
+}
+
+/// The values of [`motion_quantities`].
+///
+/// # Errors
+/// [`StudyError`] where there is no motion, or it ends early.
+pub(crate) fn motion_values(scene: &Scene, model: &Model) -> Result<Vec<f64>, StudyError> {
+    let solver = MotionSolver::Settings(SolverSettings::default());
+    let mut motion = compute_free_motion(scene, &solver, &no_progress)?;
+    if let Some(error) = motion.computed.early_stop.take() {
+        return Err(error);
+    }
+    let times = column(&motion, "t")?;
+    let mut values = vec![times.last().copied().unwrap_or(f64::NAN)];
+    for (name, _) in motion_columns(scene, model) {
+        values.extend(statistics(&motion, &name, &times)?);
+    }
+    Ok(values)
+}
+
+/// A column of a motion, by row.
+fn column(motion: &FreeMotion, name: &str) -> Result<Vec<f64>, StudyError> {
+    let results = &motion.computed.results;
+    let found = results.columns.iter().position(|c| c.name == name);
+    let found = found.ok_or_else(|| {
+        let message = format!("the motion has no column `{name}`");
+        SceneError::without_labels(message, None)
+    })?;
+    Ok(results.rows.iter().map(|row| row[found]).collect())
+}
+
+/// The last value of a column, its largest magnitude, also between the rows, its mean over time, and its root mean square.
+fn statistics(motion: &FreeMotion, name: &str, times: &[f64]) -> Result<[f64; 4], StudyError> {
+    let values = column(motion, name)?;
+    let results = &motion.computed.results;
+    let columns = results.columns.iter().zip(&results.extrema.of_columns);
+    let extrema = columns.filter(|(column, _)| column.name == name);
+    let between = extrema.filter_map(|(_, ends)| *ends).flatten();
+    let sizes = between.map(|end| end.value.abs());
+    let largest = sizes
+        .chain(values.iter().map(|v| v.abs()))
+        .fold(0.0, f64::max);
+    let duration = times.last().zip(times.first());
+    let duration = duration.map_or(f64::NAN, |(last, first)| last - first);
+    // By trapezoids between the rows.
+    let mean_of = |of: fn(f64) -> f64| {
+        let pairs = times.windows(2).zip(values.windows(2));
+        let sum: f64 = pairs
+            .map(|(t, v)| 0.5 * (t[1] - t[0]) * (of(v[0]) + of(v[1])))
+            .sum();
+        sum / duration
+    };
+    let end = values.last().copied().unwrap_or(f64::NAN);
+    Ok([end, largest, mean_of(|v| v), mean_of(|v| v * v).sqrt()])
+}
+
+/// The results of a steady cycle that every machine with drives has.
+const CYCLE: [(&str, &str); 5] = [
+    ("cycle.period", "s"),
+    ("cycle.mean_speed", "rad/s"),
+    ("cycle.slowest_speed", "rad/s"),
+    ("cycle.fastest_speed", "rad/s"),
+    ("cycle.coefficient_of_fluctuation", ""),
+];
+
+/// The results of the steady cycle, in their order.
+pub(crate) fn cycle_quantities(scene: &Scene) -> Vec<NamedUnit> {
+    if scene.drives.is_empty() {
+        return Vec::new();
+    }
+    let all = CYCLE.map(|(name, unit)| (name.to_owned(), unit.to_owned()));
+    let mut all = Vec::from(all);
+    for drive in &scene.drives {
+        let unit = force_unit(drive.coordinate.is_angle()).to_owned();
+        all.push((format!("cycle.{}.max_abs", drive.name), unit));
+        all.push((format!("cycle.{}.work", drive.name), "J".to_owned()));
+    }
+    all
+}
+
+/// The values of [`cycle_quantities`].
+///
+/// # Errors
+/// [`StudyError`] where there is no steady cycle.
+pub(crate) fn cycle_values(scene: &Scene) -> Result<Vec<f64>, StudyError> {
+    let settings = SolverSettings::default();
+    let found = match compute_cycle(scene, &settings, None)? {
+        CycleSearch::Steady(found) => found,
+        CycleSearch::NoCycle { reason, .. } => return Err(reason),
+    };
+    let cycle = &found.steady;
+    let mut values = vec![
+        cycle.period,
+        cycle.mean_speed,
+        cycle.slowest[1],
+        cycle.fastest[1],
+        cycle.fluctuation,
+    ];
+    let peaks = peak_forces(&found)?;
+    let sources = found.prepared.machine.nonconservative_sources();
+    for (drive, peak) in scene.drives.iter().zip(peaks) {
+        let mut works = sources.iter().zip(&cycle.works);
+        let work = works.find(|(source, _)| source_name(scene, **source) == drive.name);
+        values.extend([peak, work.map_or(f64::NAN, |(_, work)| *work)]);
+    }
+    Ok(values)
+}
+
+/// The largest magnitude of the force of each drive at the samples of a cycle.
+fn peak_forces(found: &CycleResults<'_>) -> Result<Vec<f64>, StudyError> {
+    let machine = &found.prepared.machine;
+    let mut workspace = machine.workspace();
+    let mut peaks = vec![0.0_f64; machine.drives()];
+    for point in &found.steady.samples {
+        let state = machine.evaluate(point.t, &point.y, &mut workspace);
+        let state = state.map_err(|e| found.prepared.explain(&e))?;
+        for (peak, force) in peaks.iter_mut().zip(state.drive_forces()) {
+            *peak = peak.max(force.abs());
+        }
+    }
+    Ok(peaks)
+}

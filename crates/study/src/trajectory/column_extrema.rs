@@ -1,0 +1,108 @@
+//! The extrema of the columns of a trajectory, with their errors, as they are listed.
+
+use crate::number_format::{digits_within, number};
+use crate::ranges::extent;
+use crate::trajectory::compute::{Extremum, TrajectoryResults};
+
+/// The minimum and maximum of a column, and where they occur.
+pub(crate) struct ColumnExtrema {
+    pub(crate) name: String,
+    pub(crate) unit: &'static str,
+    /// The smallest and the largest value.
+    pub(crate) ends: [Extremum; 2],
+    /// The estimated error of its values, in its unit.
+    pub(crate) error: f64,
+    /// Extent of the abscissa.
+    span: f64,
+}
+
+/// An extremum is found to this part of the abscissa: there, a rounding of its value is the change of a parabola.
+const FOUND_WITHIN: f64 = 1e-6;
+
+impl ColumnExtrema {
+    /// An extremum and where it occurs, to the digits that their errors leave.
+    pub(crate) fn texts(&self, Extremum { value, at }: Extremum) -> [String; 2] {
+        let size = self
+            .ends
+            .iter()
+            .map(|end| end.value.abs())
+            .fold(0.0, f64::max);
+        let relative = if self.error > 0.0 {
+            self.error / size
+        } else {
+            0.0
+        };
+        let error_at = self.span * (FOUND_WITHIN + relative).min(1.0);
+        let value = match self.error.is_finite() {
+            true => digits_within(value, self.error, 6),
+            false => number(value),
+        };
+        [value, digits_within(at, error_at, 6)]
+    }
+
+    /// The same in other units: values and abscissa times these factors.
+    pub(crate) fn scaled(&self, factor: f64, at_factor: f64) -> Self {
+        Self {
+            name: self.name.clone(),
+            ends: self.ends.map(|end| Extremum {
+                value: end.value * factor,
+                at: end.at * at_factor,
+            }),
+            error: self.error * factor,
+            span: self.span * at_factor,
+            unit: self.unit,
+        }
+    }
+
+    /// The extremum of larger magnitude.
+    pub(crate) fn largest(&self) -> Extremum {
+        let [min, max] = self.ends;
+        if min.value.abs() > max.value.abs() {
+            min
+        } else {
+            max
+        }
+    }
+}
+
+/// The extrema of some columns, grouped by unit, largest absolute value first.
+pub(crate) fn sorted_extrema(
+    results: &TrajectoryResults,
+    listed: &[usize],
+    abscissa: usize,
+    size: f64,
+) -> Vec<ColumnExtrema> {
+    let [from, to] = extent(results.rows.iter().map(|row| row[abscissa]));
+    // Of the forces along a prescribed motion the rounding is known, relative to the largest of their unit.
+    let rounding = |unit: &str| {
+        let columns = results.columns.iter().zip(&results.extrema.of_columns);
+        let alike =
+            columns.filter(|(column, _)| column.unit == unit && matches!(unit, "N" | "N m"));
+        let sizes = alike.filter_map(|(_, ends)| Some(ends.as_ref()?.map(|end| end.value.abs())));
+        let sizes = sizes
+            .flatten()
+            .chain([results.references.largest_of(unit, size)]);
+        results.rounding_error.unwrap_or(0.0) * sizes.fold(0.0, f64::max)
+    };
+    let entry = |&k: &usize| {
+        let unit = results.columns[k].unit;
+        Some(ColumnExtrema {
+            name: results.columns[k].name.clone(),
+            unit,
+            ends: results.extrema.of_columns[k]?,
+            error: results
+                .errors
+                .get(k)
+                .copied()
+                .unwrap_or_else(|| rounding(unit)),
+            span: to - from,
+        })
+    };
+    let mut all: Vec<ColumnExtrema> = listed.iter().filter_map(entry).collect();
+    let units: Vec<&str> = all.iter().map(|entry| entry.unit).collect();
+    let unit_order = |p: &ColumnExtrema| units.iter().position(|u| *u == p.unit);
+    // One quantity under two names differs by rounding, about 1e-16; so the last bits do not order them.
+    let size = |p: &ColumnExtrema| p.largest().value.abs().to_bits() >> 20;
+    all.sort_by_key(|of| (unit_order(of), std::cmp::Reverse(size(of))));
+    all
+}
