@@ -13,6 +13,7 @@ use crate::integration_parts::Parts;
 use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, StepObserver, Termination};
 use crate::options::{Method, Options, Statistics};
 use crate::shared_system::SharedSystem;
+use crate::sliding_system::SlidingSystem;
 use crate::switch_monitor::{Crossing, SwitchMonitor};
 use crate::time_pieces::TimePieces;
 use diffsol::error::OdeSolverError;
@@ -132,10 +133,12 @@ fn integrate_held(
     }
     let mut monitor = SwitchMonitor::new(system, &start, end.unwrap_or(f64::INFINITY) - start.t)?;
     let shared = SharedSystem::new(system);
-    let [mut integrated, mut watched_system] = [&shared; 2];
     let mut parts = Parts::new(&start, options);
     loop {
         let mut event: Option<HeldEvent> = None;
+        let sliding = monitor.sliding();
+        let [mut integrated, mut watched_system] =
+            [(); 2].map(|()| SlidingSystem::new(&shared, sliding.cloned()));
         let mut watched = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
             let crossing = monitor.after_step(&mut watched_system, before, now, dense)?;
             let until = crossing.as_ref().map_or(now, |crossing| &crossing.state);
@@ -172,7 +175,7 @@ fn integrate_held(
         let Some(event) = event.filter(|_| !is_ended) else {
             break;
         };
-        let passed = pass_event(&mut watched_system, &mut monitor, contacts.as_mut(), event);
+        let passed = pass_event(&shared, &mut monitor, contacts.as_mut(), event);
         match (passed, &mut parts.whole) {
             (Ok(state), _) => parts.from = state,
             (Err(error), Some(whole)) => {
@@ -212,21 +215,27 @@ impl HeldEvent {
 
 /// Goes over to the pieces and modes behind an event; the state there.
 fn pass_event(
-    system: &mut dyn OdeSystem,
+    shared: &SharedSystem<'_>,
     monitor: &mut SwitchMonitor,
     contacts: Option<&mut ContactMonitor>,
     event: HeldEvent,
 ) -> Result<OdeState> {
+    let mut shared_system = shared;
+    let system: &mut dyn OdeSystem = &mut shared_system;
     match (event, contacts) {
         (HeldEvent::Contacts(mut state, touched), Some(contacts)) => {
+            monitor.refuse_to_slide(system, state.t)?;
+            let before = state.clone();
             contacts.change_modes(system, &mut state, &touched)?;
+            monitor.continue_behind(system, &before, &state)?;
             Ok(state)
         }
-        (HeldEvent::Switch(crossing), contacts) => {
-            monitor.pass(&crossing, system)?;
+        (HeldEvent::Switch(mut crossing), contacts) => {
+            monitor.pass(&mut crossing, system)?;
             let mut state = crossing.state;
             if let Some(contacts) = contacts {
-                contacts.settle(system, &mut state)?;
+                let sliding = monitor.sliding().cloned();
+                contacts.settle(&mut SlidingSystem::new(shared, sliding), &mut state)?;
             }
             Ok(state)
         }

@@ -67,6 +67,8 @@ pub mod reduced_ode;
 mod repetition;
 mod rotation;
 mod shared_system;
+mod sliding;
+mod sliding_system;
 pub mod solve;
 pub mod state_space;
 mod state_switches;
@@ -102,6 +104,7 @@ pub use ode::{
 pub use options::{Method, Options, Statistics};
 pub use orbit::{Orbit, OrbitSequence};
 pub use reduced_ode::{ReducedCoordinate, ReducedOde, ReducedOutputs, solve_reduced};
+pub use sliding::Sliding;
 pub use solve::{
     Event, EventKind, EventOccurrence, Observed, ObservedMachine, ObservedValue, Solution, solve,
     solve_orbit, solve_system,

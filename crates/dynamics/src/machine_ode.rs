@@ -4,7 +4,8 @@ use crate::contact::{ContactEvent, ContactMode, ContactStep};
 use crate::contact_events::pass;
 use crate::error::Result;
 use crate::machine::{Machine, MachineState, MachineWorkspace};
-use crate::ode::{DualWorkspace, OdeSystem};
+use crate::ode::{DualWorkspace, OdeState, OdeSystem};
+use crate::sliding::Sliding;
 use crate::state_switches::{HeldSource, signal_value};
 use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::Dual;
@@ -140,6 +141,27 @@ impl OdeSystem for MachineOde<'_> {
         let switches = &machine.state_switches;
         switches.values(&self.held, source_state, out);
         Ok(())
+    }
+
+    fn switch_rates(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        rates: &[f64],
+        out: &mut [[f64; 2]],
+    ) -> Result<bool> {
+        self.machine
+            .switch_rates((t, y), rates, &mut self.workspace, &self.held, out)?;
+        Ok(true)
+    }
+
+    fn record_sliding(&mut self, at: &OdeState, switch: usize, sliding: Option<&Sliding>) {
+        self.contact_events.push(ContactEvent::Switch {
+            t: at.t,
+            y: at.y.clone(),
+            load: self.switch_source(switch),
+            sliding: sliding.cloned(),
+        });
     }
 
     fn hold_pieces(&mut self, pieces: &[Option<f64>]) {

@@ -54,6 +54,11 @@ impl Machine {
         self.contacts.iter().map(|contact| contact.load)
     }
 
+    /// The loads, those of the drives last, that switch as coordinates and speeds move.
+    pub fn switching_loads(&self) -> Vec<usize> {
+        self.state_switches.loads()
+    }
+
     /// Refuses an analysis of smooth motions where friction holds at rest; `what` says why.
     pub(crate) fn require_smooth(&self, what: &'static str) -> Result<()> {
         if let Some(stop) = self.stops.first() {

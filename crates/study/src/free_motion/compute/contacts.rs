@@ -7,7 +7,9 @@ use crate::number_format::{digits, digits_within};
 use dwell_dynamics::{ContactEvent, ContactMode, OdeState, StopChange};
 
 /// What a friction does from an event on.
-const OF_FRICTION: [&str; 2] = ["holds", "slides"];
+const OF_FRICTION: [&str; 2] = ["sticks", "breaks away"];
+/// What a load does that drives the motion back to its switch from both sides.
+const OF_SWITCH: [&str; 2] = ["holds at its switch", "leaves its switch"];
 /// What a coordinate does at its end stop.
 const OF_STOP: [&str; 3] = ["is struck", "is rested on", "is left"];
 
@@ -35,7 +37,11 @@ impl FreeMotionProblem<'_> {
         });
         let stops = self.loaded_scene.stops.iter();
         let stops = stops.map(|stop| (stop.name.as_str(), &OF_STOP[..]));
-        let all = frictions.chain(stops);
+        let switching = self.machine.switching_loads();
+        let switching = switching
+            .iter()
+            .map(|&load| (self.loaded_scene.loads[load].name.as_str(), &OF_SWITCH[..]));
+        let all = frictions.chain(stops).chain(switching);
         all.flat_map(|(name, verbs)| verbs.iter().map(move |verb| format!("{name} {verb}")))
             .collect()
     }
@@ -62,6 +68,14 @@ impl FreeMotionProblem<'_> {
                 };
                 let contact = self.machine.contact_loads().position(|l| l == *load)?;
                 Some(OF_FRICTION.len() * contact + kind)
+            }
+            ContactEvent::Switch { load, sliding, .. } => {
+                let loads = self.machine.switching_loads();
+                let load = loads.iter().position(|l| l == load)?;
+                let frictions = OF_FRICTION.len() * self.machine.contact_loads().count();
+                let stops = OF_STOP.len() * self.loaded_scene.stops.len();
+                let kind = usize::from(sliding.is_none());
+                Some(frictions + stops + OF_SWITCH.len() * load + kind)
             }
             ContactEvent::Stop { stop, change, .. } => {
                 let kind = match change {
@@ -123,7 +137,10 @@ impl FreeMotionProblem<'_> {
             let own = times(&own);
             let Some(&first) = own.first() else { continue };
             let count = own.len();
-            text += &format!("  {name} (event {number}): {count} times, first at t = ");
+            text += &format!(
+                "  {name} (event {number}): {}, first at t = ",
+                times_over(count)
+            );
             let others = second.as_deref().map(times);
             text += &match others.as_ref().and_then(|others| others.first()) {
                 Some(other) => {
@@ -134,12 +151,21 @@ impl FreeMotionProblem<'_> {
                 None => format!("{} s", digits(first, 3)),
             };
             if let Some(others) = others.filter(|others| others.len() != count) {
-                let other = others.len();
-                text +=
-                    &format!("; {other} times in a second run: within its error it is not certain");
+                let other = times_over(others.len());
+                text += &format!("; {other} in a second run: within its error it is not certain");
             }
             text += "\n";
         }
         text
+    }
+}
+
+/// How often something happens, in words.
+fn times_over(count: usize) -> String {
+    match count {
+        0 => "never".to_owned(),
+        1 => "once".to_owned(),
+        2 => "twice".to_owned(),
+        _ => format!("{count} times"),
     }
 }
