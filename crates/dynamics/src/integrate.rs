@@ -125,7 +125,7 @@ fn integrate_held(
     let span = end.unwrap_or(f64::INFINITY) - start.t;
     let mut contacts = ContactMonitor::new(system, if span.is_finite() { span } else { 1.0 });
     if system.switch_kinds().is_empty() && contacts.is_none() {
-        return integrate_smooth(system, start, end, options, pieces, observer);
+        return integrate_smooth(system, start, end, options, (pieces, None), observer);
     }
     let mut start = start.clone();
     if let Some(contacts) = &mut contacts {
@@ -134,12 +134,16 @@ fn integrate_held(
     let mut monitor = SwitchMonitor::new(system, &start, end.unwrap_or(f64::INFINITY) - start.t)?;
     let shared = SharedSystem::new(system);
     let mut parts = Parts::new(&start, options);
+    // The last step that an event has not cut short.
+    let step = Cell::new(None);
     loop {
         let mut event: Option<HeldEvent> = None;
         let sliding = monitor.sliding();
         let [mut integrated, mut watched_system] =
             [(); 2].map(|()| SlidingSystem::new(&shared, sliding.cloned()));
+        let first_step = step.get();
         let mut watched = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
+            step.set(Some(now.t - before.t));
             let crossing = monitor.after_step(&mut watched_system, before, now, dense)?;
             let until = crossing.as_ref().map_or(now, |crossing| &crossing.state);
             let change = match &mut contacts {
@@ -168,7 +172,7 @@ fn integrate_held(
             &from,
             end,
             &remaining,
-            pieces,
+            (pieces, first_step),
             &mut watched,
         );
         let is_ended = parts.add(part)?;
@@ -243,14 +247,14 @@ fn pass_event(
     }
 }
 
-/// Integrates while nothing switches in time; `pieces` limits the steps.
+/// Integrates while nothing switches in time; `pieces` limits the steps, and a first step behind an event may be known.
 // Long because diffsol's problem is a type of closures, which has no name and borrows what is counted and kept here.
 fn integrate_smooth(
     system: &mut dyn OdeSystem,
     start: &OdeState,
     end: Option<f64>,
     options: &Options,
-    pieces: Option<&mut TimePieces<'_>>,
+    (pieces, first_step): (Option<&mut TimePieces<'_>>, Option<f64>),
     observer: StepObserver<'_>,
 ) -> Result<Termination> {
     let n = system.size();
@@ -268,7 +272,7 @@ fn integrate_smooth(
         let from = (start, &rates[..]);
         let limits = (&atol[..], min_step, pieces);
         return Ok(dop853::integrate(
-            system, from, end, options, limits, observer,
+            system, from, end, options, limits, first_step, observer,
         ));
     }
     let system = RefCell::new(system);

@@ -82,7 +82,7 @@ pub use atlas::{
     MachineDescription, Segment,
 };
 pub use change_point_fit::{ChangePointFit, ChangePointFitError};
-pub use contact::{ContactEvent, ContactMode, EndStop, StopChange};
+pub use contact::{ContactEvent, ContactMode, EndStop, StopChange, YieldingStop};
 pub use cycle::{Cycle, initial_transient, steady_cycle};
 pub use drive::DriveError;
 pub use equilibrium::{

@@ -92,7 +92,8 @@ pub enum MachineError {
     Load(#[from] LoadError),
     /// An end stop whose coordinate is not free, or whose numbers cannot be used.
     #[error(
-        "end stop {0}: its coordinate must be free, its limits ascending, its restitution from 0 to 1"
+        "end stop {0}: its coordinate must be free, its limits ascending, its restitution from 0 to 1, its stiffness \
+         above zero, its damping not below"
     )]
     Stop(usize),
     /// The number of coordinate modes is not that of the actuators.
@@ -266,8 +267,16 @@ impl Machine {
             *mode = ContactMode::of_code(code.value());
         }
         equation.locked.fill(false);
-        for (stop, code) in self.stops.iter().zip(&y[self.stop_states()]) {
-            equation.locked[stop.free] |= ContactMode::of_code(code.value()) == ContactMode::Holds;
+        equation.stop_forces.fill(T::from_f64(0.0));
+        for (k, (stop, code)) in self.stops.iter().zip(&y[self.stop_states()]).enumerate() {
+            let is_touched = ContactMode::of_code(code.value()) == ContactMode::Holds;
+            match stop.push(y[stop.free], y[n + stop.free]) {
+                Some(push) if is_touched => {
+                    equation.stop_forces[k] = push * T::from_f64(stop.side);
+                }
+                Some(_) => {}
+                None => equation.locked[stop.free] |= is_touched,
+            }
         }
         self.set_actuator_motion(t, y, equation);
         let forces = if let Some(fit) = self.fit_at(equation.q.first()) {
@@ -363,8 +372,12 @@ impl Machine {
             free_accelerations,
             contacts,
             locked,
+            stop_forces,
             ..
         } = equation;
+        for (stop, force) in self.stops.iter().zip(stop_forces.iter()) {
+            free_accelerations[stop.free] += *force;
+        }
         if !self.stops.is_empty() {
             contacts::lock(locked, mass_matrix, free_accelerations);
         }

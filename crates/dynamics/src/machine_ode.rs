@@ -190,8 +190,15 @@ impl OdeSystem for MachineOde<'_> {
         for (i, out) in frictions.iter_mut().enumerate() {
             *out = contacts.margin(i);
         }
+        let n = self.machine.free().len();
         let modes = &y[self.machine.stop_states()];
         for ((stop, code), out) in self.machine.stops.iter().zip(modes).zip(stops) {
+            let is_touched = ContactMode::of_code(*code) == ContactMode::Holds;
+            let speed = y[n + stop.free];
+            if let Some(margin) = stop.yielding_margin(is_touched, y[stop.free], speed) {
+                *out = margin;
+                continue;
+            }
             *out = stop.side
                 * match ContactMode::of_code(*code) {
                     ContactMode::Holds => self.workspace.actuator_force(stop.actuator),

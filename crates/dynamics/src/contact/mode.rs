@@ -135,6 +135,8 @@ pub enum StopChange {
         /// By free coordinate: the change of its speed.
         changes: Vec<f64>,
     },
+    /// It comes to touch one that yields.
+    Touches,
     /// It comes to rest on it.
     Rests,
     /// It is lifted off.

@@ -15,7 +15,12 @@ impl Machine {
         for (k, stop) in stops.iter().enumerate() {
             let low = stop.min.unwrap_or(f64::NEG_INFINITY);
             let high = stop.max.unwrap_or(f64::INFINITY);
-            let fits = low < high && (0.0..=1.0).contains(&stop.restitution);
+            let yields = stop.yielding.is_none_or(|of| {
+                of.stiffness > 0.0
+                    && of.stiffness.is_finite()
+                    && (0.0..f64::MAX).contains(&of.damping)
+            });
+            let fits = low < high && (0.0..=1.0).contains(&stop.restitution) && yields;
             if !fits || !self.free.contains(&stop.actuator) {
                 return Err(MachineError::Stop(k));
             }

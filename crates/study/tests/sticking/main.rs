@@ -2,10 +2,12 @@
 #![allow(clippy::expect_used, clippy::panic, reason = "tests")]
 
 mod blocks;
+mod costs;
 mod refusals;
 mod several;
 mod stops;
 mod switches;
+mod yielding;
 
 use dwell_dynamics::{
     ContactEvent, ContactMode, DynamicsError, Machine, Method, OdeState, Options, StopChange,

@@ -133,14 +133,6 @@ fn a_brake_holds_from_the_start() {
 fn a_block_follows_a_belt_whose_speed_varies() {
     let loads = r#"belt = { force = "block.A", direction = ALONG, magnitude = "-6*sign(x.velocity - 2*sin(t^2))" }"#;
     let text = block(0.0, loads, "", "duration = 2.0");
-    // 4 t cos t² = 6/m where it is left first.
-    let mut left = 0.9_f64;
-    for _ in 0..50 {
-        let value = 4.0 * left * (left * left).cos() - 3.0;
-        let slope = 4.0 * (left * left).cos() - 8.0 * left * left * (left * left).sin();
-        left -= value / slope;
-    }
-    let _ = left;
     for method in Method::ALL {
         let [rtol, allowed] = tolerance(method);
         let run = run(&text, method, rtol);

@@ -11,7 +11,7 @@ const OF_FRICTION: [&str; 2] = ["sticks", "breaks away"];
 /// What a load does that drives the motion back to its switch from both sides.
 const OF_SWITCH: [&str; 2] = ["holds at its switch", "leaves its switch"];
 /// What a coordinate does at its end stop.
-const OF_STOP: [&str; 3] = ["is struck", "is rested on", "is left"];
+const OF_STOP: [&str; 4] = ["is struck", "is rested on", "is left", "is touched"];
 
 /// A change of a contact, as an event.
 pub(super) struct ContactOccurrence {
@@ -82,6 +82,7 @@ impl FreeMotionProblem<'_> {
                     StopChange::Impact { .. } => 0,
                     StopChange::Rests => 1,
                     StopChange::Leaves => 2,
+                    StopChange::Touches => 3,
                 };
                 let frictions = OF_FRICTION.len() * self.machine.contact_loads().count();
                 Some(frictions + OF_STOP.len() * stop + kind)
