@@ -18,6 +18,7 @@ mod contacts;
 mod drives;
 mod impact;
 mod on_fit;
+mod sliding;
 mod state;
 mod workspace;
 
@@ -30,6 +31,7 @@ use dwell_geometry::Mechanism;
 use dwell_kinetostatics::{Drive, ForceState, Load, LoadError, LoadKind, Magnitude, Model, Signal};
 use dwell_laws::{Features, Law};
 use dwell_numerics::{Scalar, lu};
+pub use sliding::SlidingForces;
 pub use state::MachineState;
 use std::sync::Arc;
 use workspace::EquationWorkspace;

@@ -79,6 +79,15 @@ impl Machine {
         })
     }
 
+    /// Refuses a search of equilibria where they are no points or intervals: with friction that holds, and several free
+    /// coordinates.
+    pub(crate) fn require_intervals(&self) -> Result<()> {
+        if self.free.len() == 1 && self.stops.is_empty() {
+            return Ok(());
+        }
+        self.require_smooth("its equilibria are no points but whole regions")
+    }
+
     /// Whether a coordinate is prescribed.
     pub(crate) fn has_prescribed(&self) -> bool {
         self.free.len() < self.modes.len()

@@ -104,6 +104,11 @@ fn searched_range(prepared: &SceneMachine<'_>) -> SearchedRange {
         }
     }
     let length = LENGTH_RANGE * prepared.scene.mechanism.size();
+    let sticks = prepared.machine.contact_loads().next().is_some();
+    if plan.actuators() == 1 && sticks {
+        // Friction that holds has intervals, which no search from single starts finds.
+        return SearchedRange::Interval([start[0] - length, start[0] + length]);
+    }
     let free = prepared.machine.free();
     let range = |(&i, q): (&usize, &f64)| match plan.is_angle(i) {
         true => [q - CUT_FRACTION * TAU, q + (1.0 - CUT_FRACTION) * TAU],

@@ -3,6 +3,7 @@
 
 mod blocks;
 mod costs;
+mod equilibria;
 mod refusals;
 mod several;
 mod stops;
