@@ -156,10 +156,16 @@ fn equilibrium_table(prepared: &SceneMachine<'_>, found: &[Equilibrium]) -> Tabl
     if has_neutral {
         columns.push(Column::new("neutral_directions", ""));
     }
+    // Where friction holds, an equilibrium is an interval: its ends.
+    let sticks = prepared.machine.contact_loads().next().is_some();
+    if let (true, Some(coordinate)) = (sticks, states.first()) {
+        let end = |end: &str| Column::new(format!("{}.{end}", coordinate.name), &coordinate.unit);
+        columns.extend(["from", "to"].map(end));
+    }
     let row = |e: &Equilibrium| {
         let mut row = e.y[..free].to_vec();
         row.extend(e.y[..free].iter().zip(&start).map(|(q, start)| q - start));
-        row.extend_from_slice(&e.y[2 * free..prepared.machine.work_offset()]);
+        row.extend_from_slice(&e.y[prepared.machine.drive_states()]);
         row.push(match e.stability {
             Stability::Asymptotic => 1.0,
             Stability::Centre => 0.0,
@@ -174,9 +180,14 @@ fn equilibrium_table(prepared: &SceneMachine<'_>, found: &[Equilibrium]) -> Tabl
             let damping = zero_within(mode.damping_ratio, largest_error / frequency);
             row.extend([frequency, frequency / TAU, damping]);
         }
-        row.resize(columns.len() - usize::from(has_neutral), f64::NAN);
+        let behind = usize::from(has_neutral) + 2 * usize::from(sticks);
+        row.resize(columns.len() - behind, f64::NAN);
         if has_neutral {
             row.push(e.neutral.len() as f64);
+        }
+        if sticks {
+            let extent = e.neutral.iter().find_map(|neutral| neutral.extent);
+            row.extend(extent.unwrap_or([f64::NAN; 2]));
         }
         row
     };
