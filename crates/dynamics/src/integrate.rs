@@ -179,6 +179,10 @@ fn integrate_held(
         let Some(event) = event.filter(|_| !is_ended) else {
             break;
         };
+        if matches!(event, HeldEvent::Switch(_)) {
+            // Behind a switch of a load the rates may be those of another time scale.
+            step.set(None);
+        }
         let passed = pass_event(&shared, &mut monitor, contacts.as_mut(), event);
         match (passed, &mut parts.whole) {
             (Ok(state), _) => parts.from = state,

@@ -268,17 +268,8 @@ impl Machine {
         for (mode, code) in modes.zip(&y[self.contact_states()]) {
             *mode = ContactMode::of_code(code.value());
         }
-        equation.locked.fill(false);
-        equation.stop_forces.fill(T::from_f64(0.0));
-        for (k, (stop, code)) in self.stops.iter().zip(&y[self.stop_states()]).enumerate() {
-            let is_touched = ContactMode::of_code(code.value()) == ContactMode::Holds;
-            match stop.push(y[stop.free], y[n + stop.free]) {
-                Some(push) if is_touched => {
-                    equation.stop_forces[k] = push * T::from_f64(stop.side);
-                }
-                Some(_) => {}
-                None => equation.locked[stop.free] |= is_touched,
-            }
+        if !self.stops.is_empty() {
+            self.set_stops(y, equation);
         }
         self.set_actuator_motion(t, y, equation);
         let forces = if let Some(fit) = self.fit_at(equation.q.first()) {

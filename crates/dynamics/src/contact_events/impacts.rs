@@ -22,6 +22,7 @@ const MAX_IMPACTS: usize = 1000;
 ///
 /// # Errors
 /// [`DynamicsError`] where the state cannot be evaluated, or impacts follow each other without end.
+// Long because it is one event: what is touched decides what is struck.
 pub(super) fn pass_stops(
     machine: &Machine,
     workspace: &mut MachineWorkspace<f64>,

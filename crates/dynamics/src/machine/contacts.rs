@@ -1,7 +1,8 @@
 //! The contacts of a machine: frictions that hold at rest, and end stops, with their place among the states.
 
+use super::workspace::EquationWorkspace;
 use super::{Machine, MachineError, NonconservativeSource};
-use crate::contact::{EndStop, one_sided};
+use crate::contact::{ContactMode, EndStop, one_sided};
 use crate::error::{DynamicsError, Result};
 use dwell_numerics::Scalar;
 use std::ops::Range;
@@ -57,6 +58,23 @@ impl Machine {
     /// The frictions that hold at rest, by their loads.
     pub fn contact_loads(&self) -> impl Iterator<Item = usize> + '_ {
         self.contacts.iter().map(|contact| contact.load)
+    }
+
+    /// Which coordinates rest on their stops, and the forces of those that yield.
+    pub(super) fn set_stops<T: Scalar>(&self, y: &[T], equation: &mut EquationWorkspace<T>) {
+        let n = self.free.len();
+        equation.locked.fill(false);
+        equation.stop_forces.fill(T::from_f64(0.0));
+        for (k, (stop, code)) in self.stops.iter().zip(&y[self.stop_states()]).enumerate() {
+            let is_touched = ContactMode::of_code(code.value()) == ContactMode::Holds;
+            match stop.push(y[stop.free], y[n + stop.free]) {
+                Some(push) if is_touched => {
+                    equation.stop_forces[k] = push * T::from_f64(stop.side);
+                }
+                Some(_) => {}
+                None => equation.locked[stop.free] |= is_touched,
+            }
+        }
     }
 
     /// The loads, those of the drives last, that switch as coordinates and speeds move.

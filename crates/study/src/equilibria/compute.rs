@@ -133,6 +133,7 @@ pub(crate) fn force_extent(
 }
 
 /// One row per equilibrium.
+// Long because columns and rows have the same parts in one order.
 fn equilibrium_table(prepared: &SceneMachine<'_>, found: &[Equilibrium]) -> Table {
     let start = prepared.initial_state();
     let free = prepared.machine.free().len();

@@ -49,11 +49,11 @@ fn time_error(run: &Run, times: impl Fn(usize) -> f64, duration: f64) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// At its default tolerance DOP853 takes fewer than 50 evaluations for each of 1000 events, of rebounds and of sticking alike.
+/// At the default tolerance, 1e-6, DOP853 takes fewer than 50 evaluations for each of 1000 events, of rebounds and of sticking alike.
 #[test]
 fn an_event_costs_fewer_than_fifty_evaluations() {
-    let rebounds = run(&bouncing(903.5), Method::Dop853, 1e-9);
-    let sticks = run(&sticking(250.0), Method::Dop853, 1e-9);
+    let rebounds = run(&bouncing(903.5), Method::Dop853, 1e-6);
+    let sticks = run(&sticking(250.0), Method::Dop853, 1e-6);
     for (name, run) in [("rebounds", &rebounds), ("sticking", &sticks)] {
         let cost = run.evaluations as f64 / run.events.len() as f64;
         println!(
@@ -69,13 +69,14 @@ fn an_event_costs_fewer_than_fifty_evaluations() {
 fn times_and_balances_of_every_integrator() {
     let fall = (2.0 / G).sqrt();
     let slips = (0.3 * 2.0 * G / 8.0_f64).asin() / std::f64::consts::TAU;
-    // Measured: 1e-11 of the span with the methods of high order; TR-BDF2 has the second one, and 1e-12 a step.
+    // Measured: the times within 1e-13 of the span; the energy, which lower orders integrate with more steps and their
+    // rounding, within 1e-12 by DOP853, 2e-12 by Tsit45, 7e-11 by BDF and 3e-10 by ESDIRK34.
     for (method, rtol, allowed) in [
         (Method::Dop853, 1e-13, 1e-11),
         (Method::Tsit45, 1e-13, 1e-11),
-        (Method::Bdf, 1e-13, 1e-9),
-        (Method::Esdirk34, 1e-13, 1e-10),
-        (Method::TrBdf2, 1e-12, 1e-8),
+        (Method::Bdf, 1e-13, 1e-10),
+        (Method::Esdirk34, 1e-13, 1e-9),
+        (Method::TrBdf2, 1e-12, 1e-7),
     ] {
         let run_of = |text: &str| run(text, method, rtol);
         let rebounds = run_of(&bouncing(18.0));
@@ -86,7 +87,7 @@ fn times_and_balances_of_every_integrator() {
             rebounds.energy_error()
         );
         assert!(
-            error < allowed && rebounds.energy_error() < 1e-9,
+            error < 1e-11 && rebounds.energy_error() < 1e-10,
             "{method:?}"
         );
         let sticks = run_of(&sticking(5.0));
@@ -100,7 +101,7 @@ fn times_and_balances_of_every_integrator() {
             sticks.energy_error()
         );
         assert!(
-            error < 1e-11 && sticks.energy_error() < allowed.max(1e-10),
+            error < 1e-11 && sticks.energy_error() < allowed,
             "{method:?}"
         );
     }

@@ -76,7 +76,7 @@ length = "guide"
 x = 0.0
 [loads]
 weight = {{ gravity = [0, -{G:?}] }}
-spring = {{ spring = ["ground.W", "block.A"], stiffness = 50.0, free-length = 0.9 }}
+spring = {{ force = "block.A", direction = [1, 0], magnitude = "-50*(x + 0.1)" }}
 [friction]
 guide = {{ coefficient = 0.3, static-coefficient = 0.5 }}
 [motion]

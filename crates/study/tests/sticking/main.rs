@@ -4,6 +4,7 @@
 mod blocks;
 mod costs;
 mod equilibria;
+mod impacts;
 mod refusals;
 mod several;
 mod stops;

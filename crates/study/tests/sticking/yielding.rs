@@ -8,8 +8,12 @@ use std::f64::consts::PI;
 const G: f64 = 9.81;
 const MASS: f64 = 2.0;
 
-/// A ball at 1 m with a speed, under gravity g (m/s²) towards its stop.
+/// A ball at 1 m with a speed, under gravity g (m/s²) towards its stop; without it, across its guide.
 fn ball(gravity: f64, stop: &str, motion: &str) -> String {
+    let gravity = match gravity {
+        0.0 => format!("[{G:?}, 0]"),
+        gravity => format!("[0, -{gravity:?}]"),
+    };
     format!(
         r#"
 [bodies.ground]
@@ -25,7 +29,7 @@ length = "line"
 [assembly]
 z = 1.0
 [loads]
-weight = {{ gravity = [0, -{gravity:?}] }}
+weight = {{ gravity = {gravity} }}
 [stops]
 floor = {{ coordinate = "z", {stop} }}
 [motion]
