@@ -19,7 +19,7 @@ mod stop;
 pub(crate) use held::{Unloaded, independent, solve_contacts};
 pub use mode::{ContactEvent, ContactMode, ContactStep, StopChange};
 pub(crate) use relations::ContactWorkspace;
-pub use stop::EndStop;
+pub use stop::{EndStop, YieldingStop};
 pub(crate) use stop::{Stop, one_sided};
 
 use dwell_geometry::body_states::CoordinateFunction;

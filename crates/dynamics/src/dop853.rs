@@ -41,7 +41,7 @@ const FAILURE_REDUCTION: f64 = 0.25;
 /// A step that ends within this part of itself before the end is stretched to it.
 const STRETCH_FRACTION: f64 = 0.01;
 
-/// Integrates a system whose start has `rates`, by steps no shorter than `min_step` (s), each state to its own
+/// Integrates a system whose start has `rates`, by a `first_step` if one is known (s), by steps no shorter than `min_step` (s), each state to its own
 /// absolute tolerance.
 pub(crate) fn integrate(
     system: &mut dyn OdeSystem,
@@ -49,6 +49,7 @@ pub(crate) fn integrate(
     end: Option<f64>,
     options: &Options,
     (atol, min_step, pieces): (&[f64], f64, Option<&mut TimePieces<'_>>),
+    first_step: Option<f64>,
     observer: StepObserver<'_>,
 ) -> Termination {
     let tolerance = (options.rtol, atol);
@@ -61,7 +62,9 @@ pub(crate) fn integrate(
         previous_error: MIN_ERROR,
         statistics: Statistics::default(),
     };
-    let error = stepper.run(end, options, pieces, observer).err();
+    let error = stepper
+        .run((end, first_step), options, pieces, observer)
+        .err();
     stepper.statistics.evaluations = stepper.stages.evaluations;
     Termination {
         state: stepper.from,
@@ -86,7 +89,7 @@ struct Stepper<'s> {
 impl Stepper<'_> {
     fn run(
         &mut self,
-        end: Option<f64>,
+        (end, first_step): (Option<f64>, Option<f64>),
         options: &Options,
         mut pieces: Option<&mut TimePieces<'_>>,
         observer: StepObserver<'_>,
@@ -100,7 +103,11 @@ impl Stepper<'_> {
         };
         let remaining = |t: f64| end.map_or(f64::INFINITY, |end| end - t);
         let first = remaining(self.from.t).min(longest(self.from.t)?);
-        let mut h = self.initial_step(first);
+        // Behind an event the step before it fits, where the rates that jump have their size.
+        let mut h = match first_step {
+            Some(step) => step.min(first),
+            None => self.initial_step(first),
+        };
         for _ in 0..options.max_steps {
             h = self.step(h.min(longest(self.from.t)?), end)?;
             let (stages, from, to) = (&mut self.stages, &self.from, &self.to);

@@ -147,6 +147,18 @@ impl CompiledDrive {
         }
     }
 
+    /// The rates of its [switching functions](Self::switch_values), from those of its input, its coordinate's speed and its
+    /// state.
+    pub(crate) fn switch_rates(&self, input: f64, acceleration: f64, state: f64) -> [f64; 2] {
+        match self.law {
+            DriveLaw::AppliedForce | DriveLaw::Motor(_) => [f64::NAN; 2],
+            DriveLaw::SpeedController([proportional, integral, _]) => {
+                let error = input - acceleration;
+                [state * integral + error * proportional, error]
+            }
+        }
+    }
+
     /// The force on the coordinate (without the rotor's inertia) and the rate of the drive's state, for
     /// an input and the coordinate's speed, on the pieces that are held.
     #[inline]

@@ -125,6 +125,17 @@ pub enum DynamicsError {
         /// The time reached, s.
         t: f64,
     },
+    /// The motion slides along the switch of a load that drives it back from both sides, and another switch or contact
+    /// changes or holds it there.
+    #[error(
+        "the load of index {source_index} holds the motion at its switch together with others at t = {t} s"
+    )]
+    SlidesOnSeveral {
+        /// Which: the index of a load (those of the drives last).
+        source_index: usize,
+        /// The time reached, s.
+        t: f64,
+    },
     /// Surfaces with dry friction can neither hold nor slide: no mode of them agrees with the forces, or they change it
     /// without end.
     #[error("the surfaces of friction {source_index} can neither hold nor slide")]

@@ -13,6 +13,7 @@ use crate::integration_parts::Parts;
 use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, StepObserver, Termination};
 use crate::options::{Method, Options, Statistics};
 use crate::shared_system::SharedSystem;
+use crate::sliding_system::SlidingSystem;
 use crate::switch_monitor::{Crossing, SwitchMonitor};
 use crate::time_pieces::TimePieces;
 use diffsol::error::OdeSolverError;
@@ -124,7 +125,7 @@ fn integrate_held(
     let span = end.unwrap_or(f64::INFINITY) - start.t;
     let mut contacts = ContactMonitor::new(system, if span.is_finite() { span } else { 1.0 });
     if system.switch_kinds().is_empty() && contacts.is_none() {
-        return integrate_smooth(system, start, end, options, pieces, observer);
+        return integrate_smooth(system, start, end, options, (pieces, None), observer);
     }
     let mut start = start.clone();
     if let Some(contacts) = &mut contacts {
@@ -132,11 +133,17 @@ fn integrate_held(
     }
     let mut monitor = SwitchMonitor::new(system, &start, end.unwrap_or(f64::INFINITY) - start.t)?;
     let shared = SharedSystem::new(system);
-    let [mut integrated, mut watched_system] = [&shared; 2];
     let mut parts = Parts::new(&start, options);
+    // The last step that an event has not cut short.
+    let step = Cell::new(None);
     loop {
         let mut event: Option<HeldEvent> = None;
+        let sliding = monitor.sliding();
+        let [mut integrated, mut watched_system] =
+            [(); 2].map(|()| SlidingSystem::new(&shared, sliding.cloned()));
+        let first_step = step.get();
         let mut watched = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
+            step.set(Some(now.t - before.t));
             let crossing = monitor.after_step(&mut watched_system, before, now, dense)?;
             let until = crossing.as_ref().map_or(now, |crossing| &crossing.state);
             let change = match &mut contacts {
@@ -165,14 +172,18 @@ fn integrate_held(
             &from,
             end,
             &remaining,
-            pieces,
+            (pieces, first_step),
             &mut watched,
         );
         let is_ended = parts.add(part)?;
         let Some(event) = event.filter(|_| !is_ended) else {
             break;
         };
-        let passed = pass_event(&mut watched_system, &mut monitor, contacts.as_mut(), event);
+        if matches!(event, HeldEvent::Switch(_)) {
+            // Behind a switch of a load the rates may be those of another time scale.
+            step.set(None);
+        }
+        let passed = pass_event(&shared, &mut monitor, contacts.as_mut(), event);
         match (passed, &mut parts.whole) {
             (Ok(state), _) => parts.from = state,
             (Err(error), Some(whole)) => {
@@ -212,21 +223,27 @@ impl HeldEvent {
 
 /// Goes over to the pieces and modes behind an event; the state there.
 fn pass_event(
-    system: &mut dyn OdeSystem,
+    shared: &SharedSystem<'_>,
     monitor: &mut SwitchMonitor,
     contacts: Option<&mut ContactMonitor>,
     event: HeldEvent,
 ) -> Result<OdeState> {
+    let mut shared_system = shared;
+    let system: &mut dyn OdeSystem = &mut shared_system;
     match (event, contacts) {
         (HeldEvent::Contacts(mut state, touched), Some(contacts)) => {
+            monitor.refuse_to_slide(system, state.t)?;
+            let before = state.clone();
             contacts.change_modes(system, &mut state, &touched)?;
+            monitor.continue_behind(system, &before, &state)?;
             Ok(state)
         }
-        (HeldEvent::Switch(crossing), contacts) => {
-            monitor.pass(&crossing, system)?;
+        (HeldEvent::Switch(mut crossing), contacts) => {
+            monitor.pass(&mut crossing, system)?;
             let mut state = crossing.state;
             if let Some(contacts) = contacts {
-                contacts.settle(system, &mut state)?;
+                let sliding = monitor.sliding().cloned();
+                contacts.settle(&mut SlidingSystem::new(shared, sliding), &mut state)?;
             }
             Ok(state)
         }
@@ -234,14 +251,14 @@ fn pass_event(
     }
 }
 
-/// Integrates while nothing switches in time; `pieces` limits the steps.
+/// Integrates while nothing switches in time; `pieces` limits the steps, and a first step behind an event may be known.
 // Long because diffsol's problem is a type of closures, which has no name and borrows what is counted and kept here.
 fn integrate_smooth(
     system: &mut dyn OdeSystem,
     start: &OdeState,
     end: Option<f64>,
     options: &Options,
-    pieces: Option<&mut TimePieces<'_>>,
+    (pieces, first_step): (Option<&mut TimePieces<'_>>, Option<f64>),
     observer: StepObserver<'_>,
 ) -> Result<Termination> {
     let n = system.size();
@@ -259,7 +276,7 @@ fn integrate_smooth(
         let from = (start, &rates[..]);
         let limits = (&atol[..], min_step, pieces);
         return Ok(dop853::integrate(
-            system, from, end, options, limits, observer,
+            system, from, end, options, limits, first_step, observer,
         ));
     }
     let system = RefCell::new(system);

@@ -67,6 +67,8 @@ pub mod reduced_ode;
 mod repetition;
 mod rotation;
 mod shared_system;
+mod sliding;
+mod sliding_system;
 pub mod solve;
 pub mod state_space;
 mod state_switches;
@@ -80,7 +82,7 @@ pub use atlas::{
     MachineDescription, Segment,
 };
 pub use change_point_fit::{ChangePointFit, ChangePointFitError};
-pub use contact::{ContactEvent, ContactMode, EndStop, StopChange};
+pub use contact::{ContactEvent, ContactMode, EndStop, StopChange, YieldingStop};
 pub use cycle::{Cycle, initial_transient, steady_cycle};
 pub use drive::DriveError;
 pub use equilibrium::{
@@ -92,7 +94,7 @@ pub use flywheel::{Flywheel, size_flywheel};
 pub use integrate::integrate;
 pub use machine::{
     CoordinateMode, Machine, MachineError, MachineState, MachineWorkspace, NonconservativeSource,
-    loads_with_drives,
+    SlidingForces, loads_with_drives,
 };
 pub use machine_ode::MachineOde;
 pub use motion_class::{MotionClass, motion_class};
@@ -102,6 +104,7 @@ pub use ode::{
 pub use options::{Method, Options, Statistics};
 pub use orbit::{Orbit, OrbitSequence};
 pub use reduced_ode::{ReducedCoordinate, ReducedOde, ReducedOutputs, solve_reduced};
+pub use sliding::Sliding;
 pub use solve::{
     Event, EventKind, EventOccurrence, Observed, ObservedMachine, ObservedValue, Solution, solve,
     solve_orbit, solve_system,

@@ -18,6 +18,7 @@ mod contacts;
 mod drives;
 mod impact;
 mod on_fit;
+mod sliding;
 mod state;
 mod workspace;
 
@@ -30,6 +31,7 @@ use dwell_geometry::Mechanism;
 use dwell_kinetostatics::{Drive, ForceState, Load, LoadError, LoadKind, Magnitude, Model, Signal};
 use dwell_laws::{Features, Law};
 use dwell_numerics::{Scalar, lu};
+pub use sliding::SlidingForces;
 pub use state::MachineState;
 use std::sync::Arc;
 use workspace::EquationWorkspace;
@@ -92,7 +94,8 @@ pub enum MachineError {
     Load(#[from] LoadError),
     /// An end stop whose coordinate is not free, or whose numbers cannot be used.
     #[error(
-        "end stop {0}: its coordinate must be free, its limits ascending, its restitution from 0 to 1"
+        "end stop {0}: its coordinate must be free, its limits ascending, its restitution from 0 to 1, its stiffness \
+         above zero, its damping not below"
     )]
     Stop(usize),
     /// The number of coordinate modes is not that of the actuators.
@@ -265,9 +268,8 @@ impl Machine {
         for (mode, code) in modes.zip(&y[self.contact_states()]) {
             *mode = ContactMode::of_code(code.value());
         }
-        equation.locked.fill(false);
-        for (stop, code) in self.stops.iter().zip(&y[self.stop_states()]) {
-            equation.locked[stop.free] |= ContactMode::of_code(code.value()) == ContactMode::Holds;
+        if !self.stops.is_empty() {
+            self.set_stops(y, equation);
         }
         self.set_actuator_motion(t, y, equation);
         let forces = if let Some(fit) = self.fit_at(equation.q.first()) {
@@ -363,8 +365,12 @@ impl Machine {
             free_accelerations,
             contacts,
             locked,
+            stop_forces,
             ..
         } = equation;
+        for (stop, force) in self.stops.iter().zip(stop_forces.iter()) {
+            free_accelerations[stop.free] += *force;
+        }
         if !self.stops.is_empty() {
             contacts::lock(locked, mass_matrix, free_accelerations);
         }

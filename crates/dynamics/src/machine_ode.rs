@@ -4,7 +4,8 @@ use crate::contact::{ContactEvent, ContactMode, ContactStep};
 use crate::contact_events::pass;
 use crate::error::Result;
 use crate::machine::{Machine, MachineState, MachineWorkspace};
-use crate::ode::{DualWorkspace, OdeSystem};
+use crate::ode::{DualWorkspace, OdeState, OdeSystem};
+use crate::sliding::Sliding;
 use crate::state_switches::{HeldSource, signal_value};
 use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::Dual;
@@ -142,6 +143,27 @@ impl OdeSystem for MachineOde<'_> {
         Ok(())
     }
 
+    fn switch_rates(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        rates: &[f64],
+        out: &mut [[f64; 2]],
+    ) -> Result<bool> {
+        self.machine
+            .switch_rates((t, y), rates, &mut self.workspace, &self.held, out)?;
+        Ok(true)
+    }
+
+    fn record_sliding(&mut self, at: &OdeState, switch: usize, sliding: Option<&Sliding>) {
+        self.contact_events.push(ContactEvent::Switch {
+            t: at.t,
+            y: at.y.clone(),
+            load: self.switch_source(switch),
+            sliding: sliding.cloned(),
+        });
+    }
+
     fn hold_pieces(&mut self, pieces: &[Option<f64>]) {
         let (machine, workspace) = (self.machine, &mut self.workspace);
         let dual = self.dual_workspace.inner();
@@ -168,8 +190,15 @@ impl OdeSystem for MachineOde<'_> {
         for (i, out) in frictions.iter_mut().enumerate() {
             *out = contacts.margin(i);
         }
+        let n = self.machine.free().len();
         let modes = &y[self.machine.stop_states()];
         for ((stop, code), out) in self.machine.stops.iter().zip(modes).zip(stops) {
+            let is_touched = ContactMode::of_code(*code) == ContactMode::Holds;
+            let speed = y[n + stop.free];
+            if let Some(margin) = stop.yielding_margin(is_touched, y[stop.free], speed) {
+                *out = margin;
+                continue;
+            }
             *out = stop.side
                 * match ContactMode::of_code(*code) {
                     ContactMode::Holds => self.workspace.actuator_force(stop.actuator),

@@ -3,6 +3,7 @@
 use crate::contact::ContactStep;
 use crate::error::{DynamicsError, Result};
 use crate::options::Statistics;
+use crate::sliding::Sliding;
 use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::{Dual, Scalar};
 use std::sync::Arc;
@@ -86,6 +87,24 @@ pub trait OdeSystem {
     fn switch_values(&mut self, _t: f64, _y: &[f64], _out: &mut [f64]) -> Result<()> {
         Ok(())
     }
+
+    /// The values of these functions and their rates along `rates` of the state, on the pieces that are held; whether they
+    /// are known.
+    ///
+    /// # Errors
+    /// As [`OdeSystem::rhs`].
+    fn switch_rates(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _rates: &[f64],
+        _out: &mut [[f64; 2]],
+    ) -> Result<bool> {
+        Ok(false)
+    }
+
+    /// Called where the motion begins to slide along one of these switches, and where it leaves it.
+    fn record_sliding(&mut self, _at: &OdeState, _switch: usize, _sliding: Option<&Sliding>) {}
 
     /// Holds one piece of each function, wherever the state is, until others are set; none: as the state says.
     fn hold_pieces(&mut self, _pieces: &[Option<f64>]) {}

@@ -2,7 +2,8 @@
 
 use crate::contact::ContactStep;
 use crate::error::Result;
-use crate::ode::OdeSystem;
+use crate::ode::{OdeState, OdeSystem};
+use crate::sliding::Sliding;
 use dwell_laws::SwitchKind;
 use std::cell::RefCell;
 
@@ -20,6 +21,21 @@ impl<'s> SharedSystem<'s> {
             size: system.size(),
             inner: RefCell::new(system),
         }
+    }
+
+    /// Number of its states.
+    pub(crate) fn states(&self) -> usize {
+        self.size
+    }
+
+    /// Number of its switches.
+    pub(crate) fn switches(&self) -> usize {
+        self.kinds.len()
+    }
+
+    /// At which values they switch.
+    pub(crate) fn kinds(&self) -> &[SwitchKind] {
+        &self.kinds
     }
 }
 
@@ -46,6 +62,20 @@ impl OdeSystem for &SharedSystem<'_> {
 
     fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         self.inner.borrow_mut().switch_values(t, y, out)
+    }
+
+    fn switch_rates(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        rates: &[f64],
+        out: &mut [[f64; 2]],
+    ) -> Result<bool> {
+        self.inner.borrow_mut().switch_rates(t, y, rates, out)
+    }
+
+    fn record_sliding(&mut self, at: &OdeState, switch: usize, sliding: Option<&Sliding>) {
+        self.inner.borrow_mut().record_sliding(at, switch, sliding);
     }
 
     fn hold_pieces(&mut self, pieces: &[Option<f64>]) {

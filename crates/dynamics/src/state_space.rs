@@ -37,7 +37,12 @@ pub struct StateSpace {
 /// As [`Machine::evaluate`].
 pub fn linearise(machine: &Machine, t: f64, y: &[f64]) -> Result<StateSpace> {
     machine.require_smooth("its force at rest is no smooth function of the state")?;
-    let (states, inputs) = (machine.work_offset(), machine.drives());
+    linearise_where_it_holds(machine, t, y)
+}
+
+/// The same, where friction that holds keeps everything at rest.
+pub(crate) fn linearise_where_it_holds(machine: &Machine, t: f64, y: &[f64]) -> Result<StateSpace> {
+    let (states, inputs) = (machine.drive_states().end, machine.drives());
     let mut workspace: MachineWorkspace<Dual> = machine.workspace();
     let mut at: Vec<Dual> = y.iter().map(|&y| Dual::from_f64(y)).collect();
     let mut rates = vec![Dual::from_f64(0.0); machine.state_count()];
@@ -177,7 +182,7 @@ pub fn eigenvalues_about(
             near[j] += sides[j % 2] * error.max(STATE_ROUNDINGS * f64::EPSILON * size);
         }
         // Next to a limit position there may be no other state.
-        let Ok(near) = linearise(machine, t, &near) else {
+        let Ok(near) = linearise_where_it_holds(machine, t, &near) else {
             continue;
         };
         let others = near.a.iter().flatten();

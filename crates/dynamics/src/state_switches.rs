@@ -67,6 +67,11 @@ impl StateSwitches {
         &self.kinds
     }
 
+    /// The indices of the loads that switch.
+    pub(crate) fn loads(&self) -> Vec<usize> {
+        self.sources.iter().map(|source| source.index).collect()
+    }
+
     /// The load's index of a function.
     pub(crate) fn source_index(&self, mut function: usize) -> usize {
         for source in &self.sources {
@@ -119,6 +124,40 @@ impl StateSwitches {
                 let input = state.magnitude.eval(&signals, &signals, &held.magnitude);
                 let values = drive.switch_values(input, speed, drive_state);
                 of_drive.copy_from_slice(&values[..of_drive.len()]);
+            }
+        }
+    }
+}
+
+impl StateSwitches {
+    /// The value and the rate of each function on the pieces that are held; `state_of` gives a load or drive by its index,
+    /// with the values and rates of its signals, and of its drive the rates of its speed and its state.
+    pub(crate) fn rates<'a>(
+        &self,
+        held: &[HeldSource],
+        mut state_of: impl FnMut(usize, &mut Vec<[f64; 2]>) -> (SourceState<'a>, [f64; 2]),
+        mut out: &mut [[f64; 2]],
+    ) {
+        let free = HeldSource::default();
+        let mut signals = Vec::new();
+        for (k, source) in self.sources.iter().enumerate() {
+            signals.clear();
+            let (state, [acceleration, state_rate]) = state_of(source.index, &mut signals);
+            let held = held.get(k).unwrap_or(&free);
+            let (own, rest) = out.split_at_mut(source.magnitude.kinds().len());
+            let (of_drive, rest) = rest.split_at_mut(source.drive_count);
+            out = rest;
+            source.magnitude.rates(&signals, &held.magnitude, own);
+            if let (false, Some((drive, speed, drive_state))) = (of_drive.is_empty(), state.drive) {
+                let plain: Vec<f64> = signals.iter().map(|[value, _]| *value).collect();
+                let input = state.magnitude.eval(&plain, &plain, &held.magnitude);
+                let input_rate = state.magnitude.rate(&signals, &held.magnitude);
+                let values = drive.switch_values(input, speed, drive_state);
+                let rates = drive.switch_rates(input_rate, acceleration, state_rate);
+                let both = values.into_iter().zip(rates);
+                for (out, (value, rate)) in of_drive.iter_mut().zip(both) {
+                    *out = [value, rate];
+                }
             }
         }
     }

@@ -2,13 +2,17 @@
 //!
 //! While the pieces are held, everything is smooth, and a step may lead beyond a switch. Where it does, the switch is
 //! located on the dense output, the motion is kept up to there, and the next integration begins with the piece beyond.
-//! Where the rates on both pieces lead back to the switch, as of a brake at rest, the motion stays on it: there the
-//! switch is not held until it has kept its side for some steps.
+//! Where the rates on both pieces lead back to the switch, as of a brake at rest, the motion [slides](crate::sliding_system)
+//! along it. Where that is not so simple, the switch is not held until it has kept its side for some steps.
 
 use crate::error::{DynamicsError, Result};
 use crate::ode::{DenseOutput, OdeState, OdeSystem, root_subintervals, state_at};
+use crate::sliding::Sliding;
+use crate::sliding_system::SlidingSystem;
 use dwell_laws::SwitchKind;
 use dwell_numerics::root;
+
+mod slide;
 
 /// Step along the rates that shows on which side of a switch they lead, as a part of the step before: the next switch
 /// may be near.
@@ -28,6 +32,10 @@ pub(crate) struct SwitchMonitor {
     values: Vec<f64>,
     /// Length of the last step, s.
     step: f64,
+    /// Along which switch the motion slides.
+    sliding: Option<Sliding>,
+    /// The length of the motion, s.
+    span: f64,
 }
 
 #[derive(Debug, Clone)]
@@ -53,6 +61,8 @@ pub(crate) struct Crossing {
     pub(crate) state: OdeState,
     /// The switches, and whether each passes its upper bound.
     passed: Vec<(usize, bool)>,
+    /// Where a motion leaves the switch along which it slid: whether to its upper side.
+    left: Option<bool>,
 }
 
 impl MonitoredSwitch {
@@ -87,30 +97,81 @@ impl SwitchMonitor {
             margins: [(f64::NAN, f64::NAN); 2],
         });
         let switches: Vec<_> = switches.collect();
+        let span = if span.is_finite() { span } else { 1.0 };
         let mut monitor = Self {
             values: vec![0.0; switches.len()],
             switches,
-            step: FIRST_STEP * if span.is_finite() { span } else { 1.0 },
+            step: FIRST_STEP * span,
+            sliding: None,
+            span,
         };
-        monitor.hold(system);
-        system.switch_values(start.t, &start.y, &mut monitor.values)?;
-        for (switch, &value) in monitor.switches.iter_mut().zip(&monitor.values) {
-            switch.piece = switch.kind.piece_at(value);
-        }
-        let undecided = |k: &usize| monitor.switches[*k].piece.is_none();
-        let undecided: Vec<usize> = (0..monitor.switches.len()).filter(undecided).collect();
-        for k in undecided {
-            if !monitor.values[k].is_nan() {
-                monitor.decide_by_rates(k, system, start)?;
-            }
-        }
-        monitor.hold(system);
+        monitor.decide(system, start)?;
         Ok(monitor)
     }
 
+    /// Along which switch the motion slides.
+    pub(crate) fn sliding(&self) -> Option<&Sliding> {
+        self.sliding.as_ref()
+    }
+
+    /// Holds the pieces in which a state is.
+    fn decide(&mut self, system: &mut dyn OdeSystem, at: &OdeState) -> Result<()> {
+        self.sliding = None;
+        for switch in &mut self.switches {
+            (switch.piece, switch.is_inside) = (None, false);
+        }
+        self.hold(system);
+        system.switch_values(at.t, &at.y, &mut self.values)?;
+        for (switch, &value) in self.switches.iter_mut().zip(&self.values) {
+            switch.piece = switch.kind.piece_at(value);
+        }
+        let undecided = |k: &usize| self.switches[*k].piece.is_none() && !self.values[*k].is_nan();
+        let undecided: Vec<usize> = (0..self.switches.len()).filter(undecided).collect();
+        if self.slide_from_rest(&undecided, system, at)? {
+            return Ok(());
+        }
+        for k in undecided {
+            self.decide_by_rates(k, system, at)?;
+        }
+        self.hold(system);
+        Ok(())
+    }
+
+    /// After the speeds or the modes have jumped between two states of one time: the switches begin anew where one of
+    /// them has jumped, too, or no longer holds the motion.
+    ///
+    /// # Errors
+    /// Where a state cannot be evaluated.
+    pub(crate) fn continue_behind(
+        &mut self,
+        system: &mut dyn OdeSystem,
+        before: &OdeState,
+        now: &OdeState,
+    ) -> Result<()> {
+        /// A change below this part of a function is rounding.
+        const ROUNDING: f64 = 1e-12;
+        if self.switches.is_empty() {
+            return Ok(());
+        }
+        self.hold(system);
+        let mut values = self.values.clone();
+        system.switch_values(before.t, &before.y, &mut values)?;
+        system.switch_values(now.t, &now.y, &mut self.values)?;
+        let jumps = |(before, now): (&f64, &f64)| {
+            (before - now).abs() > ROUNDING * before.abs().max(now.abs())
+        };
+        if self.sliding.is_some() || values.iter().zip(&self.values).any(jumps) {
+            self.decide(system, now)?;
+        }
+        Ok(())
+    }
+
     fn hold(&self, system: &mut dyn OdeSystem) {
-        let pieces: Vec<Option<f64>> = self.switches.iter().map(|s| s.piece).collect();
-        system.hold_pieces(&pieces);
+        system.hold_pieces(&self.pieces());
+    }
+
+    fn pieces(&self) -> Vec<Option<f64>> {
+        self.switches.iter().map(|s| s.piece).collect()
     }
 
     /// Holds the side of zero on which its own rates lead further into it; none where neither or both do.
@@ -167,18 +228,23 @@ impl SwitchMonitor {
     /// Where a state cannot be evaluated.
     pub(crate) fn after_step(
         &mut self,
-        system: &mut dyn OdeSystem,
+        system: &mut SlidingSystem<'_, '_>,
         before: &OdeState,
         now: &OdeState,
         dense: DenseOutput<'_>,
     ) -> Result<Option<Crossing>> {
         let crossing = self.first_crossing(system, before, now, dense)?;
+        let until = crossing.as_ref().map_or(now, |crossing| &crossing.state);
+        if let Some(leaving) = self.leaving(system, before, until, dense)? {
+            return Ok(Some(leaving));
+        }
         if crossing.is_some() || !self.holds_again(system, now)? {
             return Ok(crossing);
         }
         Ok(Some(Crossing {
             state: now.clone(),
             passed: Vec::new(),
+            left: None,
         }))
     }
 
@@ -220,7 +286,12 @@ impl SwitchMonitor {
                 } else {
                     before.clone()
                 };
-                return Ok(Some(Crossing { state, passed }));
+                let left = None;
+                return Ok(Some(Crossing {
+                    state,
+                    passed,
+                    left,
+                }));
             }
         }
         Ok(None)
@@ -280,19 +351,35 @@ impl SwitchMonitor {
         Ok(found.map(|at| (at, switch.is_above(beyond))))
     }
 
-    /// Holds the pieces beyond a crossing, unless the rates there lead back.
+    /// Holds the pieces beyond a crossing, unless the rates there lead back: then the motion slides, from the state that is
+    /// put exactly on the switch.
     ///
     /// # Errors
-    /// Where the state cannot be evaluated.
-    pub(crate) fn pass(&mut self, crossing: &Crossing, system: &mut dyn OdeSystem) -> Result<()> {
-        let at = &crossing.state;
+    /// Where the state cannot be evaluated; [`DynamicsError::SlidesOnSeveral`].
+    pub(crate) fn pass(
+        &mut self,
+        crossing: &mut Crossing,
+        system: &mut dyn OdeSystem,
+    ) -> Result<()> {
         for switch in &mut self.switches {
             switch.is_inside = false;
         }
+        if let Some(upward) = crossing.left {
+            self.leave(upward, system, &crossing.state);
+            return Ok(());
+        }
+        let before: Vec<Option<f64>> = self.pieces();
         for &(k, upward) in &crossing.passed {
             let switch = &mut self.switches[k];
             switch.piece = switch.piece.map(|piece| switch.kind.next(piece, upward));
         }
+        if self.sliding.is_some() {
+            return self.pass_while_sliding(crossing, system);
+        }
+        if self.slide_from_crossing(before, crossing, system)? {
+            return Ok(());
+        }
+        let at = &crossing.state;
         self.hold(system);
         for &(k, _) in &crossing.passed {
             let returns = self.margin_growth(k, system, at)? < 0.0;
@@ -321,7 +408,8 @@ impl SwitchMonitor {
         system.switch_values(now.t, &now.y, &mut self.values)?;
         let mut changed = false;
         for (k, (switch, &value)) in self.switches.iter_mut().zip(&self.values).enumerate() {
-            if switch.piece.is_some() {
+            let slides = |sliding: &Sliding| sliding.switches.contains(&k);
+            if switch.piece.is_some() || self.sliding.as_ref().is_some_and(slides) {
                 continue;
             }
             if let Some(steps) = &mut switch.chatter {

@@ -5,8 +5,7 @@
 mod parts;
 
 use dwell_dynamics::{
-    DynamicsError, Machine, Method, OdeState, Options, Solution, TabulatedMachine, solve,
-    solve_system,
+    Machine, Method, OdeState, Options, Solution, TabulatedMachine, solve, solve_system,
 };
 use dwell_kinetostatics::{Drive, DriveKind, Magnitude, Signal, SpeedController, TableDomain};
 use dwell_laws::{Expression, Interpolation, Law, Spline};
@@ -145,28 +144,21 @@ fn a_brake_stops_the_wheel() {
     }
 }
 
-/// Where the brake would hold the wheel, it rests there, exactly where its speed is found to be zero, or the motion ends
-/// with the name of the load: after few steps, with all of its own motion.
+/// Where the brake holds the wheel it rests, after few steps.
 #[test]
-fn a_brake_at_rest_holds_or_is_named() {
+fn a_brake_at_rest_holds() {
     let machine = wheel(couple("-3*sign(v)"), &[]);
-    let mut named = 0;
     for method in Method::ALL {
         let solution = run(&machine, 2.0, 3.0, &Options::new(method, 1e-8));
-        match solution.error {
-            None => {}
-            Some(DynamicsError::Chatters { source_index: 0, t }) => {
-                assert!((4.0 / 3.0 - 1e-6..3.0).contains(&t), "{method:?} {t}");
-                named += 1;
-            }
-            other => panic!("{method:?}: {other:?}"),
-        }
+        assert_eq!(solution.error, None, "{method:?}");
         let last = solution.steps.last().expect("steps");
         let [q, v] = [last.y[0], last.y[1]];
-        assert!((q - 4.0 / 3.0).abs() < 1e-6 && v.abs() < 1e-6, "{last:?}");
-        assert!(solution.statistics.steps < 20_000);
+        assert!(
+            (q - 4.0 / 3.0).abs() < 1e-6 && v.abs() < 1e-14,
+            "{method:?} {last:?}"
+        );
+        assert!(solution.statistics.steps < 2000);
     }
-    assert!(named > 0);
 }
 
 /// A speed controller at its limit accelerates uniformly; below it the error decays.

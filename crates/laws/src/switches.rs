@@ -23,7 +23,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-use crate::expression::{Expression, HeldPieces, Op, Sides, run_held_parts};
+use crate::expression::{Expression, HeldPieces, Jet, Op, Sides, run_held_parts};
 use crate::features::switching::{Operands, Switch, switches_of};
 use crate::law::Law;
 
@@ -152,6 +152,29 @@ impl Switches {
                 for (out, (switch, [left, right])) in out.iter_mut().zip(switches) {
                     let subtrahend = switch.right.map_or(0.0, |last| part(*right, last));
                     *out = part(*left, switch.left) - subtrahend;
+                }
+            }
+        }
+    }
+
+    /// The value of each function and its rate, where the variables have rates.
+    pub fn rates(&self, variables: &[[f64; 2]], held: &HeldPieces, out: &mut [[f64; 2]]) {
+        match &self.source {
+            Source::Law => out.fill(variables.first().copied().unwrap_or([f64::NAN; 2])),
+            Source::Expression { ops, switches } => {
+                let variable = |i: usize| Jet::moving(variables.get(i).copied());
+                let part = |start: usize, last: usize| -> [f64; 2] {
+                    let sides = held.sides.get(start..=last).unwrap_or_default();
+                    let found: Jet = run_held_parts(&ops[start..=last], variable, sides);
+                    let [value, rate, ..] = found.derivatives();
+                    [value, rate]
+                };
+                for (out, (switch, [left, right])) in out.iter_mut().zip(switches) {
+                    *out = part(*left, switch.left);
+                    if let Some(last) = switch.right {
+                        let [value, rate] = part(*right, last);
+                        *out = [out[0] - value, out[1] - rate];
+                    }
                 }
             }
         }

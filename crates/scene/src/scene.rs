@@ -75,6 +75,8 @@ pub struct NamedStop {
     pub max: Option<f64>,
     /// Coefficient of restitution, from 0 to 1.
     pub restitution: f64,
+    /// Of one that yields: its stiffness (N·m/rad or N/m) and its damping (N·m·s/rad or N·s/m).
+    pub yielding: Option<[f64; 2]>,
 }
 
 /// Where and how the mechanism is put together at the start; it picks the branch.

@@ -57,6 +57,7 @@ fn stop(
     }
     let unit = fields.units().coordinate_unit(actuators[k].is_angle());
     let restitution = restitution(&fields)?;
+    let yielding = yielding(&fields)?;
     let [min, max] = limits(entry, &fields, unit)?;
     Some(NamedStop {
         name: entry.name.to_owned(),
@@ -64,7 +65,36 @@ fn stop(
         min,
         max,
         restitution,
+        yielding,
     })
+}
+
+/// Stiffness and damping of a stop that yields; outer none where they cannot be used.
+fn yielding(fields: &TableReader<'_>) -> Option<Option<[f64; 2]>> {
+    let damping = fields.get("damping");
+    let Some(stiffness) = fields.get("stiffness") else {
+        return match damping {
+            None => Some(None),
+            Some(damping) => damping.reject(
+                format!("{} has a `damping` without `stiffness`", fields.what),
+                "the damper of a spring",
+                "add the `stiffness` of the stop; a rigid one loses energy by its `restitution`",
+            ),
+        };
+    };
+    if let Some(restitution) = fields.get("restitution") {
+        return restitution.reject(
+            format!("{} has both `restitution` and `stiffness`", fields.what),
+            "of a rigid stop",
+            "keep `restitution` for a rigid stop, or `stiffness` and `damping` for one that yields",
+        );
+    }
+    let rule = NumberRule::new(&SI, SignRule::Positive);
+    let value = stiffness.value;
+    let stiffness = value.quantity_with_sign(&rule, fields.name_of(stiffness))?;
+    let rule = NumberRule::new(&SI, SignRule::NotNegative);
+    let damping = fields.number_or(0.0, "damping", &rule)?;
+    Some(Some([stiffness, damping]))
 }
 
 /// The coefficient of restitution, from 0 to 1.

@@ -1,5 +1,7 @@
 //! What the surfaces of a contact do.
 
+use crate::sliding::Sliding;
+
 /// What the surfaces of a friction do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ContactMode {
@@ -99,6 +101,17 @@ pub enum ContactEvent {
         /// To which mode.
         to: ContactMode,
     },
+    /// The motion begins to slide along the switch of a load or drive that drives it back from both sides, or leaves it.
+    Switch {
+        /// Time, s.
+        t: f64,
+        /// The state of the machine behind it.
+        y: Vec<f64>,
+        /// The load that switches, by its index; those of the drives are the last.
+        load: usize,
+        /// The pieces on both sides; none where the motion leaves the switch.
+        sliding: Option<Sliding>,
+    },
     /// A coordinate meets its end stop, rests on it or leaves it.
     Stop {
         /// Time, s.
@@ -122,6 +135,8 @@ pub enum StopChange {
         /// By free coordinate: the change of its speed.
         changes: Vec<f64>,
     },
+    /// It comes to touch one that yields.
+    Touches,
     /// It comes to rest on it.
     Rests,
     /// It is lifted off.
@@ -132,14 +147,14 @@ impl ContactEvent {
     /// Time, s.
     pub fn t(&self) -> f64 {
         match self {
-            Self::Friction { t, .. } | Self::Stop { t, .. } => *t,
+            Self::Friction { t, .. } | Self::Switch { t, .. } | Self::Stop { t, .. } => *t,
         }
     }
 
     /// The state of the machine behind it.
     pub fn y(&self) -> &[f64] {
         match self {
-            Self::Friction { y, .. } | Self::Stop { y, .. } => y,
+            Self::Friction { y, .. } | Self::Switch { y, .. } | Self::Stop { y, .. } => y,
         }
     }
 }

@@ -1,5 +1,7 @@
 //! End stops of free coordinates, and the side on which each limits its coordinate.
 
+use dwell_numerics::Scalar;
+
 /// An end stop of a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EndStop {
@@ -11,6 +13,17 @@ pub struct EndStop {
     pub max: Option<f64>,
     /// Coefficient of restitution e, from 0 to 1.
     pub restitution: f64,
+    /// Of one that yields: its spring and its damper, instead of impacts.
+    pub yielding: Option<YieldingStop>,
+}
+
+/// The spring and the damper of an end stop that yields: its force k δ + c δ̇ at a penetration δ, while that pushes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct YieldingStop {
+    /// Stiffness k above zero, N·m/rad or N/m.
+    pub stiffness: f64,
+    /// Damping c, 0 or more, N·m·s/rad or N·s/m.
+    pub damping: f64,
 }
 
 /// One side of an end stop.
@@ -27,6 +40,28 @@ pub(crate) struct Stop {
     /// 1 of a lower limit, −1 of an upper one: the direction in which it pushes.
     pub(crate) side: f64,
     pub(crate) restitution: f64,
+    pub(crate) yielding: Option<YieldingStop>,
+}
+
+impl Stop {
+    /// The force with which it pushes along its coordinate if it yields and is touched, negative where it would pull.
+    pub(crate) fn push<T: Scalar>(&self, q: T, speed: T) -> Option<T> {
+        let YieldingStop { stiffness, damping } = self.yielding?;
+        let side = T::from_f64(self.side);
+        let depth = side * (T::from_f64(self.at) - q);
+        Some(depth * T::from_f64(stiffness) - side * speed * T::from_f64(damping))
+    }
+
+    /// How far its coordinate is from a change: to touch it or to leave it, while it is touched or not. A damper lets go before
+    /// the spring has its length again; then the coordinate is behind the limit, but does not touch the stop.
+    pub(crate) fn yielding_margin(&self, is_touched: bool, q: f64, speed: f64) -> Option<f64> {
+        let push = self.push(q, speed)? / self.yielding?.stiffness;
+        let distance = self.side * (q - self.at);
+        Some(match is_touched {
+            true => push,
+            false => distance.max(-push),
+        })
+    }
 }
 
 /// The sides of all end stops; none where a coordinate is not free.
@@ -43,6 +78,7 @@ pub(crate) fn one_sided(stops: &[EndStop], free: &[usize]) -> Option<Vec<Stop>> 
                 at: at?,
                 side,
                 restitution: one.restitution,
+                yielding: one.yielding,
             })
         }));
     }

@@ -22,6 +22,7 @@ const MAX_IMPACTS: usize = 1000;
 ///
 /// # Errors
 /// [`DynamicsError`] where the state cannot be evaluated, or impacts follow each other without end.
+// Long because it is one event: what is touched decides what is struck.
 pub(super) fn pass_stops(
     machine: &Machine,
     workspace: &mut MachineWorkspace<f64>,
@@ -39,7 +40,16 @@ pub(super) fn pass_stops(
         if !touched[k] {
             continue;
         }
-        if ContactMode::of_code(y[first + k]) == ContactMode::Holds {
+        let is_touched = ContactMode::of_code(y[first + k]) == ContactMode::Holds;
+        if stop.yielding.is_some() {
+            let (mode, change) = match is_touched {
+                true => (ContactMode::Undecided, StopChange::Leaves),
+                false => (ContactMode::Holds, StopChange::Touches),
+            };
+            y[first + k] = mode.code();
+            touched[k] = false;
+            events.push(stop_event(stop.stop, (t, y), change));
+        } else if is_touched {
             // The force would pull.
             y[first + k] = ContactMode::Undecided.code();
             touched[k] = false;
@@ -58,7 +68,8 @@ pub(super) fn pass_stops(
         let change = strike(machine, workspace, (t, y), stop, stop.restitution)?;
         events.push(stop_event(stop.stop, (t, y), change));
         let resting = machine.stops.iter().enumerate();
-        for (other, resting) in resting.filter(|(other, _)| *other != k) {
+        let rigid = |(other, stop): &(usize, &Stop)| *other != k && stop.yielding.is_none();
+        for (other, resting) in resting.filter(rigid) {
             // One that rests and is struck away leaves its stop.
             let speed = resting.side * y[n + resting.free];
             if ContactMode::of_code(y[first + other]) == ContactMode::Holds && speed != 0.0 {

@@ -3,7 +3,7 @@
 use super::at_rest::AtRest;
 use super::{Equilibrium, NeutralDirection, Stability};
 use crate::error::Result;
-use crate::state_space::{eigenvalues_about, linearise};
+use crate::state_space::{eigenvalues_about, linearise_where_it_holds};
 
 /// Below this part of the largest singular value the Jacobian says nothing of its direction, which is looked at over a
 /// distance.
@@ -47,7 +47,7 @@ impl AtRest<'_> {
         for (&j, error) in self.unknowns().iter().zip(&errors) {
             state_errors[j] = *error;
         }
-        let state_space = linearise(self.machine, 0.0, &at)?;
+        let state_space = linearise_where_it_holds(self.machine, 0.0, &at)?;
         let (eigenvalues, eigenvalue_errors) =
             eigenvalues_about(self.machine, 0.0, &at, &state_errors, &state_space)?;
         let direction = |direction| NeutralDirection {

@@ -138,7 +138,7 @@ impl Factored {
 
 impl<'m> AtRest<'m> {
     pub(super) fn new(machine: &'m Machine) -> Result<Self> {
-        machine.require_smooth("its equilibria are no points but whole intervals")?;
+        machine.require_intervals()?;
         if machine.depends_on_time() {
             return none("a load, drive or prescribed motion changes with time");
         }
@@ -165,12 +165,12 @@ impl<'m> AtRest<'m> {
     /// Free coordinates and states of drives.
     pub(super) fn unknowns(&self) -> Vec<usize> {
         let n = self.free();
-        (0..n).chain(2 * n..self.machine.work_offset()).collect()
+        (0..n).chain(self.machine.drive_states()).collect()
     }
 
     /// By unknown: its own rate, of which the coordinate's is that of its speed.
     fn equations(&self) -> Vec<usize> {
-        (self.free()..self.machine.work_offset()).collect()
+        (self.free()..self.machine.drive_states().end).collect()
     }
 
     /// Begins at a state, with nothing moving.
@@ -196,7 +196,7 @@ impl<'m> AtRest<'m> {
     /// q̈ of the only coordinate at `q`, with the drives settled there.
     pub(super) fn acceleration(&mut self, q: f64) -> Result<f64> {
         self.y[0] = q;
-        let drive_states: Vec<usize> = (2..self.machine.work_offset()).collect();
+        let drive_states: Vec<usize> = self.machine.drive_states().collect();
         match drive_states.is_empty() {
             true => self.evaluate()?,
             false => self.solve(&drive_states, &drive_states)?,
@@ -207,7 +207,7 @@ impl<'m> AtRest<'m> {
     /// dq̈/dq at the last position, where the drives stay settled.
     pub(super) fn acceleration_slope(&mut self) -> Result<f64> {
         self.differentiate()?;
-        let drive_states: Vec<usize> = (2..self.machine.work_offset()).collect();
+        let drive_states: Vec<usize> = self.machine.drive_states().collect();
         if drive_states.is_empty() {
             return Ok(self.entry(1, 0));
         }
@@ -322,7 +322,7 @@ impl<'m> AtRest<'m> {
     fn rounding_of_rates(&mut self, force: f64, coordinate: f64) -> Result<Vec<f64>> {
         let n = self.free();
         let mut rounding = self.accelerations_of(force)?;
-        rounding.resize(self.machine.work_offset() - n, 0.0);
+        rounding.resize(self.machine.drive_states().end - n, 0.0);
         for (row, i) in rounding.iter_mut().zip(self.equations()) {
             for &j in &self.unknowns() {
                 let size = match j < n {

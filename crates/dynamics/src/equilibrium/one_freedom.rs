@@ -114,6 +114,8 @@ fn of_one_freedom(machine: &Machine) -> Result<AtRest<'_>> {
 struct Search<'m> {
     at_rest: AtRest<'m>,
     samples: Vec<Sample>,
+    /// Whether friction holds at rest.
+    sticks: bool,
 }
 
 impl<'m> Search<'m> {
@@ -127,6 +129,7 @@ impl<'m> Search<'m> {
         let mut search = Self {
             at_rest,
             samples: Vec::with_capacity(2 * PARTS),
+            sticks: machine.contact_loads().next().is_some(),
         };
         let mut before = search.sample(position(0))?;
         search.samples.push(before);
@@ -184,7 +187,8 @@ impl<'m> Search<'m> {
         let mut rest = samples.as_slice();
         while let Some(&sample) = rest.first() {
             let run = rest.iter().take_while(|s| s.is_zero()).count();
-            if run >= FLAT_POSITIONS {
+            // Friction that holds does so in an interval, however narrow.
+            if run >= FLAT_POSITIONS || run > 0 && self.sticks {
                 let next = rest.get(run).copied();
                 let start = self.end_of_flat(rest[0], before)?;
                 let end = self.end_of_flat(rest[run - 1], next)?;
@@ -233,6 +237,13 @@ impl<'m> Search<'m> {
         Ok(inside)
     }
 
+    /// The interval around a position in which friction holds, between two others in which it does not.
+    fn around(&mut self, inside: Sample, before: Sample, now: Sample) -> Result<Zero> {
+        let start = self.end_of_flat(inside, Some(before))?;
+        let end = self.end_of_flat(inside, Some(now))?;
+        Ok(Zero::Between([start, end]))
+    }
+
     /// Adds the zeros between two samples, the second one included.
     fn add_between(&mut self, before: Sample, now: Sample, zeros: &mut Vec<Zero>) -> Result<()> {
         let mut ends = vec![before];
@@ -243,10 +254,19 @@ impl<'m> Search<'m> {
         for pair in ends.windows(2) {
             let [a, b] = [pair[0], pair[1]];
             if b.is_zero() {
+                if b.q != now.q && self.sticks {
+                    zeros.push(self.around(b, before, now)?);
+                    return Ok(());
+                }
                 zeros.push(Zero::At(b.q));
             } else if !a.is_zero() && a.value * b.value < 0.0 {
                 let found = root::find(|q| self.at_rest.acceleration(q), a.q, b.q)?;
-                zeros.extend(found.map(Zero::At));
+                let Some(q) = found else { continue };
+                let found = self.sample(q)?;
+                zeros.push(match self.sticks && found.is_zero() {
+                    true => self.around(found, before, now)?,
+                    false => Zero::At(q),
+                });
             }
         }
         Ok(())

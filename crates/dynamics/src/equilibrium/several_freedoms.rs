@@ -25,6 +25,7 @@ pub fn equilibria_from_starts(
     ranges: &[[f64; 2]],
     starts: usize,
 ) -> Result<Vec<Equilibrium>> {
+    machine.require_smooth("its equilibria are no points but whole regions")?;
     let mut search = Search {
         at_rest: AtRest::new(machine)?,
         first,

@@ -1,7 +1,8 @@
 //! The contacts of a machine: frictions that hold at rest, and end stops, with their place among the states.
 
+use super::workspace::EquationWorkspace;
 use super::{Machine, MachineError, NonconservativeSource};
-use crate::contact::{EndStop, one_sided};
+use crate::contact::{ContactMode, EndStop, one_sided};
 use crate::error::{DynamicsError, Result};
 use dwell_numerics::Scalar;
 use std::ops::Range;
@@ -15,7 +16,12 @@ impl Machine {
         for (k, stop) in stops.iter().enumerate() {
             let low = stop.min.unwrap_or(f64::NEG_INFINITY);
             let high = stop.max.unwrap_or(f64::INFINITY);
-            let fits = low < high && (0.0..=1.0).contains(&stop.restitution);
+            let yields = stop.yielding.is_none_or(|of| {
+                of.stiffness > 0.0
+                    && of.stiffness.is_finite()
+                    && (0.0..f64::MAX).contains(&of.damping)
+            });
+            let fits = low < high && (0.0..=1.0).contains(&stop.restitution) && yields;
             if !fits || !self.free.contains(&stop.actuator) {
                 return Err(MachineError::Stop(k));
             }
@@ -54,6 +60,28 @@ impl Machine {
         self.contacts.iter().map(|contact| contact.load)
     }
 
+    /// Which coordinates rest on their stops, and the forces of those that yield.
+    pub(super) fn set_stops<T: Scalar>(&self, y: &[T], equation: &mut EquationWorkspace<T>) {
+        let n = self.free.len();
+        equation.locked.fill(false);
+        equation.stop_forces.fill(T::from_f64(0.0));
+        for (k, (stop, code)) in self.stops.iter().zip(&y[self.stop_states()]).enumerate() {
+            let is_touched = ContactMode::of_code(code.value()) == ContactMode::Holds;
+            match stop.push(y[stop.free], y[n + stop.free]) {
+                Some(push) if is_touched => {
+                    equation.stop_forces[k] = push * T::from_f64(stop.side);
+                }
+                Some(_) => {}
+                None => equation.locked[stop.free] |= is_touched,
+            }
+        }
+    }
+
+    /// The loads, those of the drives last, that switch as coordinates and speeds move.
+    pub fn switching_loads(&self) -> Vec<usize> {
+        self.state_switches.loads()
+    }
+
     /// Refuses an analysis of smooth motions where friction holds at rest; `what` says why.
     pub(crate) fn require_smooth(&self, what: &'static str) -> Result<()> {
         if let Some(stop) = self.stops.first() {
@@ -67,6 +95,15 @@ impl Machine {
             let source_index = contact.load;
             Err(DynamicsError::Sticks { source_index, what })
         })
+    }
+
+    /// Refuses a search of equilibria where they are no points or intervals: with friction that holds, and several free
+    /// coordinates.
+    pub(crate) fn require_intervals(&self) -> Result<()> {
+        if self.free.len() == 1 && self.stops.is_empty() {
+            return Ok(());
+        }
+        self.require_smooth("its equilibria are no points but whole regions")
     }
 
     /// Whether a coordinate is prescribed.

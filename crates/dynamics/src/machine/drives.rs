@@ -6,7 +6,7 @@ use crate::drive::CompiledDrive;
 use crate::error::Result;
 use crate::state_switches::{HeldSource, SourceState, StateSwitches};
 use dwell_geometry::body_states::BodyStates;
-use dwell_kinetostatics::{ForceState, KinetostaticsError, LoadedState, Model};
+use dwell_kinetostatics::{ForceState, KinetostaticsError, LoadedState, Model, Signal};
 use dwell_numerics::Scalar;
 
 /// The switches of all loads and drives.
@@ -36,6 +36,45 @@ impl Machine {
             (drive, speed, drive.state.map(|s| drive_states[s]))
         });
         SourceState { magnitude, drive }
+    }
+
+    /// The values and rates of all switching functions where the states have these rates, on the pieces that are held in
+    /// the workspace and in `held`.
+    pub(crate) fn switch_rates(
+        &self,
+        (t, y): (f64, &[f64]),
+        rates: &[f64],
+        workspace: &mut MachineWorkspace<f64>,
+        held: &[HeldSource],
+        out: &mut [[f64; 2]],
+    ) -> Result<()> {
+        let mut state = self.evaluate(t, y, workspace)?;
+        let of_drives = 2 * self.free.len();
+        let moving = |state: &mut MachineState<'_>, of| state.bodies().coordinate(of);
+        let source_state = |load: usize, signals: &mut Vec<[f64; 2]>| {
+            for signal in self.model.compiled_signals(load) {
+                signals.push(match *signal {
+                    Signal::Time => [t, 1.0],
+                    Signal::Value(of) => {
+                        let [value, speed, _] = moving(&mut state, of);
+                        [value, speed]
+                    }
+                    Signal::Velocity(of) => {
+                        let [_, speed, acceleration] = moving(&mut state, of);
+                        [speed, acceleration]
+                    }
+                });
+            }
+            let mut of_drive = [0.0; 2];
+            if let Some(drive) = self.drives.iter().find(|drive| drive.load == load) {
+                let [_, _, acceleration] = moving(&mut state, drive.measured);
+                let state_rate = drive.state.map_or(0.0, |s| rates[of_drives + s]);
+                of_drive = [acceleration, state_rate];
+            }
+            (self.source_state(load, &state, y), of_drive)
+        };
+        self.state_switches.rates(held, source_state, out);
+        Ok(())
     }
 
     /// Holds a load and its drive on their pieces.

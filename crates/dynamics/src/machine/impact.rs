@@ -40,7 +40,7 @@ impl Machine {
     pub(crate) fn check_start(&self, y: &[f64]) -> Result<()> {
         let beyond = |stop: &&Stop| {
             let rounding = 4.0 * f64::EPSILON * stop.at.abs();
-            stop.side * (y[stop.free] - stop.at) < -rounding
+            stop.yielding.is_none() && stop.side * (y[stop.free] - stop.at) < -rounding
         };
         self.stops.iter().find(beyond).map_or(Ok(()), |stop| {
             Err(DynamicsError::BeyondStop {

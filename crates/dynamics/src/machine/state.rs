@@ -88,7 +88,13 @@ impl<T: Scalar> MachineState<'_, T> {
                     let [_, speed] = self.coordinate(machine.drives[d].measured);
                     equation.drive_forces[d] * speed
                 }
-                NonconservativeSource::Stop(_) => T::from_f64(0.0),
+                NonconservativeSource::Stop(stop) => {
+                    let sides = machine.stops.iter().zip(&equation.stop_forces);
+                    let own = sides.filter(|(side, _)| side.stop == stop);
+                    own.fold(T::from_f64(0.0), |sum, (side, force)| {
+                        sum + *force * equation.q_dot[side.actuator]
+                    })
+                }
                 NonconservativeSource::Prescribed(i) => {
                     equation.inverse_dynamics.tau[i] * equation.q_dot[i]
                 }

@@ -35,6 +35,7 @@ impl Machine {
                 held_drives: vec![[None; 2]; drives],
                 fit_workspace: None,
                 locked: vec![false; n],
+                stop_forces: zeros(self.stops.len()),
                 contacts: ContactWorkspace::new(
                     &self.contacts,
                     n,
@@ -82,6 +83,8 @@ pub(super) struct EquationWorkspace<T> {
     pub(super) contacts: ContactWorkspace<T>,
     /// By free coordinate: whether it rests on an end stop.
     pub(super) locked: Vec<bool>,
+    /// By side of an end stop: the force along its coordinate of one that yields, N·m or N.
+    pub(super) stop_forces: Vec<T>,
 }
 
 impl<T> MachineWorkspace<T> {

@@ -6,7 +6,7 @@ use crate::error::{KinetostaticsError, Result};
 use dwell_geometry::Mechanism;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_laws::{HeldPieces, Switches};
-use dwell_numerics::Scalar;
+use dwell_numerics::{Dual, Scalar};
 
 impl CompiledLoads {
     /// A magnitude of the signals of a load at time `t` (s) and these states of the bodies.
@@ -103,6 +103,31 @@ impl Magnitude {
                 | Self::External(_),
                 _,
             ) => T::from_f64(f64::NAN),
+        }
+    }
+
+    /// The rate of the magnitude where its signals have these values and rates, on the pieces that are held.
+    pub fn rate(&self, signals: &[[f64; 2]], held: &HeldPieces) -> f64 {
+        let values: Vec<f64> = signals.iter().map(|[value, _]| *value).collect();
+        match self {
+            Self::Law(_, law) => match signals.first() {
+                Some([value, rate]) => law.eval_held(*value, held)[1] * rate,
+                None => 0.0,
+            },
+            Self::Expression(expression, _) => {
+                let moving = signals
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, [_, rate])| *rate != 0.0);
+                let slope = |i: usize| expression.derivatives_held(&values, i, held)[1];
+                moving.map(|(i, [_, rate])| slope(i) * rate).sum()
+            }
+            Self::Function(function, _) => {
+                let numbers = signals.iter().map(|&[v, d]| Dual { v, d });
+                let numbers: Vec<Dual> = numbers.collect();
+                function.eval(&numbers, &values).d
+            }
+            Self::Constant(_) | Self::Friction(_) | Self::Separating(_) | Self::External(_) => 0.0,
         }
     }
 

@@ -3,7 +3,7 @@
 use super::function::{Binary, Unary, power, sign};
 
 /// What a tape can be run on.
-pub(super) trait TapeScalar: Copy {
+pub(crate) trait TapeScalar: Copy {
     fn constant(value: f64) -> Self;
     fn value(self) -> f64;
     fn negate(self) -> Self;
@@ -36,7 +36,7 @@ impl TapeScalar for f64 {
 /// A value and its first three derivatives along one variable. The value is always computed as
 /// that of a plain number is, to the last bit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Jet {
+pub(crate) struct Jet {
     entries: [f64; 4],
     /// Whether it moves with the variable at all. That its derivatives are zero does not show it:
     /// those of x⁴ are, at 0, and those of its root are not.
@@ -49,6 +49,15 @@ impl Jet {
         Self::active([value, 1.0, 0.0, 0.0])
     }
 
+    /// A variable with its value and rate; without a rate it is constant.
+    pub(crate) fn moving(variable: Option<[f64; 2]>) -> Self {
+        match variable {
+            Some([value, 0.0]) => Self::constant(value),
+            Some([value, rate]) => Self::active([value, rate, 0.0, 0.0]),
+            None => Self::constant(f64::NAN),
+        }
+    }
+
     fn active(entries: [f64; 4]) -> Self {
         Self {
             entries,
@@ -57,7 +66,7 @@ impl Jet {
     }
 
     /// The value and its derivatives; all undefined where the value is.
-    pub(super) fn derivatives(self) -> [f64; 4] {
+    pub(crate) fn derivatives(self) -> [f64; 4] {
         if self.entries[0].is_nan() {
             [f64::NAN; 4]
         } else {

@@ -31,7 +31,7 @@ mod token;
 
 pub use error::{ExpressionError, nearest};
 pub(crate) use function::{Binary, Unary};
-use jet::{Jet, TapeScalar};
+pub(crate) use jet::{Jet, TapeScalar};
 pub use tape::HeldPieces;
 use tape::Tape;
 pub(crate) use tape::{Op, Sides, run_held_parts, run_parts};

@@ -188,8 +188,12 @@ pub(crate) fn run_parts(ops: &[Op], variable: impl Fn(usize) -> f64) -> f64 {
 }
 
 /// The same where some of its operations are held on one of their pieces.
-pub(crate) fn run_held_parts(ops: &[Op], variable: impl Fn(usize) -> f64, sides: &[Sides]) -> f64 {
-    run::<f64, STACK_SIZE>(ops, variable, |op| sides_of(sides, op))
+pub(crate) fn run_held_parts<S: TapeScalar>(
+    ops: &[Op],
+    variable: impl Fn(usize) -> S,
+    sides: &[Sides],
+) -> S {
+    run::<S, STACK_SIZE>(ops, variable, |op| sides_of(sides, op))
 }
 
 /// Whether a name can stand without backticks.

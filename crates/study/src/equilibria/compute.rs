@@ -104,6 +104,11 @@ fn searched_range(prepared: &SceneMachine<'_>) -> SearchedRange {
         }
     }
     let length = LENGTH_RANGE * prepared.scene.mechanism.size();
+    let sticks = prepared.machine.contact_loads().next().is_some();
+    if plan.actuators() == 1 && sticks {
+        // Friction that holds has intervals, which no search from single starts finds.
+        return SearchedRange::Interval([start[0] - length, start[0] + length]);
+    }
     let free = prepared.machine.free();
     let range = |(&i, q): (&usize, &f64)| match plan.is_angle(i) {
         true => [q - CUT_FRACTION * TAU, q + (1.0 - CUT_FRACTION) * TAU],
@@ -128,6 +133,7 @@ pub(crate) fn force_extent(
 }
 
 /// One row per equilibrium.
+// Long because columns and rows have the same parts in one order.
 fn equilibrium_table(prepared: &SceneMachine<'_>, found: &[Equilibrium]) -> Table {
     let start = prepared.initial_state();
     let free = prepared.machine.free().len();
@@ -151,10 +157,16 @@ fn equilibrium_table(prepared: &SceneMachine<'_>, found: &[Equilibrium]) -> Tabl
     if has_neutral {
         columns.push(Column::new("neutral_directions", ""));
     }
+    // Where friction holds, an equilibrium is an interval: its ends.
+    let sticks = prepared.machine.contact_loads().next().is_some();
+    if let (true, Some(coordinate)) = (sticks, states.first()) {
+        let end = |end: &str| Column::new(format!("{}.{end}", coordinate.name), &coordinate.unit);
+        columns.extend(["from", "to"].map(end));
+    }
     let row = |e: &Equilibrium| {
         let mut row = e.y[..free].to_vec();
         row.extend(e.y[..free].iter().zip(&start).map(|(q, start)| q - start));
-        row.extend_from_slice(&e.y[2 * free..prepared.machine.work_offset()]);
+        row.extend_from_slice(&e.y[prepared.machine.drive_states()]);
         row.push(match e.stability {
             Stability::Asymptotic => 1.0,
             Stability::Centre => 0.0,
@@ -169,9 +181,14 @@ fn equilibrium_table(prepared: &SceneMachine<'_>, found: &[Equilibrium]) -> Tabl
             let damping = zero_within(mode.damping_ratio, largest_error / frequency);
             row.extend([frequency, frequency / TAU, damping]);
         }
-        row.resize(columns.len() - usize::from(has_neutral), f64::NAN);
+        let behind = usize::from(has_neutral) + 2 * usize::from(sticks);
+        row.resize(columns.len() - behind, f64::NAN);
         if has_neutral {
             row.push(e.neutral.len() as f64);
+        }
+        if sticks {
+            let extent = e.neutral.iter().find_map(|neutral| neutral.extent);
+            row.extend(extent.unwrap_or([f64::NAN; 2]));
         }
         row
     };

@@ -34,6 +34,9 @@ pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> Stud
             max_steps,
         } => explain_fast(scene, *source_index, [*width, *t], *max_steps),
         DynamicsError::Chatters { source_index, t } => explain_chatter(scene, *source_index, *t),
+        DynamicsError::SlidesOnSeveral { source_index, t } => {
+            explain_several(scene, *source_index, *t)
+        }
         DynamicsError::NoContactMode { source_index } => explain_no_mode(scene, *source_index),
         DynamicsError::BeyondStop { stop, q } => explain_beyond_stop(scene, plan, *stop, *q),
         DynamicsError::Stops { stop, what } => explain_stop(scene, *stop, what),
@@ -359,10 +362,23 @@ fn explain_chatter(scene: &Scene, load: usize, t: f64) -> StudyError {
          back to it",
         digits(t, 6)
     );
-    let help = "such a load holds a mechanism, as dry friction at rest does, which is not modelled: end the motion there \
-                with an event, or use a smooth function, such as tanh(speed/0.01) for sign(speed); of a \
-                speed controller at its limit, a larger limit or no integral gain";
+    let help = "such switches of one load alone hold the motion, but not those of several: end the motion there with an \
+                event, or use a smooth function, such as tanh(speed/0.01) for sign(speed)";
     let label = "switches forth and back";
+    scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
+}
+
+/// Explains a load that holds the motion at its switch while another switch or contact does so, too.
+fn explain_several(scene: &Scene, load: usize, t: f64) -> StudyError {
+    let name = scene.loads.get(load).map_or("", |l| l.name.as_str());
+    let message = format!(
+        "at t = {} s load `{name}` holds the motion at its switch while another switch, friction or end stop changes or holds \
+         it there",
+        digits(t, 6)
+    );
+    let help = "one such switch at a time is computed: give the friction of a joint in [friction] instead of a load with \
+                sign(speed), or use a smooth function, such as tanh(speed/0.01)";
+    let label = "drives the motion back to its switch from both sides";
     scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
 }
 

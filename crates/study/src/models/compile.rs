@@ -1,7 +1,7 @@
 //! Compiled models of a scene: for which reactions, with which loads.
 
 use crate::explain::{StudyError, explain_machine, explain_model, not_one_actuator};
-use dwell_dynamics::{CoordinateMode, EndStop, Machine, loads_with_drives};
+use dwell_dynamics::{CoordinateMode, EndStop, Machine, YieldingStop, loads_with_drives};
 use dwell_geometry::{BodyId, Plan, Reaction};
 use dwell_kinetostatics::{ExactModel, Model};
 use dwell_laws::Law;
@@ -99,6 +99,9 @@ fn end_stop(stop: &NamedStop) -> EndStop {
         min: stop.min,
         max: stop.max,
         restitution: stop.restitution,
+        yielding: stop
+            .yielding
+            .map(|[stiffness, damping]| YieldingStop { stiffness, damping }),
     }
 }
 

@@ -2,11 +2,18 @@
 #![allow(clippy::expect_used, clippy::panic, reason = "tests")]
 
 mod blocks;
+mod costs;
+mod equilibria;
+mod impacts;
 mod refusals;
 mod several;
 mod stops;
+mod switches;
+mod yielding;
 
-use dwell_dynamics::{ContactEvent, ContactMode, Machine, Method, OdeState, Options, StopChange};
+use dwell_dynamics::{
+    ContactEvent, ContactMode, DynamicsError, Machine, Method, OdeState, Options, StopChange,
+};
 use dwell_scene::Scene;
 use dwell_study::free_motion::compute::FreeMotionProblem;
 use dwell_study::models::with_drive_loads;
@@ -21,6 +28,19 @@ struct Run {
 
 /// Integrates a scene until its end by a method, to a tolerance.
 fn run(text: &str, method: Method, rtol: f64) -> Run {
+    let (run, failure) = integrate(text, method, rtol);
+    let end = run.steps.last();
+    assert_eq!(failure, None, "{method:?} {end:?}");
+    run
+}
+
+/// The error that ends the motion of a scene, if one does.
+fn attempt(text: &str, method: Method, rtol: f64) -> Option<DynamicsError> {
+    integrate(text, method, rtol).1
+}
+
+/// A motion as far as it comes, with the error that ends it.
+fn integrate(text: &str, method: Method, rtol: f64) -> (Run, Option<DynamicsError>) {
     let scene = Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e:?}"));
     let loaded = with_drive_loads(&scene).unwrap_or_else(|e| panic!("{e}"));
     let spec = scene.motion.as_ref().expect("a motion");
@@ -30,15 +50,14 @@ fn run(text: &str, method: Method, rtol: f64) -> Run {
     let motion = problem
         .solve(&scene, duration, &options)
         .unwrap_or_else(|e| panic!("{e}"));
-    let end = motion.segments.last().and_then(|(_, s)| s.steps.last());
-    assert_eq!(motion.failure, None, "{method:?} {end:?}");
     let solutions = || motion.segments.iter().map(|(_, solution)| solution);
-    Run {
+    let run = Run {
         steps: solutions().flat_map(|s| s.steps.clone()).collect(),
         events: solutions().flat_map(|s| s.contact_events.clone()).collect(),
         evaluations: solutions().map(|s| s.statistics.evaluations).sum(),
         machine: problem.machine,
-    }
+    };
+    (run, motion.failure)
 }
 
 impl Run {
@@ -52,7 +71,7 @@ impl Run {
     fn times(&self, is: impl Fn(ContactMode) -> bool) -> Vec<f64> {
         let of_kind = |event: &ContactEvent| match event {
             ContactEvent::Friction { t, to, .. } => is(*to).then_some(*t),
-            ContactEvent::Stop { .. } => None,
+            ContactEvent::Stop { .. } | ContactEvent::Switch { .. } => None,
         };
         self.events.iter().filter_map(of_kind).collect()
     }
@@ -61,7 +80,7 @@ impl Run {
     fn stops(&self, is: impl Fn(&StopChange) -> bool) -> Vec<f64> {
         let of_kind = |event: &ContactEvent| match event {
             ContactEvent::Stop { t, change, .. } => is(change).then_some(*t),
-            ContactEvent::Friction { .. } => None,
+            ContactEvent::Friction { .. } | ContactEvent::Switch { .. } => None,
         };
         self.events.iter().filter_map(of_kind).collect()
     }

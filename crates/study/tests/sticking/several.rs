@@ -176,7 +176,7 @@ duration = 30.0
     let of = |wanted: usize, is: fn(ContactMode) -> bool| {
         let is_it = |e: &&ContactEvent| match e {
             ContactEvent::Friction { load, to, .. } => *load == wanted && is(*to),
-            ContactEvent::Stop { .. } => false,
+            ContactEvent::Stop { .. } | ContactEvent::Switch { .. } => false,
         };
         run.events.iter().filter(is_it).count()
     };

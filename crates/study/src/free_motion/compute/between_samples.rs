@@ -1,5 +1,6 @@
 //! A computed motion between its samples: at its steps, and at any time within a step.
 
+use crate::free_motion::compute::tables::sliding_at;
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::trajectory::compute::TrajectorySample;
 use dwell_dynamics::{
@@ -95,7 +96,9 @@ impl<'m> MotionSampler<'m> {
         if machine.is_in_fit_window(&point.y) {
             return None;
         }
-        let mut sample = problem.sample((*chart, machine, workspace), &point).ok()?;
+        let sliding = sliding_at(solution, t);
+        let place = (*chart, machine, &mut *workspace);
+        let mut sample = problem.sample(place, &point, sliding).ok()?;
         if let Some(steps) = motion.actuator_coordinates.steps.get(segment) {
             let mechanism = &problem.loaded_scene.mechanism;
             let measured =

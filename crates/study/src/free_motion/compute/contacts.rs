@@ -8,9 +8,11 @@ use dwell_dynamics::{ContactEvent, ContactMode, OdeState, StopChange};
 use dwell_findings::Record;
 
 /// What a friction does from an event on.
-const OF_FRICTION: [&str; 2] = ["holds", "slides"];
+const OF_FRICTION: [&str; 2] = ["sticks", "breaks away"];
+/// What a load does that drives the motion back to its switch from both sides.
+const OF_SWITCH: [&str; 2] = ["holds at its switch", "leaves its switch"];
 /// What a coordinate does at its end stop.
-const OF_STOP: [&str; 3] = ["is struck", "is rested on", "is left"];
+const OF_STOP: [&str; 4] = ["is struck", "is rested on", "is left", "is touched"];
 
 /// A change of a contact, as an event.
 pub(super) struct ContactOccurrence {
@@ -36,7 +38,11 @@ impl FreeMotionProblem<'_> {
         });
         let stops = self.loaded_scene.stops.iter();
         let stops = stops.map(|stop| (stop.name.as_str(), &OF_STOP[..]));
-        let all = frictions.chain(stops);
+        let switching = self.machine.switching_loads();
+        let switching = switching
+            .iter()
+            .map(|&load| (self.loaded_scene.loads[load].name.as_str(), &OF_SWITCH[..]));
+        let all = frictions.chain(stops).chain(switching);
         all.flat_map(|(name, verbs)| verbs.iter().map(move |verb| format!("{name} {verb}")))
             .collect()
     }
@@ -64,11 +70,20 @@ impl FreeMotionProblem<'_> {
                 let contact = self.machine.contact_loads().position(|l| l == *load)?;
                 Some(OF_FRICTION.len() * contact + kind)
             }
+            ContactEvent::Switch { load, sliding, .. } => {
+                let loads = self.machine.switching_loads();
+                let load = loads.iter().position(|l| l == load)?;
+                let frictions = OF_FRICTION.len() * self.machine.contact_loads().count();
+                let stops = OF_STOP.len() * self.loaded_scene.stops.len();
+                let kind = usize::from(sliding.is_none());
+                Some(frictions + stops + OF_SWITCH.len() * load + kind)
+            }
             ContactEvent::Stop { stop, change, .. } => {
                 let kind = match change {
                     StopChange::Impact { .. } => 0,
                     StopChange::Rests => 1,
                     StopChange::Leaves => 2,
+                    StopChange::Touches => 3,
                 };
                 let frictions = OF_FRICTION.len() * self.machine.contact_loads().count();
                 Some(frictions + OF_STOP.len() * stop + kind)
@@ -131,7 +146,10 @@ impl FreeMotionProblem<'_> {
             record.add_count(format!("event.{name}.number"), number);
             record.add_count(format!("event.{name}.count"), count);
             let first_name = format!("event.{name}.first");
-            text += &format!("  {name} (event {number}): {count} times, first at t = ");
+            text += &format!(
+                "  {name} (event {number}): {}, first at t = ",
+                times_over(count)
+            );
             let others = second.as_deref().map(times);
             text += &match others.as_ref().and_then(|others| others.first()) {
                 Some(other) => {
@@ -148,11 +166,21 @@ impl FreeMotionProblem<'_> {
             if let Some(others) = others.filter(|others| others.len() != count) {
                 let other = others.len();
                 record.add_count(format!("event.{name}.count_in_second_run"), other);
-                text +=
-                    &format!("; {other} times in a second run: within its error it is not certain");
+                let other = times_over(other);
+                text += &format!("; {other} in a second run: within its error it is not certain");
             }
             text += "\n";
         }
         text
+    }
+}
+
+/// How often something happens, in words.
+fn times_over(count: usize) -> String {
+    match count {
+        0 => "never".to_owned(),
+        1 => "once".to_owned(),
+        2 => "twice".to_owned(),
+        _ => format!("{count} times"),
     }
 }

@@ -5,7 +5,8 @@ use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::number_format::coordinate_unit;
 use crate::trajectory::compute::{FreeTrajectory, Trajectory, TrajectorySample, extra_columns};
 use dwell_dynamics::{
-    DynamicsError, EventOccurrence, Machine, MachineWorkspace, OdeState, Solution,
+    ContactEvent, DynamicsError, EventOccurrence, Machine, MachineWorkspace, OdeState, Sliding,
+    Solution,
 };
 use dwell_findings::{Column, Table};
 use dwell_geometry::body_states::CoordinateFunction;
@@ -71,7 +72,9 @@ impl FreeMotionProblem<'_> {
                 if machine.is_in_fit_window(&point.y) {
                     continue;
                 }
-                let mut sample = self.sample((*chart, machine, &mut workspace), point)?;
+                let sliding = sliding_at(solution, point.t);
+                let place = (*chart, machine, &mut workspace);
+                let mut sample = self.sample(place, point, sliding)?;
                 let coordinates = coordinates.get(segment);
                 sample.actuator_coordinate = coordinates.and_then(|s| s.get(k)).copied();
                 all.push((point.t, sample));
@@ -116,6 +119,7 @@ impl FreeMotionProblem<'_> {
         &self,
         (chart, machine, workspace): (usize, &Machine, &mut MachineWorkspace),
         point: &OdeState,
+        sliding: Option<&Sliding>,
     ) -> Result<TrajectorySample, DynamicsError> {
         let loads = self.loaded_scene.loads.len();
         let first_work = machine.work_offset();
@@ -131,7 +135,7 @@ impl FreeMotionProblem<'_> {
         extra_values.extend(self.motor_values(machine, &state, (&point.y, &rates)));
         let (drives, magnitudes) = (loads - machine.drives()..loads, state.magnitudes());
         let given = drives.chain(machine.contact_loads());
-        Ok(TrajectorySample {
+        let mut sample = TrajectorySample {
             t: point.t,
             q: state.q().to_vec(),
             q_dot: state.q_dot().to_vec(),
@@ -140,7 +144,17 @@ impl FreeMotionProblem<'_> {
             actuator_coordinate: None,
             drive_magnitudes: given.map(|load| (load, magnitudes[load])).collect(),
             extra_values,
-        })
+        };
+        if let Some(sliding) = sliding {
+            let forces = machine.sliding_forces(sliding, point, workspace)?;
+            let drives = loads - machine.drives()..loads;
+            let given = drives
+                .chain(machine.contact_loads())
+                .chain(machine.switching_loads());
+            sample.drive_magnitudes = given.map(|load| (load, forces.magnitudes[load])).collect();
+            sample.q_ddot = forces.q_ddot;
+        }
+        Ok(sample)
     }
 
     /// Where the error of the energy balance is among [`TrajectorySample::extra_values`].
@@ -210,4 +224,15 @@ impl FreeMotionProblem<'_> {
             Err(_) => vec![f64::NAN; count],
         }
     }
+}
+
+/// The switch along which a motion slides at a time, s.
+pub(super) fn sliding_at(solution: &Solution, t: f64) -> Option<&Sliding> {
+    let switches = solution.contact_events.iter().rev();
+    let last = switches.filter(|event| event.t() <= t);
+    last.filter_map(|event| match event {
+        ContactEvent::Switch { sliding, .. } => Some(sliding.as_ref()),
+        ContactEvent::Friction { .. } | ContactEvent::Stop { .. } => None,
+    })
+    .next()?
 }

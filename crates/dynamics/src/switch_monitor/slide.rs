@@ -1,0 +1,278 @@
+//! Where a motion begins to slide along a switch, and where it leaves it.
+
+use super::{Crossing, SwitchMonitor};
+use crate::error::{DynamicsError, Result};
+use crate::ode::{DenseOutput, OdeState, OdeSystem, root_subintervals, state_at};
+use crate::sliding::{SideRates, Sliding};
+use crate::sliding_system::SlidingSystem;
+use dwell_laws::SwitchKind;
+use dwell_numerics::root;
+
+/// A function whose rate in a sliding motion is below this part of its rates on both sides stays at its switch, too.
+const STAYS: f64 = 1e-6;
+/// A distance from the switch, by rounding, decays so often in the motion.
+const DECAY: f64 = 10.0;
+
+/// Both sides of a switch: the rates of the state, the values and rates of all functions.
+struct BothSides {
+    rates: [Vec<f64>; 2],
+    functions: [Vec<[f64; 2]>; 2],
+}
+
+impl BothSides {
+    /// Evaluates them; none where the rates of the functions are not known.
+    fn evaluate(
+        sides: &[Vec<Option<f64>>; 2],
+        system: &mut dyn OdeSystem,
+        at: &OdeState,
+    ) -> Result<Option<Self>> {
+        let (n, switches) = (at.y.len(), sides[0].len());
+        let mut both = Self {
+            rates: [vec![0.0; n], vec![0.0; n]],
+            functions: [vec![[0.0; 2]; switches], vec![[0.0; 2]; switches]],
+        };
+        let each = both.rates.iter_mut().zip(&mut both.functions);
+        for ((rates, functions), pieces) in each.zip(sides) {
+            system.hold_pieces(pieces);
+            system.rhs(at.t, &at.y, rates)?;
+            if !system.switch_rates(at.t, &at.y, rates, functions)? {
+                return Ok(None);
+            }
+        }
+        Ok(Some(both))
+    }
+
+    fn of(&self, k: usize) -> SideRates {
+        SideRates {
+            sides: [self.functions[0][k], self.functions[1][k]],
+        }
+    }
+
+    /// Whether a function keeps its value where the upper side has this part.
+    fn stays(&self, k: usize, part: f64) -> bool {
+        let [[_, lower], [_, upper]] = self.of(k).sides;
+        let rate = lower + part * (upper - lower);
+        rate.abs() <= STAYS * (lower.abs() + upper.abs())
+    }
+
+    /// Puts a state exactly on the switch, along the difference of the rates.
+    fn put_on_switch(&self, sliding: &Sliding, at: &mut OdeState) {
+        let [[value, lower], [_, upper]] = self.of(sliding.switches[0]).sides;
+        let shift = (value - sliding.value) / (lower - upper);
+        let [lower, upper] = &self.rates;
+        for (y, (lower, upper)) in at.y.iter_mut().zip(lower.iter().zip(upper)) {
+            *y += shift * (upper - lower);
+        }
+    }
+}
+
+impl SwitchMonitor {
+    /// Begins to slide where the rates on both sides of a crossing lead back to it; whether it does.
+    ///
+    /// # Errors
+    /// Where the state cannot be evaluated.
+    pub(super) fn slide_from_crossing(
+        &mut self,
+        before: Vec<Option<f64>>,
+        crossing: &mut Crossing,
+        system: &mut dyn OdeSystem,
+    ) -> Result<bool> {
+        let Some(&(first, upward)) = crossing.passed.first() else {
+            return Ok(false);
+        };
+        let Some(piece) = before[first] else {
+            return Ok(false);
+        };
+        let value = self.switches[first].kind.bounds(piece)[usize::from(upward)];
+        let mut sides = [before, self.pieces()];
+        if !upward {
+            sides.reverse();
+        }
+        let switches = crossing.passed.iter().map(|(k, _)| *k).collect();
+        self.slide(sides, (switches, value), system, &mut crossing.state)
+    }
+
+    /// Begins to slide at a state exactly on some switches; whether it does.
+    ///
+    /// # Errors
+    /// Where the state cannot be evaluated.
+    pub(super) fn slide_from_rest(
+        &mut self,
+        undecided: &[usize],
+        system: &mut dyn OdeSystem,
+        at: &OdeState,
+    ) -> Result<bool> {
+        let Some(&first) = undecided.first() else {
+            return Ok(false);
+        };
+        // Which of the others pass zero upwards where the first one does: by what its sides do to their rates.
+        let mut sides = [self.pieces(), self.pieces()];
+        sides[0][first] = Some(-1.0);
+        sides[1][first] = Some(1.0);
+        let Some(both) = BothSides::evaluate(&sides, system, at)? else {
+            return Ok(false);
+        };
+        let change = |k: usize| {
+            let [[_, lower], [_, upper]] = both.of(k).sides;
+            upper - lower
+        };
+        let mut switches = vec![first];
+        for &k in &undecided[1..] {
+            let same = change(k) * change(first);
+            if same == 0.0 || same.is_nan() || self.switches[k].kind != SwitchKind::Zero {
+                return Ok(false);
+            }
+            sides[0][k] = Some(-same.signum());
+            sides[1][k] = Some(same.signum());
+            switches.push(k);
+        }
+        self.slide(sides, (switches, 0.0), system, &mut at.clone())
+    }
+
+    /// Slides along switches, if both sides lead back to the first of them and the others stay with it.
+    fn slide(
+        &mut self,
+        sides: [Vec<Option<f64>>; 2],
+        (switches, value): (Vec<usize>, f64),
+        system: &mut dyn OdeSystem,
+        at: &mut OdeState,
+    ) -> Result<bool> {
+        let Some(both) = BothSides::evaluate(&sides, system, at)? else {
+            return Ok(false);
+        };
+        let first = both.of(switches[0]);
+        let part = first.upper_part();
+        let together = switches[1..].iter().all(|&k| both.stays(k, part));
+        if !(first.lead_back() && together) {
+            return Ok(false);
+        }
+        for &k in &switches {
+            self.switches[k].piece = None;
+        }
+        let sliding = Sliding {
+            sides,
+            switches,
+            value,
+            decay: DECAY / self.span,
+        };
+        both.put_on_switch(&sliding, at);
+        system.record_sliding(at, sliding.switches[0], Some(&sliding));
+        self.hold(system);
+        self.sliding = Some(sliding);
+        Ok(true)
+    }
+
+    /// Where a sliding motion leaves its switch in a step that ends at `now`.
+    ///
+    /// # Errors
+    /// Where a state cannot be evaluated.
+    pub(super) fn leaving(
+        &mut self,
+        system: &mut SlidingSystem<'_, '_>,
+        before: &OdeState,
+        now: &OdeState,
+        dense: DenseOutput<'_>,
+    ) -> Result<Option<Crossing>> {
+        if self.sliding.is_none() {
+            return Ok(None);
+        }
+        let mut sides_at = |t: f64| -> Result<(OdeState, Option<SideRates>)> {
+            let state = match t > before.t {
+                true => state_at(t, now, dense)?,
+                false => before.clone(),
+            };
+            let sides = system.sliding_margin(t, &state.y)?;
+            Ok((state, sides))
+        };
+        let margin = |sides: Option<SideRates>| sides.map_or(f64::NAN, |sides| sides.margin());
+        let mut from = before.t;
+        for t in root_subintervals(before, now) {
+            let (_, sides) = sides_at(t)?;
+            if margin(sides) >= 0.0 || sides.is_none() {
+                from = t;
+                continue;
+            }
+            let margin_at = |t: f64| -> Result<f64> { Ok(margin(sides_at(t)?.1)) };
+            let found = root::find(margin_at, from, t)?;
+            let (state, sides) = sides_at(found.unwrap_or(from))?;
+            let upward = sides.is_some_and(|sides| sides.upper_part() > 0.5);
+            return Ok(Some(Crossing {
+                state,
+                passed: Vec::new(),
+                left: Some(upward),
+            }));
+        }
+        Ok(None)
+    }
+
+    /// Holds the side to which the motion leaves its switch.
+    pub(super) fn leave(&mut self, upward: bool, system: &mut dyn OdeSystem, at: &OdeState) {
+        if let Some(sliding) = self.sliding.take() {
+            for &k in &sliding.switches {
+                let switch = &mut self.switches[k];
+                switch.piece = sliding.sides[usize::from(upward)][k];
+                (switch.switched, switch.chatter) = (None, None);
+            }
+            system.record_sliding(at, sliding.switches[0], None);
+        }
+        self.hold(system);
+    }
+
+    /// Passes another switch while the motion slides: it slides on, leaves its switch, or the two hold it together.
+    ///
+    /// # Errors
+    /// [`DynamicsError::SlidesOnSeveral`]; where the state cannot be evaluated.
+    pub(super) fn pass_while_sliding(
+        &mut self,
+        crossing: &Crossing,
+        system: &mut dyn OdeSystem,
+    ) -> Result<()> {
+        let Some(mut sliding) = self.sliding.take() else {
+            return Ok(());
+        };
+        let at = &crossing.state;
+        for (k, switch) in self.switches.iter().enumerate() {
+            if !sliding.switches.contains(&k) {
+                for side in &mut sliding.sides {
+                    side[k] = switch.piece;
+                }
+            }
+        }
+        let first = sliding.switches[0];
+        let source_index = system.switch_source(first);
+        let several = DynamicsError::SlidesOnSeveral {
+            source_index,
+            t: at.t,
+        };
+        let Some(both) = BothSides::evaluate(&sliding.sides, system, at)? else {
+            return Err(several);
+        };
+        let rates = both.of(first);
+        let part = rates.upper_part().clamp(0.0, 1.0);
+        for &(k, upward) in &crossing.passed {
+            let [[_, lower], [_, upper]] = both.of(k).sides;
+            let rate = lower + part * (upper - lower);
+            if (rate < 0.0) == upward {
+                return Err(several);
+            }
+        }
+        let upward = rates.upper_part() > 0.5;
+        self.sliding = Some(sliding);
+        match rates.margin() > 0.0 {
+            true => self.hold(system),
+            false => self.leave(upward, system, at),
+        }
+        Ok(())
+    }
+
+    /// Refuses a change of contacts in a sliding motion.
+    ///
+    /// # Errors
+    /// [`DynamicsError::SlidesOnSeveral`].
+    pub(crate) fn refuse_to_slide(&self, system: &dyn OdeSystem, t: f64) -> Result<()> {
+        self.sliding.as_ref().map_or(Ok(()), |sliding| {
+            let source_index = system.switch_source(sliding.switches[0]);
+            Err(DynamicsError::SlidesOnSeveral { source_index, t })
+        })
+    }
+}
