@@ -71,7 +71,7 @@ pub(crate) fn document(runs: &[Run], stages_by_case: &[Stages], speedups: &[Stri
         blocks.push(Block::Heading(format!("All runs of the {case}")));
         let of = runs.iter().filter(|run| run.case == case);
         blocks.push(Block::Table {
-            header: ["tool", "setting", "wall time", "error, rad"]
+            header: ["tool", "setting", "wall time", "error (rad)"]
                 .map(str::to_owned)
                 .into(),
             rows: of

@@ -330,7 +330,10 @@ impl<'a> Document<'a> {
 
     /// The page, with all figures.
     pub(crate) fn page(&self, figures: &[Figure], file: &dyn Fn(&Figure) -> String) -> Page {
-        let mut blocks = vec![Block::Text(format!("{}.", self.first_line()))];
+        let mut blocks = vec![Block::Text(format!(
+            "{}.",
+            dwell_report::markdown_text(&self.first_line())
+        ))];
         blocks.extend(self.scene.note.clone().map(Block::Text));
         let balance = self.power_balance_text();
         if !balance.is_empty() {
