@@ -11,13 +11,19 @@ use std::fs;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// The accuracies that are measured.
-const ACCURACIES: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
+/// The accuracies that the command has names for.
+const PRESETS: [(&str, f64); 4] = [
+    ("draft", 1e-3),
+    ("standard", 1e-6),
+    ("precise", 1e-9),
+    ("reference", 1e-10),
+];
 
 /// The command at one accuracy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct CommandTime {
-    pub(super) accuracy: f64,
+    /// The name of the accuracy, and the accuracy.
+    pub(super) preset: (&'static str, f64),
     /// The estimated error that it reports; none where it fails.
     pub(super) estimated_error: Option<f64>,
     /// The motion with its rows and extrema, without anything written, s.
@@ -30,7 +36,8 @@ pub(super) struct CommandTime {
 /// The command at each accuracy, on the motion of a scene.
 pub(super) fn command_times(scene: &Scene) -> Result<Vec<CommandTime>, StudyError> {
     let scene = Subject::new(scene)?.scene;
-    let one = |accuracy: f64| {
+    let one = |preset: (&'static str, f64)| {
+        let accuracy = preset.1;
         let started = Instant::now();
         let solver = MotionSolver::Accuracy {
             accuracy,
@@ -40,14 +47,14 @@ pub(super) fn command_times(scene: &Scene) -> Result<Vec<CommandTime>, StudyErro
         let computing = started.elapsed().as_secs_f64();
         let [with_files, with_pictures] = whole_command(&scene, accuracy)?;
         Ok(CommandTime {
-            accuracy,
+            preset,
             estimated_error: motion.estimated_error,
             computing,
             with_files,
             with_pictures,
         })
     };
-    ACCURACIES.into_iter().map(one).collect()
+    PRESETS.into_iter().map(one).collect()
 }
 
 /// The seconds from the scene in memory to its files in a folder, which is removed afterwards: without pictures, and with

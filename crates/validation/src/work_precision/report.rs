@@ -278,8 +278,8 @@ pub(super) fn command_summary(times: &[CommandTime]) -> String {
         let [computing, files, pictures] =
             [of.computing, of.with_files, of.with_pictures].map(|s| digits(1e3 * s, 2));
         format!(
-            "  simulate --accuracy {:.0e}: computing {computing} ms, with files {files} ms, with the main pictures {pictures} ms\n",
-            of.accuracy
+            "  simulate --accuracy {}: computing {computing} ms, with files {files} ms, with the main pictures {pictures} ms\n",
+            of.preset.0
         )
     };
     times.iter().map(line).collect()
@@ -296,7 +296,8 @@ pub(super) fn command_blocks(times: &[CommandTime]) -> [Block; 3] {
     ];
     let row = |of: &CommandTime| {
         let seconds = [of.computing, of.with_files, of.with_pictures];
-        let mut row = vec![format!("{:.0e}", of.accuracy)];
+        let (name, accuracy) = of.preset;
+        let mut row = vec![format!("{name}, {accuracy:.0e}")];
         row.push(digits_or_dash(of.estimated_error.unwrap_or(f64::NAN), 2));
         row.extend(seconds.map(|s| digits(s, 2)));
         row

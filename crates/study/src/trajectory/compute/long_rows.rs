@@ -17,7 +17,6 @@ pub(crate) enum RowMemory {
     /// All in memory.
     Whole,
     /// In a temporary file, if they are many.
-    #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for commands"))]
     Bounded,
 }
 
