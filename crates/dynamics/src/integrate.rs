@@ -235,7 +235,7 @@ fn pass_event(
             monitor.refuse_to_slide(system, state.t)?;
             let before = state.clone();
             contacts.change_modes(system, &mut state, &touched)?;
-            monitor.continue_behind(system, &before, &state)?;
+            monitor.continue_after(system, &before, &state)?;
             Ok(state)
         }
         (HeldEvent::Switch(mut crossing), contacts) => {

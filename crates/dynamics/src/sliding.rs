@@ -46,7 +46,7 @@ impl SideRates {
     }
 
     /// Whether both sides lead back to the switch.
-    pub(crate) fn lead_back(&self) -> bool {
+    pub(crate) fn both_return(&self) -> bool {
         let [[_, lower], [_, upper]] = self.sides;
         lower > 0.0 && upper < 0.0
     }

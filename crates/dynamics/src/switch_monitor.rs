@@ -142,7 +142,7 @@ impl SwitchMonitor {
     ///
     /// # Errors
     /// Where a state cannot be evaluated.
-    pub(crate) fn continue_behind(
+    pub(crate) fn continue_after(
         &mut self,
         system: &mut dyn OdeSystem,
         before: &OdeState,

@@ -143,7 +143,7 @@ impl SwitchMonitor {
         let first = both.of(switches[0]);
         let part = first.upper_part();
         let together = switches[1..].iter().all(|&k| both.stays(k, part));
-        if !(first.lead_back() && together) {
+        if !(first.both_return() && together) {
             return Ok(false);
         }
         for &k in &switches {

@@ -230,8 +230,8 @@ fn a_thousand_events_cost_little_and_close_the_balance() {
         run.energy_error()
     );
     assert_eq!((held.len(), freed.len()), (500, 500));
-    // Seven steps for each: each is six times as long as the one before at most.
-    assert!(run.evaluations < 150 * 1000);
+    // Measured: 98 for each at this tolerance, 26 at the default one (`costs`).
+    assert!(run.evaluations < 110 * 1000);
     assert!(run.energy_error() < 1e-10);
     // The first time is arcsin(µ m g/8)/2π, the others follow half periods apart.
     let first = (0.3 * 2.0 * G / 8.0_f64).asin() / std::f64::consts::TAU;
