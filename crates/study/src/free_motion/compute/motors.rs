@@ -44,16 +44,17 @@ impl FreeMotionProblem<'_> {
                 values.push(current);
             }
             values.push(taken);
-            values.push(efficiency(taken, delivered));
+            values.push(efficiency(motor.resistance * current * current, delivered));
         }
         values
     }
 }
 
-/// The part of the electrical power (W) that a motor delivers; zero where it takes or delivers none, as when it brakes.
-fn efficiency(taken: f64, delivered: f64) -> f64 {
-    match taken > 0.0 && delivered > 0.0 {
-        true => delivered / taken,
+/// The part of what a motor delivers and loses (W) that it delivers; zero where it delivers none, as when it brakes. What the
+/// inductance stores and gives back is in neither.
+fn efficiency(lost: f64, delivered: f64) -> f64 {
+    match delivered > 0.0 {
+        true => delivered / (delivered + lost),
         false => 0.0,
     }
 }
