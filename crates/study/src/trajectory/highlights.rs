@@ -188,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_longest_rest_is_found() {
+    fn the_rest_of_largest_extent_is_found() {
         let values = [0.0, 1.0, 1.05, 1.02, 1.06, 2.0, 2.01, 3.0];
         assert_eq!(max_window(&values, 0.1), Some([1, 4]));
         assert_eq!(max_window(&values, 0.02), Some([5, 6]));
