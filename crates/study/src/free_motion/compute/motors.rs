@@ -30,8 +30,8 @@ impl FreeMotionProblem<'_> {
             };
             let measured = CoordinateFunction::find(&scene.mechanism, drive.coordinate);
             let speed = measured.map_or(f64::NAN, |measured| state.coordinate(measured)[1]);
-            let load = scene.loads.len() - machine.drives() + d;
-            let force = state.magnitudes()[load];
+            // Before the inertia of the rotor.
+            let force = state.drive_forces()[d];
             let constant = motor.torque_constant * motor.gear_ratio;
             let (current, current_rate) = match rate {
                 Some(k) => (y[k], rates[k]),
