@@ -13,7 +13,7 @@ LARGEST = 2 * 2**30
 NUMBER = r"[-−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 # A number that is none, as Rust prints it.
 NON_FINITE = re.compile(r"(?<![\w.`-])[-−]?(?:NaN|inf)(?![\w`-])")
-# What a long run prints after 10 s, and then now and then.
+# What a long run prints after 2 s, and then now and then.
 GOES_ON = re.compile(r"^dwell [a-z-]+: running for \d+ (?:s|min)", re.M)
 # What miette and clap begin a message with.
 ERROR = re.compile(r"^\s*(?:×|Error:|error:)", re.M)

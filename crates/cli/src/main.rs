@@ -38,7 +38,7 @@ fn main() -> ExitCode {
     notes.iter().for_each(|note| print_note(note));
     let matches = Options::command().get_matches_from(arguments);
     let options = Options::from_arg_matches(&matches).unwrap_or_else(|e| e.exit());
-    match run(options, matches.subcommand_name().unwrap_or_default()) {
+    match run(&options, matches.subcommand_name().unwrap_or_default()) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(report) => {
@@ -49,15 +49,15 @@ fn main() -> ExitCode {
 }
 
 /// Runs a command of this name, and returns whether all its checks passed.
-fn run(options: Options, name: &str) -> Result<bool, Report> {
-    let Options { command, .. } = &options;
+fn run(options: &Options, name: &str) -> Result<bool, Report> {
+    let Options { command, .. } = options;
     let mut times = Times::new();
     match command {
         Command::Schema => return print(&dwell_scene::schema()).map(|()| true),
         Command::Init { scene } => return init::write(scene).map(|()| true),
         _ => {}
     }
-    let folder = open_folder(&options)?;
+    let folder = open_folder(options)?;
     let bar = progress_bar();
     let lines = LongRunLines::new(name, &bar);
     let done = match command {
@@ -78,7 +78,7 @@ fn run(options: Options, name: &str) -> Result<bool, Report> {
             }
         }
         study => {
-            let done = read(&options, study, &bar);
+            let done = read(options, study, &bar);
             let done = done.and_then(|scene| {
                 let done = run_study(study, &scene, &options.out, &bar);
                 times.add("computing");

@@ -228,9 +228,9 @@ fn period_of(scene: &Scene) -> Result<f64, StudyError> {
 /// The equation of motion of a scene without losses, drives and prescribed motions.
 enum ConservativeMotion {
     /// That of a driven angle without loads.
-    Unloaded(ExactModel),
+    Unloaded(Box<ExactModel>),
     /// That of a length, or with loads, all of which have a potential.
-    Loaded(Machine),
+    Loaded(Box<Machine>),
 }
 
 impl ConservativeMotion {
@@ -259,17 +259,17 @@ impl ConservativeMotion {
         }
         let exact = reduced_model(scene, &[])?;
         if !is_loaded && exact.model().plan().is_angle(0) {
-            return Ok(Self::Unloaded(exact));
+            return Ok(Self::Unloaded(Box::new(exact)));
         }
         let model = compile_model(scene, &[])?;
         let machine = Machine::new(model, &scene.loads, vec![CoordinateMode::Free], &[]);
         let machine = machine.map_err(|e| explain_machine(scene, e))?;
-        Ok(Self::Loaded(machine))
+        Ok(Self::Loaded(Box::new(machine)))
     }
 
     fn orbit(&self, start: ReducedState) -> Result<Orbit, DynamicsError> {
         match self {
-            Self::Unloaded(exact) => Orbit::new(exact, start),
+            Self::Unloaded(exact) => Orbit::new(exact.as_ref(), start),
             Self::Loaded(machine) => Orbit::loaded(machine, start),
         }
     }

@@ -285,3 +285,46 @@ fn a_machine_without_a_steady_cycle_ends_with_status_1() {
     // 2 N m over a turn.
     assert!(run.err.contains("gains 12.6 J per cycle"), "{run:?}");
 }
+
+/// A motor at constant voltage takes voltage times current; its efficiency is that of its speed, k N ω over k N ω + R i.
+#[test]
+fn a_motor_has_its_current_power_and_efficiency() {
+    let dir = TestDir::new();
+    assert_eq!(dir.run(&["init", "pump"]).status, Some(0));
+    let run = dir.run(&["simulate", "pump.toml", "--pictures", "all"]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let files = dir.files("reports");
+    assert!(
+        files.contains(&"pump-motion-drives.png".to_owned()),
+        "{files:?}"
+    );
+    let text = fs::read_to_string(dir.0.join("reports/pump-motion.csv")).unwrap();
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let rows: Vec<Vec<f64>> = lines
+        .map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect())
+        .collect();
+    let column = |name: &str| {
+        let k = names.iter().position(|other| *other == name);
+        k.unwrap_or_else(|| panic!("{name}: {names:?}"))
+    };
+    let [current, power, efficiency, speed] = [
+        "motor.current [A]",
+        "motor.electrical_power [W]",
+        "motor.efficiency",
+        "phi.velocity [rad/s]",
+    ]
+    .map(column);
+    let mut running = 0;
+    for row in &rows {
+        let (i, back_voltage) = (row[current], 0.05 * 5.0 * row[speed]);
+        assert!((row[power] - 24.0 * i).abs() < 1e-9 * row[power].abs().max(1.0));
+        let expected = match back_voltage * i > 0.0 {
+            true => back_voltage / (back_voltage + 0.5 * i),
+            false => 0.0,
+        };
+        assert!((row[efficiency] - expected).abs() < 1e-9, "{row:?}");
+        running += usize::from(expected > 0.0);
+    }
+    assert!(running > 500, "{running}");
+}

@@ -43,7 +43,7 @@ pub(crate) fn motor_columns(scene: &Scene) -> Vec<(String, &'static str, &'stati
         }
         let power = "voltage times current; negative where the motor gives back";
         all.push((name("electrical_power"), "W", power));
-        let efficiency = "mechanical over electrical power, before the rotor's inertia; 0 where the motor takes or delivers none";
+        let efficiency = "mechanical power, before the rotor's inertia, over its sum with the loss in the resistance; 0 where the motor delivers none";
         all.push((name("efficiency"), "", efficiency));
     }
     all

@@ -87,21 +87,15 @@ fn record(reduction: &Reduction<'_>) -> Record {
     let is_rounding = reduction.errors.is_rounding[1];
     let [m_unit, half_dm_unit] = inertia_units(reduction.prepared.is_angle());
     let [m_error, half_dm_error, rest] = reduction.errors.max_errors;
-    let picks: [(&str, &str, fn(&Coefficients) -> f64, f64, bool); 2] = [
-        ("m", m_unit, |c| c.m, m_error, false),
-        (
-            "half_dm",
-            half_dm_unit,
-            |c| c.half_dm,
-            half_dm_error,
-            is_rounding,
-        ),
-    ];
-    for (name, unit, pick, error, is_zero) in picks {
-        let ends = match is_zero {
-            true => [0.0; 2],
-            false => extent(curves.coefficients.iter().map(pick)),
-        };
+    let m = extent(curves.coefficients.iter().map(|c| c.m));
+    let half_dm = match is_rounding {
+        true => [0.0; 2],
+        false => extent(curves.coefficients.iter().map(|c| c.half_dm)),
+    };
+    for (name, unit, ends, error) in [
+        ("m", m_unit, m, m_error),
+        ("half_dm", half_dm_unit, half_dm, half_dm_error),
+    ] {
         let largest = ends[0].abs().max(ends[1].abs());
         for (end, value) in ["min", "max"].into_iter().zip(ends) {
             record.add_within(format!("{name}.{end}"), unit, value, error * largest);

@@ -48,14 +48,14 @@ impl Movement<'_> {
 
     /// By how much the bodies that move most swing, and the joints that slide most travel.
     fn swings(&self, record: &mut Record) -> String {
-        let is_angle = |c: &Column| matches!(c.quantity, Quantity::BodyAngle(_, 0));
-        let is_travel =
-            |c: &Column| matches!(c.quantity, Quantity::Measured(_, 0)) && c.unit == "m";
+        let is_of_kind = |c: &Column, is_angle: bool| match c.quantity {
+            Quantity::BodyAngle(_, 0) => is_angle,
+            Quantity::Measured(_, 0) => !is_angle && c.unit == "m",
+            _ => false,
+        };
         let mut text = String::new();
-        let kinds: [(&dyn Fn(&Column) -> bool, bool, &str); 2] =
-            [(&is_angle, true, "turns"), (&is_travel, false, "travels")];
-        for (of_kind, is_angle, verb) in kinds {
-            let mut all: Vec<_> = self.extents(of_kind).collect();
+        for (is_angle, verb) in [(true, "turns"), (false, "travels")] {
+            let mut all: Vec<_> = self.extents(move |c| is_of_kind(c, is_angle)).collect();
             let range = |[low, high]: [f64; 2]| high - low;
             all.retain(|(_, ends)| range(*ends) > ROUNDING);
             all.sort_by(|(_, a), (_, b)| range(*b).total_cmp(&range(*a)));
@@ -168,7 +168,7 @@ fn max_window(values: &[f64], band: f64) -> Option<[usize; 2]> {
             let [low, high] = [&ends[0], &ends[1]].map(|end| end.front().map(|&j| values[j]));
             high.zip(low).map_or(0.0, |(high, low)| high - low)
         };
-        while first < k && !(extent(&ends) <= band) {
+        while first < k && extent(&ends) > band {
             first += 1;
             for end in &mut ends {
                 while end.front().is_some_and(|&j| j < first) {
@@ -188,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_longest_rest_is_found() {
+    fn the_rest_of_largest_extent_is_found() {
         let values = [0.0, 1.0, 1.05, 1.02, 1.06, 2.0, 2.01, 3.0];
         assert_eq!(max_window(&values, 0.1), Some([1, 4]));
         assert_eq!(max_window(&values, 0.02), Some([5, 6]));

@@ -30,8 +30,8 @@ impl FreeMotionProblem<'_> {
             };
             let measured = CoordinateFunction::find(&scene.mechanism, drive.coordinate);
             let speed = measured.map_or(f64::NAN, |measured| state.coordinate(measured)[1]);
-            let load = scene.loads.len() - machine.drives() + d;
-            let force = state.magnitudes()[load];
+            // Before the inertia of the rotor.
+            let force = state.drive_forces()[d];
             let constant = motor.torque_constant * motor.gear_ratio;
             let (current, current_rate) = match rate {
                 Some(k) => (y[k], rates[k]),
@@ -44,16 +44,17 @@ impl FreeMotionProblem<'_> {
                 values.push(current);
             }
             values.push(taken);
-            values.push(efficiency(taken, delivered));
+            values.push(efficiency(motor.resistance * current * current, delivered));
         }
         values
     }
 }
 
-/// The part of the electrical power (W) that a motor delivers; zero where it takes or delivers none, as when it brakes.
-fn efficiency(taken: f64, delivered: f64) -> f64 {
-    match taken > 0.0 && delivered > 0.0 {
-        true => delivered / taken,
+/// The part of what a motor delivers and loses (W) that it delivers; zero where it delivers none, as when it brakes. What the
+/// inductance stores and gives back is in neither.
+fn efficiency(lost: f64, delivered: f64) -> f64 {
+    match delivered > 0.0 {
+        true => delivered / (delivered + lost),
         false => 0.0,
     }
 }

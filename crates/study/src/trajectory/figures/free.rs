@@ -46,8 +46,8 @@ impl FigureContext<'_> {
             let charts = curves.chunks(MAX_CURVES);
             panels.extend(charts.map(|some| self.chart(title, label, some).into()));
         }
-        let text = "Power: what drives deliver to the mechanism, and what motors take from the supply. Efficiency: delivered \
-                    over taken power, 0 where a motor brakes.";
+        let text = "Power: what drives deliver to the mechanism, and what motors take from the supply. Efficiency: delivered power \
+                    over its sum with the loss in the resistance, 0 where a motor brakes.";
         (!panels.is_empty()).then(|| self.figure("drives", "Drives", text, panels))
     }
 
