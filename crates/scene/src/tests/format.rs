@@ -212,6 +212,15 @@ fn tables_of_examples(table: &TableSchema) -> Vec<(String, String)> {
                 let others = table.keys.iter().filter(|k| k.name != wanted.name);
                 parts.extend(others.map(written));
             }
+            // An end stop has a limit, and its damper a spring.
+            _ if table.name.starts_with("[stops.") => {
+                let needed = |key: &&KeySchema| match key.name.as_str() {
+                    "min" => wanted.name != "min",
+                    "stiffness" => wanted.name == "damping",
+                    _ => false,
+                };
+                parts.extend(table.keys.iter().filter(needed).map(written));
+            }
             (_, None) => {
                 let sets = table.sets();
                 let containing = sets.iter().find(|set| set.contains(&wanted.name.as_str()));

@@ -84,6 +84,7 @@ impl<'a> Document<'a> {
         let mut record = Record::default();
         record.add_count("positions", self.results.len());
         record.add_count("wanted_positions", self.trajectory.points);
+        record.add_count("columns", self.results.written.len());
         let (name, unit) = self.abscissa;
         record.abscissa = Some(Column::new(name, unit));
         let last = self.results.len().saturating_sub(1);

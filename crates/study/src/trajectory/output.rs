@@ -5,7 +5,7 @@ use super::{document, figures};
 use crate::explain::StudyError;
 use crate::output::{DistinctNames, Outcome, Picture};
 use crate::progress::Progress;
-use crate::trajectory::compute::{Analysis, ComputedTrajectory, RowMemory, compute_trajectory_in};
+use crate::trajectory::compute::{Analysis, ComputedTrajectory, RowStorage, compute_trajectory_in};
 use dwell_report::{Figure, Files, TableExport as _, TableFormat};
 use dwell_scene::Scene;
 
@@ -43,7 +43,7 @@ pub fn analyse_trajectory_within(
     span: PictureSpan,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
-    let computed = compute_trajectory_in(RowMemory::Bounded, scene, analysis, points, progress)?;
+    let computed = compute_trajectory_in(RowStorage::Bounded, scene, analysis, points, progress)?;
     let mut outcome = report(scene, &computed, span)?;
     outcome.summary += &computed.notes;
     Ok(TrajectoryOutcome {

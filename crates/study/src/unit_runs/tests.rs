@@ -21,7 +21,8 @@ fn run_ii_is_uniformly_accelerated_and_passes_the_positions_of_run_i() {
         assert_eq!(acceleration[1][k], 1.0);
         // q̇² = 2 q of a uniform acceleration from rest at q = 0.
         assert!((speed[1][k].powi(2) - 2.0 * q[1][k]).abs() < 1e-14);
-        assert!((q[0][k] - q[1][k]).abs() < 4.0 * f64::EPSILON * q[0][k]);
+        // Half the square of a root: some roundings.
+        assert!((q[0][k] - q[1][k]).abs() <= 8.0 * f64::EPSILON * q[0][k]);
     }
 }
 

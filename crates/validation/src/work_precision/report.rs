@@ -305,7 +305,7 @@ pub(super) fn command_blocks(times: &[CommandTime]) -> [Block; 3] {
     [
         Block::Heading("The whole command".to_owned()),
         Block::Text(
-            "`dwell simulate --accuracy`, from the scene in memory: the motion with its rows, extrema and error; the same with tables and page \
+            "`dwell simulate --accuracy`, from the scene as it was read: the motion with its rows, extrema and error; the same with tables and page \
              written; and with the main pictures. One run each; here the motion has the duration that the scene gives."
                 .to_owned(),
         ),

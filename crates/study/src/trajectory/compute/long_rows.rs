@@ -13,7 +13,7 @@ const MAX_VALUES: usize = 4 << 20;
 
 /// Where the rows of a trajectory are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum RowMemory {
+pub(crate) enum RowStorage {
     /// All in memory.
     Whole,
     /// In a temporary file, if they are many.
@@ -83,7 +83,7 @@ impl LongRows {
 pub(crate) fn not_stored(error: &io::Error) -> StudyError {
     let folder = std::env::temp_dir();
     let message = format!(
-        "the rows do not fit into memory, and cannot be stored in `{}`: {error}",
+        "there are too many rows to keep, and they cannot be stored in `{}`: {error}",
         folder.display()
     );
     let help = "ask for fewer `--points`, list `variables` in [requests], or set TMPDIR to a folder with more room";

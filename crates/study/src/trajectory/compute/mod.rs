@@ -33,7 +33,7 @@ pub(crate) use extra_columns::extra_columns;
 pub(crate) use extrema::{BetweenRows, Extrema, ExtremaSearch, Point, largest_between};
 #[cfg(feature = "output")]
 pub(crate) use extrema::{Extremum, is_searched_in_rows};
-pub(crate) use long_rows::{LongRows, RowMemory, not_stored};
+pub(crate) use long_rows::{LongRows, RowStorage, not_stored};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryMonitor, table_of};
 pub(crate) use peak_forces::{WantedForces, peak_forces};

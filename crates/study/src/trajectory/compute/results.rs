@@ -8,7 +8,7 @@ use crate::models::loaded_model;
 use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
     Analysis, BetweenRows, Column, Extrema, ExtremaSearch, LongRows, POSITIONS_PER_STEP,
-    PositionEvaluator, Quantity, RequestedColumns, RoundingError, RowMemory, SectionedLink,
+    PositionEvaluator, Quantity, RequestedColumns, RoundingError, RowStorage, SectionedLink,
     Trajectory, TrajectorySample, UnitReferences, all_columns, check_variables, is_requested,
     not_stored, prune_model,
 };
@@ -109,8 +109,8 @@ impl TrajectoryResults {
     }
 
     /// Prepares the memory for the rows of so many positions.
-    fn keep_rows_in(&mut self, memory: RowMemory, points: usize) -> Result<(), StudyError> {
-        if memory == RowMemory::Bounded {
+    fn keep_rows_in(&mut self, memory: RowStorage, points: usize) -> Result<(), StudyError> {
+        if memory == RowStorage::Bounded {
             self.long_rows = LongRows::new(&self.columns, points)?;
         }
         Ok(())
@@ -360,12 +360,12 @@ pub fn compute_trajectory<'a>(
     points: Option<usize>,
     progress: Progress<'_>,
 ) -> Result<ComputedTrajectory<'a>, StudyError> {
-    compute_trajectory_in(RowMemory::Whole, scene, analysis, points, progress)
+    compute_trajectory_in(RowStorage::Whole, scene, analysis, points, progress)
 }
 
 /// The same with the rows in memory, or where they are bounded.
 pub(crate) fn compute_trajectory_in<'a>(
-    memory: RowMemory,
+    memory: RowStorage,
     scene: &'a Scene,
     analysis: Analysis,
     points: Option<usize>,
@@ -389,7 +389,7 @@ pub(crate) fn compute_along<'a>(
     progress: Progress<'_>,
 ) -> Result<ComputedTrajectory<'a>, StudyError> {
     compute_in(
-        RowMemory::Whole,
+        RowStorage::Whole,
         scene,
         full_model,
         followed,
@@ -400,7 +400,7 @@ pub(crate) fn compute_along<'a>(
 
 /// As [`compute_along`], with the rows in memory or where they are bounded.
 fn compute_in<'a>(
-    memory: RowMemory,
+    memory: RowStorage,
     scene: &Scene,
     full_model: &Model,
     (trajectory, between): (Trajectory<'a>, Option<MotionBetweenRows<'_>>),
