@@ -9,7 +9,7 @@
 use crate::contact_events::ContactMonitor;
 use crate::dop853;
 use crate::error::{DynamicsError, Result};
-use crate::integration_parts::Parts;
+use crate::integration_parts::{Parts, check_interval};
 use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, StepObserver, Termination};
 use crate::options::{Method, Options, Statistics};
 use crate::shared_system::SharedSystem;
@@ -32,27 +32,6 @@ const MIN_STEP: f64 = 1e-17;
 
 /// diffsol takes two times for one that differ by less than this part of time and step.
 const INTEGRATOR_ROUNDING: f64 = 100.0 * f64::EPSILON;
-
-/// Refuses a start or an end that is not finite, or an end before the start.
-fn check_interval(start: &OdeState, end: Option<f64>) -> Result<()> {
-    for &value in std::iter::once(&start.t).chain(&start.y) {
-        if !value.is_finite() {
-            return Err(DynamicsError::BadOption {
-                what: "the initial state",
-                must: "finite number",
-                value,
-            });
-        }
-    }
-    match end.filter(|end| !(end.is_finite() && *end > start.t)) {
-        Some(value) => Err(DynamicsError::BadOption {
-            what: "the end of the motion",
-            must: "time after its start",
-            value,
-        }),
-        None => Ok(()),
-    }
-}
 
 /// Integrates a system from `start` until `end` (s), or without an end until the observer stops it. The
 /// observer is called after every step. Where a function of time or of the state switches, one integration ends and

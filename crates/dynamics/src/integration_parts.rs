@@ -57,3 +57,24 @@ impl Parts {
         Ok(last.error.is_some())
     }
 }
+
+/// Refuses a start or an end that is not finite, or an end before the start.
+pub(crate) fn check_interval(start: &OdeState, end: Option<f64>) -> Result<()> {
+    for &value in std::iter::once(&start.t).chain(&start.y) {
+        if !value.is_finite() {
+            return Err(DynamicsError::BadOption {
+                what: "the initial state",
+                must: "finite number",
+                value,
+            });
+        }
+    }
+    match end.filter(|end| !(end.is_finite() && *end > start.t)) {
+        Some(value) => Err(DynamicsError::BadOption {
+            what: "the end of the motion",
+            must: "time after its start",
+            value,
+        }),
+        None => Ok(()),
+    }
+}

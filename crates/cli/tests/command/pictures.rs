@@ -94,7 +94,7 @@ fn titles_that_are_markup_elsewhere_stay_words() {
         .find(|line| line.starts_with("title"))
         .unwrap();
     let title = r"title = 'a <b> & `c` | *d* [e] 漢 🚀 \'";
-    dir.put("words.toml", &scene.replace(line, title));
+    dir.put("words.toml", scene.replace(line, title));
     let arguments = [
         "kinematics",
         "words.toml",

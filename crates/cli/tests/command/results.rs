@@ -491,14 +491,3 @@ fn a_method_that_needs_many_steps_is_advised_of_another() {
     let run = dir.run(&["simulate", "scene.toml", "--rtol", "1e-6"]);
     assert!(!run.out.contains("hint"), "{}", run.out);
 }
-
-/// The schema needs no folder, and is the one of the documentation.
-#[test]
-fn the_schema_is_that_of_the_documentation() {
-    let dir = TestDir::new();
-    let run = dir.run(&["schema"]);
-    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
-    assert!(dir.contents().is_empty());
-    let written = fs::read_to_string(home().join("docs/scene-schema.json")).unwrap();
-    assert_eq!(run.out, written);
-}

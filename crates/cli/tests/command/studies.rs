@@ -1,7 +1,8 @@
-//! Messages for invalid tables and sweeps, as in `messages`.
+//! Messages for invalid tables and sweeps, as in `messages`; and the schema of scenes.
 
 use crate::messages::Group;
-use crate::test_dir::{LIMITED, four_bar_with};
+use crate::test_dir::{LIMITED, TestDir, four_bar_with, home};
+use std::fs;
 
 #[test]
 fn tables() {
@@ -131,4 +132,15 @@ fn sweeps() {
     let changed = [&own[..], &["--out", "own"]].concat();
     group.refused("a scene that was changed since", &changed);
     group.check("sweeps");
+}
+
+/// The schema needs no folder, and is the one of the documentation.
+#[test]
+fn the_schema_is_that_of_the_documentation() {
+    let dir = TestDir::new();
+    let run = dir.run(&["schema"]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert!(dir.contents().is_empty());
+    let written = fs::read_to_string(home().join("docs/scene-schema.json")).unwrap();
+    assert_eq!(run.out, written);
 }

@@ -88,7 +88,7 @@ impl<'a> Document<'a> {
         let (name, unit) = self.abscissa;
         record.abscissa = Some(Column::new(name, unit));
         let last = self.results.len().saturating_sub(1);
-        let [from, to] = extent([0, last].map(|row| self.abscissa_at(row)).into_iter());
+        let [from, to] = extent([0, last].map(|row| self.abscissa_at(row)));
         record.add("from", unit, from);
         record.add("to", unit, to);
         let [from, to] = self.trajectory.wanted_extent();

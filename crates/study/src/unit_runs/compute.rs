@@ -203,7 +203,7 @@ impl UnitRuns<'_> {
             for (largest, (a, b)) in differences.iter_mut().zip(pairs) {
                 let difference = (a - b).abs();
                 // A NaN is no agreement.
-                if !(difference <= *largest) {
+                if difference.is_nan() || difference > *largest {
                     *largest = difference;
                 }
             }

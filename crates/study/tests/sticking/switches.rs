@@ -77,7 +77,7 @@ push = {{ force = "block.A", direction = ALONG, magnitude = "if(t < 1, 0, 4*t)" 
             let run = run(&text, method, rtol);
             let [held, left] = sliding(&run);
             assert!(
-                held.len() >= 1 && left.len() == 1,
+                !held.is_empty() && left.len() == 1,
                 "{method:?} {:?}",
                 run.events
             );

@@ -109,8 +109,8 @@ impl TrajectoryResults {
     }
 
     /// Prepares the memory for the rows of so many positions.
-    fn keep_rows_in(&mut self, memory: RowStorage, points: usize) -> Result<(), StudyError> {
-        if memory == RowStorage::Bounded {
+    fn keep_rows_in(&mut self, storage: RowStorage, points: usize) -> Result<(), StudyError> {
+        if storage == RowStorage::Bounded {
             self.long_rows = LongRows::new(&self.columns, points)?;
         }
         Ok(())
@@ -365,7 +365,7 @@ pub fn compute_trajectory<'a>(
 
 /// The same with the rows in memory, or where they are bounded.
 pub(crate) fn compute_trajectory_in<'a>(
-    memory: RowStorage,
+    storage: RowStorage,
     scene: &'a Scene,
     analysis: Analysis,
     points: Option<usize>,
@@ -374,7 +374,7 @@ pub(crate) fn compute_trajectory_in<'a>(
     let model = loaded_model(scene)?;
     let notes = check_variables(scene, &model)? + &branch_note(scene, model.plan());
     let trajectory = Trajectory::new(scene, model.plan(), analysis, points)?;
-    compute_in(memory, scene, &model, (trajectory, None), notes, progress)
+    compute_in(storage, scene, &model, (trajectory, None), notes, progress)
 }
 
 /// Evaluates a scene along a trajectory; of a free motion also with what is known between its rows.
@@ -400,7 +400,7 @@ pub(crate) fn compute_along<'a>(
 
 /// As [`compute_along`], with the rows in memory or where they are bounded.
 fn compute_in<'a>(
-    memory: RowStorage,
+    storage: RowStorage,
     scene: &Scene,
     full_model: &Model,
     (trajectory, between): (Trajectory<'a>, Option<MotionBetweenRows<'_>>),
@@ -417,7 +417,7 @@ fn compute_in<'a>(
         charts => charts,
     };
     let mut results = TrajectoryResults::new(scene, model, columns, analysis);
-    results.keep_rows_in(memory, trajectory.points)?;
+    results.keep_rows_in(storage, trajectory.points)?;
     let evaluators = charts
         .iter()
         .map(|chart| PositionEvaluator::new(scene, plan, chart, analysis, &results.columns));
