@@ -81,7 +81,9 @@ impl<'m> MotionSampler<'m> {
         let (ode, workspace) = match machines.entry(*chart) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => {
-                let ode = MachineOde::new(machine, before.t, &before.y).ok()?;
+                // At rest the energies show nothing of the works that come: steps would follow their rounding.
+                let end = Some(motion.end_time());
+                let ode = MachineOde::until(machine, before.t, &before.y, end).ok()?;
                 new.insert((ode, machine.workspace()))
             }
         };
