@@ -185,9 +185,12 @@ def duration_as_wanted(run):
 def events_as_printed(run):
     if run.arguments[0] != "simulate" or run.status == 2:
         return None
-    printed = re.findall(rf"^  (\S+): (\d+) times(?:, first at t = ({NUMBER}) s(?: \(estimated error ({NUMBER}) s\))?)?(; the motion ends there)?", run.out, re.M)
+    often = {"never": 0, "once": 1, "twice": 2}
+    # An event of the scene, or what a contact or the switch of a load does.
+    printed = re.findall(rf"^  (\S+|.+ \(event \d+\)): (never|once|twice|\d+ times)(?:, first at t = ({NUMBER}) s(?: \(estimated error ({NUMBER}) s\))?)?(; the motion ends there)?", run.out, re.M)
     rows = run.table("-motion-events.csv") or []
-    if sum(int(count) for _, count, *_ in printed) != len(rows):
+    printed = [(name, often[count] if count in often else int(count.split()[0]), *rest) for name, count, *rest in printed]
+    if sum(count for _, count, *_ in printed) != len(rows):
         return f"{printed} printed, and {len(rows)} events in the file"
     times = [float(row["t"]) for row in rows]
     if times != sorted(times):
@@ -195,7 +198,7 @@ def events_as_printed(run):
     for name, count, at, error, stops in printed:
         if at and not any(digits_agree(at, t, float(error or 0)) for t in times):
             return f"event {name} at {at} s printed, and not in the file"
-        if stops and count != "1":
+        if stops and count != 1:
             return f"event {name} ends the motion, {count} times"
     motion = run.table("-motion.csv") or []
     last = [float(row["t"]) for row in motion if "t" in row][-1:]

@@ -66,6 +66,16 @@ pub fn count(number: usize, thing: &str) -> String {
     }
 }
 
+/// How often something happens, in words.
+pub(crate) fn how_often(count: usize) -> String {
+    match count {
+        0 => "never".to_owned(),
+        1 => "once".to_owned(),
+        2 => "twice".to_owned(),
+        _ => format!("{count} times"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -136,11 +136,7 @@ fn a_release_from_rest_is_no_event_by_any_method() {
             "{arguments:?} {}",
             run.out
         );
-        assert!(
-            run.out.contains("home: 0 times"),
-            "{arguments:?} {}",
-            run.out
-        );
+        assert!(run.out.contains("home: never"), "{arguments:?} {}", run.out);
     }
 }
 

@@ -34,9 +34,14 @@ fn a_long_motion_is_sampled_to_its_end() {
 fn a_release_is_no_reversal() {
     let count = |summary: &str| -> (usize, f64) {
         let (_, rest) = summary.split_once("  back: ").unwrap();
-        let (times, rest) = rest.split_once(" times, first at t = ").unwrap();
+        let (often, rest) = rest.split_once(", first at t = ").unwrap();
         let (first, _) = rest.split_once(" s").unwrap();
-        (times.parse().unwrap(), first.parse().unwrap())
+        let often = match often {
+            "once" => 1,
+            "twice" => 2,
+            often => often.strip_suffix(" times").unwrap().parse().unwrap(),
+        };
+        (often, first.parse().unwrap())
     };
     for stop in ["", ", stop = true"] {
         let text = format!(

@@ -3,7 +3,7 @@
 
 use crate::estimate;
 use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
-use crate::number_format::{digits, digits_within};
+use crate::number_format::{digits, digits_within, how_often};
 use dwell_dynamics::{ContactEvent, ContactMode, OdeState, StopChange};
 use dwell_findings::Record;
 
@@ -148,7 +148,7 @@ impl FreeMotionProblem<'_> {
             let first_name = format!("event.{name}.first");
             text += &format!(
                 "  {name} (event {number}): {}, first at t = ",
-                times_over(count)
+                how_often(count)
             );
             let others = second.as_deref().map(times);
             text += &match others.as_ref().and_then(|others| others.first()) {
@@ -166,21 +166,11 @@ impl FreeMotionProblem<'_> {
             if let Some(others) = others.filter(|others| others.len() != count) {
                 let other = others.len();
                 record.add_count(format!("event.{name}.count_in_second_run"), other);
-                let other = times_over(other);
+                let other = how_often(other);
                 text += &format!("; {other} in a second run: within its error it is not certain");
             }
             text += "\n";
         }
         text
-    }
-}
-
-/// How often something happens, in words.
-fn times_over(count: usize) -> String {
-    match count {
-        0 => "never".to_owned(),
-        1 => "once".to_owned(),
-        2 => "twice".to_owned(),
-        _ => format!("{count} times"),
     }
 }

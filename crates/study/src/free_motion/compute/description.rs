@@ -3,7 +3,7 @@
 use crate::estimate::{self, is_rounding};
 use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
 use crate::models::SolverSettings;
-use crate::number_format::{coordinate_unit, digits, digits_within};
+use crate::number_format::{coordinate_unit, digits, digits_within, how_often};
 use dwell_dynamics::{
     DynamicsError, EventOccurrence, MachineWorkspace, Method, MotionClass, OdeState, Options,
     Orbit, ReducedState, Statistics, eigenvalues_about, is_equilibrium, linearise, motion_class,
@@ -350,11 +350,11 @@ fn event_text(
     let own = times(&computed.motion);
     let others = computed.comparison.as_ref().map(times);
     record.add_count(format!("event.{name}.count"), own.len());
-    let mut text = format!("{} times", own.len());
+    let mut text = how_often(own.len());
     if let Some(others) = others.as_ref().filter(|others| others.len() != own.len()) {
         text += &format!(
             " ({} in a second run: within its error it is not certain)",
-            others.len()
+            how_often(others.len())
         );
         record.add_count(format!("event.{name}.count_in_second_run"), others.len());
     }
