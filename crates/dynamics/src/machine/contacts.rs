@@ -61,6 +61,9 @@ impl Machine {
     }
 
     /// Which coordinates rest on their stops, and the forces of those that yield.
+    // Most machines have no stops: out of the path of every evaluation.
+    #[cold]
+    #[inline(never)]
     pub(super) fn set_stops<T: Scalar>(&self, y: &[T], equation: &mut EquationWorkspace<T>) {
         let n = self.free.len();
         equation.locked.fill(false);
