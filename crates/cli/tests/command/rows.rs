@@ -285,3 +285,21 @@ fn the_last_row_is_the_end_itself_however_the_steps_are_limited() {
         assert!(run_of.out.contains(&printed), "{what}: {}", run_of.out);
     }
 }
+
+#[test]
+fn no_row_is_beyond_the_end_of_a_motion_that_ends_early() {
+    // The boom falls to where its cylinder reaches no further; the end that was printed was nine rows before the last.
+    let path = home().join("validation/boom/scene.toml");
+    let text = fs::read_to_string(path).unwrap();
+    let (text, _) = text.split_once("[motion]").unwrap();
+    let motion = "[motion]\nduration = 1.702901\ninitial-velocity = { lift = -3, dig = 0 }\n";
+    let text = text.replace("mass = 620.0", "mass = 310.0") + motion;
+    let options = ["--rtol", "1e-4", "--sample-interval", "0.001"];
+    let (dir, run_of) = run(&text, &[&["simulate"], &options[..]].concat());
+    assert_eq!(run_of.status, Some(1), "{}", run_of.err);
+    let last = *times(&dir, "o/moved-motion.csv").last().unwrap();
+    let head = run_of.out.lines().next().unwrap();
+    let (_, end) = head.split_once("a free motion of ").unwrap();
+    let end: f64 = end.strip_suffix(" s").unwrap().parse().unwrap();
+    assert!((last - end).abs() < 1e-6, "{last} {head}");
+}
