@@ -63,7 +63,7 @@ impl Plan {
             let class_angle = |b: usize| {
                 let orientation = self.frames.orientations[b];
                 let angle = initial_guess.angles[b]?;
-                Some(angle - orientation.offset.angle() - self.assembly_angle(orientation.frame))
+                Some(angle - orientation.offset_angle - self.assembly_angle(orientation.frame))
             };
             let members = &self.frames.class_bodies[class];
             let first = match class {

@@ -24,7 +24,7 @@ impl Plan {
     /// ground or a coupling or load needs it.
     pub(crate) fn counted_angle<T: Scalar>(&self, body: usize, pose: &Pose<T>) -> Option<T> {
         let orientation = self.frames.orientations[body];
-        let offset = orientation.offset.angle();
+        let offset = orientation.offset_angle;
         if self.revolution_counted[orientation.frame] {
             let revolution_offset = self.revolution_offsets.get(body).copied().unwrap_or(0.0);
             return Some(pose.angle[orientation.frame] + T::from_f64(offset + revolution_offset));

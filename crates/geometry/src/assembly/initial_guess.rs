@@ -66,9 +66,8 @@ impl Plan {
         let of_body = |(b, (orientation, angle)): (usize, (&Orientation, &Option<f64>))| {
             let frame = &self.frames.frames[orientation.frame];
             let angle = (*angle)? - self.revolution_offsets.get(b).copied().unwrap_or(0.0);
-            (frame.orientation_class == class).then(|| {
-                angle - orientation.offset.angle() - self.assembly_angle(orientation.frame)
-            })
+            (frame.orientation_class == class)
+                .then(|| angle - orientation.offset_angle - self.assembly_angle(orientation.frame))
         };
         let bodies = self.frames.orientations.iter().zip(&initial_guess.angles);
         bodies.enumerate().filter_map(of_body).collect()

@@ -411,7 +411,7 @@ fn carrier_phases(lowered: &Lowered, frames: &Frames) -> HashMap<usize, (usize, 
         .iter()
         .filter_map(|lowered_coupling| lowered_coupling.line_of_centres);
     let phases = lines.map(|(line, carrier, phase)| {
-        let phase = phase + of(carrier).offset.angle() - of(line).offset.angle();
+        let phase = phase + of(carrier).offset_angle - of(line).offset_angle;
         (of(line).frame, (of(carrier).frame, phase))
     });
     phases

@@ -38,7 +38,7 @@ impl LinearForm {
             match coordinate {
                 LoweredCoordinate::Angle(body) => {
                     let orientation = frames.orientations[body];
-                    form.constant += factor * orientation.offset.angle();
+                    form.constant += factor * orientation.offset_angle;
                     if orientation.frame != 0 {
                         add(&mut form.angles, orientation.frame, factor);
                     }

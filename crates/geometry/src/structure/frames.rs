@@ -42,6 +42,18 @@ pub struct Orientation {
     pub frame: usize,
     /// Constant rotation (cos, sin) from the frame to the body.
     pub offset: Vec2,
+    /// The angle of that rotation, rad: found once, for every evaluation adds it.
+    pub offset_angle: f64,
+}
+
+impl Orientation {
+    fn new(frame: usize, offset: Vec2) -> Self {
+        Self {
+            frame,
+            offset,
+            offset_angle: offset.angle(),
+        }
+    }
 }
 
 /// What fixes the angle between two bodies of one class.
@@ -143,10 +155,7 @@ impl Frames {
 
     /// All bodies in the ground's frame.
     fn of_ground(bodies: usize) -> Self {
-        let ground_orientation = Orientation {
-            frame: 0,
-            offset: Vec2::IDENTITY,
-        };
+        let ground_orientation = Orientation::new(0, Vec2::IDENTITY);
         Self {
             frames: vec![Frame {
                 rotation_source: RotationSource::Ground,
@@ -169,10 +178,10 @@ impl Frames {
         let reference = self.orientations[constraint.reference_body];
         let is_first = constraint.body_is_first;
         match constraint.source {
-            AngularConstraintSource::Pair(b) => Orientation {
-                frame: reference.frame,
-                offset: offset_across(&lowered.pairs[b], reference.offset, is_first),
-            },
+            AngularConstraintSource::Pair(b) => Orientation::new(
+                reference.frame,
+                offset_across(&lowered.pairs[b], reference.offset, is_first),
+            ),
             AngularConstraintSource::Actuator(a) => {
                 let class = self.frames[reference.frame].orientation_class;
                 self.frames.push(Frame {
@@ -183,10 +192,7 @@ impl Frames {
                     },
                     orientation_class: class,
                 });
-                Orientation {
-                    frame: self.frames.len() - 1,
-                    offset: reference.offset,
-                }
+                Orientation::new(self.frames.len() - 1, reference.offset)
             }
         }
     }

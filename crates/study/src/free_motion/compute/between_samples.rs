@@ -1,19 +1,26 @@
 //! A computed motion between its samples: at its steps, and at any time within a step.
+//!
+//! Within a step the motion is integrated once more from its beginning. A search for extrema asks for many times of the
+//! same step: it takes them from polynomials through that integration's dense output, which is one of at most degree 7.
 
 use crate::free_motion::compute::tables::sliding_at;
-use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
+use crate::free_motion::compute::{FreeMotionProblem, PlaceInMotion, SegmentedMotion};
 use crate::trajectory::compute::TrajectorySample;
 use dwell_dynamics::{
-    DenseOutput, MachineOde, MachineWorkspace, Method, OdeState, Options, StepControl, integrate,
+    DenseOutput, Machine, MachineOde, MachineWorkspace, Method, OdeState, Options, StepControl,
+    StepObserver, integrate,
 };
 use dwell_geometry::body_states::CoordinateFunction;
-use std::cell::RefCell;
-use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::f64::consts::TAU;
+use std::collections::{BTreeMap, VecDeque};
+use std::f64::consts::{PI, TAU};
 
 /// Highest number of steps that are evaluated like samples.
 const MAX_STEPS: usize = 50_000;
+/// Points of a polynomial through a dense output, and how many steps have theirs in memory: an extremum is enclosed by
+/// two steps.
+const NODES: usize = 8;
+const MAX_STORED: usize = 3;
 /// Method, tolerance and highest number of steps from the beginning of a step to a time within it; the second where a
 /// stiff motion needs too many of the first.
 const METHODS: [(Method, f64, usize); 2] =
@@ -48,7 +55,8 @@ impl FreeMotionProblem<'_> {
         MotionSampler {
             problem: self,
             motion,
-            machines: RefCell::new(BTreeMap::new()),
+            machines: BTreeMap::new(),
+            interpolated: VecDeque::new(),
         }
     }
 }
@@ -57,59 +65,100 @@ impl FreeMotionProblem<'_> {
 pub(crate) struct MotionSampler<'m> {
     problem: &'m FreeMotionProblem<'m>,
     motion: &'m SegmentedMotion,
-    machines: RefCell<BTreeMap<usize, (MachineOde<'m>, MachineWorkspace)>>,
+    machines: BTreeMap<usize, (MachineOde<'m>, MachineWorkspace)>,
+    /// The last steps that were interpolated in, each with its segment and number.
+    interpolated: VecDeque<((usize, usize), Vec<Polynomials>)>,
 }
 
 impl<'m> MotionSampler<'m> {
     /// The motion at a time (s): from its orbit, or from the step before, which is integrated once more up to there.
     /// None where that is not possible.
-    pub(crate) fn sample_at(&self, t: f64) -> Option<TrajectorySample> {
-        let (problem, motion) = (self.problem, self.motion);
-        let holds = |steps: &[OdeState]| {
-            let ends = steps.first().zip(steps.last());
-            ends.is_some_and(|(first, last)| first.t <= t && t <= last.t)
-        };
-        let mut segments = motion.segments.iter().enumerate();
-        let (segment, (chart, solution)) = segments.find(|(_, (_, s))| holds(&s.steps))?;
-        let k = solution
-            .steps
-            .partition_point(|step| step.t <= t)
-            .checked_sub(1)?;
-        let before = &solution.steps[k];
-        let machine = problem.machine(motion, *chart);
-        let mut machines = self.machines.borrow_mut();
-        let (ode, workspace) = match machines.entry(*chart) {
-            Entry::Occupied(known) => known.into_mut(),
-            Entry::Vacant(new) => {
-                // At rest the energies show nothing of the works that come: steps would follow their rounding.
-                let end = Some(motion.end_time());
-                let ode = MachineOde::until(machine, before.t, &before.y, end).ok()?;
-                new.insert((ode, machine.workspace()))
-            }
-        };
-        let point = match (before.t == t, &motion.orbit) {
+    pub(crate) fn sample_at(&mut self, t: f64) -> Option<TrajectorySample> {
+        let place = self.motion.place_of(t)?;
+        let before = &place.steps()[place.step];
+        let point = match (before.t == t, &self.motion.orbit) {
             (true, _) => before.clone(),
             (false, Some(orbit)) => OdeState::from(orbit.state_at(t)),
             (false, None) => {
+                let ode = &mut self.machine_of(&place)?.0;
+                let mut observer =
+                    |_: &OdeState, _: &OdeState, _: DenseOutput<'_>| Ok(StepControl::Continue);
                 let mut by_each = METHODS.iter();
-                by_each.find_map(|options| state_after(ode, before, t, options))?
+                by_each.find_map(|options| state_after(ode, before, t, options, &mut observer))?
             }
         };
+        self.sample_of(&place, &point)
+    }
+
+    /// The same but for the error of interpolation, at a fraction of the cost where many times are in one step.
+    pub(crate) fn interpolated_at(&mut self, t: f64) -> Option<TrajectorySample> {
+        let place = self.motion.place_of(t)?;
+        let (before, after) = (
+            &place.steps()[place.step],
+            place.steps().get(place.step + 1),
+        );
+        let Some(after) = after.filter(|_| before.t < t && self.motion.orbit.is_none()) else {
+            return self.sample_at(t);
+        };
+        let key = (place.segment, place.step);
+        if self.interpolated.iter().all(|(known, _)| *known != key) {
+            let ode = &mut self.machine_of(&place)?.0;
+            let mut by_each = METHODS.iter();
+            let polynomials =
+                by_each.find_map(|options| polynomials_of(ode, before, after.t, options))?;
+            self.interpolated.truncate(MAX_STORED - 1);
+            self.interpolated.push_front((key, polynomials));
+        }
+        let (_, polynomials) = self.interpolated.iter().find(|(known, _)| *known == key)?;
+        let polynomials = polynomials.iter().find(|part| t <= part.end)?;
+        let y = polynomials.at(t);
+        self.sample_of(&place, &OdeState { t, y })
+    }
+
+    /// The equation of motion and the working memory at a place.
+    fn machine_of(
+        &mut self,
+        place: &PlaceInMotion<'m>,
+    ) -> Option<&mut (MachineOde<'m>, MachineWorkspace)> {
+        Some(match self.machines.entry(place.chart) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(new) => {
+                let machine: &Machine = self.problem.machine(self.motion, place.chart);
+                let before = &place.steps()[place.step];
+                // At rest the energies show nothing of the works that come: steps would follow their rounding.
+                let end = Some(self.motion.end_time());
+                let ode = MachineOde::until(machine, before.t, &before.y, end).ok()?;
+                new.insert((ode, machine.workspace()))
+            }
+        })
+    }
+
+    /// What is evaluated at a state within a step.
+    fn sample_of(
+        &mut self,
+        place: &PlaceInMotion<'m>,
+        point: &OdeState,
+    ) -> Option<TrajectorySample> {
+        let (problem, motion) = (self.problem, self.motion);
+        let machine = problem.machine(motion, place.chart);
         if machine.is_in_fit_window(&point.y) {
             return None;
         }
-        let sliding = sliding_at(solution, t);
-        let place = (*chart, machine, &mut *workspace);
-        let mut sample = problem.sample(place, &point, sliding).ok()?;
-        if let Some(steps) = motion.actuator_coordinates.steps.get(segment) {
+        let sliding = sliding_at(place.solution, point.t);
+        let workspace = &mut self.machine_of(place)?.1;
+        let mut sample = problem
+            .sample((place.chart, machine, &mut *workspace), point, sliding)
+            .ok()?;
+        if let Some(steps) = motion.actuator_coordinates.steps.get(place.segment) {
             let mechanism = &problem.loaded_scene.mechanism;
             let measured =
                 CoordinateFunction::find(mechanism, mechanism.actuators[0].coordinate())?;
             let mut state = machine.evaluate(point.t, &point.y, workspace).ok()?;
             let mut now = state.bodies().coordinate(measured);
             if let CoordinateFunction::Angle(_) = measured {
-                let [q, q_dot, _] = *steps.get(k)?;
-                let near = q + 0.5 * (q_dot + now[1]) * (t - before.t);
+                let [q, q_dot, _] = *steps.get(place.step)?;
+                let before = &place.steps()[place.step];
+                let near = q + 0.5 * (q_dot + now[1]) * (point.t - before.t);
                 now[0] += TAU * ((near - now[0]) / TAU).round();
             }
             sample.actuator_coordinate = Some(now);
@@ -124,6 +173,7 @@ fn state_after(
     before: &OdeState,
     t: f64,
     &(method, tolerance, max_steps): &(Method, f64, usize),
+    observer: StepObserver<'_>,
 ) -> Option<OdeState> {
     // Within a step nothing switches, and nothing varies faster than it: it need not be searched again, which would take
     // most of the time.
@@ -132,7 +182,67 @@ fn state_after(
         max_step: Some(t - before.t),
         ..Options::new(method, tolerance)
     };
-    let mut go_on = |_: &OdeState, _: &OdeState, _: DenseOutput<'_>| Ok(StepControl::Continue);
-    let part = integrate(ode, before, Some(t), &options, &mut go_on).ok()?;
+    let part = integrate(ode, before, Some(t), &options, observer).ok()?;
     part.error.is_none().then_some(part.state)
+}
+
+/// A motion within a part of a step: a polynomial of each state through values at Chebyshev points.
+struct Polynomials {
+    /// The end of the part, s.
+    end: f64,
+    /// The points, s, each with the states there.
+    nodes: Vec<(f64, Vec<f64>)>,
+}
+
+/// The motion from a state until a time (s), integrated once more.
+fn polynomials_of(
+    ode: &mut MachineOde<'_>,
+    before: &OdeState,
+    end: f64,
+    options: &(Method, f64, usize),
+) -> Option<Vec<Polynomials>> {
+    let mut parts = Vec::new();
+    let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
+        let mut node = |k: usize| {
+            let angle = PI * (k as f64 + 0.5) / NODES as f64;
+            let t = 0.5 * (before.t + now.t) - 0.5 * (now.t - before.t) * angle.cos();
+            let mut y = now.y.clone();
+            dense(t, &mut y).map(|()| (t, y))
+        };
+        parts.push(Polynomials {
+            end: now.t,
+            nodes: (0..NODES).map(&mut node).collect::<Result<_, _>>()?,
+        });
+        Ok(StepControl::Continue)
+    };
+    state_after(ode, before, end, options, &mut observer)?;
+    Some(parts)
+}
+
+impl Polynomials {
+    /// The states at a time (s), by the barycentric formula at Chebyshev points of the first kind.
+    fn at(&self, t: f64) -> Vec<f64> {
+        let weight = |k: usize| {
+            let angle = PI * (k as f64 + 0.5) / NODES as f64;
+            if k % 2 == 0 {
+                angle.sin()
+            } else {
+                -angle.sin()
+            }
+        };
+        if let Some((_, y)) = self.nodes.iter().find(|(node, _)| *node == t) {
+            return y.clone();
+        }
+        let weights = self.nodes.iter().enumerate();
+        let weights: Vec<f64> = weights
+            .map(|(k, (node, _))| weight(k) / (t - node))
+            .collect();
+        let sum: f64 = weights.iter().sum();
+        let state = |i: usize| {
+            let terms = weights.iter().zip(&self.nodes).map(|(w, (_, y))| w * y[i]);
+            terms.sum::<f64>() / sum
+        };
+        let states = self.nodes.first().map_or(0, |(_, y)| y.len());
+        (0..states).map(state).collect()
+    }
 }

@@ -16,8 +16,8 @@ mod tables;
 
 pub(crate) use difference::Difference;
 pub use problem::FreeMotionProblem;
-pub(crate) use segmented_motion::ComputedMotion;
 pub use segmented_motion::SegmentedMotion;
+pub(crate) use segmented_motion::{ComputedMotion, PlaceInMotion};
 #[cfg(feature = "output")]
 pub(crate) use simulation::compute_free_motion_at;
 pub use simulation::{FreeMotion, MotionSolver, compute_free_motion};

@@ -79,4 +79,38 @@ impl SegmentedMotion {
         let segments = self.segments.iter();
         segments.flat_map(|(chart, s)| s.steps.iter().map(|state| (*chart, state)))
     }
+
+    /// Where a time (s) is; none outside the motion.
+    pub(crate) fn place_of(&self, t: f64) -> Option<PlaceInMotion<'_>> {
+        let holds = |steps: &[OdeState]| {
+            let ends = steps.first().zip(steps.last());
+            ends.is_some_and(|(first, last)| first.t <= t && t <= last.t)
+        };
+        let mut segments = self.segments.iter().enumerate();
+        let (segment, (chart, solution)) = segments.find(|(_, (_, s))| holds(&s.steps))?;
+        let begun = solution.steps.partition_point(|step| step.t <= t);
+        Some(PlaceInMotion {
+            segment,
+            chart: *chart,
+            solution,
+            step: begun.checked_sub(1)?,
+        })
+    }
+}
+
+/// A step of a motion.
+pub(crate) struct PlaceInMotion<'m> {
+    pub(crate) segment: usize,
+    pub(crate) chart: usize,
+    /// That of the segment.
+    pub(crate) solution: &'m Solution,
+    /// The number of the step in it.
+    pub(crate) step: usize,
+}
+
+impl<'m> PlaceInMotion<'m> {
+    /// The steps of the segment.
+    pub(crate) fn steps(&self) -> &'m [OdeState] {
+        &self.solution.steps
+    }
 }

@@ -9,7 +9,7 @@ use crate::models::{SolverSettings, with_drive_loads};
 use crate::number_format::digits;
 use crate::progress::{Progress, no_progress};
 use crate::trajectory::compute::{
-    ComputedTrajectory, MotionBetweenRows, Trajectory, compute_along,
+    ComputedTrajectory, MotionBetweenRows, SamplePrecision, Sampler, Trajectory, compute_along,
 };
 use dwell_dynamics::{DynamicsError, EventOccurrence, Options};
 use dwell_findings::{Record, Table};
@@ -101,11 +101,16 @@ pub(crate) fn compute_free_motion_at(
         || problem.steps_as_samples(motion),
     );
     let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
-    let sampler = problem.sampler(motion);
-    let sample = |t: f64| sampler.sample_at(t);
+    let sampler = || -> Sampler<'_> {
+        let mut sampler = problem.sampler(motion);
+        Box::new(move |t, precision| match precision {
+            SamplePrecision::Interpolated => sampler.interpolated_at(t),
+            SamplePrecision::Exact => sampler.sample_at(t),
+        })
+    };
     let between = steps.map(|further| MotionBetweenRows {
         further,
-        sample: &sample,
+        sampler: &sampler,
     });
     let followed = (trajectory, between);
     let rows = problem.rows_and_summary(&integrated, (followed, times), duration, progress);

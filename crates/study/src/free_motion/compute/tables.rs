@@ -92,7 +92,7 @@ impl FreeMotionProblem<'_> {
         let end = motion.end_time();
         let wanted = times.iter().copied().filter(|&t| t < end).chain([end]);
         let index = self.balance_index();
-        let sampler = self.sampler(motion);
+        let mut sampler = self.sampler(motion);
         let initial = sampler
             .sample_at(0.0)
             .map_or(0.0, |s| s.extra_values[index]);

@@ -7,6 +7,7 @@
 use crate::trajectory::compute::{
     BALANCE, Column, PositionEvaluator, Quantity, Trajectory, TrajectorySample,
 };
+use SamplePrecision::{Exact, Interpolated};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 use std::io;
@@ -44,14 +45,26 @@ pub(crate) struct Extrema {
     pub(crate) are_between_rows: bool,
 }
 
+/// How a position between others is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum SamplePrecision {
+    /// For the search of an extremum: an integrated motion may be interpolated within its steps.
+    Interpolated,
+    /// For the value of an extremum.
+    Exact,
+}
+
+/// The position at a parameter; none where it cannot be computed.
+pub(crate) type Sampler<'s> = Box<dyn FnMut(f64, SamplePrecision) -> Option<TrajectorySample> + 's>;
+
 /// A trajectory at any position.
 pub(crate) struct BetweenRows<'s> {
     /// The parameter of each row: a time, or a completed fraction.
     pub(crate) parameters: Vec<f64>,
     /// Further positions, in the order of their parameters.
     pub(crate) further: Vec<(f64, TrajectorySample)>,
-    /// The position at a parameter; none where it cannot be computed.
-    pub(crate) sample: &'s dyn Fn(f64) -> Option<TrajectorySample>,
+    /// A new sampler: each thread has its own.
+    pub(crate) sampler: &'s (dyn Fn() -> Sampler<'s> + Sync),
 }
 
 /// A position: its parameter, and the value of a column.
@@ -63,8 +76,9 @@ impl<'s> BetweenRows<'s> {
     pub(crate) fn new(
         parameters: Vec<f64>,
         further: Vec<(f64, TrajectorySample)>,
-        sample: &'s dyn Fn(f64) -> Option<TrajectorySample>,
+        sampler: &'s (dyn Fn() -> Sampler<'s> + Sync),
     ) -> Self {
+        let mut sample = sampler();
         let mut known: Vec<f64> = further.iter().map(|(u, _)| *u).collect();
         known.extend(&parameters);
         known.sort_by(f64::total_cmp);
@@ -77,14 +91,14 @@ impl<'s> BetweenRows<'s> {
             let parts = (length / longest * (1.0 - 1e-9)).ceil();
             if length > 0.0 && parts > 1.0 {
                 let between = (1..parts as usize).map(|k| from + length * k as f64 / parts);
-                all.extend(between.filter_map(|u| Some((u, sample(u)?))));
+                all.extend(between.filter_map(|u| Some((u, sample(u, Exact)?))));
             }
         }
         all.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         Self {
             parameters,
             further: all,
-            sample,
+            sampler,
         }
     }
 }
@@ -96,8 +110,8 @@ pub(crate) struct ExtremaSearch<'a, 'e> {
     /// The index of the abscissa's column.
     pub(crate) abscissa: usize,
     /// All values of a column.
-    pub(crate) values: &'a dyn Fn(usize) -> io::Result<Vec<f64>>,
-    pub(crate) evaluators: &'a mut [PositionEvaluator<'e>],
+    pub(crate) values: &'a (dyn Fn(usize) -> io::Result<Vec<f64>> + Sync),
+    pub(crate) evaluators: &'a [PositionEvaluator<'e>],
 }
 
 impl ExtremaSearch<'_, '_> {
@@ -123,37 +137,48 @@ impl ExtremaSearch<'_, '_> {
         })
     }
 
-    /// The extrema of some columns along the whole trajectory; of the others in the rows.
+    /// The extrema of some columns along the whole trajectory, on all cores; of the others in the rows.
     pub(crate) fn between_rows(
-        &mut self,
+        &self,
         wanted: &[usize],
         between: &BetweenRows<'_>,
     ) -> io::Result<Extrema> {
         let mut extrema = self.in_rows()?;
         let is_searched = |&k: &usize| is_continuous(&self.columns[k]);
         let wanted: Vec<usize> = wanted.iter().copied().filter(is_searched).collect();
-        let further = self.evaluate_all(&wanted, &between.further);
+        let points = KnownPoints::new(between, self.evaluate_all(&wanted, &between.further));
         let refined = (MAX_REFINED_OF_ALL / wanted.len().max(1)).clamp(1, MAX_REFINED);
-        for (i, &k) in wanted.iter().enumerate() {
-            let Some(ends) = &mut extrema.of_columns[k] else {
-                continue;
+        let known: Vec<(usize, usize)> = wanted.iter().copied().enumerate().collect();
+        let part = known.len().div_ceil(rayon::current_num_threads());
+        let parts = known.par_chunks(part.max(1)).map(|columns| {
+            let mut search = ColumnSearch {
+                trajectory: self.trajectory,
+                columns: self.columns,
+                abscissa: self.abscissa,
+                evaluators: self.evaluators.to_vec(),
+                sample: (between.sampler)(),
             };
-            let [lowest, highest] = *ends;
-            let rows = between.parameters.iter().zip((self.values)(k)?);
-            let mut points: Vec<Point> = rows.map(|(&u, value)| [u, value]).collect();
-            // An angle's revolutions are counted from row to row.
-            if !self.columns[k].unwraps() {
-                points.extend(further.iter().map(|(u, values)| [*u, values[i]]));
-                points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-            }
-            points.dedup_by_key(|point| point[0]);
-            for (extremum, (sign, from)) in ends.iter_mut().zip([(-1.0, lowest), (1.0, highest)]) {
-                let better = self.search(k, sign, (&points, refined), between.sample);
-                let beats = |found: &Extremum| {
-                    sign * (found.value - from.value) > NO_GAIN * from.value.abs()
+            let column = |&(i, k): &(usize, usize)| {
+                let points = points.of_column(i, (self.values)(k)?, self.columns[k].unwraps());
+                let mut found = |sign| search.largest(k, sign, (&points, refined));
+                io::Result::Ok((k, [found(-1.0), found(1.0)]))
+            };
+            columns.iter().map(column).collect::<io::Result<Vec<_>>>()
+        });
+        for part in parts.collect::<Vec<_>>() {
+            for (k, found) in part? {
+                let Some(ends) = &mut extrema.of_columns[k] else {
+                    continue;
                 };
-                if let Some(found) = better.filter(beats) {
-                    *extremum = found;
+                for (extremum, (sign, found)) in
+                    ends.iter_mut().zip([-1.0, 1.0].into_iter().zip(found))
+                {
+                    let from = extremum.value;
+                    let beats =
+                        |found: &Extremum| sign * (found.value - from) > NO_GAIN * from.abs();
+                    if let Some(found) = found.filter(beats) {
+                        *extremum = found;
+                    }
                 }
             }
         }
@@ -167,8 +192,7 @@ impl ExtremaSearch<'_, '_> {
         columns: &[usize],
         positions: &[(f64, TrajectorySample)],
     ) -> Vec<(f64, Vec<f64>)> {
-        let (trajectory, all) = (self.trajectory, self.columns);
-        let evaluators = &*self.evaluators;
+        let (trajectory, all, evaluators) = (self.trajectory, self.columns, self.evaluators);
         let part = positions.len().div_ceil(rayon::current_num_threads());
         let parts = positions.par_chunks(part.max(1)).map(|positions| {
             let mut evaluators = evaluators.to_vec();
@@ -180,20 +204,75 @@ impl ExtremaSearch<'_, '_> {
         });
         parts.flatten().collect()
     }
+}
 
+/// The positions at which the columns are known: the rows, and others between them.
+struct KnownPoints<'b> {
+    parameters: &'b [f64],
+    further: Vec<(f64, Vec<f64>)>,
+    /// By parameter, each once: a row, or else one of the others.
+    order: Vec<(f64, Result<usize, usize>)>,
+}
+
+impl<'b> KnownPoints<'b> {
+    fn new(between: &'b BetweenRows<'_>, further: Vec<(f64, Vec<f64>)>) -> Self {
+        let rows = between.parameters.iter().enumerate();
+        let mut order: Vec<_> = rows.map(|(row, &u)| (u, Ok(row))).collect();
+        order.extend(further.iter().enumerate().map(|(i, (u, _))| (*u, Err(i))));
+        order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order.dedup_by_key(|point| point.0);
+        Self {
+            parameters: &between.parameters,
+            further,
+            order,
+        }
+    }
+
+    /// The values of the `i`th searched column, of which those in the rows are given.
+    fn of_column(&self, i: usize, rows: Vec<f64>, unwraps: bool) -> Vec<Point> {
+        // An angle's revolutions are counted from row to row.
+        if unwraps {
+            let rows = self.parameters.iter().zip(rows);
+            let mut points: Vec<Point> = rows.map(|(&u, value)| [u, value]).collect();
+            points.dedup_by_key(|point| point[0]);
+            return points;
+        }
+        // A motion may end before its last row.
+        let known = self.order.iter().filter_map(|&(u, place)| match place {
+            Ok(row) => Some([u, *rows.get(row)?]),
+            Err(other) => Some([u, self.further[other].1[i]]),
+        });
+        known.collect()
+    }
+}
+
+/// The search for extrema of one column after another.
+struct ColumnSearch<'a, 'e, 's> {
+    trajectory: &'a Trajectory<'a>,
+    columns: &'a [Column],
+    abscissa: usize,
+    evaluators: Vec<PositionEvaluator<'e>>,
+    sample: Sampler<'s>,
+}
+
+impl ColumnSearch<'_, '_, '_> {
     /// Some columns at a position.
-    fn evaluate(&mut self, columns: &[usize], sample: &TrajectorySample) -> Option<Vec<f64>> {
+    fn evaluate(
+        &mut self,
+        columns: &[usize],
+        (u, precision): (f64, SamplePrecision),
+    ) -> Option<Vec<f64>> {
+        let sample = (self.sample)(u, precision)?;
         let all = (self.columns, columns);
-        evaluate(self.trajectory, self.evaluators, all, sample)
+        evaluate(self.trajectory, &mut self.evaluators, all, &sample)
     }
 
     /// The largest value times `sign` of a column; `points` are some of its values.
-    fn search(
+    fn largest(
         &mut self,
         k: usize,
         sign: f64,
         (points, refined): (&[Point], usize),
-        sample: &dyn Fn(f64) -> Option<TrajectorySample>,
     ) -> Option<Extremum> {
         let points: Vec<Point> = points.iter().map(|[u, v]| [*u, sign * v]).collect();
         let values = points.iter().filter(|point| !point[1].is_nan());
@@ -202,8 +281,8 @@ impl ExtremaSearch<'_, '_> {
         let mut found: Vec<Point> = vec![largest];
         let unwraps = self.columns[k].unwraps();
         for (near, bracket) in promising(&points, largest[1], refined) {
-            let mut value = |u: f64| {
-                let [mut value] = self.evaluate(&[k], &sample(u)?)?[..] else {
+            let mut value = |u: f64, precision: SamplePrecision| {
+                let [mut value] = self.evaluate(&[k], (u, precision))?[..] else {
                     return None;
                 };
                 if unwraps {
@@ -211,7 +290,8 @@ impl ExtremaSearch<'_, '_> {
                 }
                 Some(sign * value).filter(|value| value.is_finite())
             };
-            found.extend(refine_maximum(&mut value, bracket, scale));
+            let top = refine_maximum(&mut |u| value(u, Interpolated), bracket, scale);
+            found.extend(top.and_then(|[u, _]| Some([u, value(u, Exact)?])));
         }
         let best = found
             .iter()
@@ -220,7 +300,7 @@ impl ExtremaSearch<'_, '_> {
         let is_best = |point: &&Point| point[1] >= best - SAME * scale;
         let first = found.iter().filter(is_best);
         let [u, value] = *first.min_by(|a, b| a[0].total_cmp(&b[0]))?;
-        let [at] = self.evaluate(&[self.abscissa], &sample(u)?)?[..] else {
+        let [at] = self.evaluate(&[self.abscissa], (u, Exact))?[..] else {
             return None;
         };
         Some(Extremum {

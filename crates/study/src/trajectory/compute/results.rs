@@ -8,9 +8,9 @@ use crate::models::loaded_model;
 use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
     Analysis, BetweenRows, Column, Extrema, ExtremaSearch, LongRows, POSITIONS_PER_STEP,
-    PositionEvaluator, Quantity, RequestedColumns, RoundingError, RowStorage, SectionedLink,
-    Trajectory, TrajectorySample, UnitReferences, all_columns, check_variables, is_requested,
-    not_stored, prune_model,
+    PositionEvaluator, Quantity, RequestedColumns, RoundingError, RowStorage, Sampler,
+    SectionedLink, Trajectory, TrajectorySample, UnitReferences, all_columns, check_variables,
+    is_requested, not_stored, prune_model,
 };
 use dwell_findings::{self as findings, Table};
 use dwell_geometry::Plan;
@@ -221,10 +221,10 @@ fn computed_columns(scene: &Scene, model: &Model, trajectory: &Trajectory<'_>) -
         .collect()
 }
 
-/// A free motion between its rows: positions at other times (s), and the position at any time, if there is one.
+/// A free motion between its rows: positions at other times (s), and a sampler at any time for each thread.
 pub(crate) struct MotionBetweenRows<'s> {
     pub(crate) further: Vec<(f64, TrajectorySample)>,
-    pub(crate) sample: &'s dyn Fn(f64) -> Option<TrajectorySample>,
+    pub(crate) sampler: &'s (dyn Fn() -> Sampler<'s> + Sync),
 }
 
 impl TrajectoryResults {
@@ -257,39 +257,32 @@ impl TrajectoryResults {
         &mut self,
         scene: &Scene,
         trajectory: &Trajectory<'_>,
-        evaluators: &mut [PositionEvaluator<'_>],
+        evaluators: &[PositionEvaluator<'_>],
         motion: Option<MotionBetweenRows<'_>>,
     ) -> Result<(), StudyError> {
         self.find_rounding(scene.mechanism.size());
         let written = self.written.iter().copied();
         let wanted: Vec<usize> = written.filter(|&k| !self.is_rounding[k]).collect();
-        let at_fraction = |u: f64| Some(trajectory.sample_at(u));
-        let between = match (trajectory.free_motion(), motion) {
-            (None, _) => {
-                let fractions = (0..self.len()).map(|k| trajectory.fraction_at(k));
-                Some(BetweenRows::new(
-                    fractions.collect(),
-                    Vec::new(),
-                    &at_fraction,
-                ))
-            }
-            (Some(of_rows), Some(MotionBetweenRows { further, sample })) => {
-                let times = of_rows.samples.iter().take(self.rows.len());
-                let times = times.map(|s| s.t).collect();
-                Some(BetweenRows::new(times, further, sample))
-            }
-            (Some(_), None) => None,
-        };
-        let mut search = ExtremaSearch {
+        let search = ExtremaSearch {
             trajectory,
             columns: &self.columns,
             abscissa: self.abscissa(trajectory),
             values: &|k| self.values(k),
             evaluators,
         };
-        let extrema = match between {
-            Some(between) => search.between_rows(&wanted, &between),
-            None => search.in_rows(),
+        let extrema = match (trajectory.free_motion(), motion) {
+            (None, _) => {
+                let fractions = (0..self.len()).map(|k| trajectory.fraction_at(k));
+                let sampler = || -> Sampler<'_> { Box::new(|u, _| Some(trajectory.sample_at(u))) };
+                let between = BetweenRows::new(fractions.collect(), Vec::new(), &sampler);
+                search.between_rows(&wanted, &between)
+            }
+            (Some(of_rows), Some(MotionBetweenRows { further, sampler })) => {
+                let times = of_rows.samples.iter().take(self.rows.len());
+                let times = times.map(|s| s.t).collect();
+                search.between_rows(&wanted, &BetweenRows::new(times, further, sampler))
+            }
+            (Some(_), None) => search.in_rows(),
         };
         self.extrema = extrema.map_err(|e| not_stored(&e))?;
         for (extrema, &is_rounding) in self.extrema.of_columns.iter_mut().zip(&self.is_rounding) {
@@ -448,7 +441,7 @@ fn compute_in<'a>(
         return Err(error);
     }
     results.finish_rows()?;
-    results.find_extrema(scene, &trajectory, &mut evaluators, between)?;
+    results.find_extrema(scene, &trajectory, &evaluators, between)?;
     results.rounding_error = rounding_error.map(|error| error.max_relative());
     Ok(ComputedTrajectory {
         table: results.table(),
