@@ -22,6 +22,8 @@ pub enum Block {
     Heading(String),
     /// Markdown as it is.
     Text(String),
+    /// Words of a user, such as the note of a scene, in their lines: no markup.
+    Words(String),
     /// Cells of text.
     Table {
         /// The header.
@@ -51,6 +53,7 @@ impl Document {
             match block {
                 Block::Heading(heading) => text.push_str(&format!("## {}\n", one_line(heading))),
                 Block::Text(paragraph) => text.push_str(&format!("{}\n", paragraph.trim_end())),
+                Block::Words(words) => text.push_str(&format!("{}\n", words_in_lines(words))),
                 Block::Table { header, rows } => text.push_str(&table(header, rows)),
                 Block::Figure { file, alt, caption } => text.push_str(&image(file, alt, caption)),
                 Block::Findings(findings) => text.push_str(&findings_table(findings)),
@@ -157,6 +160,24 @@ pub fn markdown_text(text: &str) -> String {
     one_line(&out)
 }
 
+/// Words of a user in their lines and paragraphs: what would be markup, also at the beginning of a line, is escaped.
+fn words_in_lines(words: &str) -> String {
+    let line = |line: &str| {
+        let text = markdown_text(line.trim());
+        let digits = text.len() - text.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+        // `1.` and `1)` begin a list, the others a heading, a list, a quotation, a rule, a table or code.
+        match text[digits..].chars().next() {
+            Some('.' | ')') if digits > 0 => format!("{}\\{}", &text[..digits], &text[digits..]),
+            Some('#' | '-' | '+' | '>' | '=' | '|' | '~' | '_') if digits == 0 => {
+                format!("\\{text}")
+            }
+            _ => text,
+        }
+    };
+    let lines: Vec<String> = words.trim().lines().map(line).collect();
+    lines.join("\n")
+}
+
 /// Text that cannot end its cell.
 fn cell(text: &str) -> String {
     one_line(text).replace('|', "\\|")
@@ -240,6 +261,15 @@ mod tests {
             text.lines()
                 .filter(|l| l.starts_with('|'))
                 .all(|row| cells(row) == 2)
+        );
+    }
+
+    #[test]
+    fn words_of_a_user_are_no_markup() {
+        let words = "A *star*, a <b>tag</b>\n# heading\n- item\n\n1. first\n    code\n3.5 m";
+        assert_eq!(
+            words_in_lines(words),
+            "A \\*star\\*, a &lt;b>tag&lt;/b>\n\\# heading\n\\- item\n\n1\\. first\ncode\n3\\.5 m"
         );
     }
 

@@ -21,7 +21,7 @@ pub(crate) fn results_page(
     let mut lines = summary.lines();
     let first = lines.next().unwrap_or_default();
     let mut blocks = vec![Block::Text(format!("{}.", plain(first)))];
-    blocks.extend(scene.note.clone().map(Block::Text));
+    blocks.extend(scene.note.clone().map(Block::Words));
     let list: Vec<String> = lines.map(|line| format!("- {}", plain(line))).collect();
     if !list.is_empty() {
         blocks.push(Block::Text(list.join("\n")));

@@ -335,7 +335,7 @@ impl<'a> Document<'a> {
             "{}.",
             dwell_report::markdown_text(&self.first_line())
         ))];
-        blocks.extend(self.scene.note.clone().map(Block::Text));
+        blocks.extend(self.scene.note.clone().map(Block::Words));
         let balance = self.power_balance_text();
         if !balance.is_empty() {
             blocks.push(Block::Text(format!("{}.", balance.trim())));

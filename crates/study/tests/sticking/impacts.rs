@@ -4,6 +4,7 @@ use crate::{run, tolerance};
 use dwell_dynamics::{ContactEvent, Method, StopChange};
 use dwell_scene::Scene;
 use dwell_study::models::{build_machine, with_drive_loads};
+use std::f64::consts::PI;
 
 /// The times of the impacts, the impulses along their coordinates, the changes of speeds and the states behind.
 fn impacts(run: &crate::Run) -> Vec<(f64, f64, Vec<f64>, Vec<f64>)> {
@@ -140,6 +141,81 @@ duration = 10.0
             relative *= -e;
             near(u, relative, allowed);
             time += 2.0 / relative.abs();
+        }
+    }
+}
+
+/// Carlson's symmetric elliptic integral of the first kind, by duplication (Carlson, Numer. Math. 33, 1979).
+fn carlson_rf(mut x: f64, mut y: f64, mut z: f64) -> f64 {
+    loop {
+        let mean = (x + y + z) / 3.0;
+        let [u, v, w] = [x, y, z].map(|part| 1.0 - part / mean);
+        if u.abs().max(v.abs()).max(w.abs()) < 1e-3 {
+            let (e2, e3) = (u * v - w * w, u * v * w);
+            let series = 1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0;
+            return series / mean.sqrt();
+        }
+        let lambda = (x * y).sqrt() + (y * z).sqrt() + (z * x).sqrt();
+        [x, y, z] = [x, y, z].map(|part| 0.25 * (part + lambda));
+    }
+}
+
+/// The time (s) in which a pendulum of 1 m falls from rest at an amplitude to an angle, both from the vertical:
+/// √(l/g) (K(k) − F(φ, k)) with k = sin(amplitude/2), k sin φ = sin(angle/2).
+fn time_of_fall(amplitude: f64, angle: f64, gravity: f64) -> f64 {
+    let k = (0.5 * amplitude).sin();
+    let sine = (0.5 * angle).sin() / k;
+    let complete = carlson_rf(0.0, 1.0 - k * k, 1.0);
+    let part = sine * carlson_rf(1.0 - sine * sine, 1.0 - (k * sine).powi(2), 1.0);
+    (complete - part) / gravity.sqrt()
+}
+
+/// A pendulum under gravity falls from 2 rad on a stop at 0.3 rad, and rises after each impact to the amplitude that
+/// the restitution leaves: cos θ₁ = cos θₛ − e² (cos θₛ − cos θ₀).
+#[test]
+fn a_bouncing_pendulum_has_the_times_of_elliptic_integrals() {
+    const G: f64 = 9.81;
+    let (amplitude, stop, e) = (2.0_f64, 0.3_f64, 0.7_f64);
+    // The complete integral at k = sin 45° is Γ(1/4)²/(4√π).
+    let known = time_of_fall(PI / 2.0, 0.0, 1.0);
+    near(known, 1.854_074_677_301_371_9, 1e-15);
+    let text = format!(
+        r#"
+[bodies.ground]
+points = {{ O = [0, 0] }}
+[bodies.bob]
+points = {{ O = [0, 0] }}
+mass = 3.0
+center = [1, 0]
+[joints]
+O = {{ revolute = ["ground.O", "bob.O"] }}
+[actuators.p]
+angle = ["ground", "bob"]
+[assembly]
+p = {amplitude:?}
+[loads]
+weight = {{ gravity = [{G:?}, 0] }}
+[stops]
+buffer = {{ coordinate = "p", min = {stop:?}, restitution = {e:?} }}
+[motion]
+duration = 4.0
+"#
+    );
+    let mut expected = vec![time_of_fall(amplitude, stop, G)];
+    let mut cosine = amplitude.cos();
+    for _ in 0..4 {
+        cosine = stop.cos() - e * e * (stop.cos() - cosine);
+        let flight = 2.0 * time_of_fall(cosine.acos(), stop, G);
+        expected.push(expected[expected.len() - 1] + flight);
+    }
+    assert!(expected[4] < 4.0, "{expected:?}");
+    for method in Method::ALL {
+        let [rtol, allowed] = tolerance(method);
+        let run = run(&text, method, rtol);
+        let found = impacts(&run);
+        for (k, time) in expected.iter().enumerate() {
+            println!("{method:?} {k} {:e}", found[k].0 - time);
+            near(found[k].0, *time, 20.0 * allowed);
         }
     }
 }

@@ -20,7 +20,7 @@ pub(super) fn document(
     analysis: &CaseAnalysis<'_>,
     dwell: Option<&Dwell>,
 ) -> Document {
-    let mut blocks: Vec<Block> = scene.note.iter().cloned().map(Block::Text).collect();
+    let mut blocks: Vec<Block> = scene.note.iter().cloned().map(Block::Words).collect();
     blocks.push(Block::Text(findings_sentence(reference, analysis)));
     if !reference.source.is_empty() {
         blocks.push(Block::Text(format!("Source: {}.", reference.source)));
