@@ -51,6 +51,7 @@ pub mod sweep;
 mod symbolic;
 pub mod trajectory;
 pub mod unit_runs;
+mod unit_slips;
 
 pub use calibrate::{CalibrationResult, find_value};
 pub use check::describe_scene;
