@@ -3,8 +3,9 @@
 use std::ffi::OsString;
 
 /// Of which command, the former option, the current one.
-const OPTIONS: [(&str, &str, &str); 7] = [
+const OPTIONS: [(&str, &str, &str); 8] = [
     ("reduce", "--table", "--table-accuracy"),
+    ("reduce", "--to", "--table-to"),
     ("simulate", "--every", "--sample-interval"),
     ("linearise", "--at", "--about"),
     ("symbolic", "--to", "--format"),
@@ -34,6 +35,21 @@ pub(crate) fn with_current_names(
     }
     let command = arguments[at].clone();
     let options: Vec<_> = OPTIONS.iter().filter(|(of, ..)| command == *of).collect();
+    // `--from` of `reduce` was the lower end of a table, a number; now two files follow it.
+    let is_end = |k: usize| {
+        let next = arguments.get(k + 1).and_then(|next| next.to_str());
+        let given = arguments[k]
+            .to_str()
+            .and_then(|given| given.strip_prefix("--from"));
+        let value =
+            given.and_then(|rest| rest.strip_prefix('=').or(next.filter(|_| rest.is_empty())));
+        command == *"reduce" && value.is_some_and(|value| value.parse::<f64>().is_ok())
+    };
+    let ends: Vec<usize> = (at + 1..arguments.len()).filter(|&k| is_end(k)).collect();
+    for k in ends {
+        let rest = arguments[k].to_string_lossy().replacen("--from", "", 1);
+        replace(&mut arguments[k], "--from", "--table-from", &rest);
+    }
     for argument in arguments.iter_mut().skip(at + 1).take_while(|a| *a != "--") {
         let given = argument.to_string_lossy().into_owned();
         for (_, former, current) in &options {

@@ -4,6 +4,7 @@
 //! written).
 
 mod cases;
+mod exported_runs;
 mod former;
 mod init;
 mod instants;
@@ -27,7 +28,7 @@ use long_runs::LongRunLines;
 use miette::{Report, miette};
 use options::{Command, Options, STANDARD_INPUT, STANDARD_INPUT_NAME, TrajectoryArgs};
 use std::io::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
 use times::Times;
@@ -77,6 +78,25 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
                 ..Done::default()
             }
         }
+        Command::Reduce {
+            runs: Some(runs),
+            columns,
+            interpolation,
+            ..
+        } => {
+            let name = exported_name(options, runs);
+            let outcome = exported_runs::reduce(&name, runs, columns.as_deref(), *interpolation);
+            times.add("computing");
+            let wanted = (options.pictures, options.picture_format);
+            let outcome = outcome.and_then(|outcome| outcome.draw(wanted, &no_progress));
+            times.add("drawing");
+            bar.finish_and_clear();
+            Done {
+                outcome: outcome.map_err(|e| Report::new(as_scene_error(e)))?,
+                exported: Some(name),
+                ..Done::default()
+            }
+        }
         study => {
             let done = read(options, study, &bar);
             let done = done.and_then(|scene| {
@@ -93,7 +113,7 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
                     outcome,
                     early_stop: early_stop.map(as_scene_error),
                     scene: Some(scene),
-                    failures: None,
+                    ..Done::default()
                 })
             });
             times.add("drawing");
@@ -112,6 +132,8 @@ struct Done {
     outcome: Outcome,
     /// The scene, of a command that studies one.
     scene: Option<Scene>,
+    /// The name of the results, of a command that studies exported tables.
+    exported: Option<String>,
     /// Why a trajectory ended early.
     early_stop: Option<SceneError>,
     /// The cases that could not be validated.
@@ -134,7 +156,7 @@ fn finish(
     let result = CommandResult {
         command: name,
         scene: done.scene.as_ref(),
-        path: &summary_path(command, name, done.scene.as_ref()),
+        path: &summary_path(command, name, results_name(&done)),
         status,
         errors: &errors.collect::<Vec<_>>(),
     };
@@ -167,9 +189,27 @@ fn draw_validation(outcome: Outcome, format: PictureFormat) -> Result<Outcome, R
     drawn.map_err(|e| Report::new(as_scene_error(e)))
 }
 
+/// The name with which the names of the results begin.
+fn results_name(done: &Done) -> Option<&str> {
+    let scene = done.scene.as_ref().map(|scene| scene.name.as_str());
+    scene.or(done.exported.as_deref())
+}
+
+/// The name of the results of exported tables: that of the first file without its ending.
+fn exported_name(options: &Options, runs: &[PathBuf]) -> String {
+    let stem = runs.first().and_then(|path| path.file_stem());
+    let of_file = || {
+        stem.map_or_else(
+            || "runs".to_owned(),
+            |stem| stem.to_string_lossy().into_owned(),
+        )
+    };
+    options.name.clone().unwrap_or_else(of_file)
+}
+
 /// The path of the summary in the output folder. Each part of a sweep has one of its own.
-fn summary_path(command: &Command, name: &str, scene: Option<&Scene>) -> String {
-    let of_scene = scene.map_or(String::new(), |scene| format!("{}-", scene.name));
+fn summary_path(command: &Command, name: &str, results: Option<&str>) -> String {
+    let of_scene = results.map_or(String::new(), |results| format!("{results}-"));
     let part = match command {
         Command::Sweep {
             shard: Some(Shard { part, of }),
@@ -194,14 +234,14 @@ fn run_study(
             table_accuracy,
             accuracy,
             points,
-            from,
-            to,
+            table_from,
+            table_to,
             ..
         } => {
             let points = points.map(|n| n as usize);
             let tabulation = table_accuracy.or(*accuracy).map(|accuracy| TableRequest {
                 accuracy,
-                interval: from.zip(*to),
+                interval: table_from.zip(*table_to),
                 required: table_accuracy.is_some(),
             });
             dwell_study::reduce(scene, points, tabulation)?
@@ -340,10 +380,19 @@ fn open_folder(options: &Options) -> Result<OutputFolder, Report> {
         ));
     }
     let mut folder = OutputFolder::open(out).map_err(|e| unwritten(&e))?;
-    if let Some(scene) = options.command.scene() {
-        folder
-            .reserve(&scene_name(options, scene), scene)
-            .map_err(|e| unwritten(&e))?;
+    let source = match &options.command {
+        Command::Reduce {
+            runs: Some(runs), ..
+        } => {
+            let first = runs.first().map(PathBuf::as_path);
+            first.map(|first| (exported_name(options, runs), first))
+        }
+        command => command
+            .scene()
+            .map(|scene| (scene_name(options, scene), scene)),
+    };
+    if let Some((name, source)) = source {
+        folder.reserve(&name, source).map_err(|e| unwritten(&e))?;
     }
     Ok(folder)
 }

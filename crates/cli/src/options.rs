@@ -4,7 +4,9 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use dwell_dynamics::Method;
 use dwell_report::TableFormat;
-use dwell_study::{FormulaFormat, Language, OperatingPoint, PictureFormat, Pictures, Shard};
+use dwell_study::{
+    FormulaFormat, Language, OperatingPoint, PictureFormat, Pictures, SampleInterpolation, Shard,
+};
 use std::path::{Path, PathBuf};
 
 /// Kinetostatics and dynamics of planar mechanisms, with independent checks
@@ -37,7 +39,20 @@ pub(crate) enum Command {
     /// Reduced model (m, ½m′, a, b, w, c) over the range: table and figures
     Reduce {
         /// The scene file, or `-` for standard input
-        scene: PathBuf,
+        #[arg(required_unless_present = "runs")]
+        scene: Option<PathBuf>,
+        /// Instead of a scene: the exported tables (CSV or NPZ) of two kinetostatic runs of any program, of run i (uniform
+        /// speed) and of run ii (uniform acceleration), as `dwell runs` writes them
+        #[arg(long = "from", num_args = 2, value_names = ["RUN_I", "RUN_II"],
+              conflicts_with_all = ["scene", "table_accuracy", "accuracy", "points"])]
+        runs: Option<Vec<PathBuf>>,
+        /// TOML file that names the columns of the exported tables: coordinate, speed, acceleration, force, unit, [reactions]
+        #[arg(long, requires = "runs", value_name = "FILE")]
+        columns: Option<PathBuf>,
+        /// How values between the exported positions are found (default: trigonometric over a whole revolution at equal
+        /// distances, otherwise cubic)
+        #[arg(long, requires = "runs", value_parser = choice(INTERPOLATIONS), value_name = "INTERPOLATION")]
+        interpolation: Option<SampleInterpolation>,
         /// Also write an interpolation table with this accuracy, relative to the largest value of each function, such
         /// as 1e-12
         #[arg(long, value_parser = parse_table_accuracy, value_name = "ACCURACY", allow_hyphen_values = true)]
@@ -49,11 +64,11 @@ pub(crate) enum Command {
         #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1_000_000), value_name = "COUNT", allow_hyphen_values = true)]
         points: Option<u32>,
         /// Lower end of the table, in the scene's unit (default: a full period, or the range without 2 % at each end)
-        #[arg(long, requires_all = ["table_accuracy", "to"], value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
-        from: Option<f64>,
+        #[arg(long, requires_all = ["table_accuracy", "table_to"], value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
+        table_from: Option<f64>,
         /// Upper end of the table, in the scene's unit
-        #[arg(long, requires_all = ["table_accuracy", "from"], value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
-        to: Option<f64>,
+        #[arg(long, requires_all = ["table_accuracy", "table_from"], value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
+        table_to: Option<f64>,
     },
     /// Free motion under loads and drives, with energies and reactions: tables and figures
     Simulate {
@@ -223,8 +238,8 @@ impl Command {
     /// The scene file, of a command that studies one.
     pub(crate) fn scene(&self) -> Option<&Path> {
         match self {
+            Self::Reduce { scene, .. } => scene.as_deref(),
             Self::Check { scene }
-            | Self::Reduce { scene, .. }
             | Self::Simulate { scene, .. }
             | Self::Cycle { scene, .. }
             | Self::WorkPrecision { scene }
@@ -311,6 +326,24 @@ const PICTURE_FORMATS: Choices<PictureFormat> = &[
     ("png", PictureFormat::Png, "Pixels, for screens"),
     ("svg", PictureFormat::Svg, "Lines and letters, for papers"),
     ("both", PictureFormat::Both, "PNG and SVG"),
+];
+
+const INTERPOLATIONS: Choices<SampleInterpolation> = &[
+    (
+        "linear",
+        SampleInterpolation::Linear,
+        "Straight lines, as tables are usually read",
+    ),
+    (
+        "cubic",
+        SampleInterpolation::Cubic,
+        "Cubic polynomials; of m with ½m′ for its slope",
+    ),
+    (
+        "trigonometric",
+        SampleInterpolation::Trigonometric,
+        "A trigonometric series over a whole revolution",
+    ),
 ];
 
 const OPERATING_POINTS: Choices<OperatingPoint> = &[

@@ -84,6 +84,18 @@ impl SceneError {
         }
     }
 
+    /// An error at a range of the text of another file than a scene, such as a table of numbers: the file's name and its text, and
+    /// the range with a remark.
+    pub fn in_text(
+        (name, text): (&str, &str),
+        message: String,
+        help: Option<String>,
+        label: (Range<usize>, String),
+    ) -> Self {
+        let source = Arc::new(NamedSource::new(name, text.to_owned()));
+        Self::with_labels(&source, message, help, [label])
+    }
+
     /// An error at ranges of the text. The ranges are cut to the text and to character boundaries,
     /// since a label outside would keep the whole message from being drawn. Where a line to be
     /// shown is too long for that, the message says line and column instead.

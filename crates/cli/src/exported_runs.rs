@@ -1,0 +1,52 @@
+//! `dwell reduce --from`: reads the exported tables and the names of their columns.
+
+use dwell_report::npz_columns;
+use dwell_scene::SceneError;
+use dwell_study::{ColumnNames, ExportedTable, Outcome, SampleInterpolation, StudyError};
+use std::fs;
+use std::path::Path;
+
+/// The reduced parameters of the tables of run i and run ii.
+pub(crate) fn reduce(
+    name: &str,
+    runs: &[std::path::PathBuf],
+    columns: Option<&Path>,
+    interpolation: Option<SampleInterpolation>,
+) -> Result<Outcome, StudyError> {
+    let tables = runs
+        .iter()
+        .map(|path| table(path))
+        .collect::<Result<Vec<_>, _>>()?;
+    let [one, two] = tables.as_slice() else {
+        let message = format!("{} exported tables", tables.len());
+        let help = "give the tables of run i and of run ii";
+        return Err(SceneError::without_labels(message, Some(help.to_owned())).into());
+    };
+    let names = match columns {
+        Some(path) => {
+            let text = fs::read_to_string(path).map_err(|e| unread(path, &e.to_string()))?;
+            ColumnNames::read(&path.display().to_string(), &text)?
+        }
+        None => ColumnNames::default(),
+    };
+    dwell_study::reduce_runs(name, [one, two], &names, interpolation)
+}
+
+fn unread(path: &Path, reason: &str) -> SceneError {
+    let help = "give the path of an exported table: CSV, or a NumPy archive (.npz)";
+    let message = format!("`{}` cannot be read: {reason}", path.display());
+    SceneError::without_labels(message, Some(help.to_owned()))
+}
+
+/// A table of a file, by its first bytes: an archive, or text.
+fn table(path: &Path) -> Result<ExportedTable, SceneError> {
+    let bytes = fs::read(path).map_err(|e| unread(path, &e.to_string()))?;
+    let file = path.display().to_string();
+    if bytes.starts_with(b"PK") {
+        let columns = npz_columns(&bytes).map_err(|e| unread(path, &e.to_string()))?;
+        return Ok(ExportedTable::of_columns(&file, columns));
+    }
+    let text = String::from_utf8(bytes)
+        .map_err(|_| unread(path, "it is neither UTF-8 text nor a NumPy archive"))?;
+    ExportedTable::read(&file, &text)
+}

@@ -1,0 +1,424 @@
+//! Combines two runs row by row, eqs. (4) and (5) of Jordi, Zayas and Cardona (2008) for any speeds and accelerations:
+//!
+//! ```text
+//! run i    T_i  = m q̈_i  + ½m′ q̇_i²        F_i  = a q̈_i  + b q̇_i²
+//! run ii   T_ii = m q̈_ii + ½m′ q̇_ii²       F_ii = a q̈_ii + b q̇_ii²
+//! ```
+//!
+//! At each position of run i these are two equations for m and ½m′, and two for a and b of each reaction. Where run ii has
+//! other positions, it is interpolated.
+
+use super::columns::{ColumnNames, Run};
+use super::text_table::{ExportedColumn, ExportedTable};
+use dwell_kinetostatics::Coefficients;
+use dwell_scene::SceneError;
+use std::f64::consts::TAU;
+
+/// Points of the polynomial by which run ii is interpolated onto other positions.
+const POINTS: usize = 6;
+/// Positions that differ by less than this part of the range are the same.
+const SAME_POSITION: f64 = 1e-9;
+/// A speed may differ by this part from the integral of the acceleration over the coordinate, of few positions.
+const SPEED_TOLERANCE: f64 = 0.05;
+/// The runs may contradict each other by this part of the largest m, of few positions.
+const CONTRADICTION: f64 = 0.05;
+
+/// The reduced parameters at the positions of run i.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExportedRuns {
+    /// The name of the coordinate's column.
+    pub coordinate: String,
+    /// Whether it is an angle (rad), or a length (m).
+    pub is_angle: bool,
+    /// Names of the reactions, with their units where the files say them.
+    pub reactions: Vec<(String, Option<String>)>,
+    /// Positions, rad or m, ascending; of a whole revolution without its end.
+    pub q: Vec<f64>,
+    /// m, ½m′, a and b at each.
+    pub coefficients: Vec<Coefficients>,
+    /// What half a unit of the last printed digits makes of m, of ½m′, of any a, of any b, at most.
+    pub rounding: Coefficients,
+    /// The largest difference between changes of m and the integral of ½m′, relative to the largest m.
+    pub contradiction: f64,
+    /// Whether the positions are those of a whole revolution, at equal distances.
+    pub is_whole_revolution: bool,
+    /// Remarks: what was assumed.
+    pub notes: Vec<String>,
+}
+
+/// The two equations of a position: accelerations and squares of speeds of both runs.
+#[derive(Clone, Copy)]
+struct Equations {
+    acceleration: [f64; 2],
+    square: [f64; 2],
+}
+
+/// Combines the tables of run i (uniform speed) and run ii (uniform acceleration).
+///
+/// # Errors
+/// [`SceneError`]: a column is missing, positions do not ascend, speeds contradict positions, the runs are exchanged or do not
+/// determine m, or contradict each other.
+pub fn combine_runs(
+    [one, two]: [&ExportedTable; 2],
+    names: &ColumnNames,
+) -> Result<ExportedRuns, SceneError> {
+    let mut notes = Vec::new();
+    let [one, two] = [names.select(one)?, names.select(two)?];
+    if one.is_angle != two.is_angle {
+        let message = format!("`{}` has an angle, `{}` a length", one.file, two.file);
+        return Err(wrong(message, "both runs are of one coordinate"));
+    }
+    let one = with_speeds(one, false, &mut notes)?;
+    let two = with_speeds(two, true, &mut notes)?;
+    check_order(&one, &two)?;
+    let rows = shared_rows(&one, &two)?;
+    let two = two.at(&one.run.q.values[..rows]);
+    let is_whole = one.is_whole_revolution(rows);
+    // The end of a revolution is its beginning.
+    let rows = if is_whole { rows - 1 } else { rows };
+    let equations: Vec<Equations> = (0..rows)
+        .map(|k| Equations {
+            acceleration: [one.acceleration[k], two.acceleration[k]],
+            square: [one.speed[k], two.speed[k]].map(|v| v * v),
+        })
+        .collect();
+    let solve = |[of_one, of_two]: [&ExportedColumn; 2]| -> (Vec<[f64; 2]>, [f64; 2]) {
+        let solved = equations.iter().enumerate();
+        let values = solved.map(|(k, e)| e.solve([of_one.values[k], of_two.values[k]]));
+        let roundings = equations
+            .iter()
+            .map(|e| e.errors([of_one.rounding, of_two.rounding]));
+        let largest = roundings.fold([0.0_f64; 2], |max, e| [max[0].max(e[0]), max[1].max(e[1])]);
+        (values.collect(), largest)
+    };
+    let (inertia, inertia_rounding) = solve([&one.run.force, &two.run.force]);
+    let mut reactions = Vec::new();
+    let mut solved = Vec::new();
+    for of_one in &one.run.reactions {
+        let Some(of_two) = two.run.reactions.iter().find(|r| r.name == of_one.name) else {
+            let message = format!(
+                "`{}` has no column of the reaction `{}`",
+                two.run.file, of_one.name
+            );
+            return Err(wrong(message, "export the same reactions in both runs"));
+        };
+        reactions.push((of_one.name.clone(), of_one.unit.clone()));
+        solved.push(solve([of_one, of_two]));
+    }
+    let coefficients = (0..rows).map(|k| Coefficients {
+        m: inertia[k][0],
+        half_dm: inertia[k][1],
+        a: solved.iter().map(|(of, _)| of[k][0]).collect(),
+        b: solved.iter().map(|(of, _)| of[k][1]).collect(),
+    });
+    let coefficients: Vec<Coefficients> = coefficients.collect();
+    let q: Vec<f64> = one.run.q.values[..rows].to_vec();
+    let contradiction = contradiction(&q, &coefficients);
+    let combined = ExportedRuns {
+        coordinate: one.run.name.clone(),
+        is_angle: one.run.is_angle,
+        reactions,
+        rounding: Coefficients {
+            m: inertia_rounding[0],
+            half_dm: inertia_rounding[1],
+            a: solved.iter().map(|(_, errors)| errors[0]).collect(),
+            b: solved.iter().map(|(_, errors)| errors[1]).collect(),
+        },
+        q,
+        coefficients,
+        contradiction,
+        is_whole_revolution: is_whole,
+        notes,
+    };
+    combined.check()?;
+    Ok(combined)
+}
+
+impl Equations {
+    fn determinant(&self) -> f64 {
+        let ([a, c], [b, d]) = (self.acceleration, self.square);
+        a * d - b * c
+    }
+
+    /// The coefficients of q̈ and of q̇² of a force.
+    fn solve(&self, [one, two]: [f64; 2]) -> [f64; 2] {
+        let ([a, c], [b, d]) = (self.acceleration, self.square);
+        let determinant = self.determinant();
+        [
+            (one * d - two * b) / determinant,
+            (a * two - c * one) / determinant,
+        ]
+    }
+
+    /// Their errors for errors of the force.
+    fn errors(&self, [one, two]: [f64; 2]) -> [f64; 2] {
+        let ([a, c], [b, d]) = (self.acceleration, self.square);
+        let determinant = self.determinant().abs();
+        let of_acceleration = one * d.abs() + two * b.abs();
+        let of_square = two * a.abs() + one * c.abs();
+        [of_acceleration / determinant, of_square / determinant]
+    }
+}
+
+/// A run with the speeds and accelerations that its file has or that the procedure means.
+struct TimedRun {
+    run: Run,
+    speed: Vec<f64>,
+    acceleration: Vec<f64>,
+}
+
+fn wrong(message: String, help: &str) -> SceneError {
+    SceneError::without_labels(message, Some(help.to_owned()))
+}
+
+fn with_speeds(
+    run: Run,
+    accelerates: bool,
+    notes: &mut Vec<String>,
+) -> Result<TimedRun, SceneError> {
+    let q = &run.q.values;
+    if q.len() < 2 || q.windows(2).any(|pair| pair[1] <= pair[0]) {
+        let at = q
+            .windows(2)
+            .position(|pair| pair[1] <= pair[0])
+            .map_or(0, |k| k + 2);
+        let message = match at {
+            0 => format!("`{}` has one row", run.file),
+            at => format!(
+                "the coordinate `{}` in `{}` does not grow in row {at}",
+                run.name, run.file
+            ),
+        };
+        return Err(wrong(
+            message,
+            "export a run in which the coordinate grows, without repeated instants",
+        ));
+    }
+    let first = q[0];
+    let (speed, acceleration) = match (&run.speed, &run.acceleration) {
+        (Some(speed), Some(acceleration)) => (speed.values.clone(), acceleration.values.clone()),
+        (None, None) => {
+            let (text, of): (&str, Box<dyn Fn(f64) -> [f64; 2]>) = match accelerates {
+                true => (
+                    "unit acceleration from rest",
+                    Box::new(|s| [(2.0 * s).sqrt(), 1.0]),
+                ),
+                false => ("unit speed without acceleration", Box::new(|_| [1.0, 0.0])),
+            };
+            notes.push(format!(
+                "`{}` has no speeds and accelerations: {text} is meant",
+                run.file
+            ));
+            q.iter().map(|q| of(q - first)).map(|[v, a]| (v, a)).unzip()
+        }
+        _ => {
+            let message = format!(
+                "`{}` has a speed without an acceleration, or the reverse",
+                run.file
+            );
+            return Err(wrong(message, "export both, or neither of them"));
+        }
+    };
+    let timed = TimedRun {
+        run,
+        speed,
+        acceleration,
+    };
+    timed.check_speed()?;
+    Ok(timed)
+}
+
+impl TimedRun {
+    /// q̇² changes by twice the integral of q̈ over q, whatever the motion: degrees beside radians do not.
+    fn check_speed(&self) -> Result<(), SceneError> {
+        let (q, v, a) = (&self.run.q.values, &self.speed, &self.acceleration);
+        let integral: f64 = (1..q.len())
+            .map(|k| (q[k] - q[k - 1]) * (a[k] + a[k - 1]))
+            .sum();
+        let squares = v.iter().map(|v| v * v);
+        let largest = squares.fold(0.0_f64, f64::max);
+        let change = v[v.len() - 1].powi(2) - v[0].powi(2);
+        if (change - integral).abs() <= SPEED_TOLERANCE * largest.max(integral.abs()) {
+            return Ok(());
+        }
+        let message = format!(
+            "in `{}` the square of the speed changes by {change:.4}, but the acceleration makes it {integral:.4}",
+            self.run.file
+        );
+        Err(wrong(
+            message,
+            "is an angle in degrees and its speed in rad/s, or the reverse? Write the units into the header, `phi [deg]`",
+        ))
+    }
+
+    fn is_whole_revolution(&self, rows: usize) -> bool {
+        let q = &self.run.q.values[..rows];
+        let whole = |q: &[f64]| {
+            let step = TAU / (q.len() - 1) as f64;
+            let even = q.iter().enumerate();
+            (q[q.len() - 1] - q[0] - TAU).abs() < 1e-6 * TAU
+                && even
+                    .clone()
+                    .all(|(k, x)| (x - q[0] - step * k as f64).abs() < 1e-6 * step.max(1e-3))
+        };
+        self.run.is_angle && q.len() > 3 && whole(q)
+    }
+
+    /// The run at other positions.
+    fn at(&self, q: &[f64]) -> Self {
+        let known = &self.run.q.values;
+        let range = known[known.len() - 1] - known[0];
+        let same = q.len() <= known.len()
+            && q.iter()
+                .zip(known)
+                .all(|(a, b)| (a - b).abs() <= SAME_POSITION * range);
+        if same {
+            let mut run = self.run.clone();
+            run.q.values.truncate(q.len());
+            return Self {
+                run,
+                speed: self.speed.clone(),
+                acceleration: self.acceleration.clone(),
+            };
+        }
+        let values = |of: &[f64]| {
+            q.iter()
+                .map(|&x| interpolated(known, of, x))
+                .collect::<Vec<f64>>()
+        };
+        let column = |column: &ExportedColumn| ExportedColumn {
+            values: values(&column.values),
+            ..column.clone()
+        };
+        let squares: Vec<f64> = self.speed.iter().map(|v| v * v).collect();
+        Self {
+            run: Run {
+                q: column(&self.run.q),
+                force: column(&self.run.force),
+                reactions: self.run.reactions.iter().map(column).collect(),
+                ..self.run.clone()
+            },
+            // A root at rest has no slope: its square has.
+            speed: values(&squares)
+                .into_iter()
+                .map(|square| square.max(0.0).sqrt())
+                .collect(),
+            acceleration: values(&self.acceleration),
+        }
+    }
+}
+
+/// A polynomial through the nearest points.
+fn interpolated(known: &[f64], values: &[f64], x: f64) -> f64 {
+    let count = POINTS.min(known.len());
+    let after = known.partition_point(|&q| q < x);
+    let first = after.saturating_sub(count / 2).min(known.len() - count);
+    let points = first..first + count;
+    let weight = |i: usize| {
+        let others = points.clone().filter(|&j| j != i);
+        others
+            .map(|j| (x - known[j]) / (known[i] - known[j]))
+            .product::<f64>()
+    };
+    points.clone().map(|i| weight(i) * values[i]).sum()
+}
+
+/// The runs are not exchanged: the second accelerates more.
+fn check_order(one: &TimedRun, two: &TimedRun) -> Result<(), SceneError> {
+    let share = |run: &TimedRun| {
+        let size = |values: &[f64]| values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+        size(&run.acceleration) / size(&run.speed).powi(2).max(f64::MIN_POSITIVE)
+    };
+    if share(one) <= share(two) {
+        return Ok(());
+    }
+    let message = format!(
+        "`{}` accelerates more than `{}`: the runs seem to be exchanged",
+        one.run.file, two.run.file
+    );
+    Err(wrong(
+        message,
+        "give run i (uniform speed) first, then run ii (uniform acceleration)",
+    ))
+}
+
+/// How many rows of run i are within run ii.
+fn shared_rows(one: &TimedRun, two: &TimedRun) -> Result<usize, SceneError> {
+    let (q, other) = (&one.run.q.values, &two.run.q.values);
+    let range = q[q.len() - 1] - q[0];
+    let slack = SAME_POSITION * range;
+    let first = q[0] - other[0];
+    let covered = q
+        .iter()
+        .filter(|&&x| x <= other[other.len() - 1] + slack)
+        .count();
+    if first < -slack || covered * 2 < q.len() {
+        let message = format!(
+            "`{}` covers {:.6} to {:.6}, but `{}` only {:.6} to {:.6}",
+            one.run.file,
+            q[0],
+            q[q.len() - 1],
+            two.run.file,
+            other[0],
+            other[other.len() - 1]
+        );
+        return Err(wrong(
+            message,
+            "both runs pass through the same positions: export both over the same range",
+        ));
+    }
+    Ok(covered)
+}
+
+/// How far changes of m are from twice the integral of ½m′ over every two intervals, relative to the largest m.
+fn contradiction(q: &[f64], at: &[Coefficients]) -> f64 {
+    let largest = at.iter().fold(0.0_f64, |max, c| max.max(c.m.abs()));
+    let of_row = |k: usize| {
+        let (h, g) = (q[k] - q[k - 1], q[k + 1] - q[k]);
+        let [f, mid, l] = [k - 1, k, k + 1].map(|i| at[i].half_dm);
+        // Simpson's rule for unequal intervals.
+        let sum = (2.0 - g / h) * f + (h + g).powi(2) / (h * g) * mid + (2.0 - h / g) * l;
+        (at[k + 1].m - at[k - 1].m - (h + g) / 3.0 * sum).abs()
+    };
+    let worst = (1..at.len().saturating_sub(1))
+        .map(of_row)
+        .fold(0.0, f64::max);
+    worst / largest.max(f64::MIN_POSITIVE)
+}
+
+impl ExportedRuns {
+    fn check(&self) -> Result<(), SceneError> {
+        let undetermined = |c: &Coefficients| !(c.m.is_finite() && c.half_dm.is_finite());
+        if let Some(k) = self.coefficients.iter().position(undetermined) {
+            let message = format!(
+                "the runs do not determine m at {} = {:.6}",
+                self.coordinate, self.q[k]
+            );
+            return Err(wrong(
+                message,
+                "one run moves with uniform speed, the other accelerates from rest",
+            ));
+        }
+        if let Some(k) = self.coefficients.iter().position(|c| c.m <= 0.0) {
+            let message = format!(
+                "m = {:.4e} at {} = {:.6}: an inertia is above zero",
+                self.coefficients[k].m, self.coordinate, self.q[k]
+            );
+            return Err(wrong(
+                message,
+                "is the sign of the drive's moment reversed in one of the runs, or are there loads?",
+            ));
+        }
+        if self.contradiction > CONTRADICTION {
+            let message = format!(
+                "the runs contradict each other: m changes otherwise than ½m′ says, by {:.1e} of the largest m",
+                self.contradiction
+            );
+            return Err(wrong(
+                message,
+                "export both from one mechanism without loads, in one system of units, at more positions",
+            ));
+        }
+        Ok(())
+    }
+}

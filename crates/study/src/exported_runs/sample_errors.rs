@@ -1,0 +1,73 @@
+//! What the printed digits and the interpolation leave open in the reduced parameters of exported runs.
+
+use super::combine::ExportedRuns;
+use super::sampled_model::{SampleInterpolation, SampledModel};
+use dwell_kinetostatics::Coefficients;
+
+/// Estimated errors relative to the largest value: of m, of ½m′, of any a, of any b.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SampleErrors {
+    /// By the printed digits.
+    pub digits: [f64; 4],
+    /// By the interpolation between the positions.
+    pub interpolation: [f64; 4],
+}
+
+impl SampleErrors {
+    /// Both together.
+    pub fn sum(&self, k: usize) -> f64 {
+        self.digits[k] + self.interpolation[k]
+    }
+
+    /// The errors of a model through the positions of two runs.
+    pub fn of(runs: &ExportedRuns, interpolation: SampleInterpolation) -> Self {
+        let fine = SampledModel::new(runs, interpolation, 1);
+        let coarse = SampledModel::new(runs, interpolation, 2);
+        let reactions = runs.reactions.len();
+        // Half the distance has this part of the error.
+        let share = match interpolation {
+            SampleInterpolation::Linear => 1.0 / 4.0,
+            SampleInterpolation::Cubic => 1.0 / 16.0,
+            SampleInterpolation::Trigonometric => 0.0,
+        };
+        let tails = fine.tails();
+        let flat = |c: &Coefficients| {
+            let rest = c.a.iter().chain(&c.b).copied();
+            [c.m, c.half_dm]
+                .into_iter()
+                .chain(rest)
+                .collect::<Vec<f64>>()
+        };
+        let rounding = flat(&runs.rounding);
+        let width = rounding.len();
+        let (mut largest, mut differences) = (vec![0.0_f64; width], vec![0.0_f64; width]);
+        let last = runs.q.len() - 1 + usize::from(runs.is_whole_revolution);
+        for (k, (q, at)) in runs.q.iter().zip(&runs.coefficients).enumerate() {
+            let row = flat(at);
+            let between = (k % 2 == 1 && k < last)
+                .then(|| coarse.values(*q).ok())
+                .flatten();
+            for (i, value) in row.iter().enumerate() {
+                largest[i] = largest[i].max(value.abs());
+                if let Some(between) = &between {
+                    differences[i] = differences[i].max((between[i] - value).abs());
+                }
+            }
+        }
+        // A coefficient that nearly vanishes has the scale of its kind.
+        let kinds = [0..1, 1..2, 2..2 + reactions, 2 + reactions..width];
+        let mut errors = Self::default();
+        for (kind, range) in kinds.into_iter().enumerate() {
+            let scale = largest[range.clone()]
+                .iter()
+                .copied()
+                .fold(f64::MIN_POSITIVE, f64::max);
+            for i in range {
+                let between = share * differences[i] + tails[i];
+                errors.digits[kind] = errors.digits[kind].max(rounding[i] / scale);
+                errors.interpolation[kind] = errors.interpolation[kind].max(between / scale);
+            }
+        }
+        errors
+    }
+}

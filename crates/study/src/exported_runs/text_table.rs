@@ -1,0 +1,288 @@
+//! Tables as mechanism programs export them: a header, a separator and a decimal mark of their choice, lines of comment.
+
+use dwell_scene::SceneError;
+use std::ops::Range;
+
+/// Marks with which programs begin a line of comment.
+const COMMENT_MARKS: [&str; 5] = ["#", "%", "//", "*", "!"];
+
+/// A column of an exported table.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ExportedColumn {
+    /// Its name, without a unit in brackets.
+    pub name: String,
+    /// The unit in brackets after the name.
+    pub unit: Option<String>,
+    /// Its values, as they are written.
+    pub values: Vec<f64>,
+    /// Half a unit of the last printed digit, of the value where that is largest.
+    pub rounding: f64,
+}
+
+/// An exported table.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ExportedTable {
+    /// The file.
+    pub file: String,
+    /// Its columns, all of one length.
+    pub columns: Vec<ExportedColumn>,
+}
+
+/// A line of the text, and where it begins.
+#[derive(Clone, Copy)]
+struct Line<'t> {
+    at: usize,
+    text: &'t str,
+}
+
+/// How fields are told apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Separator {
+    Character(char),
+    Blanks,
+}
+
+/// A field, and where it is in the text.
+struct Field<'t> {
+    span: Range<usize>,
+    text: &'t str,
+}
+
+impl ExportedTable {
+    /// Reads the text of a file. The header is the last line before the numbers, also in a comment. Fields are separated by
+    /// tabs, semicolons, commas or blanks; with any but commas a comma is a decimal mark.
+    ///
+    /// # Errors
+    /// [`SceneError`] with the place in the text: no numbers, no header, a row of another length, what is no finite number.
+    pub fn read(file: &str, text: &str) -> Result<Self, SceneError> {
+        let mut at = 0;
+        let lines = text.split_inclusive('\n').map(|line| {
+            let here = Line {
+                at,
+                text: line.trim_end(),
+            };
+            at += line.len();
+            here
+        });
+        let lines: Vec<Line<'_>> = lines.filter(|line| !line.text.trim().is_empty()).collect();
+        let is_data = |line: &Line<'_>| !is_comment(line) && Separator::of_numbers(line).is_some();
+        let Some(first) = lines.iter().position(is_data) else {
+            let message = format!("`{file}` has no row of numbers");
+            let help = "a table has a header and rows of numbers, separated by commas, semicolons, tabs or blanks";
+            return Err(SceneError::without_labels(message, Some(help.to_owned())));
+        };
+        let separator = Separator::of_numbers(&lines[first]).unwrap_or(Separator::Blanks);
+        let error = |span: Range<usize>, message: String, help: &str, label: &str| {
+            SceneError::in_text(
+                (file, text),
+                message,
+                Some(help.to_owned()),
+                (span, label.to_owned()),
+            )
+        };
+        let Some(header) = first.checked_sub(1).map(|k| lines[k]) else {
+            let line = lines[0];
+            let help = "the line before the numbers names the columns: `t,phi [rad],torque [N m]`";
+            let span = line.at..line.at + line.text.len();
+            return Err(error(
+                span,
+                format!("`{file}` has no header"),
+                help,
+                "numbers at once",
+            ));
+        };
+        let mut columns: Vec<ExportedColumn> = separator
+            .header(&header)
+            .iter()
+            .map(|head| column(head))
+            .collect();
+        for line in lines[first..].iter().filter(|line| !is_comment(line)) {
+            let fields = separator.fields(line);
+            if fields.len() != columns.len() {
+                let span = line.at..line.at + line.text.len();
+                let message = format!(
+                    "a row of {} fields, where the header has {}",
+                    fields.len(),
+                    columns.len()
+                );
+                let help = "each row has a number for each column of the header";
+                return Err(error(span, message, help, "this row"));
+            }
+            for (column, field) in columns.iter_mut().zip(fields) {
+                let Some((value, rounding)) = separator.number(field.text) else {
+                    let message = format!(
+                        "`{}` is no finite number, in column `{}`",
+                        field.text, column.name
+                    );
+                    let help = "leave out rows without a value, such as those of a failed position";
+                    return Err(error(field.span, message, help, "here"));
+                };
+                column.values.push(value);
+                column.rounding = column.rounding.max(rounding);
+            }
+        }
+        Ok(Self {
+            file: file.to_owned(),
+            columns,
+        })
+    }
+
+    /// A table of columns that are known to all their bits, such as those of a NumPy archive.
+    pub fn of_columns(file: &str, columns: Vec<(String, Vec<f64>)>) -> Self {
+        let of = |(name, values): (String, Vec<f64>)| {
+            let largest = values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+            ExportedColumn {
+                values,
+                rounding: 0.5 * f64::EPSILON * largest,
+                ..column(&name)
+            }
+        };
+        Self {
+            file: file.to_owned(),
+            columns: columns.into_iter().map(of).collect(),
+        }
+    }
+
+    /// The column of a name.
+    pub fn column(&self, name: &str) -> Option<&ExportedColumn> {
+        self.columns.iter().find(|column| column.name == name)
+    }
+}
+
+fn is_comment(line: &Line<'_>) -> bool {
+    let text = line.text.trim_start_matches('\u{feff}').trim_start();
+    COMMENT_MARKS.iter().any(|mark| text.starts_with(mark))
+}
+
+/// A column from its head: `phi [deg]`, `phi (deg)` or `phi`.
+fn column(head: &str) -> ExportedColumn {
+    let head = head.trim();
+    let (name, unit) = [('[', ']'), ('(', ')')]
+        .into_iter()
+        .find_map(|(open, close)| {
+            let (name, unit) = head.strip_suffix(close)?.rsplit_once(open)?;
+            Some((name.trim(), Some(unit.trim().to_owned())))
+        })
+        .unwrap_or((head, None));
+    ExportedColumn {
+        name: name.to_owned(),
+        unit: unit.filter(|unit| !unit.is_empty()),
+        ..ExportedColumn::default()
+    }
+}
+
+impl Separator {
+    /// The separator with which a line is nothing but numbers, at least two of them.
+    fn of_numbers(line: &Line<'_>) -> Option<Self> {
+        let all = ['\t', ';', ','].map(Self::Character);
+        let all = all.into_iter().chain([Self::Blanks]);
+        let mut fitting = all.filter(|separator| {
+            let fields = separator.fields(line);
+            // A value that is missing is an error of its row, not another kind of table.
+            let known = fields
+                .iter()
+                .filter(|f| separator.number(f.text).is_some())
+                .count();
+            fields.len() > 1
+                && 2 * known > fields.len()
+                && fields.iter().all(|f| could_be_number(f.text))
+        });
+        fitting.next()
+    }
+
+    /// The fields of a line of numbers.
+    fn fields<'t>(self, line: &Line<'t>) -> Vec<Field<'t>> {
+        let separates = |c: char| match self {
+            Self::Character(separator) => c == separator,
+            Self::Blanks => c.is_whitespace(),
+        };
+        let mut fields = Vec::new();
+        let mut at = line.at;
+        for part in line.text.split(separates) {
+            let text = part.trim_matches(['\u{feff}', ' ', '"']);
+            if !(self == Self::Blanks && text.is_empty()) {
+                fields.push(Field {
+                    span: at..at + part.len(),
+                    text,
+                });
+            }
+            at += part.len() + 1;
+        }
+        // Some programs end each row with a separator.
+        if fields.len() > 1 && fields.last().is_some_and(|last| last.text.is_empty()) {
+            fields.pop();
+        }
+        fields
+    }
+
+    /// The heads of the columns: in quotes a head may hold the separator, in brackets blanks.
+    fn header(self, line: &Line<'_>) -> Vec<String> {
+        let mut text = line.text.trim_start_matches('\u{feff}').trim_start();
+        for mark in COMMENT_MARKS {
+            text = text.strip_prefix(mark).unwrap_or(text).trim_start();
+        }
+        let text = text.strip_prefix("columns:").unwrap_or(text);
+        let mut heads = vec![String::new()];
+        let (mut in_quotes, mut brackets) = (false, 0_i32);
+        for c in text.trim().chars() {
+            let separates = match self {
+                Self::Character(separator) => c == separator,
+                Self::Blanks => c.is_whitespace() && brackets == 0,
+            };
+            match c {
+                '"' => in_quotes = !in_quotes,
+                _ if separates && !in_quotes => heads.push(String::new()),
+                c => {
+                    brackets += i32::from("[(".contains(c)) - i32::from("])".contains(c));
+                    heads.last_mut().into_iter().for_each(|head| head.push(c));
+                }
+            }
+        }
+        if self == Self::Blanks {
+            heads.retain(|head| !head.trim().is_empty());
+            // `phi [rad]`: the unit belongs to the name before it.
+            let mut joined: Vec<String> = Vec::new();
+            for head in heads {
+                match joined.last_mut().filter(|_| head.starts_with(['[', '('])) {
+                    Some(name) => *name = format!("{name} {head}"),
+                    None => joined.push(head),
+                }
+            }
+            heads = joined;
+        } else if heads.len() > 1 && heads.last().is_some_and(|head| head.trim().is_empty()) {
+            heads.pop();
+        }
+        heads
+    }
+
+    /// A finite number with half a unit of its last printed digit.
+    fn number(self, text: &str) -> Option<(f64, f64)> {
+        let text = match self {
+            Self::Character(',') => text.to_owned(),
+            Self::Character(_) | Self::Blanks => text.replace(',', "."),
+        };
+        // Fortran writes `1.5D-03`.
+        let text = text.replace(['d', 'D'], "e");
+        let value: f64 = text.parse().ok().filter(|value: &f64| value.is_finite())?;
+        let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((&text, "0"));
+        let decimals = mantissa
+            .split_once('.')
+            .map_or(0, |(_, decimals)| decimals.len());
+        let exponent: i32 = exponent.parse().ok()?;
+        let unit =
+            10_f64.powi(exponent.saturating_sub(i32::try_from(decimals).unwrap_or(i32::MAX)));
+        // The shortest form of a number of full precision shows fewer digits by chance, and an integer is one.
+        let is_integer = decimals == 0 && exponent == 0;
+        let rounding = if is_integer { 0.0 } else { 0.5 * unit };
+        Some((value, rounding.max(0.5 * f64::EPSILON * value.abs())))
+    }
+}
+
+/// A field that is a number, or stands for a missing one.
+fn could_be_number(text: &str) -> bool {
+    let missing = ["", "nan", "-nan", "inf", "-inf", "na", "n/a", "null", "-"];
+    missing.contains(&text.to_lowercase().as_str())
+        || text
+            .chars()
+            .all(|c| c.is_ascii_digit() || "+-.,eEdD".contains(c))
+}
