@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 mod assembly;
+mod exported_runs;
 mod friction;
 mod lengths;
 mod long_motions;

@@ -58,7 +58,7 @@ fn reduce_makes_a_table_that_needs_no_mechanism() {
 fn reduce_makes_a_table_of_a_part_of_the_turn() {
     let dir = TestDir::new();
     let scene = case("slotted-rocker");
-    let interval = ["--from", "-30", "--to", "90"];
+    let interval = ["--table-from", "-30", "--table-to", "90"];
     let arguments = [
         &["reduce", &scene, "--table-accuracy", "1e-9", "--out", "o"],
         &interval[..],

@@ -23,38 +23,53 @@ fn tables() {
         (
             "beyond the range",
             "limited.toml",
-            &["--from", "0", "--to", "400"],
+            &["--table-from", "0", "--table-to", "400"],
         ),
         (
             "from the end to the beginning",
             "scene.toml",
-            &["--from", "2", "--to", "1"],
+            &["--table-from", "2", "--table-to", "1"],
         ),
-        ("nothing", "scene.toml", &["--from", "1", "--to", "1"]),
-        ("no end", "scene.toml", &["--from", "1"]),
+        (
+            "nothing",
+            "scene.toml",
+            &["--table-from", "1", "--table-to", "1"],
+        ),
+        ("no end", "scene.toml", &["--table-from", "1"]),
         (
             "an infinite end",
             "scene.toml",
-            &["--from", "-1", "--to", "inf"],
+            &["--table-from", "-1", "--table-to", "inf"],
         ),
         (
             "a unit",
             "scene.toml",
-            &["--from", "10deg", "--to", "20deg"],
+            &["--table-from", "10deg", "--table-to", "20deg"],
         ),
         (
             "up to a limit position",
             "limited.toml",
-            &["--from", "0", "--to", "1.3715642395"],
+            &["--table-from", "0", "--table-to", "1.3715642395"],
         ),
-        ("many turns", "scene.toml", &["--from", "0", "--to", "1e5"]),
+        (
+            "many turns",
+            "scene.toml",
+            &["--table-from", "0", "--table-to", "1e5"],
+        ),
     ] {
         let arguments = ["reduce", scene, "--table-accuracy", "1e-9"];
         group.refused(title, &[&arguments, rest].concat());
     }
     let arguments = ["reduce", "limited.toml", "--table-accuracy", "1e-14"];
     group.refused("more than there is next to limit positions", &arguments);
-    let arguments = ["reduce", "scene.toml", "--from", "0", "--to", "1"];
+    let arguments = [
+        "reduce",
+        "scene.toml",
+        "--table-from",
+        "0",
+        "--table-to",
+        "1",
+    ];
     group.refused("an extent of no table", &arguments);
     group.check("tables");
 }

@@ -38,6 +38,9 @@ pub struct ExportedRuns {
     pub coefficients: Vec<Coefficients>,
     /// What half a unit of the last printed digits makes of m, of ½m′, of any a, of any b, at most.
     pub rounding: Coefficients,
+    /// Half a unit of the last printed digit of the positions, rad or m; zero where they are at equal distances over a whole
+    /// revolution.
+    pub position_rounding: f64,
     /// The largest difference between changes of m and the integral of ½m′, relative to the largest m.
     pub contradiction: f64,
     /// Whether the positions are those of a whole revolution, at equal distances.
@@ -84,12 +87,17 @@ pub fn combine_runs(
         .collect();
     let solve = |[of_one, of_two]: [&ExportedColumn; 2]| -> (Vec<[f64; 2]>, [f64; 2]) {
         let solved = equations.iter().enumerate();
-        let values = solved.map(|(k, e)| e.solve([of_one.values[k], of_two.values[k]]));
-        let roundings = equations
-            .iter()
-            .map(|e| e.errors([of_one.rounding, of_two.rounding]));
+        let values: Vec<[f64; 2]> = solved
+            .map(|(k, e)| e.solve([of_one.values[k], of_two.values[k]]))
+            .collect();
+        let motion = [&one, &two].map(TimedRun::motion_rounding);
+        let roundings = equations.iter().zip(&values).map(|(e, &found)| {
+            let of_motion = e.force_errors(found, motion);
+            let printed = [of_one.rounding, of_two.rounding];
+            e.errors([printed[0] + of_motion[0], printed[1] + of_motion[1]])
+        });
         let largest = roundings.fold([0.0_f64; 2], |max, e| [max[0].max(e[0]), max[1].max(e[1])]);
-        (values.collect(), largest)
+        (values, largest)
     };
     let (inertia, inertia_rounding) = solve([&one.run.force, &two.run.force]);
     let mut reactions = Vec::new();
@@ -112,7 +120,14 @@ pub fn combine_runs(
         b: solved.iter().map(|(of, _)| of[k][1]).collect(),
     });
     let coefficients: Vec<Coefficients> = coefficients.collect();
-    let q: Vec<f64> = one.run.q.values[..rows].to_vec();
+    // Positions of a whole revolution are at equal distances but for their printed digits.
+    let first = one.run.q.values[0];
+    let q: Vec<f64> = match is_whole {
+        true => (0..rows)
+            .map(|k| first + TAU * k as f64 / rows as f64)
+            .collect(),
+        false => one.run.q.values[..rows].to_vec(),
+    };
     let contradiction = contradiction(&q, &coefficients);
     let combined = ExportedRuns {
         coordinate: one.run.name.clone(),
@@ -126,6 +141,7 @@ pub fn combine_runs(
         },
         q,
         coefficients,
+        position_rounding: if is_whole { 0.0 } else { one.run.q.rounding },
         contradiction,
         is_whole_revolution: is_whole,
         notes,
@@ -148,6 +164,19 @@ impl Equations {
             (one * d - two * b) / determinant,
             (a * two - c * one) / determinant,
         ]
+    }
+
+    /// What errors of speeds and accelerations are worth in the forces of both runs, by the coefficients that were found.
+    fn force_errors(
+        &self,
+        [of_acceleration, of_square]: [f64; 2],
+        motion: [[f64; 2]; 2],
+    ) -> [f64; 2] {
+        [0, 1].map(|run| {
+            let [speed, acceleration] = motion[run];
+            let square = 2.0 * self.square[run].abs().sqrt() * speed;
+            of_square.abs() * square + of_acceleration.abs() * acceleration
+        })
     }
 
     /// Their errors for errors of the force.
@@ -251,17 +280,21 @@ impl TimedRun {
         ))
     }
 
+    /// Half a unit of the last printed digit of speed and acceleration.
+    fn motion_rounding(&self) -> [f64; 2] {
+        let of = |column: &Option<ExportedColumn>| column.as_ref().map_or(0.0, |c| c.rounding);
+        [of(&self.run.speed), of(&self.run.acceleration)]
+    }
+
     fn is_whole_revolution(&self, rows: usize) -> bool {
         let q = &self.run.q.values[..rows];
-        let whole = |q: &[f64]| {
-            let step = TAU / (q.len() - 1) as f64;
-            let even = q.iter().enumerate();
-            (q[q.len() - 1] - q[0] - TAU).abs() < 1e-6 * TAU
-                && even
-                    .clone()
-                    .all(|(k, x)| (x - q[0] - step * k as f64).abs() < 1e-6 * step.max(1e-3))
-        };
-        self.run.is_angle && q.len() > 3 && whole(q)
+        if !self.run.is_angle || rows < 4 {
+            return false;
+        }
+        let step = TAU / (rows - 1) as f64;
+        let printed = 2.0 * self.run.q.rounding;
+        let mut rows = q.iter().enumerate();
+        rows.all(|(k, x)| (x - q[0] - step * k as f64).abs() < 1e-6 * step + printed)
     }
 
     /// The run at other positions.

@@ -171,6 +171,7 @@ fn estimates_hold_for_every_number_of_positions_and_digits() {
     for points in [37, 73, 181, 361, 721] {
         for digits in [4, 6, 9, 12, 16] {
             let runs = runs(points, Print { digits, ..PLAIN });
+            assert!(runs.is_whole_revolution, "{points} {digits}");
             for interpolation in [Linear, Cubic, Trigonometric] {
                 let estimate = SampleErrors::of(&runs, interpolation);
                 let model = SampledModel::new(&runs, interpolation, 1);
@@ -183,7 +184,7 @@ fn estimates_hold_for_every_number_of_positions_and_digits() {
                 );
                 for (k, error) in [(0, m), (2, a), (3, b)] {
                     assert!(
-                        error <= 2.0 * estimate.sum(k) + 1e-13,
+                        error <= estimate.sum(k) + 1e-13,
                         "{points} {digits} {interpolation:?} {k}"
                     );
                 }
@@ -246,6 +247,11 @@ fn what_cannot_be_combined_is_named() {
     };
     let names = ColumnNames::default();
     assert_eq!(combined(&one, &two, &names), "");
+    let damage = |(k, line): (usize, &str)| match (k, line.split_once(',')) {
+        (3, Some((_, rest))) => format!("nan,{rest}\n"),
+        _ => format!("{line}\n"),
+    };
+    let damaged: String = one.lines().enumerate().map(damage).collect();
     for (message, one, two, names) in [
         ("exchanged", two.clone(), one.clone(), names.clone()),
         (
@@ -274,8 +280,8 @@ fn what_cannot_be_combined_is_named() {
         ),
         (
             "is no finite number",
-            one.replacen("e0,", "e0,nan,", 1).replacen("nan,", "", 1),
-            two.replacen(",1.", ",inf.", 1),
+            damaged.clone(),
+            two.clone(),
             names.clone(),
         ),
         (
@@ -305,8 +311,9 @@ fn what_cannot_be_combined_is_named() {
         (
             "an inertia is above zero",
             one.clone(),
-            two.replace("phi.actuator_force", "x")
-                .replace("slide.normal", "phi.actuator_force"),
+            two.replace("phi.actuator_force", "@")
+                .replace("slide.normal", "phi.actuator_force")
+                .replace('@', "slide.normal"),
             names.clone(),
         ),
     ] {

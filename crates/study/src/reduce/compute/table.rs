@@ -153,7 +153,7 @@ fn explain_table_error(
         ),
         TableError::NotPeriodic { what } => {
             let what = coefficient_name(what, labels);
-            let help = "a load that depends on the number of revolutions needs an interval: give --from and --to";
+            let help = "a load that depends on the number of revolutions needs an interval: give --table-from and --table-to";
             (
                 format!("no table: {what} is not periodic over a revolution"),
                 help,
@@ -161,7 +161,7 @@ fn explain_table_error(
         }
         TableError::NotSmooth { .. } => (
             error.to_string(),
-            "require less accuracy, or a smaller part of the range with --from and --to, away from limit positions",
+            "require less accuracy, or a smaller part of the range with --table-from and --table-to, away from limit positions",
         ),
         TableError::Domain { from, to } => {
             let reason = match plan.range().limits() {
@@ -172,7 +172,7 @@ fn explain_table_error(
             };
             (
                 format!("no table {}: {reason}", interval_text(scene, from, to)),
-                "give --from and --to within the range, in the scene's unit of angles",
+                "give --table-from and --table-to within the range, in the scene's unit of angles",
             )
         }
         other => (
