@@ -4,8 +4,8 @@ import json
 import contents
 import exercise
 
-# Runs of a change: so many that show whether a number changes, and so many cases at first, then all that reach it.
-MOST_RUNS, FIRST_CASES = 3, 3
+# Runs of a change: so many that show whether a number changes, and so many cases at first, then so many in all.
+MOST_RUNS, FIRST_CASES, MOST_CASES = 3, 3, 9
 CAUGHT = "caught by two"
 
 
@@ -61,8 +61,8 @@ def judge(change, program, all_cases, all_exercises):
     if result.outcome != "number changed" and not result.checks:
         result.outcome = refusal or "no number changed"
         return result
-    # As many cases as there are, for what the first did not show.
-    validated(result, program, reaching[FIRST_CASES:])
+    # Further cases, for what the first did not show.
+    validated(result, program, reaching[FIRST_CASES:MOST_CASES])
     if len(result.checks) >= 2:
         result.outcome = CAUGHT
     elif refusal or "refused" in result.by:

@@ -69,7 +69,7 @@ def chosen(top, options):
     if wrong:
         raise SystemExit("\n".join(wrong))
     if not options.named:
-        changes += selection.drawn_changes(top, options.lines, options.seed) + selection.every_change(top)[: options.largest]
+        changes += selection.drawn_changes(top, options.lines, options.seed) + selection.exhaustive_changes(top)[: options.largest]
     return changes
 
 
