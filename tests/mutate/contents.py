@@ -6,7 +6,8 @@ import re
 import struct
 import zipfile
 
-PICTURES = {".png", ".svg", ".gif"}
+# A database holds the times of its rows; its numbers are also in the CSV file beside it.
+PICTURES = {".png", ".svg", ".gif", ".sqlite"}
 # A number has changed where it differs by more than this, relative to the largest of its column or to itself.
 EFFECTIVE = 1e-9
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\bNaN\b|\binf\b")
@@ -27,6 +28,8 @@ def numbers(name, data):
             return of_json(json.loads(text))
         if ending == "csv":
             return of_csv(text)
+        if ending == "table":
+            return of_table(text)
         return of_text(text)
     except (ValueError, KeyError, zipfile.BadZipFile, struct.error):
         return {"unreadable": [float(len(data))]}
@@ -73,6 +76,16 @@ def of_csv(text):
                 found[name].append(float(entry))
             except ValueError:
                 found.setdefault(name + " (text)", []).append(float(sum(entry.encode())))
+    return found
+
+
+def of_table(text):
+    """The numbers of a table file by the first word of their lines; its checksum follows from them."""
+    found = {}
+    for line in text.splitlines():
+        word, *rest = line.split(" ")
+        if word not in ("check", "scene"):
+            found.setdefault(word, []).extend(float(number) for number in NUMBER.findall(" ".join(rest)))
     return found
 
 

@@ -4,8 +4,10 @@ import json
 import contents
 import exercise
 
-# Runs of a change: so many that show whether a number changes, and so many cases at first, then so many in all.
-MOST_RUNS, FIRST_CASES, MOST_CASES = 3, 3, 9
+# Runs of a change, of those that reach it; more of a named fault, which must show an effect.
+MOST_RUNS, MOST_RUNS_NAMED = 3, 9
+# No more cases are tried than take so long without a change, s, but at least one.
+MOST_SECONDS = 4.0
 CAUGHT = "caught by two"
 
 
@@ -46,37 +48,36 @@ def limit_of(written):
 
 
 def judge(change, program, all_cases, all_exercises):
-    """Tries a change on the cases that reach it, the quickest first; then, unless two checks fail, on commands."""
+    """Tries a change on commands that reach it, then on the cases, the quickest first, until two checks fail."""
     result = Result(change)
     reaching = sorted((c for c in all_cases if change.number in c.reached), key=lambda c: c.base.seconds)
-    validated(result, program, reaching[:FIRST_CASES])
-    if len(result.checks) >= 2:
-        result.outcome = CAUGHT
-        return result
-    runs = exercise.for_change(all_exercises, change.number, MOST_RUNS)
+    runs = exercise.for_change(all_exercises, change.number, MOST_RUNS_NAMED if change.named else MOST_RUNS)
     if not runs and not reaching:
         result.outcome = "not reached"
         return result
     refusal = effect(result, program, runs)
-    if result.outcome != "number changed" and not result.checks:
+    if result.outcome != "number changed" and runs:
         result.outcome = refusal or "no number changed"
         return result
-    # Further cases, for what the first did not show.
-    validated(result, program, reaching[FIRST_CASES:MOST_CASES])
+    validated(result, program, reaching)
     if len(result.checks) >= 2:
         result.outcome = CAUGHT
-    elif refusal or "refused" in result.by:
+    elif refusal or "refused" in result.by or "endless" in result.by:
         result.outcome = "refused"
     elif result.checks:
         result.outcome = "caught by one"
     else:
-        result.outcome = "not caught"
+        result.outcome = "not caught" if runs else "no number changed"
     return result
 
 
 def validated(result, program, some_cases):
     """Validates cases until two checks of different number fail."""
+    spent = 0.0
     for case in some_cases:
+        if spent and spent + case.base.seconds > MOST_SECONDS:
+            return
+        spent += case.base.seconds
         done = program.run(case.command(), result.change.number, limit=limit_of(case.base))
         failed = failed_checks(done)
         for number, key in failed:

@@ -9,8 +9,10 @@ All changes are built into one program, in target/mutate; a variable of the envi
 reports/source-mutations.md and .txt; what is not caught stands there with its reason, from tests/mutate/reasons.toml.
 """
 import argparse
+import hashlib
 import json
 import os
+import pickle
 import sys
 import time
 
@@ -43,8 +45,7 @@ def main():
     build = schemata.Build(top, folder, changes)
     build.run(say)
     program = exercise.Program(build.program(), folder / "runs")
-    all_cases = judge.cases(build.tree, program)
-    all_exercises = exercise.exercises(build.tree, program, say)
+    all_cases, all_exercises = reached(build, program, folder, say)
     store = folder / ("named.json" if options.named else "results.json")
     known = {key(one): one for one in json.loads(store.read_text())} if options.again and store.is_file() else {}
     results = []
@@ -61,6 +62,20 @@ def main():
         store.write_text(json.dumps(results, indent=1, ensure_ascii=False))
     store.write_text(json.dumps(results, indent=1, ensure_ascii=False))
     return overview.write(top, results, len(build.left_out), options, say)
+
+
+def reached(build, program, folder, say):
+    """What each case and each run reaches; as it was found before, if the program and the scenes are the same."""
+    files = [build.program(), *sorted(build.tree.glob("**/*.toml")), *selection.top().glob("tests/mutate/*.py")]
+    state = hashlib.sha256(b"".join(hashlib.sha256(path.read_bytes()).digest() for path in files)).hexdigest()
+    store = folder / "reached.pickle"
+    if store.is_file():
+        known, found = pickle.loads(store.read_bytes())
+        if known == state:
+            return found
+    found = judge.cases(build.tree, program), exercise.exercises(build.tree, program, say)
+    store.write_bytes(pickle.dumps((state, found)))
+    return found
 
 
 def chosen(top, options):
