@@ -46,6 +46,7 @@ lint:
     python3 tests/house/circles.py
     python3 tests/house/sizes.py
     python3 tests/mutate/named.py
+    python3 tests/mutate/selftest.py
 
 # That the computing half compiles without pictures and files, here and for a browser (without that target: here only). Cold it takes minutes, for it builds with other features
 [group('care')]

@@ -62,7 +62,8 @@ def judge(change, program, all_cases, all_exercises):
     validated(result, program, reaching)
     if len(result.checks) >= 2:
         result.outcome = CAUGHT
-    elif refusal or "refused" in result.by or "endless" in result.by:
+    elif {"refused", "endless"} & set(result.by):
+        # A validation that does not end well tells the user; a command that does not leaves the other commands' numbers wrong.
         result.outcome = "refused"
     elif result.checks:
         result.outcome = "caught by one"

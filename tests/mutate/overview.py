@@ -6,8 +6,6 @@ import judge
 
 # In this order they are counted.
 OUTCOMES = [judge.CAUGHT, "caught by one", "refused", "endless", "not caught", "no number changed", "not reached"]
-# Of the changes of a number: the user is told by a check, or by a sentence instead of a result.
-TOLD = {judge.CAUGHT, "refused", "endless"}
 # At most this part of the changes of a number may stay uncaught.
 MOST_UNCAUGHT = 0.02
 GROUPS = ["laws, every line", "drawn lines", "named faults"]

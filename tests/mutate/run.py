@@ -66,7 +66,7 @@ def main():
 
 def reached(build, program, folder, say):
     """What each case and each run reaches; as it was found before, if the program and the scenes are the same."""
-    files = [build.program(), *sorted(build.tree.glob("**/*.toml")), *selection.top().glob("tests/mutate/*.py")]
+    files = [build.program(), *sorted(build.tree.glob("**/*.toml")), *(selection.top() / "tests/mutate" / name for name in ("exercise.py", "contents.py"))]
     state = hashlib.sha256(b"".join(hashlib.sha256(path.read_bytes()).digest() for path in files)).hexdigest()
     store = folder / "reached.pickle"
     if store.is_file():
