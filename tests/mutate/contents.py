@@ -12,7 +12,7 @@ PICTURES = {".png", ".svg", ".gif", ".sqlite"}
 EFFECTIVE = 1e-9
 NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\bNaN\b|\binf\b")
 # What is measured of the machine, or says where files are, is no result.
-IGNORED = re.compile(r"second|time:|\btime\b.*ms|program|sha256|hash|seconds|version", re.I)
+IGNORED = re.compile(r"second|running for|time:|\btime\b.*ms|program|sha256|hash|seconds|version", re.I)
 # Numbers that say how certain or how costly a result is, not what it is.
 ESTIMATES = re.compile(r"error|estimate|step|evaluation|reject|jacobian|condition|uncertain|accura|drift|toleran|rtol|atol|digits", re.I)
 
