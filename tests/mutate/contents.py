@@ -104,10 +104,14 @@ class Difference:
 
     def __init__(self):
         self.largest, self.place, self.only_estimates, self.count = 0.0, "", True, 0
+        # Of results, not estimates: where they are written, by the endings of files, or "printed".
+        self.kinds = set()
 
     def add(self, place, label, size):
         is_estimate = bool(ESTIMATES.search(label))
         self.count += 1
+        if not is_estimate:
+            self.kinds.add(place.rsplit(".", 1)[-1])
         # A result outweighs an estimate.
         if (not is_estimate, size) > (not self.only_estimates, self.largest):
             self.largest, self.place = size, f"{place}: {label}"

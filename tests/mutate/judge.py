@@ -30,13 +30,14 @@ class Result:
     def __init__(self, change):
         self.change, self.outcome, self.checks, self.by = change, "", {}, []
         self.size, self.place, self.only_estimates = 0.0, "", False
-        self.folders = set()
+        self.folders, self.kinds = set(), set()
 
     def as_dict(self):
         of = self.change
         return {
             "file": of.path, "line": of.line, "change": of.what, "instead": of.text, "named": of.named, "outcome": self.outcome,
             "checks": self.checks, "by": self.by, "size": min(self.size, 1e300), "place": self.place, "only_estimates": self.only_estimates,
+            "kinds": sorted(self.kinds),
         }
 
 
@@ -122,4 +123,5 @@ def effect(result, program, runs):
         result.outcome = "number changed"
         if not found.only_estimates:
             result.folders.add(run.scene.parent)
+            result.kinds |= found.kinds
     return refusal
