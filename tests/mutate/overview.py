@@ -56,7 +56,7 @@ def write(top, results, left_out, options, say):
     title = f"Changes of the source text: {origin}"
     document = [f"# {title}", "", "```text", *text, "```", "", *named_table(results), *open_table(uncaught, known)]
     (top / "reports" / f"{name}.md").write_text("\n".join(document) + "\n", encoding="utf-8")
-    lines = [title, "", *text, "", *(f"{r['file']}:{r['line']}  {r['change']}  {r['outcome']}  {why(r, known)}".rstrip() for r in uncaught)]
+    lines = [title, "", *text, "", *named_lines(results), *open_lines(uncaught, known)]
     (top / "reports" / f"{name}.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
     for line in text:
         say(line)
@@ -85,6 +85,28 @@ def named_table(results):
         checks = "; ".join(f"{n} ({where})" for n, where in sorted(r["checks"].items(), key=lambda c: int(c[0])))
         lines.append(f"| {r['named']['class']} | {r['named']['sentence']} | {r['outcome']} | {checks} |")
     return [*lines, ""]
+
+
+def named_lines(results):
+    """The named faults with the checks that fail, for the committed file."""
+    rows = [r for r in results if r["named"]]
+    lines = [f"  {r['named']['class']:20} {r['named']['sentence']:72} {' '.join(sorted(r['checks'], key=int)) or r['outcome']}" for r in rows]
+    return ["Named faults, and the checks that fail", *lines, ""] if rows else []
+
+
+def open_lines(uncaught, known):
+    """What two checks do not catch, by files: the line, the change, the checks that fail, the largest change and where, the reason."""
+    lines, file = ["Changes of a number that two checks do not catch"], None
+    for r in uncaught:
+        if r["named"]:
+            continue
+        if r["file"] != file:
+            file = r["file"]
+            lines.append(f"  {file}")
+        place = r["place"].split(": ", 1)[-1]
+        lines.append(f"    {r['line']:4}  {r['text']}")
+        lines.append(f"          {r['change']}; [{' '.join(r['checks'])}]; {r['size']:.0e} in {place}; {why(r, known) or 'no reason'}")
+    return lines
 
 
 def open_table(uncaught, known):
