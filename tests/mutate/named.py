@@ -8,6 +8,13 @@ import tomllib
 import selection
 from changes import Change
 
+# What stands between a scene and its files; each has a fault at least, and there are ten of an auditor.
+CLASSES = [
+    "readers", "units", "laws", "expressions", "drives", "batches", "samplers", "tables", "files", "printed sentences", "duals",
+    "integrators", "faer's groups", "cycle", "equilibria", "linearise",
+]
+AUDITED = 10
+
 
 def named_changes(top):
     """The faults as changes, and what is wrong with those that cannot be planted."""
@@ -32,6 +39,11 @@ def named_changes(top):
         change = Change(fault["file"], line, fault["name"], (start, start + len(part)), fault["replace"])
         change.named = fault
         changes.append(change)
+    classes = [fault["class"] for fault in listed]
+    wrong += [f"named.toml: no fault of the class `{name}`" for name in CLASSES if name not in classes]
+    wrong += [f"named.toml: `{name}` is no class" for name in sorted(set(classes) - {*CLASSES, "issue"})]
+    if classes.count("issue") != AUDITED:
+        wrong.append(f"named.toml: {classes.count('issue')} faults of the issue, not {AUDITED}")
     return changes, wrong
 
 
