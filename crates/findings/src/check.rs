@@ -44,11 +44,13 @@ pub enum Check {
     WrittenTwice,
     /// The same scene written in another system of units.
     WrittenUnits,
+    /// Printed sentences against the numbers of the files.
+    WrittenSentences,
 }
 
 impl Check {
     /// All checks in the order of their numbers.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::ConstraintClosure,
         Self::KineticEnergy,
         Self::EnergySlope,
@@ -68,6 +70,7 @@ impl Check {
         Self::WrittenLaws,
         Self::WrittenTwice,
         Self::WrittenUnits,
+        Self::WrittenSentences,
     ];
 
     /// The number, from 0: the index in [`Check::ALL`].
@@ -97,6 +100,7 @@ impl Check {
             Self::WrittenLaws => "written laws",
             Self::WrittenTwice => "written twice",
             Self::WrittenUnits => "written units",
+            Self::WrittenSentences => "written sentences",
         }
     }
 }

@@ -50,6 +50,12 @@ impl Differences {
         self.failure.get_or_insert(reason);
     }
 
+    /// The largest relative difference.
+    #[cfg(test)]
+    pub(crate) fn largest(&self) -> f64 {
+        self.relative
+    }
+
     /// The worse of both.
     pub(crate) fn merge(&mut self, other: Self) {
         let failure = self.failure.take().or(other.failure.clone());

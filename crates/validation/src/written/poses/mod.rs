@@ -10,12 +10,15 @@
 
 pub(super) mod closure;
 pub(super) mod difference;
+mod drawn_laws;
 pub(super) mod equilibrium;
 pub(super) mod expression;
 pub(super) mod forces_read;
+mod formats;
 pub(super) mod jet;
 pub(super) mod law;
 pub(super) mod motion;
+mod other_units;
 mod positions;
 mod program;
 pub(super) mod rates;
@@ -24,6 +27,7 @@ pub(super) mod reading;
 mod reduced;
 pub(super) mod rows;
 pub(super) mod scene_text;
+mod sections;
 pub(super) mod table_curve;
 pub(super) mod totals;
 pub(super) mod units;

@@ -2,13 +2,17 @@
 
 use super::closure::closure;
 use super::difference::{Differences, Texts};
+use super::drawn_laws::drawn_motions;
 use super::equilibrium::equilibrium;
-use super::program::Program;
+use super::formats::formats;
+use super::other_units::in_other_units;
+use super::program::{Program, Run};
 use super::rates::rates;
 use super::reading::Reading;
 use super::reduced::{ReducedFiles, reduced};
 use super::rows::Rows;
 use super::scene_text::{Draws, requests_everything, text_of};
+use super::sections::{Link, links, sections};
 use dwell_findings::{Check, Finding};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,6 +22,7 @@ use std::path::Path;
 struct Judged {
     closure: Differences,
     laws: Differences,
+    law_rates: Differences,
     rates: Differences,
     equilibrium: Differences,
     loads: Differences,
@@ -26,6 +31,12 @@ struct Judged {
     reduced_bodies: Differences,
     reduced_slopes: Differences,
     reduced_runs: Differences,
+    files: Differences,
+    extrema: Differences,
+    printed: Differences,
+    cuts: Differences,
+    ends: Differences,
+    units: Differences,
 }
 
 const RULE: &str = "rounding of the written numbers, measured over all cases";
@@ -46,6 +57,7 @@ fn judge(judged: &mut Judged, path: &Path, name: &str, scene: &str) -> Result<()
     let everything = text_of(&requests_everything(scene)?)?;
     judge_kinematics(judged, &program, &reading, &everything)?;
     judge_forces(judged, &program, &reading, &everything, &mut draws)?;
+    judge_units(judged, &program, &reading, &everything, &mut draws)?;
     if reading.actuator_count == 1 {
         judge_reduced(judged, &program, &reading, [scene, &everything], &mut draws)?;
     }
@@ -62,6 +74,7 @@ fn judge_kinematics(
         .run("kinematics", scene, &["kinematics"])
         .map_err(|e| e.to_string())?;
     let rows = run.csv("-kinematics.csv")?;
+    judged.add_formats(&run, reading, "kinematics")?;
     let of = closure(reading, &rows, "kinematics");
     judged.closure.merge(of.joints);
     judged.laws.merge(of.laws);
@@ -69,6 +82,48 @@ fn judge_kinematics(
         judged
             .rates
             .merge(rates(&rows, time, &corners(reading), "kinematics"));
+    }
+    Ok(())
+}
+
+/// Systems of units in which each case is written again.
+const SYSTEMS: usize = 2;
+
+/// The same files from the scene in other units.
+fn judge_units(
+    judged: &mut Judged,
+    program: &Program,
+    reading: &Reading,
+    scene: &str,
+    draws: &mut Draws,
+) -> Result<(), String> {
+    let table: toml::Table = scene
+        .parse()
+        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let has_motion = ["prescribed", "coordinate-sweep"]
+        .iter()
+        .any(|key| table.contains_key(*key));
+    let command = if has_motion {
+        "kinetostatics"
+    } else {
+        "kinematics"
+    };
+    let file = format!("-{command}.npz");
+    let run = |name: &str, scene: &str| {
+        let run = program.run(name, scene, &[command, "--points", "31"]);
+        run.map_err(|e| e.to_string())?.npz(&file)
+    };
+    let expected = run("units", scene)?;
+    for _ in 0..SYSTEMS {
+        let (other, units) = in_other_units(&table, reading, draws);
+        match run("other-units", &text_of(&other)?) {
+            Ok(rows) => judged.units.merge(same_columns(
+                &rows,
+                &expected,
+                &format!("the scene in {units}"),
+            )),
+            Err(reason) => judged.units.fail(format!("the scene in {units}: {reason}")),
+        }
     }
     Ok(())
 }
@@ -109,8 +164,97 @@ fn judge_forces(
         judged.equilibrium.merge(forces.bodies);
         judged.loads.merge(forces.loads);
         judged.totals.merge(forces.totals);
+        judged.add_formats(&run, reading, command)?;
+    }
+    if has_motion {
+        judge_sections(judged, program, reading, scene, draws)?;
     }
     Ok(())
+}
+
+/// Links of a case whose internal forces are judged.
+const LINKS: usize = 2;
+
+/// The internal forces of drawn links, in the row where the program has found the largest bending moment.
+fn judge_sections(
+    judged: &mut Judged,
+    program: &Program,
+    reading: &Reading,
+    scene: &str,
+    draws: &mut Draws,
+) -> Result<(), String> {
+    let mut links = links(reading);
+    let drawn: Vec<_> = (0..LINKS.min(links.len()))
+        .map(|_| links.remove(draws.below(links.len())))
+        .collect();
+    if drawn.is_empty() {
+        return Ok(());
+    }
+    let arguments = ["kinetostatics", "--points", "37"];
+    let scene = requesting_sections(scene, reading, &drawn)?;
+    let run = program
+        .run("sections", &scene, &arguments)
+        .map_err(|e| e.to_string())?;
+    let (rows, summary) = (
+        run.csv("-kinetostatics.csv")?,
+        run.json("-kinetostatics.json")?,
+    );
+    let abscissa = summary["extrema_over"]["name"].as_str().unwrap_or("t");
+    for link in &drawn {
+        let body = &reading.bodies[link.body].name;
+        let [from, to] = &link.names;
+        let cuts = run.csv(&format!(
+            "-kinetostatics-internal-forces-{body}.{from}.{to}.csv"
+        ))?;
+        let name = format!("{body} from {from} to {to}.bending_moment");
+        let at = summary["results"][format!("{name}.at")]["value"].as_f64();
+        let column = rows.columns.get(abscissa);
+        let row = at.zip(column).and_then(|(at, column)| {
+            column
+                .iter()
+                .position(|x| (x - at).abs() <= 1e-12 * (1.0 + at.abs()))
+        });
+        let Some(row) = row else {
+            judged
+                .cuts
+                .fail(format!("the largest {name} is at {at:?}, which is no row"));
+            continue;
+        };
+        let of = sections(reading, &rows, row, link, &cuts);
+        judged.cuts.merge(of.cuts);
+        judged.ends.merge(of.ends);
+        // The largest moment that is printed is one of the cuts.
+        let said = summary["results"][&name]["value"]
+            .as_f64()
+            .unwrap_or(f64::NAN);
+        let column = cuts.columns.get("bending").into_iter().flatten();
+        let largest = column.fold(0.0_f64, |max, v| max.max(v.abs()));
+        judged
+            .files
+            .add(said.abs() - largest, largest, "N m", || name.clone());
+    }
+    Ok(())
+}
+
+fn requesting_sections(scene: &str, reading: &Reading, drawn: &[Link]) -> Result<String, String> {
+    let mut scene: toml::Table = scene
+        .parse()
+        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let request = |link: &Link| {
+        let [from, to] = &link.names;
+        let entries = [
+            ("body", &reading.bodies[link.body].name),
+            ("from", from),
+            ("to", to),
+        ];
+        let entry =
+            |(key, value): (&str, &String)| (key.to_owned(), toml::Value::String(value.clone()));
+        toml::Value::Table(entries.into_iter().map(entry).collect())
+    };
+    let requested = toml::Value::Array(drawn.iter().map(request).collect());
+    let requests = toml::Table::from_iter([("sections".to_owned(), requested)]);
+    scene.insert("requests".to_owned(), toml::Value::Table(requests));
+    text_of(&scene)
 }
 
 fn judge_reduced(
@@ -138,6 +282,9 @@ fn judge_reduced(
     };
     let coordinate = &reading.coordinates[0].name;
     let of = reduced(reading, &files, coordinate);
+    let range =
+        [0, all.count.saturating_sub(1)].map(|row| all.get(row, coordinate).unwrap_or(f64::NAN));
+    judge_laws(judged, program, reading, everything, range, draws)?;
     judged.reduced_sums.merge(of.sums);
     judged.reduced_bodies.merge(of.bodies);
     judged.reduced_slopes.merge(of.slopes);
@@ -149,6 +296,34 @@ fn judge_reduced(
     ));
     for (rows, file) in [(&run_i, "run i"), (&run_ii, "run ii")] {
         judged.closure.merge(closure(reading, rows, file).joints);
+    }
+    Ok(())
+}
+
+/// Laws of every kind and expressions of every function in drawn motions.
+fn judge_laws(
+    judged: &mut Judged,
+    program: &Program,
+    reading: &Reading,
+    scene: &str,
+    range: [f64; 2],
+    draws: &mut Draws,
+) -> Result<(), String> {
+    for motion in drawn_motions(program, scene, reading, range, draws)? {
+        let (reading, rows) = (&motion.reading, &motion.rows);
+        let of = closure(reading, rows, &motion.name);
+        judged.closure.merge(of.joints);
+        judged.laws.merge(of.laws);
+        if let Some(time) = rows.columns.get("t") {
+            judged
+                .law_rates
+                .merge(rates(rows, time, &corners(reading), &motion.name));
+        }
+        if motion.name.ends_with("expression") {
+            let forces = equilibrium(reading, rows, &motion.name, false);
+            judged.equilibrium.merge(forces.bodies);
+            judged.loads.merge(forces.loads);
+        }
     }
     Ok(())
 }
@@ -185,20 +360,40 @@ fn swept(scene: &str, reading: &Reading, rows: &Rows) -> Result<String, String> 
     text_of(&scene)
 }
 
+/// What the columns of a name are compared with: forces in x and y, and along the axes of a body, are of one kind.
+fn kind_of(name: &str, is_point: bool) -> String {
+    if let Some((_, load)) = name.split_once(".c.") {
+        return format!("c.{load}");
+    }
+    let end = name.rsplit('.').next().unwrap_or(name);
+    let kind = match end.split('@').next().unwrap_or(end) {
+        "half_dm" => "m",
+        "x" | "y" if is_point && !end.contains('@') => "position",
+        "vx" | "vy" => "v",
+        "ax" | "ay" => "a",
+        "x" | "y" | "normal" | "tangent" | "tooth" | "axial" | "force" | "magnitude" | "fx"
+        | "fy" | "load_force" => "force",
+        "moment" | "load_moment" => "moment",
+        _ if name.starts_with("power.") || end == "power" => "power",
+        other => other,
+    };
+    kind.to_owned()
+}
+
 /// The columns of a file against those of another that has them, too, relative to the largest of the same ending.
 fn same_columns(rows: &Rows, other: &Rows, file: &str) -> Differences {
-    let ending = |name: &str| match name.split_once(".c.") {
-        Some((_, load)) => format!("c.{load}"),
-        None => name
-            .rsplit('.')
-            .next()
-            .unwrap_or(name)
-            .replace("half_dm", "m"),
-    };
+    let is_point = |name: &str| name.matches('.').count() == 2;
+    let ending = |name: &str| kind_of(name, is_point(name));
     let mut scales = BTreeMap::<String, f64>::new();
     for (name, values) in &other.columns {
         let scale = scales.entry(ending(name)).or_default();
         *scale = values.iter().fold(*scale, |max, v| max.max(v.abs()));
+    }
+    // Where nothing accelerates, what the velocities would make of it stands in.
+    for (acceleration, velocity) in [("angular_acceleration", "angular_velocity"), ("a", "v")] {
+        let velocity = scales.get(velocity).copied().unwrap_or(0.0);
+        let scale = scales.entry(acceleration.to_owned()).or_default();
+        *scale = scale.max(velocity * velocity);
     }
     let mut all = Differences::default();
     for (name, values) in rows
@@ -228,6 +423,14 @@ fn same_columns(rows: &Rows, other: &Rows, file: &str) -> Differences {
 }
 
 impl Judged {
+    fn add_formats(&mut self, run: &Run, reading: &Reading, command: &str) -> Result<(), String> {
+        let of = formats(run, command, command, &corners(reading))?;
+        self.files.merge(of.files);
+        self.extrema.merge(of.extrema);
+        self.printed.merge(of.printed);
+        Ok(())
+    }
+
     fn findings(self) -> Vec<Finding> {
         let specs = [
             (
@@ -235,14 +438,14 @@ impl Judged {
                 "written-closure",
                 Check::WrittenPositions,
                 "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations",
-                1e-12,
+                5e-13,
             ),
             (
                 self.laws,
                 "written-laws",
                 Check::WrittenLaws,
                 "actuators of every row with the laws of the scene's text and their derivatives",
-                1e-12,
+                4e-13,
             ),
             (
                 self.rates,
@@ -256,21 +459,21 @@ impl Judged {
                 "written-equilibrium",
                 Check::WrittenForces,
                 "Newton's and Euler's equations of every body with the written forces",
-                1e-13,
+                2e-14,
             ),
             (
                 self.loads,
                 "written-loads",
                 Check::WrittenLaws,
                 "forces of loads with expressions and tables of the scene's text",
-                1e-13,
+                2e-14,
             ),
             (
                 self.totals,
                 "written-totals",
                 Check::WrittenTotals,
                 "shaking forces, powers and energies with sums over all bodies",
-                1e-13,
+                2e-14,
             ),
             (
                 self.reduced_sums,
@@ -298,7 +501,56 @@ impl Judged {
                 "written-runs",
                 Check::WrittenTwice,
                 "m, ½m′, a and b of `reduce` with two runs of kinetostatics, and with the columns that are requested",
+                4e-11,
+            ),
+            (
+                self.files,
+                "written-files",
+                Check::WrittenTwice,
+                "CSV with NPZ, extrema and peaks of the summary with the rows",
+                1e-12,
+            ),
+            (
+                self.law_rates,
+                "written-law-rates",
+                Check::WrittenRates,
+                "changes between rows of drawn laws with the integrals of their rates",
+                1e-6,
+            ),
+            (
+                self.units,
+                "written-units",
+                Check::WrittenUnits,
+                "files of the scene with those of the scene in other units",
                 1e-11,
+            ),
+            (
+                self.extrema,
+                "written-extrema",
+                Check::WrittenRates,
+                "extrema of the summary with the rows around them",
+                1e-6,
+            ),
+            (
+                self.printed,
+                "written-sentences",
+                Check::WrittenSentences,
+                "printed numbers with the summary, to their digits",
+                1e-12,
+            ),
+            (
+                self.cuts,
+                "written-sections",
+                Check::WrittenForces,
+                "internal forces of links with equilibrium of the part behind each cut",
+                2e-14,
+            ),
+            (
+                self.ends,
+                "written-section-ends",
+                Check::WrittenTotals,
+                "internal forces at the end of a link with what acts there",
+                2e-14,
             ),
         ];
         let finding =

@@ -17,8 +17,6 @@ pub(crate) struct Program {
 /// What a process left.
 #[derive(Debug, Clone)]
 pub(crate) struct Run {
-    /// The exit status; none where a signal ended it.
-    pub(crate) status: Option<i32>,
     pub(crate) printed: String,
     pub(crate) messages: String,
     folder: PathBuf,
@@ -57,8 +55,16 @@ impl Program {
         // A process of each case is enough: cases run at once.
         let output = process.env("RAYON_NUM_THREADS", "1").output()?;
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        // With status 1 there are results with a reservation; otherwise none.
+        if !matches!(output.status.code(), Some(0 | 1)) {
+            let message = format!(
+                "`{command}` of {name} ended with {}: {}",
+                output.status,
+                text(&output.stderr).trim()
+            );
+            return Err(io::Error::other(message));
+        }
         Ok(Run {
-            status: output.status.code(),
             printed: text(&output.stdout),
             messages: text(&output.stderr),
             folder,
@@ -80,17 +86,6 @@ impl Run {
         let file = format!("{}{end}", self.name);
         fs::read_to_string(self.folder.join(&file))
             .map_err(|e| format!("{file}: {e}; {}", self.messages.trim()))
-    }
-
-    /// The names of all files, without the name of the scene.
-    pub(crate) fn files(&self) -> Vec<String> {
-        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
-        let names = entries.filter_map(|e| e.file_name().into_string().ok());
-        let mut ends: Vec<String> = names
-            .filter_map(|file| Some(file.strip_prefix(&self.name)?.to_owned()))
-            .collect();
-        ends.sort();
-        ends
     }
 
     /// The columns of a CSV file.

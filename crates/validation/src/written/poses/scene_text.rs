@@ -1,6 +1,6 @@
 //! Scenes that the checks write: the scene of a case, changed in its plain TOML.
 
-use toml::{Table, Value};
+use toml::Table;
 
 /// FNV-1a of a text, 64 bits: the same on every machine.
 pub(crate) fn hash(text: &str) -> u64 {
@@ -48,12 +48,4 @@ pub(crate) fn requests_everything(text: &str) -> Result<Table, String> {
 /// The text of a changed scene.
 pub(crate) fn text_of(scene: &Table) -> Result<String, String> {
     toml::to_string(scene).map_err(|e| e.to_string())
-}
-
-/// A table of the scene, which is made if it is not there.
-pub(crate) fn section<'a>(scene: &'a mut Table, name: &str) -> Option<&'a mut Table> {
-    scene
-        .entry(name)
-        .or_insert_with(|| Value::Table(Table::new()))
-        .as_table_mut()
 }

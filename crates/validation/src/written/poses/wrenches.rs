@@ -93,6 +93,18 @@ fn unit(gap: JetVector) -> [f64; 2] {
     scaled([x, y], 1.0 / x.hypot(y))
 }
 
+/// A force between two points along their line, on each body at its own point.
+fn between(motion: &Motion, places: [Place; 2], force: f64) -> [Wrench; 2] {
+    let line = unit(motion.gap(places));
+    let on = |k: usize, sign: f64| Wrench {
+        body: places[k].body,
+        force: scaled(line, sign * force),
+        point: motion.point(places[k]).order(0),
+        couple: 0.0,
+    };
+    [on(0, -1.0), on(1, 1.0)]
+}
+
 /// A force along a coordinate, of its first body on its second: it does work when the coordinate grows.
 pub(crate) fn along(motion: &Motion, measure: Measure, force: f64) -> [Wrench; 2] {
     let at = |places: [Place; 2], line: [f64; 2]| {
@@ -104,7 +116,7 @@ pub(crate) fn along(motion: &Motion, measure: Measure, force: f64) -> [Wrench; 2
         Measure::Travel(places, axis) => {
             at(places, motion.direction(places[0].body, axis).order(0))
         }
-        Measure::Length(places) => at(places, unit(motion.gap(places))),
+        Measure::Length(places) => between(motion, places, force),
     }
 }
 
@@ -166,9 +178,7 @@ pub(crate) fn joint_wrenches(
             let force = plus(scaled(normal, of(0)?), scaled(along, of(1)?));
             of_pair(force, plus(second, scaled(normal, -radius)), 0.0)
         }
-        JointKind::Distance { .. } => {
-            of_pair(scaled(unit(motion.gap(places)), of(0)?), second, 0.0)
-        }
+        JointKind::Distance { .. } => between(motion, places, of(0)?).to_vec(),
         JointKind::Coupling {
             dependent,
             independent,
