@@ -64,16 +64,31 @@ def judge(change, program, all_cases, all_exercises):
     # First the cases in whose files a number changed.
     reaching.sort(key=lambda case: case.folder not in result.folders)
     validated(result, program, reaching)
-    if len(result.checks) >= 2:
-        result.outcome = CAUGHT
-    elif {"refused", "endless"} & set(result.by):
-        # A validation that does not end well tells the user; a command that does not leaves the other commands' numbers wrong.
-        result.outcome = "refused"
-    elif result.checks:
-        result.outcome = "caught by one"
-    else:
-        result.outcome = "not caught" if runs else "no number changed"
+    result.outcome = outcome(result, has_effect=bool(runs))
     return result
+
+
+def judge_again(change, known, program, all_cases):
+    """Tries a change whose effect is known from an earlier run on the cases alone, first on that in whose files a number changed."""
+    result = Result(change)
+    result.size, result.place, result.only_estimates = known["size"], known["place"], known["only_estimates"]
+    result.kinds = set(known.get("kinds", ()))
+    reaching = sorted((c for c in all_cases if change.number in c.reached), key=lambda c: c.base.seconds)
+    reaching.sort(key=lambda case: case.name != result.place.split(": ")[0])
+    validated(result, program, reaching)
+    result.outcome = outcome(result, has_effect=True)
+    return result
+
+
+def outcome(result, has_effect):
+    if len(result.checks) >= 2:
+        return CAUGHT
+    if {"refused", "endless"} & set(result.by):
+        # A validation that does not end well tells the user; a command that does not leaves the other commands' numbers wrong.
+        return "refused"
+    if result.checks:
+        return "caught by one"
+    return "not caught" if has_effect else "no number changed"
 
 
 def validated(result, program, some_cases):

@@ -9,6 +9,7 @@ All changes are built into one program, in target/mutate; a variable of the envi
 reports/source-mutations.md and .txt; what is not caught stands there with its reason, from tests/mutate/reasons.toml.
 """
 import argparse
+import collections
 import hashlib
 import json
 import os
@@ -25,6 +26,8 @@ import selection
 
 # Outcomes that a later run need not look at again.
 SETTLED = {judge.CAUGHT, "no number changed", "not reached", "refused", "endless"}
+# A number is known to change, and only the checks are to be tried again.
+OPEN = {"caught by one", "not caught"}
 
 
 def main():
@@ -45,27 +48,38 @@ def main():
     build = schemata.Build(top, folder, changes)
     build.run(say)
     program = exercise.Program(build.program(), folder / "runs")
-    all_cases, all_exercises = reached(build, program, folder, say)
+    all_cases = judge.cases(build.tree, program)
+    say(f"{len(all_cases)} cases reach {len(set().union(*(case.reached for case in all_cases)))} changes")
+    all_exercises = None
     store = folder / ("named.json" if options.named else "results.json")
-    known = {key(one): one for one in json.loads(store.read_text())} if options.again and store.is_file() else {}
-    results = []
-    for count, change in enumerate(build.changes, 1):
-        result = known.get(key_of(change))
+    earlier = json.loads(store.read_text()) if options.again and store.is_file() else []
+    known = dict(zip(keys(map(key, earlier)), earlier))
+    results, keep = [], lambda rest: store.write_text(json.dumps(results + rest, indent=1, ensure_ascii=False))
+    all_keys = keys(map(key_of, build.changes))
+    for count, (change, its_key) in enumerate(zip(build.changes, all_keys), 1):
+        result = known.pop(its_key, None)
         if result is None or result["outcome"] not in SETTLED:
             if time.monotonic() - begin > options.seconds:
                 results += [result] if result else []
                 continue
-            result = judge.judge(change, program, all_cases, all_exercises).as_dict()
+            if result and result["outcome"] in OPEN:
+                result = judge.judge_again(change, result, program, all_cases).as_dict()
+            else:
+                all_exercises = all_exercises or reached(build, program, folder, say)
+                result = judge.judge(change, program, all_cases, all_exercises).as_dict()
             result["text"] = selection.line_of(top, change)
             say(f"{count}/{len(build.changes)} {result['outcome']}: {change.path}:{change.line} {change.what} {sorted(result['checks'])}")
-        results.append(result)
-        store.write_text(json.dumps(results, indent=1, ensure_ascii=False))
-    store.write_text(json.dumps(results, indent=1, ensure_ascii=False))
+            results.append(result)
+            # What is not looked at yet is not lost where this ends early.
+            keep(list(known.values()))
+        else:
+            results.append(result)
+    keep([])
     return overview.write(top, results, len(build.left_out), options, say)
 
 
 def reached(build, program, folder, say):
-    """What each case and each run reaches; as it was found before, if the program and the scenes are the same."""
+    """What each run reaches and writes; as it was found before, if the program and the scenes are the same."""
     files = [build.program(), *sorted(build.tree.glob("**/*.toml")), *(selection.top() / "tests/mutate" / name for name in ("exercise.py", "contents.py"))]
     state = hashlib.sha256(b"".join(hashlib.sha256(path.read_bytes()).digest() for path in files)).hexdigest()
     store = folder / "reached.pickle"
@@ -73,7 +87,7 @@ def reached(build, program, folder, say):
         known, found = pickle.loads(store.read_bytes())
         if known == state:
             return found
-    found = judge.cases(build.tree, program), exercise.exercises(build.tree, program, say)
+    found = exercise.exercises(build.tree, program, say)
     store.write_bytes(pickle.dumps((state, found)))
     return found
 
@@ -86,6 +100,16 @@ def chosen(top, options):
     if not options.named:
         changes += selection.drawn_changes(top, options.lines, options.seed) + selection.exhaustive_changes(top)[: options.largest]
     return changes
+
+
+def keys(some):
+    """Each with its count among those that are the same, such as two constants of one line."""
+    counts = collections.Counter()
+    numbered = []
+    for one in some:
+        counts[one] += 1
+        numbered.append((one, counts[one]))
+    return numbered
 
 
 def key(result):
