@@ -38,13 +38,15 @@ fuzz pairs="2000" seed="1":
     cargo build --release --workspace --bins
     python3 tests/fuzz/run.py {{ pairs }} {{ seed }}
 
-# Format, lints with warnings denied, no circle of imports between folders, and no long file or function without a reason
+# Format, lints with warnings denied, no circle of imports between folders, no long file or function without a reason, and a place for every named fault
 [group('care')]
 lint:
     cargo fmt --all --check
     cargo clippy --release --workspace --all-targets -- -D warnings
     python3 tests/house/circles.py
     python3 tests/house/sizes.py
+    python3 tests/mutate/named.py
+    python3 tests/mutate/selftest.py
 
 # That the computing half compiles without pictures and files, here and for a browser (without that target: here only). Cold it takes minutes, for it builds with other features
 [group('care')]
@@ -53,6 +55,11 @@ computing:
     @if rustc --print target-libdir --target wasm32-unknown-unknown | xargs test -d; then \
         cargo check -p dwell-study --no-default-features --target wasm32-unknown-unknown; \
     else echo "wasm32 is not checked: rustup target add wasm32-unknown-unknown"; fi
+
+# Changes of the source text, one at a time in a scratch copy, and which checks fail by each: reports/source-mutations.md and .txt. An hour; `--named` only the faults of tests/mutate/named.toml
+[group('care')]
+mutate *options="400 1":
+    python3 tests/mutate/run.py {{ options }}
 
 # Licences, sources, duplicates and advisories of the dependencies, by deny.toml. The tool: cargo install cargo-deny --locked
 [group('care')]

@@ -1,0 +1,146 @@
+"""Runs of the program on a few scenes: which changes each of them reaches, and what it writes without any."""
+import os
+import pathlib
+import shlex
+import shutil
+import subprocess
+import tempfile
+import time
+
+import contents
+
+SCENES = [
+    "validation/*/scene.toml",
+    "tests/mutations/scenes/*.toml",
+    "tests/mutate/scenes/*.toml",
+    "crates/scene/src/tests/*.toml",
+    "crates/kinetostatics/tests/loads/*.toml",
+    "crates/cli/src/init.toml",
+    "crates/study/tests/run/*.toml",
+    "docs/slider.toml",
+]
+# As short as each can be: positions and rows are few, and no picture is drawn.
+COMMANDS = [
+    ["check"],
+    ["reduce", "--points", "25"],
+    ["reduce", "--points", "9", "--table-accuracy", "1e-8"],
+    ["kinematics", "--points", "25"],
+    ["statics", "--points", "13"],
+    ["kinetostatics", "--points", "25"],
+    ["runs", "--points", "13"],
+    ["simulate", "--sample-interval", "0.05"],
+    ["simulate", "--method", "dop853", "--sample-interval", "0.05"],
+    ["simulate", "--method", "esdirk34", "--rtol", "1e-6", "--sample-interval", "0.05"],
+    ["simulate", "--accuracy", "1e-6"],
+    ["cycle", "--fluctuation", "0.02"],
+    ["equilibria"],
+    ["linearise"],
+    ["linearise", "--about", "initial"],
+    ["symbolic", "--format", "python"],
+    ["calibrate"],
+]
+# No run takes longer, s, and one that takes longer than this without a change is not among them.
+LONGEST, LONGEST_BASE = 20.0, 5.0
+
+
+class Written:
+    """What one run left: its status (None: endless), its sentences, and its files."""
+
+    def __init__(self, status, printed, files, seconds):
+        self.status, self.printed, self.files, self.seconds = status, printed, files, seconds
+
+    @property
+    def has_panicked(self):
+        return self.status is not None and (self.status < 0 or self.status > 2)
+
+
+class Exercise:
+    """A scene and a command, the changes it reaches, and what it writes without a change."""
+
+    def __init__(self, scene, arguments):
+        self.scene, self.arguments = scene, arguments
+        self.reached, self.base, self.varying = set(), None, frozenset()
+
+    def name(self):
+        folder = self.scene.parent.name if self.scene.name == "scene.toml" else self.scene.stem
+        return f"{folder}: {' '.join(self.arguments)}"
+
+    def command(self):
+        return [self.arguments[0], str(self.scene), *self.arguments[1:], "--pictures", "none", "--name", "scene"]
+
+
+class Program:
+    """The program with all changes in it."""
+
+    def __init__(self, path, scratch):
+        self.path, self.scratch = path, scratch
+        scratch.mkdir(parents=True, exist_ok=True)
+
+    def run(self, arguments, number=0, reached=None, limit=LONGEST):
+        """A run with one change active, or none, in a folder of its own."""
+        folder = pathlib.Path(tempfile.mkdtemp(dir=self.scratch))
+        kept = ("PATH", "HOME", "TMPDIR")
+        environment = {key: os.environ[key] for key in kept if key in os.environ}
+        environment |= {"NO_COLOR": "1", "LC_ALL": "C.UTF-8", "DWELL_MUTANT": str(number)}
+        if reached is not None:
+            environment["DWELL_MUTANT_REACHED"] = str(reached)
+        command = [str(self.path), *arguments, "--out", str(folder / "out")]
+        begin = time.monotonic()
+        try:
+            done = subprocess.run(command, env=environment, capture_output=True, timeout=limit, cwd=folder, stdin=subprocess.DEVNULL)
+            status, printed = done.returncode, done.stdout + done.stderr
+        except subprocess.TimeoutExpired:
+            status, printed = None, b""
+        seconds = time.monotonic() - begin
+        files = {}
+        for path in sorted((folder / "out").rglob("*")):
+            if path.is_file() and path.suffix not in contents.PICTURES:
+                files[path.relative_to(folder / "out").as_posix()] = path.read_bytes()
+        shutil.rmtree(folder, ignore_errors=True)
+        printed = printed.decode("utf-8", errors="replace").replace(str(folder), "FOLDER")
+        return Written(status, printed, files, seconds)
+
+    def recorded(self, arguments):
+        """A run without a change, and the changes that it reaches."""
+        path = pathlib.Path(tempfile.mkstemp(dir=self.scratch)[1])
+        written = self.run(arguments, reached=path)
+        reached = {int(line) for line in path.read_text().split()}
+        path.unlink()
+        return written, reached
+
+
+def own_commands(scene):
+    """The commands that a scene names in its comments, such as `# run: sweep --vary crank.mass=1,2`."""
+    lines = scene.read_text(encoding="utf-8").splitlines()
+    return [shlex.split(line.removeprefix("# run: ")) for line in lines if line.startswith("# run: ")]
+
+
+def exercises(top, program, say):
+    """All runs that give a result in a short time, with what they reach."""
+    scenes = sorted(path for pattern in SCENES for path in top.glob(pattern))
+    found = []
+    for scene in scenes:
+        for arguments in COMMANDS + own_commands(scene):
+            one = Exercise(scene, arguments)
+            one.base, one.reached = program.recorded(one.command())
+            # Where there is no result, numbers of a message are none.
+            has_result = one.base.status == 0 or any(name.endswith(".csv") for name in one.base.files)
+            if one.base.status in (0, 1) and has_result and one.base.seconds < LONGEST_BASE:
+                # What differs between two runs of the same program is no effect of a change.
+                one.varying = contents.varying(one.base, program.run(one.command()))
+                found.append(one)
+    say(f"{len(found)} runs of {len(scenes)} scenes reach {len(set().union(*(e.reached for e in found)))} changes")
+    return found
+
+
+def for_change(all_exercises, number, most):
+    """The cheapest runs that reach a change, of different commands and different scenes before others."""
+    reaching = sorted((e for e in all_exercises if number in e.reached), key=lambda e: e.base.seconds)
+    chosen, seen = [], set()
+    for is_new in (lambda e: e.arguments[0] not in seen and e.scene not in seen, lambda e: e.arguments[0] not in seen, lambda e: True):
+        for exercise in reaching:
+            if len(chosen) < most and exercise not in chosen and is_new(exercise):
+                chosen.append(exercise)
+                seen |= {exercise.arguments[0], exercise.scene}
+    return chosen
+

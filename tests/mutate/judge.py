@@ -1,0 +1,142 @@
+"""What becomes of each change: whether a written number changes, and which numbered checks of `dwell validate` fail."""
+import json
+
+import contents
+import exercise
+
+# Runs of a change, of those that reach it; more of a named fault, which must show an effect.
+MOST_RUNS, MOST_RUNS_NAMED = 3, 9
+# No more cases are tried than take so long without a change, s, but at least one.
+MOST_SECONDS = 8.0
+CAUGHT = "caught by two"
+
+
+class Case:
+    """A case of `validation` with the changes that its validation reaches."""
+
+    def __init__(self, folder, program):
+        self.folder, self.name = folder, folder.name
+        self.base, self.reached = program.recorded(self.command())
+        if self.base.status != 0:
+            raise SystemExit(f"`dwell validate {self.name}` fails without a change:\n{self.base.printed}")
+
+    def command(self):
+        return ["validate", str(self.folder), "--pictures", "none"]
+
+
+class Result:
+    """What became of a change."""
+
+    def __init__(self, change):
+        self.change, self.outcome, self.checks, self.by = change, "", {}, []
+        self.size, self.place, self.only_estimates = 0.0, "", False
+        self.folders, self.kinds = set(), set()
+
+    def as_dict(self):
+        of = self.change
+        return {
+            "file": of.path, "line": of.line, "change": of.what, "instead": of.text, "named": of.named, "outcome": self.outcome,
+            "checks": self.checks, "by": self.by, "size": min(self.size, 1e300), "place": self.place, "only_estimates": self.only_estimates,
+            "kinds": sorted(self.kinds),
+        }
+
+
+def cases(top, program):
+    return [Case(path.parent, program) for path in sorted(top.glob("validation/*/case.toml"))]
+
+
+def limit_of(written):
+    return min(exercise.LONGEST, 2.0 + 6.0 * written.seconds)
+
+
+def judge(change, program, all_cases, all_exercises):
+    """Tries a change on commands that reach it, then on the cases, the quickest first, until two checks fail."""
+    result = Result(change)
+    reaching = sorted((c for c in all_cases if change.number in c.reached), key=lambda c: c.base.seconds)
+    runs = exercise.for_change(all_exercises, change.number, MOST_RUNS_NAMED if change.named else MOST_RUNS)
+    if not runs and not reaching:
+        result.outcome = "not reached"
+        return result
+    refusal = effect(result, program, runs)
+    if result.outcome != "number changed" and runs:
+        result.outcome = refusal or "no number changed"
+        return result
+    # First the cases in whose files a number changed.
+    reaching.sort(key=lambda case: case.folder not in result.folders)
+    validated(result, program, reaching)
+    result.outcome = outcome(result, has_effect=bool(runs))
+    return result
+
+
+def judge_again(change, known, program, all_cases):
+    """Tries a change whose effect is known from an earlier run on the cases alone, first on that in whose files a number changed."""
+    result = Result(change)
+    result.size, result.place, result.only_estimates = known["size"], known["place"], known["only_estimates"]
+    result.kinds = set(known.get("kinds", ()))
+    reaching = sorted((c for c in all_cases if change.number in c.reached), key=lambda c: c.base.seconds)
+    reaching.sort(key=lambda case: case.name != result.place.split(": ")[0])
+    validated(result, program, reaching)
+    result.outcome = outcome(result, has_effect=True)
+    return result
+
+
+def outcome(result, has_effect):
+    if len(result.checks) >= 2:
+        return CAUGHT
+    if {"refused", "endless"} & set(result.by):
+        # A validation that does not end well tells the user; a command that does not leaves the other commands' numbers wrong.
+        return "refused"
+    if result.checks:
+        return "caught by one"
+    return "not caught" if has_effect else "no number changed"
+
+
+def validated(result, program, some_cases):
+    """Validates cases until two checks of different number fail."""
+    spent = 0.0
+    for case in some_cases:
+        if spent and spent + case.base.seconds > MOST_SECONDS:
+            return
+        spent += case.base.seconds
+        done = program.run(case.command(), result.change.number, limit=limit_of(case.base))
+        failed = failed_checks(done)
+        for number, key in failed:
+            result.checks.setdefault(number, f"{case.name}: {key}")
+        if done.status is None:
+            result.by.append("endless")
+        elif done.status != 0 and not failed:
+            result.by.append("refused")
+        if len(result.checks) >= 2:
+            return
+
+
+def failed_checks(done):
+    """The numbers of the checks that failed, with the key of the first finding of each."""
+    summary = next((data for name, data in done.files.items() if name.endswith("validate.json")), None)
+    if summary is None:
+        return []
+    failed = [f for f in json.loads(summary)["findings"] if not f["pass"]]
+    return list({f["check"].split()[0]: (f["check"].split()[0], f["key"]) for f in reversed(failed)}.values())
+
+
+def effect(result, program, runs):
+    """Whether a run writes other numbers; returns how it is refused where it is."""
+    refusal = None
+    for run in runs:
+        done = program.run(run.command(), result.change.number, limit=limit_of(run.base))
+        if done.status is None:
+            refusal = refusal or "endless"
+            continue
+        if done.has_panicked or done.status > run.base.status:
+            refusal = "refused"
+            continue
+        found = contents.difference(run.base, done, run.varying)
+        if found is None:
+            continue
+        if result.outcome != "number changed" or (not found.only_estimates, found.largest) > (not result.only_estimates, result.size):
+            result.size, result.place, result.only_estimates = found.largest, f"{run.name()}: {found.place}", found.only_estimates
+        result.outcome = "number changed"
+        if not found.only_estimates:
+            result.folders.add(run.scene.parent)
+            result.kinds |= found.kinds
+    return refusal

@@ -1,0 +1,124 @@
+"""The overview of what each change did: reports/source-mutations.txt and .md."""
+import collections
+import tomllib
+
+import judge
+
+# In this order they are counted.
+OUTCOMES = [judge.CAUGHT, "caught by one", "refused", "endless", "not caught", "no number changed", "not reached"]
+# At most this part of the changes of a number may stay uncaught.
+MOST_UNCAUGHT = 0.02
+GROUPS = ["laws, every line", "drawn lines", "named faults"]
+ESTIMATE = "only an estimated error or a count of steps changes, which no result depends on"
+
+
+def group_of(result):
+    if result["named"]:
+        return GROUPS[2]
+    return GROUPS[0] if result["file"].startswith("crates/laws/") else GROUPS[1]
+
+
+def reasons(top):
+    path = top / "tests/mutate/reasons.toml"
+    listed = tomllib.loads(path.read_text(encoding="utf-8")).get("reason", []) if path.is_file() else []
+    return {(one["file"], one["line"], one["change"]): one["why"] for one in listed}
+
+
+def why(result, known):
+    """Why a change is not caught by two checks: as somebody wrote it, or as can be seen."""
+    written = known.get((result["file"], result["text"], result["change"]))
+    return written or (ESTIMATE if result["only_estimates"] else "")
+
+
+def has_changed_number(result):
+    return result["outcome"] in (judge.CAUGHT, "caught by one", "not caught")
+
+
+def is_open(result):
+    return result["outcome"] in ("caught by one", "not caught")
+
+
+def write(top, results, left_out, options, say):
+    """Writes both files; status 1 where too many changes are uncaught, or one without a reason."""
+    known = reasons(top)
+    text = table(results)
+    changed = [r for r in results if has_changed_number(r)]
+    unexplained = [r for r in changed if is_open(r) and not why(r, known)]
+    uncaught = [r for r in changed if is_open(r)]
+    share = len(uncaught) / max(1, len(changed))
+    text += [
+        "",
+        f"Of {len(changed)} changes of a written number {len(changed) - len(uncaught)} are caught by two checks of different number;",
+        f"{len(uncaught)} ({share:.1%}) are not, {len(unexplained)} of them without a reason. {left_out} changes do not compile.",
+    ]
+    name = "named-source-faults" if options.named else "source-mutations"
+    origin = "the named faults" if options.named else f"{options.lines} drawn lines, seed {options.seed}; all of the laws; the named faults"
+    title = f"Changes of the source text: {origin}"
+    document = [f"# {title}", "", "```text", *text, "```", "", *named_table(results), *open_table(uncaught, known)]
+    (top / "reports" / f"{name}.md").write_text("\n".join(document) + "\n", encoding="utf-8")
+    lines = [title, "", *text, "", *named_lines(results), *open_lines(uncaught, known)]
+    (top / "reports" / f"{name}.txt").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    for line in text:
+        say(line)
+    say(f"reports/{name}.md, reports/{name}.txt")
+    return int(share > MOST_UNCAUGHT or bool(unexplained))
+
+
+def table(results):
+    """How many changes of each group had which outcome, and how often each check failed."""
+    counts = collections.Counter((group_of(r), r["outcome"]) for r in results)
+    lines = [" " * 20 + "".join(f"{group:>20}" for group in GROUPS)]
+    for outcome in OUTCOMES:
+        lines.append(f"{outcome:20}" + "".join(f"{counts[group, outcome]:20}" for group in GROUPS))
+    lines.append(f"{'all':20}" + "".join(f"{sum(group_of(r) == group for r in results):20}" for group in GROUPS))
+    checks = collections.Counter(number for r in results for number in r["checks"])
+    lines += ["", "check that fails: changes   " + "  ".join(f"{n}: {checks[n]}" for n in sorted(checks, key=int))]
+    return lines
+
+
+def named_table(results):
+    rows = [r for r in results if r["named"]]
+    if not rows:
+        return []
+    lines = ["## Named faults", "", "| class | fault | outcome | checks that fail |", "|---|---|---|---|"]
+    for r in rows:
+        checks = "; ".join(f"{n} ({where})" for n, where in sorted(r["checks"].items(), key=lambda c: int(c[0])))
+        lines.append(f"| {r['named']['class']} | {r['named']['sentence']} | {r['outcome']} | {checks} |")
+    return [*lines, ""]
+
+
+def named_lines(results):
+    """The named faults with the checks that fail, for the committed file."""
+    rows = [r for r in results if r["named"]]
+    lines = [f"  {r['named']['class']:20} {r['named']['sentence']:72} {' '.join(sorted(r['checks'], key=int)) or r['outcome']}" for r in rows]
+    return ["Named faults, and the checks that fail", *lines, ""] if rows else []
+
+
+def open_lines(uncaught, known):
+    """What two checks do not catch, by files: the line, the change, the checks that fail, the largest change and where, the reason."""
+    lines, file = ["Changes of a number that two checks do not catch"], None
+    for r in uncaught:
+        if r["named"]:
+            continue
+        if r["file"] != file:
+            file = r["file"]
+            lines.append(f"  {file}")
+        place = r["place"].split(": ", 1)[-1]
+        lines.append(f"    {r['line']:4}  {r['text']}")
+        lines.append(f"          {r['change']}; [{' '.join(r['checks'])}]; {r['size']:.0e} in {place}; {why(r, known) or 'no reason'}")
+    return lines
+
+
+def open_table(uncaught, known):
+    lines = ["## Changes of a number that two checks do not catch", ""]
+    if not uncaught:
+        return [*lines, "None."]
+    lines += ["| where | change | line | number that changes | by | checks | reason |", "|---|---|---|---|---|---|---|"]
+    for r in uncaught:
+        of = lambda text: text.replace("|", "\\|")
+        size = f"{r['size']:.1g}"
+        lines.append(
+            f"| {r['file']}:{r['line']} | {of(r['change'])} | `{of(r['text'])}` | {of(r['place'])} | {size} "
+            f"| {', '.join(r['checks'])} | {of(why(r, known))} |"
+        )
+    return lines

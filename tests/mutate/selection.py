@@ -1,0 +1,55 @@
+"""Which lines are changed: all of the laws, and those drawn from the crates between the scene and the written files."""
+import pathlib
+import random
+import re
+
+from changes import changes_of
+
+# Every change of every line: the laws are small, and generic over no scalar that could record their operations.
+EXHAUSTIVE = ["laws"]
+DRAWN = ["dynamics", "study", "scene", "report", "cli"]
+# Pictures, captions and the wording of errors: no number is written by them.
+WITHOUT_NUMBERS = re.compile(
+    r"/tests(/|\.rs)|figure|drawing|caption|explain|picture|wording|branch_note|symbols|labels|error|schema|keys|spans|diagnostics|former|animation"
+)
+# Of the report, what writes numbers; the rest draws.
+WRITERS = re.compile(r"report/src/(npz|json|number|summary|markdown|table|long_export|output_folder|header|files|page)\.rs")
+
+
+def files(top, crates):
+    """The sources of these crates that compute or write numbers, by their paths from the top."""
+    found = []
+    for crate in crates:
+        for path in sorted((top / "crates" / crate / "src").rglob("*.rs")):
+            name = path.relative_to(top).as_posix()
+            if not WITHOUT_NUMBERS.search(name) and (crate != "report" or WRITERS.search(name)):
+                found.append(name)
+    return found
+
+
+def every_change(top, crates):
+    return [change for name in files(top, crates) for change in changes_of(name, (top / name).read_text(encoding="utf-8"))]
+
+
+def exhaustive_changes(top):
+    """Every change of the laws; of a constant the smaller one, which is the harder to see."""
+    return [change for change in every_change(top, EXHAUSTIVE) if not change.what.endswith("× 2.0")]
+
+
+def drawn_changes(top, lines, seed):
+    """One change of each of so many lines, drawn by the seed: every line that computes is as probable as any other."""
+    by_line = {}
+    for change in every_change(top, DRAWN):
+        by_line.setdefault((change.path, change.line), []).append(change)
+    rng = random.Random(seed)
+    places = rng.sample(sorted(by_line), min(lines, len(by_line)))
+    return [rng.choice(by_line[place]) for place in sorted(places)]
+
+
+def top():
+    return pathlib.Path(__file__).resolve().parents[2]
+
+
+def line_of(top, change):
+    """The text of the line that is changed."""
+    return (top / change.path).read_text(encoding="utf-8").splitlines()[change.line - 1].strip()
