@@ -15,6 +15,7 @@ pub(super) mod equilibrium;
 pub(super) mod expression;
 pub(super) mod forces_read;
 mod formats;
+mod generated_code;
 pub(super) mod jet;
 pub(super) mod law;
 pub(super) mod motion;
@@ -29,8 +30,10 @@ pub(super) mod rows;
 pub(super) mod scene_text;
 mod sections;
 pub(super) mod table_curve;
+mod table_file;
 pub(super) mod totals;
 pub(super) mod units;
+mod variants;
 pub(super) mod wrenches;
 
 pub(crate) use positions::findings;

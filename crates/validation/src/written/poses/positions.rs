@@ -5,6 +5,7 @@ use super::difference::{Differences, Texts};
 use super::drawn_laws::drawn_motions;
 use super::equilibrium::equilibrium;
 use super::formats::formats;
+use super::generated_code::code_differences;
 use super::other_units::in_other_units;
 use super::program::{Program, Run};
 use super::rates::rates;
@@ -13,6 +14,8 @@ use super::reduced::{ReducedFiles, reduced};
 use super::rows::Rows;
 use super::scene_text::{Draws, requests_everything, text_of};
 use super::sections::{Link, links, sections};
+use super::table_file::table_differences;
+use super::variants::{calibration_differences, sweep_differences};
 use dwell_findings::{Check, Finding};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -37,6 +40,10 @@ struct Judged {
     cuts: Differences,
     ends: Differences,
     units: Differences,
+    table: Differences,
+    code: Differences,
+    variants: Differences,
+    calibration: Differences,
 }
 
 const RULE: &str = "rounding of the written numbers, measured over all cases";
@@ -285,6 +292,16 @@ fn judge_reduced(
     let range =
         [0, all.count.saturating_sub(1)].map(|row| all.get(row, coordinate).unwrap_or(f64::NAN));
     judge_laws(judged, program, reading, everything, range, draws)?;
+    judge_copies(judged, program, reading, everything, &all)?;
+    let whole: toml::Table = everything
+        .parse()
+        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    judged
+        .variants
+        .merge(sweep_differences(program, &whole, reading, draws)?);
+    judged
+        .calibration
+        .merge(calibration_differences(program, &whole, reading)?);
     judged.reduced_sums.merge(of.sums);
     judged.reduced_bodies.merge(of.bodies);
     judged.reduced_slopes.merge(of.slopes);
@@ -296,6 +313,60 @@ fn judge_reduced(
     ));
     for (rows, file) in [(&run_i, "run i"), (&run_ii, "run ii")] {
         judged.closure.merge(closure(reading, rows, file).joints);
+    }
+    Ok(())
+}
+
+/// The accuracy that tables are asked for.
+const TABLE_ACCURACY: &str = "1e-7";
+
+/// The reduced model once more: as a table, and as code in two languages.
+fn judge_copies(
+    judged: &mut Judged,
+    program: &Program,
+    reading: &Reading,
+    scene: &str,
+    rows: &Rows,
+) -> Result<(), String> {
+    let coordinate = &reading.coordinates[0].name;
+    let arguments = [
+        "reduce",
+        "--points",
+        "3",
+        "--table-accuracy",
+        TABLE_ACCURACY,
+    ];
+    match program.run("table", scene, &arguments) {
+        Ok(run) => judged
+            .table
+            .merge(table_differences(&run.text(".table")?, rows, coordinate)),
+        // Not every mechanism has one, as its format says.
+        Err(e)
+            if ["tables are of driven angles", "no table:"]
+                .iter()
+                .any(|why| e.to_string().contains(why)) => {}
+        Err(e) => judged.table.fail(e.to_string()),
+    }
+    let reaction = reading
+        .joints
+        .iter()
+        .find(|joint| rows.columns.contains_key(&format!("{}.x.a", joint.name)));
+    let Some(reaction) = reaction.map(|joint| format!("{}.x", joint.name)) else {
+        return Ok(());
+    };
+    for (format, end) in [("python", "-symbolic.py"), ("c", "-symbolic.c")] {
+        let arguments = ["symbolic", "--format", format, "--reaction", &reaction];
+        match program.run("code", scene, &arguments) {
+            Ok(run) => {
+                let code = run.text(end)?;
+                judged
+                    .code
+                    .merge(code_differences(&code, rows, coordinate, &reaction));
+            }
+            // Not every mechanism has a closed form; then the command says so.
+            Err(e) if e.to_string().contains("closed form") => {}
+            Err(e) => judged.code.fail(e.to_string()),
+        }
     }
     Ok(())
 }
@@ -516,6 +587,34 @@ impl Judged {
                 Check::WrittenRates,
                 "changes between rows of drawn laws with the integrals of their rates",
                 1e-6,
+            ),
+            (
+                self.table,
+                "written-table",
+                Check::WrittenTwice,
+                "the table of `reduce` with its rows, beyond the errors that it states",
+                1e-13,
+            ),
+            (
+                self.code,
+                "written-code",
+                Check::WrittenTwice,
+                "code of `symbolic` in Python and C, run line by line, with the rows of `reduce`",
+                1e-12,
+            ),
+            (
+                self.variants,
+                "written-sweep",
+                Check::WrittenTwice,
+                "extrema of m in rows of `sweep` with `reduce` of each changed scene",
+                1e-13,
+            ),
+            (
+                self.calibration,
+                "written-calibration",
+                Check::WrittenTotals,
+                "the period of the calibrated scene by quadrature of the rows of `reduce`",
+                1e-11,
             ),
             (
                 self.units,
