@@ -1,6 +1,8 @@
 //! The report of a case as a document.
 
-use super::figures::Dwell;
+use super::dwell::Dwell;
+use super::family::Family;
+use super::{dimensions, family_page};
 use crate::cases::reference::Reference;
 use crate::checked::analysis::CaseAnalysis;
 use crate::report_parts::{figure_blocks, table};
@@ -19,6 +21,7 @@ pub(super) fn document(
     figures: &[Figure],
     analysis: &CaseAnalysis<'_>,
     dwell: Option<&Dwell>,
+    family: Option<&Family>,
 ) -> Document {
     let mut blocks: Vec<Block> = scene.note.iter().cloned().map(Block::Words).collect();
     blocks.push(Block::Text(findings_sentence(reference, analysis)));
@@ -34,6 +37,13 @@ pub(super) fn document(
         blocks.push(Block::Text(calibration_sentence(calibration)));
     }
     blocks.extend(dwell.map(|d| Block::Text(dwell_sentence(scene, d))));
+    blocks.extend(
+        family
+            .map(|f| family_page::blocks(scene, f))
+            .into_iter()
+            .flatten(),
+    );
+    blocks.extend(dimensions::blocks(scene));
     blocks.push(Block::Heading("Findings".to_owned()));
     blocks.push(Block::Findings(analysis.findings.clone()));
     blocks.push(tolerances_block(&analysis.findings));

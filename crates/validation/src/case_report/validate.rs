@@ -1,7 +1,9 @@
 //! `dwell validate`: checks a case and makes its report.
 
 use super::document::document;
-use super::figures::{self, Dwell};
+use super::dwell::Dwell;
+use super::family::Family;
+use super::figures;
 use super::numbers::{numbers, tables};
 use super::snapshot::snapshot;
 use crate::cases::reference::Reference;
@@ -65,7 +67,8 @@ fn validate_case(
     let done = |what: &str| progress(Step { total, done: what });
     let reference = Reference::read(folder, scene)?;
     let analysis = analyse(scene, &reference, program, &done)?;
-    let (figures, dwell) = case_figures(scene, &analysis)?;
+    let family = Family::read(folder, scene)?;
+    let (figures, dwell) = case_figures(scene, &analysis, family.as_ref())?;
     let mut files = Files::new();
     let name = &scene.name;
     done("figures");
@@ -73,7 +76,8 @@ fn validate_case(
         files.add(format!("{name}/{file}.csv"), table.csv()?);
     }
     let snapshot = snapshot(scene, &analysis);
-    let document = document(scene, &reference, &figures, &analysis, dwell.as_ref());
+    let (dwell, family) = (dwell.as_ref(), family.as_ref());
+    let document = document(scene, &reference, &figures, &analysis, dwell, family);
     files.add(format!("{name}.txt"), snapshot.clone());
     files.add(format!("{name}.json"), numbers(scene, &analysis)?);
     files.add(format!("{name}.md"), document.markdown());
@@ -123,10 +127,11 @@ fn summary(scene: &Scene, analysis: &CaseAnalysis<'_>) -> String {
 fn case_figures(
     scene: &Scene,
     analysis: &CaseAnalysis<'_>,
+    family: Option<&Family>,
 ) -> Result<(Vec<Figure>, Option<Dwell>), ValidationError> {
     let states = &analysis.states;
     let (mut figures, dwell) = match &analysis.reduced {
-        Some(reduced) => reduced_figures(reduced)?,
+        Some(reduced) => reduced_figures(reduced, family)?,
         None => {
             let mut figures = vec![
                 figures::states_drawing(scene, states),
@@ -144,6 +149,7 @@ fn case_figures(
 
 fn reduced_figures(
     reduced: &ReducedAnalysis<'_>,
+    family: Option<&Family>,
 ) -> Result<(Vec<Figure>, Option<Dwell>), ValidationError> {
     let prepared = &reduced.prepared;
     let (drawing, dwell) = figures::mechanism(prepared)?;
@@ -157,6 +163,7 @@ fn reduced_figures(
     let (history, motion) = (reduced.history.as_ref(), reduced.motion.as_ref());
     figures.extend(history.map(|history| figures::history(prepared, history)));
     figures.extend(motion.map(|motion| figures::drift(prepared, motion)));
+    figures.extend(family.map(|family| figures::family(prepared, family)));
     if !reduced.error_curves.is_empty() {
         figures.push(figures::finite_differences(prepared, &reduced.error_curves));
     }

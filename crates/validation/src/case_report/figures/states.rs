@@ -1,6 +1,7 @@
 //! A mechanism in the states in which it was checked, and its actuators' forces there.
 
-use super::mechanism::{RangePoses, drawing, paths};
+use super::mechanism::{drawing, paths};
+use crate::case_report::dwell::RangePoses;
 use crate::checked::states::CheckedStates;
 use dwell_geometry::{Vec2, vec2};
 use dwell_report::{Axis, Figure, Series};
