@@ -7,6 +7,7 @@ mod cases;
 mod former;
 mod init;
 mod instants;
+mod interface;
 mod long_runs;
 mod options;
 mod times;
