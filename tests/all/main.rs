@@ -29,6 +29,7 @@ mod joints;
 mod limits;
 mod machine;
 mod machines;
+mod manual;
 mod mobility;
 mod motion;
 mod motor;

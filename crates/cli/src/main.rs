@@ -8,6 +8,7 @@ mod exported_runs;
 mod former;
 mod init;
 mod instants;
+mod interface;
 mod long_runs;
 mod options;
 mod times;

@@ -1,17 +1,19 @@
 //! `dwell validate`: every case; a case that cannot be validated does not stop the others.
 
+use crate::interface::interface;
 use crate::options::DEFAULT_CASE_FOLDER;
 use crate::{as_scene_error, cases, print_warnings, validation_error};
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{Outcome, Step};
-use dwell_validation::{Validation, extremes, index, work_precision};
+use dwell_validation::manual::KeyStudy;
+use dwell_validation::{CaseResult, Validation, extremes, index, work_precision};
 use indicatif::ProgressBar;
 use miette::{Report, miette};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// Validates the cases in parallel, and with all of Dwell's own cases also the extreme parameters (`slow`: those
-/// that take minutes too; `seed`: that of what is drawn at random). The outcome holds the cases that could be validated, the report the errors of the others.
+/// that take minutes too; `seed`: that of what is drawn at random) and the verification manual. The outcome holds the cases that could be validated, the report the errors of the others.
 pub(crate) fn validate(
     names: &[String],
     folder: &Path,
@@ -41,20 +43,35 @@ pub(crate) fn validate(
     };
     let all_cases = names.is_empty() && folder == Path::new(DEFAULT_CASE_FOLDER);
     let read: Vec<&Scene> = scenes.iter().flatten().collect();
-    let (results, (extremes, costs)): (Vec<Result<Validation, SceneError>>, _) = rayon::join(
-        || scenes.par_iter().zip(&cases).map(one).collect(),
-        || {
-            rayon::join(
-                || (all_cases || slow).then(|| extremes::study(slow, seed)),
-                || all_cases.then(|| work_precision::selected_case_reports(&read)),
-            )
-        },
-    );
+    let (results, ((extremes, costs), keys)): (Vec<Result<Validation, SceneError>>, _) =
+        rayon::join(
+            || scenes.par_iter().zip(&cases).map(one).collect(),
+            || {
+                rayon::join(
+                    || {
+                        rayon::join(
+                            || (all_cases || slow).then(|| extremes::study(slow, seed)),
+                            || all_cases.then(|| work_precision::selected_case_reports(&read)),
+                        )
+                    },
+                    || all_cases.then(|| KeyStudy::new(&read, folder)),
+                )
+            },
+        );
     bar.finish_and_clear();
+    let others = [extremes, costs].into_iter().flatten();
+    let mut others = others
+        .collect::<Result<Vec<Outcome>, _>>()
+        .map_err(as_scene_error)?;
+    if let Some(keys) = keys {
+        let extremes: Vec<_> = others.iter().flat_map(|o| o.findings.clone()).collect();
+        let names: Vec<String> = cases.iter().map(|c| c.display().to_string()).collect();
+        let results = case_results(&names, &scenes, &results);
+        others.push(keys.manual(&results, &extremes, &interface()));
+    }
     let (mut all, failures) = collect_reports(&cases, &scenes, results);
     all.record.add_count("cases", cases.len());
-    for added in [extremes, costs].into_iter().flatten() {
-        let added = added.map_err(as_scene_error)?;
+    for added in others {
         all.summary += &added.summary;
         all.findings.extend(added.findings);
         all.files.extend("", added.files);
@@ -87,6 +104,19 @@ fn reject_duplicate_names(
     Ok(())
 }
 
+/// Each case by its name with its result.
+fn case_results<'a>(
+    names: &'a [String],
+    scenes: &'a [Result<Scene, SceneError>],
+    results: &'a [Result<Validation, SceneError>],
+) -> Vec<CaseResult<'a>> {
+    let results_of = scenes.iter().zip(results).map(|of_case| match of_case {
+        (Ok(scene), Ok(done)) => Ok((scene, done)),
+        (Err(error), _) | (_, Err(error)) => Err(error.message.clone()),
+    });
+    names.iter().map(String::as_str).zip(results_of).collect()
+}
+
 fn collect_reports(
     cases: &[PathBuf],
     scenes: &[Result<Scene, SceneError>],
@@ -94,14 +124,9 @@ fn collect_reports(
 ) -> (Outcome, Option<SceneError>) {
     let mut all = Outcome::default();
     let names: Vec<String> = cases.iter().map(|c| c.display().to_string()).collect();
-    let results_of = scenes.iter().zip(&results).map(|of_case| match of_case {
-        (Ok(scene), Ok(done)) => Ok((scene, done)),
-        (Err(error), _) | (_, Err(error)) => Err(error.message.clone()),
-    });
-    let case_results: Vec<_> = names.iter().map(String::as_str).zip(results_of).collect();
     let mut failures = Vec::new();
     if cases.len() > 1 && results.iter().any(Result::is_ok) {
-        let overview = index(&case_results);
+        let overview = index(&case_results(&names, scenes, &results));
         all.files.extend("", overview.files);
         all.pictures.extend(overview.pictures);
     }

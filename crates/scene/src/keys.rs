@@ -98,7 +98,12 @@ pub(crate) fn table(id: &str) -> &'static TableSchema {
 
 /// The kinds of `things`: joints, loads, drives or events.
 pub(crate) fn kinds(things: &str) -> Vec<&'static TableSchema> {
-    KEYS.kinds[things].iter().map(|id| table(id)).collect()
+    kind_ids(things).iter().map(|id| table(id)).collect()
+}
+
+/// Their ids.
+pub(crate) fn kind_ids(things: &str) -> &'static [String] {
+    &KEYS.kinds[things]
 }
 
 impl KeySchema {

@@ -72,6 +72,7 @@ mod expression;
 mod former_keys;
 mod friction;
 mod joints;
+mod key_uses;
 mod keys;
 mod kind;
 mod law;
@@ -100,6 +101,7 @@ mod wording;
 mod tests;
 
 pub use error::{SceneError, SceneWarning};
+pub use key_uses::{KeyUse, PathStep, SceneKey, WrittenAs, key_uses, scene_keys};
 pub use scene::{
     Assembly, Calibration, CoordinateSweep, DwellRequest, EventTrigger, FreeMotionSpec,
     MotionDuration, NamedCoordinate, NamedEvent, NamedStop, PathPoint, PrescribedMotion, Requests,

@@ -27,6 +27,7 @@ mod cases;
 mod checked;
 mod error;
 pub mod extremes;
+pub mod manual;
 mod overview;
 mod report_parts;
 pub mod work_precision;

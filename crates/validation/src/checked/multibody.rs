@@ -36,6 +36,8 @@ pub struct FreeMotionRun {
     pub stop_reason: Option<String>,
     /// The free motion of a scene without `[motion]` in words; else empty.
     pub setup: String,
+    /// The scene's events that happened: the number of each, with its instant.
+    pub events: Vec<(usize, OdeState)>,
 }
 
 impl FreeMotionRun {
@@ -80,6 +82,10 @@ fn solve_motion(
     let motion_segments = free.solve(scene, duration, &options)?;
     let run = collect_steps(scene, &free, &motion_segments);
     let mut run = run.map_err(|e| free.explain(&e))?;
+    let occurrences = motion_segments.occurrences();
+    run.events = occurrences
+        .map(|(_, o)| (o.event, o.state.clone()))
+        .collect();
     let failure = motion_segments.failure.as_ref();
     run.stop_reason = failure.map(|e| free.explain(e).to_string());
     Ok(Some(run))

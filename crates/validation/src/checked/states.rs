@@ -60,15 +60,7 @@ pub(crate) fn check(
     reference: &Reference,
 ) -> Result<CheckedStates, ValidationError> {
     let mut model = ModelStates::new(scene)?;
-    let motions = |model: &ModelStates<'_>, count: usize| {
-        let prescribed = scene.prescribed.as_ref();
-        let along = prescribed.map(|motion| prescribed_states(motion, count));
-        let across = match (&along, &scene.sweep) {
-            (Some(_), None) => None,
-            _ => cosine_sweep(scene, model, reference, count),
-        };
-        along.into_iter().chain(across)
-    };
+    let motions = |model: &ModelStates<'_>, count| motions(scene, model, reference, count);
     let motion = match (&scene.prescribed, &scene.sweep) {
         (Some(_), _) => "the prescribed motion",
         (None, Some(_)) => "a cosine motion over the sweep",
@@ -109,6 +101,32 @@ pub(crate) fn check(
         indeterminate: indeterminate_reactions(scene, model.model.plan()),
         findings,
     })
+}
+
+/// The states along the prescribed motion and over the sweep, so many of each.
+fn motions(
+    scene: &Scene,
+    model: &ModelStates<'_>,
+    reference: &Reference,
+    count: usize,
+) -> impl Iterator<Item = Vec<StateRequest>> + use<> {
+    let prescribed = scene.prescribed.as_ref();
+    let along = prescribed.map(|motion| prescribed_states(motion, count));
+    let across = match (&along, &scene.sweep) {
+        (Some(_), None) => None,
+        _ => cosine_sweep(scene, model, reference, count),
+    };
+    along.into_iter().chain(across)
+}
+
+/// The same, one behind another.
+pub(crate) fn state_requests(
+    scene: &Scene,
+    model: &ModelStates<'_>,
+    reference: &Reference,
+    count: usize,
+) -> impl Iterator<Item = StateRequest> + use<> {
+    motions(scene, model, reference, count).flatten()
 }
 
 /// The indices of the states that are checked by kinetic energy, spread evenly.

@@ -1,0 +1,81 @@
+//! The faults of the mutation study, with the checks that detect each, from its committed text.
+
+use std::path::Path;
+
+/// The texts of the studies of faults: `mutations.txt` of the computing code, the others of the source text and of the border.
+const FILES: [&str; 3] = [
+    "mutations.txt",
+    "named-source-faults.txt",
+    "source-mutations.txt",
+];
+
+/// A fault, and the numbers of the checks that detect it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct CommittedFault {
+    /// The heading that it stands under.
+    pub(super) group: String,
+    pub(super) description: String,
+    pub(super) detected_by: Vec<usize>,
+}
+
+/// The faults of all studies whose text is in a folder, and which texts are.
+pub(super) fn committed_faults(folder: &Path) -> (Vec<CommittedFault>, Vec<&'static str>) {
+    let (mut faults, mut found) = (Vec::new(), Vec::new());
+    for file in FILES {
+        if let Ok(text) = std::fs::read_to_string(folder.join(file)) {
+            faults.extend(read(&text));
+            found.push(file);
+        }
+    }
+    (faults, found)
+}
+
+/// The faults of a text: lines that begin with two blanks, hold a description, and end with numbers of checks; a line without
+/// blanks before it is a heading.
+fn read(text: &str) -> Vec<CommittedFault> {
+    let mut group = String::new();
+    let mut faults = Vec::new();
+    for line in text.lines() {
+        let Some(line) = line.strip_prefix("  ") else {
+            group = line.trim().to_owned();
+            continue;
+        };
+        let parts: Vec<&str> = line.split("  ").map(str::trim).collect();
+        let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        let [description, .., last] = parts[..] else {
+            continue;
+        };
+        // Numbers, those in brackets a little above their tolerance; behind the name of a mechanism, where the line is full.
+        let words = last.rsplit(' ').map(|w| w.trim_matches(['[', ']', ',']));
+        let numbers = words.map_while(|word| word.parse::<usize>().ok());
+        let mut detected_by: Vec<usize> = numbers.collect();
+        detected_by.reverse();
+        if !detected_by.is_empty() {
+            faults.push(CommittedFault {
+                group: group.clone(),
+                description: description.to_owned(),
+                detected_by,
+            });
+        }
+    }
+    faults
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fault_has_its_heading_and_its_checks() {
+        let text = "Deliberate faults\n\nIn states\n  gravity with the other sign         double-slider      2 3 [4] 7\n\
+                    \x20 friction with the other sign                            slider-crank-friction 2 3 4\nBy function\n  a.rs b   -\n";
+        let faults = read(text);
+        assert_eq!(faults.len(), 2);
+        assert_eq!(faults[0].description, "gravity with the other sign");
+        assert_eq!(
+            (&faults[0].group[..], &faults[0].detected_by[..]),
+            ("In states", &[2, 3, 4, 7][..])
+        );
+        assert_eq!(faults[1].detected_by, [2, 3, 4]);
+    }
+}

@@ -1,0 +1,325 @@
+//! The manual as a document, and its rounded text.
+
+use super::capabilities::CAPABILITIES;
+use super::key_study::REQUIRED;
+use super::lines::{Line, LineState, check_name, digits, numbers, ratio};
+use super::machine;
+use crate::report_parts::{pass_or_fail, table};
+use dwell_findings::{Check, Finding};
+use dwell_report::{Block, Document, markdown_text};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Names of cases in a cell.
+const LISTED_CASES: usize = 3;
+
+/// A case in the list of cases.
+pub(super) struct CaseEntry<'a> {
+    pub(super) name: &'a str,
+    pub(super) title: &'a str,
+    pub(super) hash: String,
+    pub(super) source: String,
+    pub(super) findings: &'a [Finding],
+}
+
+/// What the document is made of.
+pub(super) struct Contents<'a> {
+    pub(super) folder: &'a Path,
+    pub(super) lines: &'a [Line],
+    pub(super) cases: &'a [CaseEntry<'a>],
+    pub(super) extremes: &'a [Finding],
+    /// The texts of committed fault studies that were at hand, and the number of faults in them.
+    pub(super) fault_texts: (&'a [&'static str], usize),
+}
+
+/// How many lines pass, fail and are exempt.
+pub(super) fn counts(lines: &[Line]) -> [usize; 3] {
+    let count = |is: fn(&LineState) -> bool| lines.iter().filter(|line| is(&line.state)).count();
+    [
+        count(|s| matches!(s, LineState::Pass)),
+        count(|s| matches!(s, LineState::Fail(_))),
+        count(|s| matches!(s, LineState::Exempt(_))),
+    ]
+}
+
+/// The manual.
+pub(super) fn document(contents: &Contents<'_>) -> Document {
+    let mut blocks = vec![summary(contents), how_to_read()];
+    blocks.push(Block::Heading("Where it was made".to_owned()));
+    let facts = machine::facts(contents.folder);
+    blocks.push(table(
+        &["", ""],
+        facts.into_iter().map(|fact| fact.to_vec()),
+    ));
+    blocks.extend(failures(contents.lines));
+    blocks.push(Block::Heading("Independent targets".to_owned()));
+    blocks.push(targets());
+    blocks.push(Block::Heading("Cases".to_owned()));
+    blocks.push(cases(contents.cases));
+    blocks.extend(sections(contents.lines));
+    blocks.push(Block::Heading("Extremes".to_owned()));
+    blocks.push(extremes(contents.extremes));
+    blocks.push(Block::Heading("Known limits".to_owned()));
+    blocks.push(limits(contents));
+    blocks.push(Block::Heading("Signature".to_owned()));
+    blocks.push(signature());
+    Document {
+        title: "Verification manual".to_owned(),
+        blocks,
+    }
+}
+
+fn summary(contents: &Contents<'_>) -> Block {
+    let [passed, failed, exempt] = counts(contents.lines);
+    let findings = contents.cases.iter().flat_map(|case| case.findings);
+    let findings = findings.chain(contents.extremes);
+    let wrong = findings.clone().filter(|f| !f.pass).count();
+    let result = match failed + wrong {
+        0 => "**This installation passes.**",
+        _ => "**This installation FAILS.**",
+    };
+    Block::Text(format!(
+        "{result} {passed} capabilities pass, {failed} fail, {exempt} change no number that is written or are listed with a reason. {} of {} findings on {} cases and at extreme parameters pass.",
+        findings.clone().count() - wrong,
+        findings.count(),
+        contents.cases.len()
+    ))
+}
+
+fn how_to_read() -> Block {
+    Block::Text(format!(
+        "Each line is a capability: a key of the scene description, a command, or an option. It passes where a case uses it, every finding of the checks that judge it passes on all its cases, and a fault in it is detected by {REQUIRED} checks of different number. For a key the fault is planted now, on this machine: the results are computed from a scene in which the value of this key alone is another, and the checks are given the scene as it is written. For commands and options the faults are those of the committed studies. *Ratio* is the difference of the finding nearest to its tolerance, as a part of it; *digits* are those in which result and target agree there."
+    )
+    .replace('*', ""))
+}
+
+/// What is missing.
+fn failures(lines: &[Line]) -> Vec<Block> {
+    let failed = lines.iter().filter_map(|line| match &line.state {
+        LineState::Fail(why) => Some(format!("- `{}` `{}`: {why}", line.section, line.item)),
+        _ => None,
+    });
+    let failed: Vec<String> = failed.collect();
+    match failed.is_empty() {
+        true => Vec::new(),
+        false => vec![
+            Block::Heading("Failures".to_owned()),
+            Block::Text(failed.join("\n")),
+        ],
+    }
+}
+
+/// What the checks compare results with.
+fn targets() -> Block {
+    let about = |check: Check| match check {
+        Check::ConstraintClosure => {
+            "dense constraint rows in body coordinates, closed by Newton's method"
+        }
+        Check::KineticEnergy => "kinetic energy of all bodies at unit speed, from dense velocities",
+        Check::EnergySlope => {
+            "differences and trigonometric interpolation of that energy; Lagrange's equations"
+        }
+        Check::ReleasedConstraint => "the constraint released as a coordinate; dense multipliers",
+        Check::Power => {
+            "power of forces with the rate of the kinetic energy; energy along the motion"
+        }
+        Check::Period => "quadrature of the period; instants of the integrator's events",
+        Check::MultibodyMotion => {
+            "multibody equations in absolute coordinates, integrated by extrapolation"
+        }
+        Check::Momentum => "rate of the momentum of the whole mechanism",
+        Check::NewtonEuler => "Newton's and Euler's equations of each body, positions differenced",
+        Check::ReferenceValues => {
+            "published values, and values of other programs, with the digits that they have"
+        }
+        Check::Rounding => "the same evaluation in single precision and in double-double numbers",
+        Check::ClosedForms => {
+            "closed forms, in 32 digits where parameters are extreme; a rotor's own equation"
+        }
+        #[allow(
+            unreachable_patterns,
+            reason = "checks that are added say what they compare by their name"
+        )]
+        _ => "what is written to files, read back by readers of its own",
+    };
+    let rows = Check::ALL.map(|check| vec![check.to_string(), about(check).to_owned()]);
+    table(&["Check", "Target"], rows)
+}
+
+fn cases(cases: &[CaseEntry<'_>]) -> Block {
+    let row = |case: &CaseEntry<'_>| {
+        let nearest = super::lines::nearest(case.findings.iter());
+        let passed = case.findings.iter().filter(|f| f.pass).count();
+        vec![
+            format!("`{}` {}", case.name, markdown_text(case.title)),
+            format!("`{}`", &case.hash[..case.hash.len().min(16)]),
+            markdown_text(&case.source),
+            format!("{passed} of {}", case.findings.len()),
+            nearest.map_or_else(String::new, |f| format!("{:.2} of {}", ratio(&f), f.key)),
+            pass_or_fail(passed == case.findings.len()).to_owned(),
+        ]
+    };
+    let header = [
+        "Case",
+        "Hash of its scene",
+        "Source",
+        "Findings",
+        "Nearest to its tolerance",
+        "Result",
+    ];
+    table(&header, cases.iter().map(row))
+}
+
+/// A section for each table of the scene and each command.
+fn sections(lines: &[Line]) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    for of_section in lines.chunk_by(|a, b| a.section == b.section) {
+        let section = of_section[0].section.as_str();
+        blocks.push(Block::Heading(markdown_text(section)));
+        let command = section.strip_prefix("dwell ");
+        let described = match command {
+            Some(command) => CAPABILITIES.commands.get(command).map(|(r, t, ..)| (r, t)),
+            None => CAPABILITIES.tables.get(section).map(|(r, t)| (r, t)),
+        };
+        if let Some((requirement, theory)) = described {
+            blocks.push(Block::Text(format!(
+                "Requirement: {requirement} Theory: [{}](../docs/theory.md#{theory}).",
+                theory.replace('-', " ")
+            )));
+        }
+        let header = [
+            "Item",
+            "Meaning",
+            "Cases",
+            "Target",
+            "Difference",
+            "Ratio",
+            "Digits",
+            "Judged by",
+            "Seeded fault, and the checks that caught it",
+            "Result",
+        ];
+        blocks.push(table(&header, of_section.iter().map(row)));
+    }
+    blocks
+}
+
+fn row(line: &Line) -> Vec<String> {
+    let listed: Vec<&str> = line
+        .cases
+        .iter()
+        .take(LISTED_CASES)
+        .map(String::as_str)
+        .collect();
+    let more = line.cases.len().saturating_sub(LISTED_CASES);
+    let cases = match more {
+        0 => listed.join(", "),
+        more => format!("{} and {more} more", listed.join(", ")),
+    };
+    let near = line.nearest.as_ref();
+    let of = |text: &dyn Fn(&Finding) -> String| near.map_or_else(String::new, text);
+    let truths: Vec<String> = line.truths.iter().map(|&n| check_name(n)).collect();
+    let state = match &line.state {
+        LineState::Pass => pass_or_fail(true).to_owned(),
+        LineState::Fail(why) => format!("{}: {why}", pass_or_fail(false)),
+        LineState::Exempt(why) => format!("exempt: {why}"),
+    };
+    vec![
+        format!("`{}`", line.item),
+        markdown_text(&line.meaning),
+        markdown_text(&cases),
+        of(&|f| markdown_text(&f.comparison)),
+        of(&|f| format!("{:.1e}", f.relative_difference)),
+        of(&|f| format!("{:.2}", ratio(f))),
+        of(&|f| format!("{:.1}", digits(f))),
+        truths.join(", "),
+        markdown_text(&line.faults.join("; ")),
+        state,
+    ]
+}
+
+fn extremes(findings: &[Finding]) -> Block {
+    let row = |f: &Finding| {
+        vec![
+            format!("`{}`", f.key),
+            markdown_text(&f.comparison),
+            format!("{:.2}", ratio(f)),
+            f.check.to_string(),
+            pass_or_fail(f.pass).to_owned(),
+        ]
+    };
+    table(
+        &["Series", "Compared", "Ratio", "Check", "Result"],
+        findings.iter().map(row),
+    )
+}
+
+fn limits(contents: &Contents<'_>) -> Block {
+    let (texts, count) = contents.fault_texts;
+    let mut text = format!(
+        "- Faults in keys are planted between the scene's text and the results; a fault that readers and checks share, because both use the same reader of scenes, is for the checks over written files to find.\n- Committed studies of faults that were at hand: {}, with {count} faults.",
+        match texts.is_empty() {
+            true => "none".to_owned(),
+            false => texts.join(", "),
+        }
+    );
+    let exempt = contents.lines.iter().filter_map(|line| match line.state {
+        LineState::Exempt(why) => Some((line, why)),
+        _ => None,
+    });
+    for (line, why) in exempt {
+        let _ = write!(
+            text,
+            "\n- Not judged: `{}` `{}`: {why}.",
+            line.section, line.item
+        );
+    }
+    Block::Text(text)
+}
+
+/// To be signed on paper.
+fn signature() -> Block {
+    let rows = [
+        "Installation",
+        "Purpose",
+        "Verified by",
+        "Date",
+        "Signature",
+    ];
+    let blank = "\u{a0}".repeat(60);
+    table(
+        &["", ""],
+        rows.map(|row| vec![row.to_owned(), blank.clone()]),
+    )
+}
+
+/// The text that every machine reproduces: capabilities, checks, and results.
+pub(super) fn text(lines: &[Line], cases: &[CaseEntry<'_>]) -> String {
+    let [passed, failed, exempt] = counts(lines);
+    let mut out = format!(
+        "Verification manual\n\n{passed} capabilities pass, {failed} fail, {exempt} are exempt\nA capability with the number of its cases, the checks that detect a fault in it or judge it, and the result\n"
+    );
+    for of_section in lines.chunk_by(|a, b| a.section == b.section) {
+        let _ = writeln!(out, "\n{}", of_section[0].section);
+        for line in of_section {
+            let state = match &line.state {
+                LineState::Pass => "pass".to_owned(),
+                LineState::Fail(why) => format!("FAIL {why}"),
+                LineState::Exempt(why) => format!("exempt: {why}"),
+            };
+            let truths = numbers(line.truths.iter().copied());
+            let count = line.cases.len();
+            let _ = writeln!(out, "  {:<24} {count:>3}  [{truths}]  {state}", line.item);
+        }
+    }
+    let _ = writeln!(out, "\ncases");
+    for case in cases {
+        let _ = writeln!(
+            out,
+            "  {:<28} {}",
+            case.name,
+            &case.hash[..case.hash.len().min(16)]
+        );
+    }
+    out
+}

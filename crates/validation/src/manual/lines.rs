@@ -1,0 +1,212 @@
+//! The lines of the manual: a capability each, with what is known of it.
+
+use super::capabilities::{CAPABILITIES, CommandRequirement, Interface};
+use super::committed_faults::CommittedFault;
+use super::key_study::{KeyResult, REQUIRED};
+use dwell_findings::{Check, Finding};
+use std::collections::BTreeSet;
+
+/// Faults that are listed with a command.
+const LISTED_FAULTS: usize = 4;
+
+/// What became of a capability.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum LineState {
+    Pass,
+    /// What is missing or fails.
+    Fail(String),
+    /// Why nothing is required.
+    Exempt(&'static str),
+}
+
+/// A capability.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Line {
+    pub(super) section: String,
+    pub(super) item: String,
+    pub(super) meaning: String,
+    /// Names of cases.
+    pub(super) cases: Vec<String>,
+    /// The finding nearest to its tolerance among those of the truths.
+    pub(super) nearest: Option<Finding>,
+    pub(super) truths: BTreeSet<usize>,
+    pub(super) faults: Vec<String>,
+    pub(super) state: LineState,
+}
+
+/// A case with its findings.
+pub(super) struct CaseFindings<'a> {
+    pub(super) name: &'a str,
+    pub(super) findings: &'a [Finding],
+}
+
+/// The lines of all keys that hold a value.
+pub(super) fn key_lines(keys: &[KeyResult], cases: &[CaseFindings<'_>]) -> Vec<Line> {
+    let valued = keys.iter().filter(|k| !k.key.holds_keys);
+    valued.map(|result| key_line(result, cases)).collect()
+}
+
+fn key_line(result: &KeyResult, cases: &[CaseFindings<'_>]) -> Line {
+    let users = result.scenes.iter().map(|&k| &cases[k]);
+    let fault = result.fault.as_ref();
+    let checks = fault.map_or_else(BTreeSet::new, |fault| fault.detected_by.clone());
+    let findings = users.clone().flat_map(|case| case.findings);
+    let judging = findings.filter(|f| checks.contains(&f.check));
+    let failed = judging.clone().find(|f| !f.pass).map(|f| f.key.clone());
+    let exception = CAPABILITIES.exceptions.get(&result.key.id);
+    let state = match (exception, result.scenes.len(), checks.len(), failed) {
+        (_, _, _, Some(key)) => LineState::Fail(format!("{key} fails")),
+        (Some(reason), ..) => LineState::Exempt(reason),
+        (None, 0, ..) => LineState::Fail("no case uses it".to_owned()),
+        (None, _, 0, _) if result.refused => {
+            LineState::Exempt("every other value of it is refused with an error")
+        }
+        (None, _, 0, _) => LineState::Fail("a fault in it is not detected".to_owned()),
+        (None, _, n, _) if n < REQUIRED => {
+            LineState::Fail("a fault in it is detected by one check only".to_owned())
+        }
+        _ => LineState::Pass,
+    };
+    let fault = fault.map(|fault| {
+        let numbers = numbers(fault.detected_by.iter().map(|check| check.number()));
+        format!("{}, on {}: {numbers}", fault.what, cases[fault.scene].name)
+    });
+    Line {
+        section: result.key.table.to_owned(),
+        item: result.key.name.to_owned(),
+        meaning: result.key.doc.to_owned(),
+        cases: users.map(|case| case.name.to_owned()).collect(),
+        nearest: nearest(judging),
+        truths: checks.iter().map(|check| check.number()).collect(),
+        faults: fault.into_iter().collect(),
+        state,
+    }
+}
+
+/// The lines of commands and options.
+pub(super) fn command_lines(
+    interface: &Interface,
+    cases: &[CaseFindings<'_>],
+    others: &[Finding],
+    faults: &[CommittedFault],
+) -> Vec<Line> {
+    let mut lines = Vec::new();
+    let mut add =
+        |section: &str, item: &str, required: Option<&'static CommandRequirement>, name: &str| {
+            let exception = CAPABILITIES.exceptions.get(name).map(String::as_str);
+            let line = Line {
+                section: section.to_owned(),
+                item: item.to_owned(),
+                meaning: String::new(),
+                cases: Vec::new(),
+                nearest: None,
+                truths: BTreeSet::new(),
+                faults: Vec::new(),
+                state: LineState::Exempt(exception.unwrap_or("not described")),
+            };
+            lines.push(match required {
+                Some(required) => judged_line(line, required, (cases, others), faults),
+                None => line,
+            });
+        };
+    for (command, options) in &interface.commands {
+        let section = format!("dwell {command}");
+        add(
+            &section,
+            "the command",
+            CAPABILITIES.commands.get(command),
+            command,
+        );
+        for option in options {
+            let name = format!("{command} {option}");
+            add(&section, option, CAPABILITIES.options.get(&name), &name);
+        }
+    }
+    for option in &interface.common_options {
+        add("options of every command", option, None, option);
+    }
+    lines
+}
+
+/// A line with the findings and faults that its description names.
+fn judged_line(
+    line: Line,
+    (requirement, _, keys, words): &'static CommandRequirement,
+    (cases, others): (&[CaseFindings<'_>], &[Finding]),
+    faults: &[CommittedFault],
+) -> Line {
+    let judges = |f: &&Finding| keys.iter().any(|key| f.key.starts_with(key.as_str()));
+    let users = cases
+        .iter()
+        .filter(|case| case.findings.iter().any(|f| judges(&f)));
+    let all = cases.iter().flat_map(|case| case.findings).chain(others);
+    let judging = all.filter(judges);
+    let truths: BTreeSet<usize> = judging.clone().map(|f| f.check.number()).collect();
+    let failed = judging.clone().find(|f| !f.pass).map(|f| f.key.clone());
+    let of_words = |fault: &&CommittedFault| {
+        let mut words = words.iter();
+        words.any(|w| fault.description.contains(w.as_str()) || fault.group.contains(w.as_str()))
+    };
+    let caught: Vec<&CommittedFault> = faults.iter().filter(of_words).collect();
+    let enough = caught
+        .iter()
+        .filter(|fault| fault.detected_by.len() >= REQUIRED);
+    let state = match (failed, truths.len(), enough.count()) {
+        (Some(key), ..) => LineState::Fail(format!("{key} fails")),
+        (None, 0, _) => LineState::Fail("nothing judges it".to_owned()),
+        (None, n, _) if n < REQUIRED => LineState::Fail("one check judges it".to_owned()),
+        (None, _, 0) if !faults.is_empty() => LineState::Fail("no fault is caught".to_owned()),
+        _ => LineState::Pass,
+    };
+    let listed = caught.iter().take(LISTED_FAULTS);
+    let listed = listed.map(|fault| {
+        let by = numbers(fault.detected_by.iter().copied());
+        format!("{}: {by}", fault.description)
+    });
+    let more = caught.len().saturating_sub(LISTED_FAULTS);
+    let more = (more > 0).then(|| format!("and {more} more"));
+    Line {
+        meaning: requirement.clone(),
+        cases: users.map(|case| case.name.to_owned()).collect(),
+        nearest: nearest(judging),
+        truths,
+        faults: listed.chain(more).collect(),
+        state,
+        ..line
+    }
+}
+
+/// The finding nearest to its tolerance.
+pub(super) fn nearest<'f>(findings: impl Iterator<Item = &'f Finding>) -> Option<Finding> {
+    findings
+        .max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
+        .cloned()
+}
+
+/// The difference of a finding as a part of its tolerance.
+pub(super) fn ratio(finding: &Finding) -> f64 {
+    match finding.relative_difference {
+        0.0 => 0.0,
+        // What is not a number is the worst there is.
+        relative if relative.is_nan() => f64::INFINITY,
+        relative => relative / finding.tolerance,
+    }
+}
+
+/// Agreeing digits of a finding; double precision has no more than its last place.
+pub(super) fn digits(finding: &Finding) -> f64 {
+    -finding.relative_difference.max(f64::EPSILON).log10()
+}
+
+/// Numbers of checks as text.
+pub(super) fn numbers(checks: impl Iterator<Item = usize>) -> String {
+    let all: Vec<String> = checks.map(|n| n.to_string()).collect();
+    all.join(" ")
+}
+
+/// The names of all checks by number.
+pub(super) fn check_name(number: usize) -> String {
+    Check::ALL
+        .get(number)
+        .map_or_else(|| number.to_string(), Check::to_string)
+}

@@ -1,0 +1,224 @@
+//! What is claimed of a free motion, and the checks of it: the multibody equations, and of a single rotor its own equation and its
+//! energy.
+
+use super::planted::differ;
+use super::rotor::{Rotor, RotorState};
+use crate::checked::multibody::{FreeMotionRun, free_motion_run};
+use dwell_findings::{Check, Finding};
+use dwell_scene::Scene;
+
+/// Relative difference from the rotor's own integration, whose steps are fixed and pass kinks: measured at most 1.2e-6, of a
+/// controller that leaves its limit within a step.
+const ROTOR_TOLERANCE: f64 = 1e-5;
+/// Energy from the claimed steps by the midpoint rule with cubic positions between them.
+const ENERGY_TOLERANCE: f64 = 1e-5;
+/// Parts of a claimed step over which power is summed.
+const PARTS: usize = 32;
+
+/// A free motion as it is claimed.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct MotionClaims {
+    run: FreeMotionRun,
+    /// Of a single rotor: its own equation.
+    rotor: Option<Rotor>,
+}
+
+impl MotionClaims {
+    /// The motion of a scene; none where it has none, or none can be computed.
+    pub(super) fn new(scene: &Scene) -> Option<Self> {
+        let run = free_motion_run(scene).ok().flatten()?;
+        let rotor = Rotor::read(scene.source.inner());
+        (run.steps.len() > 1).then_some(Self { run, rotor })
+    }
+
+    fn end(&self) -> f64 {
+        self.run.steps.last().map_or(0.0, |step| step.t)
+    }
+
+    /// Whether the motion, its end or its events differ from those of another.
+    pub(super) fn differ_from(&self, own: &Self) -> bool {
+        let values = |claims: &Self| {
+            let last = claims.run.coordinates.last().cloned().unwrap_or_default();
+            let times = claims.run.events.iter().map(|(_, at)| at.t);
+            let times: Vec<f64> = times.chain([claims.end()]).collect();
+            let reactions = claims.run.steps.last().map(|step| step.reactions.clone());
+            [last.concat(), times, reactions.unwrap_or_default()]
+        };
+        let (mine, others) = (values(self), values(own));
+        (0..mine.len()).any(|k| differ(&mine[k], &others[k]))
+    }
+
+    /// The findings of this motion as that of the scene whose own motion is `own`.
+    pub(super) fn check(&self, scene: &Scene, own: &Self) -> Vec<Finding> {
+        let counts = |claims: &Self| {
+            let first = claims.run.steps.first();
+            first.map(|s| [s.poses.len(), s.drive_forces.len(), s.reactions.len()])
+        };
+        if counts(self) != counts(own) {
+            return Vec::new();
+        }
+        let mut findings = vec![self.start(scene)];
+        match &own.rotor {
+            Some(rotor) => {
+                findings.extend(self.along_rotor(rotor));
+                // The multibody equations know no stops and no friction that holds.
+                if scene.stops.is_empty() && scene.loads.iter().all(|load| !load.name.contains('.'))
+                {
+                    findings.extend(self.run.check(scene));
+                }
+            }
+            None => findings.extend(self.run.check(scene)),
+        }
+        findings
+    }
+
+    /// The coordinates and speeds at the start with those of the scene.
+    fn start(&self, scene: &Scene) -> Finding {
+        let claimed = self.run.coordinates.first().cloned().unwrap_or_default();
+        let given = scene.motion.iter().flat_map(|motion| {
+            let q = motion.initial_coordinates.iter();
+            let free = motion.laws.iter().map(Option::is_none);
+            q.zip(&motion.initial_velocities).zip(free)
+        });
+        let both = claimed.iter().zip(given).filter(|(_, (_, free))| *free);
+        let apart = both.map(|([q, speed], ((q0, speed0), _))| {
+            (q - q0).abs().max((speed - speed0).abs()) / q0.abs().max(speed0.abs()).max(1.0)
+        });
+        let worst = apart.fold(0.0, f64::max);
+        Finding::new("motion-start", Check::ConstraintClosure, [worst; 2], 1e-9)
+    }
+
+    /// The findings of a rotor: end, events, and energy.
+    fn along_rotor(&self, rotor: &Rotor) -> Vec<Finding> {
+        let motion = rotor.motion();
+        let relative = |a: f64, b: f64, scale: f64| (a - b).abs() / scale;
+        let (Some(step), Some([[q, speed]])) = (
+            self.run.steps.last(),
+            self.run
+                .coordinates
+                .last()
+                .map(|c| &c[..])
+                .and_then(|c| c.as_array()),
+        ) else {
+            return Vec::new();
+        };
+        let (end, [q_end, speed_end, _]) = motion.end;
+        let apart = [
+            relative(step.t, end, end),
+            relative(*q, q_end, q_end.abs().max(1.0)),
+            relative(*speed, speed_end, speed_end.abs().max(1.0)),
+        ];
+        let worst = apart.into_iter().fold(0.0, f64::max);
+        let closed = Check::ClosedForms;
+        let mut findings = vec![Finding::new(
+            "rotor-end",
+            closed,
+            [worst; 2],
+            ROTOR_TOLERANCE,
+        )];
+        findings.extend(self.rotor_events(rotor, &motion.events));
+        let over = self.overloaded_rest(rotor);
+        let rest = Finding::new("rotor-rest", Check::NewtonEuler, [over; 2], ROTOR_TOLERANCE);
+        findings.push(rest);
+        let apart = self.energy_error(rotor);
+        findings.push(Finding::new(
+            "rotor-energy",
+            Check::Power,
+            [apart; 2],
+            ENERGY_TOLERANCE,
+        ));
+        findings
+    }
+
+    /// The events of a rotor: when they happen, and what the state is then.
+    fn rotor_events(&self, rotor: &Rotor, times: &[Option<f64>]) -> Vec<Finding> {
+        let mut findings = Vec::new();
+        for (k, expected) in times.iter().enumerate() {
+            let claimed = self.run.events.iter().find(|(event, _)| *event == k);
+            let apart = match (claimed, expected) {
+                (Some((_, at)), Some(t)) => (at.t - t).abs() / t,
+                (None, None) => continue,
+                // One is missed, or one too many.
+                _ => f64::INFINITY,
+            };
+            let closed = Check::ClosedForms;
+            findings.push(Finding::new(
+                "rotor-event",
+                closed,
+                [apart; 2],
+                ROTOR_TOLERANCE,
+            ));
+            let ended = self.run.steps.last().map_or(0.0, |last| last.t);
+            let residual = claimed.map_or(f64::INFINITY, |(_, at)| {
+                let state: RotorState = [at.y[0], at.y[1], at.y.get(2).copied().unwrap_or(0.0)];
+                let ends = rotor.ends_with(k) == ((at.t - ended).abs() < 1e-9 * ended);
+                match ends {
+                    true => rotor.residual(k, at.t, state),
+                    false => f64::INFINITY,
+                }
+            });
+            let check = match rotor.is_reaction(k) {
+                true => Check::NewtonEuler,
+                false => Check::ConstraintClosure,
+            };
+            findings.push(Finding::new(
+                "rotor-event-state",
+                check,
+                [residual; 2],
+                ROTOR_TOLERANCE,
+            ));
+        }
+        findings
+    }
+
+    /// What dry friction would have to hold beyond its limit where the rotor rests, as a part of that limit.
+    fn overloaded_rest(&self, rotor: &Rotor) -> f64 {
+        let states = self.run.steps.iter().zip(&self.run.coordinates);
+        let resting = states.filter(|(_, c)| c[0][1] == 0.0);
+        let margin = resting.map(|(s, c)| rotor.forces.rest_margin(s.t, [c[0][0], 0.0, 0.0]));
+        // Without friction nothing is held.
+        let margin = margin.filter(|margin| margin.is_finite());
+        margin.fold(0.0, |worst, margin| worst.max(-margin))
+    }
+
+    /// Kinetic energy along the claimed steps with the power of the scene's own torques, relative to the largest energy. The power
+    /// is taken inside the steps: at their ends torques may jump.
+    fn energy_error(&self, rotor: &Rotor) -> f64 {
+        let states = self.run.steps.iter().zip(&self.run.coordinates);
+        let states: Vec<(f64, f64, f64)> = states.map(|(s, c)| (s.t, c[0][0], c[0][1])).collect();
+        let kinetic = |v: f64| 0.5 * rotor.forces.inertia * v * v;
+        let mut energy = states.first().map_or(0.0, |first| kinetic(first.2));
+        let (mut state, mut largest, mut worst) = (0.0, 0.0_f64, 0.0_f64);
+        for pair in states.windows(2) {
+            let [(t0, q0, v0), (t1, q1, v1)] = [pair[0], pair[1]];
+            let struck = rotor.speed_before_impact(q1, v1, v0);
+            let end = struck.unwrap_or(v1);
+            let dt = (t1 - t0) / PARTS as f64;
+            for part in 0..if dt > 0.0 { PARTS } else { 0 } {
+                let s = (part as f64 + 0.5) / PARTS as f64;
+                let [q, v] = hermite([q0, v0, q1, end], s, t1 - t0);
+                let t = t0 + s * (t1 - t0);
+                let [_, rate] = rotor.forces.power(t, [q, v, state]);
+                let middle = state + 0.5 * dt * rate;
+                let [power, rate] = rotor.forces.power(t, [q, v, middle]);
+                state += dt * rate;
+                energy += dt * power;
+            }
+            worst = worst.max((energy - kinetic(end)).abs());
+            largest = largest.max(kinetic(end));
+            if struck.is_some() {
+                // What is left behind the impact: the speed before it is that which the restitution says.
+                energy += kinetic(v1) - kinetic(end);
+            }
+        }
+        worst / largest
+    }
+}
+
+/// Position and speed between two states, at a part `s` of the time `h` between them.
+fn hermite([q0, v0, q1, v1]: [f64; 4], s: f64, h: f64) -> [f64; 2] {
+    let (d, c) = (q1 - q0, 1.0 - s);
+    let q = q0 + s * s * (3.0 - 2.0 * s) * d + h * s * c * (c * v0 - s * v1);
+    let v = 6.0 * s * c * d / h + (1.0 - 4.0 * s + 3.0 * s * s) * v0 + (3.0 * s * s - 2.0 * s) * v1;
+    [q, v]
+}

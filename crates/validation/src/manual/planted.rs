@@ -1,0 +1,230 @@
+//! Faults planted in the value of a key: what is claimed is computed from a scene in which the value is another, and the checks are
+//! given the scene as it is written.
+//!
+//! ```text
+//! text ──────────────── scene ──── checks ──┐
+//!   └─ one value altered ── scene ── claims ┴─→ findings: which checks detect it
+//! ```
+
+use super::motion_claims::MotionClaims;
+use crate::cases::model_states::{ModelStates, StateRequest};
+use crate::cases::reference::Reference;
+use crate::checked::states::state_requests;
+use dwell_findings::{Check, Finding};
+use dwell_scene::Scene;
+use dwell_study::StudyError;
+use dwell_verify::{ClaimedState, check_energies, check_states};
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::sync::OnceLock;
+
+/// States along each motion: enough for every term to be seen, and few enough for hundreds of faults.
+const STATES: usize = 7;
+/// States that are checked by energies, which cost more.
+const ENERGY_STATES: usize = 2;
+/// A result that changes by less, relative to the largest of its kind, is the same: three digits above what the checks distinguish
+/// from rounding.
+const UNCHANGED: f64 = 1e-9;
+
+/// A scene that faults are planted in.
+pub(super) struct PlantedScene {
+    pub(super) scene: Scene,
+    /// Its text, the keys in alphabetical order.
+    pub(super) text: String,
+    reference: Reference,
+    /// What it claims of states, and of its free motion if it has one.
+    states: OnceLock<Option<StateClaims>>,
+    motion: OnceLock<Option<MotionClaims>>,
+    /// Findings that fail without a fault, because the states are few.
+    ignored: OnceLock<BTreeSet<String>>,
+}
+
+/// States and by state the generalised inertias, row by row.
+#[derive(Debug, Clone, PartialEq)]
+struct StateClaims {
+    assembly_poses: Vec<[f64; 3]>,
+    states: Vec<ClaimedState>,
+    mass_matrices: Vec<Vec<f64>>,
+}
+
+/// What became of a planted fault.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Fate {
+    /// No scene comes of it, or none of the same joints and bodies: the program refuses it.
+    Refused,
+    /// No result changes.
+    Unchanged,
+    /// Results change, and these checks detect it.
+    Detected(BTreeSet<Check>),
+}
+
+impl PlantedScene {
+    /// A scene, and the folder of its reference; none where its text is no TOML.
+    ///
+    /// Altered texts have their keys in alphabetical order. So has this one: bodies and joints are numbered alike in both.
+    pub(super) fn new(written: &Scene, folder: &Path) -> Option<Self> {
+        let text = written.source.inner().trim_start_matches('\u{feff}');
+        let root: toml::Table = toml::from_str(text).ok()?;
+        let text = toml::to_string(&root).ok()?;
+        let scene = Scene::parse(&format!("{}.toml", written.name), &text).ok()?;
+        Some(Self {
+            reference: Reference::read(folder, &scene).unwrap_or_default(),
+            scene,
+            text,
+            states: OnceLock::new(),
+            motion: OnceLock::new(),
+            ignored: OnceLock::new(),
+        })
+    }
+
+    /// What it costs to plant a fault, roughly: dense rows, cubed, and a motion.
+    pub(super) fn cost(&self) -> usize {
+        let bodies = self.scene.mechanism.bodies.len();
+        bodies.pow(3) + 1000 * usize::from(self.scene.motion.is_some())
+    }
+
+    /// The findings without a fault.
+    pub(super) fn findings(&self) -> Vec<Finding> {
+        let states = self.own_states().map(|own| self.check_states(own));
+        let motion = self.own_motion().map(|own| own.check(&self.scene, own));
+        states.into_iter().chain(motion).flatten().collect()
+    }
+
+    /// What the checks detect where the results come from another scene.
+    pub(super) fn judge(&self, altered: &Scene) -> Fate {
+        let (mut changed, mut failed, mut seen) = (false, BTreeSet::new(), false);
+        if let (Some(own), Some(claims)) = (self.own_states(), self.claims(altered)) {
+            let claims = claims.with_requests_of(own);
+            if !claims.is_alike(own) {
+                return Fate::Refused;
+            }
+            seen = true;
+            if claims.differs_from(own) {
+                changed = true;
+                failed.extend(self.detecting(&self.check_states(&claims)));
+            }
+        }
+        // Motions cost more: they are looked at where states alone do not show the fault twice.
+        if failed.len() < 2
+            && let (Some(own), Some(claims)) = (self.own_motion(), MotionClaims::new(altered))
+        {
+            seen = true;
+            if claims.differ_from(own) {
+                changed = true;
+                failed.extend(self.detecting(&claims.check(&self.scene, own)));
+            }
+        }
+        match (seen, changed) {
+            (false, _) => Fate::Refused,
+            (true, false) => Fate::Unchanged,
+            (true, true) => Fate::Detected(failed),
+        }
+    }
+
+    /// The checks with failed findings that pass without a fault.
+    fn detecting(&self, findings: &[Finding]) -> BTreeSet<Check> {
+        let ignored = self.ignored.get_or_init(|| {
+            let failed = self.findings().into_iter().filter(|f| !f.pass);
+            failed.map(|f| f.key).collect()
+        });
+        let failed = findings.iter().filter(|f| !f.pass);
+        failed
+            .filter(|f| !ignored.contains(&f.key))
+            .map(|f| f.check)
+            .collect()
+    }
+
+    fn own_states(&self) -> Option<&StateClaims> {
+        self.states
+            .get_or_init(|| self.claims(&self.scene))
+            .as_ref()
+    }
+
+    fn own_motion(&self) -> Option<&MotionClaims> {
+        self.motion
+            .get_or_init(|| MotionClaims::new(&self.scene))
+            .as_ref()
+    }
+
+    /// The states that a scene claims along its motion or sweep.
+    fn claims(&self, scene: &Scene) -> Option<StateClaims> {
+        let claims = || -> Result<StateClaims, StudyError> {
+            let mut model = ModelStates::new(scene)?;
+            let requests: Vec<StateRequest> =
+                state_requests(scene, &model, &self.reference, STATES).collect();
+            let (mut states, mut mass_matrices) = (Vec::new(), Vec::new());
+            for request in &requests {
+                states.push(model.state(request)?);
+                mass_matrices.push(model.mass_matrix());
+            }
+            Ok(StateClaims {
+                assembly_poses: model.assembly_poses.clone(),
+                states,
+                mass_matrices,
+            })
+        };
+        claims().ok().filter(|claims| !claims.states.is_empty())
+    }
+
+    fn check_states(&self, claims: &StateClaims) -> Vec<Finding> {
+        let own = self.own_states().map_or(&[][..], |own| &own.assembly_poses);
+        let (mechanism, masses) = (&self.scene.mechanism, &self.scene.masses);
+        let mut findings = check_states(mechanism, masses, own, &claims.states);
+        let some = ENERGY_STATES.min(claims.states.len());
+        let at = |k: usize| (2 * k + 1) * claims.states.len() / (2 * some);
+        let (states, matrices): (Vec<_>, Vec<_>) = (0..some)
+            .map(|k| {
+                (
+                    claims.states[at(k)].clone(),
+                    claims.mass_matrices[at(k)].clone(),
+                )
+            })
+            .unzip();
+        findings.extend(check_energies(mechanism, masses, own, &states, &matrices));
+        findings
+    }
+}
+
+impl StateClaims {
+    /// The same claims of the states that another scene asks for, under the loads that act there.
+    fn with_requests_of(mut self, own: &Self) -> Self {
+        for (claim, own) in self.states.iter_mut().zip(&own.states) {
+            claim.t = own.t;
+            claim.q.clone_from(&own.q);
+            claim.q_dot.clone_from(&own.q_dot);
+            claim.q_ddot.clone_from(&own.q_ddot);
+            claim.load_wrenches.clone_from(&own.load_wrenches);
+        }
+        self
+    }
+
+    /// Whether there is as much of everything.
+    fn is_alike(&self, own: &Self) -> bool {
+        let counts = |s: &ClaimedState| [s.poses.len(), s.reactions.len(), s.tau.len(), s.q.len()];
+        let both = self.states.iter().zip(&own.states);
+        self.states.len() == own.states.len()
+            && both.into_iter().all(|(a, b)| counts(a) == counts(b))
+    }
+
+    fn differs_from(&self, own: &Self) -> bool {
+        let kinds: [fn(&ClaimedState) -> Vec<f64>; 4] = [
+            |s| s.poses.concat(),
+            |s| s.velocities.concat(),
+            |s| s.accelerations.concat(),
+            |s| [&s.reactions[..], &s.tau].concat(),
+        ];
+        let differs = |values: &dyn Fn(&Self) -> Vec<f64>| differ(&values(self), &values(own));
+        let of_kind = |kind: fn(&ClaimedState) -> Vec<f64>| {
+            move |claims: &Self| claims.states.iter().flat_map(kind).collect::<Vec<f64>>()
+        };
+        differs(&|claims| claims.mass_matrices.concat())
+            || kinds.into_iter().any(|kind| differs(&of_kind(kind)))
+    }
+}
+
+/// Whether values differ by more than rounding.
+pub(super) fn differ(values: &[f64], own: &[f64]) -> bool {
+    let largest = own.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+    let mut both = values.iter().zip(own);
+    values.len() != own.len() || both.any(|(a, b)| !((a - b).abs() <= UNCHANGED * largest))
+}
