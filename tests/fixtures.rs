@@ -44,10 +44,3 @@ pub fn model_for(scene: &Scene, reactions: &[Reaction]) -> ExactModel {
         .unwrap_or_else(|e| panic!("{}: {e}", scene.name));
     ExactModel::new(model).expect("one actuator")
 }
-
-/// A committed report without its lines on written files: those need the program, which the library has not.
-pub fn without_written_files(report: &str) -> &str {
-    let (before, _) =
-        (report.split_once("\nwritten files, numbers drawn by")).unwrap_or((report, ""));
-    before
-}

@@ -5,7 +5,7 @@ use dwell_findings::{Check, Finding};
 use dwell_geometry::Mechanism;
 use dwell_scene::Scene;
 use dwell_study::no_progress;
-use dwell_tests::fixtures::{case_names, repository_root, scene, without_written_files};
+use dwell_tests::fixtures::{case_names, repository_root, scene};
 use dwell_validation::{CheckedStates, Validation, check_case, validate};
 use dwell_verify::{ClaimedState, check_states};
 use serde_json::Value;
@@ -139,7 +139,7 @@ fn assert_all_checks(case: &str, validation: &Validation) {
 #[test]
 fn regress_reports() {
     for case in case_names() {
-        let done = validate(&scene(&case), &folder(&case), None, &no_progress);
+        let done = validate(&scene(&case), &folder(&case), &no_progress);
         let done = done.unwrap_or_else(|e| panic!("{case}: {e}"));
         assert_all_checks(&case, &done);
         let text = done.snapshot;
@@ -149,7 +149,7 @@ fn regress_reports() {
         let committed = std::fs::read_to_string(&path);
         let committed = committed.unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         assert!(
-            text == without_written_files(&committed),
+            text == committed,
             "{case} is no longer {}:\n{text}",
             path.display()
         );
@@ -345,7 +345,7 @@ fn a_published_motion_that_is_put_off_is_found() {
             let altered = number(&values[name]) * (1.0 + altered);
             values[name] = Value::from(format!("{altered:e}"));
         });
-        let done = validate(&scene(case), &changed.0, None, &no_progress).expect("findings");
+        let done = validate(&scene(case), &changed.0, &no_progress).expect("findings");
         let findings = done.outcome.findings;
         assert_eq!(failed(&findings), ["published-motion"], "{case}, {name}");
         let finding = findings.iter().find(|f| !f.pass).expect("it");
@@ -354,8 +354,7 @@ fn a_published_motion_that_is_put_off_is_found() {
     let changed = Changed::new("andrews", |reference| {
         reference["free_motion"]["states"][0]["values"]["gamma"] = Value::from("1.0");
     });
-    let error =
-        validate(&scene("andrews"), &changed.0, None, &no_progress).expect_err("no such name");
+    let error = validate(&scene("andrews"), &changed.0, &no_progress).expect_err("no such name");
     assert!(error.to_string().contains("`gamma`"), "{error}");
 }
 

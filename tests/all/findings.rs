@@ -3,7 +3,7 @@
 use dwell_findings::{Finding, all_pass};
 use dwell_scene::Scene;
 use dwell_study::no_progress;
-use dwell_tests::fixtures::{case_names, repository_root, scene, without_written_files};
+use dwell_tests::fixtures::{case_names, repository_root, scene};
 use dwell_validation::{Validation, validate};
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -11,7 +11,7 @@ use std::panic::catch_unwind;
 
 fn validated(scene: &Scene, case: &str) -> Validation {
     let folder = repository_root().join("validation").join(case);
-    validate(scene, &folder, None, &no_progress).unwrap_or_else(|e| panic!("{case}: {e}"))
+    validate(scene, &folder, &no_progress).unwrap_or_else(|e| panic!("{case}: {e}"))
 }
 
 /// Digits that every machine reproduces, in steps of three: the difference, four times as large (its last bits are a machine's
@@ -54,7 +54,7 @@ fn assert_snapshot(case: &str) {
         .join(format!("{case}.txt"));
     let committed = std::fs::read_to_string(report).unwrap_or_default();
     assert!(
-        without_written_files(&committed.replace("\r\n", "\n")) == validation.snapshot,
+        committed.replace("\r\n", "\n") == validation.snapshot,
         "{case}: reports/{case}.txt is another; `dwell validate {case}` writes it anew, `git diff` shows what changed"
     );
 }

@@ -42,7 +42,7 @@ fn rewrite(case: &Path) -> Result<usize, Box<dyn Error>> {
     let bare = std::env::temp_dir().join(format!("dwell-tolerances-{}", std::process::id()));
     std::fs::create_dir_all(&bare)?;
     std::fs::write(bare.join("case.toml"), &rest)?;
-    let validation = dwell_validation::validate(&scene, &bare, None, &dwell_study::no_progress)?;
+    let validation = dwell_validation::validate(&scene, &bare, &dwell_study::no_progress)?;
     std::fs::remove_dir_all(&bare)?;
     let mut tolerances: BTreeMap<&str, f64> = BTreeMap::new();
     // Of the integrated ones only check 6 has a bound by case: the others are factors of an integrator's tolerance.

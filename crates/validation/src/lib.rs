@@ -30,9 +30,8 @@ pub mod extremes;
 mod overview;
 mod report_parts;
 pub mod work_precision;
-mod written;
 
-pub use case_report::validate::{Validation, validate, validate_program};
+pub use case_report::validate::{Validation, validate};
 pub use cases::subject::PlanSubject;
 pub use checked::multibody::{FreeMotionRun, free_motion_run};
 pub use checked::states::{CheckedStates, check_case};
