@@ -23,6 +23,7 @@ pub(crate) fn validate(
     let scenes: Vec<_> = cases.iter().map(read).collect();
     reject_duplicate_names(&cases, &scenes)?;
     scenes.iter().flatten().for_each(print_warnings);
+    let program = std::env::current_exe().ok();
     let one = |(scene, case): (&Result<Scene, SceneError>, &PathBuf)| {
         let scene = scene.as_ref().map_err(Clone::clone)?;
         let progress = |step: Step<'_>| {
@@ -30,7 +31,13 @@ pub(crate) fn validate(
             bar.set_message(format!("{}: {}", scene.name, step.done));
             bar.inc(1);
         };
-        dwell_validation::validate(scene, case, &progress).map_err(validation_error)
+        // What leaves the program is judged, too: it runs itself. Where the system does not say where it is, the library
+        // alone is.
+        let done = match &program {
+            Some(program) => dwell_validation::validate_program(scene, case, program, &progress),
+            None => dwell_validation::validate(scene, case, &progress),
+        };
+        done.map_err(validation_error)
     };
     let all_cases = names.is_empty() && folder == Path::new(DEFAULT_CASE_FOLDER);
     let read: Vec<&Scene> = scenes.iter().flatten().collect();

@@ -30,11 +30,27 @@ pub enum Check {
     Rounding,
     /// Closed forms.
     ClosedForms,
+    /// Written rows meet the constraint equations of the scene's text.
+    WrittenPositions,
+    /// Written rows change by the integrals of their written rates.
+    WrittenRates,
+    /// Written forces meet Newton's and Euler's equations of each body, and of its cut parts.
+    WrittenForces,
+    /// Written sums over the mechanism: momentum, powers, energies, reduced parameters.
+    WrittenTotals,
+    /// Written values of laws, expressions and tables against a second reading of the scene.
+    WrittenLaws,
+    /// Numbers that several commands or files write, each by another path.
+    WrittenTwice,
+    /// The same scene written in another system of units.
+    WrittenUnits,
+    /// Printed sentences against the numbers of the files.
+    WrittenSentences,
 }
 
 impl Check {
     /// All checks in the order of their numbers.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 20] = [
         Self::ConstraintClosure,
         Self::KineticEnergy,
         Self::EnergySlope,
@@ -47,6 +63,14 @@ impl Check {
         Self::ReferenceValues,
         Self::Rounding,
         Self::ClosedForms,
+        Self::WrittenPositions,
+        Self::WrittenRates,
+        Self::WrittenForces,
+        Self::WrittenTotals,
+        Self::WrittenLaws,
+        Self::WrittenTwice,
+        Self::WrittenUnits,
+        Self::WrittenSentences,
     ];
 
     /// The number, from 0: the index in [`Check::ALL`].
@@ -69,6 +93,14 @@ impl Check {
             Self::ReferenceValues => "reference values",
             Self::Rounding => "rounding",
             Self::ClosedForms => "closed forms",
+            Self::WrittenPositions => "written positions",
+            Self::WrittenRates => "written rates",
+            Self::WrittenForces => "written forces",
+            Self::WrittenTotals => "written totals",
+            Self::WrittenLaws => "written laws",
+            Self::WrittenTwice => "written twice",
+            Self::WrittenUnits => "written units",
+            Self::WrittenSentences => "written sentences",
         }
     }
 }

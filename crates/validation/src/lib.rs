@@ -30,8 +30,9 @@ pub mod extremes;
 mod overview;
 mod report_parts;
 pub mod work_precision;
+mod written;
 
-pub use case_report::validate::{Validation, validate};
+pub use case_report::validate::{Validation, validate, validate_program};
 pub use cases::subject::PlanSubject;
 pub use checked::multibody::{FreeMotionRun, free_motion_run};
 pub use checked::states::{CheckedStates, check_case};

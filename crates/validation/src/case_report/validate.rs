@@ -39,10 +39,32 @@ pub fn validate(
     folder: &Path,
     progress: Progress<'_>,
 ) -> Result<Validation, ValidationError> {
+    validate_case(scene, folder, None, progress)
+}
+
+/// Validates a case, and what the program at a path writes of it when it runs as a process.
+///
+/// # Errors
+/// As [`validate`].
+pub fn validate_program(
+    scene: &Scene,
+    folder: &Path,
+    program: &Path,
+    progress: Progress<'_>,
+) -> Result<Validation, ValidationError> {
+    validate_case(scene, folder, Some(program), progress)
+}
+
+fn validate_case(
+    scene: &Scene,
+    folder: &Path,
+    program: Option<&Path>,
+    progress: Progress<'_>,
+) -> Result<Validation, ValidationError> {
     let total = PROGRESS_STEPS;
     let done = |what: &str| progress(Step { total, done: what });
     let reference = Reference::read(folder, scene)?;
-    let analysis = analyse(scene, &reference, &done)?;
+    let analysis = analyse(scene, &reference, program, &done)?;
     let (figures, dwell) = case_figures(scene, &analysis)?;
     let mut files = Files::new();
     let name = &scene.name;

@@ -8,6 +8,7 @@ use crate::checked::period_check;
 use crate::checked::rounding_check::{self, StateRounding};
 use crate::checked::states::{self, CheckedStates};
 use crate::error::ValidationError;
+use crate::written;
 use dwell_dynamics::DynamicsError;
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::ReducedModel;
@@ -19,6 +20,7 @@ use dwell_verify::{
     Case, CheckContext, CheckedFreeMotion, CheckedPosition, ErrorCurve, FreeMotionCase, Range,
     check_free_motion, half_dm_curve, reaction_curve, spread,
 };
+use std::path::Path;
 
 /// Positions at which the reduced model is checked.
 const CHECKED_POSITIONS: usize = 24;
@@ -57,6 +59,7 @@ pub(crate) struct ReducedAnalysis<'a> {
 pub(crate) fn analyse<'a>(
     scene: &'a Scene,
     reference: &Reference,
+    program: Option<&Path>,
     done: &(dyn Fn(&str) + Sync),
 ) -> Result<CaseAnalysis<'a>, ValidationError> {
     let prepared = is_reduced(scene).then(|| PreparedScene::new(scene));
@@ -97,6 +100,13 @@ pub(crate) fn analyse<'a>(
             period.iter().flatten().cloned().collect(),
         ],
     );
+    if let Some(program) = program {
+        findings.extend(written::poses::findings(
+            program,
+            &scene.name,
+            scene.source.inner(),
+        ));
+    }
     reference.apply_tolerances(&mut findings)?;
     done("states");
     Ok(CaseAnalysis {

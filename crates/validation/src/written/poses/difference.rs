@@ -1,0 +1,90 @@
+//! The largest of many differences, and the finding that it makes.
+
+use dwell_findings::{Check, Finding};
+
+/// The largest difference relative to its scale. What could not be compared fails.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Differences {
+    pub(crate) count: usize,
+    absolute: f64,
+    relative: f64,
+    unit: &'static str,
+    worst_at: String,
+    failure: Option<String>,
+}
+
+/// The constant texts of a finding.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Texts<'a> {
+    pub(crate) key: &'a str,
+    pub(crate) check: Check,
+    pub(crate) comparison: &'a str,
+    pub(crate) scale: &'a str,
+    pub(crate) tolerance: f64,
+    pub(crate) tolerance_reason: &'a str,
+}
+
+impl Differences {
+    /// Adds a difference with its scale; its place is only composed if it is the worst.
+    pub(crate) fn add(
+        &mut self,
+        difference: f64,
+        scale: f64,
+        unit: &'static str,
+        at: impl FnOnce() -> String,
+    ) {
+        let relative = match difference.abs() {
+            0.0 => 0.0,
+            size => size / scale.abs(),
+        };
+        let is_worse = !self.relative.is_nan() && (relative.is_nan() || relative > self.relative);
+        if self.count == 0 || is_worse {
+            (self.absolute, self.relative, self.unit) = (difference.abs(), relative, unit);
+            self.worst_at = at();
+        }
+        self.count += 1;
+    }
+
+    /// Something could not be compared: the finding fails with this reason.
+    pub(crate) fn fail(&mut self, reason: String) {
+        self.failure.get_or_insert(reason);
+    }
+
+    /// The largest relative difference.
+    #[cfg(test)]
+    pub(crate) fn largest(&self) -> f64 {
+        self.relative
+    }
+
+    /// The worse of both.
+    pub(crate) fn merge(&mut self, other: Self) {
+        let failure = self.failure.take().or(other.failure.clone());
+        let count = self.count + other.count;
+        let is_worse = other.count > 0
+            && (self.count == 0 || (!self.relative.is_nan() && !(other.relative <= self.relative)));
+        if is_worse {
+            *self = other;
+        }
+        (self.failure, self.count) = (failure, count);
+    }
+
+    /// The finding over a domain; none where there was nothing to compare.
+    pub(crate) fn finding(self, texts: Texts<'_>, domain: &str) -> Option<Finding> {
+        if self.count == 0 && self.failure.is_none() {
+            return None;
+        }
+        let numbers = match self.failure {
+            Some(_) => [f64::NAN; 2],
+            None => [self.absolute, self.relative],
+        };
+        Some(Finding {
+            comparison: texts.comparison.to_owned(),
+            domain: format!("{domain}, {} comparisons", self.count),
+            unit: self.unit.to_owned(),
+            scale: texts.scale.to_owned(),
+            worst_at: self.failure.unwrap_or(self.worst_at),
+            tolerance_reason: texts.tolerance_reason.to_owned(),
+            ..Finding::new(texts.key, texts.check, numbers, texts.tolerance)
+        })
+    }
+}

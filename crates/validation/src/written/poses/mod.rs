@@ -1,0 +1,39 @@
+//! The files of the commands about positions: `kinematics`, `statics`, `kinetostatics`, `reduce` and `runs`.
+//!
+//! ```text
+//! scene text ── reading (own units, laws, expressions) ─┐
+//!      └── program as a process ── files ── rows ───────┴── closure, rates, equilibrium, totals, reduced … ── findings
+//! ```
+//!
+//! Everything is judged by residuals: the rows hold positions, velocities, accelerations and forces, and each must meet the
+//! equations that the scene's text gives; nothing is solved.
+
+pub(super) mod closure;
+pub(super) mod difference;
+mod drawn_laws;
+pub(super) mod equilibrium;
+pub(super) mod expression;
+pub(super) mod forces_read;
+mod formats;
+mod generated_code;
+pub(super) mod jet;
+pub(super) mod law;
+pub(super) mod motion;
+mod other_units;
+mod positions;
+mod program;
+pub(super) mod rates;
+mod read_files;
+pub(super) mod reading;
+mod reduced;
+pub(super) mod rows;
+pub(super) mod scene_text;
+mod sections;
+pub(super) mod table_curve;
+mod table_file;
+pub(super) mod totals;
+pub(super) mod units;
+mod variants;
+pub(super) mod wrenches;
+
+pub(crate) use positions::findings;

@@ -1,0 +1,111 @@
+//! How the bodies move in a row of a file: position, velocity and acceleration of every body, from its angle and one of its
+//! points as they are written.
+
+use super::jet::{Jet, JetVector};
+use super::reading::{Body, Measure, Place, Reading};
+use super::rows::Rows;
+
+/// The motion of all bodies in one row.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Motion {
+    pub(crate) bodies: Vec<Frame>,
+}
+
+/// A body's frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Frame {
+    pub(crate) origin: JetVector,
+    pub(crate) angle: Jet,
+}
+
+impl Motion {
+    /// The motion in a row; none where a column is missing. A file without velocities is one of rest.
+    pub(crate) fn new(reading: &Reading, rows: &Rows, row: usize) -> Option<Self> {
+        let frame = |body: &Body| {
+            if body.is_ground {
+                let origin = JetVector::constant([0.0; 2]);
+                return Some(Frame {
+                    origin,
+                    angle: Jet::constant(0.0),
+                });
+            }
+            let angle = rows.jet(
+                row,
+                &body.name,
+                [".angle", ".angular_velocity", ".angular_acceleration"],
+            )?;
+            let (point, at) = body.points.first()?;
+            let point = point_in(rows, row, &body.name, point)?;
+            let origin = point.minus(JetVector::rotated(*at, angle));
+            Some(Frame { origin, angle })
+        };
+        let bodies = reading.bodies.iter().map(frame).collect::<Option<_>>()?;
+        Some(Self { bodies })
+    }
+
+    /// The point of a body.
+    pub(crate) fn point(&self, place: Place) -> JetVector {
+        let frame = self.bodies[place.body];
+        frame
+            .origin
+            .plus(JetVector::rotated(place.point, frame.angle))
+    }
+
+    /// A direction of a body.
+    pub(crate) fn direction(&self, body: usize, direction: [f64; 2]) -> JetVector {
+        JetVector::rotated(direction, self.bodies[body].angle)
+    }
+
+    /// From the first place to the second.
+    pub(crate) fn gap(&self, places: [Place; 2]) -> JetVector {
+        self.point(places[1]).minus(self.point(places[0]))
+    }
+
+    /// The angle of the second body from the first.
+    pub(crate) fn relative_angle(&self, [first, second]: [usize; 2]) -> Jet {
+        self.bodies[second].angle - self.bodies[first].angle
+    }
+
+    /// A coordinate.
+    pub(crate) fn measure(&self, measure: Measure) -> Jet {
+        match measure {
+            Measure::Angle(bodies) => self.relative_angle(bodies),
+            Measure::Travel(places, axis) => {
+                self.gap(places).dot(self.direction(places[0].body, axis))
+            }
+            Measure::Length(places) => self.gap(places).length(),
+        }
+    }
+
+    /// The same positions without velocities and accelerations.
+    pub(crate) fn at_rest(&self) -> Self {
+        let still = |jet: Jet| Jet::constant(jet.value());
+        let frame = |frame: &Frame| Frame {
+            origin: JetVector {
+                x: still(frame.origin.x),
+                y: still(frame.origin.y),
+            },
+            angle: still(frame.angle),
+        };
+        Self {
+            bodies: self.bodies.iter().map(frame).collect(),
+        }
+    }
+
+    /// The centre of mass of a body.
+    pub(crate) fn center(&self, reading: &Reading, body: usize) -> JetVector {
+        self.point(Place {
+            body,
+            point: reading.bodies[body].center,
+        })
+    }
+}
+
+/// A point as written.
+pub(crate) fn point_in(rows: &Rows, row: usize, body: &str, point: &str) -> Option<JetVector> {
+    let prefix = format!("{body}.{point}");
+    Some(JetVector {
+        x: rows.jet(row, &prefix, [".x", ".vx", ".ax"])?,
+        y: rows.jet(row, &prefix, [".y", ".vy", ".ay"])?,
+    })
+}

@@ -1,0 +1,116 @@
+//! Rows against their neighbours: what a column changes by from row to row is the integral of its rate, by the quadrature
+//! of Hermite, whose error is estimated from twice the interval.
+
+use super::difference::Differences;
+use super::rows::Rows;
+
+/// Endings of a value, its rate and the rate of that.
+const RATES: [[&str; 3]; 5] = [
+    ["", ".velocity", ".acceleration"],
+    [".angle", ".angular_velocity", ".angular_acceleration"],
+    [".x", ".vx", ".ax"],
+    [".y", ".vy", ".ay"],
+    [".travel", ".travel.velocity", ".travel.acceleration"],
+];
+/// An estimated error of the quadrature counts this many times: the next order of it is unknown.
+const ERROR_FACTOR: f64 = 4.0;
+
+/// Differences between rows, in time; rows next to which a rate jumps (the corners of laws) are left out.
+pub(crate) fn rates(rows: &Rows, time: &[f64], corners: &[f64], file: &str) -> Differences {
+    let mut all = Differences::default();
+    // Points in x and y have one scale, and so have all angles.
+    for kinds in [&RATES[..1], &RATES[1..2], &RATES[2..4], &RATES[4..]] {
+        let mut found = Vec::new();
+        for [value, rate, second] in kinds {
+            for (name, values) in rows
+                .columns
+                .iter()
+                .filter(|(name, _)| name.ends_with(value))
+            {
+                let Some(stem) = name.strip_suffix(value) else {
+                    continue;
+                };
+                let of = |end: &str| rows.columns.get(&format!("{stem}{end}"));
+                if let (Some(first), Some(second)) = (of(rate), of(second)) {
+                    found.push((name, [values, first, second]));
+                }
+            }
+        }
+        let duration = time
+            .last()
+            .zip(time.first())
+            .map_or(0.0, |(last, first)| last - first);
+        let of = |k: usize| {
+            found
+                .iter()
+                .map(|(_, columns)| largest(columns[k]))
+                .fold(0.0, f64::max)
+        };
+        let scales =
+            [of(0).max(of(1) * duration), of(1).max(of(2) * duration)].map(|s| s / duration);
+        for (name, columns) in found {
+            compare(
+                &mut all,
+                columns,
+                time,
+                scales,
+                corners,
+                &format!("{file}, {name}"),
+            );
+        }
+    }
+    all
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |max: f64, v| max.max(v.abs()))
+}
+
+/// y₂ − y₀ by y′ at three rows and y″ at the ends, and y′ by y″ alone at three rows (Simpson).
+fn compare(
+    to: &mut Differences,
+    [y, v, a]: [&Vec<f64>; 3],
+    time: &[f64],
+    scales: [f64; 2],
+    corners: &[f64],
+    what: &str,
+) {
+    for i in 2..y.len().saturating_sub(2) {
+        let h = time[i + 1] - time[i];
+        let (low, high) = (time[i - 2], time[i + 2]);
+        let slack = 1e-9 * h;
+        let is_even = (-2..2).all(|k: isize| {
+            let at = |k: isize| time[i.wrapping_add_signed(k)];
+            (at(k + 1) - at(k) - h).abs() < 1e-6 * h
+        });
+        if !is_even
+            || corners
+                .iter()
+                .any(|c| low - slack <= *c && *c <= high + slack)
+        {
+            continue;
+        }
+        let at = |column: &[f64], k: isize| column[i.wrapping_add_signed(k)];
+        // y(+k) − y(−k) = kh/15 (7 y′₋ + 16 y′ + 7 y′₊) + (kh)²/15 (y″₋ − y″₊), of the sixth order.
+        let hermite = |k: isize| {
+            let h = h * k as f64;
+            let sum = 7.0 * (at(v, -k) + at(v, k)) + 16.0 * at(v, 0);
+            at(y, k) - at(y, -k) - h / 15.0 * sum - h * h / 15.0 * (at(a, -k) - at(a, k))
+        };
+        let simpson = |k: isize| {
+            let h = h * k as f64;
+            at(v, k) - at(v, -k) - h / 3.0 * (at(a, -k) + 4.0 * at(a, 0) + at(a, k))
+        };
+        for (order, [near, far]) in [[hermite(1), hermite(2)], [simpson(1), simpson(2)]]
+            .into_iter()
+            .enumerate()
+        {
+            // Twice the interval has 2⁷ and 2⁵ times the error.
+            let estimate = far.abs() / [128.0, 32.0][order];
+            let difference = (near.abs() - ERROR_FACTOR * estimate).max(0.0) / [h, h][order];
+            to.add(difference, scales[order], "1/s", || {
+                format!("{what}, row {i}, derivative {}", order + 1)
+            });
+        }
+    }
+}

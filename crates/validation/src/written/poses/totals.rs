@@ -1,0 +1,158 @@
+//! Sums over the whole mechanism in a row: shaking force by the momentum, powers and the kinetic energy.
+
+use super::difference::Differences;
+use super::equilibrium::actuator_forces;
+use super::motion::Motion;
+use super::reading::{LoadKind, Reading};
+use super::rows::Rows;
+use super::wrenches::Wrench;
+
+/// The written sums of a file, and those of its bodies.
+#[derive(Debug, Default)]
+pub(crate) struct Totals {
+    /// Row, column, written less expected, size of the terms.
+    sums: Vec<(usize, &'static str, [f64; 2])>,
+    /// The largest force of a joint in the file.
+    largest_force: f64,
+}
+
+/// The columns and the kind whose largest terms they are relative to.
+const KINDS: [(&str, usize); 7] = [
+    ("shaking.fx", 0),
+    ("shaking.fy", 0),
+    ("shaking.moment", 1),
+    ("energy.kinetic_bodies", 2),
+    ("power.kinetic", 3),
+    ("power.actuators", 3),
+    ("power.loads", 3),
+];
+const UNITS: [&str; 4] = ["N", "N m", "J", "W"];
+
+impl Totals {
+    /// Adds a row; the loads' forces are those of the second reading.
+    pub(crate) fn add(
+        &mut self,
+        reading: &Reading,
+        rows: &Rows,
+        row: usize,
+        motion: &Motion,
+        loads: &[Wrench],
+    ) {
+        let mut compare = |name: &'static str, [value, terms]: [f64; 2]| {
+            if let Some(written) = rows.get(row, name) {
+                self.sums.push((row, name, [written - value, terms]));
+            }
+        };
+        for (name, sum) in ["shaking.fx", "shaking.fy", "shaking.moment"]
+            .into_iter()
+            .zip(shaking(reading, motion, rows.time(row)))
+        {
+            compare(name, sum);
+        }
+        let [energy, power] = kinetic(reading, motion);
+        compare("energy.kinetic_bodies", energy);
+        compare("power.kinetic", power);
+        let sum = |values: &[f64]| [values.iter().sum(), values.iter().map(|v| v.abs()).sum()];
+        let rates = reading
+            .coordinates
+            .iter()
+            .map(|c| motion.measure(c.measure).0[1]);
+        let forces = actuator_forces(reading, rows, row).into_iter().zip(rates);
+        compare(
+            "power.actuators",
+            sum(&forces.map(|(f, v)| f * v).collect::<Vec<_>>()),
+        );
+        if reading.frictions.is_empty() {
+            let powers = loads.iter().map(|load| load.power(motion));
+            compare("power.loads", sum(&powers.collect::<Vec<_>>()));
+        }
+        for joint in &reading.joints {
+            let force = rows
+                .get(row, &format!("{}.magnitude", joint.name))
+                .unwrap_or(0.0);
+            self.largest_force = self.largest_force.max(force);
+        }
+    }
+
+    /// The differences, each relative to the largest of its kind in the file.
+    pub(crate) fn differences(&self, size: f64, file: &str) -> Differences {
+        let kind = |name: &str| {
+            KINDS
+                .iter()
+                .find(|(known, _)| *known == name)
+                .map_or(0, |k| k.1)
+        };
+        let mut scales = [self.largest_force, self.largest_force * size, 0.0, 0.0];
+        for (_, name, [_, terms]) in &self.sums {
+            scales[kind(name)] = scales[kind(name)].max(*terms);
+        }
+        let mut all = Differences::default();
+        for (row, name, [difference, _]) in &self.sums {
+            let kind = kind(name);
+            all.add(*difference, scales[kind], UNITS[kind], || {
+                format!("{file}, row {row}, {name}")
+            });
+        }
+        all
+    }
+}
+
+/// What the ground feels: the loads from outside less the rate of the momentum; each sum with its absolute terms.
+fn shaking(reading: &Reading, motion: &Motion, t: f64) -> [[f64; 2]; 3] {
+    let mut sums = [[0.0; 2]; 3];
+    let mut push = |[fx, fy]: [f64; 2], [x, y]: [f64; 2], couple: f64| {
+        let size = fx.hypot(fy);
+        let terms = [size, size, size * x.hypot(y) + couple.abs()];
+        for (k, value) in [fx, fy, x * fy - y * fx + couple].into_iter().enumerate() {
+            sums[k][0] += value;
+            sums[k][1] += terms[k];
+        }
+    };
+    for wrench in external(reading, motion, t) {
+        push(wrench.force, wrench.point, wrench.couple);
+    }
+    for (b, body) in reading.bodies.iter().enumerate() {
+        let center = motion.center(reading, b);
+        let force = center.order(2).map(|a| -body.mass * a);
+        push(
+            force,
+            center.order(0),
+            -body.inertia * motion.bodies[b].angle.0[2],
+        );
+    }
+    sums
+}
+
+/// The kinetic energy and its rate, with absolute terms.
+fn kinetic(reading: &Reading, motion: &Motion) -> [[f64; 2]; 2] {
+    let mut sums = [[0.0; 2]; 2];
+    for (b, body) in reading.bodies.iter().enumerate() {
+        let center = motion.center(reading, b);
+        let ([vx, vy], [ax, ay]) = (center.order(1), center.order(2));
+        let [_, omega, alpha] = motion.bodies[b].angle.0;
+        let energy = 0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * omega * omega);
+        let rate = body.mass * (vx * ax + vy * ay) + body.inertia * omega * alpha;
+        let terms = body.mass * vx.hypot(vy) * ax.hypot(ay) + (body.inertia * omega * alpha).abs();
+        for (sum, [value, size]) in sums.iter_mut().zip([[energy, energy], [rate, terms]]) {
+            sum[0] += value;
+            sum[1] += size;
+        }
+    }
+    sums
+}
+
+/// The loads that act on the mechanism from outside: weights and single forces.
+fn external(reading: &Reading, motion: &Motion, t: f64) -> Vec<Wrench> {
+    let is_external =
+        |kind: &LoadKind| matches!(kind, LoadKind::Gravity(_) | LoadKind::Force { .. });
+    let mut all = Vec::new();
+    for load in reading.loads.iter().filter(|load| is_external(&load.kind)) {
+        let magnitude = load.magnitude(reading, motion, t).unwrap_or(f64::NAN);
+        all.extend(
+            load.unit_wrenches(reading, motion)
+                .iter()
+                .map(|w| w.times(magnitude)),
+        );
+    }
+    all
+}
