@@ -1,15 +1,48 @@
 //! `dwell reduce --from`: reads the exported tables and the names of their columns.
 
+use crate::Done;
+use crate::options::Options;
+use crate::times::Times;
 use dwell_report::npz_columns;
 use dwell_scene::SceneError;
-use dwell_study::{ColumnNames, ExportedTable, Outcome, SampleInterpolation, StudyError};
+use dwell_study::{
+    ColumnNames, ExportedTable, Outcome, SampleInterpolation, StudyError, no_progress,
+};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// The reduced parameters of the tables of run i and run ii.
+/// The name of the results: that of the first file without its ending.
+pub(crate) fn name(options: &Options, runs: &[PathBuf]) -> String {
+    let stem = runs.first().and_then(|path| path.file_stem());
+    let of_file = || stem.map_or("runs".into(), |stem| stem.to_string_lossy());
+    options
+        .name
+        .clone()
+        .unwrap_or_else(|| of_file().into_owned())
+}
+
+/// The reduced parameters of the tables of run i and run ii, with their pictures.
 pub(crate) fn reduce(
+    options: &Options,
+    runs: &[PathBuf],
+    (columns, interpolation): (Option<&Path>, Option<SampleInterpolation>),
+    times: &mut Times,
+) -> Result<Done, StudyError> {
+    let name = name(options, runs);
+    let outcome = computed(&name, runs, columns, interpolation);
+    times.add("computing");
+    let outcome = outcome?.draw((options.pictures, options.picture_format), &no_progress)?;
+    times.add("drawing");
+    Ok(Done {
+        outcome,
+        exported: Some(name),
+        ..Done::default()
+    })
+}
+
+fn computed(
     name: &str,
-    runs: &[std::path::PathBuf],
+    runs: &[PathBuf],
     columns: Option<&Path>,
     interpolation: Option<SampleInterpolation>,
 ) -> Result<Outcome, StudyError> {

@@ -51,6 +51,7 @@ fn main() -> ExitCode {
 }
 
 /// Runs a command of this name, and returns whether all its checks passed.
+// Long: an arm for each command that does not study one scene.
 fn run(options: &Options, name: &str) -> Result<bool, Report> {
     let Options { command, .. } = options;
     let mut times = Times::new();
@@ -85,18 +86,10 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
             interpolation,
             ..
         } => {
-            let name = exported_name(options, runs);
-            let outcome = exported_runs::reduce(&name, runs, columns.as_deref(), *interpolation);
-            times.add("computing");
-            let wanted = (options.pictures, options.picture_format);
-            let outcome = outcome.and_then(|outcome| outcome.draw(wanted, &no_progress));
-            times.add("drawing");
+            let wanted = (columns.as_deref(), *interpolation);
+            let done = exported_runs::reduce(options, runs, wanted, &mut times);
             bar.finish_and_clear();
-            Done {
-                outcome: outcome.map_err(|e| Report::new(as_scene_error(e)))?,
-                exported: Some(name),
-                ..Done::default()
-            }
+            done.map_err(|e| Report::new(as_scene_error(e)))?
         }
         study => {
             let done = read(options, study, &bar);
@@ -194,18 +187,6 @@ fn draw_validation(outcome: Outcome, format: PictureFormat) -> Result<Outcome, R
 fn results_name(done: &Done) -> Option<&str> {
     let scene = done.scene.as_ref().map(|scene| scene.name.as_str());
     scene.or(done.exported.as_deref())
-}
-
-/// The name of the results of exported tables: that of the first file without its ending.
-fn exported_name(options: &Options, runs: &[PathBuf]) -> String {
-    let stem = runs.first().and_then(|path| path.file_stem());
-    let of_file = || {
-        stem.map_or_else(
-            || "runs".to_owned(),
-            |stem| stem.to_string_lossy().into_owned(),
-        )
-    };
-    options.name.clone().unwrap_or_else(of_file)
 }
 
 /// The path of the summary in the output folder. Each part of a sweep has one of its own.
@@ -386,7 +367,7 @@ fn open_folder(options: &Options) -> Result<OutputFolder, Report> {
             runs: Some(runs), ..
         } => {
             let first = runs.first().map(PathBuf::as_path);
-            first.map(|first| (exported_name(options, runs), first))
+            first.map(|first| (exported_runs::name(options, runs), first))
         }
         command => command
             .scene()

@@ -79,39 +79,19 @@ pub fn combine_runs(
     let is_whole = one.is_whole_revolution(rows);
     // The end of a revolution is its beginning.
     let rows = if is_whole { rows - 1 } else { rows };
-    let equations: Vec<Equations> = (0..rows)
-        .map(|k| Equations {
-            acceleration: [one.acceleration[k], two.acceleration[k]],
-            square: [one.speed[k], two.speed[k]].map(|v| v * v),
-        })
-        .collect();
-    let solve = |[of_one, of_two]: [&ExportedColumn; 2]| -> (Vec<[f64; 2]>, [f64; 2]) {
-        let solved = equations.iter().enumerate();
-        let values: Vec<[f64; 2]> = solved
-            .map(|(k, e)| e.solve([of_one.values[k], of_two.values[k]]))
-            .collect();
-        let motion = [&one, &two].map(TimedRun::motion_rounding);
-        let roundings = equations.iter().zip(&values).map(|(e, &found)| {
-            let of_motion = e.force_errors(found, motion);
-            let printed = [of_one.rounding, of_two.rounding];
-            e.errors([printed[0] + of_motion[0], printed[1] + of_motion[1]])
-        });
-        let largest = roundings.fold([0.0_f64; 2], |max, e| [max[0].max(e[0]), max[1].max(e[1])]);
-        (values, largest)
-    };
-    let (inertia, inertia_rounding) = solve([&one.run.force, &two.run.force]);
+    let pair = AlignedRuns::new(one, two, rows);
+    let (one, two) = (&pair.one, &pair.two);
+    let (inertia, inertia_rounding) = pair.solve([&one.run.force, &two.run.force]);
     let mut reactions = Vec::new();
     let mut solved = Vec::new();
     for of_one in &one.run.reactions {
         let Some(of_two) = two.run.reactions.iter().find(|r| r.name == of_one.name) else {
-            let message = format!(
-                "`{}` has no column of the reaction `{}`",
-                two.run.file, of_one.name
-            );
+            let (file, name) = (&two.run.file, &of_one.name);
+            let message = format!("`{file}` has no column of the reaction `{name}`");
             return Err(wrong(message, "export the same reactions in both runs"));
         };
         reactions.push((of_one.name.clone(), of_one.unit.clone()));
-        solved.push(solve([of_one, of_two]));
+        solved.push(pair.solve([of_one, of_two]));
     }
     let coefficients = (0..rows).map(|k| Coefficients {
         m: inertia[k][0],
@@ -120,15 +100,7 @@ pub fn combine_runs(
         b: solved.iter().map(|(of, _)| of[k][1]).collect(),
     });
     let coefficients: Vec<Coefficients> = coefficients.collect();
-    // Positions of a whole revolution are at equal distances but for their printed digits.
-    let first = one.run.q.values[0];
-    let q: Vec<f64> = match is_whole {
-        true => (0..rows)
-            .map(|k| first + TAU * k as f64 / rows as f64)
-            .collect(),
-        false => one.run.q.values[..rows].to_vec(),
-    };
-    let contradiction = contradiction(&q, &coefficients);
+    let q = positions(&one.run.q.values, rows, is_whole);
     let combined = ExportedRuns {
         coordinate: one.run.name.clone(),
         is_angle: one.run.is_angle,
@@ -139,15 +111,62 @@ pub fn combine_runs(
             a: solved.iter().map(|(_, errors)| errors[0]).collect(),
             b: solved.iter().map(|(_, errors)| errors[1]).collect(),
         },
+        contradiction: contradiction(&q, &coefficients),
         q,
         coefficients,
         position_rounding: if is_whole { 0.0 } else { one.run.q.rounding },
-        contradiction,
         is_whole_revolution: is_whole,
         notes,
     };
     combined.check()?;
     Ok(combined)
+}
+
+/// Positions of a whole revolution are at equal distances but for their printed digits.
+fn positions(q: &[f64], rows: usize, is_whole: bool) -> Vec<f64> {
+    let equal = |k: usize| q[0] + TAU * k as f64 / rows as f64;
+    match is_whole {
+        true => (0..rows).map(equal).collect(),
+        false => q[..rows].to_vec(),
+    }
+}
+
+/// Both runs at the same positions, with their equations.
+struct AlignedRuns {
+    one: TimedRun,
+    two: TimedRun,
+    equations: Vec<Equations>,
+}
+
+impl AlignedRuns {
+    fn new(one: TimedRun, two: TimedRun, rows: usize) -> Self {
+        let at = |k: usize| Equations {
+            acceleration: [one.acceleration[k], two.acceleration[k]],
+            square: [one.speed[k], two.speed[k]].map(|v| v * v),
+        };
+        let equations = (0..rows).map(at).collect();
+        Self {
+            one,
+            two,
+            equations,
+        }
+    }
+
+    /// The coefficients of q̈ and of q̇² of a force at each position, and the largest errors by the printed digits.
+    fn solve(&self, [of_one, of_two]: [&ExportedColumn; 2]) -> (Vec<[f64; 2]>, [f64; 2]) {
+        let solved = self.equations.iter().enumerate();
+        let values: Vec<[f64; 2]> = solved
+            .map(|(k, e)| e.solve([of_one.values[k], of_two.values[k]]))
+            .collect();
+        let motion = [&self.one, &self.two].map(TimedRun::motion_rounding);
+        let roundings = self.equations.iter().zip(&values).map(|(e, &found)| {
+            let of_motion = e.force_errors(found, motion);
+            let printed = [of_one.rounding, of_two.rounding];
+            e.errors([printed[0] + of_motion[0], printed[1] + of_motion[1]])
+        });
+        let largest = roundings.fold([0.0_f64; 2], |max, e| [max[0].max(e[0]), max[1].max(e[1])]);
+        (values, largest)
+    }
 }
 
 impl Equations {

@@ -141,7 +141,22 @@ fn summary(
             record.add_within(format!("{key}.{end}"), units[k], value, error);
         }
     }
+    text += &errors_text(runs, (interpolation, errors), record);
     text += &format!(
+        "  changes of m are the integral of ½m′ within {:.1e} of the largest m\n",
+        runs.contradiction
+    );
+    record.add("contradiction", "", runs.contradiction);
+    text + &period_text(runs, model, errors, record)
+}
+
+/// The estimated errors, a line for each kind of coefficient.
+fn errors_text(
+    runs: &ExportedRuns,
+    (interpolation, errors): (SampleInterpolation, &SampleErrors),
+    record: &mut Record,
+) -> String {
+    let mut text = format!(
         "  estimated errors between the positions, {} interpolation, relative to the largest value:\n",
         interpolation.name()
     );
@@ -159,12 +174,7 @@ fn summary(
         record.add(format!("error.{key}.digits"), "", digits);
         record.add(format!("error.{key}.interpolation"), "", between);
     }
-    text += &format!(
-        "  changes of m are the integral of ½m′ within {:.1e} of the largest m\n",
-        runs.contradiction
-    );
-    record.add("contradiction", "", runs.contradiction);
-    text + &period_text(runs, model, errors, record)
+    text
 }
 
 /// The period of a free motion with unit speed at the first position.

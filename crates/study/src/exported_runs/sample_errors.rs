@@ -31,14 +31,7 @@ impl SampleErrors {
             SampleInterpolation::Trigonometric => 0.0,
         };
         let tails = fine.tails();
-        let flat = |c: &Coefficients| {
-            let rest = c.a.iter().chain(&c.b).copied();
-            [c.m, c.half_dm]
-                .into_iter()
-                .chain(rest)
-                .collect::<Vec<f64>>()
-        };
-        let mut rounding = flat(&runs.rounding);
+        let rounding = printed_errors(runs);
         let width = rounding.len();
         let (mut largest, mut differences) = (vec![0.0_f64; width], vec![0.0_f64; width]);
         let last = runs.q.len() - 1 + usize::from(runs.is_whole_revolution);
@@ -52,18 +45,6 @@ impl SampleErrors {
                 if let Some(between) = &between {
                     differences[i] = differences[i].max((between[i] - value).abs());
                 }
-            }
-        }
-        // A digit of a position is a change of the value.
-        let rows = runs.coefficients.windows(2).zip(runs.q.windows(2));
-        for (coefficients, q) in rows {
-            let (from, to) = (q[0], q[1]);
-            let changes = flat(&coefficients[0])
-                .into_iter()
-                .zip(flat(&coefficients[1]));
-            for (rounding, (one, other)) in rounding.iter_mut().zip(changes) {
-                let moved = ((other - one) / (to - from) * runs.position_rounding).abs();
-                *rounding = rounding.max(moved);
             }
         }
         // A coefficient that nearly vanishes has the scale of its kind.
@@ -82,4 +63,25 @@ impl SampleErrors {
         }
         errors
     }
+}
+
+/// m, ½m′, every a, every b.
+fn flat(c: &Coefficients) -> Vec<f64> {
+    let rest = c.a.iter().chain(&c.b).copied();
+    [c.m, c.half_dm].into_iter().chain(rest).collect()
+}
+
+/// What the printed digits leave open in each coefficient: of forces and motions, and of positions, where a digit is a change
+/// of the value.
+fn printed_errors(runs: &ExportedRuns) -> Vec<f64> {
+    let mut rounding = flat(&runs.rounding);
+    let rows = runs.coefficients.windows(2).zip(runs.q.windows(2));
+    for (coefficients, q) in rows {
+        let (one, other) = (flat(&coefficients[0]), flat(&coefficients[1]));
+        let per_position = runs.position_rounding / (q[1] - q[0]);
+        for (rounding, (one, other)) in rounding.iter_mut().zip(one.into_iter().zip(other)) {
+            *rounding = rounding.max(((other - one) * per_position).abs());
+        }
+    }
+    rounding
 }

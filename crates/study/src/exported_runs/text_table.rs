@@ -55,16 +55,7 @@ impl ExportedTable {
     /// # Errors
     /// [`SceneError`] with the place in the text: no numbers, no header, a row of another length, what is no finite number.
     pub fn read(file: &str, text: &str) -> Result<Self, SceneError> {
-        let mut at = 0;
-        let lines = text.split_inclusive('\n').map(|line| {
-            let here = Line {
-                at,
-                text: line.trim_end(),
-            };
-            at += line.len();
-            here
-        });
-        let lines: Vec<Line<'_>> = lines.filter(|line| !line.text.trim().is_empty()).collect();
+        let lines = lines_of(text);
         let is_data = |line: &Line<'_>| !is_comment(line) && Separator::of_numbers(line).is_some();
         let Some(first) = lines.iter().position(is_data) else {
             let message = format!("`{file}` has no row of numbers");
@@ -91,35 +82,11 @@ impl ExportedTable {
                 "numbers at once",
             ));
         };
-        let mut columns: Vec<ExportedColumn> = separator
-            .header(&header)
-            .iter()
-            .map(|head| column(head))
-            .collect();
+        let heads = separator.header(&header);
+        let mut columns: Vec<ExportedColumn> = heads.iter().map(|head| column(head)).collect();
         for line in lines[first..].iter().filter(|line| !is_comment(line)) {
-            let fields = separator.fields(line);
-            if fields.len() != columns.len() {
-                let span = line.at..line.at + line.text.len();
-                let message = format!(
-                    "a row of {} fields, where the header has {}",
-                    fields.len(),
-                    columns.len()
-                );
-                let help = "each row has a number for each column of the header";
-                return Err(error(span, message, help, "this row"));
-            }
-            for (column, field) in columns.iter_mut().zip(fields) {
-                let Some((value, rounding)) = separator.number(field.text) else {
-                    let message = format!(
-                        "`{}` is no finite number, in column `{}`",
-                        field.text, column.name
-                    );
-                    let help = "leave out rows without a value, such as those of a failed position";
-                    return Err(error(field.span, message, help, "here"));
-                };
-                column.values.push(value);
-                column.rounding = column.rounding.max(rounding);
-            }
+            let added = separator.add_row(line, &mut columns);
+            added.map_err(|(span, message, help)| error(span, message, help, "here"))?;
         }
         Ok(Self {
             file: file.to_owned(),
@@ -147,6 +114,20 @@ impl ExportedTable {
     pub fn column(&self, name: &str) -> Option<&ExportedColumn> {
         self.columns.iter().find(|column| column.name == name)
     }
+}
+
+/// The lines of a text that are not empty.
+fn lines_of(text: &str) -> Vec<Line<'_>> {
+    let mut at = 0;
+    let lines = text.split_inclusive('\n').map(|line| {
+        let here = Line {
+            at,
+            text: line.trim_end(),
+        };
+        at += line.len();
+        here
+    });
+    lines.filter(|line| !line.text.trim().is_empty()).collect()
 }
 
 fn is_comment(line: &Line<'_>) -> bool {
@@ -213,6 +194,32 @@ impl Separator {
             fields.pop();
         }
         fields
+    }
+
+    /// Adds a row to the columns; otherwise where it is wrong, what, and what to do.
+    fn add_row(
+        self,
+        line: &Line<'_>,
+        columns: &mut [ExportedColumn],
+    ) -> Result<(), (Range<usize>, String, &'static str)> {
+        let fields = self.fields(line);
+        if fields.len() != columns.len() {
+            let (found, wanted) = (fields.len(), columns.len());
+            let message = format!("a row of {found} fields, where the header has {wanted}");
+            let help = "each row has a number for each column of the header";
+            return Err((line.at..line.at + line.text.len(), message, help));
+        }
+        for (column, field) in columns.iter_mut().zip(fields) {
+            let Some((value, rounding)) = self.number(field.text) else {
+                let (text, name) = (field.text, &column.name);
+                let message = format!("`{text}` is no finite number, in column `{name}`");
+                let help = "leave out rows without a value, such as those of a failed position";
+                return Err((field.span, message, help));
+            };
+            column.values.push(value);
+            column.rounding = column.rounding.max(rounding);
+        }
+        Ok(())
     }
 
     /// The heads of the columns: in quotes a head may hold the separator, in brackets blanks.

@@ -26,8 +26,8 @@ pub(super) fn html(document: &Document) -> String {
                 }
             }
             Block::Table { header, rows } => text += &table(header, rows),
-            // The manual has neither: a picture would be another file.
-            Block::Figure { .. } | Block::Findings(_) => {}
+            // The manual has none of them: a picture would be another file.
+            Block::Figure { .. } | Block::Findings(_) | Block::Words(_) => {}
         }
     }
     text + "</body>\n</html>\n"
