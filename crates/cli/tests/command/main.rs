@@ -17,3 +17,4 @@ mod summaries;
 mod sweep;
 mod test_dir;
 mod trajectories;
+mod written_files;

@@ -41,4 +41,7 @@ pub(super) mod units;
 mod variants;
 pub(super) mod wrenches;
 
+#[cfg(test)]
+mod tests;
+
 pub(crate) use positions::findings;
