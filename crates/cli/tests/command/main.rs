@@ -18,3 +18,4 @@ mod summaries;
 mod sweep;
 mod test_dir;
 mod trajectories;
+mod written_files;

@@ -100,13 +100,11 @@ pub(crate) fn analyse<'a>(
             period.iter().flatten().cloned().collect(),
         ],
     );
-    if let Some(program) = program {
-        findings.extend(written::poses::findings(
-            program,
-            &scene.name,
-            scene.source.inner(),
-        ));
-    }
+    findings.extend(
+        program
+            .into_iter()
+            .flat_map(|path| written_findings(path, scene)),
+    );
     reference.apply_tolerances(&mut findings)?;
     done("states");
     Ok(CaseAnalysis {
@@ -117,6 +115,11 @@ pub(crate) fn analyse<'a>(
         free_motion,
         reduced,
     })
+}
+
+/// The findings over the files that the program at a path writes of a scene.
+fn written_findings(program: &Path, scene: &Scene) -> Vec<Finding> {
+    written::poses::findings(program, &scene.name, scene.source.inner())
 }
 
 /// The findings of the reduced model, the free motion, rounding, states, multibody equations and period in the order of

@@ -190,6 +190,7 @@ fn without_revolutions(jet: Jet, revolution: f64) -> Jet {
 }
 
 /// What a joint keeps at zero, and whether it is an angle. Meshing and rolling keep what they have in the first row.
+// Long: an arm for each kind of joint.
 fn joint_residuals(joint: &Joint, motion: &Motion, first: &Motion) -> Vec<(Jet, bool)> {
     let places = joint.places;
     let bodies = places.map(|p| p.body);

@@ -152,6 +152,7 @@ fn loads(reading: &Reading, draws: &mut Draws) -> Result<Table, String> {
 }
 
 /// Prescribes the actuator by a law of a kind, within the range around its assembly.
+// Long: an arm for each kind of law.
 fn prescribe(
     table: &mut Table,
     reading: &Reading,

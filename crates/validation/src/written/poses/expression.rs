@@ -109,6 +109,7 @@ fn operate(operator: Operator, a: Jet, b: Jet) -> Jet {
     }
 }
 
+// Long: an arm for each function.
 fn call(name: &str, a: Jet, b: Option<Jet>, c: Option<Jet>) -> Option<Jet> {
     let u = a.value();
     let one = Jet::constant(1.0);

@@ -17,6 +17,7 @@ pub(super) mod forces_read;
 mod formats;
 mod generated_code;
 pub(super) mod jet;
+mod judged;
 pub(super) mod law;
 pub(super) mod motion;
 mod other_units;
@@ -26,14 +27,21 @@ pub(super) mod rates;
 mod read_files;
 pub(super) mod reading;
 mod reduced;
+mod reduced_files;
 pub(super) mod rows;
+mod same_columns;
 pub(super) mod scene_text;
+mod section_files;
 mod sections;
 pub(super) mod table_curve;
 mod table_file;
 pub(super) mod totals;
+mod unit_files;
 pub(super) mod units;
 mod variants;
 pub(super) mod wrenches;
+
+#[cfg(test)]
+mod tests;
 
 pub(crate) use positions::findings;

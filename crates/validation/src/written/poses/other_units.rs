@@ -3,7 +3,6 @@
 
 use super::law::number;
 use super::reading::{JointKind, Measure, Reading};
-use super::scene_text::Draws;
 use super::units::{ANGLES, LENGTHS, MASSES, Units};
 use toml::{Table, Value};
 
@@ -15,21 +14,12 @@ struct Factors {
     angle: f64,
 }
 
-/// The scene in drawn units, and their names.
-pub(crate) fn in_other_units(
-    scene: &Table,
-    reading: &Reading,
-    draws: &mut Draws,
-) -> (Table, String) {
-    let mut draw = |of: &[(&'static str, f64)]| of[draws.below(of.len())];
-    let (length, mass) = (draw(&LENGTHS), draw(&MASSES));
-    let [inertia_mass, inertia_length] = [draw(&MASSES), draw(&LENGTHS)];
-    // The other unit of angles, always.
-    let angle = if reading.units.angle == 1.0 {
-        ANGLES[1]
-    } else {
-        ANGLES[0]
-    };
+/// The scene in other units, and their names: of as many successive systems as there are lengths each unit is one.
+pub(crate) fn in_other_units(scene: &Table, reading: &Reading, system: usize) -> (Table, String) {
+    let pick = |of: &[(&'static str, f64)], k: usize| of[k % of.len()];
+    let (length, mass) = (pick(&LENGTHS, system), pick(&MASSES, system));
+    let (inertia_mass, inertia_length) = (pick(&MASSES, system + 1), pick(&LENGTHS, system + 3));
+    let angle = pick(&ANGLES, system);
     let inertia = (
         format!("{} {}2", inertia_mass.0, inertia_length.0),
         inertia_mass.1 * inertia_length.1 * inertia_length.1,

@@ -380,6 +380,7 @@ impl Reading {
         })
     }
 
+    // Long: an arm for each kind of joint.
     fn joint(&self, name: &str, table: &Table) -> Option<Vec<Joint>> {
         let kinds = [
             "revolute",

@@ -173,6 +173,32 @@ impl Bar {
     }
 }
 
+/// The line of a link in the plane.
+struct Line {
+    origin: [f64; 2],
+    direction: [f64; 2],
+}
+
+impl Line {
+    /// The parts of a vector along and across it.
+    fn parts(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [ux, uy] = self.direction;
+        [x * ux + y * uy, y * ux - x * uy]
+    }
+
+    /// A force at its foot on the line.
+    fn applied(&self, force: [f64; 2], place: [f64; 2], couple: f64) -> Applied {
+        let [station, offset] = self.parts([0, 1].map(|k| place[k] - self.origin[k]));
+        let [along, across] = self.parts(force);
+        Applied {
+            station,
+            along,
+            across,
+            couple: couple - offset * along,
+        }
+    }
+}
+
 /// The forces on a body by their feet on the line of a link, and the bar's mass if it is uniform. None where a reaction
 /// is not in the file, or a couple acts on the body that no joint places.
 fn forces_on(
@@ -190,71 +216,29 @@ fn forces_on(
     });
     let [[ax, ay], [bx, by]] = ends.map(|end| end.order(0));
     let length = (bx - ax).hypot(by - ay);
-    let (ux, uy) = ((bx - ax) / length, (by - ay) / length);
-    let parts = |[x, y]: [f64; 2]| [x * ux + y * uy, y * ux - x * uy];
-    let mut all = Vec::new();
-    let mut push = |wrench: &Wrench, place: [f64; 2]| {
-        let [station, offset] = parts([place[0] - ax, place[1] - ay]);
-        let [along, across] = parts(wrench.force);
-        all.push(Applied {
-            station,
-            along,
-            across,
-            couple: wrench.couple - offset * along,
-        });
+    let line = Line {
+        origin: [ax, ay],
+        direction: [(bx - ax) / length, (by - ay) / length],
     };
-    let columns = ForceColumns {
-        reaction_end: "",
-        actuators: actuator_forces(reading, rows, row),
-    };
-    let mut wrenches = written_joint_wrenches(reading, rows, row, &motion, &columns)?;
-    let mut gravity = [0.0; 2];
-    for load in &reading.loads {
-        if let LoadKind::Gravity(g) = load.kind {
-            gravity = [gravity[0] + g[0], gravity[1] + g[1]];
-            continue;
-        }
-        let magnitude = load.magnitude(reading, &motion, rows.time(row))?;
-        wrenches.extend(
-            load.unit_wrenches(reading, &motion)
-                .iter()
-                .map(|w| w.times(magnitude)),
-        );
-    }
-    for friction in &reading.frictions {
-        let reaction = reaction(rows, row, &reading.joints[friction.joint], "")?;
-        wrenches.extend(friction.wrenches(reading, &motion, &reaction)?);
-    }
-    for (k, wrench) in wrenches
+    let wrenches = placed_wrenches(reading, rows, row, &motion, link.body)?;
+    let applied =
+        |(wrench, place): &(Wrench, [f64; 2])| line.applied(wrench.force, *place, wrench.couple);
+    let mut all: Vec<Applied> = wrenches.iter().map(applied).collect();
+    let gravity = reading
+        .loads
         .iter()
-        .enumerate()
-        .filter(|(_, w)| w.body == link.body)
-    {
-        let place = match wrench.force {
-            // Couples come in pairs, one behind the other, with the bodies between which they act.
-            [0.0, 0.0] if wrench.couple != 0.0 => {
-                let is_opposite = |w: &&Wrench| w.body != link.body && w.couple == -wrench.couple;
-                let neighbours = [k.checked_sub(1), Some(k + 1)].into_iter().flatten();
-                let other = neighbours
-                    .filter_map(|k| wrenches.get(k))
-                    .find(is_opposite)?
-                    .body;
-                couple_place(reading, &motion, link.body, other)?
-            }
-            _ => wrench.point,
-        };
-        push(wrench, place);
-    }
+        .fold([0.0; 2], |[x, y], load| match load.kind {
+            LoadKind::Gravity([gx, gy]) => [x + gx, y + gy],
+            _ => [x, y],
+        });
     let body = &reading.bodies[link.body];
     let middle = [0, 1].map(|k| 0.5 * (link.ends[0][k] + link.ends[1][k]));
     let bar = body.mass * length * length / 12.0;
-    let is_uniform = (body.center[0] - middle[0]).hypot(body.center[1] - middle[1])
-        <= 1e-9 * length
-        && (body.inertia - bar).abs() <= 1e-9 * bar;
-    if is_uniform {
+    let off_center = (body.center[0] - middle[0]).hypot(body.center[1] - middle[1]);
+    if off_center <= 1e-9 * length && (body.inertia - bar).abs() <= 1e-9 * bar {
         let ends = ends.map(|end| {
             let [x, y] = end.order(2);
-            parts([x - gravity[0], y - gravity[1]])
+            line.parts([x - gravity[0], y - gravity[1]])
         });
         return Some((
             all,
@@ -269,15 +253,55 @@ fn forces_on(
     let [x, y] = center.order(2);
     let force = [body.mass * (gravity[0] - x), body.mass * (gravity[1] - y)];
     let couple = -body.inertia * motion.bodies[link.body].angle.0[2];
-    let [station, offset] = parts([center.order(0)[0] - ax, center.order(0)[1] - ay]);
-    let [along, across] = parts(force);
-    all.push(Applied {
-        station,
-        along,
-        across,
-        couple: couple - offset * along,
-    });
+    all.push(line.applied(force, center.order(0), couple));
     Some((all, None))
+}
+
+/// What joints, actuators, loads but weights, and friction exert on a body, and where.
+fn placed_wrenches(
+    reading: &Reading,
+    rows: &Rows,
+    row: usize,
+    motion: &Motion,
+    body: usize,
+) -> Option<Vec<(Wrench, [f64; 2])>> {
+    let columns = ForceColumns {
+        reaction_end: "",
+        actuators: actuator_forces(reading, rows, row),
+    };
+    let mut wrenches = written_joint_wrenches(reading, rows, row, motion, &columns)?;
+    let is_weight = |kind: &LoadKind| matches!(kind, LoadKind::Gravity(_));
+    for load in reading.loads.iter().filter(|load| !is_weight(&load.kind)) {
+        let magnitude = load.magnitude(reading, motion, rows.time(row))?;
+        wrenches.extend(
+            load.unit_wrenches(reading, motion)
+                .iter()
+                .map(|w| w.times(magnitude)),
+        );
+    }
+    for friction in &reading.frictions {
+        let reaction = reaction(rows, row, &reading.joints[friction.joint], "")?;
+        wrenches.extend(friction.wrenches(reading, motion, &reaction)?);
+    }
+    let place = |(k, wrench): (usize, &Wrench)| match wrench.force {
+        // Couples come in pairs, one behind the other, with the bodies between which they act.
+        [0.0, 0.0] if wrench.couple != 0.0 => {
+            let is_opposite = |w: &&Wrench| w.body != body && w.couple == -wrench.couple;
+            let neighbours = [k.checked_sub(1), Some(k + 1)].into_iter().flatten();
+            let other = neighbours
+                .filter_map(|k| wrenches.get(k))
+                .find(is_opposite)?
+                .body;
+            Some((*wrench, couple_place(reading, motion, body, other)?))
+        }
+        _ => Some((*wrench, wrench.point)),
+    };
+    wrenches
+        .iter()
+        .enumerate()
+        .filter(|(_, w)| w.body == body)
+        .map(place)
+        .collect()
 }
 
 /// Where a couple between two bodies acts: at the only joint of both.

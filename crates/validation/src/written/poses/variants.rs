@@ -159,7 +159,9 @@ mod tests {
 
     #[test]
     fn an_extremum_is_at_its_row_or_little_above() {
-        let values: Vec<f64> = (0..=12).map(|k| (f64::from(k) * 0.5 + 0.1).cos()).collect();
+        let values: Vec<f64> = (0..=62)
+            .map(|k| (f64::from(k) * 0.1 + 0.03).cos())
+            .collect();
         let (beyond, _) = beyond_rows(&values, 1.0, 1.0);
         assert_eq!(beyond, 0.0);
         for wrong in [1.02, 0.97] {

@@ -121,6 +121,7 @@ pub(crate) fn along(motion: &Motion, measure: Measure, force: f64) -> [Wrench; 2
 }
 
 /// The forces of a joint with these components.
+// Long: an arm for each kind of joint.
 pub(crate) fn joint_wrenches(
     joint: &Joint,
     motion: &Motion,

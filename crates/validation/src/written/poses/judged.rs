@@ -1,0 +1,96 @@
+//! What was found of a case's files: differences by the key of their finding.
+
+use super::difference::{Differences, Texts};
+use dwell_findings::{Check, Finding};
+use std::collections::BTreeMap;
+
+/// A finding's key, check, comparison, and tolerance: that measured over all cases, with room for another machine's
+/// rounding; cases have their own.
+type Spec = (&'static str, Check, &'static str, f64);
+
+#[rustfmt::skip]
+const SPECS: [Spec; 21] = [
+    ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
+    ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
+    ("written-slopes", Check::WrittenRates, "m and V of `reduce` with the integrals of ½m′ and w between rows", 1e-9),
+    ("written-law-rates", Check::WrittenRates, "changes between rows of drawn laws with the integrals of their rates", 1e-6),
+    ("written-extrema", Check::WrittenRates, "extrema of the summary with the rows around them", 1e-6),
+    ("written-equilibrium", Check::WrittenForces, "Newton's and Euler's equations of every body with the written forces", 2e-14),
+    ("written-coefficients", Check::WrittenForces, "a, b and c of `reduce` in the equations of every body", 1e-13),
+    ("written-sections", Check::WrittenForces, "internal forces of links with equilibrium of the part behind each cut", 2e-14),
+    ("written-totals", Check::WrittenTotals, "shaking forces, powers and energies with sums over all bodies", 2e-14),
+    ("written-reduced", Check::WrittenTotals, "m, ½m′ and w of `reduce` with sums over all bodies", 1e-12),
+    ("written-calibration", Check::WrittenTotals, "the period of the calibrated scene by quadrature of the rows of `reduce`", 1e-11),
+    ("written-section-ends", Check::WrittenTotals, "internal forces at the end of a link with what acts there", 2e-14),
+    ("written-laws", Check::WrittenLaws, "actuators of every row with the laws of the scene's text and their derivatives", 4e-13),
+    ("written-loads", Check::WrittenLaws, "forces of loads with expressions and tables of the scene's text", 2e-14),
+    ("written-runs", Check::WrittenTwice, "m, ½m′, a and b of `reduce` with two runs of kinetostatics, and with the columns that are requested", 4e-11),
+    ("written-files", Check::WrittenTwice, "CSV with NPZ, extrema and peaks of the summary with the rows", 1e-12),
+    ("written-table", Check::WrittenTwice, "the table of `reduce` with its rows, beyond the errors that it states", 1e-13),
+    ("written-code", Check::WrittenTwice, "code of `symbolic` in Python and C, run line by line, with the rows of `reduce`", 1e-12),
+    ("written-sweep", Check::WrittenTwice, "extrema of m in rows of `sweep` with `reduce` of each changed scene", 1e-13),
+    ("written-units", Check::WrittenUnits, "files of the scene with those of the scene in other units", 1e-11),
+    ("written-sentences", Check::WrittenSentences, "printed numbers with the summary, to their digits", 1e-12),
+];
+
+/// Differences by key.
+#[derive(Debug, Default)]
+pub(crate) struct Judged {
+    by_key: BTreeMap<&'static str, Differences>,
+}
+
+impl Judged {
+    /// The differences of a key.
+    pub(crate) fn of(&mut self, key: &'static str) -> &mut Differences {
+        self.by_key.entry(key).or_default()
+    }
+
+    /// Adds differences to those of a key.
+    pub(crate) fn merge(&mut self, key: &'static str, differences: Differences) {
+        self.of(key).merge(differences);
+    }
+
+    /// Something of a key could not be compared.
+    pub(crate) fn fail(&mut self, key: &'static str, reason: String) {
+        self.of(key).fail(reason);
+    }
+
+    /// The findings, in the order of their checks.
+    pub(crate) fn findings(mut self) -> Vec<Finding> {
+        let finding = |(key, check, comparison, tolerance): Spec| {
+            let texts = Texts {
+                key,
+                check,
+                comparison,
+                scale: "the largest of its kind in the file",
+                tolerance,
+                tolerance_reason: "rounding of the written numbers, measured over all cases",
+            };
+            self.by_key
+                .remove(key)?
+                .finding(texts, "all rows of the files")
+        };
+        SPECS.into_iter().filter_map(finding).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_fails_is_a_finding_that_fails() {
+        for (k, (key, ..)) in SPECS.iter().enumerate() {
+            assert!(
+                SPECS[..k].iter().all(|(other, ..)| other != key),
+                "{key} twice"
+            );
+            let mut judged = Judged::default();
+            judged.fail(key, "no file".to_owned());
+            let findings = judged.findings();
+            assert_eq!((findings.len(), findings[0].pass), (1, false));
+            assert_eq!(findings[0].worst_at, "no file");
+        }
+        assert!(Judged::default().findings().is_empty());
+    }
+}

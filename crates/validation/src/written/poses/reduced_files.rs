@@ -1,0 +1,189 @@
+//! The files of `reduce` and what repeats them: runs, tables, generated code, sweeps, and drawn motions.
+
+use super::closure::closure;
+use super::drawn_laws::drawn_motions;
+use super::equilibrium::equilibrium;
+use super::generated_code::code_differences;
+use super::judged::Judged;
+use super::positions::corners;
+use super::program::Program;
+use super::rates::rates;
+use super::reading::Reading;
+use super::reduced::{ReducedFiles, reduced};
+use super::rows::Rows;
+use super::same_columns::same_columns;
+use super::scene_text::{Draws, text_of};
+use super::table_file::table_differences;
+use super::variants::{calibration_differences, sweep_differences};
+
+/// Runs `reduce` and its like on a scene with one actuator, as it is and with everything requested.
+pub(crate) fn judge_reduced(
+    judged: &mut Judged,
+    program: &Program,
+    reading: &Reading,
+    [scene, everything]: [&str; 2],
+    draws: &mut Draws,
+) -> Result<(), String> {
+    let points = (181 + draws.below(180)).to_string();
+    let run = |name: &str, scene: &str, command: &str| {
+        program
+            .run(name, scene, &[command, "--points", &points])
+            .map_err(|e| e.to_string())
+    };
+    let all = run("reduce", everything, "reduce")?.csv("-reduced.csv")?;
+    let requested = run("requested", scene, "reduce")?.npz("-reduced.npz")?;
+    let swept = swept(everything, reading, &all)?;
+    let run_i = run("sweep", &swept, "kinetostatics")?.npz("-kinetostatics.npz")?;
+    let run_ii = run("runs", everything, "runs")?.csv("-run-ii.csv")?;
+    let files = ReducedFiles {
+        reduced: &all,
+        run_i: &run_i,
+        run_ii: &run_ii,
+    };
+    let coordinate = &reading.coordinates[0].name;
+    let of = reduced(reading, &files, coordinate);
+    let range =
+        [0, all.count.saturating_sub(1)].map(|row| all.get(row, coordinate).unwrap_or(f64::NAN));
+    judge_laws(judged, program, reading, everything, range, draws)?;
+    judge_copies(judged, program, reading, everything, &all)?;
+    let whole: toml::Table = everything
+        .parse()
+        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    judged.merge(
+        "written-sweep",
+        sweep_differences(program, &whole, reading, draws)?,
+    );
+    judged.merge(
+        "written-calibration",
+        calibration_differences(program, &whole, reading)?,
+    );
+    judged.merge("written-reduced", of.sums);
+    judged.merge("written-coefficients", of.bodies);
+    judged.merge("written-slopes", of.slopes);
+    judged.merge("written-runs", of.runs);
+    judged.merge(
+        "written-runs",
+        same_columns(&requested, &all, "the requested file of `reduce`"),
+    );
+    for (rows, file) in [(&run_i, "run i"), (&run_ii, "run ii")] {
+        judged.merge("written-closure", closure(reading, rows, file).joints);
+    }
+    Ok(())
+}
+
+/// The accuracy that tables are asked for.
+const TABLE_ACCURACY: &str = "1e-7";
+
+/// The reduced model once more: as a table, and as code in two languages.
+fn judge_copies(
+    judged: &mut Judged,
+    program: &Program,
+    reading: &Reading,
+    scene: &str,
+    rows: &Rows,
+) -> Result<(), String> {
+    let coordinate = &reading.coordinates[0].name;
+    let arguments = [
+        "reduce",
+        "--points",
+        "3",
+        "--table-accuracy",
+        TABLE_ACCURACY,
+    ];
+    match program.run("table", scene, &arguments) {
+        Ok(run) => judged.merge(
+            "written-table",
+            table_differences(&run.text(".table")?, rows, coordinate),
+        ),
+        // Not every mechanism has one, as its format says.
+        Err(e)
+            if ["tables are of driven angles", "no table:"]
+                .iter()
+                .any(|why| e.to_string().contains(why)) => {}
+        Err(e) => judged.fail("written-table", e.to_string()),
+    }
+    let reaction = reading
+        .joints
+        .iter()
+        .find(|joint| rows.columns.contains_key(&format!("{}.x.a", joint.name)));
+    let Some(reaction) = reaction.map(|joint| format!("{}.x", joint.name)) else {
+        return Ok(());
+    };
+    for (format, end) in [("python", "-symbolic.py"), ("c", "-symbolic.c")] {
+        let arguments = ["symbolic", "--format", format, "--reaction", &reaction];
+        match program.run("code", scene, &arguments) {
+            Ok(run) => {
+                let code = run.text(end)?;
+                judged.merge(
+                    "written-code",
+                    code_differences(&code, rows, coordinate, &reaction),
+                );
+            }
+            // Not every mechanism has a closed form; then the command says so.
+            Err(e) if e.to_string().contains("closed form") => {}
+            Err(e) => judged.fail("written-code", e.to_string()),
+        }
+    }
+    Ok(())
+}
+
+/// Laws of every kind and expressions of every function in drawn motions.
+fn judge_laws(
+    judged: &mut Judged,
+    program: &Program,
+    reading: &Reading,
+    scene: &str,
+    range: [f64; 2],
+    draws: &mut Draws,
+) -> Result<(), String> {
+    for motion in drawn_motions(program, scene, reading, range, draws)? {
+        let (reading, rows) = (&motion.reading, &motion.rows);
+        let of = closure(reading, rows, &motion.name);
+        judged.merge("written-closure", of.joints);
+        judged.merge("written-laws", of.laws);
+        if let Some(time) = rows.columns.get("t") {
+            judged.merge(
+                "written-law-rates",
+                rates(rows, time, &corners(reading), &motion.name),
+            );
+        }
+        if motion.name.ends_with("expression") {
+            let forces = equilibrium(reading, rows, &motion.name, false);
+            judged.merge("written-equilibrium", forces.bodies);
+            judged.merge("written-loads", forces.loads);
+        }
+    }
+    Ok(())
+}
+
+/// The mechanism without forces, swept over the positions of a file of `reduce` at unit speed.
+fn swept(scene: &str, reading: &Reading, rows: &Rows) -> Result<String, String> {
+    let mut scene: toml::Table = scene
+        .parse()
+        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    for section in [
+        "prescribed",
+        "loads",
+        "friction",
+        "drives",
+        "stops",
+        "motion",
+        "calibration",
+    ] {
+        scene.remove(section);
+    }
+    let coordinate = &reading.coordinates[0];
+    let unit = reading.unit_of(coordinate.measure);
+    let column = rows
+        .columns
+        .get(&coordinate.name)
+        .ok_or("`reduce` has no column of the coordinate")?;
+    let ends = [column.first(), column.last()]
+        .into_iter()
+        .flatten()
+        .map(|q| toml::Value::Float(q / unit));
+    let mut sweep = toml::Table::new();
+    sweep.insert(coordinate.name.clone(), toml::Value::Array(ends.collect()));
+    scene.insert("coordinate-sweep".to_owned(), toml::Value::Table(sweep));
+    text_of(&scene)
+}

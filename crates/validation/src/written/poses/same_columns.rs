@@ -1,0 +1,67 @@
+//! The columns of a file against those of another that has them, too.
+
+use super::difference::Differences;
+use super::rows::Rows;
+use std::collections::BTreeMap;
+
+/// What the columns of a name are compared with: forces in x and y, and along the axes of a body, are of one kind.
+fn kind_of(name: &str, is_point: bool) -> String {
+    if let Some((_, load)) = name.split_once(".c.") {
+        return format!("c.{load}");
+    }
+    let end = name.rsplit('.').next().unwrap_or(name);
+    let kind = match end.split('@').next().unwrap_or(end) {
+        "half_dm" => "m",
+        "x" | "y" if is_point && !end.contains('@') => "position",
+        "vx" | "vy" => "v",
+        "ax" | "ay" => "a",
+        "x" | "y" | "normal" | "tangent" | "tooth" | "axial" | "force" | "magnitude" | "fx"
+        | "fy" | "load_force" => "force",
+        "moment" | "load_moment" => "moment",
+        _ if name.starts_with("power.") || end == "power" => "power",
+        other => other,
+    };
+    kind.to_owned()
+}
+
+/// The columns of a file against those of another that has them, too, relative to the largest of the same ending.
+pub(crate) fn same_columns(rows: &Rows, other: &Rows, file: &str) -> Differences {
+    let is_point = |name: &str| name.matches('.').count() == 2;
+    let ending = |name: &str| kind_of(name, is_point(name));
+    let mut scales = BTreeMap::<String, f64>::new();
+    for (name, values) in &other.columns {
+        let scale = scales.entry(ending(name)).or_default();
+        *scale = values.iter().fold(*scale, |max, v| max.max(v.abs()));
+    }
+    // Where nothing accelerates, what the velocities would make of it stands in.
+    for (acceleration, velocity) in [("angular_acceleration", "angular_velocity"), ("a", "v")] {
+        let velocity = scales.get(velocity).copied().unwrap_or(0.0);
+        let scale = scales.entry(acceleration.to_owned()).or_default();
+        *scale = scale.max(velocity * velocity);
+    }
+    let mut all = Differences::default();
+    for (name, values) in rows
+        .columns
+        .iter()
+        .filter(|(name, _)| *name != "relative_error")
+    {
+        let Some(others) = other
+            .columns
+            .get(name)
+            .filter(|others| others.len() == values.len())
+        else {
+            all.fail(format!(
+                "{file} has a column {name} of {} rows that the whole one does not have",
+                values.len()
+            ));
+            continue;
+        };
+        let scale = scales.get(&ending(name)).copied().unwrap_or(0.0);
+        for (row, (value, expected)) in values.iter().zip(others).enumerate() {
+            all.add(value - expected, scale, "", || {
+                format!("{file}, row {row}, {name}")
+            });
+        }
+    }
+    all
+}

@@ -1,0 +1,93 @@
+//! The files of internal forces of drawn links.
+
+use super::judged::Judged;
+use super::program::Program;
+use super::reading::Reading;
+use super::scene_text::{Draws, text_of};
+use super::sections::{Link, links, sections};
+
+/// Links of a case whose internal forces are judged.
+const LINKS: usize = 2;
+
+/// The internal forces of drawn links, in the row where the program has found the largest bending moment.
+pub(crate) fn judge_sections(
+    judged: &mut Judged,
+    program: &Program,
+    reading: &Reading,
+    scene: &str,
+    draws: &mut Draws,
+) -> Result<(), String> {
+    let mut links = links(reading);
+    let drawn: Vec<_> = (0..LINKS.min(links.len()))
+        .map(|_| links.remove(draws.below(links.len())))
+        .collect();
+    if drawn.is_empty() {
+        return Ok(());
+    }
+    let arguments = ["kinetostatics", "--points", "37"];
+    let scene = requesting_sections(scene, reading, &drawn)?;
+    let run = program
+        .run("sections", &scene, &arguments)
+        .map_err(|e| e.to_string())?;
+    let (rows, summary) = (
+        run.csv("-kinetostatics.csv")?,
+        run.json("-kinetostatics.json")?,
+    );
+    let abscissa = summary["extrema_over"]["name"].as_str().unwrap_or("t");
+    for link in &drawn {
+        let body = &reading.bodies[link.body].name;
+        let [from, to] = &link.names;
+        let cuts = run.csv(&format!(
+            "-kinetostatics-internal-forces-{body}.{from}.{to}.csv"
+        ))?;
+        let name = format!("{body} from {from} to {to}.bending_moment");
+        let at = summary["results"][format!("{name}.at")]["value"].as_f64();
+        let column = rows.columns.get(abscissa);
+        let row = at.zip(column).and_then(|(at, column)| {
+            column
+                .iter()
+                .position(|x| (x - at).abs() <= 1e-12 * (1.0 + at.abs()))
+        });
+        let Some(row) = row else {
+            judged.fail(
+                "written-sections",
+                format!("the largest {name} is at {at:?}, which is no row"),
+            );
+            continue;
+        };
+        let of = sections(reading, &rows, row, link, &cuts);
+        judged.merge("written-sections", of.cuts);
+        judged.merge("written-section-ends", of.ends);
+        // The largest moment that is printed is one of the cuts.
+        let said = summary["results"][&name]["value"]
+            .as_f64()
+            .unwrap_or(f64::NAN);
+        let column = cuts.columns.get("bending").into_iter().flatten();
+        let largest = column.fold(0.0_f64, |max, v| max.max(v.abs()));
+        judged
+            .of("written-files")
+            .add(said.abs() - largest, largest, "N m", || name.clone());
+    }
+    Ok(())
+}
+
+fn requesting_sections(scene: &str, reading: &Reading, drawn: &[Link]) -> Result<String, String> {
+    let mut scene: toml::Table = scene
+        .parse()
+        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let request = |link: &Link| {
+        let [from, to] = &link.names;
+        let entries = [
+            ("body", &reading.bodies[link.body].name),
+            ("from", from),
+            ("to", to),
+        ];
+        let entry =
+            |(key, value): (&str, &String)| (key.to_owned(), toml::Value::String(value.clone()));
+        toml::Value::Table(entries.into_iter().map(entry).collect())
+    };
+    let requested = toml::Value::Array(drawn.iter().map(request).collect());
+    let requests = toml::Table::from_iter([("sections".to_owned(), requested)]);
+    scene.insert("requests".to_owned(), toml::Value::Table(requests));
+    text_of(&scene)
+}

@@ -1,0 +1,66 @@
+//! The files of a scene in several systems of units.
+
+use super::closure::closure;
+use super::equilibrium::equilibrium;
+use super::judged::Judged;
+use super::other_units::in_other_units;
+use super::program::Program;
+use super::reading::Reading;
+use super::same_columns::same_columns;
+use super::scene_text::{Draws, text_of};
+use super::units::LENGTHS;
+
+/// Systems of units in which each case is written again: as many as there are units of length.
+const SYSTEMS: usize = LENGTHS.len();
+
+/// The same files from the scene in other units.
+pub(crate) fn judge_units(
+    judged: &mut Judged,
+    program: &Program,
+    reading: &Reading,
+    scene: &str,
+    draws: &mut Draws,
+) -> Result<(), String> {
+    let table: toml::Table = scene
+        .parse()
+        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let has_motion = ["prescribed", "coordinate-sweep"]
+        .iter()
+        .any(|key| table.contains_key(*key));
+    let command = if has_motion {
+        "kinetostatics"
+    } else {
+        "kinematics"
+    };
+    let file = format!("-{command}.npz");
+    let run = |name: &str, scene: &str| {
+        let run = program.run(name, scene, &[command, "--points", "31"]);
+        run.map_err(|e| e.to_string())?.npz(&file)
+    };
+    let expected = run("units", scene)?;
+    let first = draws.below(SYSTEMS);
+    for k in 0..SYSTEMS {
+        let (other, units) = in_other_units(&table, reading, first + k);
+        let other = text_of(&other)?;
+        let file = format!("the scene in {units}");
+        let rows = match run("other-units", &other) {
+            Ok(rows) => rows,
+            Err(reason) => {
+                judged.fail("written-units", format!("{file}: {reason}"));
+                continue;
+            }
+        };
+        // The same files; and they meet the equations of the rewritten text.
+        judged.merge("written-units", same_columns(&rows, &expected, &file));
+        let reading = Reading::new(&other)?;
+        let of = closure(&reading, &rows, &file);
+        judged.merge("written-closure", of.joints);
+        judged.merge("written-laws", of.laws);
+        if has_motion {
+            let forces = equilibrium(&reading, &rows, &file, false);
+            judged.merge("written-equilibrium", forces.bodies);
+            judged.merge("written-loads", forces.loads);
+        }
+    }
+    Ok(())
+}
