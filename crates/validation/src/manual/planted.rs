@@ -6,7 +6,7 @@
 //!   └─ one value altered ── scene ── claims ┴─→ findings: which checks detect it
 //! ```
 
-use super::motion_claims::MotionClaims;
+use super::motion_claims::{MotionClaims, differ};
 use crate::cases::model_states::{ModelStates, StateRequest};
 use crate::cases::reference::Reference;
 use crate::checked::states::state_requests;
@@ -22,9 +22,6 @@ use std::sync::OnceLock;
 const STATES: usize = 7;
 /// States that are checked by energies, which cost more.
 const ENERGY_STATES: usize = 2;
-/// A result that changes by less, relative to the largest of its kind, is the same: three digits above what the checks distinguish
-/// from rounding.
-const UNCHANGED: f64 = 1e-9;
 
 /// A scene that faults are planted in.
 pub(super) struct PlantedScene {
@@ -220,11 +217,4 @@ impl StateClaims {
         differs(&|claims| claims.mass_matrices.concat())
             || kinds.into_iter().any(|kind| differs(&of_kind(kind)))
     }
-}
-
-/// Whether values differ by more than rounding.
-pub(super) fn differ(values: &[f64], own: &[f64]) -> bool {
-    let largest = own.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
-    let mut both = values.iter().zip(own);
-    values.len() != own.len() || both.any(|(a, b)| !((a - b).abs() <= UNCHANGED * largest))
 }
