@@ -94,7 +94,7 @@ pub fn key_uses(text: &str) -> Vec<KeyUse> {
         return Vec::new();
     };
     let mut found = Vec::new();
-    Walk { root: &root }.table(&root, keys::table("scene"), &[], &mut found);
+    UseFinder { root: &root }.table(&root, keys::table("scene"), &[], &mut found);
     found
 }
 
@@ -124,11 +124,11 @@ fn tables_of(shape: &'static ValueShape, each: &mut dyn FnMut(&'static str)) {
 }
 
 /// A walk through a scene.
-struct Walk<'a> {
+struct UseFinder<'a> {
     root: &'a Table,
 }
 
-impl Walk<'_> {
+impl UseFinder<'_> {
     fn table(
         &self,
         table: &Table,

@@ -46,7 +46,7 @@ struct StateClaims {
 
 /// What became of a planted fault.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Fate {
+pub(super) enum PlantedResult {
     /// No scene comes of it, or none of the same joints and bodies: the program refuses it.
     Refused,
     /// No result changes.
@@ -88,12 +88,12 @@ impl PlantedScene {
     }
 
     /// What the checks detect where the results come from another scene.
-    pub(super) fn judge(&self, altered: &Scene) -> Fate {
+    pub(super) fn check_altered(&self, altered: &Scene) -> PlantedResult {
         let (mut changed, mut failed, mut seen) = (false, BTreeSet::new(), false);
         if let (Some(own), Some(claims)) = (self.own_states(), self.claims(altered)) {
             let claims = claims.with_requests_of(own);
             if !claims.is_alike(own) {
-                return Fate::Refused;
+                return PlantedResult::Refused;
             }
             seen = true;
             if claims.differs_from(own) {
@@ -112,9 +112,9 @@ impl PlantedScene {
             }
         }
         match (seen, changed) {
-            (false, _) => Fate::Refused,
-            (true, false) => Fate::Unchanged,
-            (true, true) => Fate::Detected(failed),
+            (false, _) => PlantedResult::Refused,
+            (true, false) => PlantedResult::Unchanged,
+            (true, true) => PlantedResult::Detected(failed),
         }
     }
 

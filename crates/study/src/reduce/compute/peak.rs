@@ -5,7 +5,7 @@ use crate::reduce::compute::ReducedCurves;
 use dwell_kinetostatics::ReducedModel as _;
 
 /// Part of m that the rows may miss without a word.
-const SHOWN: f64 = 1e-3;
+const MIN_EXCESS: f64 = 1e-3;
 /// Halvings of a step between rows: down to rounding.
 const HALVINGS: usize = 60;
 
@@ -33,7 +33,7 @@ pub(crate) fn peak_between_rows(
         }
     }
     let (m, _) = prepared.model.inertia(inside, &mut workspace).ok()?;
-    (m > all[largest].m * (1.0 + SHOWN)).then_some([inside, m])
+    (m > all[largest].m * (1.0 + MIN_EXCESS)).then_some([inside, m])
 }
 
 #[cfg(test)]
