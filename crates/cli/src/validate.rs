@@ -59,10 +59,8 @@ pub(crate) fn validate(
             },
         );
     bar.finish_and_clear();
-    let others = [extremes, costs].into_iter().flatten();
-    let mut others = others
-        .collect::<Result<Vec<Outcome>, _>>()
-        .map_err(as_scene_error)?;
+    let others: Result<Vec<Outcome>, _> = [extremes, costs].into_iter().flatten().collect();
+    let mut others = others.map_err(as_scene_error)?;
     if let Some(keys) = keys {
         let extremes: Vec<_> = others.iter().flat_map(|o| o.findings.clone()).collect();
         let names: Vec<String> = cases.iter().map(|c| c.display().to_string()).collect();

@@ -41,7 +41,7 @@ pub enum WrittenAs {
     /// A string that names something of this sort, such as `body.point`.
     Name(&'static str),
     /// A list of such names.
-    Names,
+    Names(&'static str),
     /// A table, or a list of tables.
     Table,
 }
@@ -94,7 +94,7 @@ pub fn key_uses(text: &str) -> Vec<KeyUse> {
         return Vec::new();
     };
     let mut found = Vec::new();
-    Walk { root: &root }.table(&root, keys::table("scene"), &[], &mut found);
+    UseFinder { root: &root }.table(&root, keys::table("scene"), &[], &mut found);
     found
 }
 
@@ -124,11 +124,11 @@ fn tables_of(shape: &'static ValueShape, each: &mut dyn FnMut(&'static str)) {
 }
 
 /// A walk through a scene.
-struct Walk<'a> {
+struct UseFinder<'a> {
     root: &'a Table,
 }
 
-impl Walk<'_> {
+impl UseFinder<'_> {
     fn table(
         &self,
         table: &Table,
@@ -234,7 +234,7 @@ fn written_as(shape: &'static ValueShape, value: &Value) -> WrittenAs {
         ValueShape::Pair => WrittenAs::Pair,
         ValueShape::TwoPairs | ValueShape::Rows => WrittenAs::Rows,
         ValueShape::Name(sort) => WrittenAs::Name(sort),
-        ValueShape::TwoNames(_) | ValueShape::Names(..) => WrittenAs::Names,
+        ValueShape::TwoNames(sort) | ValueShape::Names(_, sort) => WrittenAs::Names(sort),
         ValueShape::Table(_) | ValueShape::Tables(_) | ValueShape::Kinds(_) => WrittenAs::Table,
         ValueShape::Either(shapes) => {
             let fits = |shape: &&ValueShape| {

@@ -4,11 +4,12 @@ use super::figures;
 use crate::branch_note::branch_note;
 use crate::explain::StudyError;
 use crate::models::requested_reactions;
-use crate::number_format::digits_within;
+use crate::number_format::{digits, digits_within};
 use crate::output::{Outcome, Picture, indeterminate_note, separating_note};
 use crate::ranges::extent;
 use crate::reduce::compute::{
-    Reduction, RoundingErrors, TableRequest, compute_reduction, inertia_units, tabulate,
+    Reduction, RoundingErrors, TableRequest, compute_reduction, inertia_units, peak_between_rows,
+    tabulate,
 };
 use dwell_findings::Record;
 use dwell_kinetostatics::Coefficients;
@@ -101,6 +102,15 @@ fn record(reduction: &Reduction<'_>) -> Record {
             record.add_within(format!("{name}.{end}"), unit, value, error * largest);
         }
     }
+    if let Some([q, peak]) = peak_between_rows(&reduction.prepared, curves) {
+        let unit = if reduction.prepared.is_angle() {
+            "rad"
+        } else {
+            "m"
+        };
+        record.add("m.peak", m_unit, peak);
+        record.add("m.peak.coordinate", unit, q);
+    }
     record.add("rounding_error.m", "", m_error);
     record.add("rounding_error.half_dm", "", half_dm_error);
     record.add("rounding_error.reactions", "", rest);
@@ -133,6 +143,13 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
         "{title}: {count} positions of {name}, and there\n  m    from {m_min} to {m_max} {m_unit}\n  ½m′  from {h_min} to \
          {h_max} {half_dm_unit}\n"
     );
+    if let Some([q, peak]) = peak_between_rows(prepared, curves) {
+        let unit = if prepared.is_angle() { "rad" } else { "m" };
+        let [q, peak] = [digits(q, 9), digits(peak, 9)];
+        summary += &format!(
+            "  between these positions m reaches {peak} {m_unit}, at {name} = {q} {unit}: more rows show it (--points)\n"
+        );
+    }
     summary += &describe_rounding(&reduction.errors);
     if let Some(note) = note {
         summary += &format!("  {note}\n");

@@ -26,21 +26,28 @@ pub(super) fn altered_texts(root: &Table, key_use: &KeyUse) -> Vec<AlteredText> 
     let Some(value) = find(root, &key_use.path) else {
         return Vec::new();
     };
-    let values: Vec<(Option<Value>, String)> = match key_use.written {
+    let values = other_values(root, value, key_use.written);
+    let with = |(value, what): (Option<Value>, String)| {
+        let text = replaced(root, &key_use.path, value?)?;
+        Some(AlteredText { text, what })
+    };
+    let forgotten = AlteredText {
+        text: removed(root, &key_use.path).unwrap_or_default(),
+        what: "forgotten".to_owned(),
+    };
+    let all = values.into_iter().filter_map(with);
+    all.chain((key_use.written != WrittenAs::Text).then_some(forgotten))
+        .collect()
+}
+
+/// Another value with what it is, in a few words; none where the value is not of the kind.
+type OtherValue = (Option<Value>, String);
+
+/// The values that another is mistaken for.
+fn other_values(root: &Table, value: &Value, written: WrittenAs) -> Vec<OtherValue> {
+    match written {
         // The unit of inertia is two words of text.
-        WrittenAs::Text => {
-            let units = INERTIA_UNITS.iter().filter(|_| {
-                let text = value.as_str().unwrap_or_default();
-                text.split(' ').count() == 2 && text.ends_with('2')
-            });
-            let other = |unit: &&str| {
-                (
-                    Some(Value::String((*unit).to_owned())),
-                    format!("read as `{unit}`"),
-                )
-            };
-            units.map(other).collect()
-        }
+        WrittenAs::Text => other_units(value),
         WrittenAs::Number => vec![
             (number(value, PART), "1 % more".to_owned()),
             // Wheels that no longer fit by so much are refused.
@@ -74,7 +81,10 @@ pub(super) fn altered_texts(root: &Table, key_use: &KeyUse) -> Vec<AlteredText> 
                 "turned and stretched by 0.05 %".to_owned(),
             ),
         ],
-        WrittenAs::Rows => vec![(rows(value), "its values 1 % more".to_owned())],
+        WrittenAs::Rows => vec![
+            (rows(value), "its values 1 % more".to_owned()),
+            (turned_rows(value), "its pairs turned".to_owned()),
+        ],
         WrittenAs::Name(sort) => {
             let names = names(root, sort);
             let others = names
@@ -88,33 +98,51 @@ pub(super) fn altered_texts(root: &Table, key_use: &KeyUse) -> Vec<AlteredText> 
             };
             others.take(MAX_NAMES).map(other).collect()
         }
-        WrittenAs::Names => {
-            let reversed = value.as_array().map(|names| {
-                let reversed = names.iter().rev();
-                Value::Array(reversed.cloned().collect())
-            });
-            let shorter = value.as_array().map(|names| {
-                let first = names.iter().take(names.len().saturating_sub(1));
-                Value::Array(first.cloned().collect())
-            });
-            vec![
-                (reversed, "in reverse order".to_owned()),
-                (shorter, "the last one forgotten".to_owned()),
-            ]
-        }
+        WrittenAs::Names(sort) => other_lists(root, value, sort),
         WrittenAs::Table => Vec::new(),
+    }
+}
+
+/// Units of inertia, where a text is one.
+fn other_units(value: &Value) -> Vec<OtherValue> {
+    let units = INERTIA_UNITS.iter().filter(|_| {
+        let text = value.as_str().unwrap_or_default();
+        text.split(' ').count() == 2 && text.ends_with('2')
+    });
+    let other = |unit: &&str| {
+        (
+            Some(Value::String((*unit).to_owned())),
+            format!("read as `{unit}`"),
+        )
     };
-    let with = |(value, what): (Option<Value>, String)| {
-        let text = replaced(root, &key_use.path, value?)?;
-        Some(AlteredText { text, what })
-    };
-    let forgotten = AlteredText {
-        text: removed(root, &key_use.path).unwrap_or_default(),
-        what: "forgotten".to_owned(),
-    };
-    let all = values.into_iter().filter_map(with);
-    all.chain((key_use.written != WrittenAs::Text).then_some(forgotten))
-        .collect()
+    units.map(other).collect()
+}
+
+/// Lists of names: in reverse order, without the last, with another last.
+fn other_lists(root: &Table, value: &Value, sort: &str) -> Vec<OtherValue> {
+    let reversed = value.as_array().map(|names| {
+        let reversed = names.iter().rev();
+        Value::Array(reversed.cloned().collect())
+    });
+    let shorter = value.as_array().map(|names| {
+        let first = names.iter().take(names.len().saturating_sub(1));
+        Value::Array(first.cloned().collect())
+    });
+    let last_replaced = names(root, sort).into_iter().take(MAX_NAMES).map(|name| {
+        let mut all = value.as_array().cloned().unwrap_or_default();
+        if let Some(last) = all.last_mut() {
+            *last = Value::String(name.clone());
+        }
+        (
+            Some(Value::Array(all)),
+            format!("the last one read as `{name}`"),
+        )
+    });
+    let first = [
+        (reversed, "in reverse order".to_owned()),
+        (shorter, "the last one forgotten".to_owned()),
+    ];
+    first.into_iter().chain(last_replaced).collect()
 }
 
 /// The value at the end of some steps.
@@ -209,6 +237,16 @@ fn rows(value: &Value) -> Option<Value> {
     };
     let other: Option<Vec<Value>> = rows.iter().map(other).collect();
     other.map(Value::Array)
+}
+
+/// Pairs, each turned.
+fn turned_rows(value: &Value) -> Option<Value> {
+    let turned: Option<Vec<Value>> = value
+        .as_array()?
+        .iter()
+        .map(|row| pair(row, PART))
+        .collect();
+    turned.map(Value::Array)
 }
 
 /// The names of a sort in a scene.

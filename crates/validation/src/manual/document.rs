@@ -88,7 +88,7 @@ fn summary(contents: &Contents<'_>) -> Block {
 
 fn how_to_read() -> Block {
     Block::Text(format!(
-        "Each line is a capability: a key of the scene description, a command, or an option. It passes where a case uses it, every finding of the checks that judge it passes on all its cases, and a fault in it is detected by {REQUIRED} checks of different number. For a key the fault is planted now, on this machine: the results are computed from a scene in which the value of this key alone is another, and the checks are given the scene as it is written. For commands and options the faults are those of the committed studies. *Ratio* is the difference of the finding nearest to its tolerance, as a part of it; *digits* are those in which result and target agree there."
+        "Each line is a capability: a key of the scene description, a command, or an option. It passes where a case uses it, every finding of the checks that apply to it passes on all its cases, and a fault in it is detected by {REQUIRED} checks of different number. For a key the fault is planted now, on this machine: the results are computed from a scene in which the value of this key alone is another, and the checks are given the scene as it is written. For commands and options a fault is one of the committed studies. *Ratio* is the difference of the finding nearest to its tolerance, as a part of it; *digits* are those in which result and target agree there."
     )
     .replace('*', ""))
 }
@@ -195,7 +195,7 @@ fn sections(lines: &[Line]) -> Vec<Block> {
             "Difference",
             "Ratio",
             "Digits",
-            "Judged by",
+            "Checked by",
             "Seeded fault, and the checks that caught it",
             "Result",
         ];
@@ -218,7 +218,7 @@ fn row(line: &Line) -> Vec<String> {
     };
     let near = line.nearest.as_ref();
     let of = |text: &dyn Fn(&Finding) -> String| near.map_or_else(String::new, text);
-    let truths: Vec<String> = line.truths.iter().map(|&n| check_name(n)).collect();
+    let checks: Vec<String> = line.checks.iter().map(|&n| check_name(n)).collect();
     let state = match &line.state {
         LineState::Pass => pass_or_fail(true).to_owned(),
         LineState::Fail(why) => format!("{}: {why}", pass_or_fail(false)),
@@ -232,8 +232,8 @@ fn row(line: &Line) -> Vec<String> {
         of(&|f| format!("{:.1e}", f.relative_difference)),
         of(&|f| format!("{:.2}", ratio(f))),
         of(&|f| format!("{:.1}", digits(f))),
-        truths.join(", "),
-        markdown_text(&line.faults.join("; ")),
+        checks.join(", "),
+        markdown_text(&line.mutations.join("; ")),
         state,
     ]
 }
@@ -257,7 +257,7 @@ fn extremes(findings: &[Finding]) -> Block {
 fn limits(contents: &Contents<'_>) -> Block {
     let (texts, count) = contents.fault_texts;
     let mut text = format!(
-        "- Faults in keys are planted between the scene's text and the results; a fault that readers and checks share, because both use the same reader of scenes, is for the checks over written files to find.\n- Committed studies of faults that were at hand: {}, with {count} faults.",
+        "- A fault in a key is planted between the scene's text and the results; a fault that readers and checks share, because both use the same reader of scenes, is for the checks over written files to find.\n- Committed studies of mutations that were at hand: {}, {count} of them.",
         match texts.is_empty() {
             true => "none".to_owned(),
             false => texts.join(", "),
@@ -270,7 +270,7 @@ fn limits(contents: &Contents<'_>) -> Block {
     for (line, why) in exempt {
         let _ = write!(
             text,
-            "\n- Not judged: `{}` `{}`: {why}.",
+            "\n- Not checked: `{}` `{}`: {why}.",
             line.section, line.item
         );
     }
@@ -297,7 +297,7 @@ fn signature() -> Block {
 pub(super) fn text(lines: &[Line], cases: &[CaseEntry<'_>]) -> String {
     let [passed, failed, exempt] = counts(lines);
     let mut out = format!(
-        "Verification manual\n\n{passed} capabilities pass, {failed} fail, {exempt} are exempt\nA capability with the number of its cases, the checks that detect a fault in it or judge it, and the result\n"
+        "Verification manual\n\n{passed} capabilities pass, {failed} fail, {exempt} are exempt\nA capability with the number of its cases, the checks that detect a fault in it or apply to it, and the result\n"
     );
     for of_section in lines.chunk_by(|a, b| a.section == b.section) {
         let _ = writeln!(out, "\n{}", of_section[0].section);
@@ -307,9 +307,9 @@ pub(super) fn text(lines: &[Line], cases: &[CaseEntry<'_>]) -> String {
                 LineState::Fail(why) => format!("FAIL {why}"),
                 LineState::Exempt(why) => format!("exempt: {why}"),
             };
-            let truths = numbers(line.truths.iter().copied());
+            let checks = numbers(line.checks.iter().copied());
             let count = line.cases.len();
-            let _ = writeln!(out, "  {:<24} {count:>3}  [{truths}]  {state}", line.item);
+            let _ = writeln!(out, "  {:<24} {count:>3}  [{checks}]  {state}", line.item);
         }
     }
     let _ = writeln!(out, "\ncases");

@@ -1,7 +1,7 @@
 //! Every key of the scene description: the scenes that use it, and a fault planted in its value.
 
 use super::altered::altered_texts;
-use super::planted::{Fate, PlantedScene};
+use super::planted::{PlantedResult, PlantedScene};
 use dwell_findings::Check;
 use dwell_scene::{KeyUse, Scene, SceneKey, key_uses, scene_keys};
 use rayon::prelude::*;
@@ -13,7 +13,7 @@ const MAX_SCENES: usize = 4;
 const MAX_ALTERATIONS: usize = 12;
 /// Uses in a scene that are tried.
 const MAX_USES: usize = 3;
-/// Truths that have to detect a fault.
+/// Checks that have to detect a fault.
 pub(super) const REQUIRED: usize = 2;
 
 /// What is known of a key.
@@ -78,11 +78,11 @@ fn planted_fault(
                 refused = true;
                 continue;
             };
-            let detected_by = match scene.judge(&read) {
-                Fate::Detected(detected_by) => detected_by,
-                fate => {
-                    refused |= fate == Fate::Refused;
-                    unchanged |= fate == Fate::Unchanged;
+            let detected_by = match scene.check_altered(&read) {
+                PlantedResult::Detected(detected_by) => detected_by,
+                result => {
+                    refused |= result == PlantedResult::Refused;
+                    unchanged |= result == PlantedResult::Unchanged;
                     continue;
                 }
             };

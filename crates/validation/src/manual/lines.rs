@@ -1,13 +1,13 @@
 //! The lines of the manual: a capability each, with what is known of it.
 
 use super::capabilities::{CAPABILITIES, CommandRequirement, Interface};
-use super::committed_faults::CommittedFault;
+use super::committed_mutations::CommittedMutation;
 use super::key_study::{KeyResult, REQUIRED};
 use dwell_findings::{Check, Finding};
 use std::collections::BTreeSet;
 
 /// Faults that are listed with a command.
-const LISTED_FAULTS: usize = 4;
+const MAX_LISTED: usize = 4;
 
 /// What became of a capability.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,10 +27,10 @@ pub(super) struct Line {
     pub(super) meaning: String,
     /// Names of cases.
     pub(super) cases: Vec<String>,
-    /// The finding nearest to its tolerance among those of the truths.
+    /// The finding nearest to its tolerance among those of the checks.
     pub(super) nearest: Option<Finding>,
-    pub(super) truths: BTreeSet<usize>,
-    pub(super) faults: Vec<String>,
+    pub(super) checks: BTreeSet<usize>,
+    pub(super) mutations: Vec<String>,
     pub(super) state: LineState,
 }
 
@@ -77,8 +77,8 @@ fn key_line(result: &KeyResult, cases: &[CaseFindings<'_>]) -> Line {
         meaning: result.key.doc.to_owned(),
         cases: users.map(|case| case.name.to_owned()).collect(),
         nearest: nearest(judging),
-        truths: checks.iter().map(|check| check.number()).collect(),
-        faults: fault.into_iter().collect(),
+        checks: checks.iter().map(|check| check.number()).collect(),
+        mutations: fault.into_iter().collect(),
         state,
     }
 }
@@ -88,7 +88,7 @@ pub(super) fn command_lines(
     interface: &Interface,
     cases: &[CaseFindings<'_>],
     others: &[Finding],
-    faults: &[CommittedFault],
+    faults: &[CommittedMutation],
 ) -> Vec<Line> {
     let mut lines = Vec::new();
     let mut add =
@@ -100,12 +100,12 @@ pub(super) fn command_lines(
                 meaning: String::new(),
                 cases: Vec::new(),
                 nearest: None,
-                truths: BTreeSet::new(),
-                faults: Vec::new(),
+                checks: BTreeSet::new(),
+                mutations: Vec::new(),
                 state: LineState::Exempt(exception.unwrap_or("not described")),
             };
             lines.push(match required {
-                Some(required) => judged_line(line, required, (cases, others), faults),
+                Some(required) => checked_line(line, required, (cases, others), faults),
                 None => line,
             });
         };
@@ -129,11 +129,11 @@ pub(super) fn command_lines(
 }
 
 /// A line with the findings and faults that its description names.
-fn judged_line(
+fn checked_line(
     line: Line,
     (requirement, _, keys, words): &'static CommandRequirement,
     (cases, others): (&[CaseFindings<'_>], &[Finding]),
-    faults: &[CommittedFault],
+    faults: &[CommittedMutation],
 ) -> Line {
     let judges = |f: &&Finding| keys.iter().any(|key| f.key.starts_with(key.as_str()));
     let users = cases
@@ -141,36 +141,36 @@ fn judged_line(
         .filter(|case| case.findings.iter().any(|f| judges(&f)));
     let all = cases.iter().flat_map(|case| case.findings).chain(others);
     let judging = all.filter(judges);
-    let truths: BTreeSet<usize> = judging.clone().map(|f| f.check.number()).collect();
+    let checks: BTreeSet<usize> = judging.clone().map(|f| f.check.number()).collect();
     let failed = judging.clone().find(|f| !f.pass).map(|f| f.key.clone());
-    let of_words = |fault: &&CommittedFault| {
+    let of_words = |fault: &&CommittedMutation| {
         let mut words = words.iter();
         words.any(|w| fault.description.contains(w.as_str()) || fault.group.contains(w.as_str()))
     };
-    let caught: Vec<&CommittedFault> = faults.iter().filter(of_words).collect();
+    let caught: Vec<&CommittedMutation> = faults.iter().filter(of_words).collect();
     let enough = caught
         .iter()
         .filter(|fault| fault.detected_by.len() >= REQUIRED);
-    let state = match (failed, truths.len(), enough.count()) {
+    let state = match (failed, checks.len(), enough.count()) {
         (Some(key), ..) => LineState::Fail(format!("{key} fails")),
         (None, 0, _) => LineState::Fail("nothing judges it".to_owned()),
         (None, n, _) if n < REQUIRED => LineState::Fail("one check judges it".to_owned()),
         (None, _, 0) if !faults.is_empty() => LineState::Fail("no fault is caught".to_owned()),
         _ => LineState::Pass,
     };
-    let listed = caught.iter().take(LISTED_FAULTS);
+    let listed = caught.iter().take(MAX_LISTED);
     let listed = listed.map(|fault| {
         let by = numbers(fault.detected_by.iter().copied());
         format!("{}: {by}", fault.description)
     });
-    let more = caught.len().saturating_sub(LISTED_FAULTS);
+    let more = caught.len().saturating_sub(MAX_LISTED);
     let more = (more > 0).then(|| format!("and {more} more"));
     Line {
         meaning: requirement.clone(),
         cases: users.map(|case| case.name.to_owned()).collect(),
         nearest: nearest(judging),
-        truths,
-        faults: listed.chain(more).collect(),
+        checks,
+        mutations: listed.chain(more).collect(),
         state,
         ..line
     }

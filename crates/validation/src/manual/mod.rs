@@ -5,14 +5,14 @@
 //! keys.toml, commands, options ── capabilities ─┐
 //! cases ── findings ────────────────────────────┼── lines ── document ── manual.md, .html, .txt
 //! scenes ── altered ── planted ── key_study ────┤
-//! reports/mutations.txt ── committed_faults ────┘
+//! reports/mutations.txt ── committed_mutations ────┘
 //! ```
 //!
 //! A fault is planted in each key when the manual is made: [`KeyStudy`]. So a check that has become blind to a key fails here.
 
 mod altered;
 mod capabilities;
-mod committed_faults;
+mod committed_mutations;
 mod document;
 mod html;
 mod key_study;
@@ -26,7 +26,7 @@ pub use capabilities::{Interface, undescribed};
 
 use crate::cases::reference::Reference;
 use crate::overview::CaseResult;
-use committed_faults::committed_faults;
+use committed_mutations::committed_mutations;
 use document::{CaseEntry, Contents, counts, document, text};
 use dwell_findings::{Check, Finding};
 use dwell_scene::Scene;
@@ -132,7 +132,7 @@ impl KeyStudy {
     ) -> Outcome {
         let cases = self.case_findings(results);
         let reports = self.folder.join("..").join(REPORT_FOLDER);
-        let (faults, texts) = committed_faults(&reports);
+        let (faults, texts) = committed_mutations(&reports);
         let mut lines = key_lines(&self.keys, &cases);
         lines.extend(command_lines(interface, &cases, extremes, &faults));
         let of_name = |name: &str| self.written.iter().find(|scene| scene.name == name);

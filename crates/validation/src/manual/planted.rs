@@ -6,7 +6,7 @@
 //!   └─ one value altered ── scene ── claims ┴─→ findings: which checks detect it
 //! ```
 
-use super::motion_claims::MotionClaims;
+use super::motion_claims::{MotionClaims, differ};
 use crate::cases::model_states::{ModelStates, StateRequest};
 use crate::cases::reference::Reference;
 use crate::checked::states::state_requests;
@@ -22,9 +22,6 @@ use std::sync::OnceLock;
 const STATES: usize = 7;
 /// States that are checked by energies, which cost more.
 const ENERGY_STATES: usize = 2;
-/// A result that changes by less, relative to the largest of its kind, is the same: three digits above what the checks distinguish
-/// from rounding.
-const UNCHANGED: f64 = 1e-9;
 
 /// A scene that faults are planted in.
 pub(super) struct PlantedScene {
@@ -49,7 +46,7 @@ struct StateClaims {
 
 /// What became of a planted fault.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Fate {
+pub(super) enum PlantedResult {
     /// No scene comes of it, or none of the same joints and bodies: the program refuses it.
     Refused,
     /// No result changes.
@@ -91,12 +88,12 @@ impl PlantedScene {
     }
 
     /// What the checks detect where the results come from another scene.
-    pub(super) fn judge(&self, altered: &Scene) -> Fate {
+    pub(super) fn check_altered(&self, altered: &Scene) -> PlantedResult {
         let (mut changed, mut failed, mut seen) = (false, BTreeSet::new(), false);
         if let (Some(own), Some(claims)) = (self.own_states(), self.claims(altered)) {
             let claims = claims.with_requests_of(own);
             if !claims.is_alike(own) {
-                return Fate::Refused;
+                return PlantedResult::Refused;
             }
             seen = true;
             if claims.differs_from(own) {
@@ -115,9 +112,9 @@ impl PlantedScene {
             }
         }
         match (seen, changed) {
-            (false, _) => Fate::Refused,
-            (true, false) => Fate::Unchanged,
-            (true, true) => Fate::Detected(failed),
+            (false, _) => PlantedResult::Refused,
+            (true, false) => PlantedResult::Unchanged,
+            (true, true) => PlantedResult::Detected(failed),
         }
     }
 
@@ -220,11 +217,4 @@ impl StateClaims {
         differs(&|claims| claims.mass_matrices.concat())
             || kinds.into_iter().any(|kind| differs(&of_kind(kind)))
     }
-}
-
-/// Whether values differ by more than rounding.
-pub(super) fn differ(values: &[f64], own: &[f64]) -> bool {
-    let largest = own.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
-    let mut both = values.iter().zip(own);
-    values.len() != own.len() || both.any(|(a, b)| !((a - b).abs() <= UNCHANGED * largest))
 }

@@ -5,12 +5,15 @@
 
 mod forces;
 
-use forces::RotorForces;
+pub(super) use forces::RotorState;
+use forces::{RotorForces, as_number};
 use std::f64::consts::TAU;
 use toml::{Table, Value};
 
 /// Steps of the integration.
 const STEPS: usize = 20_000;
+/// Step to a reversal, s.
+const PERIOD_STEP: f64 = 2e-4;
 /// Halvings of a step to an event: down to rounding.
 const HALVINGS: usize = 50;
 
@@ -46,9 +49,6 @@ pub(super) struct Rotor {
     rigid: Option<f64>,
 }
 
-/// A state: angle (rad), speed (rad/s), and the state of a drive.
-pub(super) type RotorState = [f64; 3];
-
 /// A computed motion.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct RotorMotion {
@@ -56,10 +56,6 @@ pub(super) struct RotorMotion {
     pub(super) end: (f64, RotorState),
     /// By event: its first occurrence, s.
     pub(super) events: Vec<Option<f64>>,
-}
-
-pub(super) fn as_number(value: &Value) -> Option<f64> {
-    value.as_float().or(value.as_integer().map(|i| i as f64))
 }
 
 impl Rotor {
@@ -101,18 +97,44 @@ impl Rotor {
         });
         let rigid = stop.filter(|stop| stop.get("stiffness").is_none());
         let restitution = rigid.map(|stop| number(stop, "restitution").unwrap_or(0.0));
-        Some(Self {
-            forces: RotorForces::read(&root, of_rotor, mass, stop.zip(limits))?,
+        let rotor = Self {
+            forces: RotorForces::read(&root, of_rotor, [mass, arm], stop.zip(limits))?,
             unbalance: mass * arm,
             start: [
                 only("initial-coordinate").or(assembled).unwrap_or(0.0),
                 only("initial-velocity").unwrap_or(0.0),
             ],
-            duration: number(motion, "duration")?,
+            duration: number(motion, "duration").unwrap_or(0.0),
             events: events.filter_map(RotorEvent::read).collect(),
             limits: limits.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]),
             rigid: restitution,
-        })
+        };
+        match number(motion, "periods") {
+            Some(periods) => {
+                let duration = periods * rotor.period()?;
+                Some(Self { duration, ..rotor })
+            }
+            None => (rotor.duration > 0.0).then_some(rotor),
+        }
+    }
+
+    /// The period of an oscillation from rest: twice the time to its first reversal.
+    fn period(&self) -> Option<f64> {
+        let (mut t, mut y) = (0.0, [self.start[0], self.start[1], 0.0]);
+        for _ in 0..STEPS {
+            let next = self.forces.step(t, y, PERIOD_STEP);
+            if y[1] * next[1] < 0.0 {
+                let at = zero_of(&|h: f64| self.forces.step(t, y, h)[1], PERIOD_STEP);
+                return Some(2.0 * (t + at));
+            }
+            (t, y) = (t + PERIOD_STEP, next);
+        }
+        None
+    }
+
+    /// When the motion is to end unless an event ends it, s.
+    pub(super) fn duration(&self) -> f64 {
+        self.duration
     }
 
     /// The value of an event's function.
@@ -139,8 +161,26 @@ impl Rotor {
     /// Where a rigid stop returns the rotor to this state, its speed before.
     pub(super) fn speed_before_impact(&self, q: f64, speed: f64, previous: f64) -> Option<f64> {
         let restitution = self.rigid?;
-        let is_there = self.limits.iter().any(|limit| (q - limit).abs() < 1e-9);
+        let is_there = self.is_at_limit(q);
         (is_there && speed * previous < 0.0).then(|| -speed / restitution)
+    }
+
+    /// Where a rigid stop is struck in this state, the speed behind the impact.
+    pub(super) fn speed_after_impact(&self, q: f64, speed: f64) -> Option<f64> {
+        let restitution = self.rigid?;
+        let middle = 0.5 * (self.limits[0] + self.limits[1]);
+        let is_outward = (q - middle) * speed > 0.0;
+        (self.is_at_limit(q) && is_outward).then(|| -restitution * speed)
+    }
+
+    fn is_at_limit(&self, q: f64) -> bool {
+        self.limits.iter().any(|limit| (q - limit).abs() < 1e-9)
+    }
+
+    /// Whether an event has ended a motion.
+    pub(super) fn is_ended(&self, motion: &RotorMotion) -> bool {
+        let mut events = self.events.iter().zip(&motion.events);
+        events.any(|(event, t)| event.ends && t.is_some())
     }
 
     /// Whether an event ends the motion.

@@ -1,6 +1,8 @@
 //! Computes the reduced parameters over the range, the unit-load response and the interpolation table.
 
 mod curves;
+#[cfg(feature = "output")]
+mod peak;
 mod table;
 mod unit_load_curves;
 
@@ -8,5 +10,7 @@ pub(crate) use curves::flat;
 pub use curves::{ReducedCurves, Reduction, RoundingErrors, compute_reduction};
 #[cfg(feature = "output")]
 pub(crate) use curves::{coefficient_units, inertia_units};
+#[cfg(feature = "output")]
+pub(crate) use peak::peak_between_rows;
 pub use table::{TableRequest, Tabulation, tabulate};
 pub use unit_load_curves::UnitLoadCurves;

@@ -1,18 +1,26 @@
 //! The torques on a rotor, from the text of its scene.
 
-use super::{RotorState, as_number};
 use toml::{Table, Value};
+
+/// A state: angle (rad), speed (rad/s), and the state of a drive.
+pub(crate) type RotorState = [f64; 3];
+
+pub(super) fn as_number(value: &Value) -> Option<f64> {
+    value.as_float().or(value.as_integer().map(|i| i as f64))
+}
 
 /// The torques and the inertia.
 #[derive(Debug, Clone, PartialEq)]
-pub(in super::super) struct RotorForces {
+pub(crate) struct RotorForces {
     /// With the rotors of motors, kg m².
-    pub(in super::super) inertia: f64,
+    pub(crate) inertia: f64,
     drives: Vec<RotorDrive>,
     /// Limits, stiffness and damping of a stop that yields.
     yielding: Option<([f64; 2], [f64; 2])>,
     /// Torque of dry friction in motion and at rest, N m.
     friction: [f64; 2],
+    /// Torque of the weight where the centre is level with the pin, N m.
+    weight: f64,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -155,7 +163,7 @@ impl RotorForces {
     pub(super) fn read(
         root: &Table,
         inertia: f64,
-        mass: f64,
+        [mass, arm]: [f64; 2],
         stop: Option<(&Value, [f64; 2])>,
     ) -> Option<Self> {
         let section = |name: &str| {
@@ -186,6 +194,7 @@ impl RotorForces {
             drives,
             yielding,
             friction: friction.unwrap_or_default(),
+            weight: mass * arm * weight,
         })
     }
 
@@ -196,6 +205,7 @@ impl RotorForces {
             let [torque, rate] = drive.act(t, y);
             sum = [sum[0] + torque, sum[1] + rate];
         }
+        sum[0] -= self.weight * y[0].cos();
         if let Some(([low, high], [stiffness, damping])) = self.yielding {
             // It only pushes.
             sum[0] += match y[0] {
@@ -208,7 +218,7 @@ impl RotorForces {
     }
 
     /// How much more torque dry friction at rest can hold, as a part of what it holds at most.
-    pub(in super::super) fn rest_margin(&self, t: f64, y: RotorState) -> f64 {
+    pub(crate) fn rest_margin(&self, t: f64, y: RotorState) -> f64 {
         let [torque, _] = self.torque(t, y);
         1.0 - torque.abs() / self.friction[1]
     }
@@ -231,7 +241,7 @@ impl RotorForces {
     }
 
     /// Power of all torques, W, and the rate of the drive's state.
-    pub(in super::super) fn power(&self, t: f64, y: RotorState) -> [f64; 2] {
+    pub(crate) fn power(&self, t: f64, y: RotorState) -> [f64; 2] {
         let [torque, rate] = self.torque(t, y);
         [torque * y[1] - self.friction[0] * y[1].abs(), rate]
     }

@@ -3,15 +3,11 @@
 use std::path::Path;
 
 /// The texts of the studies of faults: `mutations.txt` of the computing code, the others of the source text and of the border.
-const FILES: [&str; 3] = [
-    "mutations.txt",
-    "named-source-faults.txt",
-    "source-mutations.txt",
-];
+const FILES: [&str; 2] = ["mutations.txt", "source-mutations.txt"];
 
 /// A fault, and the numbers of the checks that detect it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct CommittedFault {
+pub(super) struct CommittedMutation {
     /// The heading that it stands under.
     pub(super) group: String,
     pub(super) description: String,
@@ -19,7 +15,7 @@ pub(super) struct CommittedFault {
 }
 
 /// The faults of all studies whose text is in a folder, and which texts are.
-pub(super) fn committed_faults(folder: &Path) -> (Vec<CommittedFault>, Vec<&'static str>) {
+pub(super) fn committed_mutations(folder: &Path) -> (Vec<CommittedMutation>, Vec<&'static str>) {
     let (mut faults, mut found) = (Vec::new(), Vec::new());
     for file in FILES {
         if let Ok(text) = std::fs::read_to_string(folder.join(file)) {
@@ -32,7 +28,7 @@ pub(super) fn committed_faults(folder: &Path) -> (Vec<CommittedFault>, Vec<&'sta
 
 /// The faults of a text: lines that begin with two blanks, hold a description, and end with numbers of checks; a line without
 /// blanks before it is a heading.
-fn read(text: &str) -> Vec<CommittedFault> {
+fn read(text: &str) -> Vec<CommittedMutation> {
     let mut group = String::new();
     let mut faults = Vec::new();
     for line in text.lines() {
@@ -51,7 +47,7 @@ fn read(text: &str) -> Vec<CommittedFault> {
         let mut detected_by: Vec<usize> = numbers.collect();
         detected_by.reverse();
         if !detected_by.is_empty() {
-            faults.push(CommittedFault {
+            faults.push(CommittedMutation {
                 group: group.clone(),
                 description: description.to_owned(),
                 detected_by,
