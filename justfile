@@ -27,9 +27,10 @@ mutations:
 alias validate-long := validate-slow
 alias faults := mutations
 
-# All tests, and 2000 mutated scenes with random commands
+# All tests, every number of docs/theory.md, and 2000 mutated scenes with random commands
 [group('main')]
 test: && fuzz
+    python3 tests/handout/theory_numbers.py
     cargo test --release --workspace
 
 # Mutated scenes with random commands, each in a process of its own: no panic, no silence, no contradiction
@@ -79,12 +80,18 @@ bench:
 peers:
     python3 validation/peers/run.py
 
-# What takes too long for each change: 1e5 revolutions, 1000 pulses, 200 random machines, new random draws in every property, 100 000 mutated scenes, peers, the dependencies' advisories
+# Remakes all reference values (or those of the named cases) by the independent program and compares them digit by digit; reports/reference.md. Installs mpmath into a scratch environment; takes minutes
+[group('care')]
+reference *cases:
+    python3 validation/reference/run.py {{ cases }}
+
+# What takes too long for each change: 1e5 revolutions, 1000 pulses, 200 random machines, new random draws in every property, 100 000 mutated scenes, peers, the reference values, the dependencies' advisories
 [group('care')]
 nightly: validate-slow mutations computing
     PROPTEST_CASES=2000 cargo test --release --workspace
     just fuzz 100000 "$(date +%j)"
     just peers deny
+    just reference
 
 # What the build server runs
 [group('care')]

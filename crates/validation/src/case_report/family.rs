@@ -93,13 +93,13 @@ pub(super) struct MemberRow {
     pub(super) reaction: f64,
 }
 
-/// Why a draw is no member; in the order of [`Family::left_out`].
+/// What a draw that is no member lacks; in the order of [`Family::left_out`].
 #[derive(Debug, Clone, Copy)]
 enum LeftOut {
-    NoRevolution,
-    NoRocker,
-    NoDwell,
-    NoPeriod,
+    Revolution,
+    Rocker,
+    Dwell,
+    Period,
 }
 
 impl Family {
@@ -122,8 +122,8 @@ impl Family {
         let text = std::fs::read_to_string(&path).map_err(|e| refuse(e.to_string()))?;
         let described: Description = toml::from_str(&text).map_err(|e| refuse(e.to_string()))?;
         if described.drawn.len() > PRIMES.len() {
-            let most = PRIMES.len();
-            return Err(refuse(format!("at most {most} numbers can be drawn")));
+            let limit = PRIMES.len();
+            return Err(refuse(format!("at most {limit} numbers can be drawn")));
         }
         for number in described.drawn.iter().flat_map(|d| d.powers.keys()) {
             scene.value(number).map_err(|e| refuse(e.to_string()))?;
@@ -132,7 +132,7 @@ impl Family {
         let reconstruction = member(scene)
             .map_err(|why| refuse(format!("the scene itself is no member: {why:?}")))?;
         let drawn = (0..described.draws).into_par_iter().map(|k| {
-            let varied = described.varied(scene, k).ok_or(LeftOut::NoRevolution)?;
+            let varied = described.varied(scene, k).ok_or(LeftOut::Revolution)?;
             member(&varied)
         });
         let mut left_out = [0; 4];
@@ -178,26 +178,26 @@ impl Member {
     /// The member of a scene, unless it is none.
     fn new(scene: &Scene, calibration: &Calibration, shortest_dwell: f64) -> Result<Self, LeftOut> {
         let dwell = {
-            let prepared = PreparedScene::new(scene).map_err(|_| LeftOut::NoRevolution)?;
+            let prepared = PreparedScene::new(scene).map_err(|_| LeftOut::Revolution)?;
             if prepared.model.range() != Range::Full {
-                return Err(LeftOut::NoRevolution);
+                return Err(LeftOut::Revolution);
             }
-            let dwell = dwell_of(&prepared).map_err(|_| LeftOut::NoRevolution)?;
-            dwell.ok_or(LeftOut::NoDwell)?
+            let dwell = dwell_of(&prepared).map_err(|_| LeftOut::Revolution)?;
+            dwell.ok_or(LeftOut::Dwell)?
         };
         if dwell.swing >= PI {
-            return Err(LeftOut::NoRocker);
+            return Err(LeftOut::Rocker);
         }
         if (dwell.to - dwell.from).to_degrees() < shortest_dwell {
-            return Err(LeftOut::NoDwell);
+            return Err(LeftOut::Dwell);
         }
         let (path, period) = (&calibration.path, calibration.period);
-        let fitted = find_value(scene, path, period).map_err(|_| LeftOut::NoPeriod)?;
+        let fitted = find_value(scene, path, period).map_err(|_| LeftOut::Period)?;
         let fitted_scene = scene.with_value(path, fitted.value);
-        let fitted_scene = fitted_scene.map_err(|_| LeftOut::NoPeriod)?;
-        let prepared = PreparedScene::new(&fitted_scene).map_err(|_| LeftOut::NoPeriod)?;
-        let start = prepared.initial_state().ok_or(LeftOut::NoPeriod)?;
-        let rows = revolution(&prepared, start).ok_or(LeftOut::NoPeriod)?;
+        let fitted_scene = fitted_scene.map_err(|_| LeftOut::Period)?;
+        let prepared = PreparedScene::new(&fitted_scene).map_err(|_| LeftOut::Period)?;
+        let start = prepared.initial_state().ok_or(LeftOut::Period)?;
+        let rows = revolution(&prepared, start).ok_or(LeftOut::Period)?;
         Ok(Self {
             calibrated: fitted.value,
             dwell,
