@@ -4,9 +4,9 @@ use crate::interface::interface;
 use crate::options::DEFAULT_CASE_FOLDER;
 use crate::{as_scene_error, cases, print_warnings, validation_error};
 use dwell_scene::{Scene, SceneError};
-use dwell_study::{Outcome, Step};
+use dwell_study::{Outcome, Progress, Step};
 use dwell_validation::manual::KeyStudy;
-use dwell_validation::{CaseResult, Validation, extremes, index, work_precision};
+use dwell_validation::{CaseResult, Validation, ValidationError, extremes, index, work_precision};
 use indicatif::ProgressBar;
 use miette::{Report, miette};
 use rayon::prelude::*;
@@ -33,12 +33,7 @@ pub(crate) fn validate(
             bar.set_message(format!("{}: {}", scene.name, step.done));
             bar.inc(1);
         };
-        // What leaves the program is judged, too: it runs itself. Where the system does not say where it is, the library
-        // alone is.
-        let done = match &program {
-            Some(program) => dwell_validation::validate_program(scene, case, program, &progress),
-            None => dwell_validation::validate(scene, case, &progress),
-        };
+        let done = validate_case(scene, case, program.as_deref(), &progress);
         done.map_err(validation_error)
     };
     let all_cases = names.is_empty() && folder == Path::new(DEFAULT_CASE_FOLDER);
@@ -79,6 +74,20 @@ pub(crate) fn validate(
     all.record.add_count("findings", all.findings.len());
     all.record.add_count("findings.failed", failed);
     Ok((all, failures))
+}
+
+/// Validates a case. What leaves the program is judged, too: it runs itself. Where the system does not say where it is, the
+/// library alone is.
+fn validate_case(
+    scene: &Scene,
+    case: &Path,
+    program: Option<&Path>,
+    progress: Progress<'_>,
+) -> Result<Validation, ValidationError> {
+    match program {
+        Some(program) => dwell_validation::validate_program(scene, case, program, progress),
+        None => dwell_validation::validate(scene, case, progress),
+    }
 }
 
 /// Refuses two cases of one name: they would write the same files.
