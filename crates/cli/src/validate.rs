@@ -70,9 +70,9 @@ pub(crate) fn validate(
         all.files.extend("", added.files);
         all.pictures.extend(added.pictures);
     }
-    let failed = all.findings.iter().filter(|finding| !finding.pass).count();
+    let failed = all.findings.iter().filter(|finding| !finding.pass);
+    all.record.add_count("findings.failed", failed.count());
     all.record.add_count("findings", all.findings.len());
-    all.record.add_count("findings.failed", failed);
     Ok((all, failures))
 }
 
