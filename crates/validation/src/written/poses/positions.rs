@@ -32,8 +32,14 @@ fn judge(judged: &mut Judged, path: &Path, name: &str, scene: &str) -> Result<()
     let reading = Reading::new(scene)?;
     let mut draws = Draws::of(scene);
     let everything = text_of(&requests_everything(scene)?)?;
-    judge_kinematics(judged, &program, &reading, &everything)?;
     let moving = with_motion(&everything, &reading, &mut draws)?;
+    // With several actuators a motion says which of them moves.
+    let kinematic = if reading.actuator_count == 1 {
+        &everything
+    } else {
+        &moving
+    };
+    judge_kinematics(judged, &program, &reading, kinematic)?;
     judge_forces(judged, &program, &reading, &moving, &mut draws)?;
     judge_units(judged, &program, &reading, &moving, &mut draws)?;
     if reading.actuator_count == 1 {
@@ -50,7 +56,7 @@ fn with_motion(scene: &str, reading: &Reading, draws: &mut Draws) -> Result<Stri
     let has_motion = ["prescribed", "coordinate-sweep"]
         .iter()
         .any(|key| table.contains_key(*key));
-    if has_motion || reading.actuator_count != 1 {
+    if has_motion || reading.actuator_count == 0 {
         return Ok(scene.to_owned());
     }
     let coordinate = &reading.coordinates[0];
