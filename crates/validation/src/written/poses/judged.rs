@@ -12,7 +12,7 @@ type Spec = (&'static str, Check, &'static str, f64);
 const SPECS: [Spec; 21] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
-    ("written-slopes", Check::WrittenRates, "m and V of `reduce` with the integrals of ½m′ and w between rows", 1e-9),
+    ("written-slopes", Check::WrittenRates, "m and V of `reduce` with the integrals of ½m′ and w between rows", 1e-7),
     ("written-law-rates", Check::WrittenRates, "changes between rows of drawn laws with the integrals of their rates", 1e-6),
     ("written-extrema", Check::WrittenRates, "extrema of the summary with the rows around them", 1e-6),
     ("written-equilibrium", Check::WrittenForces, "Newton's and Euler's equations of every body with the written forces", 2e-14),
@@ -27,7 +27,7 @@ const SPECS: [Spec; 21] = [
     ("written-runs", Check::WrittenTwice, "m, ½m′, a and b of `reduce` with two runs of kinetostatics, and with the columns that are requested", 4e-11),
     ("written-files", Check::WrittenTwice, "CSV with NPZ, extrema and peaks of the summary with the rows", 1e-12),
     ("written-table", Check::WrittenTwice, "the table of `reduce` with its rows, beyond the errors that it states", 1e-13),
-    ("written-code", Check::WrittenTwice, "code of `symbolic` in Python and C, run line by line, with the rows of `reduce`", 1e-12),
+    ("written-code", Check::WrittenTwice, "code of `symbolic` in Python and C, run line by line, with the rows of `reduce`", 1e-11),
     ("written-sweep", Check::WrittenTwice, "extrema of m in rows of `sweep` with `reduce` of each changed scene", 1e-13),
     ("written-units", Check::WrittenUnits, "files of the scene with those of the scene in other units", 1e-11),
     ("written-sentences", Check::WrittenSentences, "printed numbers with the summary, to their digits", 1e-12),

@@ -4,7 +4,7 @@ use super::closure::closure;
 use super::equilibrium::equilibrium;
 use super::formats::formats;
 use super::judged::Judged;
-use super::law::Law;
+use super::law::{Law, number};
 use super::program::{Program, Run};
 use super::rates::rates;
 use super::reading::Reading;
@@ -14,6 +14,9 @@ use super::section_files::judge_sections;
 use super::unit_files::judge_units;
 use dwell_findings::Finding;
 use std::path::Path;
+
+/// How far a case without a motion is swept, rad or m.
+const SWEEP: f64 = 0.4;
 
 /// Runs the program at `path` on a case and judges the files. A run that fails is a failed finding.
 pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
@@ -29,13 +32,48 @@ fn judge(judged: &mut Judged, path: &Path, name: &str, scene: &str) -> Result<()
     let reading = Reading::new(scene)?;
     let mut draws = Draws::of(scene);
     let everything = text_of(&requests_everything(scene)?)?;
-    judge_kinematics(judged, &program, &reading, &everything)?;
-    judge_forces(judged, &program, &reading, &everything, &mut draws)?;
-    judge_units(judged, &program, &reading, &everything, &mut draws)?;
+    let moving = with_motion(&everything, &reading, &mut draws)?;
+    // With several actuators a motion says which of them moves.
+    let kinematic = if reading.actuator_count == 1 {
+        &everything
+    } else {
+        &moving
+    };
+    judge_kinematics(judged, &program, &reading, kinematic)?;
+    judge_forces(judged, &program, &reading, &moving, &mut draws)?;
+    judge_units(judged, &program, &reading, &moving, &mut draws)?;
     if reading.actuator_count == 1 {
         judge_reduced(judged, &program, &reading, [scene, &everything], &mut draws)?;
     }
     Ok(())
+}
+
+/// The scene with a sweep from its assembly on, if it has no motion that forces of inertia follow from.
+fn with_motion(scene: &str, reading: &Reading, draws: &mut Draws) -> Result<String, String> {
+    let mut table: toml::Table = scene
+        .parse()
+        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let has_motion = ["prescribed", "coordinate-sweep"]
+        .iter()
+        .any(|key| table.contains_key(*key));
+    if has_motion || reading.actuator_count == 0 {
+        return Ok(scene.to_owned());
+    }
+    let coordinate = &reading.coordinates[0];
+    let unit = reading.unit_of(coordinate.measure);
+    let assembly = table.get("assembly").and_then(|a| a.get(&coordinate.name));
+    let start = number(assembly).unwrap_or(0.0);
+    let ends = [start, start + SWEEP / unit].map(toml::Value::Float);
+    let speed = toml::Value::Float((1.0 + 3.0 * draws.share()) / unit);
+    let sweep = [
+        (coordinate.name.clone(), toml::Value::Array(ends.to_vec())),
+        ("speed".to_owned(), speed),
+    ];
+    table.insert(
+        "coordinate-sweep".to_owned(),
+        toml::Value::Table(sweep.into_iter().collect()),
+    );
+    text_of(&table)
 }
 
 fn judge_kinematics(

@@ -18,8 +18,8 @@ const ERROR_FACTOR: f64 = 4.0;
 /// Differences between rows, in time; rows next to which a rate jumps (the corners of laws) are left out.
 pub(crate) fn rates(rows: &Rows, time: &[f64], corners: &[f64], file: &str) -> Differences {
     let mut all = Differences::default();
-    // Points in x and y have one scale, and so have all angles.
-    for kinds in [&RATES[..1], &RATES[1..2], &RATES[2..4], &RATES[4..]] {
+    // Points and travels have one scale, and so have all angles.
+    for kinds in [&RATES[..1], &RATES[1..2], &RATES[2..]] {
         let mut found = Vec::new();
         for [value, rate, second] in kinds {
             for (name, values) in rows

@@ -34,6 +34,11 @@ pub(crate) fn same_columns(rows: &Rows, other: &Rows, file: &str) -> Differences
         *scale = values.iter().fold(*scale, |max, v| max.max(v.abs()));
     }
     // Where nothing accelerates, what the velocities would make of it stands in.
+    for (coordinate, point) in [("velocity", "v"), ("acceleration", "a")] {
+        let point = scales.get(point).copied().unwrap_or(0.0);
+        let scale = scales.entry(coordinate.to_owned()).or_default();
+        *scale = scale.max(point);
+    }
     for (acceleration, velocity) in [("angular_acceleration", "angular_velocity"), ("a", "v")] {
         let velocity = scales.get(velocity).copied().unwrap_or(0.0);
         let scale = scales.entry(acceleration.to_owned()).or_default();
