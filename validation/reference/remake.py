@@ -1,7 +1,7 @@
 """Remakes the reference values of validation/*/case.toml and compares them digit by digit; `run.py` starts it.
 
 Arguments: the folder of the cases, the table to write, and the names of cases (none: all). Status 1 when one differs
-by more than one unit of its last printed digit, or when a value is remade by nothing.
+by more than its rounding to the last printed digit, or when a value is remade by nothing.
 """
 
 import re
@@ -18,6 +18,7 @@ from scene import Scene
 from states import Machine
 
 MP_DIGITS = 60
+ROUNDED = mpf("0.51")  # units of the last printed digit: every value is printed correctly rounded
 LBF, INCH = "4.4482216152605", "0.0254"  # N, m
 # Where the literature is not as exact as it is printed: by how much at most (part of the largest of its kind), who agrees.
 CORRECTIONS = {
@@ -47,7 +48,7 @@ class Comparison:
         self.count += 1
         if off > self.worst:
             self.worst, self.where = off, name
-        if off > 1:
+        if off > ROUNDED:
             self.wrong.append((name, text, value))
 
     def line(self):
@@ -286,8 +287,8 @@ def document(lines, corrections):
     return "\n".join([
         "# Reference values, remade", "",
         "Written by `just reference`: the program of validation/reference, which shares nothing with Dwell, has remade every",
-        "reference value. The difference is in units of the last printed digit; above 1 it is an error, but for literature",
-        "whose error is known (second table).", "",
+        "reference value. The difference is in units of the last printed digit: at most half a unit where that is rounded. More is",
+        "an error, but for literature whose error is known (second table).", "",
         "| case | table | kind | values | digits | largest difference | of |", "|---|---|---|---:|---|---:|---|", *lines, "",
         "## Literature that is less exact than printed", "",
         "| case | table | largest difference, of the largest of the kind | who agrees |", "|---|---|---:|---|", *corrections, ""])
