@@ -25,6 +25,7 @@ pub(super) fn document(
 ) -> Document {
     let mut blocks: Vec<Block> = scene.note.iter().cloned().map(Block::Words).collect();
     blocks.push(Block::Text(findings_sentence(reference, analysis)));
+    blocks.push(Block::Text(reference.kinds.sentence()));
     if !reference.source.is_empty() {
         blocks.push(Block::Text(format!("Source: {}.", reference.source)));
     }

@@ -6,7 +6,7 @@ use super::family::Family;
 use super::figures;
 use super::numbers::{numbers, tables};
 use super::snapshot::snapshot;
-use crate::cases::reference::Reference;
+use crate::cases::reference::{Reference, SourceKinds};
 use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis, analyse};
 use crate::error::ValidationError;
 use crate::report_parts::describe_failure;
@@ -29,6 +29,8 @@ pub struct Validation {
     pub snapshot: String,
     /// The checks without findings, and in a few words why.
     pub not_applicable: Vec<(Check, &'static str)>,
+    /// Who made the reference values, by table.
+    pub(crate) source_kinds: SourceKinds,
 }
 
 /// Validates the case whose scene is `scene` and whose reference, if any, is in `folder`. The
@@ -87,6 +89,7 @@ fn validate_case(
         Picture::figure(scene, path, true, figure)
     };
     Ok(Validation {
+        source_kinds: reference.kinds.clone(),
         outcome: Outcome {
             summary: summary(scene, &analysis) + &reference.notes + &reference.tolerances.notes,
             files,

@@ -1,5 +1,6 @@
 //! The reference of a case: `case.toml` beside its scene, with reference numbers, their source and tolerances.
 
+mod kinds;
 mod states;
 mod tolerances;
 
@@ -10,6 +11,7 @@ use dwell_geometry::{BodyId, Vec2};
 use dwell_scene::Scene;
 use dwell_study::former_names;
 use dwell_verify::checks::{PublishedPoint, PublishedSample};
+pub(crate) use kinds::{SourceKind, SourceKinds};
 use serde_json::{Map, Value};
 use states::{ReferenceStates, read_states};
 use std::collections::BTreeSet;
@@ -24,6 +26,8 @@ const FILE: &str = "case.toml";
 pub(crate) struct Reference {
     /// Where they come from.
     pub(crate) source: String,
+    /// Who made them, by table of the file.
+    pub(crate) kinds: SourceKinds,
     /// How the values of states were computed, if they were.
     pub(crate) computed_by: Option<String>,
     /// Coefficients at sampled positions.
@@ -57,8 +61,9 @@ pub(crate) struct PublishedState {
 }
 
 /// The keys of the file. Text is for readers, and so are numbers of other quantities.
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 13] = [
     "title",
+    "kind",
     "source",
     "computed",
     "definition",
@@ -146,6 +151,7 @@ impl Reference {
         };
         let source = value["source"].as_str();
         Ok(Self {
+            kinds: SourceKinds::read(value)?,
             source: source.unwrap_or("no source given").to_owned(),
             computed_by: value["computed"].as_str().map(str::to_owned),
             samples,

@@ -3,12 +3,16 @@
 mod figure;
 
 use crate::case_report::validate::Validation;
+use crate::cases::reference::SourceKind;
 use crate::report_parts::{describe_failure, pass_or_fail, table};
 use dwell_findings::{Check, Finding, all_pass};
 use dwell_report::{Block, Document, markdown_text};
 use dwell_scene::Scene;
 use dwell_study::Outcome;
 use dwell_study::output::Picture;
+
+/// What the kinds of reference values mean.
+const SOURCE_KINDS: &str = "Independent: made by the program in `validation/reference`, which shares nothing with Dwell and remakes every one of them (`just reference`). Literature: as printed, with its citation on the case's page. Own oracle: no value from elsewhere; Dwell's independent checks alone. The values of the squeezer at 0.03 s that the Test Set for IVP Solvers publishes are 1.5e-9 rad off (accelerations and multipliers 1.3e-6 of the largest): the independent energy integral and Dwell's integration agree against them.";
 
 /// A case and its result: its report, or why there is none.
 pub type CaseResult<'a> = (&'a str, Result<(&'a Scene, &'a Validation), String>);
@@ -74,6 +78,13 @@ pub fn index(results: &[CaseResult<'_>]) -> Outcome {
         },
     ];
     blocks.extend(failures(results));
+    blocks.push(Block::Heading("Reference values".to_owned()));
+    let words = SourceKind::ALL.map(SourceKind::word);
+    blocks.push(table(
+        &[&["Case"][..], &words].concat(),
+        results.iter().map(source_row),
+    ));
+    blocks.push(Block::Text(SOURCE_KINDS.to_owned()));
     blocks.push(Block::Heading("Tolerances".to_owned()));
     let header = [
         "Case",
@@ -112,6 +123,17 @@ fn agreement_row((name, result): &CaseResult<'_>) -> Vec<String> {
                 CheckCell::NotApplicable(why) => why.to_owned(),
             });
             std::iter::once(link(scene)).chain(cells).collect()
+        }
+        Err(_) => vec![format!("`{name}`"), "**not validated**".to_owned()],
+    }
+}
+
+/// Who made the reference values of a case.
+fn source_row((name, result): &CaseResult<'_>) -> Vec<String> {
+    match result {
+        Ok((scene, validation)) => {
+            let tables = SourceKind::ALL.map(|kind| validation.source_kinds.of(kind));
+            std::iter::once(link(scene)).chain(tables).collect()
         }
         Err(_) => vec![format!("`{name}`"), "**not validated**".to_owned()],
     }
@@ -179,6 +201,7 @@ fn tolerance_row((name, status): &CaseResult<'_>) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cases::reference::SourceKinds;
     use dwell_scene::Scene;
 
     fn finding(check: Check, relative: f64, tolerance: f64) -> Finding {
@@ -200,6 +223,7 @@ mod tests {
 
     fn validation(findings: Vec<Finding>) -> Validation {
         let mut done = Validation {
+            source_kinds: SourceKinds::default(),
             not_applicable: vec![(Check::Period, "driven")],
             ..Validation::default()
         };
