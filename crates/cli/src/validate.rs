@@ -33,8 +33,7 @@ pub(crate) fn validate(
             bar.set_message(format!("{}: {}", scene.name, step.done));
             bar.inc(1);
         };
-        let done = validate_case(scene, case, program.as_deref(), &progress);
-        done.map_err(validation_error)
+        validate_case(scene, case, program.as_deref(), &progress).map_err(validation_error)
     };
     let all_cases = names.is_empty() && folder == Path::new(DEFAULT_CASE_FOLDER);
     let read: Vec<&Scene> = scenes.iter().flatten().collect();

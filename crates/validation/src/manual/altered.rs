@@ -142,7 +142,9 @@ fn other_lists(root: &Table, value: &Value, sort: &str) -> Vec<OtherValue> {
         (reversed, "in reverse order".to_owned()),
         (shorter, "the last one forgotten".to_owned()),
     ];
-    first.into_iter().chain(last_replaced).collect()
+    let all = first.into_iter().chain(last_replaced);
+    all.filter(|(other, _)| other.as_ref() != Some(value))
+        .collect()
 }
 
 /// The value at the end of some steps.

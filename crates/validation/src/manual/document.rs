@@ -257,7 +257,7 @@ fn extremes(findings: &[Finding]) -> Block {
 fn limits(contents: &Contents<'_>) -> Block {
     let (texts, count) = contents.fault_texts;
     let mut text = format!(
-        "- A fault in a key is planted between the scene's text and the results; a fault that readers and checks share, because both use the same reader of scenes, is for the checks over written files to find.\n- Committed studies of mutations that were at hand: {}, {count} of them.",
+        "- A fault in a key is planted between the scene's text and the results; a fault that readers and checks share, because both use the same reader of scenes, is for the checks over written files to find.\n- The line of a command lists the findings on what it computes from: states, reduced models, motions. What it alone computes from them (a cycle, an equilibrium, a matrix, a row of a sweep) is checked by tests, and by the checks over written files where there are any.\n- Committed studies of mutations that were at hand: {}, {count} of them.",
         match texts.is_empty() {
             true => "none".to_owned(),
             false => texts.join(", "),

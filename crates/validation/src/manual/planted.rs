@@ -218,3 +218,33 @@ impl StateClaims {
             || kinds.into_iter().any(|kind| differs(&of_kind(kind)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
+    use super::*;
+
+    /// Names in no order: the bodies are numbered otherwise in an altered text.
+    const ARM: &str = "[bodies.ground]\npoints = { O = [0, 0] }\n[bodies.arm]\npoints = { O = [0, 0] }\nmass = 1\ncenter = [0.3, 0.1]\ninertia = 0.2\n\
+                       [joints]\nO = { revolute = [\"ground.O\", \"arm.O\"] }\n[actuators.phi]\nangle = [\"ground\", \"arm\"]\n\
+                       [loads]\nweight = { gravity = [0, -9.81] }\n";
+
+    #[test]
+    fn a_scene_that_is_not_altered_has_the_same_results_and_one_that_is_fails_checks() {
+        let scene = Scene::parse("arm.toml", ARM).unwrap();
+        let planted = PlantedScene::new(&scene, Path::new("")).unwrap();
+        let same = Scene::parse("arm.toml", &planted.text).unwrap();
+        assert_eq!(planted.check_altered(&same), PlantedResult::Unchanged);
+        let text = planted.text.replace("inertia = 0.2", "inertia = 0.202");
+        assert_ne!(text, planted.text);
+        let altered = Scene::parse("arm.toml", &text).unwrap();
+        let PlantedResult::Detected(checks) = planted.check_altered(&altered) else {
+            panic!("not detected");
+        };
+        assert!(
+            checks.contains(&Check::NewtonEuler) && checks.len() >= 2,
+            "{checks:?}"
+        );
+        assert!(planted.findings().iter().all(|f| f.pass));
+    }
+}
