@@ -48,7 +48,7 @@ fn angles(scene: &Scene) -> String {
     }
     let mechanism = &scene.mechanism;
     let guesses = scene.assembly.initial_guess.iter().enumerate();
-    let of_bodies = guesses.filter_map(|(b, angle)| Some((mechanism.body_name(BodyId(b)), *angle)));
+    let of_bodies = guesses.map(|(b, angle)| (mechanism.body_name(BodyId(b)), *angle));
     let actuators = mechanism.actuators.iter().zip(&scene.assembly.coordinates);
     let of_actuators = actuators
         .filter(|(actuator, _)| actuator.coordinate().is_angle())

@@ -3,11 +3,11 @@
 use crate::test_dir::TestDir;
 use serde_json::Value;
 
-const PERIOD: f64 = 5.419_662_677_064_271_9;
+const PERIOD: f64 = 5.419_662_677_064_272;
 
 fn single_dwell() -> String {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-    std::fs::read_to_string(format!("{root}/validation/single-dwell/scene.toml")).expect("the case")
+    std::fs::read_to_string(format!("{root}/validation/single-dwell/scene.toml")).unwrap()
 }
 
 #[test]

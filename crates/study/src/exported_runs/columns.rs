@@ -116,9 +116,7 @@ impl ColumnNames {
                 .unit
                 .as_deref()
                 .and_then(|unit| unit.split(['/', ' ']).next());
-            let factor = own
-                .and_then(|unit| unit_factor(unit))
-                .map_or(factor, |(own, _)| own);
+            let factor = own.and_then(unit_factor).map_or(factor, |(own, _)| own);
             times(column, factor)
         };
         Ok(Run {

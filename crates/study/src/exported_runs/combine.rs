@@ -246,18 +246,19 @@ fn with_speeds(
     let (speed, acceleration) = match (&run.speed, &run.acceleration) {
         (Some(speed), Some(acceleration)) => (speed.values.clone(), acceleration.values.clone()),
         (None, None) => {
-            let (text, of): (&str, Box<dyn Fn(f64) -> [f64; 2]>) = match accelerates {
-                true => (
-                    "unit acceleration from rest",
-                    Box::new(|s| [(2.0 * s).sqrt(), 1.0]),
-                ),
-                false => ("unit speed without acceleration", Box::new(|_| [1.0, 0.0])),
+            let text = match accelerates {
+                true => "unit acceleration from rest",
+                false => "unit speed without acceleration",
+            };
+            let of = |travelled: f64| match accelerates {
+                true => ((2.0 * travelled).sqrt(), 1.0),
+                false => (1.0, 0.0),
             };
             notes.push(format!(
                 "`{}` has no speeds and accelerations: {text} is meant",
                 run.file
             ));
-            q.iter().map(|q| of(q - first)).map(|[v, a]| (v, a)).unzip()
+            q.iter().map(|q| of(q - first)).unzip()
         }
         _ => {
             let message = format!(

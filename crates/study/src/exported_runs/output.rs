@@ -214,7 +214,7 @@ fn page(summary: &str, file: &str, caption: &str) -> Document {
                  T = m q̈ + ½m′ q̇² and F = a q̈ + b q̇² in both runs give m, ½m′, a and b at each position."
                     .to_owned(),
             ),
-            Block::Text(format!("```text\n{}```", summary)),
+            Block::Text(format!("```text\n{summary}```")),
             Block::Figure {
                 file: file.to_owned(),
                 alt: "m, ½m′, a and b over the coordinate".to_owned(),

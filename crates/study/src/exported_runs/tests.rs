@@ -13,7 +13,7 @@ use dwell_scene::Scene;
 use std::path::Path;
 
 /// Period of the single-dwell mechanism from 1 rad/s, s, of its reference values.
-const PERIOD: f64 = 5.419_662_677_064_271_9;
+const PERIOD: f64 = 5.419_662_677_064_272;
 
 fn scene(case: &str) -> Scene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
@@ -278,12 +278,7 @@ fn what_cannot_be_combined_is_named() {
             two.clone(),
             names.clone(),
         ),
-        (
-            "is no finite number",
-            damaged.clone(),
-            two.clone(),
-            names.clone(),
-        ),
+        ("is no finite number", damaged, two.clone(), names.clone()),
         (
             "does not grow in row",
             one.lines()
@@ -314,7 +309,7 @@ fn what_cannot_be_combined_is_named() {
             two.replace("phi.actuator_force", "@")
                 .replace("slide.normal", "phi.actuator_force")
                 .replace('@', "slide.normal"),
-            names.clone(),
+            names,
         ),
     ] {
         let found = combined(&one, &two, &names);

@@ -248,5 +248,6 @@ fn hermite([q0, v0, q1, v1]: [f64; 4], s: f64, h: f64) -> [f64; 2] {
 pub(super) fn differ(values: &[f64], own: &[f64]) -> bool {
     let largest = own.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
     let mut both = values.iter().zip(own);
-    values.len() != own.len() || both.any(|(a, b)| !((a - b).abs() <= UNCHANGED * largest))
+    values.len() != own.len()
+        || both.any(|(a, b)| (a - b).is_nan() || (a - b).abs() > UNCHANGED * largest)
 }

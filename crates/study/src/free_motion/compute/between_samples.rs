@@ -224,7 +224,7 @@ impl Polynomials {
     fn at(&self, t: f64) -> Vec<f64> {
         let weight = |k: usize| {
             let angle = PI * (k as f64 + 0.5) / NODES as f64;
-            if k % 2 == 0 {
+            if k.is_multiple_of(2) {
                 angle.sin()
             } else {
                 -angle.sin()

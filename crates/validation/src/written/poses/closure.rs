@@ -112,7 +112,7 @@ fn residuals(
             what,
             jet,
             is_angle,
-        })
+        });
     };
     for (b, body) in reading
         .bodies

@@ -61,7 +61,9 @@ impl Differences {
         let failure = self.failure.take().or(other.failure.clone());
         let count = self.count + other.count;
         let is_worse = other.count > 0
-            && (self.count == 0 || (!self.relative.is_nan() && !(other.relative <= self.relative)));
+            && (self.count == 0
+                || (!self.relative.is_nan()
+                    && (other.relative.is_nan() || other.relative > self.relative)));
         if is_worse {
             *self = other;
         }

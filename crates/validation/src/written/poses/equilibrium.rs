@@ -94,6 +94,9 @@ pub(crate) fn residual(
     (sum, terms)
 }
 
+/// A body, what is left of its forces (x, y, moment), and the sums of absolute terms (force, moment).
+pub(crate) type BodyResidual = (usize, [f64; 3], [f64; 2]);
+
 /// Newton's and Euler's equations of a row, with an order of the derivative as acceleration: 2, or 1 where velocities
 /// stand for accelerations, or none at rest.
 pub(crate) fn body_residuals(
@@ -101,7 +104,7 @@ pub(crate) fn body_residuals(
     motion: &Motion,
     wrenches: &[Wrench],
     order: Option<usize>,
-) -> Vec<(usize, [f64; 3], [f64; 2])> {
+) -> Vec<BodyResidual> {
     let moving = reading
         .bodies
         .iter()
@@ -128,7 +131,7 @@ pub(crate) fn body_residuals(
 pub(crate) fn add_residuals(
     to: &mut Differences,
     reading: &Reading,
-    all: &[(usize, Vec<(usize, [f64; 3], [f64; 2])>)],
+    all: &[(usize, Vec<BodyResidual>)],
     what: &str,
 ) {
     let terms = |k: usize| {
