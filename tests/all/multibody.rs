@@ -8,26 +8,30 @@ use dwell_validation::{FreeMotionRun, free_motion_run};
 use std::time::Instant;
 
 /// The cases that have a motion, and what is special about it.
-const CASES_WITH_MOTION: [&str; 12] = [
+const CASES_WITH_MOTION: [&str; 14] = [
     "andrews",               // a constant torque, a spring
     "boom",                  // one cylinder led, one free
     "crank-rocker",          // no loads
     "double-pendulum",       // two freedoms
+    "expressions",           // loads and a law by expressions
     "five-bar",              // two freedoms with servos
     "four-bar",              // a motor with inductance against loads
     "n-four-bar-a02",        // constraints that repeat each other at its flats
     "pendulum-a01",          // a swing
+    "press",                 // a motor by its line, a table
     "single-dwell",          // no loads
     "slider-crank-friction", // friction in pins and guide, a motor
     "slotted-rocker",        // no loads
     "whitworth",             // a regulator
 ];
 /// Of them, those over which energy is given or taken.
-const NONCONSERVATIVE: [&str; 6] = [
+const NONCONSERVATIVE: [&str; 8] = [
     "andrews",
     "boom",
+    "expressions",
     "five-bar",
     "four-bar",
+    "press",
     "slider-crank-friction",
     "whitworth",
 ];

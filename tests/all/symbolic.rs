@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The cases of one actuator that are made of dyads.
-const DYADS: [&str; 19] = [
+const DYADS: [&str; 20] = [
     "andrews",
     "crank-rocker",
     "double-slider",
@@ -24,6 +24,7 @@ const DYADS: [&str; 19] = [
     "n-four-bar-a02",
     "peaucellier",
     "pendulum-a01",
+    "press",
     "rack-pinion",
     "rolling-wheel",
     "scotch-yoke",

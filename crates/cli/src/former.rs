@@ -96,8 +96,8 @@ mod tests {
             ),
             (
                 "dwell --out o reduce a --table=1e-9 --to 3",
-                "dwell --out o reduce a --table-accuracy=1e-9 --to 3",
-                1,
+                "dwell --out o reduce a --table-accuracy=1e-9 --table-to 3",
+                2,
             ),
             ("dwell symbolic a --to c", "dwell symbolic a --format c", 1),
             (

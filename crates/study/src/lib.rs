@@ -48,11 +48,11 @@ pub mod exported_runs;
 pub mod free_motion;
 pub mod linearise;
 pub mod reduce;
+mod suspicious_units;
 pub mod sweep;
 mod symbolic;
 pub mod trajectory;
 pub mod unit_runs;
-mod unit_slips;
 
 pub use calibrate::{CalibrationResult, find_value};
 pub use check::describe_scene;

@@ -204,15 +204,15 @@ fn recognised(table: &ExportedTable) -> Result<String, SceneError> {
 }
 
 fn names_of(table: &ExportedTable) -> String {
-    const SHOWN: usize = 12;
+    const LISTED: usize = 12;
     let names: Vec<String> = table
         .columns
         .iter()
-        .take(SHOWN)
+        .take(LISTED)
         .map(|c| format!("`{}`", c.name))
         .collect();
     match table.columns.len() {
-        count if count > SHOWN => format!("{} and {} more", names.join(", "), count - SHOWN),
+        count if count > LISTED => format!("{} and {} more", names.join(", "), count - LISTED),
         _ => names.join(", "),
     }
 }

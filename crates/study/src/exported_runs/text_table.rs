@@ -84,9 +84,13 @@ impl ExportedTable {
         };
         let heads = separator.header(&header);
         let mut columns: Vec<ExportedColumn> = heads.iter().map(|head| column(head)).collect();
+        let mut digits = vec![0; columns.len()];
         for line in lines[first..].iter().filter(|line| !is_comment(line)) {
-            let added = separator.add_row(line, &mut columns);
+            let added = separator.add_row(line, (&mut columns, &mut digits));
             added.map_err(|(span, message, help)| error(span, message, help, "here"))?;
+        }
+        for (column, digits) in columns.iter_mut().zip(digits) {
+            column.rounding = half_unit(&column.values, digits);
         }
         Ok(Self {
             file: file.to_owned(),
@@ -200,7 +204,7 @@ impl Separator {
     fn add_row(
         self,
         line: &Line<'_>,
-        columns: &mut [ExportedColumn],
+        (columns, digits): (&mut [ExportedColumn], &mut [usize]),
     ) -> Result<(), (Range<usize>, String, &'static str)> {
         let fields = self.fields(line);
         if fields.len() != columns.len() {
@@ -209,15 +213,15 @@ impl Separator {
             let help = "each row has a number for each column of the header";
             return Err((line.at..line.at + line.text.len(), message, help));
         }
-        for (column, field) in columns.iter_mut().zip(fields) {
-            let Some((value, rounding)) = self.number(field.text) else {
+        for ((column, digits), field) in columns.iter_mut().zip(digits).zip(fields) {
+            let Some((value, printed)) = self.number(field.text) else {
                 let (text, name) = (field.text, &column.name);
                 let message = format!("`{text}` is no finite number, in column `{name}`");
                 let help = "leave out rows without a value, such as those of a failed position";
                 return Err((field.span, message, help));
             };
             column.values.push(value);
-            column.rounding = column.rounding.max(rounding);
+            *digits = printed.max(*digits);
         }
         Ok(())
     }
@@ -262,8 +266,8 @@ impl Separator {
         heads
     }
 
-    /// A finite number with half a unit of its last printed digit.
-    fn number(self, text: &str) -> Option<(f64, f64)> {
+    /// A finite number with how many significant digits it is printed.
+    fn number(self, text: &str) -> Option<(f64, usize)> {
         let text = match self {
             Self::Character(',') => text.to_owned(),
             Self::Character(_) | Self::Blanks => text.replace(',', "."),
@@ -271,18 +275,22 @@ impl Separator {
         // Fortran writes `1.5D-03`.
         let text = text.replace(['d', 'D'], "e");
         let value: f64 = text.parse().ok().filter(|value: &f64| value.is_finite())?;
-        let (mantissa, exponent) = text.split_once(['e', 'E']).unwrap_or((&text, "0"));
-        let decimals = mantissa
-            .split_once('.')
-            .map_or(0, |(_, decimals)| decimals.len());
-        let exponent: i32 = exponent.parse().ok()?;
-        let unit =
-            10_f64.powi(exponent.saturating_sub(i32::try_from(decimals).unwrap_or(i32::MAX)));
-        // The shortest form of a number of full precision shows fewer digits by chance, and an integer is one.
-        let is_integer = decimals == 0 && exponent == 0;
-        let rounding = if is_integer { 0.0 } else { 0.5 * unit };
-        Some((value, rounding.max(0.5 * f64::EPSILON * value.abs())))
+        let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
+        let digits = mantissa.chars().filter(char::is_ascii_digit);
+        Some((value, digits.skip_while(|digit| *digit == '0').count()))
     }
+}
+
+/// Half a unit of the last digit of the largest value, where the longest number of a column has so many significant ones: a
+/// shorter one ends by chance. Integers alone are exact.
+fn half_unit(values: &[f64], digits: usize) -> f64 {
+    let largest = values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+    let bits = 0.5 * f64::EPSILON * largest;
+    if largest == 0.0 || values.iter().all(|value| value.fract() == 0.0) {
+        return bits;
+    }
+    let exponent = largest.log10().floor() + 1.0 - digits as f64;
+    (0.5 * 10_f64.powf(exponent)).max(bits)
 }
 
 /// A field that is a number, or stands for a missing one.

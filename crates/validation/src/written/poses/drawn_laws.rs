@@ -7,7 +7,7 @@ use super::rows::Rows;
 use super::scene_text::{Draws, text_of};
 use toml::{Table, Value};
 
-/// Functions of the time t whose values are judged, with room for two drawn numbers.
+/// Functions of the time t whose values are compared, with room for two drawn numbers.
 const MAGNITUDES: [&str; 26] = [
     "sin(A*t + B)",
     "cos(A*t + B)",

@@ -133,7 +133,7 @@ fn add_extrema(found: &mut Formats, summary: &Value, rows: &Rows, command: &str,
     }
 }
 
-/// By unit: the largest extremum. What is zero but for rounding is judged by others of its unit.
+/// By unit: the largest extremum. What is zero but for rounding is compared by others of its unit.
 fn scales(extrema: &[Value]) -> BTreeMap<&str, f64> {
     let mut all = BTreeMap::new();
     for entry in extrema {

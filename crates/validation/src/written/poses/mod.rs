@@ -5,10 +5,11 @@
 //!      └── program as a process ── files ── rows ───────┴── closure, rates, equilibrium, totals, reduced … ── findings
 //! ```
 //!
-//! Everything is judged by residuals: the rows hold positions, velocities, accelerations and forces, and each must meet the
+//! Everything is compared by residuals: the rows hold positions, velocities, accelerations and forces, and each must meet the
 //! equations that the scene's text gives; nothing is solved.
 
 pub(super) mod closure;
+mod compared;
 pub(super) mod difference;
 mod drawn_laws;
 pub(super) mod equilibrium;
@@ -17,7 +18,6 @@ pub(super) mod forces_read;
 mod formats;
 mod generated_code;
 pub(super) mod jet;
-mod judged;
 pub(super) mod law;
 pub(super) mod motion;
 mod other_units;

@@ -1,17 +1,17 @@
 //! All checks of a case's files about positions, as findings.
 
 use super::closure::closure;
+use super::compared::Compared;
 use super::equilibrium::equilibrium;
 use super::formats::formats;
-use super::judged::Judged;
 use super::law::{Law, number};
 use super::program::{Program, Run};
 use super::rates::rates;
 use super::reading::Reading;
-use super::reduced_files::judge_reduced;
+use super::reduced_files::compare_reduced;
 use super::scene_text::{Draws, requests_everything, text_of};
-use super::section_files::judge_sections;
-use super::unit_files::judge_units;
+use super::section_files::compare_sections;
+use super::unit_files::compare_units;
 use dwell_findings::Finding;
 use std::path::Path;
 
@@ -20,14 +20,19 @@ const SWEEP: f64 = 0.4;
 
 /// Runs the program at `path` on a case and judges the files. A run that fails is a failed finding.
 pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
-    let mut judged = Judged::default();
-    if let Err(reason) = judge(&mut judged, path, name, scene) {
-        judged.fail("written-closure", reason);
+    let mut compared = Compared::default();
+    if let Err(reason) = compare_all(&mut compared, path, name, scene) {
+        compared.fail("written-closure", reason);
     }
-    judged.findings()
+    compared.findings()
 }
 
-fn judge(judged: &mut Judged, path: &Path, name: &str, scene: &str) -> Result<(), String> {
+fn compare_all(
+    compared: &mut Compared,
+    path: &Path,
+    name: &str,
+    scene: &str,
+) -> Result<(), String> {
     let program = Program::new(path, name).map_err(|e| format!("no folder for the files: {e}"))?;
     let reading = Reading::new(scene)?;
     let mut draws = Draws::of(scene);
@@ -39,11 +44,17 @@ fn judge(judged: &mut Judged, path: &Path, name: &str, scene: &str) -> Result<()
     } else {
         &moving
     };
-    judge_kinematics(judged, &program, &reading, kinematic)?;
-    judge_forces(judged, &program, &reading, &moving, &mut draws)?;
-    judge_units(judged, &program, &reading, &moving, &mut draws)?;
+    compare_kinematics(compared, &program, &reading, kinematic)?;
+    compare_forces(compared, &program, &reading, &moving, &mut draws)?;
+    compare_units(compared, &program, &reading, &moving, &mut draws)?;
     if reading.actuator_count == 1 {
-        judge_reduced(judged, &program, &reading, [scene, &everything], &mut draws)?;
+        compare_reduced(
+            compared,
+            &program,
+            &reading,
+            [scene, &everything],
+            &mut draws,
+        )?;
     }
     Ok(())
 }
@@ -76,8 +87,8 @@ fn with_motion(scene: &str, reading: &Reading, draws: &mut Draws) -> Result<Stri
     text_of(&table)
 }
 
-fn judge_kinematics(
-    judged: &mut Judged,
+fn compare_kinematics(
+    compared: &mut Compared,
     program: &Program,
     reading: &Reading,
     scene: &str,
@@ -86,12 +97,12 @@ fn judge_kinematics(
         .run("kinematics", scene, &["kinematics"])
         .map_err(|e| e.to_string())?;
     let rows = run.csv("-kinematics.csv")?;
-    add_formats(judged, &run, reading, "kinematics")?;
+    add_formats(compared, &run, reading, "kinematics")?;
     let of = closure(reading, &rows, "kinematics");
-    judged.merge("written-closure", of.joints);
-    judged.merge("written-laws", of.laws);
+    compared.merge("written-closure", of.joints);
+    compared.merge("written-laws", of.laws);
     if let Some(time) = rows.columns.get("t") {
-        judged.merge(
+        compared.merge(
             "written-rates",
             rates(&rows, time, &corners(reading), "kinematics"),
         );
@@ -109,8 +120,8 @@ pub(crate) fn corners(reading: &Reading) -> Vec<f64> {
         .collect()
 }
 
-fn judge_forces(
-    judged: &mut Judged,
+fn compare_forces(
+    compared: &mut Compared,
     program: &Program,
     reading: &Reading,
     scene: &str,
@@ -130,29 +141,29 @@ fn judge_forces(
             .map_err(|e| e.to_string())?;
         let rows = run.npz(&format!("-{command}.npz"))?;
         let of = closure(reading, &rows, command);
-        judged.merge("written-closure", of.joints);
+        compared.merge("written-closure", of.joints);
         let forces = equilibrium(reading, &rows, command, command == "statics");
-        judged.merge("written-equilibrium", forces.bodies);
-        judged.merge("written-loads", forces.loads);
-        judged.merge("written-totals", forces.totals);
-        add_formats(judged, &run, reading, command)?;
+        compared.merge("written-equilibrium", forces.bodies);
+        compared.merge("written-loads", forces.loads);
+        compared.merge("written-totals", forces.totals);
+        add_formats(compared, &run, reading, command)?;
     }
     if has_motion {
-        judge_sections(judged, program, reading, scene, draws)?;
+        compare_sections(compared, program, reading, scene, draws)?;
     }
     Ok(())
 }
 
 /// The files and sentences of a run against each other.
 fn add_formats(
-    judged: &mut Judged,
+    compared: &mut Compared,
     run: &Run,
     reading: &Reading,
     command: &str,
 ) -> Result<(), String> {
     let of = formats(run, command, command, &corners(reading))?;
-    judged.merge("written-files", of.files);
-    judged.merge("written-extrema", of.extrema);
-    judged.merge("written-sentences", of.printed);
+    compared.merge("written-files", of.files);
+    compared.merge("written-extrema", of.extrema);
+    compared.merge("written-sentences", of.printed);
     Ok(())
 }

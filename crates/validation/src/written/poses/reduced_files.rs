@@ -1,10 +1,10 @@
 //! The files of `reduce` and what repeats them: runs, tables, generated code, sweeps, and drawn motions.
 
 use super::closure::closure;
+use super::compared::Compared;
 use super::drawn_laws::drawn_motions;
 use super::equilibrium::equilibrium;
 use super::generated_code::code_differences;
-use super::judged::Judged;
 use super::positions::corners;
 use super::program::Program;
 use super::rates::rates;
@@ -17,8 +17,8 @@ use super::table_file::table_differences;
 use super::variants::{calibration_differences, sweep_differences};
 
 /// Runs `reduce` and its like on a scene with one actuator, as it is and with everything requested.
-pub(crate) fn judge_reduced(
-    judged: &mut Judged,
+pub(crate) fn compare_reduced(
+    compared: &mut Compared,
     program: &Program,
     reading: &Reading,
     [scene, everything]: [&str; 2],
@@ -44,29 +44,29 @@ pub(crate) fn judge_reduced(
     let of = reduced(reading, &files, coordinate);
     let range =
         [0, all.count.saturating_sub(1)].map(|row| all.get(row, coordinate).unwrap_or(f64::NAN));
-    judge_laws(judged, program, reading, everything, range, draws)?;
-    judge_copies(judged, program, reading, everything, &all)?;
+    compare_laws(compared, program, reading, everything, range, draws)?;
+    compare_copies(compared, program, reading, everything, &all)?;
     let whole: toml::Table = everything
         .parse()
         .map_err(|e| format!("the scene is no TOML: {e}"))?;
-    judged.merge(
+    compared.merge(
         "written-sweep",
         sweep_differences(program, &whole, reading, draws)?,
     );
-    judged.merge(
+    compared.merge(
         "written-calibration",
         calibration_differences(program, &whole, reading)?,
     );
-    judged.merge("written-reduced", of.sums);
-    judged.merge("written-coefficients", of.bodies);
-    judged.merge("written-slopes", of.slopes);
-    judged.merge("written-runs", of.runs);
-    judged.merge(
+    compared.merge("written-reduced", of.sums);
+    compared.merge("written-coefficients", of.bodies);
+    compared.merge("written-slopes", of.slopes);
+    compared.merge("written-runs", of.runs);
+    compared.merge(
         "written-runs",
         same_columns(&requested, &all, "the requested file of `reduce`"),
     );
     for (rows, file) in [(&run_i, "run i"), (&run_ii, "run ii")] {
-        judged.merge("written-closure", closure(reading, rows, file).joints);
+        compared.merge("written-closure", closure(reading, rows, file).joints);
     }
     Ok(())
 }
@@ -75,8 +75,8 @@ pub(crate) fn judge_reduced(
 const TABLE_ACCURACY: &str = "1e-7";
 
 /// The reduced model once more: as a table, and as code in two languages.
-fn judge_copies(
-    judged: &mut Judged,
+fn compare_copies(
+    compared: &mut Compared,
     program: &Program,
     reading: &Reading,
     scene: &str,
@@ -91,7 +91,7 @@ fn judge_copies(
         TABLE_ACCURACY,
     ];
     match program.run("table", scene, &arguments) {
-        Ok(run) => judged.merge(
+        Ok(run) => compared.merge(
             "written-table",
             table_differences(&run.text(".table")?, rows, coordinate),
         ),
@@ -100,7 +100,7 @@ fn judge_copies(
             if ["tables are of driven angles", "no table:"]
                 .iter()
                 .any(|why| e.to_string().contains(why)) => {}
-        Err(e) => judged.fail("written-table", e.to_string()),
+        Err(e) => compared.fail("written-table", e.to_string()),
     }
     let reaction = reading
         .joints
@@ -114,22 +114,22 @@ fn judge_copies(
         match program.run("code", scene, &arguments) {
             Ok(run) => {
                 let code = run.text(end)?;
-                judged.merge(
+                compared.merge(
                     "written-code",
                     code_differences(&code, rows, coordinate, &reaction),
                 );
             }
             // Not every mechanism has a closed form; then the command says so.
             Err(e) if e.to_string().contains("closed form") => {}
-            Err(e) => judged.fail("written-code", e.to_string()),
+            Err(e) => compared.fail("written-code", e.to_string()),
         }
     }
     Ok(())
 }
 
 /// Laws of every kind and expressions of every function in drawn motions.
-fn judge_laws(
-    judged: &mut Judged,
+fn compare_laws(
+    compared: &mut Compared,
     program: &Program,
     reading: &Reading,
     scene: &str,
@@ -139,18 +139,18 @@ fn judge_laws(
     for motion in drawn_motions(program, scene, reading, range, draws)? {
         let (reading, rows) = (&motion.reading, &motion.rows);
         let of = closure(reading, rows, &motion.name);
-        judged.merge("written-closure", of.joints);
-        judged.merge("written-laws", of.laws);
+        compared.merge("written-closure", of.joints);
+        compared.merge("written-laws", of.laws);
         if let Some(time) = rows.columns.get("t") {
-            judged.merge(
+            compared.merge(
                 "written-law-rates",
                 rates(rows, time, &corners(reading), &motion.name),
             );
         }
         if motion.name.ends_with("expression") {
             let forces = equilibrium(reading, rows, &motion.name, false);
-            judged.merge("written-equilibrium", forces.bodies);
-            judged.merge("written-loads", forces.loads);
+            compared.merge("written-equilibrium", forces.bodies);
+            compared.merge("written-loads", forces.loads);
         }
     }
     Ok(())

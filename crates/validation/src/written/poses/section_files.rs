@@ -1,17 +1,17 @@
 //! The files of internal forces of drawn links.
 
-use super::judged::Judged;
+use super::compared::Compared;
 use super::program::Program;
 use super::reading::Reading;
 use super::scene_text::{Draws, text_of};
 use super::sections::{Link, links, sections};
 
-/// Links of a case whose internal forces are judged.
+/// Links of a case whose internal forces are compared.
 const LINKS: usize = 2;
 
 /// The internal forces of drawn links, in the row where the program has found the largest bending moment.
-pub(crate) fn judge_sections(
-    judged: &mut Judged,
+pub(crate) fn compare_sections(
+    compared: &mut Compared,
     program: &Program,
     reading: &Reading,
     scene: &str,
@@ -49,22 +49,22 @@ pub(crate) fn judge_sections(
                 .position(|x| (x - at).abs() <= 1e-12 * (1.0 + at.abs()))
         });
         let Some(row) = row else {
-            judged.fail(
+            compared.fail(
                 "written-sections",
                 format!("the largest {name} is at {at:?}, which is no row"),
             );
             continue;
         };
         let of = sections(reading, &rows, row, link, &cuts);
-        judged.merge("written-sections", of.cuts);
-        judged.merge("written-section-ends", of.ends);
+        compared.merge("written-sections", of.cuts);
+        compared.merge("written-section-ends", of.ends);
         // The largest moment that is printed is one of the cuts.
         let said = summary["results"][&name]["value"]
             .as_f64()
             .unwrap_or(f64::NAN);
         let column = cuts.columns.get("bending").into_iter().flatten();
         let largest = column.fold(0.0_f64, |max, v| max.max(v.abs()));
-        judged
+        compared
             .of("written-files")
             .add(said.abs() - largest, largest, "N m", || name.clone());
     }

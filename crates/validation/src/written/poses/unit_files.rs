@@ -1,8 +1,8 @@
 //! The files of a scene in several systems of units.
 
 use super::closure::closure;
+use super::compared::Compared;
 use super::equilibrium::equilibrium;
-use super::judged::Judged;
 use super::other_units::in_other_units;
 use super::program::Program;
 use super::reading::Reading;
@@ -14,8 +14,8 @@ use super::units::LENGTHS;
 const SYSTEMS: usize = LENGTHS.len();
 
 /// The same files from the scene in other units.
-pub(crate) fn judge_units(
-    judged: &mut Judged,
+pub(crate) fn compare_units(
+    compared: &mut Compared,
     program: &Program,
     reading: &Reading,
     scene: &str,
@@ -46,20 +46,20 @@ pub(crate) fn judge_units(
         let rows = match run("other-units", &other) {
             Ok(rows) => rows,
             Err(reason) => {
-                judged.fail("written-units", format!("{file}: {reason}"));
+                compared.fail("written-units", format!("{file}: {reason}"));
                 continue;
             }
         };
         // The same files; and they meet the equations of the rewritten text.
-        judged.merge("written-units", same_columns(&rows, &expected, &file));
+        compared.merge("written-units", same_columns(&rows, &expected, &file));
         let reading = Reading::new(&other)?;
         let of = closure(&reading, &rows, &file);
-        judged.merge("written-closure", of.joints);
-        judged.merge("written-laws", of.laws);
+        compared.merge("written-closure", of.joints);
+        compared.merge("written-laws", of.laws);
         if has_motion {
             let forces = equilibrium(&reading, &rows, &file, false);
-            judged.merge("written-equilibrium", forces.bodies);
-            judged.merge("written-loads", forces.loads);
+            compared.merge("written-equilibrium", forces.bodies);
+            compared.merge("written-loads", forces.loads);
         }
     }
     Ok(())

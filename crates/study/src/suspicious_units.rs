@@ -19,7 +19,7 @@ const LARGE: f64 = 30.0;
 const SMALL: f64 = 0.01;
 
 /// A line for each number that looks like a slip of units.
-pub(crate) fn describe_unit_slips(scene: &Scene) -> String {
+pub(crate) fn describe_suspicious_units(scene: &Scene) -> String {
     gravity(scene) + &angles(scene) + &size(scene)
 }
 
@@ -88,7 +88,7 @@ mod tests {
     use std::path::Path;
 
     fn notes(text: &str) -> String {
-        describe_unit_slips(&Scene::parse("scene.toml", text).expect("a scene"))
+        describe_suspicious_units(&Scene::parse("scene.toml", text).expect("a scene"))
     }
 
     fn pendulum(units: &str, tip: f64, angle: f64, gravity: f64) -> String {
@@ -135,7 +135,7 @@ weight = {{ gravity = [0, -{gravity:?}] }}
         let mut count = 0;
         for case in std::fs::read_dir(cases).expect("cases").flatten() {
             if let Ok(scene) = Scene::read(case.path().join("scene.toml")) {
-                assert_eq!(describe_unit_slips(&scene), "", "{}", scene.name);
+                assert_eq!(describe_suspicious_units(&scene), "", "{}", scene.name);
                 count += 1;
             }
         }

@@ -17,7 +17,7 @@ const SPECS: [Spec; 21] = [
     ("written-extrema", Check::WrittenRates, "extrema of the summary with the rows around them", 1e-6),
     ("written-equilibrium", Check::WrittenForces, "Newton's and Euler's equations of every body with the written forces", 2e-14),
     ("written-coefficients", Check::WrittenForces, "a, b and c of `reduce` in the equations of every body", 1e-13),
-    ("written-sections", Check::WrittenForces, "internal forces of links with equilibrium of the part behind each cut", 2e-14),
+    ("written-sections", Check::WrittenForces, "internal forces of links with equilibrium of the part beyond each cut", 2e-14),
     ("written-totals", Check::WrittenTotals, "shaking forces, powers and energies with sums over all bodies", 2e-14),
     ("written-reduced", Check::WrittenTotals, "m, ½m′ and w of `reduce` with sums over all bodies", 1e-12),
     ("written-calibration", Check::WrittenTotals, "the period of the calibrated scene by quadrature of the rows of `reduce`", 1e-11),
@@ -35,11 +35,11 @@ const SPECS: [Spec; 21] = [
 
 /// Differences by key.
 #[derive(Debug, Default)]
-pub(crate) struct Judged {
+pub(crate) struct Compared {
     by_key: BTreeMap<&'static str, Differences>,
 }
 
-impl Judged {
+impl Compared {
     /// The differences of a key.
     pub(crate) fn of(&mut self, key: &'static str) -> &mut Differences {
         self.by_key.entry(key).or_default()
@@ -85,12 +85,12 @@ mod tests {
                 SPECS[..k].iter().all(|(other, ..)| other != key),
                 "{key} twice"
             );
-            let mut judged = Judged::default();
-            judged.fail(key, "no file".to_owned());
-            let findings = judged.findings();
+            let mut compared = Compared::default();
+            compared.fail(key, "no file".to_owned());
+            let findings = compared.findings();
             assert_eq!((findings.len(), findings[0].pass), (1, false));
             assert_eq!(findings[0].worst_at, "no file");
         }
-        assert!(Judged::default().findings().is_empty());
+        assert!(Compared::default().findings().is_empty());
     }
 }
