@@ -3,6 +3,7 @@
 use super::combine::ExportedRuns;
 use super::sampled_model::{SampleInterpolation, SampledModel};
 use dwell_kinetostatics::Coefficients;
+use std::f64::consts::FRAC_2_PI;
 
 /// Estimated errors relative to the largest value: of m, of ½m′, of any a, of any b.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -31,6 +32,11 @@ impl SampleErrors {
             SampleInterpolation::Trigonometric => 0.0,
         };
         let tails = fine.tails();
+        // Between equal distances a trigonometric series enlarges errors of its values by its Lebesgue constant at most.
+        let enlarged = match interpolation {
+            SampleInterpolation::Trigonometric => 1.0 + FRAC_2_PI * (runs.q.len() as f64).ln(),
+            SampleInterpolation::Linear | SampleInterpolation::Cubic => 1.0,
+        };
         let rounding = printed_errors(runs);
         let width = rounding.len();
         let (mut largest, mut differences) = (vec![0.0_f64; width], vec![0.0_f64; width]);
@@ -58,7 +64,7 @@ impl SampleErrors {
             for i in range {
                 // What lies beyond the last coefficients is nearly as much again (measured: 1.3 times them).
                 let between = share * differences[i] + 2.0 * tails[i];
-                errors.digits[kind] = errors.digits[kind].max(rounding[i] / scale);
+                errors.digits[kind] = errors.digits[kind].max(enlarged * rounding[i] / scale);
                 errors.interpolation[kind] = errors.interpolation[kind].max(between / scale);
             }
         }
