@@ -21,6 +21,11 @@ use std::f64::consts::TAU;
 const VELOCITIES: [[f64; 3]; POSITIONS] = [[1.0, -0.6, 0.4], [-0.8, 0.9, -0.5], [0.6, 0.7, 1.1]];
 const ACCELERATIONS: [[f64; 3]; POSITIONS] = [[0.7, 0.5, -0.9], [0.5, -1.1, 0.6], [-1.2, 0.8, 0.7]];
 
+/// The first numbers of a row, which begins anew where a mechanism has more freedoms.
+fn first(count: usize, row: &[f64; 3]) -> Vec<f64> {
+    row.iter().copied().cycle().take(count).collect()
+}
+
 /// A mutation of one operation of the code.
 pub type OperationMutation = Option<(SourceOperation, MutationKind)>;
 
@@ -290,7 +295,7 @@ impl TestedMechanism {
         let (mut states, mut inertias) = (Vec::new(), Vec::<Vec<f64>>::new());
         for (k, q) in self.positions.iter().enumerate() {
             let t = 0.3 + 0.4 * k as f64;
-            let [q_dot, q_ddot] = [&VELOCITIES[k][..n], &ACCELERATIONS[k][..n]];
+            let [q_dot, q_ddot] = [first(n, &VELOCITIES[k]), first(n, &ACCELERATIONS[k])];
             let done = with_mutation(mutation, || {
                 let lifted = |values: &[f64]| {
                     values
@@ -298,7 +303,7 @@ impl TestedMechanism {
                         .map(|&v| MutatingScalar::new(v))
                         .collect::<Vec<_>>()
                 };
-                let (q, v, a) = (lifted(q), lifted(q_dot), lifted(q_ddot));
+                let (q, v, a) = (lifted(q), lifted(&q_dot), lifted(&q_ddot));
                 self.model
                     .kinetostatics(t, &q, &v, &a, &mut workspace, &mut result)
             });
@@ -398,8 +403,8 @@ impl TestedMechanism {
         ClaimedState {
             t,
             q: self.positions[k].clone(),
-            q_dot: VELOCITIES[k][..n].to_vec(),
-            q_ddot: ACCELERATIONS[k][..n].to_vec(),
+            q_dot: first(n, &VELOCITIES[k]),
+            q_ddot: first(n, &ACCELERATIONS[k]),
             accelerations: accelerations(states, bodies.len()),
             poses: bodies,
             velocities: velocity,
