@@ -80,6 +80,11 @@ bench:
 peers:
     python3 validation/peers/run.py
 
+# The paper's MATLAB part in GNU Octave, on exported runs of Dwell and of Exudyn, against `dwell reduce --from`. Installs Octave where it is missing
+[group('care')]
+octave:
+    python3 validation/foreign/run.py
+
 # Remakes all reference values (or those of the named cases) by the independent program and compares them digit by digit; reports/reference.md. Installs mpmath into a scratch environment; takes minutes
 [group('care')]
 reference *cases:
@@ -91,6 +96,7 @@ nightly: validate-slow mutations computing
     PROPTEST_CASES=2000 cargo test --release --workspace
     just fuzz 100000 "$(date +%j)"
     just peers deny
+    just octave
     just reference
 
 # What the build server runs

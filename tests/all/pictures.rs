@@ -9,7 +9,7 @@ use dwell_study::{
     analyse_trajectory, cycle, equilibria, no_progress, reduce, simulate, sweep,
 };
 use dwell_tests::fixtures::{case_names, repository_root, scene};
-use dwell_validation::{extremes, index, validate, work_precision};
+use dwell_validation::{export_study, extremes, index, validate, work_precision};
 use rayon::prelude::*;
 use std::fmt::Write as _;
 
@@ -99,6 +99,9 @@ fn the_pictures_of_the_validation_are_legible() {
     );
     all.push(of_outcome("extremes", extremes::study(false, 1)));
     let scenes: Vec<&Scene> = scenes.iter().collect();
+    let exported = scenes.iter().find(|s| s.name == export_study::CASE);
+    let exported = export_study::study(exported.expect("the case"));
+    all.push(of_outcome("exported-runs", exported));
     let costs = work_precision::selected_case_reports(&scenes);
     all.push(of_outcome("work-precision", costs));
     let all = sum(all.into_iter());

@@ -6,7 +6,9 @@ use crate::{as_scene_error, cases, print_warnings, validation_error};
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{Outcome, Progress, Step};
 use dwell_validation::manual::KeyStudy;
-use dwell_validation::{CaseResult, Validation, ValidationError, extremes, index, work_precision};
+use dwell_validation::{
+    CaseResult, Validation, ValidationError, export_study, extremes, index, work_precision,
+};
 use indicatif::ProgressBar;
 use miette::{Report, miette};
 use rayon::prelude::*;
@@ -37,7 +39,10 @@ pub(crate) fn validate(
     };
     let all_cases = names.is_empty() && folder == Path::new(DEFAULT_CASE_FOLDER);
     let read: Vec<&Scene> = scenes.iter().flatten().collect();
-    let (results, ((extremes, costs), keys)): (Vec<Result<Validation, SceneError>>, _) =
+    let exported = read
+        .iter()
+        .find(|s| all_cases && s.name == export_study::CASE);
+    let (results, ((extremes, (costs, exports)), keys)): (Vec<Result<Validation, SceneError>>, _) =
         rayon::join(
             || scenes.par_iter().zip(&cases).map(one).collect(),
             || {
@@ -45,7 +50,11 @@ pub(crate) fn validate(
                     || {
                         rayon::join(
                             || (all_cases || slow).then(|| extremes::study(slow, seed)),
-                            || all_cases.then(|| work_precision::selected_case_reports(&read)),
+                            || {
+                                let costs = || work_precision::selected_case_reports(&read);
+                                let exports = exported.map(|scene| export_study::study(scene));
+                                (all_cases.then(costs), exports)
+                            },
                         )
                     },
                     || all_cases.then(|| KeyStudy::new(&read, folder)),
@@ -53,7 +62,8 @@ pub(crate) fn validate(
             },
         );
     bar.finish_and_clear();
-    let others: Result<Vec<Outcome>, _> = [extremes, costs].into_iter().flatten().collect();
+    let others: Result<Vec<Outcome>, _> =
+        [extremes, costs, exports].into_iter().flatten().collect();
     let mut others = others.map_err(as_scene_error)?;
     if let Some(keys) = keys {
         let extremes: Vec<_> = others.iter().flat_map(|o| o.findings.clone()).collect();

@@ -1,6 +1,6 @@
 //! The validation cases: each is computed, checked against independent computations and published numbers, and
-//! reported. Two studies belong to them: series of closed forms with ever more extreme parameters ([`extremes`]), and
-//! what accuracy costs ([`work_precision`](mod@work_precision)).
+//! reported. Three studies belong to them: series of closed forms with ever more extreme parameters ([`extremes`]),
+//! what accuracy costs ([`work_precision`](mod@work_precision)), and what exported runs are worth ([`export_study`]).
 //!
 //! ```
 //! use dwell_findings::all_pass;
@@ -26,6 +26,7 @@ mod case_report;
 mod cases;
 mod checked;
 mod error;
+pub mod export_study;
 pub mod extremes;
 pub mod manual;
 mod overview;

@@ -8,18 +8,13 @@
 //! At each position of run i these are two equations for m and ½m′, and two for a and b of each reaction. Where run ii has
 //! other positions, it is interpolated.
 
-use super::columns::{ColumnNames, Run};
+use super::columns::ColumnNames;
 use super::text_table::{ExportedColumn, ExportedTable};
+use super::timed_run::{SAME_POSITION, TimedRun, with_speeds, wrong};
 use dwell_kinetostatics::Coefficients;
 use dwell_scene::SceneError;
 use std::f64::consts::TAU;
 
-/// Points of the polynomial by which run ii is interpolated onto other positions.
-const POINTS: usize = 6;
-/// Positions that differ by less than this part of the range are the same.
-const SAME_POSITION: f64 = 1e-9;
-/// A speed may differ by this part from the integral of the acceleration over the coordinate, of few positions.
-const SPEED_TOLERANCE: f64 = 0.05;
 /// The runs may contradict each other by this part of the largest m, of few positions.
 const CONTRADICTION: f64 = 0.05;
 
@@ -38,6 +33,8 @@ pub struct ExportedRuns {
     pub coefficients: Vec<Coefficients>,
     /// What half a unit of the last printed digits makes of m, of ½m′, of any a, of any b, at most.
     pub rounding: Coefficients,
+    /// The same of the interpolation of run ii onto the positions of run i.
+    pub resampling: Coefficients,
     /// Half a unit of the last printed digit of the positions, rad or m; zero where they are at equal distances over a whole
     /// revolution.
     pub position_rounding: f64,
@@ -81,7 +78,7 @@ pub fn combine_runs(
     let rows = if is_whole { rows - 1 } else { rows };
     let pair = AlignedRuns::new(one, two, rows);
     let (one, two) = (&pair.one, &pair.two);
-    let (inertia, inertia_rounding) = pair.solve([&one.run.force, &two.run.force]);
+    let inertia = pair.solve([&one.run.force, &two.run.force]);
     let mut reactions = Vec::new();
     let mut solved = Vec::new();
     for of_one in &one.run.reactions {
@@ -94,10 +91,10 @@ pub fn combine_runs(
         solved.push(pair.solve([of_one, of_two]));
     }
     let coefficients = (0..rows).map(|k| Coefficients {
-        m: inertia[k][0],
-        half_dm: inertia[k][1],
-        a: solved.iter().map(|(of, _)| of[k][0]).collect(),
-        b: solved.iter().map(|(of, _)| of[k][1]).collect(),
+        m: inertia.values[k][0],
+        half_dm: inertia.values[k][1],
+        a: solved.iter().map(|of| of.values[k][0]).collect(),
+        b: solved.iter().map(|of| of.values[k][1]).collect(),
     });
     let coefficients: Vec<Coefficients> = coefficients.collect();
     let q = positions(&one.run.q.values, rows, is_whole);
@@ -105,12 +102,8 @@ pub fn combine_runs(
         coordinate: one.run.name.clone(),
         is_angle: one.run.is_angle,
         reactions,
-        rounding: Coefficients {
-            m: inertia_rounding[0],
-            half_dm: inertia_rounding[1],
-            a: solved.iter().map(|(_, errors)| errors[0]).collect(),
-            b: solved.iter().map(|(_, errors)| errors[1]).collect(),
-        },
+        rounding: largest(&inertia, &solved, |of| of.rounding),
+        resampling: largest(&inertia, &solved, |of| of.resampling),
         contradiction: contradiction(&q, &coefficients),
         q,
         coefficients,
@@ -152,21 +145,50 @@ impl AlignedRuns {
         }
     }
 
-    /// The coefficients of q̈ and of q̇² of a force at each position, and the largest errors by the printed digits.
-    fn solve(&self, [of_one, of_two]: [&ExportedColumn; 2]) -> (Vec<[f64; 2]>, [f64; 2]) {
+    /// The coefficients of q̈ and of q̇² of a force at each position, with the errors by digits and by interpolation.
+    fn solve(&self, [of_one, of_two]: [&ExportedColumn; 2]) -> SolvedForce {
         let solved = self.equations.iter().enumerate();
         let values: Vec<[f64; 2]> = solved
             .map(|(k, e)| e.solve([of_one.values[k], of_two.values[k]]))
             .collect();
-        let motion = [&self.one, &self.two].map(TimedRun::motion_rounding);
-        let roundings = self.equations.iter().zip(&values).map(|(e, &found)| {
-            let of_motion = e.force_errors(found, motion);
-            let printed = [of_one.rounding, of_two.rounding];
-            e.errors([printed[0] + of_motion[0], printed[1] + of_motion[1]])
-        });
-        let largest = roundings.fold([0.0_f64; 2], |max, e| [max[0].max(e[0]), max[1].max(e[1])]);
-        (values, largest)
+        let runs = [&self.one, &self.two];
+        let largest = |forces: [f64; 2], motion: [[f64; 2]; 2]| {
+            let errors = self.equations.iter().zip(&values).map(|(e, &found)| {
+                let of_motion = e.force_errors(found, motion);
+                e.errors([forces[0] + of_motion[0], forces[1] + of_motion[1]])
+            });
+            errors.fold([0.0_f64; 2], |max, e| [max[0].max(e[0]), max[1].max(e[1])])
+        };
+        SolvedForce {
+            rounding: largest(
+                [of_one.rounding, of_two.rounding],
+                runs.map(TimedRun::motion_rounding),
+            ),
+            resampling: largest(
+                [of_one.resampling, of_two.resampling],
+                runs.map(|run| run.motion_resampling),
+            ),
+            values,
+        }
     }
+}
+
+/// The coefficients of q̈ and of q̇² of a force at each position, and their largest errors.
+struct SolvedForce {
+    values: Vec<[f64; 2]>,
+    rounding: [f64; 2],
+    resampling: [f64; 2],
+}
+
+/// The largest errors of one source, as coefficients.
+fn largest(
+    inertia: &SolvedForce,
+    reactions: &[SolvedForce],
+    source: impl Fn(&SolvedForce) -> [f64; 2],
+) -> Coefficients {
+    let [m, half_dm] = source(inertia);
+    let (a, b) = reactions.iter().map(|of| source(of).into()).unzip();
+    Coefficients { m, half_dm, a, b }
 }
 
 impl Equations {
@@ -185,15 +207,15 @@ impl Equations {
         ]
     }
 
-    /// What errors of speeds and accelerations are worth in the forces of both runs, by the coefficients that were found.
+    /// What errors of accelerations and of squares of speeds are worth in the forces of both runs, by the coefficients that
+    /// were found.
     fn force_errors(
         &self,
         [of_acceleration, of_square]: [f64; 2],
         motion: [[f64; 2]; 2],
     ) -> [f64; 2] {
         [0, 1].map(|run| {
-            let [speed, acceleration] = motion[run];
-            let square = 2.0 * self.square[run].abs().sqrt() * speed;
+            let [acceleration, square] = motion[run];
             of_square.abs() * square + of_acceleration.abs() * acceleration
         })
     }
@@ -206,174 +228,6 @@ impl Equations {
         let of_square = two * a.abs() + one * c.abs();
         [of_acceleration / determinant, of_square / determinant]
     }
-}
-
-/// A run with the speeds and accelerations that its file has or that the procedure means.
-struct TimedRun {
-    run: Run,
-    speed: Vec<f64>,
-    acceleration: Vec<f64>,
-}
-
-fn wrong(message: String, help: &str) -> SceneError {
-    SceneError::without_labels(message, Some(help.to_owned()))
-}
-
-fn with_speeds(
-    run: Run,
-    accelerates: bool,
-    notes: &mut Vec<String>,
-) -> Result<TimedRun, SceneError> {
-    let q = &run.q.values;
-    if q.len() < 2 || q.windows(2).any(|pair| pair[1] <= pair[0]) {
-        let at = q
-            .windows(2)
-            .position(|pair| pair[1] <= pair[0])
-            .map_or(0, |k| k + 2);
-        let message = match at {
-            0 => format!("`{}` has one row", run.file),
-            at => format!(
-                "the coordinate `{}` in `{}` does not grow in row {at}",
-                run.name, run.file
-            ),
-        };
-        return Err(wrong(
-            message,
-            "export a run in which the coordinate grows, without repeated instants",
-        ));
-    }
-    let first = q[0];
-    let (speed, acceleration) = match (&run.speed, &run.acceleration) {
-        (Some(speed), Some(acceleration)) => (speed.values.clone(), acceleration.values.clone()),
-        (None, None) => {
-            let text = match accelerates {
-                true => "unit acceleration from rest",
-                false => "unit speed without acceleration",
-            };
-            let of = |travelled: f64| match accelerates {
-                true => ((2.0 * travelled).sqrt(), 1.0),
-                false => (1.0, 0.0),
-            };
-            notes.push(format!(
-                "`{}` has no speeds and accelerations: {text} is meant",
-                run.file
-            ));
-            q.iter().map(|q| of(q - first)).unzip()
-        }
-        _ => {
-            let message = format!(
-                "`{}` has a speed without an acceleration, or the reverse",
-                run.file
-            );
-            return Err(wrong(message, "export both, or neither of them"));
-        }
-    };
-    let timed = TimedRun {
-        run,
-        speed,
-        acceleration,
-    };
-    timed.check_speed()?;
-    Ok(timed)
-}
-
-impl TimedRun {
-    /// q̇² changes by twice the integral of q̈ over q, whatever the motion: degrees beside radians do not.
-    fn check_speed(&self) -> Result<(), SceneError> {
-        let (q, v, a) = (&self.run.q.values, &self.speed, &self.acceleration);
-        let integral: f64 = (1..q.len())
-            .map(|k| (q[k] - q[k - 1]) * (a[k] + a[k - 1]))
-            .sum();
-        let squares = v.iter().map(|v| v * v);
-        let largest = squares.fold(0.0_f64, f64::max);
-        let change = v[v.len() - 1].powi(2) - v[0].powi(2);
-        if (change - integral).abs() <= SPEED_TOLERANCE * largest.max(integral.abs()) {
-            return Ok(());
-        }
-        let message = format!(
-            "in `{}` the square of the speed changes by {change:.4}, but the acceleration makes it {integral:.4}",
-            self.run.file
-        );
-        Err(wrong(
-            message,
-            "is an angle in degrees and its speed in rad/s, or the reverse? Write the units into the header, `phi [deg]`",
-        ))
-    }
-
-    /// Half a unit of the last printed digit of speed and acceleration.
-    fn motion_rounding(&self) -> [f64; 2] {
-        let of = |column: &Option<ExportedColumn>| column.as_ref().map_or(0.0, |c| c.rounding);
-        [of(&self.run.speed), of(&self.run.acceleration)]
-    }
-
-    fn is_whole_revolution(&self, rows: usize) -> bool {
-        let q = &self.run.q.values[..rows];
-        if !self.run.is_angle || rows < 4 {
-            return false;
-        }
-        let step = TAU / (rows - 1) as f64;
-        let printed = 2.0 * self.run.q.rounding;
-        let mut rows = q.iter().enumerate();
-        rows.all(|(k, x)| (x - q[0] - step * k as f64).abs() < 1e-6 * step + printed)
-    }
-
-    /// The run at other positions.
-    fn at(&self, q: &[f64]) -> Self {
-        let known = &self.run.q.values;
-        let range = known[known.len() - 1] - known[0];
-        let same = q.len() <= known.len()
-            && q.iter()
-                .zip(known)
-                .all(|(a, b)| (a - b).abs() <= SAME_POSITION * range);
-        if same {
-            let mut run = self.run.clone();
-            run.q.values.truncate(q.len());
-            return Self {
-                run,
-                speed: self.speed.clone(),
-                acceleration: self.acceleration.clone(),
-            };
-        }
-        let values = |of: &[f64]| {
-            q.iter()
-                .map(|&x| interpolated(known, of, x))
-                .collect::<Vec<f64>>()
-        };
-        let column = |column: &ExportedColumn| ExportedColumn {
-            values: values(&column.values),
-            ..column.clone()
-        };
-        let squares: Vec<f64> = self.speed.iter().map(|v| v * v).collect();
-        Self {
-            run: Run {
-                q: column(&self.run.q),
-                force: column(&self.run.force),
-                reactions: self.run.reactions.iter().map(column).collect(),
-                ..self.run.clone()
-            },
-            // A root at rest has no slope: its square has.
-            speed: values(&squares)
-                .into_iter()
-                .map(|square| square.max(0.0).sqrt())
-                .collect(),
-            acceleration: values(&self.acceleration),
-        }
-    }
-}
-
-/// A polynomial through the nearest points.
-fn interpolated(known: &[f64], values: &[f64], x: f64) -> f64 {
-    let count = POINTS.min(known.len());
-    let after = known.partition_point(|&q| q < x);
-    let first = after.saturating_sub(count / 2).min(known.len() - count);
-    let points = first..first + count;
-    let weight = |i: usize| {
-        let others = points.clone().filter(|&j| j != i);
-        others
-            .map(|j| (x - known[j]) / (known[i] - known[j]))
-            .product::<f64>()
-    };
-    points.clone().map(|i| weight(i) * values[i]).sum()
 }
 
 /// The runs are not exchanged: the second accelerates more.

@@ -16,6 +16,7 @@ mod sampled_model;
 #[cfg(test)]
 mod tests;
 mod text_table;
+mod timed_run;
 
 pub use columns::ColumnNames;
 pub use combine::{ExportedRuns, combine_runs};

@@ -168,10 +168,15 @@ fn errors_text(
             continue;
         }
         let (digits, between) = (errors.digits[k], errors.interpolation[k]);
+        let resampling = match errors.resampling[k] {
+            0.0 => String::new(),
+            error => format!(", {error:.1e} by other positions in run ii"),
+        };
         text += &format!(
-            "    {name}: {digits:.1e} by the printed digits, {between:.1e} by the interpolation\n"
+            "    {name}: {digits:.1e} by the printed digits{resampling}, {between:.1e} by the interpolation\n"
         );
         record.add(format!("error.{key}.digits"), "", digits);
+        record.add(format!("error.{key}.resampling"), "", errors.resampling[k]);
         record.add(format!("error.{key}.interpolation"), "", between);
     }
     text
@@ -200,7 +205,9 @@ fn period_text(
     let error = errors.sum(0) * orbit.period;
     record.add_within("period_at_unit_speed", "s", orbit.period, error);
     format!(
-        "  a free motion that begins with 1 rad/s has a period of {} s (estimated error {error:.1e} s)\n",
+        "  a free motion that begins at {} = {:.6} rad with 1 rad/s has a period of {} s (error by digits and interpolation: {error:.1e} s)\n",
+        runs.coordinate,
+        runs.q[0],
         digits_within(orbit.period, error, 13)
     )
 }

@@ -10,14 +10,16 @@ use std::f64::consts::FRAC_2_PI;
 pub struct SampleErrors {
     /// By the printed digits.
     pub digits: [f64; 4],
+    /// By the interpolation of run ii onto the positions of run i.
+    pub resampling: [f64; 4],
     /// By the interpolation between the positions.
     pub interpolation: [f64; 4],
 }
 
 impl SampleErrors {
-    /// Both together.
+    /// All together.
     pub fn sum(&self, k: usize) -> f64 {
-        self.digits[k] + self.interpolation[k]
+        self.digits[k] + self.resampling[k] + self.interpolation[k]
     }
 
     /// The errors of a model through the positions of two runs.
@@ -38,6 +40,7 @@ impl SampleErrors {
             SampleInterpolation::Linear | SampleInterpolation::Cubic => 1.0,
         };
         let rounding = printed_errors(runs);
+        let resampling = flat(&runs.resampling);
         let width = rounding.len();
         let (mut largest, mut differences) = (vec![0.0_f64; width], vec![0.0_f64; width]);
         let last = runs.q.len() - 1 + usize::from(runs.is_whole_revolution);
@@ -65,6 +68,8 @@ impl SampleErrors {
                 // What lies beyond the last coefficients is nearly as much again (measured: 1.3 times them).
                 let between = share * differences[i] + 2.0 * tails[i];
                 errors.digits[kind] = errors.digits[kind].max(enlarged * rounding[i] / scale);
+                errors.resampling[kind] =
+                    errors.resampling[kind].max(enlarged * resampling[i] / scale);
                 errors.interpolation[kind] = errors.interpolation[kind].max(between / scale);
             }
         }

@@ -17,6 +17,8 @@ pub struct ExportedColumn {
     pub values: Vec<f64>,
     /// Half a unit of the last printed digit, of the value where that is largest.
     pub rounding: f64,
+    /// Its error by interpolation onto other positions.
+    pub resampling: f64,
 }
 
 /// An exported table.

@@ -1,0 +1,23 @@
+//! What two exported kinetostatic runs of the single-dwell mechanism are worth: how the errors of m, of a reaction and of the
+//! period depend on the number of positions, the printed digits and the interpolation, and whether the stated errors hold.
+//!
+//! ```text
+//! compute ── report
+//! ```
+
+mod compute;
+mod report;
+
+use dwell_scene::Scene;
+use dwell_study::{Outcome, StudyError};
+
+/// The case whose runs are exported.
+pub const CASE: &str = "single-dwell";
+
+/// The study of a scene of one revolving coordinate: `exported-runs.md`, `.txt` and the folder `exported-runs/`.
+///
+/// # Errors
+/// [`StudyError`] where a run cannot be computed or combined.
+pub fn study(scene: &Scene) -> Result<Outcome, StudyError> {
+    report::outcome(&compute::cells(scene)?)
+}

@@ -1,0 +1,227 @@
+//! The picture, the table and the document of the study.
+
+use super::compute::{Cell, DIGITS, INTERPOLATIONS, POSITIONS, QUANTITIES};
+use crate::report_parts::{figure_blocks, pass_or_fail, pictures, table};
+use dwell_findings::{Check, Finding, all_pass};
+use dwell_report::{
+    Axis, Block, Chart, Column, Document, Figure, Files, Mark, Paint, Series, Stroke, Table,
+    TableExport as _, reproducible_text,
+};
+use dwell_study::exported_runs::SampleInterpolation;
+use dwell_study::output::chart;
+use dwell_study::{Outcome, StudyError};
+
+const NAME: &str = "exported-runs";
+/// The errors that a chart has room for.
+const ERROR_RANGE: [f64; 2] = [1e-16, 1.0];
+/// Differences of rounding, beside what is stated.
+const ROUNDING: f64 = 2e-13;
+
+/// The report: `exported-runs.md`, `.txt` and the folder `exported-runs/`.
+///
+/// # Errors
+/// [`StudyError`] where the table cannot be written.
+pub(super) fn outcome(cells: &[Cell]) -> Result<Outcome, StudyError> {
+    let findings = findings(cells);
+    let figures = [figure(cells)];
+    let mut files = Files::new();
+    files.add(format!("{NAME}/errors.csv"), numbers(cells).csv()?);
+    files.add(format!("{NAME}.txt"), snapshot(cells, &findings));
+    files.add(
+        format!("{NAME}.md"),
+        document(cells, &figures, &findings).markdown(),
+    );
+    Ok(Outcome {
+        summary: format!(
+            "{NAME}: {} of {} findings pass, {} exports\n",
+            findings.iter().filter(|f| f.pass).count(),
+            findings.len(),
+            cells.len()
+        ),
+        files,
+        pictures: pictures(NAME, &figures).collect(),
+        findings,
+        ..Outcome::default()
+    })
+}
+
+/// For each interpolation and quantity: no error is above the stated one.
+fn findings(cells: &[Cell]) -> Vec<Finding> {
+    let of = |interpolation: SampleInterpolation, k: usize| {
+        let excess = |cell: &Cell| cell.errors[k] / (cell.estimates[k] + ROUNDING);
+        let all = cells.iter().filter(|c| c.interpolation == interpolation);
+        let worst = all.max_by(|one, other| excess(one).total_cmp(&excess(other)));
+        let ratio = worst.map_or(f64::NAN, excess);
+        let key = format!("{NAME}-{}-{}", interpolation.name(), QUANTITIES[k]);
+        let check = match QUANTITIES[k] {
+            "period" => Check::Period,
+            _ => Check::WrittenTwice,
+        };
+        let mut finding = Finding::new(&key, check, [ratio, ratio], 1.0);
+        finding.comparison = format!(
+            "error of the {} of exported runs, {} interpolation, over the stated error",
+            QUANTITIES[k],
+            interpolation.name()
+        );
+        finding.scale = "the stated error".to_owned();
+        finding.worst_at = worst.map_or_else(String::new, |cell| {
+            format!("{} positions, {} digits", cell.positions, cell.digits)
+        });
+        finding
+    };
+    let each = |interpolation| (0..QUANTITIES.len()).map(move |k| of(interpolation, k));
+    INTERPOLATIONS.into_iter().flat_map(each).collect()
+}
+
+fn error_axis(quantity: &str) -> Axis {
+    Axis::log(format!("error of {quantity} / largest"), "")
+        .with_range(ERROR_RANGE[0], ERROR_RANGE[1])
+}
+
+/// Errors over the number of positions: by interpolation with all digits, and by digits with trigonometric interpolation.
+fn figure(cells: &[Cell]) -> Figure {
+    let mut panels = Vec::new();
+    let positions = || {
+        let [first, last] = [POSITIONS[0], POSITIONS[POSITIONS.len() - 1]];
+        Axis::log("positions of a revolution", "").with_range(0.9 * first as f64, 1.1 * last as f64)
+    };
+    let line = |name: String, paint: usize, k: usize, of: &dyn Fn(&&Cell) -> bool| -> [Series; 2] {
+        let at = |value: &dyn Fn(&Cell) -> f64| -> Vec<[f64; 2]> {
+            let selected = cells.iter().filter(of);
+            selected
+                .map(|cell| [cell.positions as f64, value(cell).max(ERROR_RANGE[0])])
+                .collect()
+        };
+        let (paint, found) = (Paint::Palette(paint), at(&|cell| cell.errors[k]));
+        let stated = at(&|cell| cell.estimates[k].min(ERROR_RANGE[1]));
+        [
+            Series::line(name, found)
+                .stroke(Stroke::LineAndPoints)
+                .color(paint),
+            Series::line("", stated).stroke(Stroke::Dashed).color(paint),
+        ]
+    };
+    for (k, quantity) in ["m", "the reaction's a, b", "the period"]
+        .into_iter()
+        .enumerate()
+    {
+        let most = DIGITS[DIGITS.len() - 1];
+        let by_interpolation = INTERPOLATIONS
+            .into_iter()
+            .enumerate()
+            .flat_map(|(i, wanted)| {
+                line(wanted.name().to_owned(), i, k, &move |cell: &&Cell| {
+                    cell.interpolation == wanted && cell.digits == most
+                })
+            });
+        let by_digits = DIGITS.into_iter().enumerate().flat_map(|(i, wanted)| {
+            line(format!("{wanted} digits"), i, k, &move |cell: &&Cell| {
+                cell.interpolation == SampleInterpolation::Trigonometric && cell.digits == wanted
+            })
+        });
+        let titles = [
+            format!("{quantity}: by interpolation, 16 digits"),
+            format!("{quantity}: by digits, trigonometric"),
+        ];
+        for (title, series) in titles
+            .iter()
+            .zip([by_interpolation.collect::<Vec<_>>(), by_digits.collect()])
+        {
+            let one_degree = Mark::Vertical {
+                at: 360.0,
+                label: String::new(),
+            };
+            panels.push(
+                Chart {
+                    marks: vec![one_degree],
+                    ..chart(title, positions(), error_axis(QUANTITIES[k]), series)
+                }
+                .into(),
+            );
+        }
+    }
+    Figure {
+        name: "errors".to_owned(),
+        title: "What two exported runs are worth".to_owned(),
+        caption: "The two kinetostatic runs of the single-dwell mechanism, printed with some digits at some positions of a \
+                  revolution, and combined. Full: the largest error of m, of a and b of the slide's normal force (relative to \
+                  the largest value), and of the period of the free motion, against the mechanism itself; dashed: what is stated \
+                  from the tables alone. The vertical line is one position for each degree."
+            .to_owned(),
+        columns: 2,
+        panels,
+        ..Figure::default()
+    }
+}
+
+fn numbers(cells: &[Cell]) -> Table {
+    let mut columns = vec![
+        Column::new("positions", ""),
+        Column::new("digits", ""),
+        Column::new("interpolation (0 linear, 1 cubic, 2 trigonometric)", ""),
+    ];
+    for quantity in QUANTITIES {
+        columns.push(Column::new(format!("{quantity}.error"), ""));
+        columns.push(Column::new(format!("{quantity}.stated"), ""));
+    }
+    let row = |cell: &Cell| {
+        let interpolation = INTERPOLATIONS.iter().position(|i| *i == cell.interpolation);
+        let mut row = vec![
+            cell.positions as f64,
+            cell.digits as f64,
+            interpolation.unwrap_or(0) as f64,
+        ];
+        row.extend((0..QUANTITIES.len()).flat_map(|k| [cell.errors[k], cell.estimates[k]]));
+        row
+    };
+    Table {
+        columns,
+        rows: cells.iter().map(row).collect(),
+    }
+}
+
+/// What every machine reproduces.
+fn snapshot(cells: &[Cell], findings: &[Finding]) -> String {
+    format!("Exported runs\n\n{} exports\n\n", cells.len()) + &reproducible_text(findings)
+}
+
+fn document(cells: &[Cell], figures: &[Figure], findings: &[Finding]) -> Document {
+    let header = [
+        "Positions",
+        "Digits",
+        "Interpolation",
+        "m",
+        "a, b",
+        "Period",
+    ];
+    let shown = cells
+        .iter()
+        .filter(|c| [36, 72, 180, 360, 720, 3600].contains(&c.positions));
+    let row = |cell: &Cell| {
+        let mut row = vec![
+            cell.positions.to_string(),
+            cell.digits.to_string(),
+            cell.interpolation.name().to_owned(),
+        ];
+        row.extend(cell.errors.iter().map(|error| format!("{error:.0e}")));
+        row
+    };
+    let few_digits = |c: &&Cell| [4, 6, 12, 16].contains(&c.digits);
+    let mut blocks = vec![Block::Text(format!(
+        "{}. `dwell reduce --from RUN_I RUN_II` knows the mechanism only where the tables have positions, and only to their printed \
+         digits. Here its result is compared with the mechanism that made them, so that a user knows what to export: for a \
+         mechanism without sharp features a position for each degree, twelve digits, a whole revolution at equal angles.",
+        pass_or_fail(all_pass(findings))
+    ))];
+    blocks.extend(figure_blocks(NAME, figures, true));
+    blocks.push(Block::Heading(
+        "Errors relative to the largest value".to_owned(),
+    ));
+    blocks.push(table(&header, shown.filter(few_digits).map(row)));
+    blocks.push(Block::Heading("Findings".to_owned()));
+    blocks.push(Block::Findings(findings.to_vec()));
+    Document {
+        title: "Exported runs".to_owned(),
+        blocks,
+    }
+}
