@@ -4,7 +4,7 @@ use crate::interface::interface;
 use crate::options::DEFAULT_CASE_FOLDER;
 use crate::{as_scene_error, cases, print_warnings, validation_error};
 use dwell_scene::{Scene, SceneError};
-use dwell_study::{Outcome, Progress, Step};
+use dwell_study::{Outcome, Progress, Step, StudyError};
 use dwell_validation::manual::KeyStudy;
 use dwell_validation::{
     CaseResult, Validation, ValidationError, export_study, extremes, index, work_precision,
@@ -39,32 +39,18 @@ pub(crate) fn validate(
     };
     let all_cases = names.is_empty() && folder == Path::new(DEFAULT_CASE_FOLDER);
     let read: Vec<&Scene> = scenes.iter().flatten().collect();
-    let exported = read
-        .iter()
-        .find(|s| all_cases && s.name == export_study::CASE);
-    let (results, ((extremes, (costs, exports)), keys)): (Vec<Result<Validation, SceneError>>, _) =
-        rayon::join(
-            || scenes.par_iter().zip(&cases).map(one).collect(),
-            || {
-                rayon::join(
-                    || {
-                        rayon::join(
-                            || (all_cases || slow).then(|| extremes::study(slow, seed)),
-                            || {
-                                let costs = || work_precision::selected_case_reports(&read);
-                                let exports = exported.map(|scene| export_study::study(scene));
-                                (all_cases.then(costs), exports)
-                            },
-                        )
-                    },
-                    || all_cases.then(|| KeyStudy::new(&read, folder)),
-                )
-            },
-        );
+    let all = all_cases.then_some(&read[..]);
+    let (results, (studies, keys)): (Vec<Result<Validation, SceneError>>, _) = rayon::join(
+        || scenes.par_iter().zip(&cases).map(one).collect(),
+        || {
+            rayon::join(
+                || studies(all, (slow, seed)),
+                || all.map(|scenes| KeyStudy::new(scenes, folder)),
+            )
+        },
+    );
     bar.finish_and_clear();
-    let others: Result<Vec<Outcome>, _> =
-        [extremes, costs, exports].into_iter().flatten().collect();
-    let mut others = others.map_err(as_scene_error)?;
+    let mut others = studies.map_err(as_scene_error)?;
     if let Some(keys) = keys {
         let extremes: Vec<_> = others.iter().flat_map(|o| o.findings.clone()).collect();
         let names: Vec<String> = cases.iter().map(|c| c.display().to_string()).collect();
@@ -83,6 +69,22 @@ pub(crate) fn validate(
     all.record.add_count("findings.failed", failed.count());
     all.record.add_count("findings", all.findings.len());
     Ok((all, failures))
+}
+
+/// The studies beside the cases: extreme parameters, and with all of Dwell's own cases what accuracy costs and what exported
+/// runs are worth.
+fn studies(all: Option<&[&Scene]>, (slow, seed): (bool, u64)) -> Result<Vec<Outcome>, StudyError> {
+    let exported = all.and_then(|scenes| scenes.iter().find(|s| s.name == export_study::CASE));
+    let (extremes, (costs, exports)) = rayon::join(
+        || (all.is_some() || slow).then(|| extremes::study(slow, seed)),
+        || {
+            rayon::join(
+                || all.map(work_precision::selected_case_reports),
+                || exported.map(|scene| export_study::study(scene)),
+            )
+        },
+    );
+    [extremes, costs, exports].into_iter().flatten().collect()
 }
 
 /// Validates a case. What leaves the program is judged, too: it runs itself. Where the system does not say where it is, the
