@@ -328,7 +328,7 @@ fn runs_at_other_positions_are_interpolated() {
         let last = uneven.rows.len() - 1;
         let rows = uneven.rows.into_iter().enumerate();
         // Of the rows that remain some are left out, so that distances differ.
-        let is_kept = |k: usize| k == last || (k % stride == 0 && k / stride % 7 != 3);
+        let is_kept = |k: usize| k == last || (k.is_multiple_of(stride) && k / stride % 7 != 3);
         uneven.rows = rows
             .filter(|(k, _)| is_kept(*k))
             .map(|(_, row)| row)
