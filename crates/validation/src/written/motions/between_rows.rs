@@ -31,19 +31,15 @@ pub(super) fn between_rows(
     };
     let (kinetic, power): (Vec<f64>, Vec<f64>) =
         of_rows.energies.iter().map(|[t, p]| (*t, *p)).unzip();
-    let [potential, written] = ["energy.potential", "energy.kinetic"]
-        .map(|name| rows.columns.get(name).cloned().unwrap_or_default());
+    let potential = rows.columns.get("energy.potential");
     let works = rows
         .columns
         .iter()
         .filter(|(name, _)| name.ends_with(".work"));
-    let works: Vec<_> = works.collect();
-    let sizes = works.iter().flat_map(|(_, work)| work.iter());
-    let scale = kinetic
-        .iter()
-        .chain(&potential)
-        .chain(sizes)
-        .fold(0.0_f64, |max, e| max.max(e.abs()));
+    let works = works.flat_map(|(_, work)| work);
+    let energies = kinetic.iter().chain(potential.into_iter().flatten());
+    let sizes = energies.chain(works).map(|e| e.abs());
+    let scale = sizes.fold(0.0, f64::max);
     let at = |what: &str| format!("{file}, {what}");
     simpson(
         &mut found.balance,
@@ -65,19 +61,38 @@ pub(super) fn between_rows(
             );
         }
     }
+    add_columns(&mut found.columns, (motion, of_rows), rows, (scale, file));
+    found
+}
+
+/// The columns of energies and works against powers and energies of the second reading.
+fn add_columns(
+    to: &mut Differences,
+    (motion, of_rows): (&MotionReading, &ComparedRows),
+    rows: &Rows,
+    (scale, file): (f64, &str),
+) {
+    let column = |name: &str| rows.columns.get(name).cloned().unwrap_or_default();
+    let (time, potential) = (column("t"), column("energy.potential"));
+    let at = |what: &str| format!("{file}, {what}");
     let lost: Vec<f64> = of_rows.conservative_power.iter().map(|p| -p).collect();
     simpson(
-        &mut found.columns,
-        time,
+        to,
+        &time,
         [&potential, &lost],
         scale,
         &at("energy.potential"),
     );
-    for (row, (written, kinetic)) in written.iter().zip(&kinetic).enumerate() {
-        found.columns.add(written - kinetic, scale, "J", || {
+    let written = column("energy.kinetic");
+    for (row, (written, [kinetic, _])) in written.iter().zip(&of_rows.energies).enumerate() {
+        to.add(written - kinetic, scale, "J", || {
             format!("{file}, row {row}, energy.kinetic")
         });
     }
+    let works = rows
+        .columns
+        .iter()
+        .filter(|(name, _)| name.ends_with(".work"));
     for (name, work) in works {
         let of_drive = motion
             .drives
@@ -88,10 +103,9 @@ pub(super) fn between_rows(
             None => rows.columns.get(&name.replace(".work", ".power")),
         };
         if let Some(power) = power {
-            simpson(&mut found.columns, time, [work, power], scale, &at(name));
+            simpson(to, &time, [work, power], scale, &at(name));
         }
     }
-    found
 }
 
 /// y(+1) − y(−1) = h/3 (y′₋ + 4 y′ + y′₊), at every row of an even grid.
