@@ -46,11 +46,13 @@ pub enum Check {
     WrittenUnits,
     /// Printed sentences against the numbers of the files.
     WrittenSentences,
+    /// Between written rows of a motion: energy with the power of all forces.
+    WrittenEnergy,
 }
 
 impl Check {
     /// All checks in the order of their numbers.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::ConstraintClosure,
         Self::KineticEnergy,
         Self::EnergySlope,
@@ -71,6 +73,7 @@ impl Check {
         Self::WrittenTwice,
         Self::WrittenUnits,
         Self::WrittenSentences,
+        Self::WrittenEnergy,
     ];
 
     /// The number, from 0: the index in [`Check::ALL`].
@@ -101,6 +104,7 @@ impl Check {
             Self::WrittenTwice => "written twice",
             Self::WrittenUnits => "written units",
             Self::WrittenSentences => "written sentences",
+            Self::WrittenEnergy => "energy between rows",
         }
     }
 }

@@ -119,7 +119,10 @@ pub(crate) fn analyse<'a>(
 
 /// The findings over the files that the program at a path writes of a scene.
 fn written_findings(program: &Path, scene: &Scene) -> Vec<Finding> {
-    written::poses::findings(program, &scene.name, scene.source.inner())
+    let text = scene.source.inner();
+    let mut findings = written::poses::findings(program, &scene.name, text);
+    findings.extend(written::motions::findings(program, &scene.name, text));
+    findings
 }
 
 /// The findings of the reduced model, the free motion, rounding, states, multibody equations and period in the order of

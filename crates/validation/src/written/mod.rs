@@ -1,3 +1,5 @@
-//! Checks of what leaves the program: it runs as a process, and its files are read back and judged.
+//! Checks of what leaves the program: it runs as a process, and its files are read back and compared with a second reading of
+//! the scene.
 
+pub(crate) mod motions;
 pub(crate) mod poses;

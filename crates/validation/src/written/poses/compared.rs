@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 type Spec = (&'static str, Check, &'static str, f64);
 
 #[rustfmt::skip]
-const SPECS: [Spec; 21] = [
+const SPECS: [Spec; 32] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
     ("written-slopes", Check::WrittenRates, "m and V of `reduce` with the integrals of ½m′ and w between rows", 1e-7),
@@ -30,6 +30,17 @@ const SPECS: [Spec; 21] = [
     ("written-code", Check::WrittenTwice, "code of `symbolic` in Python and C, run line by line, with the rows of `reduce`", 1e-11),
     ("written-sweep", Check::WrittenTwice, "extrema of m in rows of `sweep` with `reduce` of each changed scene", 1e-13),
     ("written-units", Check::WrittenUnits, "files of the scene with those of the scene in other units", 1e-11),
+    ("written-motion-closure", Check::WrittenPositions, "joints, points and coordinates of every row of `simulate` with the scene's text", 1e-14),
+    ("written-motion-rates", Check::WrittenRates, "changes between rows of `simulate` with the integrals of their rates", 2e-7),
+    ("written-motion-equations", Check::WrittenForces, "Newton's and Euler's equations of every body in every row of `simulate`, with loads, drives and friction of the scene's text", 3e-14),
+    ("written-motion-forces", Check::WrittenLaws, "forces of drives and powers of friction in rows of `simulate` with those of the scene's text", 1e-13),
+    ("written-motion-energies", Check::WrittenTotals, "columns of energies and works of `simulate` with the powers of the scene's text", 1e-9),
+    ("written-motion-again", Check::WrittenTwice, "rows and events of `simulate` by its default method and by dop853", 2e-6),
+    ("written-motion-energy", Check::WrittenEnergy, "kinetic energy between rows of `simulate` with the power of the forces of the scene's text, and currents with their circuits", 3e-8),
+    ("written-motion-files", Check::WrittenTwice, "CSV of `simulate` with NPZ, extrema of the summary with the rows", 1e-11),
+    ("written-motion-extrema", Check::WrittenRates, "extrema of the summary of `simulate` with the rows around them", 1e-6),
+    ("written-motion-summary", Check::WrittenTotals, "energies and events of the summary of `simulate` with rows and events", 5e-6),
+    ("written-motion-sentences", Check::WrittenSentences, "numbers that `simulate` prints with the summary, to their digits", 1e-12),
     ("written-sentences", Check::WrittenSentences, "printed numbers with the summary, to their digits", 1e-12),
 ];
 
@@ -64,7 +75,10 @@ impl Compared {
                 comparison,
                 scale: "the largest of its kind in the file",
                 tolerance,
-                tolerance_reason: "rounding of the written numbers, measured over all cases",
+                tolerance_reason: match key.starts_with("written-motion") {
+                    true => "error of the motion at its tolerance, measured over all cases",
+                    false => "rounding of the written numbers, measured over all cases",
+                },
             };
             self.by_key
                 .remove(key)?

@@ -58,7 +58,8 @@ impl Reading {
         }
     }
 
-    fn magnitude(&self, value: Option<&Value>) -> Option<Magnitude> {
+    /// A magnitude of a load or a drive.
+    pub(crate) fn magnitude(&self, value: Option<&Value>) -> Option<Magnitude> {
         Some(match value? {
             Value::String(text) => Magnitude::Expression(Expression::read(text)?),
             Value::Table(table) => {

@@ -119,7 +119,8 @@ fn add_extrema(found: &mut Formats, summary: &Value, rows: &Rows, command: &str,
                 .map(|v| sign * (v - value))
                 .fold(0.0, f64::max);
             found.files.add(beyond, scale, "", place);
-            let is_smooth = ![".magnitude", ".direction", ".friction."]
+            // An efficiency begins at rest as zero over zero.
+            let is_smooth = ![".magnitude", ".direction", ".friction.", ".efficiency"]
                 .iter()
                 .any(|part| quantity.contains(part));
             if let Some([near, wide]) = interpolated(x, values, at, corners).filter(|_| is_smooth) {

@@ -9,20 +9,20 @@
 //! equations that the scene's text gives; nothing is solved.
 
 pub(super) mod closure;
-mod compared;
+pub(super) mod compared;
 pub(super) mod difference;
 mod drawn_laws;
 pub(super) mod equilibrium;
 pub(super) mod expression;
 pub(super) mod forces_read;
-mod formats;
+pub(super) mod formats;
 mod generated_code;
 pub(super) mod jet;
 pub(super) mod law;
 pub(super) mod motion;
 mod other_units;
-mod positions;
-mod program;
+pub(super) mod positions;
+pub(super) mod program;
 pub(super) mod rates;
 mod read_files;
 pub(super) mod reading;

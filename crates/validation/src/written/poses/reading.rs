@@ -187,7 +187,7 @@ fn unit([x, y]: [f64; 2]) -> [f64; 2] {
     [x / length, y / length]
 }
 
-pub(super) fn entries<'a>(
+pub(crate) fn entries<'a>(
     scene: &'a Table,
     key: &str,
 ) -> impl Iterator<Item = (&'a String, &'a Table)> {

@@ -1,0 +1,163 @@
+//! The second reading of drives: what they exert on their coordinates in a row.
+
+use crate::written::poses::law::number;
+use crate::written::poses::motion::Motion;
+use crate::written::poses::reading::{Magnitude, Measure, Reading, entries};
+use crate::written::poses::rows::Rows;
+use toml::Table;
+
+/// A drive, in SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Drive {
+    pub(super) name: String,
+    pub(super) measure: Measure,
+    pub(super) kind: DriveKind,
+}
+
+/// What it exerts.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum DriveKind {
+    AppliedForce(Magnitude),
+    /// Voltage, torque per current, resistance; with inductance the current is a state.
+    Circuit {
+        voltage: Magnitude,
+        torque_constant: f64,
+        resistance: f64,
+        inductance: f64,
+        shaft: Shaft,
+    },
+    /// Torque of the shaft at rest, and its speed without load.
+    Line {
+        stall_torque: f64,
+        no_load_speed: f64,
+        shaft: Shaft,
+    },
+    /// Its integral is in no file: its rows are compared alone.
+    SpeedController,
+}
+
+/// The gear and the rotor of a motor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shaft {
+    gear_ratio: f64,
+    inertia: f64,
+}
+
+/// All drives of a scene; why they cannot be read, in words.
+pub(super) fn drives(scene: &Table, reading: &Reading) -> Result<Vec<Drive>, String> {
+    entries(scene, "drives")
+        .map(|(name, table)| {
+            drive(name, table, reading).ok_or_else(|| format!("drive `{name}` cannot be read"))
+        })
+        .collect()
+}
+
+fn drive(name: &str, table: &Table, reading: &Reading) -> Option<Drive> {
+    let kinds = ["applied-force", "motor", "speed-controller"];
+    let key = kinds.into_iter().find(|kind| table.contains_key(*kind))?;
+    let coordinate = reading.coordinate(table.get(key)?.as_str()?)?;
+    let of = |key: &str| number(table.get(key));
+    let shaft = Shaft {
+        gear_ratio: of("gear-ratio").unwrap_or(1.0),
+        inertia: of("inertia").unwrap_or(0.0) * reading.units.inertia,
+    };
+    let kind = match key {
+        "applied-force" => DriveKind::AppliedForce(reading.magnitude(table.get("magnitude"))?),
+        "speed-controller" => DriveKind::SpeedController,
+        _ if table.contains_key("stall-torque") => DriveKind::Line {
+            stall_torque: of("stall-torque")?,
+            no_load_speed: of("no-load-speed")? * reading.units.angle,
+            shaft,
+        },
+        _ => DriveKind::Circuit {
+            voltage: reading.magnitude(table.get("voltage"))?,
+            torque_constant: of("torque-constant")?,
+            resistance: of("resistance")?,
+            inductance: of("inductance").unwrap_or(0.0),
+            shaft,
+        },
+    };
+    Some(Drive {
+        name: name.to_owned(),
+        measure: coordinate.measure,
+        kind,
+    })
+}
+
+impl Drive {
+    /// The force on the coordinate in a row. That of a controller is the written one, and so is a current with inductance.
+    pub(super) fn force(
+        &self,
+        reading: &Reading,
+        rows: &Rows,
+        row: usize,
+        motion: &Motion,
+    ) -> Option<f64> {
+        let t = rows.time(row);
+        let speed = motion.measure(self.measure).0[1];
+        match &self.kind {
+            DriveKind::AppliedForce(magnitude) => magnitude.at(reading, motion, t),
+            DriveKind::Line {
+                stall_torque,
+                no_load_speed,
+                shaft: Shaft { gear_ratio: n, .. },
+            } => Some(n * stall_torque * (1.0 - n * speed / no_load_speed)),
+            DriveKind::Circuit {
+                voltage,
+                torque_constant: k,
+                resistance,
+                inductance,
+                shaft: Shaft { gear_ratio: n, .. },
+            } => {
+                let current = if *inductance > 0.0 {
+                    rows.get(row, &format!("{}.current", self.name))?
+                } else {
+                    (voltage.at(reading, motion, t)? - k * n * speed) / resistance
+                };
+                Some(n * k * current)
+            }
+            // It has no rotor.
+            DriveKind::SpeedController => self.written_force(rows, row),
+        }
+    }
+
+    /// The rate of the current by the circuit, A/s, where the current is a state.
+    pub(super) fn current_rate(
+        &self,
+        reading: &Reading,
+        rows: &Rows,
+        row: usize,
+        motion: &Motion,
+    ) -> Option<f64> {
+        let DriveKind::Circuit {
+            voltage,
+            torque_constant: k,
+            resistance,
+            inductance,
+            shaft: Shaft { gear_ratio: n, .. },
+        } = &self.kind
+        else {
+            return None;
+        };
+        let current = rows.get(row, &format!("{}.current", self.name))?;
+        let speed = motion.measure(self.measure).0[1];
+        let voltage = voltage.at(reading, motion, rows.time(row))?;
+        (*inductance > 0.0).then(|| (voltage - resistance * current - k * n * speed) / inductance)
+    }
+
+    /// The force as it is written: what remains of it beside what accelerates the rotor.
+    pub(super) fn written_force(&self, rows: &Rows, row: usize) -> Option<f64> {
+        let of = |end: &str| rows.get(row, &format!("{}.load_{end}", self.name));
+        of("moment").or_else(|| of("force"))
+    }
+
+    /// The rotor's inertia on the coordinate, kg m² or kg.
+    pub(super) fn rotor_inertia(&self) -> f64 {
+        match self.kind {
+            DriveKind::Line { shaft, .. } | DriveKind::Circuit { shaft, .. } => {
+                shaft.gear_ratio * shaft.gear_ratio * shaft.inertia
+            }
+            DriveKind::AppliedForce(_) | DriveKind::SpeedController => 0.0,
+        }
+    }
+}

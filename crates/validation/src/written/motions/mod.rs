@@ -1,0 +1,16 @@
+//! The files of `simulate`: rows of a motion compared with the second reading of the scene.
+//!
+//! ```text
+//! scene text ── poses::reading + drives ─┐
+//!      └── simulate ── rows ─────────────┴── row_forces (equations of a row), between_rows (energy), summary ── findings
+//! ```
+//!
+//! The rows come from the default method and again from another one, whose rows and events must be the same.
+
+mod between_rows;
+mod drives;
+mod motion_files;
+mod row_forces;
+mod summary;
+
+pub(crate) use motion_files::findings;

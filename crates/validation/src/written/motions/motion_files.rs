@@ -1,0 +1,142 @@
+//! The findings over the motions of a case.
+
+use super::between_rows::between_rows;
+use super::drives::drives;
+use super::row_forces::MotionReading;
+use super::summary::{sentences, summary_of_rows};
+use crate::written::poses::closure::closure;
+use crate::written::poses::compared::Compared;
+use crate::written::poses::difference::Differences;
+use crate::written::poses::formats::formats;
+use crate::written::poses::positions::corners;
+use crate::written::poses::program::{Program, Run};
+use crate::written::poses::rates::rates;
+use crate::written::poses::reading::Reading;
+use crate::written::poses::rows::Rows;
+use crate::written::poses::scene_text::{requests_everything, text_of};
+use dwell_findings::Finding;
+use std::path::Path;
+
+/// Runs `simulate` on a scene and compares its files; nothing of a scene without a motion. A run that fails is a failed
+/// finding.
+pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
+    let mut compared = Compared::default();
+    if let Err(reason) = compare(&mut compared, path, name, scene) {
+        compared.fail("written-motion-closure", reason);
+    }
+    compared.findings()
+}
+
+fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Result<(), String> {
+    let everything = requests_everything(scene)?;
+    if !everything.contains_key("motion") {
+        return Ok(());
+    }
+    let program = Program::new(path, &format!("{name}-motion")).map_err(|e| e.to_string())?;
+    let reading = Reading::new(scene)?;
+    let drives = drives(&everything, &reading)?;
+    let motion = MotionReading { reading, drives };
+    let text = text_of(&everything)?;
+    let run = |name: &str, options: &[&str]| {
+        let arguments = [&["simulate"], options].concat();
+        let run = program.run(name, &text, &arguments);
+        run.map_err(|e| e.to_string())
+    };
+    let first = run("simulate", &[])?;
+    let again = run("again", &["--method", "dop853", "--rtol", "1e-12"])?;
+    let (rows, rows_again) = (first.csv("-motion.csv")?, again.npz("-motion.npz")?);
+    for (rows, file) in [(&rows, "simulate"), (&rows_again, "simulate by dop853")] {
+        compare_rows(compared, &motion, rows, file)?;
+    }
+    let mut same = same_motion(&motion.reading, [&rows, &rows_again]);
+    let events = [&first, &again].map(|run| run.csv("-motion-events.csv"));
+    if let [Ok(events), Ok(others)] = &events {
+        let end = rows.time(rows.count.saturating_sub(1));
+        same_column(&mut same, "t", [events, others], end, "events");
+    }
+    compared.merge("written-motion-again", same);
+    compare_summary(compared, &motion, &first, &rows, events[0].as_ref().ok())
+}
+
+/// The files and sentences of one run with each other.
+fn compare_summary(
+    compared: &mut Compared,
+    motion: &MotionReading,
+    run: &Run,
+    rows: &Rows,
+    events: Option<&Rows>,
+) -> Result<(), String> {
+    let of = formats(run, "motion", "simulate", &corners(&motion.reading))?;
+    compared.merge("written-motion-files", of.files);
+    compared.merge("written-motion-extrema", of.extrema);
+    compared.merge("written-motion-sentences", of.printed);
+    let summary = run.json("-simulate.json")?;
+    compared.merge(
+        "written-motion-summary",
+        summary_of_rows(&summary, rows, events),
+    );
+    compared.merge("written-motion-sentences", sentences(run, &summary));
+    Ok(())
+}
+
+fn compare_rows(
+    compared: &mut Compared,
+    motion: &MotionReading,
+    rows: &Rows,
+    file: &str,
+) -> Result<(), String> {
+    compared.merge(
+        "written-motion-closure",
+        closure(&motion.reading, rows, file).joints,
+    );
+    let of = motion.compare(rows, file);
+    let of = of.ok_or_else(|| format!("{file}: a column is missing"))?;
+    let energy = between_rows(motion, &of, rows, file);
+    compared.merge("written-motion-energy", energy.balance);
+    compared.merge("written-motion-energies", energy.columns);
+    compared.merge("written-motion-equations", of.equations);
+    compared.merge("written-motion-forces", of.forces);
+    if let Some(time) = rows.columns.get("t") {
+        compared.merge(
+            "written-motion-rates",
+            rates(rows, time, &corners(&motion.reading), file),
+        );
+    }
+    Ok(())
+}
+
+/// The coordinates of two motions of the same rows.
+fn same_motion(reading: &Reading, both: [&Rows; 2]) -> Differences {
+    let mut to = Differences::default();
+    for coordinate in &reading.coordinates[..reading.actuator_count] {
+        for end in ["", ".velocity"] {
+            let name = format!("{}{end}", coordinate.name);
+            let values = both[1].columns.get(&name);
+            let scale = values
+                .into_iter()
+                .flatten()
+                .fold(0.0, |max: f64, v| max.max(v.abs()));
+            same_column(&mut to, &name, both, scale, "rows");
+        }
+    }
+    to
+}
+
+fn same_column(to: &mut Differences, name: &str, [one, other]: [&Rows; 2], scale: f64, what: &str) {
+    let columns = (one.columns.get(name), other.columns.get(name));
+    let (Some(one), Some(other)) = columns else {
+        to.fail(format!("{what} have no column {name}"));
+        return;
+    };
+    if one.len() != other.len() {
+        to.fail(format!(
+            "{what}: {} by one method, {} by another",
+            one.len(),
+            other.len()
+        ));
+        return;
+    }
+    for (row, (one, other)) in one.iter().zip(other).enumerate() {
+        to.add(one - other, scale, "", || format!("{what}, {row}, {name}"));
+    }
+}

@@ -1,0 +1,167 @@
+//! A row of a motion: all forces by the second reading, with the reactions as written, and what they must balance.
+
+use super::drives::Drive;
+use crate::written::poses::difference::Differences;
+use crate::written::poses::equilibrium::{
+    ForceColumns, add_residuals, body_residuals, reaction, written_joint_wrenches,
+};
+use crate::written::poses::motion::Motion;
+use crate::written::poses::reading::Reading;
+use crate::written::poses::rows::Rows;
+use crate::written::poses::wrenches::along;
+
+/// The scene of a motion, read once more.
+#[derive(Debug)]
+pub(super) struct MotionReading {
+    pub(super) reading: Reading,
+    pub(super) drives: Vec<Drive>,
+}
+
+/// What the rows of a file give.
+#[derive(Debug, Default)]
+pub(super) struct ComparedRows {
+    /// Newton's and Euler's equations of every body.
+    pub(super) equations: Differences,
+    /// Written forces and powers of drives and friction with those of the second reading.
+    pub(super) forces: Differences,
+    /// By row: kinetic energy with rotors, J, and the power of all forces but the joints', W.
+    pub(super) energies: Vec<[f64; 2]>,
+    /// By row: the power of the loads without a column of work, W.
+    pub(super) conservative_power: Vec<f64>,
+    /// By drive and row: the power before that which accelerates its rotor, W.
+    pub(super) drive_power: Vec<Vec<f64>>,
+    /// By drive and row: the current's rate, A/s.
+    pub(super) current_rates: Vec<Vec<f64>>,
+}
+
+impl MotionReading {
+    /// Compares every row; none of a file without the columns of the bodies.
+    pub(super) fn compare(&self, rows: &Rows, file: &str) -> Option<ComparedRows> {
+        let mut found = ComparedRows {
+            drive_power: vec![Vec::new(); self.drives.len()],
+            current_rates: vec![Vec::new(); self.drives.len()],
+            ..ComparedRows::default()
+        };
+        let mut residuals = Vec::new();
+        let mut compared = Vec::new();
+        for row in 0..rows.count {
+            let motion = Motion::new(&self.reading, rows, row)?;
+            let mut wrenches = self.loads(rows, row, &motion, &mut found)?;
+            let mut power: f64 = wrenches.iter().map(|w| w.power(&motion)).sum();
+            for (k, drive) in self.drives.iter().enumerate() {
+                let force = drive.force(&self.reading, rows, row, &motion)?;
+                let coordinate = motion.measure(drive.measure);
+                power += force * coordinate.0[1];
+                found.drive_power[k].push(force * coordinate.0[1]);
+                let net = force - drive.rotor_inertia() * coordinate.0[2];
+                wrenches.extend(along(&motion, drive.measure, net));
+                compared.push((row, &drive.name, drive.written_force(rows, row), net));
+                let rate = drive.current_rate(&self.reading, rows, row, &motion);
+                found.current_rates[k].extend(rate);
+            }
+            for friction in &self.reading.frictions {
+                let joint = &self.reading.joints[friction.joint];
+                let reaction = reaction(rows, row, joint, "").unwrap_or_default();
+                let of = friction.wrenches(&self.reading, &motion, &reaction)?;
+                let lost: f64 = of.iter().map(|w| w.power(&motion)).sum();
+                let column = |kind: &str| rows.get(row, &format!("{}.{kind}.power", joint.name));
+                let written = [column("friction"), column("viscous")];
+                let sum = written.iter().flatten().sum::<f64>();
+                let is_there = written.iter().any(Option::is_some);
+                compared.push((row, &joint.name, is_there.then_some(sum), lost));
+                power += lost;
+                wrenches.extend(of);
+            }
+            let actuators = self.actuator_forces(rows, row);
+            for (coordinate, force) in self.reading.coordinates.iter().zip(&actuators) {
+                power += force * motion.measure(coordinate.measure).0[1];
+            }
+            found.energies.push([self.kinetic(&motion), power]);
+            let columns = ForceColumns {
+                reaction_end: "",
+                actuators,
+            };
+            // Statically indeterminate reactions are in no file.
+            if let Some(joints) =
+                written_joint_wrenches(&self.reading, rows, row, &motion, &columns)
+            {
+                wrenches.extend(joints);
+                let of = body_residuals(&self.reading, &motion, &wrenches, Some(2));
+                residuals.push((row, of));
+            }
+        }
+        add_residuals(&mut found.equations, &self.reading, &residuals, file);
+        add_compared(&mut found.forces, &compared, file);
+        Some(found)
+    }
+
+    /// The forces of all loads.
+    fn loads(
+        &self,
+        rows: &Rows,
+        row: usize,
+        motion: &Motion,
+        found: &mut ComparedRows,
+    ) -> Option<Vec<crate::written::poses::wrenches::Wrench>> {
+        let mut all = Vec::new();
+        let mut conservative = 0.0;
+        for load in &self.reading.loads {
+            let magnitude = load.magnitude(&self.reading, motion, rows.time(row))?;
+            let unit = load.unit_wrenches(&self.reading, motion);
+            let of: Vec<_> = unit.iter().map(|wrench| wrench.times(magnitude)).collect();
+            if !rows.columns.contains_key(&format!("{}.work", load.name)) {
+                conservative += of.iter().map(|w| w.power(motion)).sum::<f64>();
+            }
+            all.extend(of);
+        }
+        found.conservative_power.push(conservative);
+        Some(all)
+    }
+
+    /// Forces of prescribed actuators; a free one has none.
+    fn actuator_forces(&self, rows: &Rows, row: usize) -> Vec<f64> {
+        let actuators = &self.reading.coordinates[..self.reading.actuator_count];
+        let of = |name: &str| rows.get(row, &format!("{name}.actuator_force"));
+        actuators
+            .iter()
+            .map(|c| of(&c.name).unwrap_or(0.0))
+            .collect()
+    }
+
+    /// The kinetic energy of bodies and rotors, J.
+    fn kinetic(&self, motion: &Motion) -> f64 {
+        let bodies = self.reading.bodies.iter().enumerate().map(|(b, body)| {
+            let [vx, vy] = motion.center(&self.reading, b).order(1);
+            let omega = motion.bodies[b].angle.0[1];
+            0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * omega * omega)
+        });
+        let rotors = self.drives.iter().map(|drive| {
+            let speed = motion.measure(drive.measure).0[1];
+            0.5 * drive.rotor_inertia() * speed * speed
+        });
+        bodies.sum::<f64>() + rotors.sum::<f64>()
+    }
+}
+
+/// Written values of several rows with their references, each relative to the largest of its name.
+fn add_compared(to: &mut Differences, compared: &[(usize, &String, Option<f64>, f64)], file: &str) {
+    let largest = |name: &str| {
+        let same = compared.iter().filter(|(_, of, ..)| *of == name);
+        same.fold(0.0_f64, |max, (.., value)| max.max(value.abs()))
+    };
+    let mut scales: Vec<(&str, f64)> = Vec::new();
+    for (row, name, written, expected) in compared {
+        let Some(written) = written else {
+            to.fail(format!("{file}: `{name}` has no column"));
+            return;
+        };
+        let known = scales.iter().find(|(of, _)| of == name).map(|(_, s)| *s);
+        let scale = known.unwrap_or_else(|| {
+            scales.push((name, largest(name)));
+            largest(name)
+        });
+        to.add(written - expected, scale, "", || {
+            format!("{file}, row {row}, {name}")
+        });
+    }
+}
