@@ -122,6 +122,11 @@ fn written_findings(program: &Path, scene: &Scene) -> Vec<Finding> {
     let text = scene.source.inner();
     let mut findings = written::poses::findings(program, &scene.name, text);
     findings.extend(written::motions::findings(program, &scene.name, text));
+    findings.extend(written::operating_points::findings(
+        program,
+        &scene.name,
+        text,
+    ));
     findings
 }
 

@@ -2,4 +2,5 @@
 //! the scene.
 
 pub(crate) mod motions;
+pub(crate) mod operating_points;
 pub(crate) mod poses;

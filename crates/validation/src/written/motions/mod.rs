@@ -14,3 +14,4 @@ mod row_forces;
 mod summary;
 
 pub(crate) use motion_files::findings;
+pub(crate) use summary::sentences;

@@ -85,7 +85,7 @@ fn add_events(found: &mut Differences, summary: &Value, events: Option<&Rows>) {
 }
 
 /// Every printed number with decimals is one of the summary, to its digits.
-pub(super) fn sentences(run: &Run, summary: &Value) -> Differences {
+pub(crate) fn sentences(run: &Run, summary: &Value) -> Differences {
     let mut all = Vec::new();
     collect(summary, &mut all);
     let mut found = Differences::default();

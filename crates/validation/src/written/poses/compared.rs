@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 type Spec = (&'static str, Check, &'static str, f64);
 
 #[rustfmt::skip]
-const SPECS: [Spec; 32] = [
+const SPECS: [Spec; 36] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
     ("written-slopes", Check::WrittenRates, "m and V of `reduce` with the integrals of ½m′ and w between rows", 1e-7),
@@ -41,6 +41,10 @@ const SPECS: [Spec; 32] = [
     ("written-motion-extrema", Check::WrittenRates, "extrema of the summary of `simulate` with the rows around them", 1e-6),
     ("written-motion-summary", Check::WrittenTotals, "energies and events of the summary of `simulate` with rows and events", 5e-6),
     ("written-motion-sentences", Check::WrittenSentences, "numbers that `simulate` prints with the summary, to their digits", 1e-12),
+    ("written-eigenvalues", Check::WrittenForces, "eigenvalues of `linearise` in the characteristic polynomial of the written A, and their sum with its trace", 1e-13),
+    ("written-modes", Check::WrittenTotals, "frequencies and damping ratios of `linearise` and `equilibria` with their eigenvalues", 1e-14),
+    ("written-point-files", Check::WrittenTwice, "the table of `equilibria` with its summary", 1e-14),
+    ("written-point-sentences", Check::WrittenSentences, "numbers that `linearise` and `equilibria` print with their summaries, to their digits", 1e-12),
     ("written-sentences", Check::WrittenSentences, "printed numbers with the summary, to their digits", 1e-12),
 ];
 
