@@ -127,6 +127,7 @@ fn written_findings(program: &Path, scene: &Scene) -> Vec<Finding> {
         &scene.name,
         text,
     ));
+    findings.extend(written::cycles::findings(program, &scene.name, text));
     findings
 }
 

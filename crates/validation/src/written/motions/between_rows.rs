@@ -109,7 +109,13 @@ fn add_columns(
 }
 
 /// y(+1) − y(−1) = h/3 (y′₋ + 4 y′ + y′₊), at every row of an even grid.
-fn simpson(to: &mut Differences, time: &[f64], [y, rate]: [&[f64]; 2], scale: f64, what: &str) {
+pub(crate) fn simpson(
+    to: &mut Differences,
+    time: &[f64],
+    [y, rate]: [&[f64]; 2],
+    scale: f64,
+    what: &str,
+) {
     let rows = time.len();
     if y.len() != rows || rate.len() != rows {
         to.fail(format!("{what} has not as many values as there are rows"));

@@ -13,5 +13,6 @@ mod motion_files;
 mod row_forces;
 mod summary;
 
+pub(crate) use between_rows::simpson;
 pub(crate) use motion_files::findings;
 pub(crate) use summary::sentences;

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 type Spec = (&'static str, Check, &'static str, f64);
 
 #[rustfmt::skip]
-const SPECS: [Spec; 36] = [
+const SPECS: [Spec; 40] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
     ("written-slopes", Check::WrittenRates, "m and V of `reduce` with the integrals of ½m′ and w between rows", 1e-7),
@@ -45,6 +45,10 @@ const SPECS: [Spec; 36] = [
     ("written-modes", Check::WrittenTotals, "frequencies and damping ratios of `linearise` and `equilibria` with their eigenvalues", 1e-14),
     ("written-point-files", Check::WrittenTwice, "the table of `equilibria` with its summary", 1e-14),
     ("written-point-sentences", Check::WrittenSentences, "numbers that `linearise` and `equilibria` print with their summaries, to their digits", 1e-12),
+    ("written-cycle", Check::WrittenTotals, "speeds, fluctuation and works of the summary of `cycle` with its rows", 1e-8),
+    ("written-cycle-rates", Check::WrittenRates, "changes between rows of `cycle` with the integrals of their rates", 6e-9),
+    ("written-cycle-period", Check::WrittenTwice, "the period of `cycle` with that of a long motion by `simulate`", 1e-8),
+    ("written-cycle-sentences", Check::WrittenSentences, "numbers that `cycle` prints with its summary, to their digits", 1e-12),
     ("written-sentences", Check::WrittenSentences, "printed numbers with the summary, to their digits", 1e-12),
 ];
 
@@ -79,7 +83,10 @@ impl Compared {
                 comparison,
                 scale: "the largest of its kind in the file",
                 tolerance,
-                tolerance_reason: match key.starts_with("written-motion") {
+                tolerance_reason: match ["written-motion", "written-cycle"]
+                    .iter()
+                    .any(|start| key.starts_with(start))
+                {
                     true => "error of the motion at its tolerance, measured over all cases",
                     false => "rounding of the written numbers, measured over all cases",
                 },

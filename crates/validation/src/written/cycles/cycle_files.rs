@@ -1,0 +1,245 @@
+//! The findings over the steady cycle of a case.
+
+use crate::written::motions::{sentences, simpson};
+use crate::written::poses::compared::Compared;
+use crate::written::poses::difference::Differences;
+use crate::written::poses::program::{Program, Run};
+use crate::written::poses::rows::Rows;
+use dwell_findings::Finding;
+use serde_json::Value;
+use std::path::Path;
+use toml::Table;
+
+/// The fluctuation for which a flywheel is wanted.
+const FLUCTUATION: f64 = 0.02;
+/// What a motion from another state may still differ from the cycle, by its multipliers.
+const SETTLED: f64 = 1e-10;
+/// Cycles of the long motion at most: a cycle that settles more slowly is not compared.
+const MAX_CYCLES: f64 = 24.0;
+
+/// Runs `cycle` on a scene with drives and a motion and compares what it writes. Where there is no steady cycle, nothing is
+/// compared.
+pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
+    let mut compared = Compared::default();
+    let table = scene.parse::<Table>();
+    let table = table
+        .ok()
+        .filter(|t| t.contains_key("motion") && t.contains_key("drives"));
+    let program = Program::new(path, &format!("{name}-cycle"));
+    if let (Some(table), Ok(program)) = (table, program)
+        && let Err(reason) = compare(&mut compared, &program, scene, &table)
+    {
+        compared.fail("written-cycle", reason);
+    }
+    compared.findings()
+}
+
+fn compare(
+    compared: &mut Compared,
+    program: &Program,
+    scene: &str,
+    table: &Table,
+) -> Result<(), String> {
+    let wanted = FLUCTUATION.to_string();
+    // Without a steady cycle the status is another, and there are no files.
+    let Ok(run) = program.run("cycle", scene, &["cycle", "--fluctuation", &wanted]) else {
+        return Ok(());
+    };
+    let summary = run.json("-cycle.json")?;
+    let Some(period) = result(&summary, "period") else {
+        return Ok(());
+    };
+    let rows = run.csv("-cycle.csv")?;
+    let coordinate = coordinate(&rows).ok_or("the rows have no coordinate")?;
+    compare_rows(compared, (&summary, ""), &rows, &coordinate, "cycle");
+    for (name, work) in rows
+        .columns
+        .iter()
+        .filter(|(name, _)| name.ends_with(".work"))
+    {
+        add_works(compared.of("written-cycle"), &summary, name, work);
+    }
+    if let (Ok(rows), Some(_)) = (
+        run.csv("-cycle-flywheel.csv"),
+        result(&summary, "flywheel.inertia"),
+    ) {
+        compare_rows(
+            compared,
+            (&summary, "flywheel."),
+            &rows,
+            &coordinate,
+            "cycle with flywheel",
+        );
+    }
+    compared.merge("written-cycle-sentences", sentences(&run, &summary));
+    long_motion(compared, program, (table, &coordinate), &summary, period)
+}
+
+fn result(summary: &Value, name: &str) -> Option<f64> {
+    summary["results"][name]["value"].as_f64()
+}
+
+/// The coordinate whose velocity is a column.
+fn coordinate(rows: &Rows) -> Option<String> {
+    let mut names = rows
+        .columns
+        .keys()
+        .filter_map(|name| name.strip_suffix(".velocity"));
+    names
+        .find(|name| rows.columns.contains_key(*name))
+        .map(str::to_owned)
+}
+
+/// Rows of a cycle: rates, the same state at both ends, and speeds of the summary.
+fn compare_rows(
+    compared: &mut Compared,
+    (summary, prefix): (&Value, &str),
+    rows: &Rows,
+    coordinate: &str,
+    file: &str,
+) {
+    let column = |name: &str| rows.columns.get(name).cloned().unwrap_or_default();
+    let (time, q) = (column("t"), column(coordinate));
+    let speed = column(&format!("{coordinate}.velocity"));
+    add_rates(
+        compared.of("written-cycle-rates"),
+        [
+            &time,
+            &q,
+            &speed,
+            &column(&format!("{coordinate}.acceleration")),
+        ],
+        file,
+    );
+    let ends = |values: &[f64]| {
+        values
+            .last()
+            .zip(values.first())
+            .map_or(f64::NAN, |(l, f)| l - f)
+    };
+    let fastest = speed.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+    let found = compared.of("written-cycle");
+    let place = |what: &str| format!("{file}, {what}");
+    found.add(ends(&speed), fastest, "rad/s", || {
+        place("speed at both ends")
+    });
+    let mean = ends(&q) / ends(&time);
+    let of = |name: &str| result(summary, &format!("{prefix}{name}")).unwrap_or(f64::NAN);
+    found.add(of("mean_speed") - mean, fastest, "rad/s", || {
+        place("mean speed")
+    });
+    if prefix.is_empty() {
+        found.add(of("period") - ends(&time), ends(&time), "s", || {
+            place("period")
+        });
+    }
+    // Between rows it may be faster or slower, by no more than the largest change from row to row.
+    let changes = speed.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let change = changes.fold(0.0, f64::max);
+    let [least, most] = [f64::min, f64::max].map(|of| {
+        speed
+            .iter()
+            .map(|v| v.abs())
+            .fold(of(f64::NAN, fastest), of)
+    });
+    let (slowest, fastest_stated) = (of("slowest_speed").abs(), of("fastest_speed").abs());
+    for (beyond, what) in [
+        (least - slowest, "slowest speed"),
+        (fastest_stated - most, "fastest speed"),
+    ] {
+        let excess = (-beyond).max(beyond - change).max(0.0);
+        found.add(excess, fastest, "rad/s", || place(what));
+    }
+    let fluctuation = (fastest_stated - slowest) / mean.abs();
+    let name = "coefficient_of_fluctuation";
+    // With the flywheel it is the wanted one.
+    let stated = if prefix.is_empty() {
+        of(name)
+    } else {
+        FLUCTUATION
+    };
+    found.add(stated - fluctuation, 1.0, "", || place(name));
+}
+
+/// The rows are at equal distances of the coordinate, where t′ = 1/q̇ and (½q̇²)′ = q̈.
+fn add_rates(to: &mut Differences, [time, q, speed, acceleration]: [&[f64]; 4], file: &str) {
+    let slowness: Vec<f64> = speed.iter().map(|v| 1.0 / v).collect();
+    let squares: Vec<f64> = speed.iter().map(|v| 0.5 * v * v).collect();
+    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+    simpson(
+        to,
+        q,
+        [time, &slowness],
+        largest(time),
+        &format!("{file}, t"),
+    );
+    simpson(
+        to,
+        q,
+        [&squares, acceleration],
+        largest(&squares),
+        &format!("{file}, speed"),
+    );
+}
+
+/// The work of a source in a cycle, by its column.
+fn add_works(to: &mut Differences, summary: &Value, name: &str, work: &[f64]) {
+    let largest = work.iter().fold(0.0_f64, |max, w| max.max(w.abs()));
+    let change = work
+        .last()
+        .zip(work.first())
+        .map_or(f64::NAN, |(l, f)| l - f);
+    if let Some(stated) = result(summary, name) {
+        to.add(stated - change, largest, "J", || {
+            format!("{name} of a cycle")
+        });
+    }
+}
+
+/// The time between the last two revolutions of a motion that has settled is the period.
+fn long_motion(
+    compared: &mut Compared,
+    program: &Program,
+    (table, coordinate): (&Table, &str),
+    summary: &Value,
+    period: f64,
+) -> Result<(), String> {
+    let multipliers = (1..).map_while(|k| {
+        let part = |p: &str| result(summary, &format!("floquet_multiplier.{k}.{p}"));
+        Some(part("re")?.hypot(part("im")?))
+    });
+    let slowest = multipliers.fold(0.0, f64::max);
+    let cycles = (SETTLED.ln() / slowest.max(1e-3).ln()).ceil() + 3.0;
+    if slowest >= 1.0 || cycles > MAX_CYCLES || result(summary, "revolutions") != Some(1.0) {
+        return Ok(());
+    }
+    let mut long = table.clone();
+    let Some(motion) = long.get_mut("motion").and_then(toml::Value::as_table_mut) else {
+        return Ok(());
+    };
+    let event: Table = [("revolution".to_owned(), coordinate.into())]
+        .into_iter()
+        .collect();
+    let events: Table = [("settled".to_owned(), event.into())].into_iter().collect();
+    motion.insert("events".to_owned(), events.into());
+    motion.insert("duration".to_owned(), (period * (cycles + 2.0)).into());
+    let text = toml::to_string(&long).map_err(|e| e.to_string())?;
+    let run: Run = program
+        .run(
+            "long",
+            &text,
+            &["simulate", "--method", "dop853", "--rtol", "1e-11"],
+        )
+        .map_err(|e| e.to_string())?;
+    let events = run.csv("-motion-events.csv")?;
+    let times = events.columns.get("t").map_or(&[][..], Vec::as_slice);
+    let [.., before, last] = times else {
+        return Err("the long motion has no two revolutions".to_owned());
+    };
+    compared
+        .of("written-cycle-period")
+        .add(last - before - period, period, "s", || {
+            format!("period after {} cycles of `simulate`", times.len())
+        });
+    Ok(())
+}
