@@ -4,9 +4,11 @@ use crate::written::motions::{sentences, simpson};
 use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::program::{Program, Run};
+use crate::written::poses::reading::{Measure, Reading};
 use crate::written::poses::rows::Rows;
 use dwell_findings::Finding;
 use serde_json::Value;
+use std::f64::consts::TAU;
 use std::path::Path;
 use toml::Table;
 
@@ -72,7 +74,51 @@ fn compare(
         );
     }
     compared.merge("written-cycle-sentences", sentences(&run, &summary));
+    with_heavier_body(compared, program, (scene, table, &coordinate), &summary)?;
     long_motion(compared, program, (table, &coordinate), &summary, period)
+}
+
+/// The cycle of the scene in which the body that turns with the coordinate has the flywheel's inertia is that with flywheel.
+fn with_heavier_body(
+    compared: &mut Compared,
+    program: &Program,
+    (scene, table, coordinate): (&str, &Table, &str),
+    summary: &Value,
+) -> Result<(), String> {
+    let reading = Reading::new(scene)?;
+    let turning = reading.coordinates.iter().find(|c| c.name == coordinate);
+    let body = match turning.map(|c| c.measure) {
+        Some(Measure::Angle([first, second])) if reading.bodies[first].is_ground => second,
+        _ => return Ok(()),
+    };
+    let Some(inertia) = result(summary, "flywheel.inertia") else {
+        return Ok(());
+    };
+    let mut heavier = table.clone();
+    let bodies = heavier
+        .get_mut("bodies")
+        .and_then(toml::Value::as_table_mut);
+    let entry =
+        bodies.and_then(|bodies| bodies.get_mut(&reading.bodies[body].name)?.as_table_mut());
+    let Some(entry) = entry else { return Ok(()) };
+    let sum = (reading.bodies[body].inertia + inertia) / reading.units.inertia;
+    entry.insert("inertia".to_owned(), sum.into());
+    let text = toml::to_string(&heavier).map_err(|e| e.to_string())?;
+    let run = program
+        .run("heavier", &text, &["cycle"])
+        .map_err(|e| e.to_string())?;
+    let other = run.json("-cycle.json")?;
+    let found = compared.of("written-cycle-flywheel");
+    let [wheel, body] = [(summary, "flywheel."), (&other, "")].map(|(of, prefix)| {
+        ["mean_speed", "slowest_speed", "fastest_speed"]
+            .map(|name| result(of, &format!("{prefix}{name}")).unwrap_or(f64::NAN))
+    });
+    for (one, two) in wheel.into_iter().zip(body) {
+        found.add(one - two, two, "rad/s", || {
+            "speeds with the flywheel".to_owned()
+        });
+    }
+    Ok(())
 }
 
 fn result(summary: &Value, name: &str) -> Option<f64> {
@@ -133,32 +179,34 @@ fn compare_rows(
             place("period")
         });
     }
-    // Between rows it may be faster or slower, by no more than the largest change from row to row.
+    add_speeds(found, &of, &speed, file);
+    let fluctuation = (of("fastest_speed").abs() - of("slowest_speed").abs()) / mean.abs();
+    // With the flywheel it is the wanted one.
+    let stated = match prefix {
+        "" => of("coefficient_of_fluctuation"),
+        _ => FLUCTUATION,
+    };
+    found.add(stated - fluctuation, 1.0, "", || {
+        place("coefficient of fluctuation")
+    });
+}
+
+/// Between rows the motion may be faster or slower, by no more than the largest change from row to row.
+fn add_speeds(to: &mut Differences, of: &dyn Fn(&str) -> f64, speed: &[f64], file: &str) {
     let changes = speed.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let change = changes.fold(0.0, f64::max);
-    let [least, most] = [f64::min, f64::max].map(|of| {
-        speed
-            .iter()
-            .map(|v| v.abs())
-            .fold(of(f64::NAN, fastest), of)
-    });
-    let (slowest, fastest_stated) = (of("slowest_speed").abs(), of("fastest_speed").abs());
+    let sizes = || speed.iter().map(|v| v.abs());
+    let (least, most) = (
+        sizes().fold(f64::INFINITY, f64::min),
+        sizes().fold(0.0, f64::max),
+    );
     for (beyond, what) in [
-        (least - slowest, "slowest speed"),
-        (fastest_stated - most, "fastest speed"),
+        (least - of("slowest_speed").abs(), "slowest speed"),
+        (of("fastest_speed").abs() - most, "fastest speed"),
     ] {
         let excess = (-beyond).max(beyond - change).max(0.0);
-        found.add(excess, fastest, "rad/s", || place(what));
+        to.add(excess, most, "rad/s", || format!("{file}, {what}"));
     }
-    let fluctuation = (fastest_stated - slowest) / mean.abs();
-    let name = "coefficient_of_fluctuation";
-    // With the flywheel it is the wanted one.
-    let stated = if prefix.is_empty() {
-        of(name)
-    } else {
-        FLUCTUATION
-    };
-    found.add(stated - fluctuation, 1.0, "", || place(name));
 }
 
 /// The rows are at equal distances of the coordinate, where t′ = 1/q̇ and (½q̇²)′ = q̈.
