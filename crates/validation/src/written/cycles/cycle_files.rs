@@ -284,10 +284,14 @@ fn long_motion(
     let [.., before, last] = times else {
         return Err("the long motion has no two revolutions".to_owned());
     };
-    compared
-        .of("written-cycle-period")
-        .add(last - before - period, period, "s", || {
-            format!("period after {} cycles of `simulate`", times.len())
-        });
+    let mean = result(summary, "mean_speed").map_or(f64::NAN, f64::abs);
+    let turn = TAU / (last - before);
+    let found = compared.of("written-cycle-period");
+    found.add(last - before - period, period, "s", || {
+        format!("period after {} cycles of `simulate`", times.len())
+    });
+    found.add(mean - turn, turn, "rad/s", || {
+        "mean speed of `simulate`".to_owned()
+    });
     Ok(())
 }
