@@ -33,7 +33,7 @@ use dwell_geometry::mechanism::BranchHint;
 use dwell_geometry::{
     AssemblyConfiguration, BodyId, Coordinate, Joint, JointId, Mechanism, Reaction,
 };
-use dwell_kinetostatics::{Drive, Load, Mass, Model, ModelError};
+use dwell_kinetostatics::{Drive, Load, Mass, Model, ModelError, VaryingInertia};
 use monitor::{ChartExit, ChartMonitor};
 use near_branch::Passage;
 use revolutions::load_angles;
@@ -58,6 +58,8 @@ pub struct MachineDescription<'s> {
     pub mechanism: &'s Mechanism,
     /// By body.
     pub masses: &'s [Mass],
+    /// The bodies whose moment of inertia is a function of their angle.
+    pub varying_inertias: &'s [VaryingInertia],
     /// Its assembly configuration.
     pub assembly: &'s AssemblyConfiguration,
     /// Its loads.
@@ -161,11 +163,15 @@ impl<'s> Atlas<'s> {
         // Auxiliary bodies have no mass.
         let mut masses = description.masses.to_vec();
         masses.resize(mechanism.bodies.len().max(masses.len()), Mass::default());
-        let model = Model::new(mechanism, &masses, assembly, &[])?;
+        let compiled = |reactions: &[Reaction]| {
+            Model::new(mechanism, &masses, assembly, reactions)?
+                .with_varying_inertias(description.varying_inertias)
+        };
+        let model = compiled(&[])?;
         let modes = vec![CoordinateMode::Free; model.plan().actuators()];
         let machine = Machine::new(model, loads, modes, drives)?;
         let all = loads_with_drives(mechanism, loads, drives).map_err(MachineError::from)?;
-        let output_model = Model::new(mechanism, &masses, assembly, description.reactions)?;
+        let output_model = compiled(description.reactions)?;
         let output_model = output_model.with_loads(all);
         let (name, coordinate) = match mechanism.actuators.first() {
             Some(actuator) => (actuator.name.clone(), actuator.coordinate()),

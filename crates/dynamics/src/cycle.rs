@@ -11,7 +11,10 @@
 //! for; the sensitivity S is integrated with the state, and Newton's method (3) converges quadratically. The
 //! eigenvalues of S are the Floquet multipliers: the factors of a small disturbance after a cycle.
 
+mod initial_transient;
 mod variational;
+
+pub use initial_transient::initial_transient;
 
 use crate::eigenvalues::eigenvalues;
 use crate::error::{DynamicsError, Result};
@@ -23,7 +26,6 @@ use crate::options::Options;
 use crate::repetition::{PERIODICITY_TOLERANCE, repetition_angle};
 use dwell_numerics::lu;
 use dwell_numerics::root;
-use std::f64::consts::TAU;
 use variational::VariationalSystem;
 
 /// Why friction that holds has no steady cycle here.
@@ -43,12 +45,6 @@ const STALL_FRACTION: f64 = 0.1;
 const CLOSURE_TOLERANCE: f64 = 1e-3;
 /// Error of a return map in tolerances: BDF errs by hundreds.
 const MAP_ERROR_RATIO: f64 = 100.0;
-/// A machine has come to rest if its speed, and what its acceleration adds in the time of a radian at the largest speed
-/// so far, are below this part of that speed.
-const REST_TOLERANCE: f64 = 1e-6;
-/// A machine that moves by less than this (rad) in so many steps has come to rest, too.
-const REST_ANGLE: f64 = 1e-6;
-const REST_STEPS: usize = 1000;
 /// Samples of a cycle.
 const SAMPLES: usize = 360;
 
@@ -176,99 +172,6 @@ fn never_balances(tried: &[Trial]) -> Option<DynamicsError> {
         q_dot: tried.first()?.q_dot,
         tried: [slowest.q_dot, fastest.q_dot],
     })
-}
-
-/// The state after some revolutions from a start, at rest or not: a guess for [`steady_cycle`].
-///
-/// # Errors
-/// [`DynamicsError::ComesToRest`]; as of [`Machine::evaluate`] and [`integrate`], among them that the steps allowed are
-/// used up, where the machine never completes the revolutions.
-pub fn initial_transient(
-    machine: &Machine,
-    start: &[f64],
-    revolutions: u32,
-    options: &Options,
-) -> Result<Vec<f64>> {
-    machine.require_smooth(NO_CYCLE)?;
-    let mut ode = MachineOde::new(machine, 0.0, start)?;
-    let from = start[0];
-    let distance = TAU * f64::from(revolutions);
-    let mut reached = start.to_vec();
-    let mut rest = RestMonitor::new(machine, start)?;
-    let mut came_to_rest = None;
-    let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
-        if (now.y[0] - from).abs() < distance {
-            let at_rest = rest.is_at_rest(now)?;
-            came_to_rest = at_rest.then_some(now.y[0]);
-            return Ok(match at_rest {
-                true => StepControl::Stop,
-                false => StepControl::Continue,
-            });
-        }
-        let difference =
-            |t: f64| -> Result<f64> { Ok((state_at(t, now, dense)?.y[0] - from).abs() - distance) };
-        let t = root::find(difference, before.t, now.t)?;
-        reached = state_at(t.unwrap_or(now.t), now, dense)?.y;
-        Ok(StepControl::Stop)
-    };
-    let start = OdeState {
-        t: 0.0,
-        y: start.to_vec(),
-    };
-    integrate(&mut ode, &start, None, options, &mut observer)?.completed()?;
-    if let Some(q) = came_to_rest {
-        return Err(DynamicsError::ComesToRest { q });
-    }
-    // The works of the cycle start from zero.
-    reached[machine.work_offset()..].fill(0.0);
-    Ok(reached)
-}
-
-/// Recognises a machine that has come to rest, where an integrator's steps grow without bound.
-struct RestMonitor<'m> {
-    ode: MachineOde<'m>,
-    rates: Vec<f64>,
-    /// Coordinate, speed and states of the drives.
-    states: usize,
-    /// The largest value of each state so far.
-    largest: Vec<f64>,
-    /// Where the machine was when it last moved, and the steps since.
-    last: f64,
-    still_steps: usize,
-}
-
-impl<'m> RestMonitor<'m> {
-    fn new(machine: &'m Machine, start: &[f64]) -> Result<Self> {
-        Ok(Self {
-            ode: MachineOde::new(machine, 0.0, start)?,
-            rates: vec![0.0; start.len()],
-            states: machine.work_offset(),
-            largest: start.iter().map(|x| x.abs()).collect(),
-            last: start[0],
-            still_steps: 0,
-        })
-    }
-
-    fn is_at_rest(&mut self, now: &OdeState) -> Result<bool> {
-        for (largest, x) in self.largest.iter_mut().zip(&now.y) {
-            *largest = largest.max(x.abs());
-        }
-        self.still_steps += 1;
-        if (now.y[0] - self.last).abs() > REST_ANGLE {
-            (self.last, self.still_steps) = (now.y[0], 0);
-        }
-        if self.still_steps >= REST_STEPS {
-            return Ok(true);
-        }
-        let speed = self.largest[1];
-        if speed == 0.0 || now.y[1].abs() > REST_TOLERANCE * speed {
-            return Ok(false);
-        }
-        self.ode.rhs(now.t, &now.y, &mut self.rates)?;
-        let is_constant =
-            |i: usize| self.rates[i].abs() <= REST_TOLERANCE * self.largest[i] * speed;
-        Ok((1..self.states).all(is_constant))
-    }
 }
 
 /// One cycle from z.
@@ -402,13 +305,28 @@ impl<'m> CycleProblem<'m> {
         let [kinetic, _] = state.energy();
         let map_error = MAP_ERROR_RATIO * self.options.rtol;
         let sum: f64 = cycle.works.iter().sum();
-        let size: f64 = cycle.works.iter().map(|work| work.abs()).sum();
+        let size = self.work_done_and_undone(cycle)?;
         if size > map_error * kinetic {
             return Ok(sum.abs() <= CLOSURE_TOLERANCE * size + map_error * kinetic);
         }
         // The works are lost in the error: only that a disturbance decays or grows shows a cycle.
         let mut multipliers = cycle.floquet_multipliers.iter();
         Ok(multipliers.all(|[re, im]| (re - 1.0).hypot(*im) > map_error))
+    }
+
+    /// The sum of the magnitudes of what all sources do in a cycle, J: of a single source, whose work is zero in a steady cycle,
+    /// what it does in one part and undoes in another.
+    fn work_done_and_undone(&self, cycle: &Cycle) -> Result<f64> {
+        let mut ode = MachineOde::new(self.machine, 0.0, &cycle.initial_state)?;
+        let mut rates = vec![0.0; self.machine.state_count()];
+        let mut sum = 0.0;
+        for sample in &cycle.samples {
+            ode.rhs(sample.t, &sample.y, &mut rates)?;
+            let powers = rates[self.machine.work_offset()..].iter();
+            sum += powers.map(|power| power.abs()).sum::<f64>();
+        }
+        let magnitudes: f64 = cycle.works.iter().map(|work| work.abs()).sum();
+        Ok(magnitudes.max(cycle.period * sum / cycle.samples.len().max(1) as f64))
     }
 
     /// The state of the machine at a displacement from the start.

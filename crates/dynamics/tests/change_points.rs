@@ -291,6 +291,7 @@ fn reactions_across_a_bridge() {
     let setup = chain_at(n, FRAC_PI_2);
     let reactions: Vec<Reaction> = setup.mechanism.reactions();
     let description = MachineDescription {
+        varying_inertias: &[],
         mechanism: &setup.mechanism,
         masses: &setup.masses,
         assembly: &setup.assembly,

@@ -400,6 +400,15 @@ impl Plan {
         self.range
     }
 
+    /// Limits the range of the single actuator to coordinates (rad or m) beyond which something of the mechanism is not known.
+    pub fn limit_range(&mut self, [from, to]: [f64; 2]) {
+        let (low, high) = self
+            .range
+            .limits()
+            .unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        self.range = Range::Unresolved(low.max(from), high.min(to));
+    }
+
     /// Where and why the range ends, downwards and upwards.
     pub fn range_limits(&self) -> [Option<RangeLimit>; 2] {
         self.range_limits

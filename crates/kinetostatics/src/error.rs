@@ -1,6 +1,6 @@
 //! Why a model cannot be built or evaluated.
 
-use dwell_geometry::{AssemblyError, PositionError, Reaction};
+use dwell_geometry::{AssemblyError, BodyId, PositionError, Reaction};
 use thiserror::Error;
 
 /// A result that fails with a [`KinetostaticsError`] unless another error is named.
@@ -21,6 +21,14 @@ pub enum ModelError {
     /// Not one mass for each body, or one that is negative or not finite.
     #[error("the masses do not fit the bodies")]
     Masses,
+    /// A moment of inertia over the angle of a body that does not fit the mechanism.
+    #[error("body {}: {what}", body.0)]
+    VaryingInertia {
+        /// The body.
+        body: BodyId,
+        /// What is wrong with it.
+        what: &'static str,
+    },
 }
 
 /// Why a load cannot act on a mechanism.

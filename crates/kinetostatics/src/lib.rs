@@ -38,6 +38,7 @@ pub mod reduced;
 pub mod results;
 mod rounding;
 pub mod table;
+mod varying_inertia;
 
 pub use drive::{Drive, DriveKind, Motor, SpeedController};
 pub use error::{KinetostaticsError, LoadError, ModelError};
@@ -55,3 +56,4 @@ pub use results::{
     Distribution, FreeBodyForces, LinkForces, PowerBalance, Section, ShakingForce, Wrench,
 };
 pub use table::{TableDomain, TableError, TableQuantity, TabulatedModel, UnitLoadResponses};
+pub use varying_inertia::{KnownReaction, VaryingInertia};

@@ -123,6 +123,7 @@ impl Model {
     fn retain_bodies(mut self, bodies: &[BodyId]) -> Self {
         let bodies = bodies.iter().map(|b| b.0);
         let inertial = self.pass_model.inertial_bodies.iter().map(|b| b.body);
+        let inertial = inertial.chain(self.pass_model.varying_inertias.iter().map(|b| b.body));
         let needed = self.plan().groups_needed_by(inertial.chain(bodies));
         self.pass_model.plan = self.pass_model.plan.retain_groups(&needed);
         self
@@ -210,12 +211,19 @@ impl Model {
         [energy, power]
     }
 
-    /// By body with inertia: m v², I ω², m v·a and I ω α.
+    /// By body with inertia: m v², I ω², m v·a and I ω α; by body whose inertia varies: I ω² and I ω α + ½ I′ ω³.
     pub(crate) fn inertia_terms<T: Scalar>(
         &self,
         states: &BodyStates<T>,
     ) -> impl Iterator<Item = [T; 4]> {
-        self.pass_model.inertial_bodies.iter().map(|body| {
+        let varying = self.pass_model.varying_inertias.iter().map(|varying| {
+            let state = states.body(BodyId(varying.body));
+            let [inertia, half_slope] = varying.at(state.rotation);
+            let (w, zero) = (state.angular_velocity, T::from_f64(0.0));
+            let moment = inertia * state.angular_acceleration + half_slope * w * w;
+            [zero, inertia * w * w, zero, moment * w]
+        });
+        let constant = self.pass_model.inertial_bodies.iter().map(|body| {
             let id = BodyId(body.body);
             let center = states.point(id, self.masses[id.0].center);
             let state = states.body(id);
@@ -227,7 +235,8 @@ impl Model {
                 mass * v.dot(center.acceleration),
                 inertia * w * state.angular_acceleration,
             ]
-        })
+        });
+        constant.chain(varying)
     }
 }
 

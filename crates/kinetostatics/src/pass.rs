@@ -9,13 +9,16 @@ mod bodies;
 mod recursive_pass;
 mod sources;
 
-pub(crate) use acceleration::{AtRest, GivenMotion, UnitAcceleration, UnitMotions};
+pub(crate) use acceleration::{
+    AccelerationInput, AtRest, GivenMotion, UnitAcceleration, UnitMotions,
+};
 pub(crate) use bodies::{AcceleratedBody, InertialBody};
 pub use recursive_pass::InverseDynamics;
 pub(crate) use recursive_pass::RecursivePass;
 pub(crate) use sources::ReactionSources;
 
 use crate::mass::Mass;
+use crate::varying_inertia::FrameInertia;
 use dwell_geometry::{Mechanism, Plan};
 
 /// What a pass reads of a model: the plan, the inertia of the bodies, and where the reactions come from.
@@ -27,6 +30,8 @@ pub(crate) struct PassModel {
     pub(crate) accelerated_bodies: Vec<AcceleratedBody>,
     /// By frame: moment of inertia of its bodies about their origins, kg m².
     frame_inertia: Vec<f64>,
+    /// The bodies whose moment of inertia is a function of their angle; in most mechanisms none.
+    pub(crate) varying_inertias: Vec<FrameInertia>,
     pub(crate) reaction_sources: ReactionSources,
 }
 
@@ -43,6 +48,7 @@ impl PassModel {
             accelerated_bodies: bodies::accelerated_bodies(&plan, &origin_moves, &inertial_bodies),
             inertial_bodies,
             frame_inertia,
+            varying_inertias: Vec::new(),
             reaction_sources: ReactionSources::compile(mechanism, &plan, &[]),
             plan,
         }

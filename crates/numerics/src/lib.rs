@@ -28,9 +28,11 @@ pub mod lu;
 mod lu_faer;
 pub mod minimum;
 pub mod panels;
+mod piecewise_quintic;
 pub mod polynomial_fit;
 pub mod qr;
 pub mod root;
+mod sampled_curve;
 pub mod scalar;
 pub mod sin_cos;
 
@@ -38,4 +40,6 @@ pub use double_double::DoubleDouble;
 pub use dual::Dual;
 pub use factor_outcome::FactorOutcome;
 pub use lanes::Lanes;
+pub use piecewise_quintic::PiecewiseQuintic;
+pub use sampled_curve::{SamplePositions, SampledCurve};
 pub use scalar::{Scalar, map_array, uniform};

@@ -7,9 +7,10 @@ use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::Unit;
 use crate::value::Value;
+use crate::varying_inertia::varying_inertia;
 use crate::wording::shorten;
 use dwell_geometry::{BodyId, Vec2};
-use dwell_kinetostatics::Mass;
+use dwell_kinetostatics::{Mass, VaryingInertia};
 use std::collections::HashMap;
 use std::fmt::Display;
 use toml::de::DeValue;
@@ -26,6 +27,7 @@ pub(crate) struct ParsedBody<'a> {
     /// Its points were read: a name that is not among them does not exist.
     points_known: bool,
     pub(crate) mass: Mass,
+    pub(crate) varying_inertia: Option<VaryingInertia>,
 }
 
 /// A point that a text names: its body, its index there, and where it is named.
@@ -60,7 +62,10 @@ impl<'a> Bodies<'a> {
             let body = read_body(entry, table.as_ref(), BodyId(k), is_ground);
             bodies.list.push(body);
         }
-        let mut inertias = tables.iter().flatten().filter_map(|t| t.get("inertia"));
+        let mut inertias = tables
+            .iter()
+            .flatten()
+            .filter_map(|t| t.get("inertia").or_else(|| t.get("varying-inertia")));
         if let Some(entry) = inertias.next() {
             let at = &entry.value.span();
             fields.units().require_inertia_unit(at, fields.log());
@@ -226,6 +231,7 @@ fn read_body<'a>(
         by_name: HashMap::new(),
         points_known: false,
         mass: Mass::default(),
+        varying_inertia: None,
     };
     entry.log().place(SceneLocation::Body(id), &entry.key);
     let Some(fields) = fields else { return body };
@@ -235,9 +241,11 @@ fn read_body<'a>(
     fields.place("inertia", SceneLocation::Inertia(id));
     fields.place("center", SceneLocation::Center(id));
     let mass = body.read_mass(fields, is_ground);
+    let varying = varying_inertia(fields, id, body.name);
     // The ground never moves: what it weighs has no effect, and must not appear in any balance.
     if !is_ground {
         body.mass = mass;
+        body.varying_inertia = varying;
     }
     body
 }

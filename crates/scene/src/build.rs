@@ -22,6 +22,7 @@ use crate::stops::stops as stops_of;
 use crate::table_reader::TableReader;
 use crate::units::Units;
 use crate::value::Context;
+use crate::varying_inertia::check_varying_inertias;
 use crate::wording::shorten;
 use dwell_geometry::{Body, Mechanism, Vec2};
 use dwell_laws::expression::nearest;
@@ -99,6 +100,9 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     if !joints.list.is_empty() && joints.list.iter().all(|j| j.joint.is_some()) {
         report_unjoined_bodies(&bodies, &joints);
     }
+    let varying_inertias = bodies.list.iter().filter_map(|b| b.varying_inertia.clone());
+    let varying_inertias: Vec<_> = varying_inertias.collect();
+    check_varying_inertias(&varying_inertias, &bodies, &joints);
     let names = Names {
         bodies: &bodies,
         joints: &joints,
@@ -177,6 +181,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
         name,
         note: note.map(printable),
         masses: bodies.list.iter().map(|b| b.mass).collect(),
+        varying_inertias,
         points: bodies.list.iter().map(|b| points(&b.points)).collect(),
         coordinates: coordinates.filter_map(coordinate).collect(),
         motion: motion.and_then(|m| m.into_spec(&start)),

@@ -38,6 +38,8 @@ pub enum WrittenAs {
     Pair,
     /// `[[x, y], ...]`.
     Rows,
+    /// `[x, x, ...]`.
+    Numbers,
     /// A string that names something of this sort, such as `body.point`.
     Name(&'static str),
     /// A list of such names.
@@ -233,6 +235,7 @@ fn written_as(shape: &'static ValueShape, value: &Value) -> WrittenAs {
         ValueShape::Expression => WrittenAs::Expression,
         ValueShape::Pair => WrittenAs::Pair,
         ValueShape::TwoPairs | ValueShape::Rows => WrittenAs::Rows,
+        ValueShape::Numbers => WrittenAs::Numbers,
         ValueShape::Name(sort) => WrittenAs::Name(sort),
         ValueShape::TwoNames(sort) | ValueShape::Names(_, sort) => WrittenAs::Names(sort),
         ValueShape::Table(_) | ValueShape::Tables(_) | ValueShape::Kinds(_) => WrittenAs::Table,

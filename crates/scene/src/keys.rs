@@ -68,6 +68,8 @@ pub(crate) enum ValueShape {
     TwoPairs,
     /// `[[x, y], ...]`, two or more.
     Rows,
+    /// `[x, x, ...]`, four or more.
+    Numbers,
     /// A string that names something: `body`, `body.point`.
     Name(String),
     /// Two of them.

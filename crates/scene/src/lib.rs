@@ -95,6 +95,7 @@ mod table_reader;
 mod unit_reader;
 mod units;
 mod value;
+mod varying_inertia;
 mod wording;
 
 #[cfg(test)]

@@ -28,6 +28,17 @@ pub(crate) fn check(kind: &str, entry: &Entry<'_>) {
     entry.reject::<()>(message, "this name", help);
 }
 
+/// The same of a name that may hold dots.
+pub(crate) fn check_dotted(kind: &str, entry: &Entry<'_>) {
+    let parts = entry.name.split('.');
+    let good = |part: &str| !part.is_empty() && part.trim() == part && part.chars().all(allowed);
+    if entry.name.chars().count() > MAX_NAME_LENGTH || !parts.into_iter().all(good) {
+        let message = format!("`{}` cannot be the name of {kind}", shorten(entry.name));
+        let help = "a name is made of letters, digits, `_`, `-`, primes, inner spaces, and dots between them";
+        entry.reject::<()>(message, "this name", help);
+    }
+}
+
 fn allowed(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, '_' | '-' | ' ' | '\'' | '′' | '″')
 }

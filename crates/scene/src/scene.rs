@@ -7,7 +7,7 @@ use crate::units::Units;
 use dwell_geometry::{
     ActuatorId, AssemblyConfiguration, BodyId, Coordinate, Mechanism, Reaction, Vec2,
 };
-use dwell_kinetostatics::{Drive, Load, Mass};
+use dwell_kinetostatics::{Drive, Load, Mass, VaryingInertia};
 use dwell_laws::Law;
 use miette::NamedSource;
 use sha2::{Digest, Sha256};
@@ -28,6 +28,8 @@ pub struct Scene {
     pub mechanism: Mechanism,
     /// Of each body. The ground has none, whatever the file says.
     pub masses: Vec<Mass>,
+    /// The bodies whose moment of inertia is a function of their angle, besides their constant one.
+    pub varying_inertias: Vec<VaryingInertia>,
     /// The named points of each body, in its frame, m.
     pub points: Vec<Vec<(String, Vec2)>>,
     /// The named coordinates of `[coordinates]`. Every actuator's is one besides: see

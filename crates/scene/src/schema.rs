@@ -72,6 +72,7 @@ fn shape(shape: &ValueShape) -> Value {
         ValueShape::Pair => two(number),
         ValueShape::TwoPairs => two(two(number)),
         ValueShape::Rows => list(two(number), 2),
+        ValueShape::Numbers => list(number, 4),
         ValueShape::TwoNames(what) => two(string(what)),
         ValueShape::Names(min_items, what) => list(string(what), *min_items),
         ValueShape::Table(id) => table(keys::table(id)),

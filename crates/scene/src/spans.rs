@@ -20,6 +20,8 @@ pub enum SceneLocation {
     Mass(BodyId),
     /// The body's inertia.
     Inertia(BodyId),
+    /// The body's moment of inertia over its angle.
+    VaryingInertia(BodyId),
     /// The body's centre of mass.
     Center(BodyId),
     /// The joint's name where it is defined.
@@ -92,7 +94,11 @@ impl SceneLocation {
     /// What stands around a place that is not written down.
     pub(crate) fn enclosing(self) -> Self {
         match self {
-            Self::Point(b, _) | Self::Mass(b) | Self::Inertia(b) | Self::Center(b) => Self::Body(b),
+            Self::Point(b, _)
+            | Self::Mass(b)
+            | Self::Inertia(b)
+            | Self::VaryingInertia(b)
+            | Self::Center(b) => Self::Body(b),
             Self::JointPoint(j, _) | Self::Axis(j) | Self::CouplingLaw(j) => Self::Joint(j),
             Self::PrescribedLaw(_) => Self::Prescribed,
             Self::Swept(_) => Self::CoordinateSweep,

@@ -282,7 +282,8 @@ fn describe_pruning(scene: &Scene, model: &Model) -> String {
     }
     let is_massless = |&b: &usize| {
         let mass = scene.masses.get(b);
-        mass.is_some_and(|mass| mass.mass == 0.0 && mass.inertia == 0.0)
+        let varies = scene.varying_inertias.iter().any(|v| v.body.0 == b);
+        !varies && mass.is_some_and(|mass| mass.mass == 0.0 && mass.inertia == 0.0)
     };
     let massless = plan.moving_bodies().iter().map(|c| c.body);
     let massless = massless.filter(is_massless).map(BodyId);
@@ -306,11 +307,15 @@ fn describe_needs(scene: &Scene, model: &Model, group: &dyn Fn(usize) -> String)
     };
     let massive = scene.masses.iter().enumerate();
     let massive = massive.filter(|(_, m)| m.mass > 0.0 || m.inertia > 0.0);
+    let varying = scene.varying_inertias.iter().map(|v| v.body.0);
     let loaded = scene.loads.iter();
     let loaded = loaded.flat_map(|load| load.bodies(&scene.mechanism));
     let requested = requested.iter().map(|b| b.0);
     let needs = [
-        ("inertia", plan.groups_needed_by(massive.map(|(b, _)| b))),
+        (
+            "inertia",
+            plan.groups_needed_by(massive.map(|(b, _)| b).chain(varying)),
+        ),
         ("loads", plan.groups_needed_by(loaded.map(|b| b.0))),
         ("requests", plan.groups_needed_by(requested)),
     ];

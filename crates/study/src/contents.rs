@@ -3,13 +3,14 @@
 use crate::number_format::{coordinate_unit, count, digits, force_unit, number};
 use dwell_findings::Record;
 use dwell_geometry::{BodyId, Plan, Vec2, vec2};
-use dwell_kinetostatics::{DriveKind, LoadKind, Magnitude, Signal};
+use dwell_kinetostatics::{DriveKind, LoadKind, Magnitude, Signal, VaryingInertia};
 use dwell_scene::{CoordinateSweep, FreeMotionSpec, MotionDuration, Scene};
 
 /// Its size, masses, loads, drives, stops and motions as lines of text; the numbers go into the record.
 pub(crate) fn describe_contents(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
     describe_size(scene, plan, record)
         + &describe_masses(scene, plan, record)
+        + &describe_varying_inertias(scene, record)
         + &describe_loads(scene, record)
         + &describe_drives(scene, record)
         + &describe_stops(scene, record)
@@ -67,6 +68,9 @@ fn describe_masses(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
     let massive: Vec<_> = massive.collect();
     let total: f64 = massive.iter().map(|(_, m)| m.mass).sum();
     record.add("mass", "kg", total);
+    if massive.is_empty() && !scene.varying_inertias.is_empty() {
+        return String::new();
+    }
     if massive.is_empty() {
         return "  no body has a mass\n".to_owned();
     }
@@ -96,6 +100,29 @@ fn describe_masses(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
         text += &format!("    {name}: {mass} kg, {inertia} kg m² about its centre of mass\n");
     }
     text
+}
+
+/// The bodies whose moment of inertia is a function of their angle.
+fn describe_varying_inertias(scene: &Scene, record: &mut Record) -> String {
+    let one = |varying: &VaryingInertia| {
+        let name = scene.mechanism.body_name(varying.body);
+        let ends = varying.inertia.extent();
+        for (end, value) in ["min", "max"].into_iter().zip(ends) {
+            record.add(format!("inertia.{name}.{end}"), "kg m2", value);
+        }
+        let [low, high] = ends.map(number);
+        let angles = match varying.inertia.ends() {
+            Some(ends) => {
+                let [from, to] = ends.map(|angle| number(angle.to_degrees()));
+                format!("its angle from {from}° to {to}°")
+            }
+            None => "its angle, over a whole revolution".to_owned(),
+        };
+        format!(
+            "  {name}: a moment of inertia from {low} to {high} kg m² that varies with {angles}\n"
+        )
+    };
+    scene.varying_inertias.iter().map(one).collect()
 }
 
 /// What a load is.

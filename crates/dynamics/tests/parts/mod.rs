@@ -145,6 +145,7 @@ impl Setup {
 
     pub(crate) fn atlas(&self) -> Atlas<'_> {
         let description = MachineDescription {
+            varying_inertias: &[],
             mechanism: &self.mechanism,
             masses: &self.masses,
             assembly: &self.assembly,

@@ -7,6 +7,8 @@ use dwell_numerics::Scalar;
 pub(crate) trait AccelerationInput<T, const N: usize>: Copy {
     /// Angular acceleration of a frame, rad/s².
     fn angular_acceleration(self, frame: usize) -> [T; N];
+    /// Angular velocity of a frame, squared, (rad/s)².
+    fn squared_angular_velocity(self, frame: usize) -> [T; N];
     /// The share of a vector that turns with a frame in a point's acceleration: α ẑ×r − ω² r, m/s².
     fn vector_acceleration(self, frame: usize, vector: Vec2<T>) -> [Vec2<T>; N];
     /// The acceleration along a slide and, across it, the Coriolis acceleration, m/s².
@@ -37,6 +39,11 @@ impl<T: Scalar> AccelerationInput<T, 1> for UnitAcceleration<'_, T> {
     }
 
     #[inline(always)]
+    fn squared_angular_velocity(self, _: usize) -> [T; 1] {
+        [T::from_f64(0.0)]
+    }
+
+    #[inline(always)]
     fn vector_acceleration(self, frame: usize, vector: Vec2<T>) -> [Vec2<T>; 1] {
         [vector.perp() * self.0.angular_velocity[frame]]
     }
@@ -50,6 +57,11 @@ impl<T: Scalar> AccelerationInput<T, 1> for UnitAcceleration<'_, T> {
 impl<T: Scalar> AccelerationInput<T, 1> for AtRest {
     #[inline(always)]
     fn angular_acceleration(self, _: usize) -> [T; 1] {
+        [T::from_f64(0.0)]
+    }
+
+    #[inline(always)]
+    fn squared_angular_velocity(self, _: usize) -> [T; 1] {
         [T::from_f64(0.0)]
     }
 
@@ -68,6 +80,12 @@ impl<T: Scalar> AccelerationInput<T, 1> for GivenMotion<'_, T> {
     #[inline(always)]
     fn angular_acceleration(self, frame: usize) -> [T; 1] {
         [self.0.angular_acceleration[frame]]
+    }
+
+    #[inline(always)]
+    fn squared_angular_velocity(self, frame: usize) -> [T; 1] {
+        let angular_velocity = self.0.angular_velocity[frame];
+        [angular_velocity * angular_velocity]
     }
 
     #[inline(always)]
@@ -90,6 +108,12 @@ impl<T: Scalar> AccelerationInput<T, 2> for UnitMotions<'_, T> {
     fn angular_acceleration(self, frame: usize) -> [T; 2] {
         let [first] = GivenMotion(self.0).angular_acceleration(frame);
         [first, self.0.angular_velocity[frame]]
+    }
+
+    #[inline(always)]
+    fn squared_angular_velocity(self, frame: usize) -> [T; 2] {
+        let [first] = GivenMotion(self.0).squared_angular_velocity(frame);
+        [first, T::from_f64(0.0)]
     }
 
     #[inline(always)]

@@ -115,6 +115,9 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
             let rates = accelerations.angular_acceleration(frame);
             *moment = map_array(rates, |rate| rate * T::from_f64(inertia));
         }
+        if !model.varying_inertias.is_empty() {
+            self.add_varying_inertias(model, pose, accelerations);
+        }
         for (i, accelerated) in model.accelerated_bodies.iter().enumerate() {
             let of_parent = |parent: usize| self.origin_acceleration[parent];
             let mut acceleration = accelerated.parent.map_or([Vec2::zero(); N], of_parent);
@@ -140,6 +143,21 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
             }
             self.origin_acceleration[i] = acceleration;
             self.inertia_force[i] = force;
+        }
+    }
+
+    /// Adds I α + ½ I′ ω² of the bodies whose inertia varies with their angle.
+    // Not inlined, so that an evaluation without such bodies does not contain it.
+    #[inline(never)]
+    fn add_varying_inertias(
+        &mut self,
+        model: &PassModel,
+        pose: &Pose<T>,
+        accelerations: impl AccelerationInput<T, N>,
+    ) {
+        for varying in &model.varying_inertias {
+            let more = varying.moments(pose, accelerations);
+            add(&mut self.balance.moment[varying.frame], more);
         }
     }
 
@@ -285,6 +303,12 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
             let inertia = T::from_f64(body.inertia_about_joint);
             let rates = accelerations.angular_acceleration(body.frame);
             self.joint_moments[body.body] = map_array(rates, |rate| rate * inertia);
+        }
+        for varying in model.varying_inertias.iter().filter(|v| needed[v.body]) {
+            add(
+                &mut self.joint_moments[varying.body],
+                varying.moments(pose, accelerations),
+            );
         }
         let accelerated_bodies = model.accelerated_bodies.iter();
         for (accelerated, &acceleration) in accelerated_bodies.zip(&self.origin_acceleration) {

@@ -117,6 +117,12 @@ impl FreeBodyForces {
             let force = center.acceleration * body.mass;
             shaking.from_momentum.add(-force, center.position, -couple);
         }
+        for varying in &model.pass_model.varying_inertias {
+            let body = states.body(BodyId(varying.body));
+            let ([inertia, half_slope], w) = (varying.at(body.rotation), body.angular_velocity);
+            let couple = inertia * body.angular_acceleration + half_slope * w * w;
+            shaking.from_momentum.add(Vec2::ZERO, Vec2::ZERO, -couple);
+        }
         shaking
     }
 }

@@ -48,6 +48,7 @@ fn value(shape: &ValueShape) -> String {
         ValueShape::Pair => "two numbers".to_owned(),
         ValueShape::TwoPairs => "two pairs of numbers".to_owned(),
         ValueShape::Rows => "two or more pairs of numbers".to_owned(),
+        ValueShape::Numbers => "four or more numbers".to_owned(),
         ValueShape::Name(what) => what.clone(),
         ValueShape::TwoNames(what) => format!("two of {what}"),
         ValueShape::Names(0, what) => format!("list of {what}"),

@@ -138,7 +138,8 @@ fn record(results: &CycleResults<'_>) -> Record {
     let sum: f64 = cycle.works.iter().sum();
     let size: f64 = cycle.works.iter().map(|work| work.abs()).sum();
     record.add("work_sum", "J", sum);
-    if size > errors.work {
+    // A single source has undone in a cycle what it did.
+    if cycle.works.len() > 1 && size > errors.work {
         record.add("work_sum.relative", "", (sum / size).abs());
     }
     record.add("error.speeds", "", errors.speed);
@@ -191,7 +192,7 @@ fn work_text(prepared: &SceneMachine<'_>, cycle: &Cycle, errors: &CycleErrors) -
     }
     let sum: f64 = cycle.works.iter().sum();
     let size: f64 = cycle.works.iter().map(|work| work.abs()).sum();
-    if size > errors.work {
+    if cycle.works.len() > 1 && size > errors.work {
         let relative = (sum / size).abs();
         text +=
             &format!("  sum of these works: {relative:.1e} of the sum of their absolute values\n");

@@ -23,6 +23,12 @@ const MAX_LISTED: usize = 6;
 pub fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
     let assembly = match error {
         ModelError::Assembly(assembly) => assembly,
+        ModelError::VaryingInertia { body, what } => {
+            let message = format!("body `{}`: {what}", scene.mechanism.body_name(*body));
+            let help = "give its inertia over a whole revolution, or make its angle from the ground the only actuator";
+            let label = (SceneLocation::VaryingInertia(*body), "this inertia");
+            return scene_error(scene, message, help, [label]);
+        }
         ModelError::Masses | ModelError::Reaction(_) => {
             return scene_error(scene, error.to_string(), "", [(SceneLocation::Whole, "")]);
         }

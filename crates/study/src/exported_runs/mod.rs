@@ -17,6 +17,8 @@ mod sampled_model;
 mod tests;
 mod text_table;
 mod timed_run;
+#[cfg(feature = "output")]
+mod written_scene;
 
 pub use columns::ColumnNames;
 pub use combine::{ExportedRuns, combine_runs};

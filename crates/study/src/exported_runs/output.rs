@@ -6,6 +6,7 @@ use super::figures;
 use super::sample_errors::SampleErrors;
 use super::sampled_model::{SampleInterpolation, SampledModel};
 use super::text_table::ExportedTable;
+use super::written_scene::scene_text;
 use crate::explain::StudyError;
 use crate::number_format::{coordinate_unit, count, digits_within};
 use crate::output::{Outcome, Picture};
@@ -55,7 +56,7 @@ pub fn reduce_runs(
         return Err(error.into());
     }
     let mut record = Record::default();
-    let summary = summary(&runs, &model, (interpolation, &errors), tables, &mut record);
+    let mut summary = summary(&runs, &model, (interpolation, &errors), tables, &mut record);
     let caption = format!(
         "From `{}` and `{}`, {} interpolation between {}.",
         tables[0].file,
@@ -66,6 +67,17 @@ pub fn reduce_runs(
     let figure = figures::figure(&runs, &model, caption);
     let mut files = Files::new();
     files.add_table(&format!("{name}-reduced"), &table(&runs), &TableFormat::ALL)?;
+    match scene_text(name, &runs, interpolation, tables) {
+        Some(text) => {
+            summary += &format!(
+                "  {name}-scene.toml is a scene of this model: `dwell simulate {name}-scene.toml` with a [motion] of yours\n"
+            );
+            files.add(format!("{name}-scene.toml"), text);
+        }
+        None => {
+            summary += "  no scene is written: it needs an angle, and cubic or trigonometric interpolation\n"
+        }
+    }
     let page = page(&summary, &format!("{name}-reduced.png"), &figure.caption);
     let picture = Picture::of_no_scene(format!("{name}-reduced.png"), figure);
     Ok(Outcome {

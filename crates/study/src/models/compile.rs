@@ -12,6 +12,7 @@ use std::collections::HashSet;
 pub fn compile_model(scene: &Scene, reactions: &[Reaction]) -> Result<Model, StudyError> {
     let start = scene.assembly.to_configuration();
     Model::new(&scene.mechanism, &scene.masses, &start, reactions)
+        .and_then(|model| model.with_varying_inertias(&scene.varying_inertias))
         .map_err(|e| explain_model(scene, &e))
 }
 

@@ -9,7 +9,7 @@ use crate::trajectory::compute::reject_unknown_variables;
 use dwell_findings::Finding;
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::ExactModel;
-use dwell_scene::Scene;
+use dwell_scene::{Scene, SceneLocation};
 use dwell_symbolic::{ClosedForm, Symbolic, SymbolicError};
 
 /// The closed forms of a scene and all its reactions, compared with the exact model at 24 positions; no findings
@@ -18,7 +18,7 @@ use dwell_symbolic::{ClosedForm, Symbolic, SymbolicError};
 /// # Errors
 /// [`StudyError`] when the mechanism cannot be put together.
 pub fn symbolic_findings(scene: &Scene) -> Result<Vec<Finding>, StudyError> {
-    if scene.mechanism.actuators.len() != 1 {
+    if scene.mechanism.actuators.len() != 1 || !scene.varying_inertias.is_empty() {
         return Ok(Vec::new());
     }
     let exact = full_reduced_model(scene)?;
@@ -96,6 +96,14 @@ pub fn compute_closed_form(
     reaction: Option<&str>,
 ) -> Result<(ClosedForm, Vec<Finding>), StudyError> {
     reject_unknown_variables(scene)?;
+    if let Some(varying) = scene.varying_inertias.first() {
+        let name = scene.mechanism.body_name(varying.body);
+        let message =
+            format!("there is no closed form: the inertia of `{name}` is a table over its angle");
+        let help = "`dwell reduce` gives m, ½m′, a and b at any position";
+        let label = [(SceneLocation::VaryingInertia(varying.body), "a table")];
+        return Err(scene_error(scene, message, help, label));
+    }
     let exact = full_reduced_model(scene)?;
     let plan = exact.model().plan();
     let reaction = match reaction {

@@ -175,6 +175,7 @@ fn travel_history(
     options: &Options,
 ) -> Result<Vec<Vec<f64>>, Box<dyn std::error::Error>> {
     let mut atlas = Atlas::new(MachineDescription {
+        varying_inertias: &[],
         mechanism: &test.mechanism,
         masses: &test.masses,
         assembly: &test.assembly,

@@ -85,6 +85,7 @@ fn other_values(root: &Table, value: &Value, written: WrittenAs) -> Vec<OtherVal
             (rows(value), "its values 1 % more".to_owned()),
             (turned_rows(value), "its pairs turned".to_owned()),
         ],
+        WrittenAs::Numbers => vec![(numbers(value), "its values 1 % more".to_owned())],
         WrittenAs::Name(sort) => {
             let names = names(root, sort);
             let others = names
@@ -226,6 +227,13 @@ fn pair(value: &Value, part: f64) -> Option<Value> {
     };
     let other = [x + part * size, y - 2.0 * part * size];
     Some(Value::Array(other.map(Value::Float).to_vec()))
+}
+
+/// A list of numbers, each 1 % more.
+fn numbers(value: &Value) -> Option<Value> {
+    let all = value.as_array()?.iter();
+    let all: Option<Vec<Value>> = all.map(|one| number(one, PART)).collect();
+    all.map(Value::Array)
 }
 
 /// Rows of two numbers with the second a part more; of a pair of directions each turned.

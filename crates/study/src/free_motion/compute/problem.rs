@@ -114,6 +114,7 @@ impl<'a> FreeMotionProblem<'a> {
         let description = MachineDescription {
             mechanism: &scene.mechanism,
             masses: &scene.masses,
+            varying_inertias: &scene.varying_inertias,
             assembly: &configuration,
             loads: &scene.loads,
             drives: &scene.drives,

@@ -154,6 +154,47 @@ impl ReducedCurves {
             .collect()
     }
 
+    /// a and b of the reactions within mechanisms that bodies of varying inertia stand for: at unit acceleration and at unit
+    /// speed of the coordinate.
+    fn known_reactions(&self, prepared: &PreparedScene<'_>) -> Vec<(Column, Vec<f64>)> {
+        let scene = prepared.scene;
+        let mut columns = Vec::new();
+        for varying in &scene.varying_inertias {
+            for reaction in &varying.reactions {
+                let unit = if reaction.is_moment { "N m" } else { "N" };
+                let units = coefficient_units(unit, prepared.is_angle());
+                let [a, b] = [("a", units[0]), ("b", units[1])]
+                    .map(|(of, unit)| Column::new(format!("{}.{of}", reaction.name), unit));
+                columns.extend([(a, Vec::new()), (b, Vec::new())]);
+            }
+        }
+        let model = prepared.model.model();
+        let mut workspace = model.workspace();
+        let positions: &[f64] = if columns.is_empty() { &[] } else { &self.q };
+        for &q in positions {
+            // The batch has found a pose at every coordinate.
+            let Ok(mut state) = model.kinematic_state(&[q], &[1.0], &mut workspace) else {
+                continue;
+            };
+            let states = state.bodies_at(&[0.0]);
+            let mut values = columns.iter_mut().map(|(_, values)| values);
+            for varying in &scene.varying_inertias {
+                let body = states.body(varying.body);
+                let (angle, ratio) = (body.rotation.angle(), body.angular_velocity);
+                for reaction in &varying.reactions {
+                    let a = reaction.value(angle, 0.0, ratio);
+                    let b = reaction.value(angle, ratio, body.angular_acceleration);
+                    for value in [a, b] {
+                        if let Some(values) = values.next() {
+                            values.push(value);
+                        }
+                    }
+                }
+            }
+        }
+        columns
+    }
+
     /// The table: coordinate, m, ½m′, then a and b of each requested reaction.
     pub fn table(&self, prepared: &PreparedScene<'_>) -> Table {
         let mut columns = vec![
@@ -241,7 +282,8 @@ impl Reduction<'_> {
         let unit_loads = self.unit_loads.iter();
         let unit_loads = unit_loads.flat_map(|l| l.columns(&self.prepared));
         let errors = (Column::new("relative_error", ""), self.errors.rows.clone());
-        for (column, values) in unit_loads.chain([errors]) {
+        let known = self.curves.known_reactions(&self.prepared);
+        for (column, values) in known.into_iter().chain(unit_loads).chain([errors]) {
             table.columns.push(column);
             for (row, value) in table.rows.iter_mut().zip(values) {
                 row.push(value);

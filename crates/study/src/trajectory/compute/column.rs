@@ -29,6 +29,8 @@ pub(crate) enum Quantity {
     PointCoordinate(BodyId, Vec2, usize),
     TransmissionAngle(Dyad),
     Reaction(usize),
+    /// The k-th reaction of the i-th varying inertia of the scene.
+    KnownReaction(usize, usize),
     /// The force of a joint along an axis (0 or 1) of a body.
     BodyFrameForce(JointId, BodyId, usize),
     ForceMagnitude(JointId),
@@ -71,6 +73,7 @@ impl Quantity {
             | Self::MechanicalAdvantage(body, _)
             | Self::Pole(body, ..)
             | Self::PointCoordinate(body, ..) => vec![body],
+            Self::KnownReaction(i, _) => vec![scene.varying_inertias[i].body],
             Self::TransmissionAngle(dyad) => dyad.bodies().to_vec(),
             Self::Reaction(k) => joint(reactions[k].joint),
             Self::BodyFrameForce(j, ..) | Self::ForceMagnitude(j) | Self::ForceDirection(j) => {
@@ -151,7 +154,9 @@ impl Column {
             | Quantity::ForceDirection(_)
             | Quantity::ShakingForce(_)
             | Quantity::LoadForce(_) => forces,
-            Quantity::Power(_) | Quantity::LoadPower(_) => forces && moves,
+            Quantity::KnownReaction(..) | Quantity::Power(_) | Quantity::LoadPower(_) => {
+                forces && moves
+            }
         }
     }
 }

@@ -43,6 +43,7 @@ pub(crate) fn all_columns(scene: &Scene, model: &Model, timed: bool) -> Vec<Colu
     columns.bodies();
     columns.dyads();
     columns.reactions(model.reactions());
+    columns.known_reactions();
     columns.loads();
     columns.totals();
     let names: HashSet<String> = columns.list.iter().map(|c| c.name.clone()).collect();
@@ -268,6 +269,21 @@ impl Columns<'_> {
                 let name = format!("{}.direction", joint.name);
                 let meaning = format!("direction {force}, from the ground's x axis");
                 self.add(name, "rad", Quantity::ForceDirection(id), meaning);
+            }
+        }
+    }
+
+    /// Reactions within the mechanisms that bodies of varying inertia stand for.
+    fn known_reactions(&mut self) {
+        let scene = self.scene;
+        for (i, varying) in scene.varying_inertias.iter().enumerate() {
+            let body = scene.mechanism.body_name(varying.body);
+            for (k, reaction) in varying.reactions.iter().enumerate() {
+                let unit = if reaction.is_moment { "N m" } else { "N" };
+                let meaning = format!(
+                    "reaction within the mechanism that {body} stands for, of its inertia and drive alone"
+                );
+                self.add(&reaction.name, unit, Quantity::KnownReaction(i, k), meaning);
             }
         }
     }

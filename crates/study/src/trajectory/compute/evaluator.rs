@@ -253,6 +253,7 @@ impl<'a> PositionEvaluator<'a> {
             }
             Quantity::TransmissionAngle(dyad) => dyad.angle(states),
             Quantity::Reaction(k) => forces.reactions[k],
+            Quantity::KnownReaction(i, k) => self.known_reaction(i, k),
             Quantity::BodyFrameForce(joint, body, axis) => {
                 let rotation = states.body(body).rotation;
                 component(joint_forces[joint.0].rotate_inverse(rotation), axis)
@@ -281,6 +282,14 @@ impl<'a> PositionEvaluator<'a> {
             Quantity::BodyAngle(body, _) => self.forces.body_states.body(body).angular_velocity,
             _ => 0.0,
         }
+    }
+
+    /// The k-th reaction within the mechanism that the i-th body of varying inertia stands for.
+    fn known_reaction(&self, i: usize, k: usize) -> f64 {
+        let varying = &self.scene.varying_inertias[i];
+        let body = self.forces.body_states.body(varying.body);
+        let angle = body.rotation.angle();
+        varying.reactions[k].value(angle, body.angular_velocity, body.angular_acceleration)
     }
 
     /// The force of a load along its direction or line, or its moment on its second body.

@@ -81,9 +81,10 @@ impl<'a> RequestedColumns<'a> {
     fn goes_with_reactions(self, quantity: Quantity) -> bool {
         let dwell = self.scene.requests.dwell.as_ref();
         match quantity {
-            Quantity::ActuatorCoordinate(..) | Quantity::ActuatorForce(_) | Quantity::Extra(_) => {
-                true
-            }
+            Quantity::ActuatorCoordinate(..)
+            | Quantity::ActuatorForce(_)
+            | Quantity::KnownReaction(..)
+            | Quantity::Extra(_) => true,
             Quantity::BodyAngle(body, _) => dwell.is_some_and(|dwell| dwell.body == body),
             Quantity::PointCoordinate(body, at, _) => self.is_path(body, at),
             _ => false,
