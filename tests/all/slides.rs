@@ -17,6 +17,7 @@ fn check_scene(name: &str, text: &str, largest: usize) {
     );
     let range = subject.exact().range();
     let case = Case {
+        varying_inertias: &[],
         mechanism: &scene.mechanism,
         masses: &scene.masses,
         range,

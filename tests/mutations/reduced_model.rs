@@ -167,6 +167,7 @@ impl TestedModel {
         let case = Case {
             mechanism: &self.scene.mechanism,
             masses: &self.scene.masses,
+            varying_inertias: &[],
             range: self.subject.exact().range(),
             positions: self.positions.clone(),
         };

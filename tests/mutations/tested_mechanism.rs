@@ -200,6 +200,7 @@ impl TestedMechanism {
         if self.mode == CheckMode::Reduced {
             let case = Case {
                 mechanism,
+                varying_inertias: &[],
                 masses,
                 range: self.model.plan().range(),
                 positions: self.positions.iter().map(|q| q[0]).collect(),

@@ -8,6 +8,8 @@ const DIFFERENCE: f64 = 1e-13;
 const MAX_PARTS: usize = 8;
 /// Where polynomials are compared with their curve, in parts of an interval: where their difference is about the largest.
 const COMPARED: [f64; 2] = [0.28, 0.57];
+/// About so many intervals are compared.
+const COMPARED_INTERVALS: usize = 60;
 
 /// Polynomials of fifth degree between nodes.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,14 +25,16 @@ impl PiecewiseQuintic {
     /// The polynomials through a curve: those of a cubic curve are its own, those of a series follow it within a rounding of its
     /// largest value, or as near as eight polynomials in each interval come.
     pub fn through(positions: &SamplePositions, curve: &SampledCurve) -> Self {
-        let mut parts = 1;
-        loop {
-            let found = Self::with_parts(positions, curve, parts);
-            let exact = !matches!(curve, SampledCurve::Series(..));
-            if exact || parts == MAX_PARTS || found.difference(positions, curve) < DIFFERENCE {
-                return found;
-            }
-            parts *= 2;
+        let coarse = Self::with_parts(positions, curve, 1);
+        if !matches!(curve, SampledCurve::Series(..)) {
+            return coarse;
+        }
+        // The difference falls with the sixth power of the length of an interval.
+        let difference = coarse.difference(positions, curve);
+        let is_enough = |parts: &usize| difference < DIFFERENCE * (*parts as f64).powi(6);
+        match [1, 2, 4].into_iter().find(is_enough) {
+            Some(1) => coarse,
+            parts => Self::with_parts(positions, curve, parts.unwrap_or(MAX_PARTS)),
         }
     }
 
@@ -62,10 +66,11 @@ impl PiecewiseQuintic {
         }
     }
 
-    /// The largest difference from a curve, as a part of its largest value.
+    /// The largest difference from a curve in some intervals, as a part of its largest value there.
     fn difference(&self, positions: &SamplePositions, curve: &SampledCurve) -> f64 {
         let mut largest = [0.0_f64; 2];
-        for pair in self.nodes.windows(2) {
+        let stride = (self.coefficients.len() / COMPARED_INTERVALS).max(1);
+        for pair in self.nodes.windows(2).step_by(stride) {
             for part in COMPARED {
                 let x = pair[0] + part * (pair[1] - pair[0]);
                 let [value, ..] = positions.eval(curve, x);

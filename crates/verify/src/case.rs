@@ -1,7 +1,7 @@
 //! What is checked, over which positions.
 
 use dwell_geometry::{Mechanism, Range};
-use dwell_kinetostatics::Mass;
+use dwell_kinetostatics::{Mass, VaryingInertia};
 use std::f64::consts::TAU;
 
 /// A mechanism with its masses, and the positions at which a subject is checked.
@@ -11,6 +11,8 @@ pub struct Case<'a> {
     pub mechanism: &'a Mechanism,
     /// Its masses, one per body.
     pub masses: &'a [Mass],
+    /// The bodies whose moment of inertia is a function of their angle.
+    pub varying_inertias: &'a [VaryingInertia],
     /// The range of the coordinate.
     pub range: Range,
     /// The sampled coordinates, rad. See [`spread`].

@@ -6,6 +6,7 @@ use crate::comparison::{Comparison, LargestDifference};
 use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
 use crate::error::{DenseError, Result};
+use crate::inertias::Inertias;
 use crate::subject::{Subject, SubjectError};
 use dwell_geometry::{Component, Reaction};
 use dwell_kinetostatics::Coefficients;
@@ -88,11 +89,15 @@ impl<'a> CheckContext<'a> {
         if actuators != 1 {
             return Err(DenseError::Actuators(actuators));
         }
-        let (mechanism, masses) = (case.mechanism, case.masses);
+        let mechanism = case.mechanism;
+        let inertias = Inertias {
+            masses: case.masses,
+            varying: case.varying_inertias,
+        };
         let dense = match case.positions.first().map(|&q| subject.poses(q)) {
             // Gears mesh as in the subject's first poses: from there on they must keep step.
-            Some(Ok(poses)) => DenseMechanism::with_meshed_gears(mechanism, masses, &poses)?,
-            _ => DenseMechanism::new(mechanism, masses)?,
+            Some(Ok(poses)) => DenseMechanism::with_meshed_gears(mechanism, inertias, &poses)?,
+            _ => DenseMechanism::new(mechanism, inertias)?,
         };
         let close = |&q: &f64| {
             let poses = subject.poses(q).map_err(|e| (q, e.to_string()))?;

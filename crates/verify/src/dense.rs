@@ -7,9 +7,11 @@
 //! differences of rounded large numbers.
 
 use crate::error::{DenseError, Result};
+use crate::inertias::{Inertias, at_angle};
 use dwell_geometry::constraint_rows::ConstraintRows;
 use dwell_geometry::{ActuatorKind, BodyId, Coordinate, JointKind, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::Mass;
+use dwell_numerics::PiecewiseQuintic;
 
 /// A body in its moved frame.
 #[derive(Debug, Clone)]
@@ -18,8 +20,28 @@ pub(crate) struct DenseBody {
     pub(crate) column: Option<usize>,
     /// Mass properties about the moved frame.
     pub(crate) mass: Mass,
+    /// A moment of inertia over the body's angle besides.
+    pub(crate) varying: Option<PiecewiseQuintic>,
     /// The moved origin in the body's own frame.
     pub(crate) shift: Vec2,
+}
+
+impl DenseBody {
+    /// Its moment of inertia about its centre of mass at an angle, kg m².
+    pub(crate) fn angular_inertia(&self, angle: f64) -> f64 {
+        self.mass.inertia + at_angle(self.varying.as_ref(), angle)[0]
+    }
+
+    /// I α of its constant moment of inertia and I α + ½ I′ ω² of the varying one, N·m.
+    pub(crate) fn inertia_moment(&self, angle: f64, omega: f64, alpha: f64) -> f64 {
+        self.mass.inertia * alpha + self.varying_moment(angle, omega, alpha)
+    }
+
+    /// I α + ½ I′ ω² of the varying moment of inertia alone, N·m: the rate of no momentum of the body's own.
+    pub(crate) fn varying_moment(&self, angle: f64, omega: f64, alpha: f64) -> f64 {
+        let [inertia, half_slope] = at_angle(self.varying.as_ref(), angle);
+        inertia * alpha + half_slope * omega * omega
+    }
 }
 
 /// The mechanism, its masses and its rows, all dense, in moved frames.
@@ -41,8 +63,8 @@ pub struct DenseMechanism {
 
 impl DenseMechanism {
     /// Moves the frames and writes the rows, as many as there are coordinates.
-    pub fn new(mechanism: &Mechanism, masses: &[Mass]) -> Result<Self> {
-        let dense = Self::without_rank_check(mechanism, masses)?;
+    pub fn new<'m>(mechanism: &Mechanism, inertias: impl Into<Inertias<'m>>) -> Result<Self> {
+        let dense = Self::without_rank_check(mechanism, inertias)?;
         let (rows, columns) = (dense.rows.len(), dense.rows.columns());
         if rows == columns {
             Ok(dense)
@@ -52,17 +74,20 @@ impl DenseMechanism {
     }
 
     /// The same whatever the number of rows: it can be measured, but not closed.
-    pub(crate) fn without_rank_check(mechanism: &Mechanism, masses: &[Mass]) -> Result<Self> {
-        Self::with_origins(mechanism, masses, |_, mean| mean)
+    pub(crate) fn without_rank_check<'m>(
+        mechanism: &Mechanism,
+        inertias: impl Into<Inertias<'m>>,
+    ) -> Result<Self> {
+        Self::with_origins(mechanism, inertias.into(), |_, mean| mean)
     }
 
     /// The same with the origin of each body at another point of it than the mean of its attachments.
     pub(crate) fn with_origins(
         mechanism: &Mechanism,
-        masses: &[Mass],
+        inertias: Inertias<'_>,
         origin: impl Fn(usize, Vec2) -> Vec2,
     ) -> Result<Self> {
-        let size = mechanism.size();
+        let (size, masses) = (mechanism.size(), inertias.masses);
         let mut mechanism = mechanism.clone();
         // References first: what follows indexes by them.
         let columns = ConstraintRows::new(&mechanism)?;
@@ -87,6 +112,7 @@ impl DenseMechanism {
             DenseBody {
                 column,
                 mass,
+                varying: inertias.varying_of(b).filter(|_| column.is_some()),
                 shift,
             }
         };

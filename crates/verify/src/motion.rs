@@ -29,7 +29,7 @@ impl DenseMechanism {
         let of = &self.bodies[body];
         of.column.map_or(0.0, |c| {
             let [u_g, w_g] = [u, w].map(|speeds| self.center_velocity(of, at, speeds));
-            of.mass.mass * u_g.dot(w_g) + of.mass.inertia * (u[c + 2] * w[c + 2])
+            of.mass.mass * u_g.dot(w_g) + of.angular_inertia(at.x[c + 2]) * (u[c + 2] * w[c + 2])
         })
     }
 
@@ -43,7 +43,7 @@ impl DenseMechanism {
     }
 
     /// Linear momentum in x and y, kg m/s, and angular momentum about the ground's moved origin,
-    /// kg m²/s.
+    /// kg m²/s; without that of varying moments of inertia, which is not theirs alone.
     pub fn momentum(&self, at: &Configuration, x_dot: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for body in &self.bodies {
@@ -64,7 +64,7 @@ impl DenseMechanism {
             body.column.map_or(0.0, |c| {
                 let a_g = self.center_acceleration(body, at, v, a);
                 body.mass.mass * self.center_velocity(body, at, w).dot(a_g)
-                    + body.mass.inertia * (w[c + 2] * a[c + 2])
+                    + w[c + 2] * body.inertia_moment(at.x[c + 2], v[c + 2], a[c + 2])
             })
         };
         self.bodies.iter().map(power).sum()

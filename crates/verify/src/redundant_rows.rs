@@ -2,9 +2,9 @@
 
 use crate::dense::DenseMechanism;
 use crate::error::{DenseError, Result};
+use crate::inertias::Inertias;
 use crate::rank::rank;
 use dwell_geometry::Mechanism;
-use dwell_kinetostatics::Mass;
 
 /// A row of which less than this remains beside the others depends on them: as for singular values.
 const INDEPENDENCE_TOLERANCE: f64 = 1e-9;
@@ -12,12 +12,12 @@ const INDEPENDENCE_TOLERANCE: f64 = 1e-9;
 impl DenseMechanism {
     /// The same with its gears meshed as they stand in the configuration with the frames `poses` of all bodies. Where
     /// joints repeat each other, a largest set of independent rows is solved, found there.
-    pub(crate) fn with_meshed_gears(
+    pub(crate) fn with_meshed_gears<'m>(
         mechanism: &Mechanism,
-        masses: &[Mass],
+        inertias: impl Into<Inertias<'m>>,
         poses: &[[f64; 3]],
     ) -> Result<Self> {
-        let mut dense = Self::without_rank_check(mechanism, masses)?;
+        let mut dense = Self::without_rank_check(mechanism, inertias)?;
         let (rows, columns) = (dense.rows.len(), dense.rows.columns());
         let x = dense.coordinates(poses)?;
         if rows != columns {

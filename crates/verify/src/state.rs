@@ -27,6 +27,7 @@ use crate::context::either;
 use crate::dense::DenseMechanism;
 use crate::differences::NO_ESTIMATE;
 use crate::error::DenseError;
+use crate::inertias::Inertias;
 use crate::wrenches::BodyWrench;
 use dense_state::{DenseState, check_counts};
 use dwell_findings::{Check, Finding};
@@ -66,13 +67,13 @@ pub struct ClaimedState {
 ///
 /// Where joints repeat each other, all rows must close, and reactions that are not determined must
 /// balance, whatever they are. The findings come in a fixed order. If the mechanism is not determinate there is one failed finding that says why; a state that cannot be closed fails all of them.
-pub fn check_states(
+pub fn check_states<'m>(
     mechanism: &Mechanism,
-    masses: &[Mass],
+    inertias: impl Into<Inertias<'m>>,
     assembly_poses: &[[f64; 3]],
     states: &[ClaimedState],
 ) -> Vec<Finding> {
-    match DenseMechanism::with_meshed_gears(mechanism, masses, assembly_poses) {
+    match DenseMechanism::with_meshed_gears(mechanism, inertias, assembly_poses) {
         Ok(dense) => StateChecker::new(&dense, states).findings(),
         Err(error) => vec![not_dense(&POSES, &error)],
     }
@@ -303,9 +304,14 @@ impl<'a> StateChecker<'a> {
                     let scale = terms + exact.abs() * arm;
                     let numbers = [(net.sum[c] - exact) * arm, scale, error];
                     m.compare(&mut claimed, numbers, "N", name);
-                    let factor = inertia * arm;
+                    let varying = if c == 2 {
+                        m.varying_inertia(body)
+                    } else {
+                        [0.0; 2]
+                    };
+                    let factor = (inertia + varying[0]) * arm;
                     let second = second.get(3 * i + c).copied().unwrap_or(NO_ESTIMATE);
-                    let difference = net.sum[c] * arm - factor * second.value;
+                    let difference = (net.sum[c] - varying[1]) * arm - factor * second.value;
                     let numbers = [difference, scale, error + factor * second.error];
                     m.compare(&mut differenced, numbers, "N", name);
                 }

@@ -192,6 +192,7 @@ fn check_reduced_model(
     let case = Case {
         mechanism: &scene.mechanism,
         masses: &scene.masses,
+        varying_inertias: &scene.varying_inertias,
         range,
         positions: spread(range, CHECKED_POSITIONS),
     };

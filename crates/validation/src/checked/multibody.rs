@@ -12,7 +12,7 @@ use dwell_scene::{MotionDuration, Scene};
 use dwell_study::StudyError;
 use dwell_study::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use dwell_study::models::with_drive_loads;
-use dwell_verify::{MotionSample, MultibodyError, MultibodySystem, check_motion};
+use dwell_verify::{Inertias, MotionSample, MultibodyError, MultibodySystem, check_motion};
 use std::f64::consts::TAU;
 
 /// Integrator of the motion, and its relative and absolute tolerance.
@@ -321,8 +321,12 @@ fn multibody_system(scene: &Scene) -> Result<MultibodySystem, MultibodyError> {
         prescribed.unwrap_or(CoordinateMode::Free)
     };
     let modes: Vec<CoordinateMode> = laws.map(mode).collect();
-    let (masses, loads) = (&scene.masses, &scene.loads);
-    MultibodySystem::new(&scene.mechanism, masses, loads, &modes, &scene.drives)
+    let loads = &scene.loads;
+    let inertias = Inertias {
+        masses: &scene.masses,
+        varying: &scene.varying_inertias,
+    };
+    MultibodySystem::new(&scene.mechanism, inertias, loads, &modes, &scene.drives)
 }
 
 /// The failed finding of a motion that could not be compared.

@@ -8,7 +8,7 @@ use dwell_findings::Finding;
 use dwell_geometry::Reaction;
 use dwell_scene::{PrescribedMotion, Scene};
 use dwell_study::models::indeterminate_reactions;
-use dwell_verify::{ClaimedState, check_energies, check_states};
+use dwell_verify::{ClaimedState, Inertias, check_energies, check_states};
 use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -81,13 +81,17 @@ pub(crate) fn check(
         body_poses.push(model.body_poses());
     }
     let start = model.assembly_poses.clone();
-    let (mechanism, masses) = (&scene.mechanism, &scene.masses);
+    let mechanism = &scene.mechanism;
+    let inertias = Inertias {
+        masses: &scene.masses,
+        varying: &scene.varying_inertias,
+    };
     let (sampled, sampled_matrices): (Vec<_>, Vec<_>) = energy_checked(states.len())
         .map(|k| (states[k].clone(), mass_matrices[k].clone()))
         .unzip();
     let (mut findings, energy_findings) = rayon::join(
-        || check_states(mechanism, masses, &start, &states),
-        || check_energies(mechanism, masses, &start, &sampled, &sampled_matrices),
+        || check_states(mechanism, inertias, &start, &states),
+        || check_energies(mechanism, inertias, &start, &sampled, &sampled_matrices),
     );
     findings.extend(energy_findings);
     findings.extend(reference.findings(scene, &mut model)?);

@@ -13,7 +13,7 @@ use crate::checked::states::state_requests;
 use dwell_findings::{Check, Finding};
 use dwell_scene::Scene;
 use dwell_study::StudyError;
-use dwell_verify::{ClaimedState, check_energies, check_states};
+use dwell_verify::{ClaimedState, Inertias, check_energies, check_states};
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::OnceLock;
@@ -165,8 +165,12 @@ impl PlantedScene {
 
     fn check_states(&self, claims: &StateClaims) -> Vec<Finding> {
         let own = self.own_states().map_or(&[][..], |own| &own.assembly_poses);
-        let (mechanism, masses) = (&self.scene.mechanism, &self.scene.masses);
-        let mut findings = check_states(mechanism, masses, own, &claims.states);
+        let mechanism = &self.scene.mechanism;
+        let inertias = Inertias {
+            masses: &self.scene.masses,
+            varying: &self.scene.varying_inertias,
+        };
+        let mut findings = check_states(mechanism, inertias, own, &claims.states);
         let some = ENERGY_STATES.min(claims.states.len());
         let at = |k: usize| (2 * k + 1) * claims.states.len() / (2 * some);
         let (states, matrices): (Vec<_>, Vec<_>) = (0..some)
@@ -177,7 +181,7 @@ impl PlantedScene {
                 )
             })
             .unzip();
-        findings.extend(check_energies(mechanism, masses, own, &states, &matrices));
+        findings.extend(check_energies(mechanism, inertias, own, &states, &matrices));
         findings
     }
 }

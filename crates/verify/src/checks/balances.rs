@@ -162,16 +162,20 @@ fn balances_in_motion(
     let difference = subject.tau * q_dot - energy_rate.value;
     let power = [difference, energy_rate.value.abs(), energy_rate.error];
     let mut balances = vec![(0, None, power)];
+    let pose_rounding = position.pose_rounding();
+    let second = dense.second_differences(at, step, pose_rounding, |t, q| q[0] = law.eval(t)[0]);
     let momentum = rate(&|at, x_dot| dense.momentum(at, x_dot).to_vec());
-    let momentum = std::array::from_fn(|c| component(&momentum, c));
+    let mut momentum: [Extrapolated; 3] = std::array::from_fn(|c| component(&momentum, c));
+    let angles = second_angles(context, position, q_dot, &second);
+    for (body, [angle, omega, alpha]) in dense.bodies.iter().zip(angles) {
+        momentum[2].value += body.varying_moment(angle, omega, alpha);
+    }
     let (net, errors) = momentum_balance(context, &wrenches, momentum);
     balances.extend(components(1, None, net, errors));
-    let rounding = position.pose_rounding();
-    let second = dense.second_differences(at, step, rounding, |t, q| q[0] = law.eval(t)[0]);
     let moving = (0..dense.bodies.len()).filter(|&b| dense.bodies[b].column.is_some());
     for (i, body) in moving.enumerate() {
         let second = [0, 1, 2].map(|c| component(&second, 3 * i + c));
-        let (net, errors) = body_balance(context, position, &wrenches, body, second);
+        let (net, errors) = body_balance(context, (position, q_dot), &wrenches, body, second);
         balances.extend(components(3, Some(body), net, errors));
     }
     Ok(balances)
@@ -220,17 +224,40 @@ fn momentum_balance(
     (net, rate.map(|rate| rate.error))
 }
 
+/// By body: angle, angular velocity and, differenced twice, angular acceleration; zero of the ground.
+fn second_angles(
+    context: &CheckContext<'_>,
+    position: &CheckedPosition,
+    q_dot: f64,
+    second: &[Extrapolated],
+) -> Vec<[f64; 3]> {
+    let mut accelerations = second.iter().skip(2).step_by(3);
+    let of = |column: Option<usize>| {
+        let angle = column? + 2;
+        let alpha = accelerations.next().map_or(f64::NAN, |second| second.value);
+        let omega = position.unit_velocity()[angle] * q_dot;
+        Some([position.configuration.x[angle], omega, alpha])
+    };
+    let columns = context.dense.bodies.iter().map(|body| body.column);
+    columns.map(of).map(Option::unwrap_or_default).collect()
+}
+
 /// (4) and (5) of a body with the second derivatives of its centre of mass and angle, and their errors.
 fn body_balance(
     context: &CheckContext<'_>,
-    position: &CheckedPosition,
+    (position, q_dot): (&CheckedPosition, f64),
     wrenches: &[BodyWrench],
     body: usize,
     second: [Extrapolated; 3],
 ) -> (NetWrench, [f64; 3]) {
     let of = &context.dense.bodies[body];
-    let inertias = [of.mass.mass, of.mass.mass, of.mass.inertia];
-    let rate: [f64; 3] = std::array::from_fn(|c| inertias[c] * second[c].value);
+    let (angle, omega) = of.column.map_or((0.0, 0.0), |c| {
+        let unit = position.unit_velocity();
+        (position.configuration.x[c + 2], unit[c + 2] * q_dot)
+    });
+    let inertias = [of.mass.mass, of.mass.mass, of.angular_inertia(angle)];
+    let mut rate: [f64; 3] = std::array::from_fn(|c| inertias[c] * second[c].value);
+    rate[2] += of.varying_moment(angle, omega, 0.0);
     let mut net = NetWrench {
         sum: rate.map(|rate| -rate),
         terms: rate.map(f64::abs),

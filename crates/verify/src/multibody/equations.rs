@@ -74,20 +74,22 @@ impl MultibodyOde<'_> {
         self.frames.add_wrenches(x, &wrenches, 1.0, force);
     }
 
-    /// The masses without any force.
-    fn assemble_masses(&self) -> AppliedForces {
+    /// The masses without any force but −½ I′ ω² of varying moments of inertia, at coordinates and speeds.
+    fn assemble_masses(&self, x: &[f64], v: &[f64]) -> AppliedForces {
         let n = self.frames.rows.columns();
-        let mut mass = Mat::zeros(n, n);
+        let (mut mass, mut force) = (Mat::zeros(n, n), vec![0.0; n]);
         for (of, body) in self.system.masses.iter().zip(&self.frames.bodies) {
             if let Some(c) = body.column {
                 mass[(c, c)] = of.mass;
                 mass[(c + 1, c + 1)] = of.mass;
-                mass[(c + 2, c + 2)] = of.inertia;
+                let varying = body.angular_inertia(x[c + 2]) - body.mass.inertia;
+                mass[(c + 2, c + 2)] = of.inertia + varying;
+                force[c + 2] = -body.varying_moment(x[c + 2], v[c + 2], 0.0);
             }
         }
         AppliedForces {
             mass,
-            force: vec![0.0; n],
+            force,
             power: 0.0,
             drive_forces: vec![],
             drive_state_rates: vec![],
@@ -155,7 +157,7 @@ impl MultibodyOde<'_> {
             jacobian: frames.jacobian(x),
             velocity_products,
         };
-        let mut applied = self.assemble_masses();
+        let mut applied = self.assemble_masses(x, v);
         self.add_loads(&point, &mut applied).ok_or(not_finite)?;
         self.add_drives(&point, &mut applied).ok_or(not_finite)?;
         let (a, multipliers) = self.solve_with_friction(&point, &mut applied)?;

@@ -28,6 +28,7 @@ mod state;
 
 use crate::dense::DenseMechanism;
 use crate::error::DenseError;
+use crate::inertias::Inertias;
 use dwell_dynamics::CoordinateMode;
 use dwell_geometry::Mechanism;
 use dwell_kinetostatics::{Drive, Load, Mass};
@@ -133,18 +134,19 @@ impl MultibodySystem {
     ///
     /// # Errors
     /// [`MultibodyError`] where they do not fit each other.
-    pub fn new(
+    pub fn new<'m>(
         mechanism: &Mechanism,
-        masses: &[Mass],
+        inertias: impl Into<Inertias<'m>>,
         loads: &[Load],
         modes: &[CoordinateMode],
         drives: &[Drive],
     ) -> Result<Self> {
-        let frames = centroidal_frames(&drives::with_drives(mechanism, drives)?, masses)?;
+        let inertias = inertias.into();
+        let frames = centroidal_frames(&drives::with_drives(mechanism, drives)?, inertias)?;
         if modes.len() != mechanism.actuators.len() {
             return Err(MultibodyError::CoordinateModes);
         }
-        let mut masses = masses.to_vec();
+        let mut masses = inertias.masses.to_vec();
         if let Some(ground) = masses.get_mut(mechanism.ground) {
             *ground = Mass::default();
         }

@@ -4,6 +4,7 @@
 use super::equations::MultibodyOde;
 use super::{MotionSample, MultibodyError, MultibodySystem, Result};
 use crate::dense::DenseMechanism;
+use crate::inertias::Inertias;
 use crate::lu::Lu;
 use crate::rank::rank;
 use dwell_dynamics::CoordinateMode;
@@ -19,12 +20,16 @@ const CONVERGED_STEP: f64 = 1e-14;
 const MAX_RESIDUAL: f64 = 1e-9;
 
 /// The dense rows of a mechanism with its frames moved to the centres of mass, where a body has mass.
-pub(super) fn centroidal_frames(mechanism: &Mechanism, masses: &[Mass]) -> Result<DenseMechanism> {
+pub(super) fn centroidal_frames(
+    mechanism: &Mechanism,
+    inertias: Inertias<'_>,
+) -> Result<DenseMechanism> {
+    let masses = inertias.masses;
     let origin = |body: usize, mean| match masses[body] {
         Mass { mass, center, .. } if mass > 0.0 && body != mechanism.ground => center,
         _ => mean,
     };
-    Ok(DenseMechanism::with_origins(mechanism, masses, origin)?)
+    Ok(DenseMechanism::with_origins(mechanism, inertias, origin)?)
 }
 
 impl DenseMechanism {

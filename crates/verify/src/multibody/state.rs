@@ -123,7 +123,10 @@ impl MultibodySystem {
             let v = at.motion().point_velocity(BodyId(b), mass.center);
             let v = v.unwrap_or(Vec2::ZERO);
             let omega = at.velocities[b][2];
-            kinetic += 0.5 * (mass.mass * v.dot(v) + mass.inertia * omega * omega);
+            let body = &self.frames.bodies[b];
+            let varying = body.angular_inertia(at.poses[b][2]) - body.mass.inertia;
+            let inertia = mass.inertia + varying;
+            kinetic += 0.5 * (mass.mass * v.dot(v) + inertia * omega * omega);
         }
         kinetic += self.rotor_energy(at);
         let potential = |load| self.potential(load, at).unwrap_or(0.0);

@@ -80,7 +80,10 @@ fn inertia_wrenches(
             body: BodyId(b),
             force: -(dense.center_acceleration(body, at, x_dot, x_ddot) * body.mass.mass),
             point: dense.center(body, at),
-            couple: -(body.mass.inertia * x_ddot[body.column? + 2]),
+            couple: -{
+                let angle = body.column? + 2;
+                body.inertia_moment(at.x[angle], x_dot[angle], x_ddot[angle])
+            },
         })
     };
     dense.bodies.iter().enumerate().filter_map(wrench).collect()
@@ -185,8 +188,19 @@ impl<'a> DenseState<'a> {
         let (u, a) = (&self.claimed_dot, &self.claimed_ddot);
         let acceleration = dense.center_acceleration(of, &self.configuration, u, a);
         let force = acceleration * of.mass.mass;
-        let alpha = of.column.map_or(0.0, |c| a[c + 2]);
-        [force.x, force.y, of.mass.inertia * alpha]
+        let x = &self.configuration.x;
+        let moment = |c: usize| of.inertia_moment(x[c + 2], u[c + 2], a[c + 2]);
+        [force.x, force.y, of.column.map_or(0.0, moment)]
+    }
+
+    /// Of a varying moment of inertia: its value, and ½ I′ ω² with the claimed motion.
+    pub(super) fn varying_inertia(&self, body: usize) -> [f64; 2] {
+        let of = &self.dense.bodies[body];
+        of.column.map_or([0.0; 2], |c| {
+            let (angle, omega) = (self.configuration.x[c + 2], self.claimed_dot[c + 2]);
+            let inertia = of.angular_inertia(angle) - of.mass.inertia;
+            [inertia, of.varying_moment(angle, omega, 0.0)]
+        })
     }
 
     /// Second derivatives in time of every moving body's centre of mass and angle, from positions
@@ -243,7 +257,8 @@ impl<'a> DenseState<'a> {
             if let Some(c) = body.column {
                 let v = self.dense.center_velocity(body, at, u);
                 let force = self.dense.center_acceleration(body, at, u, a) * body.mass.mass;
-                let angular_power = body.mass.inertia * u[c + 2] * a[c + 2];
+                let moment = body.inertia_moment(at.x[c + 2], u[c + 2], a[c + 2]);
+                let angular_power = u[c + 2] * moment;
                 add(-v.dot(force), v.norm() * force.norm());
                 add(-angular_power, angular_power.abs());
             }

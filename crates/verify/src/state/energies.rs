@@ -21,10 +21,10 @@ use crate::checks::MAX_DIFFERENCE_STEP;
 use crate::comparison::{ComparisonSet, FindingSpec};
 use crate::dense::{DenseMechanism, add_scaled};
 use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives, slope};
+use crate::inertias::Inertias;
 use crate::wrenches::BodyWrench;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::{Mechanism, vec2};
-use dwell_kinetostatics::Mass;
 use rayon::prelude::*;
 
 const MASS_MATRIX: FindingSpec<'_> = FindingSpec {
@@ -57,24 +57,24 @@ const RELEASED: FindingSpec<'_> = FindingSpec {
 };
 
 /// Checks claimed states by kinetic energy and virtual work alone, as [`check_states`] does by the
-/// equations of motion. `inertias` are by state the claimed generalised inertias M_ij, row by row.
+/// equations of motion. `matrices` are by state the claimed generalised inertias M_ij, row by row.
 /// Each reaction costs some twenty closings a state.
 ///
 /// The findings are state-inertia, state-kinetic, state-lagrange and state-released, in this order. Reactions
 /// that are not determined are left out, and state-released where none is. If the mechanism is not determinate there is one failed finding.
 ///
 /// [`check_states`]: super::check_states
-pub fn check_energies(
+pub fn check_energies<'m>(
     mechanism: &Mechanism,
-    masses: &[Mass],
+    inertias: impl Into<Inertias<'m>>,
     assembly_poses: &[[f64; 3]],
     states: &[ClaimedState],
-    inertias: &[Vec<f64>],
+    matrices: &[Vec<f64>],
 ) -> Vec<Finding> {
-    match DenseMechanism::with_meshed_gears(mechanism, masses, assembly_poses) {
+    match DenseMechanism::with_meshed_gears(mechanism, inertias, assembly_poses) {
         Ok(dense) => {
             let checker = StateChecker::new(&dense, states);
-            let mut findings = checker.energies(states, inertias).to_vec();
+            let mut findings = checker.energies(states, matrices).to_vec();
             findings.extend(checker.lagrange());
             findings
         }

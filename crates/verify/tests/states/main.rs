@@ -242,6 +242,7 @@ fn val_reduced_checks_with_every_joint() {
         let case = Case {
             mechanism: &setup.mechanism,
             masses: &setup.masses,
+            varying_inertias: &[],
             range,
             positions: spread(range, 6),
         };

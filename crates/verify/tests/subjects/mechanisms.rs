@@ -20,6 +20,7 @@ impl Setup {
         Case {
             mechanism: &self.mechanism,
             masses: &self.masses,
+            varying_inertias: &[],
             range: self.range,
             positions: spread(self.range, positions),
         }
