@@ -40,6 +40,6 @@ pub use double_double::DoubleDouble;
 pub use dual::Dual;
 pub use factor_outcome::FactorOutcome;
 pub use lanes::Lanes;
-pub use piecewise_quintic::PiecewiseQuintic;
+pub use piecewise_quintic::{Checked, PiecewiseQuintic};
 pub use sampled_curve::{SamplePositions, SampledCurve};
 pub use scalar::{Scalar, map_array, uniform};

@@ -2,14 +2,23 @@
 
 use crate::sampled_curve::{SamplePositions, SampledCurve};
 
-/// A curve is refined until the polynomials differ from it by less than this part of its largest value.
+/// A curve is refined until the polynomials differ from it by less than this part of its largest value or slope.
 const DIFFERENCE: f64 = 1e-13;
 /// At most so many polynomials between two positions.
-const MAX_PARTS: usize = 8;
+const MAX_PARTS: usize = 32;
 /// Where polynomials are compared with their curve, in parts of an interval: where their difference is about the largest.
 const COMPARED: [f64; 2] = [0.28, 0.57];
 /// About so many intervals are compared.
 const COMPARED_INTERVALS: usize = 60;
+
+/// What of a curve the polynomials follow within a rounding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Checked {
+    /// Its value.
+    Value,
+    /// Its value and its slope.
+    Slope,
+}
 
 /// Polynomials of fifth degree between nodes.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,16 +32,20 @@ pub struct PiecewiseQuintic {
 
 impl PiecewiseQuintic {
     /// The polynomials through a curve: those of a cubic curve are its own, those of a series follow it within a rounding of its
-    /// largest value, or as near as eight polynomials in each interval come.
-    pub fn through(positions: &SamplePositions, curve: &SampledCurve) -> Self {
+    /// largest value, or as near as 32 polynomials in each interval come.
+    pub fn through(positions: &SamplePositions, curve: &SampledCurve, checked: Checked) -> Self {
         let coarse = Self::with_parts(positions, curve, 1);
         if !matches!(curve, SampledCurve::Series(..)) {
             return coarse;
         }
-        // The difference falls with the sixth power of the length of an interval.
-        let difference = coarse.difference(positions, curve);
-        let is_enough = |parts: &usize| difference < DIFFERENCE * (*parts as f64).powi(6);
-        match [1, 2, 4].into_iter().find(is_enough) {
+        // The difference of values falls with the sixth power of the length of an interval, that of slopes with the fifth.
+        let [value, slope] = coarse.differences(positions, curve);
+        let (difference, power) = match checked {
+            Checked::Value => (value, 6),
+            Checked::Slope => (value.max(slope), 5),
+        };
+        let is_enough = |parts: &usize| difference < DIFFERENCE * (*parts as f64).powi(power);
+        match [1, 2, 4, 8, 16].into_iter().find(is_enough) {
             Some(1) => coarse,
             parts => Self::with_parts(positions, curve, parts.unwrap_or(MAX_PARTS)),
         }
@@ -66,26 +79,24 @@ impl PiecewiseQuintic {
         }
     }
 
-    /// The largest difference from a curve in some intervals, as a part of its largest value there.
-    fn difference(&self, positions: &SamplePositions, curve: &SampledCurve) -> f64 {
-        let mut largest = [0.0_f64; 2];
+    /// The largest differences of value and slope from those of a curve in some intervals, as parts of the largest there.
+    fn differences(&self, positions: &SamplePositions, curve: &SampledCurve) -> [f64; 2] {
+        let mut largest = [[0.0_f64; 2]; 2];
         let stride = (self.coefficients.len() / COMPARED_INTERVALS).max(1);
         for pair in self.nodes.windows(2).step_by(stride) {
             for part in COMPARED {
                 let x = pair[0] + part * (pair[1] - pair[0]);
-                let [value, ..] = positions.eval(curve, x);
-                let [own, ..] = self.eval(x).unwrap_or_default();
-                largest = [
-                    largest[0].max((own - value).abs()),
-                    largest[1].max(value.abs()),
-                ];
+                let (own, expected) = (self.eval(x).unwrap_or_default(), positions.eval(curve, x));
+                for (order, [difference, size]) in largest.iter_mut().enumerate() {
+                    *difference = difference.max((own[order] - expected[order]).abs());
+                    *size = size.max(expected[order].abs());
+                }
             }
         }
-        if largest[0] == 0.0 {
-            0.0
-        } else {
-            largest[0] / largest[1]
-        }
+        largest.map(|[difference, size]| match difference {
+            0.0 => 0.0,
+            difference => difference / size,
+        })
     }
 
     /// The first and the last place where it is defined; none if it repeats.
@@ -196,7 +207,7 @@ mod tests {
                 .map(|&x| f(x))
                 .collect::<Vec<_>>(),
         );
-        let found = PiecewiseQuintic::through(&positions, &curve);
+        let found = PiecewiseQuintic::through(&positions, &curve, Checked::Slope);
         for k in 0..200 {
             let x = -9.0 + 0.1 * f64::from(k);
             let expected = [
@@ -219,7 +230,7 @@ mod tests {
         let x = vec![0.0, 0.5, 1.25, 1.5, 2.0];
         let positions = SamplePositions::new(x.clone(), None);
         let curve = positions.cubic(x.iter().map(|x| x * x * x - x).collect());
-        let found = PiecewiseQuintic::through(&positions, &curve);
+        let found = PiecewiseQuintic::through(&positions, &curve, Checked::Slope);
         for k in 0..=200 {
             let x = 0.01 * f64::from(k);
             let [value, slope, ..] = found.eval(x).unwrap();

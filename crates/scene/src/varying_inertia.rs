@@ -11,7 +11,7 @@ use crate::value::Value;
 use crate::wording::shorten;
 use dwell_geometry::{BodyId, JointKind};
 use dwell_kinetostatics::{KnownReaction, VaryingInertia};
-use dwell_numerics::{PiecewiseQuintic, SamplePositions, SampledCurve};
+use dwell_numerics::{Checked, PiecewiseQuintic, SamplePositions, SampledCurve};
 use std::f64::consts::TAU;
 
 /// Angles are at equal distances over a revolution if they differ from these by less than this part of a distance.
@@ -85,7 +85,7 @@ pub(crate) fn varying_inertia<'a>(
         Some(entry) => reactions(entry, &curves, count)?,
         None => Vec::new(),
     };
-    let polynomials = PiecewiseQuintic::through(&curves.positions, &inertia_curve);
+    let polynomials = PiecewiseQuintic::through(&curves.positions, &inertia_curve, Checked::Slope);
     Some(VaryingInertia {
         body: id,
         inertia: polynomials,
@@ -115,6 +115,7 @@ fn reactions(entry: &Entry<'_>, curves: &Curves, count: usize) -> Option<Vec<Kno
             Some(PiecewiseQuintic::through(
                 &curves.positions,
                 &curves.plain(&values),
+                Checked::Value,
             ))
         };
         let (a, b) = (curve("a"), curve("b"));

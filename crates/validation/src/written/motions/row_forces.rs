@@ -132,8 +132,9 @@ impl MotionReading {
     fn kinetic(&self, motion: &Motion) -> f64 {
         let bodies = self.reading.bodies.iter().enumerate().map(|(b, body)| {
             let [vx, vy] = motion.center(&self.reading, b).order(1);
-            let omega = motion.bodies[b].angle.0[1];
-            0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * omega * omega)
+            let [angle, omega, _] = motion.bodies[b].angle.0;
+            let inertia = body.inertia_at(angle)[0];
+            0.5 * (body.mass * (vx * vx + vy * vy) + inertia * omega * omega)
         });
         let rotors = self.drives.iter().map(|drive| {
             let speed = motion.measure(drive.measure).0[1];

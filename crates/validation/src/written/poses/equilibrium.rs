@@ -117,10 +117,16 @@ pub(crate) fn body_residuals(
             [
                 body.mass * x,
                 body.mass * y,
-                body.inertia * motion.bodies[b].angle.0[k],
+                match motion.bodies[b].angle.0 {
+                    angle if k == 2 => body.inertia_moment(angle),
+                    angle => body.inertia_at(angle[0])[0] * angle[k],
+                },
             ]
         });
-        let (sum, terms) = residual(wrenches, b, center.order(0), inertia);
+        let (sum, mut terms) = residual(wrenches, b, center.order(0), inertia);
+        if let (Some(2), Some(_)) = (order, &body.varying) {
+            terms[1] += body.inertia_terms(motion.bodies[b].angle.0);
+        }
         (b, sum, terms)
     };
     moving.map(of).collect()
@@ -191,6 +197,7 @@ pub(crate) fn equilibrium(
             actuators: actuator_forces(reading, rows, row),
         };
         totals.add(reading, rows, row, &motion, &wrenches);
+        loads.add_known_reactions(reading, rows, row, &motion);
         // Statically indeterminate reactions are in no file.
         let Some(joints) = written_joint_wrenches(reading, rows, row, &motion, &columns) else {
             continue;
@@ -222,6 +229,8 @@ struct LoadDifferences {
     differences: Vec<(usize, usize, f64)>,
     /// By load: the largest magnitude.
     largest: BTreeMap<usize, f64>,
+    /// Of reactions that the scene gives over an angle: row, name, written and expected value.
+    known: Vec<(usize, String, [f64; 2])>,
 }
 
 impl LoadDifferences {
@@ -249,7 +258,29 @@ impl LoadDifferences {
         Some(all)
     }
 
+    /// The written reactions that the scene gives over the angle of a body.
+    fn add_known_reactions(&mut self, reading: &Reading, rows: &Rows, row: usize, motion: &Motion) {
+        for (b, body) in reading.bodies.iter().enumerate() {
+            let [angle, omega, alpha] = motion.bodies[b].angle.0;
+            let Some(table) = &body.varying else { continue };
+            for (name, _, expected) in table.reactions_at(angle, [omega, alpha]) {
+                if let Some(written) = rows.get(row, name) {
+                    self.known.push((row, name.to_owned(), [written, expected]));
+                }
+            }
+        }
+    }
+
     fn add(self, to: &mut Differences, reading: &Reading, file: &str) {
+        let largest = self
+            .known
+            .iter()
+            .fold(0.0_f64, |max, (.., [_, x])| max.max(x.abs()));
+        for (row, name, [written, expected]) in &self.known {
+            to.add(written - expected, largest, "N", || {
+                format!("{file}, row {row}, {name}")
+            });
+        }
         for (row, k, difference) in self.differences {
             let scale = self.largest.get(&k).copied().unwrap_or(0.0);
             let name = &reading.loads[k].name;

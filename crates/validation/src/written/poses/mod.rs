@@ -8,7 +8,8 @@
 //! Everything is compared by residuals: the rows hold positions, velocities, accelerations and forces, and each must meet the
 //! equations that the scene's text gives; nothing is solved.
 
-pub(super) mod closure;
+pub(super) mod angle_table;
+pub(crate) mod closure;
 pub(super) mod compared;
 pub(super) mod difference;
 mod drawn_laws;

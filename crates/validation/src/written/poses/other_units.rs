@@ -109,6 +109,14 @@ impl Factors {
             scale(body.get_mut("center"), self.length);
             scale(body.get_mut("mass"), self.mass);
             scale(body.get_mut("inertia"), self.inertia);
+            let varying = body
+                .get_mut("varying-inertia")
+                .and_then(Value::as_table_mut);
+            if let Some(table) = varying {
+                scale(table.get_mut("angle"), self.angle);
+                scale(table.get_mut("inertia"), self.inertia);
+                scale(table.get_mut("half-slope"), self.inertia);
+            }
         }
         for (name, joint) in tables(scene, "joints") {
             self.convert_joint(joint, &name, reading);

@@ -1,6 +1,7 @@
 //! The second reading of a scene: bodies, joints, coordinates, loads and friction out of the plain TOML, in SI units, by a
 //! reader that shares nothing with the program's own.
 
+use super::angle_table::AngleTable;
 use super::expression::Expression;
 use super::law::{Law, LawUnits, number};
 use super::table_curve::TableCurve;
@@ -30,7 +31,30 @@ pub(crate) struct Body {
     pub(crate) mass: f64,
     pub(crate) center: [f64; 2],
     pub(crate) inertia: f64,
+    /// A moment of inertia over its angle besides.
+    pub(crate) varying: Option<AngleTable>,
     pub(crate) is_ground: bool,
+}
+
+impl Body {
+    /// I and ½I′ at an angle, kg m².
+    pub(crate) fn inertia_at(&self, angle: f64) -> [f64; 2] {
+        let varying = self.varying.as_ref();
+        let [inertia, half_slope] = varying.map_or([0.0; 2], |table| table.at(angle));
+        [self.inertia + inertia, half_slope]
+    }
+
+    /// |I α| + |½ I′| ω², N m.
+    pub(crate) fn inertia_terms(&self, [angle, omega, alpha]: [f64; 3]) -> f64 {
+        let [inertia, half_slope] = self.inertia_at(angle);
+        (inertia * alpha).abs() + half_slope.abs() * omega * omega
+    }
+
+    /// I α + ½ I′ ω² of an angle and its derivatives, N m.
+    pub(crate) fn inertia_moment(&self, [angle, omega, alpha]: [f64; 3]) -> f64 {
+        let [inertia, half_slope] = self.inertia_at(angle);
+        inertia * alpha + half_slope * omega * omega
+    }
 }
 
 /// A point of a body in the body's frame.
@@ -254,6 +278,7 @@ impl Reading {
             name: name.to_owned(),
             mass: share * of("mass") * self.units.mass,
             inertia: share * of("inertia") * self.units.inertia,
+            varying: AngleTable::read(table, &self.units).filter(|_| !is_ground),
             points,
             center,
             is_ground,

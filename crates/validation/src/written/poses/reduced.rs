@@ -109,13 +109,14 @@ fn add_sums(to: &mut Differences, reading: &Reading, rows: &Rows, motions: &[Mot
         let terms = bodies.map(|(b, body)| {
             let center = motion.center(reading, b);
             let [[ux, uy], [vx, vy]] = orders.map(|k| center.order(k));
-            let [omega, alpha] = orders.map(|k| motion.bodies[b].angle.0[k]);
-            let size =
-                body.mass * ux.hypot(uy) * vx.hypot(vy) + (body.inertia * omega * alpha).abs();
-            [
-                body.mass * (ux * vx + uy * vy) + body.inertia * omega * alpha,
-                size,
-            ]
+            let angle = motion.bodies[b].angle.0;
+            let moment = match orders[1] {
+                2 => body.inertia_moment(angle),
+                _ => body.inertia_at(angle[0])[0] * angle[1],
+            };
+            let of_angle = angle[1] * moment;
+            let size = body.mass * ux.hypot(uy) * vx.hypot(vy) + of_angle.abs();
+            [body.mass * (ux * vx + uy * vy) + of_angle, size]
         });
         terms.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d])
     };
@@ -127,6 +128,7 @@ fn add_sums(to: &mut Differences, reading: &Reading, rows: &Rows, motions: &[Mot
     };
     add_column(to, rows, "m", &all([1, 1]), "kg m2");
     add_column(to, rows, "half_dm", &all([1, 2]), "kg m2");
+    add_known_coefficients(to, reading, rows, motions);
     for load in &reading.loads {
         let power = |motion: &Motion| {
             let powers = load.coefficient_wrenches(reading, motion);
@@ -135,6 +137,31 @@ fn add_sums(to: &mut Differences, reading: &Reading, rows: &Rows, motions: &[Mot
         };
         let values: Vec<[f64; 2]> = motions.iter().map(power).collect();
         add_column(to, rows, &format!("{}.w", load.name), &values, "m");
+    }
+}
+
+/// a and b of the reactions that the scene gives over the angle of a body, at unit speed of the coordinate.
+fn add_known_coefficients(
+    to: &mut Differences,
+    reading: &Reading,
+    rows: &Rows,
+    motions: &[Motion],
+) {
+    for (b, body) in reading.bodies.iter().enumerate() {
+        let Some(table) = &body.varying else { continue };
+        let at = |motion: &Motion| {
+            let [angle, ratio, second] = motion.bodies[b].angle.0;
+            let found = table.reactions_at(angle, [ratio, second]).into_iter();
+            found.map(|(_, [a, _], b)| [a * ratio, b]).collect()
+        };
+        let values: Vec<Vec<[f64; 2]>> = motions.iter().map(at).collect();
+        for (k, (name, _)) in table.reactions.iter().enumerate() {
+            for (c, end) in ["a", "b"].into_iter().enumerate() {
+                let of = values.iter().filter_map(|all| all.get(k));
+                let of: Vec<[f64; 2]> = of.map(|pair| [pair[c], pair[c].abs()]).collect();
+                add_column(to, rows, &format!("{name}.{end}"), &of, "kg m");
+            }
+        }
     }
 }
 

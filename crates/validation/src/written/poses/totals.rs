@@ -117,7 +117,7 @@ fn shaking(reading: &Reading, motion: &Motion, t: f64) -> [[f64; 2]; 3] {
         push(
             force,
             center.order(0),
-            -body.inertia * motion.bodies[b].angle.0[2],
+            -body.inertia_moment(motion.bodies[b].angle.0),
         );
     }
     sums
@@ -129,10 +129,12 @@ fn kinetic(reading: &Reading, motion: &Motion) -> [[f64; 2]; 2] {
     for (b, body) in reading.bodies.iter().enumerate() {
         let center = motion.center(reading, b);
         let ([vx, vy], [ax, ay]) = (center.order(1), center.order(2));
-        let [_, omega, alpha] = motion.bodies[b].angle.0;
-        let energy = 0.5 * (body.mass * (vx * vx + vy * vy) + body.inertia * omega * omega);
-        let rate = body.mass * (vx * ax + vy * ay) + body.inertia * omega * alpha;
-        let terms = body.mass * vx.hypot(vy) * ax.hypot(ay) + (body.inertia * omega * alpha).abs();
+        let [angle, omega, alpha] = motion.bodies[b].angle.0;
+        let inertia = body.inertia_at(angle)[0];
+        let of_angle = omega * body.inertia_moment([angle, omega, alpha]);
+        let energy = 0.5 * (body.mass * (vx * vx + vy * vy) + inertia * omega * omega);
+        let rate = body.mass * (vx * ax + vy * ay) + of_angle;
+        let terms = body.mass * vx.hypot(vy) * ax.hypot(ay) + of_angle.abs();
         for (sum, [value, size]) in sums.iter_mut().zip([[energy, energy], [rate, terms]]) {
             sum[0] += value;
             sum[1] += size;
