@@ -125,3 +125,89 @@ fn careless_exports_are_refused() {
         former.err
     );
 }
+
+/// The scene that `reduce --from` writes moves as the mechanism that the runs are of, with its reactions.
+#[test]
+fn the_written_scene_moves_as_the_mechanism() {
+    let dir = TestDir::new();
+    dir.put("single-dwell.toml", single_dwell());
+    let scene = "single-dwell.toml";
+    let ok = |args: &[&str]| {
+        let run = dir.run(args);
+        assert_eq!(run.status, Some(0), "{args:?}: {}", run.err);
+    };
+    ok(&[
+        "runs",
+        scene,
+        "--points",
+        "361",
+        "--pictures",
+        "none",
+        "--out",
+        "o",
+    ]);
+    let runs = ["o/single-dwell-run-i.csv", "o/single-dwell-run-ii.csv"];
+    ok(&[
+        "reduce",
+        "--from",
+        runs[0],
+        runs[1],
+        "--pictures",
+        "none",
+        "--out",
+        "o",
+        "--name",
+        "known",
+    ]);
+    // The original takes ten periods in its 1001 rows, the written scene one.
+    for (scene, out) in [(scene, "original"), ("o/known-scene.toml", "written")] {
+        ok(&[
+            "simulate",
+            scene,
+            "--method",
+            "dop853",
+            "--rtol",
+            "1e-12",
+            "--pictures",
+            "none",
+            "--out",
+            out,
+        ]);
+    }
+    let columns = |file: &str| {
+        let text = std::fs::read_to_string(dir.0.join(file)).unwrap();
+        let mut lines = text
+            .lines()
+            .map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+        let header = lines.next().unwrap();
+        let rows: Vec<Vec<String>> = lines.collect();
+        move |name: &str| -> Vec<f64> {
+            let k = header
+                .iter()
+                .position(|column| column.starts_with(name))
+                .unwrap();
+            rows.iter().map(|row| row[k].parse().unwrap()).collect()
+        }
+    };
+    let original = columns("original/single-dwell-motion.csv");
+    let written = columns("written/known-scene-motion.csv");
+    let times = [original("t [s]"), written("t [s]")];
+    assert!(
+        (times[1][1000] - 5.419_662_677_064).abs() < 1e-9,
+        "{}",
+        times[1][1000]
+    );
+    for (name, tolerance) in [
+        ("phi [rad]", 1e-11),
+        ("phi.velocity", 1e-11),
+        ("slide.normal", 1e-9),
+    ] {
+        let values = [original(name), written(name)];
+        let largest = values[0].iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+        for k in 0..=100 {
+            assert!((times[0][k] - times[1][10 * k]).abs() < 1e-12);
+            let difference = (values[0][k] - values[1][10 * k]).abs() / largest;
+            assert!(difference < tolerance, "{name} {k}: {difference:e}");
+        }
+    }
+}

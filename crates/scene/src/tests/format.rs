@@ -255,6 +255,10 @@ fn every_example_of_a_key_is_read() {
         let law = "cycloidal = { rise = 1.0, duration = 0.5 }";
         Some(match table.name.as_str() {
             "[bodies.<body>]" => format!("bodies.crank = {inner}"),
+            "[bodies.<body>.varying-inertia]" => format!("bodies.crank.varying-inertia = {inner}"),
+            "<reaction>" => format!(
+                "bodies.crank.varying-inertia = {{ angle = [0, 90, 180, 270], inertia = [2, 1.5, 1, 1.5], reactions.other = {inner} }}"
+            ),
             "[actuators.<actuator>]" => format!("actuators.other = {inner}\nassembly.other = 10"),
             "[coordinates.<coordinate>]" => format!("coordinates.other = {inner}"),
             "[prescribed]" => {
