@@ -8,11 +8,12 @@ use dwell_validation::{FreeMotionRun, free_motion_run};
 use std::time::Instant;
 
 /// The cases that have a motion, and what is special about it.
-const CASES_WITH_MOTION: [&str; 14] = [
+const CASES_WITH_MOTION: [&str; 15] = [
     "andrews",               // a constant torque, a spring
     "boom",                  // one cylinder led, one free
     "crank-rocker",          // no loads
     "double-pendulum",       // two freedoms
+    "exported-model",        // a varying inertia
     "expressions",           // loads and a law by expressions
     "five-bar",              // two freedoms with servos
     "four-bar",              // a motor with inductance against loads

@@ -189,7 +189,7 @@ pub(crate) fn check_integral(function: &IntegratedFunction<'_>) {
         let rounding = 4e-15 * scale + 1e-15 * steep * cells as f64;
         let difference = (at(right)[0] - at(left)[0] - climb).abs();
         assert!(
-            difference < rounding,
+            difference <= rounding,
             "{name}, cell {cell}: {difference:e} > {rounding:e}"
         );
         if cell > 0 {

@@ -87,10 +87,10 @@ fn pivot_name(runs: &ExportedRuns) -> &'static str {
         let mut reactions = runs.reactions.iter();
         reactions.all(|(reaction, _)| reaction.split('.').next() != Some(name))
     };
-    ["pivot", "driven-pivot", "bearing"]
+    ["pivot", "driven-pivot", "crankshaft"]
         .into_iter()
         .find(is_free)
-        .unwrap_or("driven-bearing")
+        .unwrap_or("driven-crankshaft")
 }
 
 /// A column's name as that of an entry of a scene, quoted where it needs that; `phi` where it cannot be one.

@@ -32,6 +32,8 @@ pub(crate) struct Reference {
     pub(crate) computed_by: Option<String>,
     /// Coefficients at sampled positions.
     pub(crate) samples: Vec<PublishedSample>,
+    /// Of the mechanisms that bodies of varying inertia stand for.
+    pub(crate) known_reactions: Vec<KnownSample>,
     /// Period of the free motion, s.
     pub(crate) period: Option<f64>,
     /// States along the free motion.
@@ -45,6 +47,17 @@ pub(crate) struct Reference {
     pub(crate) notes: String,
     /// The file.
     path: String,
+}
+
+/// a and b of a reaction that the scene gives over the angle of a body, which is the coordinate.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct KnownSample {
+    /// rad.
+    pub(crate) angle: f64,
+    pub(crate) name: String,
+    /// kg m or kg m².
+    pub(crate) a: f64,
+    pub(crate) b: f64,
 }
 
 /// Known values of a free motion at one time.
@@ -154,6 +167,7 @@ impl Reference {
             kinds: SourceKinds::read(value)?,
             source: source.unwrap_or("no source given").to_owned(),
             computed_by: value["computed"].as_str().map(str::to_owned),
+            known_reactions: known_samples(list(value, "samples")?, &samples, scene)?,
             samples,
             period,
             motion_states: motion,
@@ -308,6 +322,7 @@ fn reactions(value: &Value, scene: &Scene) -> Result<Vec<(usize, f64, f64)>, Str
     let mechanism = &scene.mechanism;
     let all = mechanism.reactions().into_iter();
     let names: Vec<String> = all.map(|r| mechanism.reaction_name(r)).collect();
+    let known = known_names(scene);
     let pair = |(name, pair): (&String, &Value)| {
         let none = || {
             let known = names.join(", ");
@@ -320,7 +335,40 @@ fn reactions(value: &Value, scene: &Scene) -> Result<Vec<(usize, f64, f64)>, Str
         Ok((k, a.map_err(wrong)?, b.map_err(wrong)?))
     };
     let fields = object(value, "`reactions`")?;
-    fields.iter().map(pair).collect()
+    let of_joints = fields
+        .iter()
+        .filter(|(name, _)| !known.contains(&name.as_str()));
+    of_joints.map(pair).collect()
+}
+
+/// The reactions that the scene gives over the angle of a body.
+fn known_names(scene: &Scene) -> Vec<&str> {
+    let varying = scene.varying_inertias.iter();
+    let reactions = varying.flat_map(|varying| &varying.reactions);
+    reactions.map(|reaction| reaction.name.as_str()).collect()
+}
+
+/// Their values in the samples.
+fn known_samples(
+    all: &[Value],
+    samples: &[PublishedSample],
+    scene: &Scene,
+) -> Result<Vec<KnownSample>, String> {
+    let mut found = Vec::new();
+    for (value, sample) in all.iter().zip(samples) {
+        for name in known_names(scene) {
+            let pair = &value["reactions"][name];
+            if !pair.is_null() {
+                found.push(KnownSample {
+                    angle: sample.q,
+                    name: name.to_owned(),
+                    a: number(pair, "a")?,
+                    b: number(pair, "b")?,
+                });
+            }
+        }
+    }
+    Ok(found)
 }
 
 /// Whether a key gives the angle of a body, such as `theta_guide_rad`. It is not compared: the

@@ -3,6 +3,7 @@
 use crate::cases::reference::Reference;
 use crate::cases::subject::PlanSubject;
 use crate::checked::history::History;
+use crate::checked::known_reactions::known_reaction_findings;
 use crate::checked::multibody::{self, FreeMotionRun};
 use crate::checked::period_check;
 use crate::checked::rounding_check::{self, StateRounding};
@@ -198,6 +199,7 @@ fn check_reduced_model(
     };
     let mut findings = dwell_verify::verify_all(&case, &subject, &reference.samples);
     findings.extend(symbolic_findings(scene)?);
+    findings.extend(known_reaction_findings(scene, scene, reference));
     let mut curves = Vec::new();
     if let Ok(context) = CheckContext::new(&case, &subject) {
         // Where ½m′ is largest, differences have most to get right.

@@ -3,6 +3,7 @@
 pub(crate) mod analysis;
 pub(crate) mod free_motion_setup;
 pub(crate) mod history;
+pub(crate) mod known_reactions;
 pub(crate) mod multibody;
 pub(crate) mod period_check;
 pub(crate) mod rounding_check;

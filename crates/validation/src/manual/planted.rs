@@ -9,6 +9,7 @@
 use super::motion_claims::{MotionClaims, differ};
 use crate::cases::model_states::{ModelStates, StateRequest};
 use crate::cases::reference::Reference;
+use crate::checked::known_reactions::known_reaction_findings;
 use crate::checked::states::state_requests;
 use dwell_findings::{Check, Finding};
 use dwell_scene::Scene;
@@ -84,7 +85,9 @@ impl PlantedScene {
     pub(super) fn findings(&self) -> Vec<Finding> {
         let states = self.own_states().map(|own| self.check_states(own));
         let motion = self.own_motion().map(|own| own.check(&self.scene, own));
-        states.into_iter().chain(motion).flatten().collect()
+        let known = known_reaction_findings(&self.scene, &self.scene, &self.reference);
+        let found = states.into_iter().chain(motion).flatten();
+        found.chain(known).collect()
     }
 
     /// What the checks detect where the results come from another scene.
@@ -110,6 +113,13 @@ impl PlantedScene {
                 changed = true;
                 failed.extend(self.detecting(&claims.check(&self.scene, own)));
             }
+        }
+        let known = |scene: &Scene| known_reaction_findings(&self.scene, scene, &self.reference);
+        if !self.scene.varying_inertias.is_empty()
+            && altered.varying_inertias != self.scene.varying_inertias
+        {
+            (seen, changed) = (true, true);
+            failed.extend(self.detecting(&known(altered)));
         }
         match (seen, changed) {
             (false, _) => PlantedResult::Refused,

@@ -8,7 +8,7 @@
 //! Everything is compared by residuals: the rows hold positions, velocities, accelerations and forces, and each must meet the
 //! equations that the scene's text gives; nothing is solved.
 
-pub(super) mod angle_table;
+pub(crate) mod angle_table;
 pub(crate) mod closure;
 pub(super) mod compared;
 pub(super) mod difference;
@@ -38,7 +38,7 @@ pub(super) mod table_curve;
 mod table_file;
 pub(super) mod totals;
 mod unit_files;
-pub(super) mod units;
+pub(crate) mod units;
 mod variants;
 pub(super) mod wrenches;
 
