@@ -98,6 +98,11 @@ fn val_every_motion_by_the_multibody_equations() {
 fn a_mass_off_by_a_hundred_thousandth_is_found_in_every_motion() {
     for case in CASES_WITH_MOTION {
         let right = scene(case);
+        // Its only body has a varying inertia and no mass: the next test alters it.
+        if case == "exported-model" {
+            assert!(right.masses.iter().all(|body| body.mass == 0.0));
+            continue;
+        }
         let run = run(&right);
         let ground = right.mechanism.ground;
         let mass = |b: &usize| right.masses[*b].mass;
@@ -117,7 +122,7 @@ fn a_mass_off_by_a_hundred_thousandth_is_found_in_every_motion() {
 #[test]
 fn what_moves_a_machine_is_judged_too() {
     type Change = fn(&str) -> String;
-    let changes: [(&str, Change); 4] = [
+    let changes: [(&str, Change); 5] = [
         ("boom", |text| {
             text.replace("1.5e4*dig.velocity", "1.50001e4*dig.velocity")
         }),
@@ -129,6 +134,9 @@ fn what_moves_a_machine_is_judged_too() {
         }),
         ("whitworth", |text| {
             text.replace("integral = 200", "integral = 200.01")
+        }),
+        ("exported-model", |text| {
+            text.replace("1.032227550952006", "1.032327550952006")
         }),
     ];
     for (case, change) in changes {

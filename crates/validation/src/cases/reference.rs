@@ -55,6 +55,8 @@ pub(crate) struct KnownSample {
     /// rad.
     pub(crate) angle: f64,
     pub(crate) name: String,
+    /// Whether its unit is N m, else N.
+    pub(crate) is_moment: bool,
     /// kg m or kg m².
     pub(crate) a: f64,
     pub(crate) b: f64,
@@ -362,6 +364,7 @@ fn known_samples(
                 found.push(KnownSample {
                     angle: sample.q,
                     name: name.to_owned(),
+                    is_moment: pair["unit"] == "N m",
                     a: number(pair, "a")?,
                     b: number(pair, "b")?,
                 });

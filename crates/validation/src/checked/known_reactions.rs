@@ -34,6 +34,16 @@ pub(crate) fn known_reaction_findings(
     findings
 }
 
+/// The reaction of a name and a unit: a moment is not compared with a force.
+fn find<'a>(
+    claimed: &[&'a KnownReaction],
+    name: &str,
+    is_moment: bool,
+) -> Option<&'a KnownReaction> {
+    let mut claimed = claimed.iter().copied();
+    claimed.find(|reaction| reaction.name == name && reaction.is_moment == is_moment)
+}
+
 fn of(scene: &Scene) -> Vec<&KnownReaction> {
     let all = scene.varying_inertias.iter();
     all.flat_map(|varying| &varying.reactions).collect()
@@ -93,12 +103,12 @@ fn text_finding(right: &Scene, claimed: &[&KnownReaction]) -> Finding {
     for table in tables {
         for k in 0..ANGLES {
             let angle = 0.2 + std::f64::consts::TAU * (0.618_033_988_749_895 * k as f64).fract();
-            for (name, _, expected) in table.reactions_at(angle, MOTION) {
-                let found = claimed.iter().find(|reaction| reaction.name == name);
+            for expected in table.reactions_at(angle, MOTION) {
+                let found = find(claimed, expected.name, expected.is_moment);
                 let [speed, acceleration] = MOTION;
                 let value = found.map_or(f64::NAN, |r| r.value(angle, speed, acceleration));
-                largest.add(value, expected, || {
-                    format!("theta = {angle:.6} rad, {name}")
+                largest.add(value, expected.value, || {
+                    format!("theta = {angle:.6} rad, {}", expected.name)
                 });
             }
         }
@@ -117,7 +127,7 @@ fn text_finding(right: &Scene, claimed: &[&KnownReaction]) -> Finding {
 fn reference_finding(claimed: &[&KnownReaction], reference: &Reference) -> Finding {
     let mut largest = Largest::default();
     for sample in &reference.known_reactions {
-        let found = claimed.iter().find(|reaction| reaction.name == sample.name);
+        let found = find(claimed, &sample.name, sample.is_moment);
         let value = |speed: f64, acceleration: f64| {
             found.map_or(f64::NAN, |r| r.value(sample.angle, speed, acceleration))
         };

@@ -14,8 +14,26 @@ pub(crate) struct AngleTable {
     inertia: Vec<f64>,
     half_slope: Vec<f64>,
     is_series: bool,
-    /// Name, a and b.
-    pub(crate) reactions: Vec<(String, [Vec<f64>; 2])>,
+    pub(crate) reactions: Vec<AngleReaction>,
+}
+
+/// A reaction over the angle.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct AngleReaction {
+    pub(crate) name: String,
+    is_moment: bool,
+    /// a and b.
+    lists: [Vec<f64>; 2],
+}
+
+/// A reaction at an angle.
+pub(crate) struct ReactionAt<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) is_moment: bool,
+    /// Of the angular acceleration.
+    pub(crate) a: f64,
+    /// a α + b ω².
+    pub(crate) value: f64,
 }
 
 impl AngleTable {
@@ -43,7 +61,11 @@ impl AngleTable {
         let reaction = |(name, of): (&String, &Value)| {
             let of = of.as_table()?;
             let lists = [list(of, "a", 1.0)?, list(of, "b", 1.0)?];
-            Some((name.clone(), lists.map(cut)))
+            Some(AngleReaction {
+                name: name.clone(),
+                is_moment: of.get("unit")?.as_str()? == "N m",
+                lists: lists.map(cut),
+            })
         };
         Some(Self {
             inertia: cut(list(table, "inertia", units.inertia)?),
@@ -70,15 +92,16 @@ impl AngleTable {
     }
 
     /// a α + b ω² of each reaction; none where curves of unknown slopes are between the angles.
-    pub(crate) fn reactions_at(
-        &self,
-        angle: f64,
-        [omega, alpha]: [f64; 2],
-    ) -> Vec<(&str, [f64; 2], f64)> {
+    pub(crate) fn reactions_at(&self, angle: f64, [omega, alpha]: [f64; 2]) -> Vec<ReactionAt<'_>> {
         let all = self.reactions.iter().filter(|_| self.is_series);
-        all.map(|(name, lists)| {
-            let [a, b] = [0, 1].map(|k| self.series(&lists[k], angle));
-            (name.as_str(), [a, b], a * alpha + b * omega * omega)
+        all.map(|reaction| {
+            let [a, b] = [0, 1].map(|k| self.series(&reaction.lists[k], angle));
+            ReactionAt {
+                name: &reaction.name,
+                is_moment: reaction.is_moment,
+                a,
+                value: a * alpha + b * omega * omega,
+            }
         })
         .collect()
     }

@@ -263,9 +263,10 @@ impl LoadDifferences {
         for (b, body) in reading.bodies.iter().enumerate() {
             let [angle, omega, alpha] = motion.bodies[b].angle.0;
             let Some(table) = &body.varying else { continue };
-            for (name, _, expected) in table.reactions_at(angle, [omega, alpha]) {
-                if let Some(written) = rows.get(row, name) {
-                    self.known.push((row, name.to_owned(), [written, expected]));
+            for reaction in table.reactions_at(angle, [omega, alpha]) {
+                if let Some(written) = rows.get(row, reaction.name) {
+                    let name = reaction.name.to_owned();
+                    self.known.push((row, name, [written, reaction.value]));
                 }
             }
         }

@@ -152,14 +152,14 @@ fn add_known_coefficients(
         let at = |motion: &Motion| {
             let [angle, ratio, second] = motion.bodies[b].angle.0;
             let found = table.reactions_at(angle, [ratio, second]).into_iter();
-            found.map(|(_, [a, _], b)| [a * ratio, b]).collect()
+            found.map(|r| [r.a * ratio, r.value]).collect()
         };
         let values: Vec<Vec<[f64; 2]>> = motions.iter().map(at).collect();
-        for (k, (name, _)) in table.reactions.iter().enumerate() {
+        for (k, reaction) in table.reactions.iter().enumerate() {
             for (c, end) in ["a", "b"].into_iter().enumerate() {
                 let of = values.iter().filter_map(|all| all.get(k));
                 let of: Vec<[f64; 2]> = of.map(|pair| [pair[c], pair[c].abs()]).collect();
-                add_column(to, rows, &format!("{name}.{end}"), &of, "kg m");
+                add_column(to, rows, &format!("{}.{end}", reaction.name), &of, "kg m");
             }
         }
     }
