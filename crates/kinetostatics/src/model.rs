@@ -6,6 +6,7 @@ mod kinetostatics;
 mod loaded_state;
 mod revolutions;
 pub mod stages;
+mod varying_bodies;
 mod workspace;
 
 pub use evaluated_state::EvaluatedState;

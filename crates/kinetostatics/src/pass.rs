@@ -9,9 +9,7 @@ mod bodies;
 mod recursive_pass;
 mod sources;
 
-pub(crate) use acceleration::{
-    AccelerationInput, AtRest, GivenMotion, UnitAcceleration, UnitMotions,
-};
+pub(crate) use acceleration::{AtRest, GivenMotion, UnitAcceleration, UnitMotions};
 pub(crate) use bodies::{AcceleratedBody, InertialBody};
 pub use recursive_pass::InverseDynamics;
 pub(crate) use recursive_pass::RecursivePass;

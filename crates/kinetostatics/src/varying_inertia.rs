@@ -3,10 +3,7 @@
 //!
 //! Such a body has the kinetic energy ½ I(θ) ω², so that a moment I α + ½ I′ ω² turns it (equation 1 of docs/theory.md).
 
-use crate::error::ModelError;
-use crate::model::Model;
-use crate::pass::{AccelerationInput, PassModel};
-use dwell_geometry::{ActuatorKind, BodyId, Pose, Vec2};
+use dwell_geometry::{BodyId, Pose, Vec2};
 use dwell_numerics::{PiecewiseQuintic, Scalar};
 
 /// The moment of inertia of a body as a function of its angle from the ground, besides its own constant one.
@@ -70,6 +67,16 @@ pub(crate) struct FrameInertia {
 }
 
 impl FrameInertia {
+    /// A body turns with a frame, from which it has an orientation (cos, sin).
+    pub(crate) fn new(of: &VaryingInertia, frame: usize, offset: Vec2) -> Self {
+        Self {
+            body: of.body.0,
+            frame,
+            offset,
+            inertia: of.inertia.clone(),
+        }
+    }
+
     /// I and ½I′ for the orientation of the body, (cos, sin).
     pub(crate) fn at<T: Scalar>(&self, rotation: Vec2<T>) -> [T; 2] {
         let angle = rotation.y.atan2(rotation.x);
@@ -81,74 +88,17 @@ impl FrameInertia {
         ]
     }
 
-    /// I α + ½ I′ ω² of each pass, N·m.
+    /// I α + ½ I′ ω² of each pass, N·m, from α and ω².
     pub(crate) fn moments<T: Scalar, const N: usize>(
         &self,
         pose: &Pose<T>,
-        accelerations: impl AccelerationInput<T, N>,
+        mut accelerations: [T; N],
+        squares: [T; N],
     ) -> [T; N] {
         let [inertia, half_slope] = self.at(self.offset.cast().rotate(pose.rotation[self.frame]));
-        let mut moments = accelerations.angular_acceleration(self.frame);
-        let squares = accelerations.squared_angular_velocity(self.frame);
-        for (moment, square) in moments.iter_mut().zip(squares) {
-            *moment = inertia * *moment + half_slope * square;
+        for (alpha, square) in accelerations.iter_mut().zip(squares) {
+            *alpha = inertia * *alpha + half_slope * square;
         }
-        moments
-    }
-}
-
-impl Model {
-    /// The same model with bodies of varying inertia. One that is not known over a whole revolution limits the range of the
-    /// actuator that turns its body from the ground.
-    ///
-    /// # Errors
-    /// [`ModelError::VaryingInertia`]: no such moving body, an inertia that is not above zero, or one over part of a revolution of
-    /// a body that no actuator turns from the ground.
-    pub fn with_varying_inertias(mut self, varying: &[VaryingInertia]) -> Result<Self, ModelError> {
-        for one in varying {
-            let refused = |what| ModelError::VaryingInertia {
-                body: one.body,
-                what,
-            };
-            let body = one.body.0;
-            let moves = body < self.masses().len() && body != self.mechanism().ground;
-            if !moves {
-                return Err(refused("it is not a moving body"));
-            }
-            let [smallest, largest] = one.inertia.extent();
-            if !(smallest > 0.0 && largest.is_finite()) {
-                return Err(refused("its varying inertia is not above zero everywhere"));
-            }
-            if let Some(ends) = one.inertia.ends() {
-                let of_body =
-                    |bodies: [BodyId; 2]| bodies == [BodyId(self.mechanism().ground), one.body];
-                let actuators = &self.mechanism().actuators;
-                let [actuator] = actuators.as_slice() else {
-                    return Err(refused(PART_OF_A_REVOLUTION));
-                };
-                if actuator.kind != ActuatorKind::Angle || !of_body(actuator.bodies) {
-                    return Err(refused(PART_OF_A_REVOLUTION));
-                }
-                self.pass_model.plan.limit_range(ends);
-            }
-            let frame_inertia = FrameInertia::new(&self.pass_model, one);
-            self.pass_model.varying_inertias.push(frame_inertia);
-        }
-        Ok(self)
-    }
-}
-
-const PART_OF_A_REVOLUTION: &str =
-    "its inertia is known over part of a revolution, and no actuator is its angle from the ground";
-
-impl FrameInertia {
-    fn new(model: &PassModel, of: &VaryingInertia) -> Self {
-        let orientation = model.plan.frames().orientations[of.body.0];
-        Self {
-            body: of.body.0,
-            frame: orientation.frame,
-            offset: orientation.offset,
-            inertia: of.inertia.clone(),
-        }
+        accelerations
     }
 }

@@ -144,7 +144,7 @@ fn part_of_a_revolution_limits_the_range() {
         reactions: Vec::new(),
         ..varying()
     };
-    let limited = ExactModel::new(model(&[part.clone()]).unwrap()).unwrap();
+    let limited = ExactModel::new(model(std::slice::from_ref(&part)).unwrap()).unwrap();
     assert_eq!(limited.range().limits(), Some((-1.0, 1.0)));
     assert!(limited.inertia(1.01, &mut limited.workspace()).is_err());
     assert!(limited.inertia(1.0, &mut limited.workspace()).is_ok());

@@ -22,9 +22,9 @@ use crate::stops::stops as stops_of;
 use crate::table_reader::TableReader;
 use crate::units::Units;
 use crate::value::Context;
-use crate::varying_inertia::check_varying_inertias;
 use crate::wording::shorten;
-use dwell_geometry::{Body, Mechanism, Vec2};
+use dwell_geometry::{Body, Joint, JointKind, Mechanism, Vec2};
+use dwell_kinetostatics::VaryingInertia;
 use dwell_laws::expression::nearest;
 use toml::de::DeValue;
 
@@ -286,4 +286,40 @@ fn one_line(text: &str) -> String {
 fn printable(text: &str) -> String {
     let visible = |c: char| if c.is_control() && c != '\n' { ' ' } else { c };
     text.chars().map(visible).collect()
+}
+
+/// Reports bodies that no revolute joint holds on the ground, and reactions whose names are those of joints.
+fn check_varying_inertias(varying: &[VaryingInertia], bodies: &Bodies<'_>, joints: &Joints<'_>) {
+    for one in varying {
+        let (body, ground) = (&bodies.list[one.body.0], bodies.ground);
+        let is_pivot = |joint: &Joint| {
+            matches!(joint.kind, JointKind::Revolute)
+                && joint.bodies.contains(&one.body)
+                && joint.bodies.iter().any(|b| Some(b.0) == ground)
+        };
+        let mut read = joints.list.iter().filter_map(|j| j.joint.as_ref());
+        if !read.any(is_pivot) {
+            let message = format!(
+                "no revolute joint holds body `{}`, whose inertia varies, on the ground",
+                shorten(body.name)
+            );
+            let help = "its inertia is a function of its angle from the ground: add `A = { revolute = [\"ground.A\", \"…\"] }`";
+            joints
+                .log
+                .report(message, &[(&body.key, "turns about no fixed point")], help);
+        }
+        for reaction in &one.reactions {
+            let first = reaction.name.split('.').next().unwrap_or_default();
+            if joints.list.iter().any(|joint| joint.name == first) {
+                let message = format!(
+                    "reaction `{}` of a varying inertia has the name of a joint",
+                    shorten(&reaction.name)
+                );
+                let help = "rename the reaction, or the joint";
+                joints
+                    .log
+                    .report(message, &[(&body.key, "in this body")], help);
+            }
+        }
+    }
 }

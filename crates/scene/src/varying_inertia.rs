@@ -1,7 +1,5 @@
 //! The moment of inertia of a body over its angle: `[bodies.<body>.varying-inertia]`.
 
-use crate::bodies::Bodies;
-use crate::joints::Joints;
 use crate::keys::table;
 use crate::names::check_dotted;
 use crate::spans::SceneLocation;
@@ -9,7 +7,7 @@ use crate::table_reader::{Entry, TableReader};
 use crate::units::{SI, Unit};
 use crate::value::Value;
 use crate::wording::shorten;
-use dwell_geometry::{BodyId, JointKind};
+use dwell_geometry::BodyId;
 use dwell_kinetostatics::{KnownReaction, VaryingInertia};
 use dwell_numerics::{Checked, PiecewiseQuintic, SamplePositions, SampledCurve};
 use std::f64::consts::TAU;
@@ -33,48 +31,14 @@ pub(crate) fn varying_inertia<'a>(
     let fields = TableReader::open(entry, what)?;
     fields.reject_unknown_keys(table("varying-inertia"));
     let units = fields.units();
-    let angles = numbers(&fields, "angle", &units.angle)?;
-    let (mut angles, at) = (angles.0, angles.1);
-    if let Some(k) = (1..angles.len()).find(|&k| angles[k] <= angles[k - 1]) {
-        let message = format!(
-            "angle {} of {} is not above the one before",
-            k + 1,
-            fields.what
-        );
-        let help = "sort the columns by the angle, each angle once";
-        return at.reject(message, "out of order", help);
-    }
+    let angles = increasing_angles(&fields, &units.angle)?;
     let count = angles.len();
     let inertia = column(&fields, "inertia", &units.inertia, count)?;
     let half_slope = match fields.get("half-slope") {
         Some(_) => Some(column(&fields, "half-slope", &units.inertia, count)?),
         None => None,
     };
-    let whole = whole_revolution(&angles);
-    if angles[count - 1] - angles[0] > TAU * (1.0 + EQUAL) {
-        let message = format!("the angles of {} cover more than a revolution", fields.what);
-        return at.reject(
-            message,
-            "more than 360°",
-            "give the angles of one revolution",
-        );
-    }
-    let curves = Curves {
-        by_series: is_series(&fields, whole)?,
-        rows: whole.unwrap_or(count),
-        positions: {
-            let rows = whole.unwrap_or(count);
-            angles.truncate(rows);
-            let first = angles[0];
-            let equal = |k: usize| first + TAU * k as f64 / rows as f64;
-            let x = if whole.is_some() {
-                (0..rows).map(equal).collect()
-            } else {
-                angles
-            };
-            SamplePositions::new(x, whole.map(|_| TAU))
-        },
-    };
+    let curves = Curves::over(angles, &fields)?;
     let inertia_curve = curves.inertia(&inertia, half_slope.as_deref());
     curves.check(
         &fields,
@@ -139,6 +103,23 @@ struct Curves {
 }
 
 impl Curves {
+    /// Positions of a whole revolution are set at exactly equal distances.
+    fn over(angles: Vec<f64>, fields: &TableReader<'_>) -> Option<Self> {
+        let whole = whole_revolution(&angles);
+        let rows = whole.unwrap_or(angles.len());
+        let first = angles[0];
+        let equal = |k: usize| first + TAU * k as f64 / rows as f64;
+        let x = match whole {
+            Some(_) => (0..rows).map(equal).collect(),
+            None => angles,
+        };
+        Some(Self {
+            by_series: is_series(fields, whole)?,
+            rows,
+            positions: SamplePositions::new(x, whole.map(|_| TAU)),
+        })
+    }
+
     fn plain(&self, values: &[f64]) -> SampledCurve {
         match self.by_series {
             true => SampledCurve::series(&values[..self.rows]),
@@ -255,6 +236,27 @@ fn numbers<'a>(fields: &TableReader<'a>, key: &str, unit: &Unit) -> Option<(Vec<
     Some((read, entry.value))
 }
 
+/// The angles in rad: increasing, of one revolution.
+fn increasing_angles(fields: &TableReader<'_>, unit: &Unit) -> Option<Vec<f64>> {
+    let (angles, at) = numbers(fields, "angle", unit)?;
+    let count = angles.len();
+    if let Some(k) = (1..count).find(|&k| angles[k] <= angles[k - 1]) {
+        let message = format!(
+            "angle {} of {} is not above the one before",
+            k + 1,
+            fields.what
+        );
+        let help = "sort the columns by the angle, each angle once";
+        return at.reject(message, "out of order", help);
+    }
+    if angles[count - 1] - angles[0] > TAU * (1.0 + EQUAL) {
+        let message = format!("the angles of {} cover more than a revolution", fields.what);
+        let help = "give the angles of one revolution";
+        return at.reject(message, "more than 360°", help);
+    }
+    Some(angles)
+}
+
 /// As many numbers as angles.
 fn column(fields: &TableReader<'_>, key: &str, unit: &Unit, count: usize) -> Option<Vec<f64>> {
     let (values, at) = numbers(fields, key, unit)?;
@@ -271,44 +273,4 @@ fn column(fields: &TableReader<'_>, key: &str, unit: &Unit, count: usize) -> Opt
         "another number of values",
         "give one for each angle",
     )
-}
-
-/// Reports bodies that no revolute joint holds on the ground, and reactions whose names are those of joints.
-pub(crate) fn check_varying_inertias(
-    varying: &[VaryingInertia],
-    bodies: &Bodies<'_>,
-    joints: &Joints<'_>,
-) {
-    for one in varying {
-        let (body, ground) = (&bodies.list[one.body.0], bodies.ground);
-        let is_pivot = |joint: &dwell_geometry::Joint| {
-            matches!(joint.kind, JointKind::Revolute)
-                && joint.bodies.contains(&one.body)
-                && joint.bodies.iter().any(|b| Some(b.0) == ground)
-        };
-        let mut read = joints.list.iter().filter_map(|j| j.joint.as_ref());
-        if !read.any(is_pivot) {
-            let message = format!(
-                "no revolute joint holds body `{}`, whose inertia varies, on the ground",
-                shorten(body.name)
-            );
-            let help = "its inertia is a function of its angle from the ground: add `A = { revolute = [\"ground.A\", \"…\"] }`";
-            joints
-                .log
-                .report(message, &[(&body.key, "turns about no fixed point")], help);
-        }
-        for reaction in &one.reactions {
-            let first = reaction.name.split('.').next().unwrap_or_default();
-            if joints.list.iter().any(|joint| joint.name == first) {
-                let message = format!(
-                    "reaction `{}` of a varying inertia has the name of a joint",
-                    shorten(&reaction.name)
-                );
-                let help = "rename the reaction, or the joint";
-                joints
-                    .log
-                    .report(message, &[(&body.key, "in this body")], help);
-            }
-        }
-    }
 }

@@ -156,7 +156,11 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         accelerations: impl AccelerationInput<T, N>,
     ) {
         for varying in &model.varying_inertias {
-            let more = varying.moments(pose, accelerations);
+            let more = varying.moments(
+                pose,
+                accelerations.angular_acceleration(varying.frame),
+                accelerations.squared_angular_velocity(varying.frame),
+            );
             add(&mut self.balance.moment[varying.frame], more);
         }
     }
@@ -305,10 +309,12 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
             self.joint_moments[body.body] = map_array(rates, |rate| rate * inertia);
         }
         for varying in model.varying_inertias.iter().filter(|v| needed[v.body]) {
-            add(
-                &mut self.joint_moments[varying.body],
-                varying.moments(pose, accelerations),
+            let more = varying.moments(
+                pose,
+                accelerations.angular_acceleration(varying.frame),
+                accelerations.squared_angular_velocity(varying.frame),
             );
+            add(&mut self.joint_moments[varying.body], more);
         }
         let accelerated_bodies = model.accelerated_bodies.iter();
         for (accelerated, &acceleration) in accelerated_bodies.zip(&self.origin_acceleration) {

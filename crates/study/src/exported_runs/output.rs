@@ -16,6 +16,7 @@ use dwell_dynamics::{Orbit, ReducedState};
 use dwell_findings::{Column, Record, Table};
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Block, Document, Files, TableFormat};
+use dwell_scene::SceneError;
 
 /// Part of the reduced model that may be left open by all errors together, before the result is none.
 const USELESS: f64 = 0.05;
@@ -35,11 +36,10 @@ pub fn reduce_runs(
     let runs = combine_runs(tables, names)?;
     let interpolation = interpolation.unwrap_or_else(|| SampleInterpolation::best_for(&runs));
     if interpolation == SampleInterpolation::Trigonometric && !runs.is_whole_revolution {
-        let message = "the positions are no whole revolution at equal distances, so there is no trigonometric series";
-        let help = "use --interpolation cubic, or export 361 positions from 0° to 360°";
-        let error =
-            dwell_scene::SceneError::without_labels(message.to_owned(), Some(help.to_owned()));
-        return Err(error.into());
+        return Err(refused(
+            "the positions are no whole revolution at equal distances, so there is no trigonometric series".to_owned(),
+            "use --interpolation cubic, or export 361 positions from 0° to 360°",
+        ));
     }
     let model = SampledModel::new(&runs, interpolation, 1);
     let errors = SampleErrors::of(&runs, interpolation);
@@ -51,9 +51,7 @@ pub fn reduce_runs(
             errors.interpolation[0],
             interpolation.name()
         );
-        let help = "export more positions, or more digits";
-        let error = dwell_scene::SceneError::without_labels(message, Some(help.to_owned()));
-        return Err(error.into());
+        return Err(refused(message, "export more positions, or more digits"));
     }
     let mut record = Record::default();
     let mut summary = summary(&runs, &model, (interpolation, &errors), tables, &mut record);
@@ -75,7 +73,7 @@ pub fn reduce_runs(
             files.add(format!("{name}-scene.toml"), text);
         }
         None => {
-            summary += "  no scene is written: it needs an angle, and cubic or trigonometric interpolation\n"
+            summary += "  no scene is written: it needs an angle, and cubic or trigonometric interpolation\n";
         }
     }
     let page = page(&summary, &format!("{name}-reduced.png"), &figure.caption);
@@ -88,6 +86,10 @@ pub fn reduce_runs(
         page: Some((format!("{name}-reduced.md"), page)),
         ..Outcome::default()
     })
+}
+
+fn refused(message: String, help: &str) -> StudyError {
+    SceneError::without_labels(message, Some(help.to_owned())).into()
 }
 
 /// Coordinate, m, ½m′, a and b of each reaction at the positions of the runs, as `dwell reduce` of a scene writes them.

@@ -108,7 +108,7 @@ impl AngleTable {
 
     /// The trigonometric interpolant of values at equal distances.
     fn series(&self, values: &[f64], angle: f64) -> f64 {
-        let is_even = values.len() % 2 == 0;
+        let is_even = values.len().is_multiple_of(2);
         let mut sums = [0.0; 2];
         for (k, value) in values.iter().enumerate() {
             let half = 0.5 * (angle - self.angles[0] - TAU * k as f64 / values.len() as f64);

@@ -98,25 +98,7 @@ impl Factors {
 
     fn convert(&self, scene: &mut Table, reading: &Reading) {
         for (_, body) in tables(scene, "bodies") {
-            for (_, point) in body
-                .get_mut("points")
-                .and_then(Value::as_table_mut)
-                .into_iter()
-                .flat_map(|p| p.iter_mut())
-            {
-                scale(Some(point), self.length);
-            }
-            scale(body.get_mut("center"), self.length);
-            scale(body.get_mut("mass"), self.mass);
-            scale(body.get_mut("inertia"), self.inertia);
-            let varying = body
-                .get_mut("varying-inertia")
-                .and_then(Value::as_table_mut);
-            if let Some(table) = varying {
-                scale(table.get_mut("angle"), self.angle);
-                scale(table.get_mut("inertia"), self.inertia);
-                scale(table.get_mut("half-slope"), self.inertia);
-            }
+            self.convert_body(body);
         }
         for (name, joint) in tables(scene, "joints") {
             self.convert_joint(joint, &name, reading);
@@ -157,6 +139,22 @@ impl Factors {
             scale(friction.get_mut("regularization-speed"), speed);
         }
         self.convert_motion(scene, reading);
+    }
+
+    fn convert_body(&self, body: &mut Table) {
+        let points = body.get_mut("points").and_then(Value::as_table_mut);
+        for (_, point) in points.into_iter().flat_map(|points| points.iter_mut()) {
+            scale(Some(point), self.length);
+        }
+        scale(body.get_mut("center"), self.length);
+        scale(body.get_mut("mass"), self.mass);
+        scale(body.get_mut("inertia"), self.inertia);
+        let varying = body.get_mut("varying-inertia");
+        if let Some(table) = varying.and_then(Value::as_table_mut) {
+            scale(table.get_mut("angle"), self.angle);
+            scale(table.get_mut("inertia"), self.inertia);
+            scale(table.get_mut("half-slope"), self.inertia);
+        }
     }
 
     fn convert_joint(&self, joint: &mut Table, name: &str, reading: &Reading) {
