@@ -107,10 +107,12 @@ impl FrictionContact {
 }
 
 /// Working memory of [`solve`].
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FrictionWorkspace<T> {
     /// By load: what is known of it.
     pub(crate) known: Vec<FrictionState<T>>,
+    /// All φ are multiplied by it: 1, but where the effect of their rounding is estimated.
+    pub(crate) factor_scale: f64,
     /// By load: φ.
     friction_factor: Vec<T>,
     /// By load: F.
@@ -125,6 +127,7 @@ impl<T: Scalar> FrictionWorkspace<T> {
         let zero = T::from_f64(0.0);
         Self {
             known: vec![FrictionState::BySpeed; count],
+            factor_scale: 1.0,
             friction_factor: vec![zero; count],
             force: vec![zero; count],
             jacobian: vec![zero; count * count],
@@ -238,7 +241,7 @@ pub(crate) fn solve<T: Scalar>(
             FrictionState::BySpeed => dependent.factor(states),
             FrictionState::Factor(factor) => T::from_f64(factor),
             FrictionState::Force(_) => T::from_f64(0.0),
-        };
+        } * T::from_f64(workspace.factor_scale);
     }
     for (force, known) in workspace.force.iter_mut().zip(&workspace.known) {
         *force = match *known {

@@ -1,7 +1,8 @@
 //! Estimates of the rounding errors of a result: it is evaluated again in double-double numbers, of 32 digits.
 //!
 //! The estimate is the difference of both, plus one unit in the last place of the result, because evaluating twice does
-//! not show the rounding of lengths and masses when the model is compiled.
+//! not show the rounding of lengths and masses when the model is compiled. Near a jam that rounding is amplified: there the
+//! change by another rounding of the friction coefficients is added.
 
 use crate::error::KinetostaticsError;
 use crate::model::{Model, Workspace};
@@ -9,6 +10,12 @@ use crate::pass::InverseDynamics;
 use crate::reduced::Coefficients;
 use dwell_geometry::PositionError;
 use dwell_numerics::{DoubleDouble, Scalar};
+
+/// Roundings of a law that couples coordinates, with its derivatives: it is evaluated in plain numbers in both.
+const LAW_ROUNDINGS: f64 = 5.0;
+
+/// Roundings of the constants that a friction depends on: its coefficient, and the directions of the surfaces.
+const FRICTION_ROUNDINGS: f64 = 4.0;
 
 /// The difference from the precise number, plus one unit in the last place.
 fn rounding_error(value: f64, precise: DoubleDouble) -> f64 {
@@ -40,12 +47,22 @@ impl Model {
         errors.half_dm = rounding_error(coefficients.half_dm, precise.half_dm);
         rounding_errors(&mut errors.a, &coefficients.a, &precise.a);
         rounding_errors(&mut errors.b, &coefficients.b, &precise.b);
+        if !self.mechanism().couplings.is_empty() {
+            let law = |value: f64| LAW_ROUNDINGS * f64::EPSILON * value.abs();
+            errors.m += law(coefficients.m);
+            errors.half_dm += law(coefficients.half_dm);
+            let rest = errors.a.iter_mut().chain(&mut errors.b);
+            let values = coefficients.a.iter().chain(&coefficients.b);
+            rest.zip(values)
+                .for_each(|(error, &value)| *error += law(value));
+        }
         Ok(())
     }
 
     /// Estimates into `errors` (N·m or N) the rounding errors of the `result` that
     /// [`Model::kinetostatics`] found in a state of motion. The laws of loads and couplings are
-    /// evaluated in plain numbers in both.
+    /// evaluated in plain numbers in both. Where friction jams the mechanism in 32 digits alone, or by a rounding of its
+    /// coefficients, nothing is known of the result: the errors are as large as the values.
     ///
     /// # Errors
     /// As [`Model::kinetostatics`].
@@ -59,10 +76,43 @@ impl Model {
     ) -> Result<(), KinetostaticsError> {
         let lift = |values: &[f64]| values.iter().map(|&v| DoubleDouble::from_f64(v)).collect();
         let [q, q_dot, q_ddot]: [Vec<DoubleDouble>; 3] = [q, q_dot, q_ddot].map(lift);
+        let mut solve = |scale: f64, result: &mut InverseDynamics<DoubleDouble>| {
+            workspace.friction_workspace.factor_scale = scale;
+            let solved = self.kinetostatics(t, &q, &q_dot, &q_ddot, workspace, result);
+            let solved = solved.map(|_| ());
+            workspace.friction_workspace.factor_scale = 1.0;
+            match solved {
+                Err(KinetostaticsError::SelfLocking { .. }) => Ok(false),
+                other => other.map(|()| true),
+            }
+        };
         let mut precise = self.result_buffer();
-        self.kinetostatics(t, &q, &q_dot, &q_ddot, workspace, &mut precise)?;
-        rounding_errors(&mut errors.tau, &result.tau, &precise.tau);
-        rounding_errors(&mut errors.reactions, &result.reactions, &precise.reactions);
+        let mut is_known = solve(1.0, &mut precise)?;
+        let mut changed = precise.clone();
+        if self.frictions().len() > 0 {
+            is_known &= solve(1.0 + FRICTION_ROUNDINGS * f64::EPSILON, &mut changed)?;
+        }
+        let parts = [
+            (&mut errors.tau, &result.tau, precise.tau, changed.tau),
+            (
+                &mut errors.reactions,
+                &result.reactions,
+                precise.reactions,
+                changed.reactions,
+            ),
+        ];
+        for (errors, values, precise, changed) in parts {
+            rounding_errors(errors, values, &precise);
+            for (error, (one, other)) in errors.iter_mut().zip(precise.iter().zip(&changed)) {
+                *error += (*other - *one).abs().value();
+            }
+            if !is_known {
+                errors
+                    .iter_mut()
+                    .zip(values)
+                    .for_each(|(error, value)| *error = value.abs());
+            }
+        }
         Ok(())
     }
 }

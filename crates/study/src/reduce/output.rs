@@ -4,7 +4,7 @@ use super::figures;
 use crate::branch_note::branch_note;
 use crate::explain::StudyError;
 use crate::models::requested_reactions;
-use crate::number_format::{digits, digits_within};
+use crate::number_format::{coordinate_unit, digits, digits_within};
 use crate::output::{Outcome, Picture, indeterminate_note, separating_note};
 use crate::ranges::extent;
 use crate::reduce::compute::{
@@ -12,7 +12,7 @@ use crate::reduce::compute::{
     tabulate,
 };
 use dwell_findings::Record;
-use dwell_kinetostatics::Coefficients;
+use dwell_kinetostatics::{Coefficients, ReducedModel as _};
 use dwell_report::{Figure, Files, TableFormat};
 use dwell_scene::Scene;
 
@@ -102,14 +102,14 @@ fn record(reduction: &Reduction<'_>) -> Record {
             record.add_within(format!("{name}.{end}"), unit, value, error * largest);
         }
     }
-    if let Some([q, peak]) = peak_between_rows(&reduction.prepared, curves) {
+    if let Some(peak) = peak_between_rows(&reduction.prepared, curves) {
         let unit = if reduction.prepared.is_angle() {
             "rad"
         } else {
             "m"
         };
-        record.add("m.peak", m_unit, peak);
-        record.add("m.peak.coordinate", unit, q);
+        record.add_within("m.peak", m_unit, peak.m, peak.error);
+        record.add("m.peak.coordinate", unit, peak.q);
     }
     record.add("rounding_error.m", "", m_error);
     record.add("rounding_error.half_dm", "", half_dm_error);
@@ -139,15 +139,26 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
         true => ["kg m²", "kg m²/rad"],
         false => inertia_units(false),
     };
+    // Over a whole revolution nothing need be said of it.
+    let range = match (prepared.model.range().limits(), &curves.q[..]) {
+        (Some(_), [first, .., last]) => {
+            let [first, last] = [first, last].map(|q| digits(*q, 6));
+            format!(
+                " from {first} to {last} {}",
+                coordinate_unit(prepared.is_angle())
+            )
+        }
+        _ => String::new(),
+    };
     let mut summary = format!(
-        "{title}: {count} positions of {name}, and there\n  m    from {m_min} to {m_max} {m_unit}\n  ½m′  from {h_min} to \
+        "{title}: {count} positions of {name}{range}, and there\n  m    from {m_min} to {m_max} {m_unit}\n  ½m′  from {h_min} to \
          {h_max} {half_dm_unit}\n"
     );
-    if let Some([q, peak]) = peak_between_rows(prepared, curves) {
+    if let Some(peak) = peak_between_rows(prepared, curves) {
         let unit = if prepared.is_angle() { "rad" } else { "m" };
-        let [q, peak] = [digits(q, 9), digits(peak, 9)];
+        let (q, largest) = (digits(peak.q, 9), digits_within(peak.m, peak.error, 9));
         summary += &format!(
-            "  between these positions m reaches {peak} {m_unit}, at {name} = {q} {unit}: more rows show it (--points)\n"
+            "  between these positions m reaches {largest} {m_unit}, at {name} = {q} {unit}: more rows show it (--points)\n"
         );
     }
     summary += &describe_rounding(&reduction.errors);

@@ -9,15 +9,15 @@ pub(crate) fn dd(value: f64) -> DoubleDouble {
     DoubleDouble::from_f64(value)
 }
 
-type Point = Vec2<DoubleDouble>;
+pub(crate) type Point = Vec2<DoubleDouble>;
 
-fn at_rest(point: Point) -> [Point; 3] {
+pub(crate) fn at_rest(point: Point) -> [Point; 3] {
     [point, Vec2::zero(), Vec2::zero()]
 }
 
-/// A body at unit speed of the coordinate: its motion, and what it adds to m and ½m′.
+/// A body at unit speed of the coordinate, or at other rates: its motion, and what it adds to m and ½m′.
 #[derive(Debug, Clone, Copy)]
-struct UnitSpeedBody {
+pub(crate) struct UnitSpeedBody {
     /// A point of it, where that is, its velocity and its acceleration at zero q̈.
     origin_motion: [Point; 3],
     /// Direction of its x axis, angular velocity and acceleration.
@@ -27,7 +27,12 @@ struct UnitSpeedBody {
 }
 
 impl UnitSpeedBody {
-    fn new(origin_motion: [Point; 3], axis: Point, rates: [DoubleDouble; 2], mass: Mass) -> Self {
+    pub(crate) fn new(
+        origin_motion: [Point; 3],
+        axis: Point,
+        rates: [DoubleDouble; 2],
+        mass: Mass,
+    ) -> Self {
         Self {
             origin_motion,
             axis,
@@ -43,7 +48,7 @@ impl UnitSpeedBody {
     }
 
     /// Place, velocity and acceleration of a point by its distances along the axis and across it.
-    fn point_motion(&self, local: Point) -> [Point; 3] {
+    pub(crate) fn point_motion(&self, local: Point) -> [Point; 3] {
         let offset = self.axis * local.x + self.axis.perp() * local.y;
         let [position, velocity, acceleration] = self.origin_motion;
         let [angular_velocity, angular_acceleration] = self.angular_rates;
@@ -60,7 +65,7 @@ impl UnitSpeedBody {
     }
 
     /// m = Σ m v² + I ω² and ½m′ = Σ m v·a + I ω α.
-    fn inertia_terms(&self) -> [DoubleDouble; 2] {
+    pub(crate) fn inertia_terms(&self) -> [DoubleDouble; 2] {
         let [_, v, a] = self.center_motion();
         let (mass, inertia) = (dd(self.mass.mass), dd(self.mass.inertia));
         let [w, e] = self.angular_rates;
@@ -70,7 +75,7 @@ impl UnitSpeedBody {
 
     /// Rate of the angular momentum about a point that neither velocity nor acceleration of the body
     /// makes: at unit q̈ (the velocities stand for accelerations) and at unit q̇.
-    fn moment_terms(&self, about: Point) -> [DoubleDouble; 2] {
+    pub(crate) fn moment_terms(&self, about: Point) -> [DoubleDouble; 2] {
         let [position, v, a] = self.center_motion();
         let (mass, inertia) = (dd(self.mass.mass), dd(self.mass.inertia));
         let [w, e] = self.angular_rates;
@@ -96,8 +101,12 @@ pub(crate) struct FourBarCoefficients {
     pub(crate) b: Point,
 }
 
-/// By circle and circle, with the rocker's end C on the left of the line from B to D.
-pub(crate) fn four_bar(mechanism: &FourBar, q: DoubleDouble) -> FourBarCoefficients {
+/// Crank, coupler and rocker by circle and circle, with the rocker's end C on the left of the line from B to D; and the
+/// vectors from B and from D to C.
+pub(crate) fn four_bar_bodies(
+    mechanism: &FourBar,
+    q: DoubleDouble,
+) -> ([UnitSpeedBody; 3], [Point; 2]) {
     let [a, d] = mechanism.base.map(Vec2::cast::<DoubleDouble>);
     let [crank, coupler, rocker] = mechanism.lengths.map(dd);
     let [mass_1, mass_2, mass_3] = mechanism.masses;
@@ -119,6 +128,13 @@ pub(crate) fn four_bar(mechanism: &FourBar, q: DoubleDouble) -> FourBarCoefficie
     let inverse = |l: DoubleDouble| dd(1.0) / l;
     let two = UnitSpeedBody::new([b, vb, ab], bc * inverse(coupler), [w2, e2], mass_2);
     let three = UnitSpeedBody::new(at_rest(d), dc * inverse(rocker), [w3, e3], mass_3);
+    ([one, two, three], [bc, dc])
+}
+
+/// The reduced parameters of a four-bar.
+pub(crate) fn four_bar(mechanism: &FourBar, q: DoubleDouble) -> FourBarCoefficients {
+    let ([one, two, three], [bc, dc]) = four_bar_bodies(mechanism, q);
+    let [b, d] = [two, three].map(|body| body.origin_motion[0]);
     let [m1, n1] = one.inertia_terms();
     let [m2, n2] = two.inertia_terms();
     let [m3, n3] = three.inertia_terms();

@@ -6,10 +6,14 @@ mod check;
 mod closed_forms;
 mod draws;
 mod free_motion;
+mod in_scenes;
+mod jamming;
 mod limit_positions;
 pub mod machines;
 mod mechanisms;
+mod paper_mechanism;
 pub mod pulses;
+mod ratios;
 mod report;
 mod run_pair;
 mod scale;
@@ -49,6 +53,9 @@ pub fn all_series(slow: bool) -> Vec<ParameterSeries> {
     series.extend(free_motion::series(slow));
     series.extend(stiff::series());
     series.extend(singular::series());
+    series.extend(paper_mechanism::series());
+    series.extend(ratios::series());
+    series.extend(jamming::series());
     series
 }
 

@@ -1,0 +1,86 @@
+//! What the commands find in the text of a scene, as cells: the row with the largest error, and the error that the command
+//! states.
+
+use super::series::{CellResult, EstimatedValue, RunResult};
+use dwell_findings::Table;
+use dwell_numerics::{DoubleDouble, Scalar};
+use dwell_scene::Scene;
+use dwell_study::{Analysis, StudyError, compute_reduction, compute_trajectory, no_progress};
+
+/// A table that a command finds, with the errors that it states.
+pub(super) struct StatedTable {
+    table: Table,
+    /// Of m, of ½m′, of all else: as a part of the largest value.
+    errors: [f64; 3],
+}
+
+/// The values of a column at the rows, in 32 digits.
+pub(super) type ReferenceColumn<'a> = (&'a str, Vec<DoubleDouble>);
+
+impl StatedTable {
+    /// What `reduce` finds in a scene, at a number of positions.
+    pub(super) fn reduced(text: &str, points: usize) -> Result<Self, StudyError> {
+        let scene = Scene::parse("scene.toml", text)?;
+        let reduction = compute_reduction(&scene, Some(points))?;
+        Ok(Self {
+            table: reduction.curves.table(&reduction.prepared),
+            errors: reduction.errors.max_errors,
+        })
+    }
+
+    /// What `kinetostatics` finds.
+    pub(super) fn kinetostatics(text: &str, points: usize) -> Result<Self, StudyError> {
+        let scene = Scene::parse("scene.toml", text)?;
+        let points = Some(points);
+        let found = compute_trajectory(&scene, Analysis::Kinetostatics, points, &no_progress)?;
+        if let Some(error) = found.early_stop {
+            return Err(error);
+        }
+        let error = found.results.rounding_error.unwrap_or(f64::NAN);
+        Ok(Self {
+            table: found.table,
+            errors: [error; 3],
+        })
+    }
+
+    /// The numbers of a column.
+    pub(super) fn column(&self, name: &str) -> Result<Vec<f64>, String> {
+        let found = self.table.columns.iter().position(|c| c.name == name);
+        let column = found.ok_or_else(|| format!("no column {name}"))?;
+        Ok(self.table.rows.iter().map(|row| row[column]).collect())
+    }
+
+    /// Of each group of columns, for which one error is stated, the number with the largest error; it is relative to the largest
+    /// value of its column.
+    pub(super) fn compare(&self, groups: &[Vec<ReferenceColumn<'_>>]) -> RunResult {
+        groups.iter().map(|group| self.worst(group)).collect()
+    }
+
+    fn worst(
+        &self,
+        group: &[ReferenceColumn<'_>],
+    ) -> Result<CellResult, Box<dyn std::error::Error>> {
+        let mut worst: Option<EstimatedValue> = None;
+        for (name, expected) in group {
+            let stated = match *name {
+                "m" => self.errors[0],
+                "half_dm" => self.errors[1],
+                _ => self.errors[2],
+            };
+            let scale = expected.iter().fold(0.0_f64, |s, x| s.max(x.value().abs()));
+            for (value, &reference) in self.column(name)?.into_iter().zip(expected) {
+                let this = EstimatedValue {
+                    value,
+                    reference,
+                    scale,
+                    error_estimate: stated * scale,
+                };
+                let relative = |of: &EstimatedValue| of.true_error() / of.scale;
+                if worst.is_none_or(|worst| relative(&worst) < relative(&this)) {
+                    worst = Some(this);
+                }
+            }
+        }
+        Ok(worst.ok_or_else(|| "no rows".to_owned()))
+    }
+}
