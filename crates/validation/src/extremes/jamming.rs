@@ -46,7 +46,9 @@ fn jamming() -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: "jamming".into(),
-        description: "Wedge under a lift, as `kinetostatics` writes it: distance of the friction from the jam".into(),
+        description:
+            "Wedge under a lift, as kinetostatics writes it: distance of the friction from the jam"
+                .into(),
         parameter: ("4 − 3 µ", ""),
         values: decades(0, -15),
         quantities: &["drive force", "normal force"],
@@ -57,7 +59,7 @@ fn jamming() -> ParameterSeries {
     }
 }
 
-/// The crank-rocker after many periods, as `simulate` writes it.
+/// The crank-rocker after many periods, as simulate writes it.
 fn periods() -> ParameterSeries {
     let run = |count: f64| -> RunResult {
         let m = four_bar(&CRANK_ROCKER, dd(START_ANGLE)).m;
@@ -94,7 +96,7 @@ fn periods() -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: "periods-by-quadrature".into(),
-        description: "Free motion of a four-bar by quadrature, as `simulate` writes it: periods"
+        description: "Free motion of a four-bar by quadrature, as simulate writes it: periods"
             .into(),
         parameter: ("periods n", ""),
         values: decades(0, 7),

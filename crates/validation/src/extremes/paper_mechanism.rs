@@ -171,7 +171,7 @@ fn short_crank() -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: "short-crank".into(),
-        description: "Single-dwell mechanism without a flywheel, as `reduce` writes it: its crank"
+        description: "Single-dwell mechanism without a flywheel, as reduce writes it: its crank"
             .into(),
         parameter: ("crank's length", "m"),
         values: decades(-1, -7),
@@ -194,7 +194,7 @@ fn near_path() -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: "guide-near-path".into(),
-        description: "Single-dwell mechanism, as `reduce` writes it: distance of the guide's pivot from the path of P, at a row"
+        description: "Single-dwell mechanism, as reduce writes it: distance of the guide's pivot from the path of P, at a row"
             .into(),
         parameter: ("distance δ", "m"),
         values: decades(-2, -6),
@@ -231,7 +231,7 @@ fn peak_between_rows() -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: "peak-between-rows".into(),
-        description: "Single-dwell mechanism, as `reduce` prints it: the peak of m between rows, by the distance of the guide's pivot from the path of P"
+        description: "Single-dwell mechanism, as reduce prints it: the peak of m between rows, by the distance of the guide's pivot from the path of P"
             .into(),
         parameter: ("distance δ", "m"),
         values: decades(-3, -6),

@@ -56,7 +56,7 @@ fn gears() -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: "gear-ratio".into(),
-        description: "Two gears on fixed centres, as `reduce` writes them: radius of the second over that of the first".into(),
+        description: "Two gears on fixed centres, as reduce writes them: radius of the second over that of the first".into(),
         parameter: ("r₂ / r₁", ""),
         values: decades(-6, 6),
         quantities: &["m", "a of the tooth force"],
@@ -109,7 +109,7 @@ fn cam() -> ParameterSeries {
         figure: FIGURE,
         key: "cam-steepness".into(),
         description:
-            "Cam and follower, as `reduce` writes them: the angle within which the follower rises"
+            "Cam and follower, as reduce writes them: the angle within which the follower rises"
                 .into(),
         parameter: ("angle β", "rad"),
         values: decades(0, -8),
@@ -160,9 +160,9 @@ fn long_links() -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: "long-links".into(),
-        description:
-            "Four-bar, as `reduce` writes it: coupler and rocker are longer than its crank".into(),
-        parameter: ("their length over the crank's", ""),
+        description: "Four-bar, as reduce writes it: coupler and rocker are longer than its crank"
+            .into(),
+        parameter: ("length of coupler and rocker over the crank's", ""),
         values: decades(0, 6),
         quantities: &["m", "½m′"],
         reference: "circle and circle in 32 digits",
@@ -223,17 +223,14 @@ fn double_pendulum() -> ParameterSeries {
         figure: FIGURE,
         key: "double-pendulum-ratio".into(),
         description:
-            "Double pendulum of two drives, as `kinetostatics` writes it: length of the second bar"
+            "Double pendulum of two drives, as kinetostatics writes it: length of the second bar"
                 .into(),
-        parameter: ("over the length of the first", ""),
+        parameter: ("length of the second bar over that of the first", ""),
         values: decades(-6, 6),
         quantities: &["torque p", "torque q"],
         reference: "moments about B and A in 32 digits, at the coordinates, speeds and accelerations of the rows",
-        reason: "the first torque carries the second, and both may be small beside the terms that cancel in them: the ratio, and a joint's 8; 16 roundings",
-        requirement: Box::new(|ratio: f64, quantity| {
-            let smaller = [ratio.max(1.0), 1.0 / ratio.min(1.0)][quantity];
-            rounding(DYAD_CONDITION * smaller)
-        }),
+        reason: "sums of products, each relative to the largest of the motion: 16 roundings of a dyad's 8",
+        requirement: Box::new(|_, _| rounding(DYAD_CONDITION)),
         run: Box::new(run),
     }
 }
