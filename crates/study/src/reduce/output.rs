@@ -85,6 +85,15 @@ fn record(reduction: &Reduction<'_>) -> Record {
     let curves = &reduction.curves;
     let mut record = Record::default();
     record.add_count("positions", curves.q.len());
+    if let (Some(_), [first, .., last]) = (reduction.prepared.model.range().limits(), &curves.q[..])
+    {
+        let (name, unit) = (
+            reduction.prepared.coordinate_name(),
+            coordinate_unit(reduction.prepared.is_angle()),
+        );
+        record.add(format!("{name}.min"), unit, *first);
+        record.add(format!("{name}.max"), unit, *last);
+    }
     let is_rounding = reduction.errors.is_rounding[1];
     let [m_unit, half_dm_unit] = inertia_units(reduction.prepared.is_angle());
     let [m_error, half_dm_error, rest] = reduction.errors.max_errors;

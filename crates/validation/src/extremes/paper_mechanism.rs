@@ -16,7 +16,7 @@ const ALLOWED_ROUNDINGS: f64 = 32.0;
 /// Condition of a well-shaped dyad's accelerations, as of the four-bar.
 const DYAD_CONDITION: f64 = 8.0;
 /// The length of the coupler from B to C, and from C to P, m.
-const HALF_COUPLER: f64 = 0.25;
+const LENGTH_BC: f64 = 0.25;
 /// Guide and slider.
 const GUIDE: Mass = mass(2.1, [0.35, 0.0], 0.08575);
 const SLIDER: f64 = 0.5;
@@ -47,10 +47,10 @@ impl SingleDwell {
     fn new(crank: f64) -> Self {
         let four_bar = FourBar {
             base: [Vec2::ZERO, vec2(0.2, 0.0)],
-            lengths: [crank, HALF_COUPLER, HALF_COUPLER],
+            lengths: [crank, LENGTH_BC, LENGTH_BC],
             masses: [
                 mass(0.0, [0.0; 2], 0.0),
-                mass(1.5, [HALF_COUPLER, 0.0], 0.03125),
+                mass(1.5, [LENGTH_BC, 0.0], 0.03125),
                 mass(0.75, [0.125, 0.0], 0.00390625),
             ],
             assembly: [0.0, 1.0],
@@ -61,7 +61,7 @@ impl SingleDwell {
 
     /// With the guide's pivot at a distance from the point of P's path at a crank angle, to the side. Nearer than 1e-6 m the
     /// guide's two directions are one position, which ends the range.
-    fn beside_path(angle: f64, distance: f64) -> Self {
+    fn pivot_off_path(angle: f64, distance: f64) -> Self {
         let wide = Self::new(0.1);
         let [place, velocity, _] = wide.point_p(dd(angle));
         let side = velocity.perp() * (dd(1.0) / velocity.dot(velocity).sqrt());
@@ -103,7 +103,7 @@ impl SingleDwell {
     /// The coupler's end P: place, velocity and acceleration at unit speed of the crank.
     fn point_p(&self, q: DoubleDouble) -> [Point; 3] {
         let ([_, coupler, _], _) = four_bar_bodies(&self.four_bar, q);
-        coupler.point_motion(vec2(dd(2.0 * HALF_COUPLER), dd(0.0)))
+        coupler.point_motion(vec2(dd(2.0 * LENGTH_BC), dd(0.0)))
     }
 
     /// m, ½m′, and a and b of the slide's normal reaction: guide and slider turn as the line from Q to P does, and the
@@ -185,7 +185,7 @@ fn short_crank() -> ParameterSeries {
 
 /// Parts of the guide's distance by which quantities are magnified: m as its inverse square, and so on.
 fn near_requirement(distance: f64, quantity: usize) -> Requirement {
-    let size = HALF_COUPLER / distance;
+    let size = LENGTH_BC / distance;
     let factor = [2.0, 3.0, 3.0][quantity];
     Requirement::from_rounding(ALLOWED_ROUNDINGS, DYAD_CONDITION * factor * size)
 }
@@ -205,14 +205,14 @@ fn near_path() -> ParameterSeries {
         run: Box::new(|distance| {
             // Beside the peak, where ½m′ is as large as it comes: P moves by 0.07 m per rad there.
             let row = TAU * 60.0 / (POINTS - 1) as f64;
-            SingleDwell::beside_path(row + 5.0 * distance, distance).compare()
+            SingleDwell::pivot_off_path(row + 5.0 * distance, distance).compare()
         }),
     }
 }
 
 fn peak_between_rows() -> ParameterSeries {
     let run = |distance: f64| -> RunResult {
-        let mechanism = SingleDwell::beside_path(BETWEEN_ROWS, distance);
+        let mechanism = SingleDwell::pivot_off_path(BETWEEN_ROWS, distance);
         let scene = Scene::parse("scene.toml", &mechanism.text())?;
         let printed = dwell_study::reduce(&scene, Some(POINTS), None)?
             .record

@@ -172,6 +172,26 @@ fn long_links() -> ParameterSeries {
     }
 }
 
+/// The scene of two bars, the second pinned to the first at 1 m.
+fn double_pendulum_text([one, two]: [&Mass; 2]) -> String {
+    let body = |of: &Mass| {
+        let Vec2 { x, y } = of.center;
+        let (mass, inertia) = (of.mass, of.inertia);
+        format!("mass = {mass}, center = [{x}, {y}], inertia = {inertia}")
+    };
+    format!(
+        "[bodies]\nground = {{ points = {{ A = [0, 0] }} }}\n\
+             one = {{ points = {{ A = [0, 0], B = [1, 0] }}, {} }}\ntwo = {{ points = {{ B = [0, 0] }}, {} }}\n\
+             [joints]\nA = {{ revolute = [\"ground.A\", \"one.A\"] }}\nB = {{ revolute = [\"one.B\", \"two.B\"] }}\n\
+             [actuators]\np = {{ angle = [\"ground\", \"one\"] }}\nq = {{ angle = [\"ground\", \"two\"] }}\n\
+             [assembly]\np = 0.4\nq = -0.3\n\
+             [prescribed]\nduration = 2\np = {{ sinusoid = {{ amplitude = 0.8, period = 2 }} }}\nq = {{ sinusoid = {{ amplitude = 1.2, period = 1 }} }}\n\
+             [requests]\nvariables = [\"p\", \"p.velocity\", \"p.acceleration\", \"q\", \"q.velocity\", \"q.acceleration\", \"p.actuator_force\", \"q.actuator_force\"]\n",
+        body(one),
+        body(two)
+    )
+}
+
 /// Two bars whose lengths differ by a ratio, with forces of a motion of both.
 fn double_pendulum() -> ParameterSeries {
     let run = |ratio: f64| -> RunResult {
@@ -179,22 +199,7 @@ fn double_pendulum() -> ParameterSeries {
             mass(1.5, [0.5, 0.125], 0.25),
             mass(1.25, [0.5 * ratio, 0.125 * ratio], 0.125 * ratio * ratio),
         );
-        let body = |of: &Mass| {
-            let Vec2 { x, y } = of.center;
-            let (mass, inertia) = (of.mass, of.inertia);
-            format!("mass = {mass}, center = [{x}, {y}], inertia = {inertia}")
-        };
-        let text = format!(
-            "[bodies]\nground = {{ points = {{ A = [0, 0] }} }}\n\
-             one = {{ points = {{ A = [0, 0], B = [1, 0] }}, {} }}\ntwo = {{ points = {{ B = [0, 0] }}, {} }}\n\
-             [joints]\nA = {{ revolute = [\"ground.A\", \"one.A\"] }}\nB = {{ revolute = [\"one.B\", \"two.B\"] }}\n\
-             [actuators]\np = {{ angle = [\"ground\", \"one\"] }}\nq = {{ angle = [\"ground\", \"two\"] }}\n\
-             [assembly]\np = 0.4\nq = -0.3\n\
-             [prescribed]\nduration = 2\np = {{ sinusoid = {{ amplitude = 0.8, period = 2 }} }}\nq = {{ sinusoid = {{ amplitude = 1.2, period = 1 }} }}\n\
-             [requests]\nvariables = [\"p\", \"p.velocity\", \"p.acceleration\", \"q\", \"q.velocity\", \"q.acceleration\", \"p.actuator_force\", \"q.actuator_force\"]\n",
-            body(&one),
-            body(&two)
-        );
+        let text = double_pendulum_text([&one, &two]);
         let found = StatedTable::kinetostatics(&text, POINTS)?;
         let motion = |name: &str| -> Result<Vec<[f64; 3]>, String> {
             let [at, velocity, acceleration] =
