@@ -11,7 +11,7 @@ from changes import Change
 # What stands between a scene and its files; each has a fault at least, and there are ten of an auditor.
 CLASSES = [
     "readers", "units", "laws", "expressions", "drives", "batches", "samplers", "tables", "files", "printed sentences", "duals",
-    "integrators", "faer's groups", "cycle", "equilibria", "linearise",
+    "integrators", "faer's groups", "cycle", "equilibria", "linearise", "exported runs",
 ]
 AUDITED = 10
 
