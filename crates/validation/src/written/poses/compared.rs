@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 type Spec = (&'static str, Check, &'static str, f64);
 
 #[rustfmt::skip]
-const SPECS: [Spec; 41] = [
+const SPECS: [Spec; 43] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
     ("written-slopes", Check::WrittenRates, "m and V of `reduce` with the integrals of ½m′ and w between rows", 1e-7),
@@ -22,6 +22,7 @@ const SPECS: [Spec; 41] = [
     ("written-reduced", Check::WrittenTotals, "m, ½m′ and w of `reduce` with sums over all bodies", 1e-12),
     ("written-calibration", Check::WrittenTotals, "the period of the calibrated scene by quadrature of the rows of `reduce`", 1e-11),
     ("written-section-ends", Check::WrittenTotals, "internal forces at the end of a link with what acts there", 2e-14),
+    ("written-contents", Check::WrittenTotals, "masses, centre of mass, size and angles of `check` with the scene's text and a row of the start", 1e-14),
     ("written-laws", Check::WrittenLaws, "actuators of every row with the laws of the scene's text and their derivatives", 4e-13),
     ("written-loads", Check::WrittenLaws, "forces of loads with expressions and tables of the scene's text", 2e-14),
     ("written-runs", Check::WrittenTwice, "m, ½m′, a and b of `reduce` with two runs of kinetostatics, and with the columns that are requested", 4e-11),
@@ -50,6 +51,7 @@ const SPECS: [Spec; 41] = [
     ("written-cycle-period", Check::WrittenTwice, "the period of `cycle` with that of a long motion by `simulate`", 1e-8),
     ("written-cycle-flywheel", Check::WrittenTwice, "speeds of `cycle` with its flywheel, with those of the scene in which a body has that inertia", 1e-7),
     ("written-cycle-sentences", Check::WrittenSentences, "numbers that `cycle` prints with its summary, to their digits", 1e-12),
+    ("written-contents-sentences", Check::WrittenSentences, "masses, centre of mass, size and angles that `check` prints with the scene's text, to their digits", 7e-15),
     ("written-sentences", Check::WrittenSentences, "printed numbers with the summary, to their digits", 1e-12),
 ];
 

@@ -11,6 +11,7 @@
 pub(crate) mod angle_table;
 pub(crate) mod closure;
 pub(super) mod compared;
+mod contents_files;
 pub(super) mod difference;
 mod drawn_laws;
 pub(super) mod equilibrium;

@@ -2,6 +2,7 @@
 
 use super::closure::closure;
 use super::compared::Compared;
+use super::contents_files::contents_differences;
 use super::equilibrium::equilibrium;
 use super::formats::formats;
 use super::law::{Law, number};
@@ -45,6 +46,9 @@ fn compare_all(
         &moving
     };
     compare_kinematics(compared, &program, &reading, kinematic)?;
+    let [contents, sentences] = contents_differences(&program, &reading, &everything)?;
+    compared.merge("written-contents", contents);
+    compared.merge("written-contents-sentences", sentences);
     compare_forces(compared, &program, &reading, &moving, &mut draws)?;
     compare_units(compared, &program, &reading, &moving, &mut draws)?;
     if reading.actuator_count == 1 {

@@ -1,0 +1,206 @@
+//! What `check` writes and prints of a scene: masses, the centre of mass, size and angles at the start, against the scene's text
+//! and the first row of a motion from there.
+
+use super::difference::Differences;
+use super::formats::last_digit;
+use super::motion::Motion;
+use super::program::Program;
+use super::reading::{Body, JointKind, Reading};
+use super::scene_text::text_of;
+use serde_json::Value;
+
+/// Part of a sweep, rad or m, whose first row is the start.
+const STEP: f64 = 1e-6;
+
+/// The summary and the sentences of `check` on a scene.
+pub(super) fn contents_differences(
+    program: &Program,
+    reading: &Reading,
+    scene: &str,
+) -> Result<[Differences; 2], String> {
+    let run = program
+        .run("contents", scene, &["check"])
+        .map_err(|e| e.to_string())?;
+    let summary = run.json("-check.json")?;
+    let start = start_of(program, reading, scene, &summary)?;
+    let expected = Contents::of(reading, &start);
+    let mut summed = Differences::default();
+    for (name, value, scale) in &expected.numbers {
+        let written = summary["results"][name]["value"].as_f64();
+        let difference = written.unwrap_or(f64::NAN) - value;
+        summed.add(difference, *scale, "", || format!("check, {name}"));
+    }
+    let mut printed = Differences::default();
+    for (line, values) in expected.sentences(reading) {
+        let said = run
+            .printed
+            .lines()
+            .find(|said| said.trim_start().starts_with(&line));
+        let numbers = said.map_or_else(Vec::new, |said| {
+            numbers_in(&said.trim_start()[line.len()..])
+        });
+        if numbers.len() < values.len() {
+            printed.fail(format!(
+                "`check` prints no line `{line}` with {} numbers",
+                values.len()
+            ));
+            continue;
+        }
+        for (number, (value, scale)) in numbers.iter().zip(values) {
+            let read = number.parse::<f64>().unwrap_or(f64::NAN);
+            // Half of the last printed digit is rounding.
+            let excess = (read - value).abs() - 0.500_000_1 * last_digit(number);
+            printed.add(excess.max(0.0), scale, "", || {
+                format!("check, `{line}`, {number}")
+            });
+        }
+    }
+    Ok([summed, printed])
+}
+
+/// How the bodies are at the start, by the first row of a sweep from there.
+fn start_of(
+    program: &Program,
+    reading: &Reading,
+    scene: &str,
+    summary: &Value,
+) -> Result<Motion, String> {
+    let mut scene: toml::Table = scene
+        .parse()
+        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    for section in [
+        "prescribed",
+        "loads",
+        "friction",
+        "drives",
+        "stops",
+        "motion",
+        "calibration",
+    ] {
+        scene.remove(section);
+    }
+    let mut sweep = toml::Table::new();
+    for (k, coordinate) in reading
+        .coordinates
+        .iter()
+        .take(reading.actuator_count)
+        .enumerate()
+    {
+        let start = summary["results"][format!("start.{}", coordinate.name)]["value"].as_f64();
+        let start =
+            start.ok_or_else(|| format!("`check` writes no start of {}", coordinate.name))?;
+        let unit = reading.unit_of(coordinate.measure);
+        let first = toml::Value::Float(start / unit);
+        let value = match k {
+            0 => toml::Value::Array(vec![first, toml::Value::Float((start + STEP) / unit)]),
+            _ => first,
+        };
+        sweep.insert(coordinate.name.clone(), value);
+    }
+    scene.insert("coordinate-sweep".to_owned(), toml::Value::Table(sweep));
+    let run = program
+        .run("start", &text_of(&scene)?, &["kinematics", "--points", "2"])
+        .map_err(|e| e.to_string())?;
+    let rows = run.csv("-kinematics.csv")?;
+    Motion::new(reading, &rows, 0).ok_or_else(|| "no row of the start".to_owned())
+}
+
+/// What a scene has, by its text and the places of its bodies.
+struct Contents {
+    /// By name of the summary: value and scale.
+    numbers: Vec<(String, f64, f64)>,
+}
+
+impl Contents {
+    fn of(reading: &Reading, start: &Motion) -> Self {
+        let moving: Vec<(usize, &Body)> = reading
+            .bodies
+            .iter()
+            .enumerate()
+            .filter(|(_, body)| !body.is_ground)
+            .collect();
+        let mut numbers = vec![("moving_bodies".to_owned(), moving.len() as f64, 1.0)];
+        let mass: f64 = moving.iter().map(|(_, body)| body.mass).sum();
+        numbers.push(("mass".to_owned(), mass, mass));
+        let joints = reading.joints.iter();
+        let joints = joints.filter(|joint| !matches!(joint.kind, JointKind::Coupling { .. }));
+        let points: Vec<[f64; 2]> = joints
+            .flat_map(|joint| joint.places)
+            .map(|place| {
+                let at = start.point(place);
+                [at.x.value(), at.y.value()]
+            })
+            .collect();
+        let ends = |k: usize| {
+            let of = points.iter().map(|p| p[k]);
+            let low = of.clone().fold(f64::INFINITY, f64::min);
+            of.fold(f64::NEG_INFINITY, f64::max) - low
+        };
+        let size = [ends(0), ends(1)];
+        let scale = size[0].max(size[1]).max(reading.size());
+        for (name, extent) in ["size.width", "size.height"].into_iter().zip(size) {
+            numbers.push((name.to_owned(), extent, scale));
+        }
+        if mass > 0.0 {
+            let mut sums = [0.0; 2];
+            for (b, body) in &moving {
+                let center = start.center(reading, *b);
+                sums = [
+                    sums[0] + body.mass * center.x.value(),
+                    sums[1] + body.mass * center.y.value(),
+                ];
+            }
+            for (name, sum) in ["mass.center.x", "mass.center.y"].into_iter().zip(sums) {
+                numbers.push((name.to_owned(), sum / mass, scale));
+            }
+        }
+        for (b, body) in moving {
+            if body.mass != 0.0 || body.inertia != 0.0 {
+                numbers.push((format!("mass.{}", body.name), body.mass, body.mass));
+                numbers.push((format!("inertia.{}", body.name), body.inertia, body.inertia));
+            }
+            let angle = start.bodies[b].angle.value();
+            numbers.push((format!("start.{}.angle", body.name), angle, 1.0));
+        }
+        Self { numbers }
+    }
+
+    /// The beginnings of printed lines, and the numbers that follow, with their scales.
+    fn sentences(&self, reading: &Reading) -> Vec<(String, Vec<(f64, f64)>)> {
+        let of = |name: &str, unit: f64| {
+            let found = self.numbers.iter().find(|(named, ..)| named == name);
+            found.map(|(_, value, scale)| (value / unit, scale / unit))
+        };
+        let length = reading.units.length;
+        let size: Vec<_> = ["size.width", "size.height"]
+            .into_iter()
+            .filter_map(|n| of(n, length))
+            .collect();
+        let mut all = vec![("overall size at the start: ".to_owned(), size)];
+        let mut whole: Vec<_> = of("mass", 1.0).into_iter().collect();
+        let centers = ["mass.center.x", "mass.center.y"].into_iter();
+        whole.extend(centers.filter_map(|name| of(name, length)));
+        if whole.len() == 3 {
+            all.push(("moving mass ".to_owned(), whole));
+        }
+        for body in &reading.bodies {
+            let named = ["mass", "inertia"].map(|what| of(&format!("{what}.{}", body.name), 1.0));
+            if let [Some(mass), Some(inertia)] = named {
+                all.push((format!("{}: ", body.name), vec![mass, inertia]));
+            }
+            if let Some((angle, _)) = of(&format!("start.{}.angle", body.name), 1.0) {
+                let degrees = (angle.to_degrees(), 360.0);
+                all.push((format!("{} ", body.name), vec![(angle, 1.0), degrees]));
+            }
+        }
+        all
+    }
+}
+
+/// The numbers in a line.
+fn numbers_in(line: &str) -> Vec<String> {
+    let parts = line.split(|c: char| !(c.is_ascii_alphanumeric() || ".+-".contains(c)));
+    let parts = parts.map(|part| part.trim_end_matches(['.', '-']));
+    let numbers = parts.filter(|part| part.parse::<f64>().is_ok_and(f64::is_finite));
+    numbers.map(str::to_owned).collect()
+}
