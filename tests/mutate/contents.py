@@ -152,8 +152,8 @@ def compare(found, name, a, b, varying):
         if len(a.get(label, ())) != len(b.get(label, ())):
             found.add(name, label, math.inf)
             continue
-        scale = max((abs(x) for x in a[label] if math.isfinite(x)), default=0.0)
-        for x, y in zip(a[label], b[label]):
+        scale = max((abs(x) for x in a.get(label, ()) if math.isfinite(x)), default=0.0)
+        for x, y in zip(a.get(label, ()), b.get(label, ())):
             if x == y or math.isnan(x) and math.isnan(y):
                 continue
             size = abs(x - y) / scale if scale else math.inf

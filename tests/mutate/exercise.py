@@ -3,6 +3,7 @@ import os
 import pathlib
 import shlex
 import shutil
+import signal
 import subprocess
 import tempfile
 import time
@@ -86,10 +87,15 @@ class Program:
             environment["DWELL_MUTANT_REACHED"] = str(reached)
         command = [str(self.path), *arguments, "--out", str(folder / "out")]
         begin = time.monotonic()
+        # A group of its own: `validate` starts processes that would go on without it.
+        pipe = subprocess.PIPE
+        process = subprocess.Popen(command, env=environment, stdout=pipe, stderr=pipe, stdin=subprocess.DEVNULL, cwd=folder, start_new_session=True)
         try:
-            done = subprocess.run(command, env=environment, capture_output=True, timeout=limit, cwd=folder, stdin=subprocess.DEVNULL)
-            status, printed = done.returncode, done.stdout + done.stderr
+            printed = b"".join(process.communicate(timeout=limit))
+            status = process.returncode
         except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
             status, printed = None, b""
         seconds = time.monotonic() - begin
         files = {}

@@ -2,11 +2,11 @@
 //! and the first row of a motion from there.
 
 use super::difference::Differences;
-use super::formats::last_digit;
 use super::motion::Motion;
 use super::program::Program;
 use super::reading::{Body, JointKind, Reading};
 use super::scene_text::text_of;
+use super::stated::{Expected, sentence_differences, summary_differences};
 use serde_json::Value;
 
 /// Part of a sweep, rad or m, whose first row is the start.
@@ -24,37 +24,10 @@ pub(super) fn contents_differences(
     let summary = run.json("-check.json")?;
     let start = start_of(program, reading, scene, &summary)?;
     let expected = Contents::of(reading, &start);
-    let mut summed = Differences::default();
-    for (name, value, scale) in &expected.numbers {
-        let written = summary["results"][name]["value"].as_f64();
-        let difference = written.unwrap_or(f64::NAN) - value;
-        summed.add(difference, *scale, "", || format!("check, {name}"));
-    }
-    let mut printed = Differences::default();
-    for (line, values) in expected.sentences(reading) {
-        let said = run
-            .printed
-            .lines()
-            .find(|said| said.trim_start().starts_with(&line));
-        let numbers = said.map_or_else(Vec::new, |said| {
-            numbers_in(&said.trim_start()[line.len()..])
-        });
-        if numbers.len() < values.len() {
-            printed.fail(format!(
-                "`check` prints no line `{line}` with {} numbers",
-                values.len()
-            ));
-            continue;
-        }
-        for (number, (value, scale)) in numbers.iter().zip(values) {
-            let read = number.parse::<f64>().unwrap_or(f64::NAN);
-            // Half of the last printed digit is rounding.
-            let excess = (read - value).abs() - 0.500_000_1 * last_digit(number);
-            printed.add(excess.max(0.0), scale, "", || {
-                format!("check, `{line}`, {number}")
-            });
-        }
-    }
+    let numbers = expected.numbers.iter();
+    let numbers = numbers.map(|(name, value, scale)| (name.as_str(), (*value, *scale)));
+    let summed = summary_differences(&summary, numbers, "check");
+    let printed = sentence_differences(&run.printed, &expected.sentences(reading), "check");
     Ok([summed, printed])
 }
 
@@ -166,7 +139,7 @@ impl Contents {
     }
 
     /// The beginnings of printed lines, and the numbers that follow, with their scales.
-    fn sentences(&self, reading: &Reading) -> Vec<(String, Vec<(f64, f64)>)> {
+    fn sentences(&self, reading: &Reading) -> Vec<(String, Vec<Expected>)> {
         let of = |name: &str, unit: f64| {
             let found = self.numbers.iter().find(|(named, ..)| named == name);
             found.map(|(_, value, scale)| (value / unit, scale / unit))
@@ -195,12 +168,4 @@ impl Contents {
         }
         all
     }
-}
-
-/// The numbers in a line.
-fn numbers_in(line: &str) -> Vec<String> {
-    let parts = line.split(|c: char| !(c.is_ascii_alphanumeric() || ".+-".contains(c)));
-    let parts = parts.map(|part| part.trim_end_matches(['.', '-']));
-    let numbers = parts.filter(|part| part.parse::<f64>().is_ok_and(f64::is_finite));
-    numbers.map(str::to_owned).collect()
 }

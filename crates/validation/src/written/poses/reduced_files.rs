@@ -6,13 +6,14 @@ use super::drawn_laws::drawn_motions;
 use super::equilibrium::equilibrium;
 use super::generated_code::code_differences;
 use super::positions::corners;
-use super::program::Program;
+use super::program::{Program, Run};
 use super::rates::rates;
 use super::reading::Reading;
 use super::reduced::{ReducedFiles, reduced};
 use super::rows::Rows;
 use super::same_columns::same_columns;
 use super::scene_text::{Draws, text_of};
+use super::stated::{Expected, sentence_differences, summary_differences};
 use super::table_file::table_differences;
 use super::variants::{calibration_differences, sweep_differences};
 
@@ -30,7 +31,9 @@ pub(crate) fn compare_reduced(
             .run(name, scene, &[command, "--points", &points])
             .map_err(|e| e.to_string())
     };
-    let all = run("reduce", everything, "reduce")?.csv("-reduced.csv")?;
+    let whole_run = run("reduce", everything, "reduce")?;
+    let all = whole_run.csv("-reduced.csv")?;
+    compare_stated(compared, &whole_run, &all)?;
     let requested = run("requested", scene, "reduce")?.npz("-reduced.npz")?;
     let swept = swept(everything, reading, &all)?;
     let run_i = run("sweep", &swept, "kinetostatics")?.npz("-kinetostatics.npz")?;
@@ -69,6 +72,58 @@ pub(crate) fn compare_reduced(
         compared.merge("written-closure", closure(reading, rows, file).joints);
     }
     Ok(())
+}
+
+/// Smallest and largest m and ½m′ in the summary and the sentences of `reduce`.
+fn compare_stated(compared: &mut Compared, run: &Run, rows: &Rows) -> Result<(), String> {
+    let summary = run.json("-reduce.json")?;
+    let ends = printed_extrema(rows, &summary);
+    let named = |(name, [low, high]): &(&str, [Expected; 2])| {
+        [
+            (format!("{name}.min"), *low),
+            (format!("{name}.max"), *high),
+        ]
+    };
+    let numbers: Vec<_> = ends.iter().flat_map(named).collect();
+    let numbers = numbers.iter().map(|(name, end)| (name.as_str(), *end));
+    compared.merge(
+        "written-files",
+        summary_differences(&summary, numbers, "reduce"),
+    );
+    let lines = ends.iter().zip(["m    from ", "½m′  from "]);
+    let lines: Vec<_> = lines
+        .map(|((_, ends), line)| (line.to_owned(), ends.to_vec()))
+        .collect();
+    compared.merge(
+        "written-sentences",
+        sentence_differences(&run.printed, &lines, "reduce"),
+    );
+    Ok(())
+}
+
+/// What is nowhere above so many times its stated error is zero but for rounding, and so is what is below a part of m.
+const ERRORS: f64 = 4.0;
+const ROUNDING: f64 = 1e-12;
+
+/// Smallest and largest m and ½m′ of the rows, as `reduce` prints them.
+fn printed_extrema(rows: &Rows, summary: &serde_json::Value) -> [(&'static str, [Expected; 2]); 2] {
+    let ends = |name: &str| {
+        let values = rows.columns.get(name).into_iter().flatten();
+        let low = values.clone().copied().fold(f64::INFINITY, f64::min);
+        [low, values.copied().fold(f64::NEG_INFINITY, f64::max)]
+    };
+    let [m, half_dm] = [ends("m"), ends("half_dm")];
+    let largest = |[low, high]: [f64; 2]| low.abs().max(high.abs());
+    let error = summary["results"]["rounding_error.half_dm"]["value"].as_f64();
+    let zero = (ERRORS * error.unwrap_or(0.0)).max(ROUNDING) * largest(m);
+    let half_dm = match largest(half_dm) <= zero {
+        true => [0.0; 2],
+        false => half_dm,
+    };
+    [("m", m), ("half_dm", half_dm)].map(|(name, ends)| {
+        let scale = largest(ends);
+        (name, ends.map(|end| (end, scale)))
+    })
 }
 
 /// The accuracy that tables are asked for.
