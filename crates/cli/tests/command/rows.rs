@@ -208,6 +208,11 @@ fn wanted_instants_are_the_rows() {
             assert!((a - b).abs() < 1e-7, "{wanted:?} {sampled:?}");
         }
     }
+    // Where only the end is left of them, the start is the other row.
+    dir.put("instants", "2\n");
+    let run = simulate(&["--times", "instants"]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert_eq!(times(&dir, "o/moved-motion.csv"), [0.0, 2.0]);
     for (text, fault) in [
         ("0.5\n0.25\n", "the wanted instant 0.25 s follows 0.5 s"),
         (

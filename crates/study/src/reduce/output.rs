@@ -8,8 +8,8 @@ use crate::number_format::{coordinate_unit, digits, digits_within};
 use crate::output::{Outcome, Picture, indeterminate_note, separating_note};
 use crate::ranges::extent;
 use crate::reduce::compute::{
-    Reduction, RoundingErrors, TableRequest, compute_reduction, inertia_units, peak_between_rows,
-    tabulate,
+    Peak, Reduction, RoundingErrors, TableRequest, compute_reduction, inertia_units,
+    peak_between_rows, tabulate,
 };
 use dwell_findings::Record;
 use dwell_kinetostatics::{Coefficients, ReducedModel as _};
@@ -50,8 +50,9 @@ pub fn reduce(
         Picture::figure(scene, path, is_main, figure)
     };
     let pictures = figures.into_iter().map(picture).collect();
-    let mut summary = summary(&reduction, note.as_deref());
-    let mut record = record(&reduction);
+    let peak = peak_between_rows(prepared, curves);
+    let mut summary = summary(&reduction, peak, note.as_deref());
+    let mut record = record(&reduction, peak);
     if let Some(request) = table {
         let tabulation = tabulate(prepared, &request)?;
         summary += &tabulation.summary;
@@ -81,7 +82,7 @@ fn describe_rounding(errors: &RoundingErrors) -> String {
 }
 
 /// The numbers of the summary.
-fn record(reduction: &Reduction<'_>) -> Record {
+fn record(reduction: &Reduction<'_>, peak: Option<Peak>) -> Record {
     let curves = &reduction.curves;
     let mut record = Record::default();
     record.add_count("positions", curves.q.len());
@@ -111,7 +112,7 @@ fn record(reduction: &Reduction<'_>) -> Record {
             record.add_within(format!("{name}.{end}"), unit, value, error * largest);
         }
     }
-    if let Some(peak) = peak_between_rows(&reduction.prepared, curves) {
+    if let Some(peak) = peak {
         let unit = if reduction.prepared.is_angle() {
             "rad"
         } else {
@@ -127,7 +128,7 @@ fn record(reduction: &Reduction<'_>) -> Record {
 }
 
 /// The printed summary.
-pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
+pub(crate) fn summary(reduction: &Reduction<'_>, peak: Option<Peak>, note: Option<&str>) -> String {
     let (prepared, curves) = (&reduction.prepared, &reduction.curves);
     let extent_of = |pick: fn(&Coefficients) -> f64| extent(curves.coefficients.iter().map(pick));
     let m = extent_of(|c| c.m);
@@ -163,7 +164,7 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
         "{title}: {count} positions of {name}{range}, and there\n  m    from {m_min} to {m_max} {m_unit}\n  ½m′  from {h_min} to \
          {h_max} {half_dm_unit}\n"
     );
-    if let Some(peak) = peak_between_rows(prepared, curves) {
+    if let Some(peak) = peak {
         let unit = if prepared.is_angle() { "rad" } else { "m" };
         let (q, largest) = (digits(peak.q, 9), digits_within(peak.m, peak.error, 9));
         summary += &format!(

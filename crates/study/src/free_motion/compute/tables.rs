@@ -90,7 +90,10 @@ impl FreeMotionProblem<'_> {
         times: &[f64],
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let end = motion.end_time();
-        let wanted = times.iter().copied().filter(|&t| t < end).chain([end]);
+        // Where no wanted time is before the end, the start comes first: a trajectory needs two samples.
+        let start = times.first().filter(|&&t| t >= end && end > 0.0);
+        let reached = times.iter().copied().filter(|&t| t < end);
+        let wanted = start.map(|_| 0.0).into_iter().chain(reached).chain([end]);
         let index = self.balance_index();
         let mut sampler = self.sampler(motion);
         let initial = sampler

@@ -11,6 +11,6 @@ pub use curves::{ReducedCurves, Reduction, RoundingErrors, compute_reduction};
 #[cfg(feature = "output")]
 pub(crate) use curves::{coefficient_units, inertia_units};
 #[cfg(feature = "output")]
-pub(crate) use peak::peak_between_rows;
+pub(crate) use peak::{Peak, peak_between_rows};
 pub use table::{TableRequest, Tabulation, tabulate};
 pub use unit_load_curves::UnitLoadCurves;
