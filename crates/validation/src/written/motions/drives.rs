@@ -8,15 +8,15 @@ use toml::Table;
 
 /// A drive, in SI units.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Drive {
-    pub(super) name: String,
-    pub(super) measure: Measure,
-    pub(super) kind: DriveKind,
+pub(crate) struct Drive {
+    pub(crate) name: String,
+    pub(crate) measure: Measure,
+    pub(crate) kind: DriveKind,
 }
 
 /// What it exerts.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum DriveKind {
+pub(crate) enum DriveKind {
     AppliedForce(Magnitude),
     /// Voltage, torque per current, resistance; with inductance the current is a state.
     Circuit {
@@ -32,19 +32,22 @@ pub(super) enum DriveKind {
         no_load_speed: f64,
         shaft: Shaft,
     },
-    /// Its integral is in no file: its rows are compared alone.
-    SpeedController,
+    /// Its integral is in no file: its rows are compared alone. The reference speed, none of a table; N m/rad or N/m.
+    SpeedController {
+        reference: Option<Magnitude>,
+        integral: f64,
+    },
 }
 
 /// The gear and the rotor of a motor.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Shaft {
+pub(crate) struct Shaft {
     gear_ratio: f64,
     inertia: f64,
 }
 
 /// All drives of a scene; why they cannot be read, in words.
-pub(super) fn drives(scene: &Table, reading: &Reading) -> Result<Vec<Drive>, String> {
+pub(crate) fn drives(scene: &Table, reading: &Reading) -> Result<Vec<Drive>, String> {
     entries(scene, "drives")
         .map(|(name, table)| {
             drive(name, table, reading).ok_or_else(|| format!("drive `{name}` cannot be read"))
@@ -63,7 +66,17 @@ fn drive(name: &str, table: &Table, reading: &Reading) -> Option<Drive> {
     };
     let kind = match key {
         "applied-force" => DriveKind::AppliedForce(reading.magnitude(table.get("magnitude"))?),
-        "speed-controller" => DriveKind::SpeedController,
+        "speed-controller" => DriveKind::SpeedController {
+            reference: match table.get("speed")? {
+                toml::Value::Table(_) => None,
+                text @ toml::Value::String(_) => reading.magnitude(Some(text)),
+                value => {
+                    let speed = number(Some(value))? * reading.unit_of(coordinate.measure);
+                    reading.magnitude(Some(&toml::Value::Float(speed)))
+                }
+            },
+            integral: of("integral").unwrap_or(0.0),
+        },
         _ if table.contains_key("stall-torque") => DriveKind::Line {
             stall_torque: of("stall-torque")?,
             no_load_speed: of("no-load-speed")? * reading.units.angle,
@@ -85,8 +98,45 @@ fn drive(name: &str, table: &Table, reading: &Reading) -> Option<Drive> {
 }
 
 impl Drive {
+    /// What an increase of its state, or of the share of the full voltage, adds to the force, and to the state's rate by itself.
+    pub(crate) fn state_slopes(&self) -> [f64; 2] {
+        match &self.kind {
+            DriveKind::AppliedForce(_) => [0.0; 2],
+            DriveKind::Line {
+                stall_torque,
+                shaft,
+                ..
+            } => [shaft.gear_ratio * stall_torque, 0.0],
+            DriveKind::Circuit {
+                torque_constant,
+                resistance,
+                inductance,
+                shaft,
+                ..
+            } => [shaft.gear_ratio * torque_constant, -resistance / inductance],
+            DriveKind::SpeedController { integral, .. } => [*integral, 0.0],
+        }
+    }
+
+    /// The rate of its state in a row: of a current, A/s, or of a controller's integral; none of a drive without one.
+    pub(crate) fn state_rate(
+        &self,
+        reading: &Reading,
+        rows: &Rows,
+        row: usize,
+        motion: &Motion,
+    ) -> Option<f64> {
+        match &self.kind {
+            DriveKind::SpeedController { reference, .. } => {
+                let reference = reference.as_ref()?.at(reading, motion, rows.time(row))?;
+                Some(reference - motion.measure(self.measure).0[1])
+            }
+            _ => self.current_rate(reading, rows, row, motion),
+        }
+    }
+
     /// The force on the coordinate in a row. That of a controller is the written one, and so is a current with inductance.
-    pub(super) fn force(
+    pub(crate) fn force(
         &self,
         reading: &Reading,
         rows: &Rows,
@@ -117,7 +167,7 @@ impl Drive {
                 Some(n * k * current)
             }
             // It has no rotor.
-            DriveKind::SpeedController => self.written_force(rows, row),
+            DriveKind::SpeedController { .. } => self.written_force(rows, row),
         }
     }
 
@@ -157,7 +207,7 @@ impl Drive {
             DriveKind::Line { shaft, .. } | DriveKind::Circuit { shaft, .. } => {
                 shaft.gear_ratio * shaft.gear_ratio * shaft.inertia
             }
-            DriveKind::AppliedForce(_) | DriveKind::SpeedController => 0.0,
+            DriveKind::AppliedForce(_) | DriveKind::SpeedController { .. } => 0.0,
         }
     }
 }

@@ -14,5 +14,7 @@ mod row_forces;
 mod summary;
 
 pub(crate) use between_rows::simpson;
+pub(crate) use drives::{Drive, DriveKind};
 pub(crate) use motion_files::findings;
+pub(crate) use row_forces::MotionReading;
 pub(crate) use summary::sentences;

@@ -1,7 +1,6 @@
 //! The findings over the motions of a case.
 
 use super::between_rows::between_rows;
-use super::drives::drives;
 use super::row_forces::MotionReading;
 use super::summary::{sentences, summary_of_rows};
 use crate::written::poses::closure::closure;
@@ -33,10 +32,8 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
         return Ok(());
     }
     let program = Program::new(path, &format!("{name}-motion")).map_err(|e| e.to_string())?;
-    let reading = Reading::new(scene)?;
-    let drives = drives(&everything, &reading)?;
-    let motion = MotionReading { reading, drives };
     let text = text_of(&everything)?;
+    let motion = MotionReading::new(&text)?;
     let run = |name: &str, options: &[&str]| {
         let arguments = [&["simulate"], options].concat();
         let run = program.run(name, &text, &arguments);

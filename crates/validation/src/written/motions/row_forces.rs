@@ -1,6 +1,6 @@
 //! A row of a motion: all forces by the second reading, with the reactions as written, and what they must balance.
 
-use super::drives::Drive;
+use super::drives::{Drive, drives};
 use crate::written::poses::difference::Differences;
 use crate::written::poses::equilibrium::{
     ForceColumns, add_residuals, body_residuals, reaction, written_joint_wrenches,
@@ -12,16 +12,16 @@ use crate::written::poses::wrenches::along;
 
 /// The scene of a motion, read once more.
 #[derive(Debug)]
-pub(super) struct MotionReading {
-    pub(super) reading: Reading,
-    pub(super) drives: Vec<Drive>,
+pub(crate) struct MotionReading {
+    pub(crate) reading: Reading,
+    pub(crate) drives: Vec<Drive>,
 }
 
 /// What the rows of a file give.
 #[derive(Debug, Default)]
-pub(super) struct ComparedRows {
+pub(crate) struct ComparedRows {
     /// Newton's and Euler's equations of every body.
-    pub(super) equations: Differences,
+    pub(crate) equations: Differences,
     /// Written forces and powers of drives and friction with those of the second reading.
     pub(super) forces: Differences,
     /// By row: kinetic energy with rotors, J, and the power of all forces but the joints', W.
@@ -35,8 +35,18 @@ pub(super) struct ComparedRows {
 }
 
 impl MotionReading {
+    /// Reads a scene; why it cannot, in words.
+    pub(crate) fn new(text: &str) -> Result<Self, String> {
+        let scene = text
+            .parse()
+            .map_err(|e| format!("the scene is no TOML: {e}"))?;
+        let reading = Reading::new(text)?;
+        let drives = drives(&scene, &reading)?;
+        Ok(Self { reading, drives })
+    }
+
     /// Compares every row; none of a file without the columns of the bodies.
-    pub(super) fn compare(&self, rows: &Rows, file: &str) -> Option<ComparedRows> {
+    pub(crate) fn compare(&self, rows: &Rows, file: &str) -> Option<ComparedRows> {
         let mut found = ComparedRows {
             drive_power: vec![Vec::new(); self.drives.len()],
             current_rates: vec![Vec::new(); self.drives.len()],

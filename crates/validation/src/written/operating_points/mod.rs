@@ -3,10 +3,17 @@
 //!
 //! ```text
 //! program as a process ── matrices, table, summary, sentences ── characteristic (determinant), modes ── findings
+//!      └── starts (changed states and inputs) ── rows of simulate ── slopes (A, B, C, D by differences) ────┤
+//!      └── starts in equilibria ── rows of simulate, modes of linearise ── rest ────────────────────────────┘
 //! ```
 
 mod characteristic;
+mod linear_file;
 mod modes;
 mod point_files;
+mod rest;
+mod runs;
+mod slopes;
+mod starts;
 
 pub(crate) use point_files::findings;

@@ -1,12 +1,17 @@
 //! The findings over operating points of a case.
 
 use super::characteristic::{Complex, error_of_root, size};
+use super::linear_file::LinearFile;
 use super::modes::{add_modes, eigenvalues, number};
-use crate::written::motions::sentences;
+use super::rest::Rest;
+use super::slopes::Slopes;
+use super::starts::Start;
+use crate::written::motions::{MotionReading, sentences};
 use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::program::{Program, Run};
 use crate::written::poses::rows::Rows;
+use crate::written::poses::scene_text::{requests_everything, text_of};
 use dwell_findings::Finding;
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -23,26 +28,65 @@ pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
     if let (true, Ok(program)) = (has_motion, program) {
         let linear = program.run("linear", scene, &["linearise", "--about", "initial"]);
         let rest = program.run("rest", scene, &["equilibria"]);
-        for reason in [
-            linear
-                .ok()
-                .and_then(|run| linearised(&mut compared, &run).err()),
-            rest.ok()
-                .and_then(|run| equilibria(&mut compared, &run).err()),
-        ]
-        .into_iter()
-        .flatten()
-        {
+        let linear = linear.map_or(Ok(()), |run| linearised(&mut compared, &run));
+        let points = rest
+            .as_ref()
+            .map_or(Ok(()), |run| equilibria(&mut compared, run));
+        for reason in [linear, points].into_iter().filter_map(Result::err) {
             compared.fail("written-modes", reason);
+        }
+        if let Err(reason) = other_starts(&mut compared, &program, scene, rest.ok().as_ref()) {
+            compared.fail("written-linear", reason);
         }
     }
     compared.findings()
 }
 
+/// A, B, C and D with differences, and the motion from equilibria; nothing of a motion that cannot be linearised.
+fn other_starts(
+    compared: &mut Compared,
+    program: &Program,
+    scene: &str,
+    rest: Option<&Run>,
+) -> Result<(), String> {
+    let everything = requests_everything(scene)?;
+    let text = text_of(&everything)?;
+    let motion = MotionReading::new(&text)?;
+    let Ok(run) = program.run("all", &text, &["linearise", "--about", "initial"]) else {
+        return Ok(());
+    };
+    let linear = LinearFile::read(&run.text("-linear.csv")?);
+    let linear = linear.ok_or("the file has no matrices")?;
+    let archive = run.npz("-linear.npz")?;
+    let is_coordinate = |name: &&String| motion.reading.coordinate(name).is_some();
+    let names = linear.columns.iter().filter(is_coordinate).cloned();
+    let state = archive.columns.get("state");
+    let state = state.ok_or("the archive has no state")?;
+    let start = Start::new(everything, &motion, &names.collect::<Vec<_>>(), state);
+    let start = start.ok_or("the start cannot be read")?;
+    let slopes = Slopes {
+        program,
+        start: &start,
+        linear: &linear,
+    };
+    slopes.compare(compared, &archive)?;
+    let Some(rest) = rest else {
+        return Ok(());
+    };
+    let found = Rest {
+        program,
+        start: &start,
+        rows: &rest.csv("-equilibria.csv")?,
+        summary: &rest.json("-equilibria.json")?,
+    };
+    found.compare(compared)
+}
+
 fn linearised(compared: &mut Compared, run: &Run) -> Result<(), String> {
     let summary = run.json("-linearise.json")?;
-    let matrix =
-        state_matrix(&run.text("-linear.csv")?).ok_or("the file has no square matrix A")?;
+    let file = LinearFile::read(&run.text("-linear.csv")?);
+    let matrix = file.and_then(|file| file.state_matrix());
+    let matrix = matrix.ok_or("the file has no square matrix A")?;
     let found = eigenvalues(&summary, "initial");
     if found.len() != matrix.len() {
         let (count, states) = (found.len(), matrix.len());
@@ -135,35 +179,6 @@ fn add_row(compared: &mut Compared, summary: &Value, rows: &Rows, row: usize) {
     }
 }
 
-/// A of the file of matrices: its rows begin with `A`, and end with as many numbers as there are rows.
-fn state_matrix(file: &str) -> Option<Vec<Vec<f64>>> {
-    let rows: Vec<&str> = file.lines().filter(|line| line.starts_with("A,")).collect();
-    let row = |line: &&str| -> Option<Vec<f64>> {
-        let fields: Vec<&str> = line.split(',').collect();
-        let numbers = fields.get(fields.len().checked_sub(rows.len())?..)?;
-        numbers
-            .iter()
-            .map(|field| field.trim().parse().ok())
-            .collect()
-    };
-    let matrix: Vec<Vec<f64>> = rows.iter().map(row).collect::<Option<_>>()?;
-    (!matrix.is_empty()).then_some(matrix)
-}
-
 fn text([re, im]: Complex) -> String {
     format!("{re:.6e} {im:+.6e} i")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_matrix_is_read_without_its_names() {
-        let file = "matrix,row,phi [rad],phi.velocity [rad/s]\nA,d(phi)/dt [rad/s],0.0,1.0\nA,\"x, y\",-4,0\nmatrix,row,u [V]\nB,x,2\n";
-        assert_eq!(
-            state_matrix(file),
-            Some(vec![vec![0.0, 1.0], vec![-4.0, 0.0]])
-        );
-    }
 }

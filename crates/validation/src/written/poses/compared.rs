@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 type Spec = (&'static str, Check, &'static str, f64);
 
 #[rustfmt::skip]
-const SPECS: [Spec; 43] = [
+const SPECS: [Spec; 49] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
     ("written-slopes", Check::WrittenRates, "m and V of `reduce` with the integrals of ½m′ and w between rows", 1e-7),
@@ -44,6 +44,12 @@ const SPECS: [Spec; 43] = [
     ("written-motion-sentences", Check::WrittenSentences, "numbers that `simulate` prints with the summary, to their digits", 1e-12),
     ("written-eigenvalues", Check::WrittenForces, "eigenvalues of `linearise` in the characteristic polynomial of the written A, and their sum with its trace", 1e-13),
     ("written-modes", Check::WrittenTotals, "frequencies and damping ratios of `linearise` and `equilibria` with their eigenvalues", 1e-14),
+    ("written-linear", Check::WrittenForces, "A, B, C and D of `linearise` with differences of rows of `simulate` from neighbouring starts", 3e-10),
+    ("written-rest", Check::WrittenForces, "accelerations of `simulate` that starts at rest in the equilibria of `equilibria`", 2e-14),
+    ("written-damped", Check::WrittenTotals, "the modes of `equilibria` with a damper of known damping ratio, with those of a damped oscillator", 1e-14),
+    ("written-rest-modes", Check::WrittenTwice, "modes of `equilibria` with eigenvalues of `linearise` about the equilibria", 2e-14),
+    ("written-linear-equations", Check::WrittenForces, "Newton's and Euler's equations of every body in these rows, with loads, drives and friction of the scene's text", 3e-14),
+    ("written-linear-again", Check::WrittenTwice, "A, B, C and D of `linearise` with differences of its rates and outputs at neighbouring starts", 3e-10),
     ("written-point-files", Check::WrittenTwice, "the table of `equilibria` with its summary", 1e-14),
     ("written-point-sentences", Check::WrittenSentences, "numbers that `linearise` and `equilibria` print with their summaries, to their digits", 1e-12),
     ("written-cycle", Check::WrittenTotals, "speeds, fluctuation and works of the summary of `cycle` with its rows", 1e-8),

@@ -133,7 +133,7 @@ pub(crate) fn body_residuals(
 }
 
 /// Adds residuals of several rows, relative to the largest terms among all of them. A moment is at least relative to the
-/// largest force times the size of its own body's arms, which the terms contain.
+/// largest force times the size of a body: forces without an arm have its rounding.
 pub(crate) fn add_residuals(
     to: &mut Differences,
     reading: &Reading,
@@ -148,7 +148,7 @@ pub(crate) fn add_residuals(
     };
     let scale = ForceScale {
         force: terms(0),
-        moment: terms(1),
+        moment: terms(1).max(terms(0) * reading.size()),
     };
     for (row, residuals) in all {
         for (body, sum, _) in residuals {

@@ -340,7 +340,7 @@ impl Reading {
     }
 
     /// The unit of a coordinate in the scene, in SI units.
-    pub(super) fn unit_of(&self, measure: Measure) -> f64 {
+    pub(crate) fn unit_of(&self, measure: Measure) -> f64 {
         match measure {
             Measure::Angle(_) => self.units.angle,
             Measure::Travel(..) | Measure::Length(_) => self.units.length,
