@@ -129,6 +129,7 @@ fn written_findings(program: &Path, scene: &Scene) -> Vec<Finding> {
         text,
     ));
     findings.extend(written::cycles::findings(program, &scene.name, text));
+    findings.extend(written::sweeps::findings(program, &scene.name, text));
     findings
 }
 

@@ -5,3 +5,4 @@ pub(crate) mod cycles;
 pub(crate) mod motions;
 pub(crate) mod operating_points;
 pub(crate) mod poses;
+pub(crate) mod sweeps;

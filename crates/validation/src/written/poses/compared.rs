@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 type Spec = (&'static str, Check, &'static str, f64);
 
 #[rustfmt::skip]
-const SPECS: [Spec; 49] = [
+const SPECS: [Spec; 54] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
     ("written-slopes", Check::WrittenRates, "m and V of `reduce` with the integrals of ½m′ and w between rows", 1e-7),
@@ -30,6 +30,11 @@ const SPECS: [Spec; 49] = [
     ("written-table", Check::WrittenTwice, "the table of `reduce` with its rows, beyond the errors that it states", 1e-13),
     ("written-code", Check::WrittenTwice, "code of `symbolic` in Python and C, run line by line, with the rows of `reduce`", 1e-11),
     ("written-sweep", Check::WrittenTwice, "extrema of m in rows of `sweep` with `reduce` of each changed scene", 1e-13),
+    ("written-sweep-draws", Check::WrittenLaws, "varied numbers of `sweep` with a second generator of random numbers and the grid", 1e-14),
+    ("written-sweep-distribution", Check::WrittenTotals, "random numbers of `sweep` with their distribution function (Kolmogorov and Smirnov)", 1.0),
+    ("written-sweep-files", Check::WrittenTwice, "archive and database of `sweep` with its table", 1e-15),
+    ("written-sweep-summary", Check::WrittenTotals, "statistics of the summary of `sweep` with its rows", 1e-13),
+    ("written-sweep-sentences", Check::WrittenSentences, "numbers that `sweep` prints with its summary, to their digits", 1e-12),
     ("written-units", Check::WrittenUnits, "files of the scene with those of the scene in other units", 1e-11),
     ("written-motion-closure", Check::WrittenPositions, "joints, points and coordinates of every row of `simulate` with the scene's text", 1e-14),
     ("written-motion-rates", Check::WrittenRates, "changes between rows of `simulate` with the integrals of their rates", 2e-7),

@@ -41,7 +41,7 @@ mod table_file;
 pub(super) mod totals;
 mod unit_files;
 pub(crate) mod units;
-mod variants;
+pub(super) mod variants;
 pub(super) mod wrenches;
 
 #[cfg(test)]

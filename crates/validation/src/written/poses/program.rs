@@ -1,6 +1,6 @@
 //! Runs the program as a user does: a process, a scene in a folder of its own, and the files that it leaves there.
 
-use super::read_files::{csv_rows, npz_rows};
+use super::read_files::{csv_rows, npz_rows, sqlite_rows};
 use super::rows::Rows;
 use std::fs;
 use std::io;
@@ -100,6 +100,12 @@ impl Run {
         let bytes = fs::read(self.folder.join(&file))
             .map_err(|e| format!("{file}: {e}; {}", self.messages.trim()))?;
         npz_rows(&bytes).ok_or_else(|| format!("{file} is no archive of arrays"))
+    }
+
+    /// The columns of numbers of a table of an SQLite file; the units in brackets are not part of the names.
+    pub(crate) fn sqlite(&self, end: &str, table: &str) -> Result<Rows, String> {
+        let file = format!("{}{end}", self.name);
+        sqlite_rows(&self.folder.join(&file), table).map_err(|e| format!("{file}: {e}"))
     }
 
     /// The summary for programs.

@@ -1,7 +1,10 @@
-//! Readers of written tables that share nothing with their writers: CSV, and NumPy's archives.
+//! Readers of written tables that share nothing with their writers: CSV, NumPy's archives, and SQLite by SQLite itself.
 
 use super::rows::Rows;
+use rusqlite::types::ValueRef;
+use rusqlite::{Connection, OpenFlags};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// The columns of a CSV file without quotes inside numbers; the units in brackets are not part of the names.
 pub(crate) fn csv_rows(text: &str) -> Option<Rows> {
@@ -33,6 +36,29 @@ pub(crate) fn csv_rows(text: &str) -> Option<Rows> {
         .zip(columns)
         .collect();
     Some(Rows { columns, count })
+}
+
+/// The columns of numbers of a table of an SQLite file, in the order of its first column; what is NULL is no number.
+pub(crate) fn sqlite_rows(path: &Path, table: &str) -> rusqlite::Result<Rows> {
+    let connection = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
+    let mut statement = connection.prepare(&format!("SELECT * FROM {table} ORDER BY 1"))?;
+    let heads = statement.column_names().into_iter();
+    let names = heads.map(|head| head.split(" [").next().unwrap_or(""));
+    let names: Vec<String> = names.map(str::to_owned).collect();
+    let mut rows = Rows::default();
+    let mut found = statement.query(())?;
+    while let Some(row) = found.next()? {
+        for (k, name) in names.iter().enumerate() {
+            let value = match row.get_ref(k)? {
+                ValueRef::Integer(number) => number as f64,
+                ValueRef::Real(number) => number,
+                ValueRef::Null | ValueRef::Text(_) | ValueRef::Blob(_) => f64::NAN,
+            };
+            rows.columns.entry(name.clone()).or_default().push(value);
+        }
+        rows.count += 1;
+    }
+    Ok(rows)
 }
 
 /// The heads of the columns; one with a comma stands in quotes.

@@ -15,7 +15,7 @@ use super::same_columns::same_columns;
 use super::scene_text::{Draws, text_of};
 use super::stated::{Expected, sentence_differences, summary_differences};
 use super::table_file::table_differences;
-use super::variants::{calibration_differences, sweep_differences};
+use super::variants::calibration_differences;
 
 /// Runs `reduce` and its like on a scene with one actuator, as it is and with everything requested.
 pub(crate) fn compare_reduced(
@@ -52,10 +52,6 @@ pub(crate) fn compare_reduced(
     let whole: toml::Table = everything
         .parse()
         .map_err(|e| format!("the scene is no TOML: {e}"))?;
-    compared.merge(
-        "written-sweep",
-        sweep_differences(program, &whole, reading, draws)?,
-    );
     compared.merge(
         "written-calibration",
         calibration_differences(program, &whole, reading)?,

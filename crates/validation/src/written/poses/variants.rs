@@ -1,67 +1,15 @@
-//! Variants of a scene: rows of `sweep` against single runs of the changed text, and the value of `calibrate` against the
-//! period that quadrature gives of the rows of `reduce`.
+//! Variants of a scene: the value of `calibrate` against the period that quadrature gives of the rows of `reduce`.
 
 use super::difference::Differences;
 use super::program::Program;
 use super::reading::Reading;
 use super::rows::Rows;
-use super::scene_text::{Draws, text_of};
+use super::scene_text::text_of;
 use toml::{Table, Value};
-
-/// Relative masses of a drawn body.
-const SHARES: [f64; 2] = [0.7, 1.9];
-
-/// Extrema of m of two variants, against the rows of a single run of each.
-pub(crate) fn sweep_differences(
-    program: &Program,
-    scene: &Table,
-    reading: &Reading,
-    draws: &mut Draws,
-) -> Result<Differences, String> {
-    let mut all = Differences::default();
-    let bodies: Vec<_> = reading
-        .bodies
-        .iter()
-        .filter(|body| body.mass > 0.0)
-        .collect();
-    let Some(body) = bodies.get(draws.below(bodies.len())) else {
-        return Ok(all);
-    };
-    let values = SHARES.map(|share| share * body.mass / reading.units.mass);
-    let vary = format!("{}.mass={:?},{:?}", body.name, values[0], values[1]);
-    let arguments = ["sweep", "--vary", &vary, "--result", "m"];
-    let run = program
-        .run("sweep", &text_of(scene)?, &arguments)
-        .map_err(|e| e.to_string())?;
-    let (csv, npz) = (run.csv("-sweep.csv"), run.npz("-sweep.npz")?);
-    // A message is text: of a complete sweep there is none.
-    let rows = csv?;
-    for (row, value) in values.into_iter().enumerate() {
-        let changed = with_number(scene, &["bodies", &body.name, "mass"], value)
-            .ok_or("the body has no mass")?;
-        let single = program
-            .run("variant", &text_of(&changed)?, &["reduce"])
-            .map_err(|e| e.to_string())?;
-        let single = single.csv("-reduced.csv")?;
-        let m = single.columns.get("m").ok_or("`reduce` has no m")?;
-        for (name, sign) in [("m.min", -1.0), ("m.max", 1.0)] {
-            let value = rows.get(row, name).unwrap_or(f64::NAN);
-            let (beyond, scale) = beyond_rows(m, value, sign);
-            all.add(beyond, scale, "kg m2", || {
-                format!("sweep of {}, variant {row}, {name}", body.name)
-            });
-            let archived = npz.get(row, name).unwrap_or(f64::NAN);
-            all.add(archived - value, scale, "kg m2", || {
-                format!("sweep, variant {row}, {name}, CSV and NPZ")
-            });
-        }
-    }
-    Ok(all)
-}
 
 /// By how much an extremum is not between the highest row and a parabola's height above it, which is at most an eighth of
 /// the second difference there; and the largest value.
-fn beyond_rows(values: &[f64], extremum: f64, sign: f64) -> (f64, f64) {
+pub(crate) fn beyond_rows(values: &[f64], extremum: f64, sign: f64) -> (f64, f64) {
     let of = |k: usize| sign * values[k];
     let highest = (0..values.len())
         .max_by(|a, b| of(*a).total_cmp(&of(*b)))
@@ -79,7 +27,7 @@ fn beyond_rows(values: &[f64], extremum: f64, sign: f64) -> (f64, f64) {
 }
 
 /// The scene with another number.
-fn with_number(scene: &Table, path: &[&str], number: f64) -> Option<Table> {
+pub(crate) fn with_number(scene: &Table, path: &[&str], number: f64) -> Option<Table> {
     let mut changed = scene.clone();
     let (last, sections) = path.split_last()?;
     let mut table = &mut changed;

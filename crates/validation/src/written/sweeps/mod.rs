@@ -1,0 +1,13 @@
+//! The files of `sweep`: its drawn and listed numbers, rows, database, statistics and sentences.
+//!
+//! ```text
+//! drawn variations ── sweep ── CSV ──┬── draws (a second generator, the distribution itself)
+//!                                    ├── statistics (of the rows) ── summary, sentences
+//!                                    └── database, NPZ ───────────────────────────────────── findings
+//! ```
+
+mod draws;
+mod statistics;
+mod sweep_files;
+
+pub(crate) use sweep_files::findings;

@@ -1,0 +1,253 @@
+//! The findings over a sweep of a case: masses of its bodies, one by a grid, one drawn of a normal and one of an even
+//! distribution.
+
+use super::draws::{distance, normal, normal_distribution, uniform};
+use super::statistics::add_statistics;
+use crate::written::motions::sentences;
+use crate::written::poses::compared::Compared;
+use crate::written::poses::difference::Differences;
+use crate::written::poses::program::{Program, Run};
+use crate::written::poses::reading::Reading;
+use crate::written::poses::rows::Rows;
+use crate::written::poses::scene_text::{Draws, requests_everything, text_of};
+use crate::written::poses::variants::{beyond_rows, with_number};
+use dwell_findings::Finding;
+use std::path::Path;
+use toml::Table;
+
+/// Samples of every value of the grid.
+const SAMPLES: usize = 256;
+/// Values of the grid.
+const VALUES: usize = 2;
+/// Rows that `reduce` repeats.
+const REPEATED: usize = 2;
+/// √n times the distance from its distribution that one sample in 8000 exceeds (Smirnov, 1948).
+const LARGEST_DISTANCE: f64 = 2.2;
+
+/// How a mass varies, in the unit of the scene.
+#[derive(Debug, Clone, Copy)]
+enum Varied {
+    Normal { mean: f64, deviation: f64 },
+    Even { nominal: f64, percent: f64 },
+    Grid { from: f64, to: f64 },
+}
+
+/// A mass of the scene that varies.
+#[derive(Debug)]
+struct Variation {
+    body: String,
+    varied: Varied,
+}
+
+/// Runs `sweep` on a scene with one actuator, and compares what it writes.
+pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
+    let mut compared = Compared::default();
+    if let Err(reason) = compare(&mut compared, path, name, scene) {
+        compared.fail("written-sweep-draws", reason);
+    }
+    compared.findings()
+}
+
+fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Result<(), String> {
+    let reading = Reading::new(scene)?;
+    let everything = requests_everything(scene)?;
+    let mut draws = Draws::of(&format!("{scene}sweep"));
+    let variations = variations(&everything, &reading, &mut draws);
+    if reading.actuator_count != 1 || variations.is_empty() {
+        return Ok(());
+    }
+    let program = Program::new(path, &format!("{name}-sweep")).map_err(|e| e.to_string())?;
+    let seed = draws.below(1_000_000) as u64;
+    let mut arguments: Vec<String> = ["sweep", "--result", "m"].map(str::to_owned).into();
+    for variation in &variations {
+        arguments.extend(["--vary".to_owned(), variation.text()]);
+    }
+    let counts = [SAMPLES.to_string(), seed.to_string()];
+    arguments.extend(["--samples", &counts[0], "--seed", &counts[1]].map(str::to_owned));
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let run = program.run("sweep", &text_of(&everything)?, &arguments);
+    let run = run.map_err(|e| e.to_string())?;
+    let rows = run.csv("-sweep.csv")?;
+    compare_draws(compared, &variations, &rows, seed);
+    compared.merge("written-sweep-files", same_files(&run, &rows)?);
+    let summary = run.json("-sweep.json")?;
+    let inputs: Vec<String> = variations.iter().map(Variation::path).collect();
+    for result in ["m.min", "m.max"] {
+        let of = compared.of("written-sweep-summary");
+        add_statistics(of, &summary, &rows, (result, &inputs));
+    }
+    compared.merge("written-sweep-sentences", sentences(&run, &summary));
+    for _ in 0..REPEATED {
+        let row = draws.below(rows.count);
+        compare_row(compared, &program, &everything, (&variations, &rows, row))?;
+    }
+    Ok(())
+}
+
+/// Up to three masses of the scene, in a drawn order.
+fn variations(scene: &Table, reading: &Reading, draws: &mut Draws) -> Vec<Variation> {
+    let is_written = |body: &str| {
+        let bodies = scene.get("bodies").and_then(|bodies| bodies.get(body));
+        bodies.and_then(|body| body.get("mass")).is_some()
+    };
+    let massive = reading.bodies.iter();
+    let massive = massive.filter(|body| body.mass > 0.0 && is_written(&body.name));
+    let mut bodies: Vec<_> = massive.collect();
+    let mut drawn = Vec::new();
+    while !bodies.is_empty() && drawn.len() < 3 {
+        drawn.push(bodies.swap_remove(draws.below(bodies.len())));
+    }
+    let variation = |(k, body): (usize, &crate::written::poses::reading::Body)| {
+        let nominal = body.mass / reading.units.mass;
+        Variation {
+            body: body.name.clone(),
+            varied: match k {
+                0 => Varied::Normal {
+                    mean: nominal,
+                    deviation: 0.03 * nominal,
+                },
+                1 => Varied::Even {
+                    nominal,
+                    percent: 8.0,
+                },
+                _ => Varied::Grid {
+                    from: 0.8 * nominal,
+                    to: 1.3 * nominal,
+                },
+            },
+        }
+    };
+    drawn.into_iter().enumerate().map(variation).collect()
+}
+
+impl Variation {
+    /// The path of its number.
+    fn path(&self) -> String {
+        format!("{}.mass", self.body)
+    }
+
+    /// As the command line states it.
+    fn text(&self) -> String {
+        let path = self.path();
+        match self.varied {
+            Varied::Normal { mean, deviation } => format!("{path}~normal({mean:?},{deviation:?})"),
+            Varied::Even { percent, .. } => format!("{path}±{percent}%"),
+            Varied::Grid { from, to } => format!("{path}={from:?}:{to:?}:{VALUES}"),
+        }
+    }
+
+    /// Its value in a row, by the second generator; `axis` is its number among all.
+    fn value(&self, row: usize, (seed, axis): (u64, usize)) -> f64 {
+        let uniform = uniform(
+            seed,
+            u32::try_from(axis).unwrap_or(0),
+            (row % SAMPLES) as u64,
+        );
+        match self.varied {
+            Varied::Normal { mean, deviation } => mean + deviation * normal(uniform),
+            Varied::Even { nominal, percent } => {
+                nominal * (1.0 + percent / 100.0 * (2.0 * uniform[0] - 1.0))
+            }
+            Varied::Grid { from, to } => match row / SAMPLES {
+                0 => from,
+                _ => to,
+            },
+        }
+    }
+
+    /// The part of all values that is below a value; none of a grid.
+    fn share_below(&self, value: f64) -> Option<f64> {
+        match self.varied {
+            Varied::Normal { mean, deviation } => {
+                Some(normal_distribution((value - mean) / deviation))
+            }
+            Varied::Even { nominal, percent } => {
+                let width = 2.0 * percent / 100.0 * nominal;
+                Some((0.5 + (value - nominal) / width).clamp(0.0, 1.0))
+            }
+            Varied::Grid { .. } => None,
+        }
+    }
+}
+
+/// The varied numbers of all rows.
+fn compare_draws(compared: &mut Compared, variations: &[Variation], rows: &Rows, seed: u64) {
+    let grids = variations
+        .iter()
+        .filter(|v| matches!(v.varied, Varied::Grid { .. }));
+    let points = SAMPLES * VALUES.pow(u32::try_from(grids.count()).unwrap_or(0));
+    let of = compared.of("written-sweep-draws");
+    of.add(rows.count as f64 - points as f64, 1.0, "", || {
+        "number of points".to_owned()
+    });
+    for (axis, variation) in variations.iter().enumerate() {
+        let Some(column) = rows.columns.get(&variation.path()) else {
+            compared.fail(
+                "written-sweep-draws",
+                format!("no column {}", variation.path()),
+            );
+            continue;
+        };
+        for (row, value) in column.iter().enumerate() {
+            let expected = variation.value(row, (seed, axis));
+            let place = || format!("{}, point {row}", variation.path());
+            let of = compared.of("written-sweep-draws");
+            of.add(value - expected, expected, "", place);
+        }
+        let first = &column[..SAMPLES.min(column.len())];
+        if let Some(value) = first.first()
+            && variation.share_below(*value).is_some()
+        {
+            let share = |value: f64| variation.share_below(value).unwrap_or(f64::NAN);
+            let distance = distance(first.to_vec(), share);
+            let of = compared.of("written-sweep-distribution");
+            of.add(distance, LARGEST_DISTANCE, "", || variation.text());
+        }
+    }
+}
+
+/// The archive and the database, each with the table.
+fn same_files(run: &Run, rows: &Rows) -> Result<Differences, String> {
+    let mut same = Differences::default();
+    let database = run.sqlite("-sweep.sqlite", "points")?;
+    for (file, other) in [("NPZ", run.npz("-sweep.npz")?), ("SQLite", database)] {
+        for (name, column) in rows.columns.iter().filter(|(name, _)| *name != "message") {
+            let Some(values) = other.columns.get(name).filter(|v| v.len() == column.len()) else {
+                same.fail(format!("{file} has not the rows of {name}"));
+                continue;
+            };
+            for (row, (value, expected)) in values.iter().zip(column).enumerate() {
+                let place = || format!("{file}, {name}, point {row}");
+                same.add(value - expected, *expected, "", place);
+            }
+        }
+    }
+    Ok(same)
+}
+
+/// A row with a run of `reduce` on the scene with its numbers.
+fn compare_row(
+    compared: &mut Compared,
+    program: &Program,
+    scene: &Table,
+    (variations, rows, row): (&[Variation], &Rows, usize),
+) -> Result<(), String> {
+    let mut changed = scene.clone();
+    for variation in variations {
+        let value = rows.get(row, &variation.path()).unwrap_or(f64::NAN);
+        let next = with_number(&changed, &["bodies", &variation.body, "mass"], value);
+        changed = next.ok_or("the body has no mass")?;
+    }
+    let single = program.run("point", &text_of(&changed)?, &["reduce"]);
+    let single = single.map_err(|e| e.to_string())?.csv("-reduced.csv")?;
+    let m = single.columns.get("m").ok_or("`reduce` has no m")?;
+    for (name, sign) in [("m.min", -1.0), ("m.max", 1.0)] {
+        let value = rows.get(row, name).unwrap_or(f64::NAN);
+        let (beyond, scale) = beyond_rows(m, value, sign);
+        let place = || format!("point {row}, {name}");
+        compared
+            .of("written-sweep")
+            .add(beyond, scale, "kg m2", place);
+    }
+    Ok(())
+}
