@@ -42,7 +42,7 @@ pub(crate) fn csv_rows(text: &str) -> Option<Rows> {
 pub(crate) fn sqlite_rows(path: &Path, table: &str) -> rusqlite::Result<Rows> {
     let connection = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
     let mut statement = connection.prepare(&format!("SELECT * FROM {table} ORDER BY 1"))?;
-    let heads = statement.column_names().into_iter();
+    let heads = statement.column_names();
     let names = heads.map(|head| head.split(" [").next().unwrap_or(""));
     let names: Vec<String> = names.map(str::to_owned).collect();
     let mut rows = Rows::default();
