@@ -8,6 +8,7 @@ mod draws;
 mod free_motion;
 mod in_scenes;
 mod jamming;
+mod large_groups;
 mod limit_positions;
 pub mod machines;
 mod mechanisms;
@@ -38,7 +39,11 @@ use rayon::prelude::*;
 /// [`StudyError`] where a picture cannot be drawn.
 pub fn study(slow: bool, seed: u64) -> Result<Outcome, StudyError> {
     let name = if slow { "extremes-long" } else { "extremes" };
-    let mut outcome = outcome(&evaluate(all_series(slow)), name)?;
+    let mut outcome = outcome(
+        &evaluate(all_series(slow)),
+        large_groups::dense_findings(),
+        name,
+    )?;
     let pulses = pulses::evaluate(pulses::count(slow), seed);
     pulses::add_to(&mut outcome, &pulses, seed, name)?;
     let machines = machines::evaluate(machines::count(slow), seed);
@@ -55,6 +60,7 @@ pub fn all_series(slow: bool) -> Vec<ParameterSeries> {
     series.extend(singular::series());
     series.extend(paper_mechanism::series());
     series.extend(ratios::series());
+    series.extend(large_groups::series());
     series.extend(jamming::series());
     series
 }

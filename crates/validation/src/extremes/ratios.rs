@@ -17,7 +17,10 @@ const DYAD_CONDITION: f64 = 8.0;
 const POINTS: usize = 181;
 
 /// Figure of these rows, and its title.
-const FIGURE: (&str, &str) = ("ratios", "Gears, cams, long links, two freedoms");
+pub(super) const FIGURE: (&str, &str) = (
+    "ratios",
+    "Gears, cams, long links, two freedoms, large groups",
+);
 
 pub(super) fn series() -> Vec<ParameterSeries> {
     vec![gears(), cam(), long_links(), double_pendulum()]

@@ -19,12 +19,17 @@ const TYPED_ERROR_HEIGHT: f64 = 0.4;
 /// The ratios that a chart shows.
 const RATIO_RANGE: [f64; 2] = [0.1, 1e5];
 
-/// The report of the grid: `NAME.md`, `NAME.txt` and the folder `NAME/`.
+/// The report of the grid and of further findings: `NAME.md`, `NAME.txt` and the folder `NAME/`.
 ///
 /// # Errors
 /// [`StudyError`] where a table cannot be written.
-pub fn outcome(results: &[SeriesResult], name: &str) -> Result<Outcome, StudyError> {
-    let findings = check(results);
+pub fn outcome(
+    results: &[SeriesResult],
+    further: Vec<Finding>,
+    name: &str,
+) -> Result<Outcome, StudyError> {
+    let mut findings = check(results);
+    findings.extend(further);
     let figures = figures(results);
     let mut files = Files::new();
     for result in results {

@@ -1,0 +1,189 @@
+//! Groups of many bodies that only Newton's method places together: rings of ternary links, each held by a leg. From forty
+//! unknowns on faer factors them.
+
+use super::closed_forms::dd;
+use super::in_scenes::StatedTable;
+use super::ratios::FIGURE;
+use super::series::{ParameterSeries, Requirement, RunResult};
+use crate::cases::model_states::{ModelStates, StateRequest};
+use dwell_findings::Finding;
+use dwell_numerics::{DoubleDouble, Scalar};
+use dwell_scene::Scene;
+use dwell_verify::{Inertias, check_states};
+use std::fmt::Write as _;
+
+/// Positions of a revolution.
+const POINTS: usize = 13;
+/// Roundings that an evaluation is allowed.
+const ALLOWED_ROUNDINGS: f64 = 16.0;
+/// Points are on a grid of so many lines per metre.
+const GRID: f64 = 8192.0;
+/// Links of the ring that is checked by dense equations.
+const DENSE_LINKS: usize = 20;
+/// States in which it is checked.
+const DENSE_STATES: usize = 8;
+
+/// A ring of ternary links on a disk: each link is joined to both neighbours and, by a leg that leans to one side or the other,
+/// to the disk. All bodies have the frame of the disk, so that they turn with it: m and the reactions of the disk's bearing are
+/// sums over the bodies, whereas every other joint force follows from the group alone.
+struct Ring {
+    text: String,
+    /// Mass (kg), centre (m) and moment of inertia (kg m²) of every body.
+    bodies: Vec<(f64, [f64; 2], f64)>,
+}
+
+impl Ring {
+    fn new(links: usize) -> Self {
+        let angle = |k: f64| k * std::f64::consts::TAU / links as f64;
+        // Differences of points are exact: the errors are those of the group.
+        let rounded = |x: f64| (GRID * x).round() / GRID;
+        let polar = |r: f64, a: f64| [rounded(r * a.cos()), rounded(r * a.sin())];
+        let radius = 0.025 * links as f64;
+        let mut ring = Self {
+            text: String::new(),
+            bodies: Vec::new(),
+        };
+        let (mut disk, mut bodies, mut joints) = (String::new(), String::new(), String::new());
+        for k in 0..links {
+            let at = k as f64;
+            let pins = [at - 0.5, at + 0.5].map(|k| polar(radius, angle(k)));
+            let third = polar(radius + 0.12, angle(at + 0.15));
+            let side = if k % 2 == 0 { 1.5 } else { -1.5 };
+            let lean = angle(at) + side + 0.2 * (3.0 * at + 1.0).sin();
+            let foot = polar(0.3, lean);
+            let foot = [0, 1].map(|i| rounded(third[i] + foot[i]));
+            let next = (k + 1) % links;
+            _ = write!(disk, "P{k} = {foot:?}, ");
+            let link = (
+                0.3125 + (k % 7) as f64 / 64.0,
+                polar(radius + 0.04, angle(at)),
+            );
+            let center = [0, 1].map(|i| rounded(0.5 * (third[i] + foot[i])));
+            let leg = (0.5 + (k % 6) as f64 / 32.0, center);
+            let bodies_of_pair = [
+                (
+                    "link",
+                    link,
+                    format!("A = {:?}, B = {:?}, C = {third:?}", pins[0], pins[1]),
+                ),
+                ("leg", leg, format!("P = {foot:?}, C = {third:?}")),
+            ];
+            for (name, (mass, center), points) in bodies_of_pair {
+                let inertia = 0.002;
+                _ = writeln!(
+                    bodies,
+                    "{name}{k} = {{ points = {{ {points} }}, mass = {mass}, center = {center:?}, inertia = {inertia} }}"
+                );
+                ring.bodies.push((mass, center, inertia));
+            }
+            _ = writeln!(
+                joints,
+                "R{k} = {{ revolute = [\"link{k}.B\", \"link{next}.A\"] }}\n\
+                 T{k} = {{ revolute = [\"leg{k}.C\", \"link{k}.C\"] }}\n\
+                 P{k} = {{ revolute = [\"disk.P{k}\", \"leg{k}.P\"] }}"
+            );
+        }
+        ring.bodies.push((2.0, [0.0; 2], 0.5));
+        ring.text = format!(
+            "[bodies]\nground = {{ points = {{ O = [0, 0] }} }}\n\
+             disk = {{ points = {{ {disk}O = [0, 0] }}, mass = 2, center = \"O\", inertia = 0.5 }}\n{bodies}\
+             [joints]\nO = {{ revolute = [\"ground.O\", \"disk.O\"] }}\n{joints}\
+             [actuators]\nphi = {{ angle = [\"ground\", \"disk\"] }}\n[assembly]\nphi = 0\n",
+        );
+        for k in 0..links {
+            _ = writeln!(ring.text, "link{k} = 0\nleg{k} = 0");
+        }
+        ring.text += "[requests]\nreactions = [\"O\"]\n";
+        ring
+    }
+
+    /// m = Σ (I + M c²), and Σ M c in the frame of the disk.
+    fn sums(&self) -> (DoubleDouble, [DoubleDouble; 2]) {
+        let mut m = dd(0.0);
+        let mut moment = [dd(0.0); 2];
+        for (mass, center, inertia) in &self.bodies {
+            let [x, y] = center.map(dd);
+            m = m + dd(*inertia) + dd(*mass) * (x * x + y * y);
+            moment = [moment[0] + dd(*mass) * x, moment[1] + dd(*mass) * y];
+        }
+        (m, moment)
+    }
+}
+
+pub(super) fn series() -> Vec<ParameterSeries> {
+    let run = |unknowns: f64| -> RunResult {
+        let ring = Ring::new(unknowns as usize / 2);
+        let found = StatedTable::reduced(&ring.text, POINTS)?;
+        let (m, [x, y]) = ring.sums();
+        // Ground on disk: F = Σ M c̈, which for c̈ = q̈ k × c − q̇² c is a and b.
+        let turned = found.column("phi")?.into_iter().map(|q| {
+            let (sin, cos) = dd(q).sin_cos();
+            [x * cos - y * sin, x * sin + y * cos]
+        });
+        let turned: Vec<_> = turned.collect();
+        let of =
+            |pick: &dyn Fn(&[DoubleDouble; 2]) -> DoubleDouble| turned.iter().map(pick).collect();
+        found.compare(&[
+            vec![("m", vec![m; POINTS])],
+            vec![
+                ("O.x.a", of(&|[_, y]| -*y)),
+                ("O.y.a", of(&|[x, _]| *x)),
+                ("O.x.b", of(&|[x, _]| -*x)),
+                ("O.y.b", of(&|[_, y]| -*y)),
+            ],
+        ])
+    };
+    vec![ParameterSeries {
+        figure: FIGURE,
+        key: "large-group".into(),
+        description: "A ring of ternary links with their legs, one group of Newton's method, as reduce writes it: its unknowns".into(),
+        parameter: ("unknowns", ""),
+        values: vec![8.0, 20.0, 40.0, 48.0],
+        quantities: &["m", "a and b of the bearing"],
+        reference: "the ring turns as one body: m = Σ (I + M c²), a = k × Σ M c, b = −Σ M c",
+        reason: "16 roundings, magnified by as many as the group has unknowns (measured: by a quarter of them)",
+        requirement: Box::new(|unknowns, _| {
+            Requirement::from_rounding(ALLOWED_ROUNDINGS, unknowns)
+        }),
+        run: Box::new(run),
+    }]
+}
+
+/// The same ring by dense equations, which share no group, dyad or factors with it.
+pub(super) fn dense_findings() -> Vec<Finding> {
+    let ring = Ring::new(DENSE_LINKS);
+    match findings_of(&ring.text.replace("reactions = [\"O\"]", "")) {
+        Ok(findings) => findings,
+        Err(why) => vec![Finding {
+            key: "large-group-dense".to_owned(),
+            worst_at: why,
+            ..Finding::default()
+        }],
+    }
+}
+
+fn findings_of(text: &str) -> Result<Vec<Finding>, String> {
+    let scene = Scene::parse("ring.toml", text).map_err(|e| e.to_string())?;
+    let mut model = ModelStates::new(&scene).map_err(|e| e.to_string())?;
+    let state = |k: usize| {
+        let request = StateRequest {
+            t: k as f64,
+            q: vec![0.7 * k as f64],
+            q_dot: vec![2.0],
+            q_ddot: Some(vec![-3.0]),
+        };
+        model.state(&request).map_err(|e| e.to_string())
+    };
+    let states: Vec<_> = (0..DENSE_STATES).map(state).collect::<Result<_, _>>()?;
+    let inertias = Inertias {
+        masses: &scene.masses,
+        varying: &scene.varying_inertias,
+    };
+    let found = check_states(&scene.mechanism, inertias, &model.assembly_poses, &states);
+    let named = found.into_iter().map(|finding| Finding {
+        key: format!("large-group-{}", finding.key),
+        domain: format!("a ring of {DENSE_LINKS} links, {}", finding.domain),
+        ..finding
+    });
+    Ok(named.collect())
+}
