@@ -32,68 +32,79 @@ struct Ring {
     bodies: Vec<(f64, [f64; 2], f64)>,
 }
 
-impl Ring {
-    fn new(links: usize) -> Self {
+/// A link with its leg: its two pins on the ring and the third one, the leg's foot on the disk, and the centres of both.
+struct Pair {
+    pins: [[f64; 2]; 2],
+    third: [f64; 2],
+    foot: [f64; 2],
+    centers: [[f64; 2]; 2],
+}
+
+impl Pair {
+    /// The pair of number `k` of so many.
+    fn new(k: usize, links: usize) -> Self {
         let angle = |k: f64| k * std::f64::consts::TAU / links as f64;
         // Differences of points are exact: the errors are those of the group.
         let rounded = |x: f64| (GRID * x).round() / GRID;
         let polar = |r: f64, a: f64| [rounded(r * a.cos()), rounded(r * a.sin())];
-        let radius = 0.025 * links as f64;
+        let (at, radius) = (k as f64, 0.025 * links as f64);
+        let third = polar(radius + 0.12, angle(at + 0.15));
+        let side = if k.is_multiple_of(2) { 1.5 } else { -1.5 };
+        let leg = polar(0.3, angle(at) + side + 0.2 * (3.0 * at + 1.0).sin());
+        let foot = [0, 1].map(|i| third[i] + leg[i]);
+        Self {
+            pins: [at - 0.5, at + 0.5].map(|k| polar(radius, angle(k))),
+            third,
+            foot,
+            centers: [
+                polar(radius + 0.04, angle(at)),
+                [0, 1].map(|i| rounded(0.5 * (third[i] + foot[i]))),
+            ],
+        }
+    }
+}
+
+impl Ring {
+    fn new(links: usize) -> Self {
         let mut ring = Self {
             text: String::new(),
-            bodies: Vec::new(),
+            bodies: vec![(2.0, [0.0; 2], 0.5)],
         };
         let (mut disk, mut bodies, mut joints) = (String::new(), String::new(), String::new());
+        let mut assembly = String::new();
         for k in 0..links {
-            let at = k as f64;
-            let pins = [at - 0.5, at + 0.5].map(|k| polar(radius, angle(k)));
-            let third = polar(radius + 0.12, angle(at + 0.15));
-            let side = if k % 2 == 0 { 1.5 } else { -1.5 };
-            let lean = angle(at) + side + 0.2 * (3.0 * at + 1.0).sin();
-            let foot = polar(0.3, lean);
-            let foot = [0, 1].map(|i| rounded(third[i] + foot[i]));
+            let Pair {
+                pins: [a, b],
+                third,
+                foot,
+                centers: [of_link, of_leg],
+            } = Pair::new(k, links);
+            let masses = [0.3125 + (k % 7) as f64 / 64.0, 0.5 + (k % 6) as f64 / 32.0];
+            ring.bodies.push((masses[0], of_link, 0.002));
+            ring.bodies.push((masses[1], of_leg, 0.004));
             let next = (k + 1) % links;
             _ = write!(disk, "P{k} = {foot:?}, ");
-            let link = (
-                0.3125 + (k % 7) as f64 / 64.0,
-                polar(radius + 0.04, angle(at)),
+            _ = writeln!(
+                bodies,
+                "link{k} = {{ points = {{ A = {a:?}, B = {b:?}, C = {third:?} }}, mass = {}, center = {of_link:?}, inertia = 0.002 }}\n\
+                 leg{k} = {{ points = {{ P = {foot:?}, C = {third:?} }}, mass = {}, center = {of_leg:?}, inertia = 0.004 }}",
+                masses[0], masses[1]
             );
-            let center = [0, 1].map(|i| rounded(0.5 * (third[i] + foot[i])));
-            let leg = (0.5 + (k % 6) as f64 / 32.0, center);
-            let bodies_of_pair = [
-                (
-                    "link",
-                    link,
-                    format!("A = {:?}, B = {:?}, C = {third:?}", pins[0], pins[1]),
-                ),
-                ("leg", leg, format!("P = {foot:?}, C = {third:?}")),
-            ];
-            for (name, (mass, center), points) in bodies_of_pair {
-                let inertia = 0.002;
-                _ = writeln!(
-                    bodies,
-                    "{name}{k} = {{ points = {{ {points} }}, mass = {mass}, center = {center:?}, inertia = {inertia} }}"
-                );
-                ring.bodies.push((mass, center, inertia));
-            }
             _ = writeln!(
                 joints,
                 "R{k} = {{ revolute = [\"link{k}.B\", \"link{next}.A\"] }}\n\
                  T{k} = {{ revolute = [\"leg{k}.C\", \"link{k}.C\"] }}\n\
                  P{k} = {{ revolute = [\"disk.P{k}\", \"leg{k}.P\"] }}"
             );
+            _ = writeln!(assembly, "link{k} = 0\nleg{k} = 0");
         }
-        ring.bodies.push((2.0, [0.0; 2], 0.5));
         ring.text = format!(
             "[bodies]\nground = {{ points = {{ O = [0, 0] }} }}\n\
              disk = {{ points = {{ {disk}O = [0, 0] }}, mass = 2, center = \"O\", inertia = 0.5 }}\n{bodies}\
              [joints]\nO = {{ revolute = [\"ground.O\", \"disk.O\"] }}\n{joints}\
-             [actuators]\nphi = {{ angle = [\"ground\", \"disk\"] }}\n[assembly]\nphi = 0\n",
+             [actuators]\nphi = {{ angle = [\"ground\", \"disk\"] }}\n[assembly]\nphi = 0\n{assembly}\
+             [requests]\nreactions = [\"O\"]\n",
         );
-        for k in 0..links {
-            _ = writeln!(ring.text, "link{k} = 0\nleg{k} = 0");
-        }
-        ring.text += "[requests]\nreactions = [\"O\"]\n";
         ring
     }
 
