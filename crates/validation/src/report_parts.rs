@@ -37,6 +37,17 @@ pub(crate) fn figure_blocks(folder: &str, figures: &[Figure], captions: bool) ->
     figures.iter().map(block).collect()
 }
 
+/// How many findings of a name pass, with `more` at the end of the line, and those that fail.
+pub(crate) fn findings_text(name: &str, findings: &[Finding], more: &str) -> String {
+    let failed: Vec<&Finding> = findings.iter().filter(|f| !f.pass).collect();
+    let (all, passed) = (findings.len(), findings.len() - failed.len());
+    let mut text = format!("{name}: {passed} of {all} findings pass{more}\n");
+    for f in failed {
+        text += &format!("  FAIL {} {}\n", f.key, describe_failure(f).join("\n    "));
+    }
+    text
+}
+
 /// `pass` or a bold FAIL.
 pub(crate) fn pass_or_fail(pass: bool) -> &'static str {
     if pass { "pass" } else { "**FAIL**" }

@@ -9,8 +9,8 @@ use super::snapshot::snapshot;
 use crate::cases::reference::{Reference, SourceKinds};
 use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis, analyse};
 use crate::error::ValidationError;
-use crate::report_parts::describe_failure;
-use dwell_findings::{Check, Finding};
+use crate::report_parts::findings_text;
+use dwell_findings::Check;
 use dwell_report::{Figure, Files, TableExport as _};
 use dwell_scene::Scene;
 use dwell_study::output::Picture;
@@ -104,13 +104,7 @@ fn validate_case(
 
 /// How many findings pass, those that fail, and the period.
 fn summary(scene: &Scene, analysis: &CaseAnalysis<'_>) -> String {
-    let findings = &analysis.findings;
-    let failed: Vec<&Finding> = findings.iter().filter(|f| !f.pass).collect();
-    let (name, passed) = (&scene.name, findings.len() - failed.len());
-    let mut text = format!("{name}: {passed} of {} findings pass\n", findings.len());
-    for f in failed {
-        text += &format!("  FAIL {} {}\n", f.key, describe_failure(f).join("\n    "));
-    }
+    let mut text = findings_text(&scene.name, &analysis.findings, "");
     let Some(reduced) = &analysis.reduced else {
         return text;
     };

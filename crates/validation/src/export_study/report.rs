@@ -1,7 +1,7 @@
 //! The picture, the table and the document of the study.
 
 use super::compute::{Cell, DIGITS, INTERPOLATIONS, POSITIONS, QUANTITIES};
-use crate::report_parts::{figure_blocks, pass_or_fail, pictures, table};
+use crate::report_parts::{figure_blocks, findings_text, pass_or_fail, pictures, table};
 use dwell_findings::{Check, Finding, all_pass};
 use dwell_report::{
     Axis, Block, Chart, Column, Document, Figure, Files, Mark, Paint, Panel, Series, Stroke, Table,
@@ -32,12 +32,7 @@ pub(super) fn outcome(cells: &[Cell]) -> Result<Outcome, StudyError> {
         document(cells, &figures, &findings).markdown(),
     );
     Ok(Outcome {
-        summary: format!(
-            "{NAME}: {} of {} findings pass, {} exports\n",
-            findings.iter().filter(|f| f.pass).count(),
-            findings.len(),
-            cells.len()
-        ),
+        summary: findings_text(NAME, &findings, &format!(", {} exports", cells.len())),
         files,
         pictures: pictures(NAME, &figures).collect(),
         findings,

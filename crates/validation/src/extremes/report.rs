@@ -2,7 +2,7 @@
 
 use super::check::check;
 use super::series::{MAX_ESTIMATE_RATIO, ResultCell, SeriesResult};
-use crate::report_parts::{figure_blocks, pass_or_fail, pictures, table};
+use crate::report_parts::{figure_blocks, findings_text, pass_or_fail, pictures, table};
 use dwell_findings::{Finding, all_pass};
 use dwell_report::{
     Axis, Block, Chart, Column, Document, Figure, Files, Mark, Paint, Series, Stroke, Table,
@@ -39,13 +39,9 @@ pub fn outcome(
     files.add(format!("{name}.txt"), snapshot(results, &findings));
     let document = document(results, name, &figures, &findings);
     files.add(format!("{name}.md"), document.markdown());
-    let passed = findings.iter().filter(|f| f.pass).count();
+    let cells: usize = results.iter().map(|m| m.cells.len()).sum();
     Ok(Outcome {
-        summary: format!(
-            "{name}: {passed} of {} findings pass, {} cells\n",
-            findings.len(),
-            results.iter().map(|m| m.cells.len()).sum::<usize>()
-        ),
+        summary: findings_text(name, &findings, &format!(", {cells} cells")),
         files,
         findings,
         pictures: pictures(name, &figures).collect(),

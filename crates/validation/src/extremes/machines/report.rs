@@ -3,7 +3,7 @@
 use super::check::check;
 use super::run::{ACCURACIES, MachineResult, MachineRun};
 use crate::extremes::series::MAX_ESTIMATE_RATIO;
-use crate::report_parts::{figure_blocks, pass_or_fail, pictures, table};
+use crate::report_parts::{figure_blocks, findings_text, pass_or_fail, pictures, table};
 use dwell_findings::all_pass;
 use dwell_report::{
     Axis, Block, Chart, Column, Document, Figure, Mark, Paint, Series, Stroke, Table,
@@ -72,12 +72,8 @@ pub(in crate::extremes) fn add_to(
         blocks,
     };
     outcome.files.add(format!("{name}.md"), document.markdown());
-    let passed = findings.iter().filter(|f| f.pass).count();
-    outcome.summary += &format!(
-        "{name}: {passed} of {} findings pass, {} machines\n",
-        findings.len(),
-        results.len()
-    );
+    let count = format!(", {} machines", results.len());
+    outcome.summary += &findings_text(&name, &findings, &count);
     outcome.findings.extend(findings);
     Ok(())
 }

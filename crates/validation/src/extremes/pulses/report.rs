@@ -3,7 +3,7 @@
 use super::check::{MAX_ERROR_RATIO, check};
 use super::pulse::PulseShape;
 use super::run::{PulseResult, PulseRun, RunKind};
-use crate::report_parts::{figure_blocks, pass_or_fail, pictures, table};
+use crate::report_parts::{figure_blocks, findings_text, pass_or_fail, pictures, table};
 use dwell_dynamics::Method;
 use dwell_findings::all_pass;
 use dwell_report::{
@@ -69,12 +69,8 @@ pub(in crate::extremes) fn add_to(
         blocks,
     };
     outcome.files.add(format!("{name}.md"), document.markdown());
-    let passed = findings.iter().filter(|f| f.pass).count();
-    outcome.summary += &format!(
-        "{name}: {passed} of {} findings pass, {} pulses\n",
-        findings.len(),
-        results.len()
-    );
+    let count = format!(", {} pulses", results.len());
+    outcome.summary += &findings_text(&name, &findings, &count);
     outcome.findings.extend(findings);
     Ok(())
 }
