@@ -81,7 +81,9 @@ impl FreeMotionProblem<'_> {
         let method_text = format!("{}{suffix}, tolerance {tolerance}", method.name());
         let how = format!("{method_text}, {reason}; {} runs", found.runs);
         let (motion, difference) = (found.motion, &found.difference);
-        let computed = ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, difference);
+        let mut computed =
+            ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, difference);
+        computed.record.add("tolerance", "", found.tolerance);
         Ok(ComputedMotion {
             comparison: Some(found.finer),
             ..computed

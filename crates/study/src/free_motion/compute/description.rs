@@ -19,6 +19,34 @@ const REST: f64 = 1e-26;
 /// Another method is suggested if it takes this many times fewer evaluations.
 const HINT_COST_RATIO: f64 = 4.0;
 
+/// The energies of a motion at a time (s), and what the balance of energies and works keeps constant, J.
+struct Energies {
+    t: f64,
+    kinetic: f64,
+    potential: f64,
+    balance: f64,
+}
+
+/// By how much a quantity may be higher between points than at the highest of them: the height of the parabola through it and
+/// its neighbours.
+fn height_between(points: &[Energies], value: impl Fn(&Energies) -> f64) -> f64 {
+    let highest =
+        (0..points.len()).max_by(|&a, &b| value(&points[a]).total_cmp(&value(&points[b])));
+    let around = highest.and_then(|k| points.get(k.checked_sub(1)?..k + 2));
+    let Some([before, at, after]) = around else {
+        return 0.0;
+    };
+    let slope = |a: &Energies, b: &Energies| (value(b) - value(a)) / (b.t - a.t);
+    let (rising, falling) = (slope(before, at), slope(at, after));
+    let bend = (rising - falling) / (0.5 * (after.t - before.t));
+    let share = (at.t - before.t) / (after.t - before.t);
+    let there = rising * (1.0 - share) + falling * share;
+    match bend > 0.0 && bend.is_finite() {
+        true => 0.5 * there * there / bend,
+        false => 0.0,
+    }
+}
+
 impl FreeMotionProblem<'_> {
     /// The motion class of a conservative motion of one degree of freedom, from its energy.
     fn describe_motion_class(&self, record: &mut Record) -> String {
@@ -208,19 +236,34 @@ impl FreeMotionProblem<'_> {
 
     /// Whether a motion has more kinetic energy than rounding.
     fn moves(&self, motion: &SegmentedMotion) -> bool {
-        let mut workspaces: Vec<Option<MachineWorkspace>> = Vec::new();
         let scale = self.energy_scale(motion.end_time(), 0.0);
-        let mut moves = false;
-        for (chart, point) in motion.steps() {
+        let at_steps = self.energies(motion, motion.steps());
+        let moves = |at: &Energies| at.kinetic > REST * scale.max(at.potential.abs());
+        at_steps.iter().any(moves)
+    }
+
+    /// The energies at some points of a motion, as far as they can be evaluated.
+    fn energies<'m>(
+        &self,
+        motion: &SegmentedMotion,
+        points: impl Iterator<Item = (usize, &'m OdeState)>,
+    ) -> Vec<Energies> {
+        let mut workspaces: Vec<Option<MachineWorkspace>> = Vec::new();
+        let at = |(chart, point): (usize, &OdeState)| {
             let machine = self.machine(motion, chart);
             workspaces.resize_with(workspaces.len().max(chart + 1), || None);
             let workspace = workspaces[chart].get_or_insert_with(|| machine.workspace());
-            if let Ok(state) = machine.evaluate(point.t, &point.y, workspace) {
-                let [kinetic, potential] = state.energy();
-                moves |= kinetic > REST * scale.max(potential.abs());
-            }
-        }
-        moves
+            let state = machine.evaluate(point.t, &point.y, workspace).ok()?;
+            let [kinetic, potential] = state.energy();
+            let works = &point.y[machine.work_offset()..];
+            Some(Energies {
+                t: point.t,
+                kinetic,
+                potential,
+                balance: kinetic + potential - works.iter().sum::<f64>(),
+            })
+        };
+        points.map_while(at).collect()
     }
 
     /// The error of the energy balance.
@@ -230,23 +273,14 @@ impl FreeMotionProblem<'_> {
         duration: f64,
         record: &mut Record,
     ) -> String {
-        let (mut initial, mut max_difference) = (None, 0.0_f64);
-        let (mut max_kinetic, mut max_potential) = (0.0_f64, 0.0_f64);
-        let mut workspaces: Vec<Option<MachineWorkspace>> = Vec::new();
-        for (chart, point) in motion.steps() {
-            let machine = self.machine(motion, chart);
-            workspaces.resize_with(workspaces.len().max(chart + 1), || None);
-            let workspace = workspaces[chart].get_or_insert_with(|| machine.workspace());
-            let Ok(state) = machine.evaluate(point.t, &point.y, workspace) else {
-                break;
-            };
-            let [kinetic, potential] = state.energy();
-            let sum = kinetic + potential - point.y[machine.work_offset()..].iter().sum::<f64>();
-            let initial = *initial.get_or_insert(sum);
-            max_kinetic = max_kinetic.max(kinetic);
-            max_potential = max_potential.max(potential.abs());
-            max_difference = max_difference.max((sum - initial).abs());
-        }
+        let at_steps = self.energies(motion, motion.steps());
+        let at_samples = self.energies(motion, motion.samples());
+        let initial = at_steps.first().map_or(0.0, |at| at.balance);
+        let differences = at_steps.iter().map(|at| (at.balance - initial).abs());
+        let max_difference = differences.fold(0.0, f64::max);
+        let both = || at_steps.iter().chain(&at_samples);
+        let max_kinetic = both().map(|at| at.kinetic).fold(0.0, f64::max);
+        let max_potential = both().map(|at| at.potential.abs()).fold(0.0, f64::max);
         if max_kinetic <= REST * self.energy_scale(duration, max_potential) {
             let rounding = if max_kinetic == 0.0 {
                 ""
@@ -265,13 +299,13 @@ impl FreeMotionProblem<'_> {
         };
         let relative_loss = max_difference / largest;
         record.add("energy_balance_error", "", relative_loss);
-        record.add_within(
-            format!("largest_{kind}_energy"),
-            "J",
-            largest,
-            max_difference,
-        );
-        let energy = digits_within(largest, max_difference, 6);
+        let value = |at: &Energies| match kind {
+            "kinetic" => at.kinetic,
+            _ => at.potential.abs(),
+        };
+        let error = max_difference.max(height_between(&at_samples, value));
+        record.add_within(format!("largest_{kind}_energy"), "J", largest, error);
+        let energy = digits_within(largest, error, 6);
         let mut text = format!(
             "  energy balance closes to {relative_loss:.1e} of the largest {kind} energy, {energy} J\n"
         );

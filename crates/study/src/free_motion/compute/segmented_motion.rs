@@ -80,6 +80,11 @@ impl SegmentedMotion {
         segments.flat_map(|(chart, s)| s.steps.iter().map(|state| (*chart, state)))
     }
 
+    pub(crate) fn samples(&self) -> impl Iterator<Item = (usize, &OdeState)> {
+        let segments = self.segments.iter();
+        segments.flat_map(|(chart, s)| s.samples.iter().map(|state| (*chart, state)))
+    }
+
     /// Where a time (s) is; none outside the motion.
     pub(crate) fn place_of(&self, t: f64) -> Option<PlaceInMotion<'_>> {
         let holds = |steps: &[OdeState]| {

@@ -16,6 +16,9 @@ use crate::written::poses::scene_text::{requests_everything, text_of};
 use dwell_findings::Finding;
 use std::path::Path;
 
+/// The accuracy of one of the runs.
+const ACCURACY: &str = "1e-8";
+
 /// Runs `simulate` on a scene and compares its files; nothing of a scene without a motion. A run that fails is a failed
 /// finding.
 pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
@@ -41,18 +44,31 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
     };
     let first = run("simulate", &[])?;
     let again = run("again", &["--method", "dop853", "--rtol", "1e-12"])?;
-    let (rows, rows_again) = (first.csv("-motion.csv")?, again.npz("-motion.npz")?);
-    for (rows, file) in [(&rows, "simulate"), (&rows_again, "simulate by dop853")] {
+    // By quadrature where the motion has one, by a table or the cheapest method elsewhere.
+    let wanted = run("accuracy", &["--accuracy", ACCURACY])?;
+    let rows = first.csv("-motion.csv")?;
+    let (rows_again, rows_wanted) = (again.npz("-motion.npz")?, wanted.csv("-motion.csv")?);
+    let files = ["simulate", "simulate by dop853", "simulate --accuracy"];
+    for (rows, file) in [&rows, &rows_again, &rows_wanted].into_iter().zip(files) {
         compare_rows(compared, &motion, rows, file)?;
     }
-    let mut same = same_motion(&motion.reading, [&rows, &rows_again]);
-    let events = [&first, &again].map(|run| run.csv("-motion-events.csv"));
-    if let [Ok(events), Ok(others)] = &events {
-        let end = rows.time(rows.count.saturating_sub(1));
-        same_column(&mut same, "t", [events, others], end, "events");
+    let events = [&first, &again, &wanted].map(|run| run.csv("-motion-events.csv").ok());
+    for (other, its_events) in [(&rows_again, &events[1]), (&rows_wanted, &events[2])] {
+        let mut same = same_motion(&motion.reading, [&rows, other]);
+        if let (Some(events), Some(others)) = (&events[0], its_events) {
+            let end = rows.time(rows.count.saturating_sub(1));
+            same_column(&mut same, "t", [events, others], end, "events");
+            same_column(&mut same, "event", [events, others], 1.0, "events");
+        }
+        compared.merge("written-motion-again", same);
     }
-    compared.merge("written-motion-again", same);
-    compare_summary(compared, &motion, &first, &rows, events[0].as_ref().ok())
+    for (run, rows, events) in [
+        (&first, &rows, &events[0]),
+        (&wanted, &rows_wanted, &events[2]),
+    ] {
+        compare_summary(compared, &motion, run, rows, events.as_ref())?;
+    }
+    Ok(())
 }
 
 /// The files and sentences of one run with each other.
