@@ -7,6 +7,7 @@ use crate::written::poses::closure::closure;
 use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::formats::formats;
+use crate::written::poses::headings::heading_differences;
 use crate::written::poses::positions::corners;
 use crate::written::poses::program::{Program, Run};
 use crate::written::poses::rates::rates;
@@ -81,6 +82,9 @@ fn compare_summary(
 ) -> Result<(), String> {
     let of = formats(run, "motion", "simulate", &corners(&motion.reading))?;
     compared.merge("written-motion-files", of.files);
+    let file = run.text("-motion.csv")?;
+    let headings = heading_differences(&file, &motion.reading, "simulate");
+    compared.merge("written-motion-headings", headings);
     compared.merge("written-motion-extrema", of.extrema);
     compared.merge("written-motion-sentences", of.printed);
     let summary = run.json("-simulate.json")?;

@@ -19,6 +19,7 @@ pub(super) mod expression;
 pub(super) mod forces_read;
 pub(super) mod formats;
 mod generated_code;
+pub(super) mod headings;
 pub(super) mod jet;
 pub(super) mod law;
 pub(super) mod motion;

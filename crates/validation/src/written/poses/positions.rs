@@ -5,6 +5,7 @@ use super::compared::Compared;
 use super::contents_files::contents_differences;
 use super::equilibrium::equilibrium;
 use super::formats::formats;
+use super::headings::heading_differences;
 use super::law::{Law, number};
 use super::program::{Program, Run};
 use super::rates::rates;
@@ -169,5 +170,8 @@ fn add_formats(
     compared.merge("written-files", of.files);
     compared.merge("written-extrema", of.extrema);
     compared.merge("written-sentences", of.printed);
+    let file = run.text(&format!("-{command}.csv"))?;
+    let headings = heading_differences(&file, reading, command);
+    compared.merge("written-headings", headings);
     Ok(())
 }

@@ -61,6 +61,15 @@ pub(crate) fn sqlite_rows(path: &Path, table: &str) -> rusqlite::Result<Rows> {
     Ok(rows)
 }
 
+/// The names of the columns with their units; none has "".
+pub(super) fn heads(line: &str) -> Vec<(String, String)> {
+    let split = |head: String| match head.rsplit_once(" [") {
+        Some((name, unit)) => (name.to_owned(), unit.trim_end_matches(']').to_owned()),
+        None => (head, String::new()),
+    };
+    fields(line).into_iter().map(split).collect()
+}
+
 /// The heads of the columns; one with a comma stands in quotes.
 fn fields(line: &str) -> Vec<String> {
     let mut all = vec![String::new()];

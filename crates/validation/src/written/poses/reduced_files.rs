@@ -5,6 +5,7 @@ use super::compared::Compared;
 use super::drawn_laws::drawn_motions;
 use super::equilibrium::equilibrium;
 use super::generated_code::code_differences;
+use super::headings::heading_differences;
 use super::positions::corners;
 use super::program::{Program, Run};
 use super::rates::rates;
@@ -33,6 +34,9 @@ pub(crate) fn compare_reduced(
     };
     let whole_run = run("reduce", everything, "reduce")?;
     let all = whole_run.csv("-reduced.csv")?;
+    let file = whole_run.text("-reduced.csv")?;
+    let headings = heading_differences(&file, reading, "reduce");
+    compared.merge("written-headings", headings);
     compare_stated(compared, &whole_run, &all)?;
     let requested = run("requested", scene, "reduce")?.npz("-reduced.npz")?;
     let swept = swept(everything, reading, &all)?;
