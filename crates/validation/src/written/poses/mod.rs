@@ -36,7 +36,7 @@ mod same_columns;
 pub(super) mod scene_text;
 mod section_files;
 mod sections;
-mod stated;
+pub(super) mod stated;
 pub(super) mod table_curve;
 mod table_file;
 pub(super) mod totals;

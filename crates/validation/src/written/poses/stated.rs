@@ -5,7 +5,7 @@ use super::formats::last_digit;
 use serde_json::Value;
 
 /// A value that should stand somewhere, and its scale.
-pub(super) type Expected = (f64, f64);
+pub(crate) type Expected = (f64, f64);
 
 /// Numbers of a summary, by their names.
 pub(super) fn summary_differences<'a>(
@@ -23,7 +23,7 @@ pub(super) fn summary_differences<'a>(
 }
 
 /// Numbers of printed lines that begin with given words, to their digits.
-pub(super) fn sentence_differences(
+pub(crate) fn sentence_differences(
     printed: &str,
     expected: &[(String, Vec<Expected>)],
     command: &str,

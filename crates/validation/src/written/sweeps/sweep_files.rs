@@ -2,7 +2,7 @@
 //! distribution.
 
 use super::draws::{distance, normal, normal_distribution, uniform};
-use super::statistics::add_statistics;
+use super::statistics::Stated;
 use crate::written::motions::sentences;
 use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
@@ -72,10 +72,18 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
     compared.merge("written-sweep-files", same_files(&run, &rows)?);
     let summary = run.json("-sweep.json")?;
     let inputs: Vec<String> = variations.iter().map(Variation::path).collect();
+    let mut stated = Stated::default();
     for result in ["m.min", "m.max"] {
-        let of = compared.of("written-sweep-summary");
-        add_statistics(of, &summary, &rows, (result, &inputs));
+        stated.add((&summary, &run.printed), &rows, (result, &inputs));
     }
+    let count = format!("({} computed)", rows.count);
+    if !run.printed.contains(&count) {
+        stated
+            .sentences
+            .fail(format!("`sweep` does not print {count}"));
+    }
+    compared.merge("written-sweep-summary", stated.summary);
+    compared.merge("written-sweep-sentences", stated.sentences);
     compared.merge("written-sweep-sentences", sentences(&run, &summary));
     for _ in 0..REPEATED {
         let row = draws.below(rows.count);
