@@ -8,6 +8,7 @@ use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::formats::formats;
 use crate::written::poses::headings::heading_differences;
+use crate::written::poses::joint_forces::joint_force_differences;
 use crate::written::poses::positions::corners;
 use crate::written::poses::program::{Program, Run};
 use crate::written::poses::rates::rates;
@@ -106,6 +107,8 @@ fn compare_rows(
         "written-motion-closure",
         closure(&motion.reading, rows, file).joints,
     );
+    let pins = joint_force_differences(&motion.reading, rows, file);
+    compared.merge("written-motion-joint-forces", pins);
     let of = motion.compare(rows, file);
     let of = of.ok_or_else(|| format!("{file}: a column is missing"))?;
     let energy = between_rows(motion, &of, rows, file);

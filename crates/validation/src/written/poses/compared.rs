@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 type Spec = (&'static str, Check, &'static str, f64);
 
 #[rustfmt::skip]
-const SPECS: [Spec; 56] = [
+const SPECS: [Spec; 58] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
     ("written-slopes", Check::WrittenRates, "m and V of `reduce` with the integrals of ½m′ and w between rows", 1e-7),
@@ -36,6 +36,8 @@ const SPECS: [Spec; 56] = [
     ("written-sweep-summary", Check::WrittenTotals, "statistics of the summary of `sweep` with its rows", 1e-13),
     ("written-sweep-sentences", Check::WrittenSentences, "numbers that `sweep` prints with its summary, to their digits", 1e-12),
     ("written-units", Check::WrittenUnits, "files of the scene with those of the scene in other units", 1e-11),
+    ("written-joint-forces", Check::WrittenTotals, "magnitudes, directions and components along bodies of pins' forces with their components along the ground", 1e-14),
+    ("written-motion-joint-forces", Check::WrittenTotals, "the same in rows of `simulate`", 1e-14),
     ("written-headings", Check::WrittenUnits, "units of the columns of `kinematics`, `statics`, `kinetostatics` and `reduce` with their names", 0.5),
     ("written-motion-headings", Check::WrittenUnits, "units of the columns of `simulate` with their names", 0.5),
     ("written-motion-closure", Check::WrittenPositions, "joints, points and coordinates of every row of `simulate` with the scene's text", 1e-14),

@@ -21,6 +21,7 @@ pub(super) mod formats;
 mod generated_code;
 pub(super) mod headings;
 pub(super) mod jet;
+pub(super) mod joint_forces;
 pub(super) mod law;
 pub(super) mod motion;
 mod other_units;

@@ -6,6 +6,7 @@ use super::contents_files::contents_differences;
 use super::equilibrium::equilibrium;
 use super::formats::formats;
 use super::headings::heading_differences;
+use super::joint_forces::joint_force_differences;
 use super::law::{Law, number};
 use super::program::{Program, Run};
 use super::rates::rates;
@@ -151,6 +152,8 @@ fn compare_forces(
         compared.merge("written-equilibrium", forces.bodies);
         compared.merge("written-loads", forces.loads);
         compared.merge("written-totals", forces.totals);
+        let pins = joint_force_differences(reading, &rows, command);
+        compared.merge("written-joint-forces", pins);
         add_formats(compared, &run, reading, command)?;
     }
     if has_motion {
