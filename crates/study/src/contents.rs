@@ -288,6 +288,7 @@ fn describe_motions(scene: &Scene, record: &mut Record) -> String {
         let starts: Vec<String> = starts.collect();
         let duration = match motion.duration {
             MotionDuration::Seconds(seconds) => format!("{} s", number(seconds)),
+            MotionDuration::Periods(1.0) => "1 period".to_owned(),
             MotionDuration::Periods(periods) => format!("{} periods", number(periods)),
         };
         let events = match motion.events.len() {

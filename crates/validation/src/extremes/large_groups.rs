@@ -1,4 +1,4 @@
-//! Groups of many bodies that only Newton's method places together: rings of ternary links, each held by a leg. From forty
+//! Groups of many bodies that only Newton's method places together: rings of ternary links, each held by a strut. From forty
 //! unknowns on faer factors them.
 
 use super::closed_forms::dd;
@@ -23,8 +23,8 @@ const DENSE_LINKS: usize = 20;
 /// States in which it is checked.
 const DENSE_STATES: usize = 8;
 
-/// A ring of ternary links on a disk: each link is joined to both neighbours and, by a leg that leans to one side or the other,
-/// to the disk. All bodies have the frame of the disk, so that they turn with it: m and the reactions of the disk's bearing are
+/// A ring of ternary links on a disk: each link is joined to both neighbours and, by a strut that leans to one side or the other,
+/// to the disk. All bodies have the frame of the disk, so that they turn with it: m and the reactions of the disk's central pin are
 /// sums over the bodies, whereas every other joint force follows from the group alone.
 struct Ring {
     text: String,
@@ -32,7 +32,7 @@ struct Ring {
     bodies: Vec<(f64, [f64; 2], f64)>,
 }
 
-/// A link with its leg: its two pins on the ring and the third one, the leg's foot on the disk, and the centres of both.
+/// A link with its strut: its two pins on the ring and the third one, the strut's foot on the disk, and the centres of both.
 struct Pair {
     pins: [[f64; 2]; 2],
     third: [f64; 2],
@@ -50,8 +50,8 @@ impl Pair {
         let (at, radius) = (k as f64, 0.025 * links as f64);
         let third = polar(radius + 0.12, angle(at + 0.15));
         let side = if k.is_multiple_of(2) { 1.5 } else { -1.5 };
-        let leg = polar(0.3, angle(at) + side + 0.2 * (3.0 * at + 1.0).sin());
-        let foot = [0, 1].map(|i| third[i] + leg[i]);
+        let strut = polar(0.3, angle(at) + side + 0.2 * (3.0 * at + 1.0).sin());
+        let foot = [0, 1].map(|i| third[i] + strut[i]);
         Self {
             pins: [at - 0.5, at + 0.5].map(|k| polar(radius, angle(k))),
             third,
@@ -77,26 +77,26 @@ impl Ring {
                 pins: [a, b],
                 third,
                 foot,
-                centers: [of_link, of_leg],
+                centers: [of_link, of_strut],
             } = Pair::new(k, links);
             let masses = [0.3125 + (k % 7) as f64 / 64.0, 0.5 + (k % 6) as f64 / 32.0];
             ring.bodies.push((masses[0], of_link, 0.002));
-            ring.bodies.push((masses[1], of_leg, 0.004));
+            ring.bodies.push((masses[1], of_strut, 0.004));
             let next = (k + 1) % links;
             _ = write!(disk, "P{k} = {foot:?}, ");
             _ = writeln!(
                 bodies,
                 "link{k} = {{ points = {{ A = {a:?}, B = {b:?}, C = {third:?} }}, mass = {}, center = {of_link:?}, inertia = 0.002 }}\n\
-                 leg{k} = {{ points = {{ P = {foot:?}, C = {third:?} }}, mass = {}, center = {of_leg:?}, inertia = 0.004 }}",
+                 strut{k} = {{ points = {{ P = {foot:?}, C = {third:?} }}, mass = {}, center = {of_strut:?}, inertia = 0.004 }}",
                 masses[0], masses[1]
             );
             _ = writeln!(
                 joints,
                 "R{k} = {{ revolute = [\"link{k}.B\", \"link{next}.A\"] }}\n\
-                 T{k} = {{ revolute = [\"leg{k}.C\", \"link{k}.C\"] }}\n\
-                 P{k} = {{ revolute = [\"disk.P{k}\", \"leg{k}.P\"] }}"
+                 T{k} = {{ revolute = [\"strut{k}.C\", \"link{k}.C\"] }}\n\
+                 P{k} = {{ revolute = [\"disk.P{k}\", \"strut{k}.P\"] }}"
             );
-            _ = writeln!(assembly, "link{k} = 0\nleg{k} = 0");
+            _ = writeln!(assembly, "link{k} = 0\nstrut{k} = 0");
         }
         ring.text = format!(
             "[bodies]\nground = {{ points = {{ O = [0, 0] }} }}\n\
@@ -147,10 +147,10 @@ pub(super) fn series() -> Vec<ParameterSeries> {
     vec![ParameterSeries {
         figure: FIGURE,
         key: "large-group".into(),
-        description: "A ring of ternary links with their legs, one group of Newton's method, as reduce writes it: its unknowns".into(),
+        description: "A ring of ternary links with their struts, one group of Newton's method, as reduce writes it: its unknowns".into(),
         parameter: ("unknowns", ""),
         values: vec![8.0, 20.0, 40.0, 48.0],
-        quantities: &["m", "a and b of the bearing"],
+        quantities: &["m", "a and b of the central pin"],
         reference: "the ring turns as one body: m = Σ (I + M c²), a = k × Σ M c, b = −Σ M c",
         reason: "16 roundings, magnified by as many as the group has unknowns (measured: by a quarter of them)",
         requirement: Box::new(|unknowns, _| {

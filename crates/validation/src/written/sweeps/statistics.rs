@@ -39,6 +39,20 @@ impl Statistics {
             count: n,
         })
     }
+
+    /// All of them by their names in the summary.
+    fn numbers(&self) -> [(&'static str, f64); 8] {
+        [
+            ("smallest", self.smallest),
+            ("largest", self.largest),
+            ("mean", self.mean),
+            ("rms", self.rms),
+            ("standard_deviation", self.deviation),
+            ("mean.standard_error", self.deviation / self.count.sqrt()),
+            ("quantile_2.5", self.quantiles[0]),
+            ("quantile_97.5", self.quantiles[1]),
+        ]
+    }
 }
 
 /// The findings over the statistics of some results.
@@ -56,67 +70,70 @@ impl Stated {
         rows: &Rows,
         (result, inputs): (&str, &[String]),
     ) {
-        let column = rows.columns.get(result);
-        let Some(found) = column.and_then(|column| Statistics::of(column)) else {
+        let column = rows.columns.get(result).map_or(&[][..], Vec::as_slice);
+        let Some(found) = Statistics::of(column) else {
             self.summary.fail(format!("the rows have no {result}"));
             return;
         };
         let scale = found.smallest.abs().max(found.largest.abs());
-        let error = found.deviation / found.count.sqrt();
-        let mut compare = |what: &str, expected: f64, scale: f64| {
+        let numbers = found
+            .numbers()
+            .map(|(what, value)| (what.to_owned(), value, scale));
+        let mut places = Vec::new();
+        for (end, value) in [("smallest", found.smallest), ("largest", found.largest)] {
+            // Where a result is always the same, it has no place.
+            let inputs = inputs.iter().filter(|_| found.smallest < found.largest);
+            let row = column.iter().position(|x| *x == value).unwrap_or(0);
+            places.extend(inputs.map(|input| {
+                let expected = rows.get(row, input).unwrap_or(f64::NAN);
+                (format!("{end}.{input}"), expected, expected)
+            }));
+        }
+        for (what, expected, scale) in numbers.iter().chain(&places) {
             let name = format!("{result}.{what}");
             match summary["results"][&name]["value"].as_f64() {
-                Some(stated) => self.summary.add(stated - expected, scale, "", || name),
+                Some(stated) => self.summary.add(stated - expected, *scale, "", || name),
                 None => self.summary.fail(format!("the summary has no {name}")),
             }
-        };
-        let [low, high] = found.quantiles;
-        for (what, expected) in [
-            ("smallest", found.smallest),
-            ("largest", found.largest),
-            ("mean", found.mean),
-            ("rms", found.rms),
-            ("standard_deviation", found.deviation),
-            ("mean.standard_error", error),
-            ("quantile_2.5", low),
-            ("quantile_97.5", high),
-        ] {
-            compare(what, expected, scale);
         }
-        // Where a result is always the same, it has no place.
-        let is_constant = found.smallest == found.largest;
-        let mut places: Vec<Expected> = Vec::new();
-        for (end, value) in [("smallest", found.smallest), ("largest", found.largest)] {
-            let row = column.and_then(|column| column.iter().position(|x| *x == value));
-            for input in inputs.iter().filter(|_| !is_constant) {
-                let expected = rows.get(row.unwrap_or(0), input).unwrap_or(f64::NAN);
-                compare(&format!("{end}.{input}"), expected, expected);
-                places.push((expected, expected));
-            }
-        }
-        let Statistics {
-            mean, deviation, ..
-        } = found;
-        let numbers = [
-            found.smallest,
-            found.largest,
-            mean,
-            error,
-            deviation,
-            95.0,
-            low,
-            high,
+        let places: Vec<Expected> = places.into_iter().map(|(_, at, size)| (at, size)).collect();
+        self.add_sentences(printed, &format!("{result} ["), &found, places);
+    }
+
+    /// The line that begins with a result, and the one below it about its places.
+    fn add_sentences(
+        &mut self,
+        printed: &str,
+        start: &str,
+        found: &Statistics,
+        places: Vec<Expected>,
+    ) {
+        let order = [
+            "smallest",
+            "largest",
+            "mean",
+            "mean.standard_error",
+            "standard_deviation",
         ];
-        let numbers = numbers.map(|value| (value, scale.max(value)));
-        let expected = [(format!("{result} ["), numbers.to_vec())];
+        let numbers = found.numbers();
+        let of = |what: &str| {
+            numbers
+                .iter()
+                .find(|(name, _)| *name == what)
+                .map(|(_, x)| *x)
+        };
+        let mut values: Vec<f64> = order.into_iter().filter_map(of).collect();
+        values.push(95.0);
+        values.extend(found.quantiles);
+        let values = values.into_iter().map(|value| (value, value));
+        let line = [(start.to_owned(), values.collect())];
         self.sentences
-            .merge(sentence_differences(printed, &expected, "sweep"));
-        // Below its own line.
-        let after = printed.split(&format!("{result} [")).nth(1).unwrap_or("");
-        let expected = [("smallest at ".to_owned(), places)];
-        if !is_constant {
+            .merge(sentence_differences(printed, &line, "sweep"));
+        if !places.is_empty() {
+            let below = printed.split(start).nth(1).unwrap_or("");
+            let line = [("smallest at ".to_owned(), places)];
             self.sentences
-                .merge(sentence_differences(after, &expected, "sweep"));
+                .merge(sentence_differences(below, &line, "sweep"));
         }
     }
 }
