@@ -37,7 +37,9 @@ impl Program {
 
     /// Runs a command on a scene under a name; the files go to the folder of that name.
     pub(crate) fn run(&self, name: &str, scene: &str, arguments: &[&str]) -> io::Result<Run> {
-        let folder = self.folder.join(name);
+        // A name of the scene may hold what separates folders.
+        let name = name.replace(['/', '\\'], "_");
+        let folder = self.folder.join(&name);
         fs::create_dir_all(&folder)?;
         let file = self.folder.join(format!("{name}.toml"));
         fs::write(&file, scene)?;
@@ -68,7 +70,7 @@ impl Program {
             printed: text(&output.stdout),
             messages: text(&output.stderr),
             folder,
-            name: name.to_owned(),
+            name,
         })
     }
 }
