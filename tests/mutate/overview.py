@@ -90,7 +90,9 @@ def named_table(results):
 def named_lines(results):
     """The named faults with the checks that fail, for the committed file."""
     rows = [r for r in results if r["named"]]
-    lines = [f"  {r['named']['class']:20} {r['named']['sentence']:72} {' '.join(sorted(r['checks'], key=int)) or r['outcome']}" for r in rows]
+    # As in mutations.txt, from which the verification manual reads: sentence, where it is, the numbers of the checks.
+    of = lambda r: " ".join(sorted(r["checks"], key=int)) or r["outcome"]
+    lines = [f"  {r['named']['sentence']:84}  {r['named']['class']:18}  {of(r)}" for r in rows]
     return ["Named faults, and the checks that fail", *lines, ""] if rows else []
 
 
