@@ -152,7 +152,7 @@ pub(super) fn series() -> Vec<ParameterSeries> {
         values: vec![8.0, 20.0, 40.0, 48.0],
         quantities: &["m", "a and b of the central pin"],
         reference: "the ring turns as one body: m = Σ (I + M c²), a = k × Σ M c, b = −Σ M c",
-        reason: "16 roundings, magnified by four times the unknowns; the forces of the central pin are small sums of larger ones, and faer rounds as the processor's registers are wide",
+        reason: "16 roundings, magnified by four times the unknowns; the forces of the central pin are small sums of larger ones, and faer rounds otherwise on another processor",
         requirement: Box::new(|unknowns, _| {
             Requirement::from_rounding(ALLOWED_ROUNDINGS, 4.0 * unknowns)
         }),
