@@ -71,7 +71,7 @@ deny:
 # Exact evaluation against hand-written closed forms, one by one and in batches, as ratios of one run
 [group('care')]
 bench:
-    cargo bench -p dwell-kinetostatics --bench reduced --bench batches --bench table --bench kinds
+    cargo bench -p dwell-kinetostatics --bench reduced --bench batches --bench table --bench kinds --bench variants
     cargo bench -p dwell-dynamics --bench motion
     cargo bench -p dwell-cli --bench wait
 

@@ -49,4 +49,5 @@ mod slides;
 mod symbolic;
 mod tables;
 mod tabulated;
+mod variants;
 mod work_precision;

@@ -1,7 +1,7 @@
 //! Assembly at the given coordinates, in the assembly mode that the initial guess selects.
 
 pub(crate) mod initial_guess;
-mod modes;
+pub(crate) mod modes;
 
 use crate::assembly::initial_guess::InitialGuess;
 use crate::assembly::modes::{AssemblyMode, SAME_MODE};

@@ -97,7 +97,8 @@ impl Plan {
         let uses_stored_poses = self.groups.iter().any(|g| g.uses_stored_poses);
         let mut pose = poses.last()?.clone();
         let q0 = pose.q[0];
-        let Some(mut margins) = self.determinant_margins(&pose) else {
+        let mut with_slopes: Pose<Dual> = self.pose();
+        let Some(mut margins) = self.determinant_margins(&pose, &mut with_slopes) else {
             return Some(RangeLimit {
                 q: q0,
                 group: 0,
@@ -130,7 +131,7 @@ impl Plan {
                             && product < CHANGE_POINT_PRODUCT * maximum[1]
                     })
                 };
-                let advanced = self.advance(&pose, &margins, next);
+                let advanced = self.advance((&pose, &margins), next, &mut with_slopes);
                 let at_change_point = advanced.as_ref().is_some_and(|(_, left)| ended(left));
                 match advanced.filter(|_| !at_change_point) {
                     Some((reached, left)) => {
@@ -147,11 +148,11 @@ impl Plan {
                         }) {
                             anchor.clone_from(&reached);
                         }
-                        if !uses_stored_poses && poses.len() > 1 {
+                        match &mut poses[..] {
                             // Only the ends are wanted.
-                            poses.pop();
+                            [_, .., last] if !uses_stored_poses => last.clone_from(&reached),
+                            _ => poses.push(reached.clone()),
                         }
-                        poses.push(reached.clone());
                         pose = reached;
                         margins = left;
                         fine *= 2.0;
@@ -222,14 +223,18 @@ impl Plan {
 
     /// By group, the size of its determinant, with its derivative by the coordinate: how far the
     /// group is from where its branch ends. None where it has ended.
-    fn determinant_margins(&self, at: &Pose<f64>) -> Option<Vec<Dual>> {
-        let mut pose: Pose<Dual> = self.pose();
-        pose.start_from(at);
-        let q = [Dual::variable(at.q[0])];
-        self.positions_from(&q, &mut pose, InitialIterate::CurrentPose)
+    fn determinant_margins(&self, at: &Pose<f64>, pose: &mut Pose<Dual>) -> Option<Vec<Dual>> {
+        self.margins_at(at.q[0], at, pose)
+    }
+
+    /// The same at a coordinate, started from a pose.
+    fn margins_at(&self, q: f64, start: &Pose<f64>, pose: &mut Pose<Dual>) -> Option<Vec<Dual>> {
+        pose.start_from(start);
+        let q = [Dual::variable(q)];
+        self.positions_from(&q, pose, InitialIterate::CurrentPose)
             .ok()?;
         let margin = |(g, _): (usize, &AssurGroup)| {
-            let determinant = self.group_determinant(g, &pose);
+            let determinant = self.group_determinant(g, pose);
             if determinant.v < 0.0 {
                 -determinant
             } else {
@@ -245,13 +250,22 @@ impl Plan {
     /// the other branch, with the same sign at both ends.
     fn advance(
         &self,
-        from: &Pose<f64>,
-        margins: &[Dual],
+        (from, margins): (&Pose<f64>, &[Dual]),
         q: f64,
+        with_slopes: &mut Pose<Dual>,
     ) -> Option<(Pose<f64>, Vec<Dual>)> {
-        let pose = self.corrected_pose(from, q)?;
+        let (pose, new_margins) = if self.is_dyadic() {
+            // Closed forms need no prediction: one evaluation gives the pose and the margins.
+            let margins = self.margins_at(q, from, with_slopes)?;
+            let mut pose = from.clone();
+            pose.take_values(with_slopes);
+            (pose, margins)
+        } else {
+            let pose = self.corrected_pose(from, q)?;
+            let margins = self.determinant_margins(&pose, with_slopes)?;
+            (pose, margins)
+        };
         let clearance = TANGENT_CLEARANCE * (q - from.q[0]);
-        let new_margins = self.determinant_margins(&pose)?;
         let clear =
             |(a, b): (&Dual, &Dual)| a.v + a.d * clearance > 0.0 && b.v - b.d * clearance > 0.0;
         let is_clear = margins.iter().zip(&new_margins).all(clear);

@@ -50,6 +50,7 @@ pub mod plan;
 pub mod plane;
 mod positions;
 pub mod structure;
+mod variants;
 
 pub use error::{AssemblyError, PositionError, StructureError};
 pub use mechanism::{
@@ -61,3 +62,4 @@ pub use plan::range::{NearBranch, Range, RangeLimit};
 pub use plan::{AssemblyConfiguration, Plan, Pose};
 pub use plane::{Vec2, vec2};
 pub use structure::{coupling, frames, groups, lower, tree};
+pub use variants::ModeGuess;

@@ -38,6 +38,7 @@ pub mod reduced;
 pub mod results;
 mod rounding;
 pub mod table;
+pub mod variants;
 mod varying_inertia;
 
 pub use drive::{Drive, DriveKind, Motor, SpeedController};

@@ -152,6 +152,11 @@ impl Model {
         &self.mechanism
     }
 
+    /// The configuration in which it was assembled.
+    pub(crate) fn assembly(&self) -> &AssemblyConfiguration {
+        &self.assembly
+    }
+
     /// The masses, by body.
     pub fn masses(&self) -> &[Mass] {
         &self.masses

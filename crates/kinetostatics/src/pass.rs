@@ -7,6 +7,7 @@
 mod acceleration;
 mod bodies;
 mod recursive_pass;
+mod replaced_vectors;
 mod sources;
 
 pub(crate) use acceleration::{AtRest, GivenMotion, UnitAcceleration, UnitMotions};
@@ -18,6 +19,7 @@ pub(crate) use sources::ReactionSources;
 use crate::mass::Mass;
 use crate::varying_inertia::FrameInertia;
 use dwell_geometry::{Mechanism, Plan};
+use replaced_vectors::{replace_vector, vector_to};
 
 /// What a pass reads of a model: the plan, the inertia of the bodies, and where the reactions come from.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,5 +52,36 @@ impl PassModel {
             reaction_sources: ReactionSources::compile(mechanism, &plan, &[]),
             plan,
         }
+    }
+
+    /// Takes other masses, and the dimensions that its plan has by now; false where the structure has no place for them:
+    /// for the mass of a body that had none, or for a centre of mass beside an origin.
+    pub(crate) fn set_masses(&mut self, masses: &[Mass]) -> bool {
+        let mut fits = true;
+        let mut with_mass = 0;
+        self.frame_inertia.fill(0.0);
+        let mut accelerated = self.accelerated_bodies.iter_mut().peekable();
+        for body in &mut self.inertial_bodies {
+            let Mass {
+                mass,
+                center,
+                inertia,
+            } = masses[body.body];
+            with_mass += usize::from(mass > 0.0 || inertia > 0.0);
+            let to_center = vector_to(&self.plan, body.body, center);
+            fits &= mass > 0.0 || body.mass == 0.0;
+            fits &= replace_vector(&mut body.first_moment, to_center * mass);
+            (body.mass, body.inertia) = (mass, inertia);
+            body.inertia_about_joint = inertia + mass * to_center.dot(to_center);
+            self.frame_inertia[body.frame] += body.inertia_about_joint;
+            // Both are in the order of the tree.
+            while let Some(other) = accelerated.next_if(|a| a.moving_body <= body.moving_body) {
+                if other.moving_body == body.moving_body {
+                    (other.mass, other.first_moment) = (body.mass, body.first_moment);
+                }
+            }
+        }
+        let given = masses.iter().filter(|m| m.mass > 0.0 || m.inertia > 0.0);
+        fits && given.count() == with_mass
     }
 }

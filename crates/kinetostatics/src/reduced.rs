@@ -12,8 +12,11 @@
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 mod batch;
+mod lane_work;
 
 pub use batch::Batch;
+pub(crate) use batch::{LANES, LaneScalar};
+pub(crate) use lane_work::{LaneWork, in_lanes};
 
 use crate::error::PositionResult;
 use crate::model::{Model, Workspace};

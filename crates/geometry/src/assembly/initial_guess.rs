@@ -4,7 +4,7 @@ use crate::assembly::modes::{AssemblyMode, SAME_MODE};
 use crate::mechanism::{BranchHint, JointId, Mechanism};
 use crate::plan::{AssemblyConfiguration, GroupModes, Plan, Pose};
 use crate::plane::Vec2;
-use crate::structure::frames::{Orientation, RotationSource};
+use crate::structure::frames::RotationSource;
 use crate::structure::groups::Unknown;
 use crate::structure::lower::{Lowered, LoweredCoordinate};
 
@@ -63,14 +63,14 @@ impl Plan {
         let Unknown::ClassAngle(class) = unknown else {
             return Vec::new();
         };
-        let of_body = |(b, (orientation, angle)): (usize, (&Orientation, &Option<f64>))| {
-            let frame = &self.frames.frames[orientation.frame];
-            let angle = (*angle)? - self.revolution_offsets.get(b).copied().unwrap_or(0.0);
-            (frame.orientation_class == class)
-                .then(|| angle - orientation.offset_angle - self.assembly_angle(orientation.frame))
+        let of_body = |&b: &usize| {
+            let orientation = self.frames.orientations[b];
+            let revolutions = self.revolution_offsets.get(b).copied().unwrap_or(0.0);
+            let angle = initial_guess.angles[b]? - revolutions;
+            Some(angle - orientation.offset_angle - self.assembly_angle(orientation.frame))
         };
-        let bodies = self.frames.orientations.iter().zip(&initial_guess.angles);
-        bodies.enumerate().filter_map(of_body).collect()
+        let bodies = self.frames.class_bodies[class].iter();
+        bodies.filter_map(of_body).collect()
     }
 
     /// The approximate value of an unknown: a joint's travel, a body's angle, or for a line of centres its

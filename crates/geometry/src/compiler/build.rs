@@ -303,23 +303,21 @@ impl Plan {
         rotating: [(usize, usize); 2],
         known: Vec<(usize, usize)>,
     ) -> RrrDyad {
-        let local = rotating.map(|(a, _)| self.frame_vectors[a].local);
-        let [one, two] = local.map(Vec2::norm);
-        RrrDyad {
+        let mut dyad = RrrDyad {
             closure,
             vectors: rotating.map(|(a, _)| a),
             frames: rotating.map(|(_, f)| f),
-            per_square: [
-                local[0] * (1.0 / (one * one)),
-                local[1] * (1.0 / (two * two)),
-            ],
-            sum_squared: (one + two) * (one + two),
-            difference_squared: (one - two) * (one - two),
-            square_difference: (two - one) * (two + one),
-            fixed: self.loop_closures[closure].fixed,
+            per_square: [Vec2::ZERO; 2],
+            sum_squared: 0.0,
+            difference_squared: 0.0,
+            square_difference: 0.0,
+            fixed: Vec2::ZERO,
             known,
             branch: 1.0,
-        }
+        };
+        let local = dyad.vectors.map(|a| self.frame_vectors[a].local);
+        dyad.set_lengths(local, self.loop_closures[closure].fixed);
+        dyad
     }
 
     fn prepare_guided_point(
@@ -332,16 +330,12 @@ impl Plan {
     ) -> Option<GuidedPoint> {
         let local = vector.map_or(Vec2::ZERO, |&(a, _)| self.frame_vectors[a].local);
         let is_class_frame = self.frames.frames[axis.1].rotation_source == RotationSource::Unknown;
-        let (found_vector, frame, unit) = match (line_rotates, vector) {
-            (true, _) if is_class_frame => {
-                (axis.0, axis.1, self.frame_vectors[axis.0].local.perp())
-            }
-            (false, Some(&(vector, rotated_frame))) => {
-                (vector, rotated_frame, local * (1.0 / local.norm()))
-            }
+        let (found_vector, frame) = match (line_rotates, vector) {
+            (true, _) if is_class_frame => axis,
+            (false, Some(&rotated)) => rotated,
             _ => return None,
         };
-        Some(GuidedPoint {
+        let mut guided = GuidedPoint {
             closure,
             frame,
             axis,
@@ -349,11 +343,14 @@ impl Plan {
             found_vector,
             vectors: self.loop_closures[closure].vectors.clone(),
             local,
-            unit,
-            fixed: self.loop_closures[closure].fixed,
+            unit: Vec2::ZERO,
+            fixed: Vec2::ZERO,
             known,
             branch: 1.0,
-        })
+        };
+        let line = self.frame_vectors[axis.0].local;
+        guided.set_lengths(line, local, self.loop_closures[closure].fixed);
+        Some(guided)
     }
 }
 

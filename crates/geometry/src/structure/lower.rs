@@ -113,6 +113,13 @@ pub(crate) struct Lowered {
     pub(crate) joint_parts: Vec<(Option<usize>, Option<usize>)>,
 }
 
+impl KinematicPair {
+    /// Its point on one of its bodies, in that body's frame, m.
+    pub(crate) fn point_on(&self, body: usize) -> Vec2 {
+        self.points[usize::from(self.bodies[0] != body)]
+    }
+}
+
 /// The x axis of an added body.
 const X_AXIS: Vec2 = Vec2::IDENTITY;
 
@@ -146,6 +153,19 @@ impl Lowered {
             lowered.actuated_coordinates.push(coordinate);
         }
         lowered
+    }
+
+    /// Whether another mechanism consists of the same pairs and couplings, with points that may differ.
+    pub(crate) fn differs_in_points_only(&self, other: &Self) -> bool {
+        let same_pair = |(one, two): (&KinematicPair, &KinematicPair)| {
+            let points = two.points;
+            KinematicPair { points, ..*one } == *two
+        };
+        self.pairs.len() == other.pairs.len()
+            && self.pairs.iter().zip(&other.pairs).all(same_pair)
+            && (self.bodies, self.ground) == (other.bodies, other.ground)
+            && self.couplings == other.couplings
+            && self.actuated_coordinates == other.actuated_coordinates
     }
 
     /// The first kinematic pair of a joint, and its coupling.

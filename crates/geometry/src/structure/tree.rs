@@ -95,7 +95,7 @@ impl Tree {
         reached[ground] = true;
         // Measured from one of its own points, the ground adds no rounding of where it stands.
         if let Some(&b) = pairs_of[ground].first() {
-            tree.joint_origins[ground] = point_on(lowered, b, ground);
+            tree.joint_origins[ground] = lowered.pairs[b].point_on(ground);
         }
         let priority = priorities(lowered);
         let offer = |queue: &mut BinaryHeap<_>, body: usize, depth: usize| {
@@ -111,7 +111,7 @@ impl Tree {
                 continue;
             }
             in_tree[b] = true;
-            tree.joint_origins[child] = point_on(lowered, b, child);
+            tree.joint_origins[child] = lowered.pairs[b].point_on(child);
             tree.add_joint(lowered, frames, b, parent, child);
             offer(&mut queue, child, depth);
         }
@@ -150,7 +150,7 @@ impl Tree {
             }
             PairKind::Revolute | PairKind::Rigid(_) => None,
         };
-        let joint_vector = self.vector_to(frames, parent, point_on(lowered, b, parent));
+        let joint_vector = self.vector_to(frames, parent, pair.point_on(parent));
         self.joint_of_body[child] = Some(self.joints.len());
         self.joints.push(TreeJoint {
             body: child,
@@ -203,7 +203,7 @@ impl Tree {
                 slides.push((slide, FrameVector { frame, local }));
             }
             let parent = tree_joint.parent;
-            *end = (parent, point_on(lowered, tree_joint.pair, parent));
+            *end = (parent, lowered.pairs[tree_joint.pair].point_on(parent));
         }
         let last = vector_between(frames, first.0, first.1, second.1);
         add_vector(&mut vectors, last, 1.0);
@@ -256,12 +256,6 @@ fn priorities(lowered: &Lowered) -> Vec<u8> {
 
 fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
     if a <= b { [a, b] } else { [b, a] }
-}
-
-/// The pair's point on one of its bodies.
-fn point_on(lowered: &Lowered, pair: usize, body: usize) -> Vec2 {
-    let pair = &lowered.pairs[pair];
-    pair.points[usize::from(pair.bodies[0] != body)]
 }
 
 /// The vector from one point of a body to another, in its frame. What is left of two points that

@@ -2,6 +2,7 @@
 //! force in a joint of the tree), the couple that holds two bodies at an angle, or a coupling's multiplier.
 
 use super::{PassModel, RecursivePass};
+use crate::pass::replaced_vectors::{replace_vector, vector_to};
 use dwell_geometry::frames::{AngularConstraintSource, RotationSource};
 use dwell_geometry::lower::PairKind;
 use dwell_geometry::plan::PairRole;
@@ -108,6 +109,19 @@ impl ReactionSources {
         }
         found.mark_needed(plan);
         found
+    }
+
+    /// Takes the dimensions that a plan of the same structure has by now; false where an end has a moment arm that
+    /// the structure has no place for.
+    pub(crate) fn set_moment_arms(&mut self, plan: &Plan) -> bool {
+        let mut fits = true;
+        for (ends, closure) in self.loop_joint_ends.iter_mut().zip(&plan.loop_closures) {
+            let points = plan.pairs()[closure.pair].points;
+            for (end, point) in ends.iter_mut().zip(points) {
+                fits &= replace_vector(&mut end.moment_arm, vector_to(plan, end.body, point));
+            }
+        }
+        fits
     }
 
     /// Finds the bodies from whose forces and couples the requested ones are summed.

@@ -5,11 +5,12 @@
 //! that at best: sums over several steps it takes apart into pieces of 8, 16 and 8 bytes.
 //!
 //! This is the only unsafe code of the project. It is sound as long as such numbers exist only on
-//! processors with AVX2: the type is private, and [`reduce`] checks the processor first. No operation is fused
+//! processors with AVX2: the type is private, and [`run`] checks the processor first. No operation is fused
 //! with another, so each number has the bits of a scalar evaluation.
 #![allow(unsafe_code, reason = "the gain measured above")]
 
-use super::batch::{BatchErrors, BatchSlice, LANES, LaneScalar};
+use super::LaneWork;
+use super::batch::{LANES, LaneScalar};
 use crate::model::Model;
 use dwell_numerics::{Lanes, Scalar, sin_cos};
 use std::arch::x86_64::{
@@ -19,24 +20,21 @@ use std::arch::x86_64::{
 use std::array;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// Reduces a part of a batch in such registers; returns it where the processor has none, or the plan has groups whose
+/// Does work on a model in such registers; returns it where the processor has none, or the plan has groups whose
 /// functions are not inlined.
-pub(crate) fn reduce<'a>(
-    model: &Model,
-    slice: BatchSlice<'a>,
-) -> Result<BatchErrors, BatchSlice<'a>> {
+pub(crate) fn run<W: LaneWork>(model: &Model, work: W) -> Result<W::Output, W> {
     if model.plan().is_dyadic() && is_x86_feature_detected!("avx2") {
         // Sound: AVX2 has just been detected.
-        Ok(unsafe { reduce_with_avx2(model, slice) })
+        Ok(unsafe { run_with_avx2(work) })
     } else {
-        Err(slice)
+        Err(work)
     }
 }
 
 /// What is inlined here is compiled for AVX2, and nothing else is: so the whole evaluation is.
 #[target_feature(enable = "avx2")]
-fn reduce_with_avx2(model: &Model, slice: BatchSlice<'_>) -> BatchErrors {
-    model.reduce_block::<Avx2Lanes>(slice)
+fn run_with_avx2<W: LaneWork>(work: W) -> W::Output {
+    work.run::<Avx2Lanes>()
 }
 
 /// Four plain numbers in a register.

@@ -1,7 +1,7 @@
 //! The reduced model at many coordinates: several poses side by side in each thread, blocks of them on all
 //! threads. Every value is that of a single evaluation, to the last bit.
 
-use super::{Coefficients, ExactModel};
+use super::{Coefficients, ExactModel, LaneWork, in_lanes};
 use crate::model::{Model, Workspace};
 use dwell_geometry::PositionError;
 use dwell_numerics::{Lanes, Scalar};
@@ -30,7 +30,7 @@ pub struct Batch {
 }
 
 /// The coordinates without a pose, by index, each with the reason.
-pub(crate) type BatchErrors = Vec<(usize, PositionError)>;
+type BatchErrors = Vec<(usize, PositionError)>;
 
 impl Batch {
     /// The coefficients at the `i`th coordinate; NaN where there is no pose.
@@ -51,7 +51,7 @@ impl Batch {
 }
 
 /// A part of a batch to be filled, with the index of its first coordinate.
-pub(crate) struct BatchSlice<'a> {
+struct BatchSlice<'a> {
     first: usize,
     q: &'a [f64],
     m: &'a mut [f64],
@@ -111,6 +111,21 @@ impl ExactModel {
     }
 }
 
+/// A part of a batch, evaluated in one thread.
+struct Block<'a> {
+    model: &'a Model,
+    slice: BatchSlice<'a>,
+}
+
+impl LaneWork for Block<'_> {
+    type Output = BatchErrors;
+
+    #[inline(always)]
+    fn run<S: LaneScalar>(self) -> BatchErrors {
+        self.model.reduce_block::<S>(self.slice)
+    }
+}
+
 impl Model {
     fn reduce_batch(&self, q: &[f64], out: &mut Batch) {
         let each = self.reactions().len();
@@ -147,7 +162,7 @@ impl Model {
     fn reduce_in_parallel(&self, mut slice: BatchSlice<'_>, block: usize) -> BatchErrors {
         let blocks = slice.q.len().div_ceil(block);
         if blocks < 2 {
-            return self.reduce_simd(slice);
+            return in_lanes(self, Block { model: self, slice });
         }
         let rest = slice.split_off(blocks / 2 * block, self.reactions().len());
         let (mut errors, more) = rayon::join(
@@ -158,19 +173,9 @@ impl Model {
         errors
     }
 
-    /// In the widest registers that the processor has.
-    fn reduce_simd(&self, slice: BatchSlice<'_>) -> BatchErrors {
-        #[cfg(target_arch = "x86_64")]
-        let slice = match super::avx2::reduce(self, slice) {
-            Ok(errors) => return errors,
-            Err(slice) => slice,
-        };
-        self.reduce_block::<Lanes<LANES>>(slice)
-    }
-
     /// Four poses at a time; singly those that remain or whose computations diverge.
     #[inline(always)]
-    pub(crate) fn reduce_block<S: LaneScalar>(&self, mut slice: BatchSlice<'_>) -> BatchErrors {
+    fn reduce_block<S: LaneScalar>(&self, mut slice: BatchSlice<'_>) -> BatchErrors {
         // For several poses at once, and for single ones where they diverge; few blocks need both.
         let mut lanes: Option<ReductionWorkspace<S>> = None;
         // An inertia over an angle is looked up, one pose at a time.
