@@ -309,7 +309,17 @@ mod tests {
         let requested = RequestedQuantities::new(&scene, &[]).expect("results");
         let groups = chart_groups(&requested.quantities);
         let names: Vec<&str> = groups.iter().map(|group| group.title).collect();
-        assert_eq!(names, ["m", "half_dm", "range", "period", "energy"]);
+        assert_eq!(
+            names,
+            [
+                "m",
+                "half_dm",
+                "range",
+                "period",
+                "energy",
+                "slide.normal.max_abs"
+            ]
+        );
         assert_eq!(groups[0].members, [(0, "min"), (1, "max")]);
     }
 }

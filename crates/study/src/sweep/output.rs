@@ -10,7 +10,9 @@ use super::export;
 use crate::explain::{StudyError, SweepError};
 use crate::output::Outcome;
 use crate::progress::{Progress, Step};
-use crate::sweep::compute::{Axis, Design, RequestedQuantities, Row, Shard, VariationKind};
+use crate::sweep::compute::{
+    Axis, Design, RequestedQuantities, Row, Shard, VariantFamily, VariationKind, block_length,
+};
 use crate::sweep::store::{SCENE_TEXT, SHARD, Store, StudyIdentity};
 use crate::sweep::store_check::ExpectedPoints;
 use dwell_report::{Column, TableFormat};
@@ -184,16 +186,21 @@ fn compute(
     progress: Progress<'_>,
 ) -> Result<(), StudyError> {
     let (requested, design) = (&prepared.requested, &prepared.design);
+    let family = VariantFamily::new(prepared.scene, design, requested);
+    let study = (prepared.scene, design, family.as_ref());
     write_from(store, |sender| {
-        pending.par_iter().try_for_each_with(sender, |sender, &k| {
-            let row = requested.point(prepared.scene, design, k);
-            // If the writer has failed, nothing more is computed.
-            sender.send(row).ok()?;
-            progress(Step {
-                total: pending.len(),
-                done: "points",
+        let blocks = pending.par_chunks(block_length(family.as_ref()));
+        blocks.try_for_each_with(sender, |sender, block| {
+            let mut written = Some(());
+            requested.points(study, block, &mut |row| {
+                // If the writer has failed, nothing more is computed.
+                written = written.and_then(|()| sender.send(row).ok());
+                progress(Step {
+                    total: pending.len(),
+                    done: "points",
+                });
             });
-            Some(())
+            written
         })
     })
 }

@@ -73,6 +73,23 @@ impl Axis {
         matches!(self.kind, Normal { .. } | Uniform { .. })
     }
 
+    /// The range of its values; of a normal distribution a standard deviation about the mean, either way.
+    pub(crate) fn span(&self) -> [f64; 2] {
+        match &self.kind {
+            VariationKind::Grid { from, to, .. } | VariationKind::Uniform { from, to } => {
+                [*from, *to]
+            }
+            VariationKind::Listed(values) => {
+                let min = values.iter().copied().fold(f64::INFINITY, f64::min);
+                [
+                    min,
+                    values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+                ]
+            }
+            VariationKind::Normal { mean, deviation } => [mean - deviation, mean + deviation],
+        }
+    }
+
     /// Number of values; 1 if it is random.
     pub(crate) fn count(&self) -> u64 {
         match &self.kind {

@@ -1,37 +1,39 @@
 //! One point of a sweep: the scene with its input values, and the results.
 
 use crate::branch_note::branch_note;
-use crate::explain::{StudyError, SweepError, explain_machine, explain_motion, explain_position};
+use crate::explain::{StudyError, SweepError, explain_machine, explain_motion};
 use crate::former_names;
-use crate::models::{compile_model, exact_model, initial_reduced_state, with_loads};
+use crate::models::{compile_model, initial_reduced_state, with_loads};
 use crate::number_format::{coordinate_unit, force_unit};
+use crate::sweep::compute::extremes::{ExtremeValues, RangeCurves};
 use crate::sweep::compute::motions::{
     cycle_quantities, cycle_values, motion_quantities, motion_values,
 };
 use crate::trajectory::compute::{
-    Analysis, Point, WantedForces, check_variables, default_limits, is_prefix_of, largest_between,
-    peak_forces,
+    Analysis, WantedForces, check_variables, is_prefix_of, peak_forces,
 };
 use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Orbit, ReducedState};
-use dwell_kinetostatics::{Model, ReducedModel};
+use dwell_kinetostatics::Model;
 use dwell_scene::Scene;
-
-/// Intervals of the range at which m and ½m′ are evaluated, those of `dwell reduce`; and the local extrema of them about
-/// which the largest and smallest values are looked for between these positions.
-const INTERVALS: usize = 720;
-const REFINED: usize = 2;
+use std::collections::BTreeSet;
 
 /// What a result is computed with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum ResultKind {
+pub(super) enum ResultKind {
     /// Smallest and largest m, smallest and largest ½m′.
     Inertia,
+    /// The coordinates at which they occur: only on request.
+    InertiaPlace,
     /// Lower and upper end of the range.
     Range,
     /// Period and energy of the free motion.
     Orbit,
     /// Largest absolute values, by reaction of the mechanism.
     Reaction,
+    /// Largest absolute values in the free rotation without loads, by reaction of the mechanism.
+    FreeReaction,
+    /// The coordinates at which they occur: only on request.
+    FreeReactionPlace,
     /// Largest absolute values, by actuator.
     ActuatorForce,
     /// Results of the free motion: computed only on request, as they take an integration.
@@ -47,17 +49,29 @@ pub(crate) struct SweepQuantity {
     /// The name it had before it was renamed, which a request may still use.
     former: Option<String>,
     pub(crate) unit: String,
-    kind: ResultKind,
+    pub(super) kind: ResultKind,
     /// Its index among the results of its kind.
-    index: usize,
+    pub(super) index: usize,
+}
+
+impl ResultKind {
+    /// Whether a result is computed only if a request names it, and by what word.
+    fn on_request(self) -> Option<&'static str> {
+        match self {
+            Self::Motion => Some("motion"),
+            Self::Cycle => Some("cycle"),
+            Self::InertiaPlace | Self::FreeReactionPlace => Some("place"),
+            _ => None,
+        }
+    }
 }
 
 impl SweepQuantity {
     /// Whether it is the smallest or largest value along a motion or a range.
     #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for the summary"))]
     pub(crate) fn is_extremum(&self) -> bool {
-        use ResultKind::{ActuatorForce, Inertia, Reaction};
-        matches!(self.kind, Inertia | Reaction | ActuatorForce)
+        use ResultKind::{ActuatorForce, FreeReaction, Inertia, Reaction};
+        matches!(self.kind, Inertia | Reaction | FreeReaction | ActuatorForce)
     }
 
     /// Whether a request names it: its whole name, the part before one of its dots, or its former name.
@@ -106,14 +120,12 @@ impl RequestedQuantities {
         for request in requests {
             if !quantities.iter().any(|q| q.matches(request)) {
                 let name = request.clone();
-                // Of the many results of motions and cycles the first word is enough.
-                let short = |q: SweepQuantity| match q.kind {
-                    ResultKind::Motion => "motion".to_owned(),
-                    ResultKind::Cycle => "cycle".to_owned(),
-                    _ => q.name,
-                };
-                let mut known: Vec<String> = quantities.into_iter().map(short).collect();
-                known.dedup();
+                // Of the many results that are computed on request the first word is enough.
+                let always = quantities.iter().filter(|q| q.kind.on_request().is_none());
+                let mut known: Vec<String> = always.map(|q| q.name.clone()).collect();
+                let words = quantities.iter().filter_map(|q| q.kind.on_request());
+                let words: BTreeSet<&str> = words.collect();
+                known.extend(words.into_iter().map(str::to_owned));
                 return Err(SweepError::Result { name, known }.into());
             }
         }
@@ -128,7 +140,7 @@ impl RequestedQuantities {
         let mut notes: String = notes.collect();
         notes += &branch_note(scene, model.plan());
         quantities.retain(|q| match requests {
-            [] => !matches!(q.kind, ResultKind::Motion | ResultKind::Cycle),
+            [] => q.kind.on_request().is_none(),
             requests => requests.iter().any(|request| q.matches(request)),
         });
         if quantities.is_empty() {
@@ -155,57 +167,106 @@ impl RequestedQuantities {
     fn compute(&self, scene: &Scene, cells: &mut [f64]) -> Result<(), StudyError> {
         let model = compile_model(scene, &scene.mechanism.reactions())?;
         let includes = |kind: ResultKind| self.quantities.iter().any(|q| q.kind == kind);
-        let mut failed: Option<StudyError> = None;
-        let mut set = |kind: ResultKind, computed: Result<Vec<f64>, StudyError>| match computed {
+        let mut results = Results {
+            quantities: &self.quantities,
+            cells,
+            failed: None,
+        };
+        if let Some((from, to)) = model.plan().range().limits() {
+            results.set(ResultKind::Range, Ok(vec![from, to]));
+        }
+        if includes(ResultKind::Motion) {
+            results.set(ResultKind::Motion, motion_values(scene, &model));
+        }
+        if includes(ResultKind::Cycle) {
+            results.set(ResultKind::Cycle, cycle_values(scene));
+        }
+        if includes(ResultKind::Inertia) || includes(ResultKind::InertiaPlace) {
+            let extremes = RangeCurves::of_inertia(scene, &model).map(|curves| curves.extremes());
+            results.set_points([ResultKind::Inertia, ResultKind::InertiaPlace], extremes);
+        }
+        self.compute_orbit(scene, &model, &mut results);
+        if (includes(ResultKind::Reaction) || includes(ResultKind::ActuatorForce))
+            && let Some(analysis) = peak_analysis(scene)
+        {
+            let wanted = WantedForces {
+                reactions: self.indices(&[ResultKind::Reaction]),
+                actuators: self.indices(&[ResultKind::ActuatorForce]),
+            };
+            match peak_forces(scene, &with_loads(scene, model)?, analysis, &wanted) {
+                Ok(peaks) => {
+                    results.set(ResultKind::Reaction, Ok(peaks.reactions));
+                    results.set(ResultKind::ActuatorForce, Ok(peaks.tau));
+                }
+                Err(error) => results.set(ResultKind::Reaction, Err(error)),
+            }
+        }
+        results.failed.map_or(Ok(()), Err)
+    }
+
+    /// The results of the conservative free motion.
+    fn compute_orbit(&self, scene: &Scene, model: &Model, results: &mut Results<'_>) {
+        let kinds = [ResultKind::FreeReaction, ResultKind::FreeReactionPlace];
+        let reactions = self.indices(&kinds);
+        let is_requested = self.quantities.iter().any(|q| q.kind == ResultKind::Orbit);
+        let start = initial_reduced_state(scene);
+        let Some(start) = start.filter(|_| is_requested || !reactions.is_empty()) else {
+            return;
+        };
+        let orbit = orbit(scene, start, model);
+        if !reactions.is_empty()
+            && let Ok(orbit) = &orbit
+        {
+            let curves = RangeCurves::of_free_reactions(scene, model, &reactions, orbit.energy);
+            results.set_points(kinds, curves.map(|curves| curves.largest(&reactions)));
+        }
+        let values = orbit.map(|orbit| vec![orbit.period, orbit.energy]);
+        results.set(ResultKind::Orbit, values);
+    }
+
+    /// The indices of the requested quantities of some kinds.
+    fn indices(&self, kinds: &[ResultKind]) -> Vec<usize> {
+        let quantities = self.quantities.iter().filter(|q| kinds.contains(&q.kind));
+        let indices: BTreeSet<usize> = quantities.map(|q| q.index).collect();
+        indices.into_iter().collect()
+    }
+}
+
+/// The results of a point as they are computed, and the first error.
+struct Results<'a> {
+    quantities: &'a [SweepQuantity],
+    cells: &'a mut [f64],
+    failed: Option<StudyError>,
+}
+
+impl Results<'_> {
+    fn set(&mut self, kind: ResultKind, computed: Result<Vec<f64>, StudyError>) {
+        match computed {
             Err(error) => {
-                failed.get_or_insert(error);
+                self.failed.get_or_insert(error);
             }
             Ok(values) => {
-                let cells = self.quantities.iter().zip(&mut *cells);
+                let cells = self.quantities.iter().zip(&mut *self.cells);
                 for (quantity, cell) in cells.filter(|(q, _)| q.kind == kind) {
                     *cell = values.get(quantity.index).copied().unwrap_or(f64::NAN);
                 }
             }
-        };
-        if let Some((from, to)) = model.plan().range().limits() {
-            set(ResultKind::Range, Ok(vec![from, to]));
         }
-        if includes(ResultKind::Motion) {
-            set(ResultKind::Motion, motion_values(scene, &model));
-        }
-        if includes(ResultKind::Cycle) {
-            set(ResultKind::Cycle, cycle_values(scene));
-        }
-        if includes(ResultKind::Inertia) {
-            set(ResultKind::Inertia, inertia_extrema(scene, &model));
-        }
-        if includes(ResultKind::Orbit)
-            && let Some(start) = initial_reduced_state(scene)
-        {
-            let orbit = orbit(scene, start, &model);
-            let values = orbit.map(|orbit| vec![orbit.period, orbit.energy]);
-            set(ResultKind::Orbit, values);
-        }
-        if (includes(ResultKind::Reaction) || includes(ResultKind::ActuatorForce))
-            && let Some(analysis) = peak_analysis(scene)
-        {
-            let of_kind = |kind: ResultKind| {
-                let quantities = self.quantities.iter().filter(|q| q.kind == kind);
-                quantities.map(|q| q.index).collect()
-            };
-            let wanted = WantedForces {
-                reactions: of_kind(ResultKind::Reaction),
-                actuators: of_kind(ResultKind::ActuatorForce),
-            };
-            match peak_forces(scene, &with_loads(scene, model)?, analysis, &wanted) {
-                Ok(peaks) => {
-                    set(ResultKind::Reaction, Ok(peaks.reactions));
-                    set(ResultKind::ActuatorForce, Ok(peaks.tau));
-                }
-                Err(error) => set(ResultKind::Reaction, Err(error)),
+    }
+
+    /// Values with their places.
+    fn set_points(
+        &mut self,
+        [values, places]: [ResultKind; 2],
+        computed: Result<ExtremeValues, StudyError>,
+    ) {
+        match computed {
+            Err(error) => self.set(values, Err(error)),
+            Ok(points) => {
+                self.set(values, Ok(points.iter().map(|[_, value]| *value).collect()));
+                self.set(places, Ok(points.iter().map(|[place, _]| *place).collect()));
             }
         }
-        failed.map_or(Ok(()), Err)
     }
 }
 
@@ -248,31 +309,36 @@ fn available_quantities(scene: &Scene, model: &Model) -> Vec<SweepQuantity> {
         } else {
             ("kg", "kg/m")
         };
+        let place_unit = coordinate_unit(angle);
         for (k, (name, unit)) in [("m", m), ("half_dm", half_dm)].into_iter().enumerate() {
-            add(format!("{name}.min"), unit, ResultKind::Inertia, 2 * k);
-            add(format!("{name}.max"), unit, ResultKind::Inertia, 2 * k + 1);
+            for (index, end) in [(2 * k, "min"), (2 * k + 1, "max")] {
+                add(format!("{name}.{end}"), unit, ResultKind::Inertia, index);
+                let place = format!("place.{name}.{end}");
+                add(place, place_unit, ResultKind::InertiaPlace, index);
+            }
         }
-        let unit = coordinate_unit(angle);
-        add("range.lower".to_owned(), unit, ResultKind::Range, 0);
-        add("range.upper".to_owned(), unit, ResultKind::Range, 1);
+        add("range.lower".to_owned(), place_unit, ResultKind::Range, 0);
+        add("range.upper".to_owned(), place_unit, ResultKind::Range, 1);
         if is_conservative(scene, model) {
             add("period".to_owned(), "s", ResultKind::Orbit, 0);
             add("energy".to_owned(), "J", ResultKind::Orbit, 1);
+            if peak_analysis(scene).is_none() {
+                for (k, name, unit) in determinate_reactions(scene, model) {
+                    add(format!("{name}.max_abs"), unit, ResultKind::FreeReaction, k);
+                    let place = format!("place.{name}.max_abs");
+                    add(place, place_unit, ResultKind::FreeReactionPlace, k);
+                }
+            }
         }
     }
     if peak_analysis(scene).is_some() {
-        let mechanism = &scene.mechanism;
-        for (k, actuator) in mechanism.actuators.iter().enumerate() {
+        for (k, actuator) in scene.mechanism.actuators.iter().enumerate() {
             let unit = force_unit(model.plan().is_angle(k));
             let name = format!("{}.actuator_force.max_abs", actuator.name);
             add(name, unit, ResultKind::ActuatorForce, k);
         }
-        for (k, reaction) in model.reactions().iter().enumerate() {
-            // Statically indeterminate reactions are no results.
-            if model.plan().is_determinate(k) && scene.requests.reactions.contains(reaction) {
-                let name = format!("{}.max_abs", mechanism.reaction_name(*reaction));
-                add(name, reaction.component.unit(), ResultKind::Reaction, k);
-            }
+        for (k, name, unit) in determinate_reactions(scene, model) {
+            add(format!("{name}.max_abs"), unit, ResultKind::Reaction, k);
         }
     }
     for (kind, quantities) in [
@@ -284,6 +350,20 @@ fn available_quantities(scene: &Scene, model: &Model) -> Vec<SweepQuantity> {
         }
     }
     all
+}
+
+/// The requested reactions that are results, with their index in the model, name and unit: not those that are statically
+/// indeterminate.
+fn determinate_reactions(scene: &Scene, model: &Model) -> Vec<(usize, String, &'static str)> {
+    let all = model.reactions().iter().enumerate();
+    let determinate = all.filter(|&(k, reaction)| {
+        model.plan().is_determinate(k) && scene.requests.reactions.contains(reaction)
+    });
+    let named = determinate.map(|(k, reaction)| {
+        let name = scene.mechanism.reaction_name(*reaction);
+        (k, name, reaction.component.unit())
+    });
+    named.collect()
 }
 
 /// Whether the scene has a conservative free motion.
@@ -307,30 +387,4 @@ fn orbit_machine(scene: &Scene, model: &Model) -> Result<Machine, StudyError> {
 fn orbit(scene: &Scene, start: ReducedState, model: &Model) -> Result<Orbit, StudyError> {
     let machine = orbit_machine(scene, model)?;
     Orbit::loaded(&machine, start).map_err(|e| explain_motion(scene, model.plan(), &e))
-}
-
-/// The smallest and the largest m, and the smallest and the largest ½m′, over the range, also between its positions.
-fn inertia_extrema(scene: &Scene, model: &Model) -> Result<Vec<f64>, StudyError> {
-    let exact = exact_model(scene, model.without_reactions())?;
-    let mut workspace = exact.workspace();
-    let ([from, to], ..) = default_limits(scene, model.plan());
-    let mut curves: [Vec<Point>; 2] = [Vec::new(), Vec::new()];
-    for k in 0..=INTERVALS {
-        let fraction = k as f64 / INTERVALS as f64;
-        let q = from * (1.0 - fraction) + to * fraction;
-        let evaluated = exact.inertia(q, &mut workspace);
-        let here = evaluated.map_err(|e| explain_position(scene, model.plan(), &e))?;
-        curves[0].push([q, here.0]);
-        curves[1].push([q, here.1]);
-    }
-    let mut extremum = |k: usize, sign: f64| {
-        let curve: Vec<Point> = curves[k].iter().map(|[q, v]| [*q, sign * v]).collect();
-        let mut value = |q: f64| {
-            let (m, half_dm) = exact.inertia(q, &mut workspace).ok()?;
-            Some(sign * [m, half_dm][k]).filter(|value| value.is_finite())
-        };
-        largest_between(&curve, REFINED, &mut value).map_or(f64::NAN, |value| sign * value)
-    };
-    let extrema = [(0, -1.0), (0, 1.0), (1, -1.0), (1, 1.0)];
-    Ok(extrema.map(|(k, sign)| extremum(k, sign)).to_vec())
 }

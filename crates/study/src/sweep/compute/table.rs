@@ -1,7 +1,8 @@
 //! A whole sweep in memory.
 
 use crate::explain::StudyError;
-use crate::sweep::compute::{Design, RequestedQuantities, Row};
+use crate::sweep::compute::point::PointResult;
+use crate::sweep::compute::{Design, RequestedQuantities, Row, VariantFamily};
 use dwell_findings::{Column, Table};
 use dwell_scene::Scene;
 use rayon::prelude::*;
@@ -32,13 +33,26 @@ pub fn compute_sweep(
 ) -> Result<ComputedSweep, StudyError> {
     let design = Design::new(scene, vary, samples, seed)?;
     let requested = RequestedQuantities::new(scene, requests)?;
-    let points = (0..design.points).into_par_iter();
-    let rows: Vec<Row> = points.map(|k| requested.point(scene, &design, k)).collect();
+    let family = VariantFamily::new(scene, &design, &requested);
+    let indices: Vec<u64> = (0..design.points).collect();
+    let blocks = indices.par_chunks(block_length(family.as_ref()));
+    let blocks = blocks.map(|block| {
+        let mut rows = Vec::with_capacity(block.len());
+        let study = (scene, &design, family.as_ref());
+        requested.points(study, block, &mut |row| rows.push(row));
+        rows
+    });
+    let rows: Vec<Row> = blocks.flatten_iter().collect();
     Ok(ComputedSweep {
         table: requested.table(&design, &rows),
         messages: rows.into_iter().map(|row| row.result.message).collect(),
         notes: requested.notes,
     })
+}
+
+/// Points that one thread computes in a row: of a family as many as make the copy of its model cheap.
+pub(crate) fn block_length(family: Option<&VariantFamily>) -> usize {
+    if family.is_some() { 256 } else { 1 }
 }
 
 impl RequestedQuantities {
@@ -61,16 +75,46 @@ impl RequestedQuantities {
         }
     }
 
-    /// Computes the point of an index.
-    pub(crate) fn point(&self, scene: &Scene, design: &Design, index: u64) -> Row {
-        let inputs = design.values(index);
-        let paths = design.axes.iter().map(|axis| axis.path.as_str());
-        let values: Vec<(&str, f64)> = paths.zip(inputs.iter().copied()).collect();
-        let result = self.evaluate(scene, &values);
-        Row {
-            index,
-            inputs,
-            result,
+    /// Computes the points of some indices, one after another: in the structure of their family, or each by a
+    /// compilation of its own where there is none or a point does not fit it.
+    pub(crate) fn points(
+        &self,
+        (scene, design, family): (&Scene, &Design, Option<&VariantFamily>),
+        indices: &[u64],
+        done: &mut dyn FnMut(Row),
+    ) {
+        let compile = |inputs: &[f64]| {
+            let paths = design.axes.iter().map(|axis| axis.path.as_str());
+            let values: Vec<(&str, f64)> = paths.zip(inputs.iter().copied()).collect();
+            self.evaluate(scene, &values)
+        };
+        let mut inputs: Vec<Vec<f64>> = indices.iter().map(|&k| design.values(k)).collect();
+        let mut finish = |k: usize, inputs: Vec<f64>, values: Option<Vec<f64>>| {
+            let result = match values {
+                Some(values) => PointResult {
+                    values,
+                    message: None,
+                },
+                None => compile(&inputs),
+            };
+            done(Row {
+                index: indices[k],
+                inputs,
+                result,
+            });
+        };
+        let Some(family) = family else {
+            for (k, inputs) in inputs.into_iter().enumerate() {
+                finish(k, inputs, None);
+            }
+            return;
+        };
+        let mut values: Vec<Option<Vec<f64>>> = Vec::with_capacity(indices.len());
+        family.evaluate(&inputs, &self.quantities, &mut |_, found| {
+            values.push(found);
+        });
+        for (k, (inputs, values)) in inputs.drain(..).zip(values).enumerate() {
+            finish(k, inputs, values);
         }
     }
 }

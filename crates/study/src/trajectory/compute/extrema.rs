@@ -343,19 +343,20 @@ pub(crate) fn is_searched_in_rows(column: &Column) -> bool {
     column.quantity != Quantity::Time && !is_continuous(column)
 }
 
-/// The largest value of a function that is known at some points, also between them: it is evaluated about its local
+/// The highest point of a function that is known at some points, also between them: it is evaluated about its local
 /// maxima there, about those `count` whose parabolas are highest. None where no point has a value.
-pub(crate) fn largest_between(
+pub(crate) fn highest_between(
     points: &[Point],
     count: usize,
     value: &mut dyn FnMut(f64) -> Option<f64>,
-) -> Option<f64> {
-    let known = points.iter().map(|[_, v]| *v).filter(|v| !v.is_nan());
-    let scale = known.clone().map(f64::abs).fold(0.0, f64::max);
-    let largest = known.reduce(f64::max)?;
-    let brackets = promising(points, largest, count).into_iter();
+) -> Option<Point> {
+    let known = points.iter().copied().filter(|[_, v]| !v.is_nan());
+    let scale = known.clone().map(|[_, v]| v.abs()).fold(0.0, f64::max);
+    let higher = |a: Point, b: Point| if b[1] > a[1] { b } else { a };
+    let highest = known.reduce(higher)?;
+    let brackets = promising(points, highest[1], count).into_iter();
     let found = brackets.filter_map(|(_, bracket)| refine_maximum(value, bracket, scale));
-    Some(found.map(|[_, v]| v).fold(largest, f64::max))
+    Some(found.fold(highest, higher))
 }
 
 /// Three points, the middle one not below the others; the middle one may be missing at an end.

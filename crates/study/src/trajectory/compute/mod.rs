@@ -31,7 +31,7 @@ pub(crate) use early_stop::{
 pub(crate) use evaluator::{ForceEvaluator, PositionEvaluator};
 pub(crate) use extra_columns::extra_columns;
 pub(crate) use extrema::{
-    BetweenRows, Extrema, ExtremaSearch, Point, SamplePrecision, Sampler, largest_between,
+    BetweenRows, Extrema, ExtremaSearch, Point, SamplePrecision, Sampler, highest_between,
 };
 #[cfg(feature = "output")]
 pub(crate) use extrema::{Extremum, is_searched_in_rows};

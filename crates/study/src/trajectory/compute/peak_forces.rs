@@ -2,7 +2,7 @@
 //! needs of thousands of scenes.
 
 use crate::explain::StudyError;
-use crate::trajectory::compute::{Analysis, ForceEvaluator, Point, Trajectory, largest_between};
+use crate::trajectory::compute::{Analysis, ForceEvaluator, Point, Trajectory, highest_between};
 use dwell_kinetostatics::{InverseDynamics, Model};
 use dwell_scene::Scene;
 
@@ -69,7 +69,7 @@ pub(crate) fn peak_forces(
             evaluator.evaluate(&sample, t).ok()?;
             Some(pick(&evaluator.results).abs()).filter(|value| value.is_finite())
         };
-        largest_between(curve, REFINED, &mut value).unwrap_or(f64::NAN)
+        highest_between(curve, REFINED, &mut value).map_or(f64::NAN, |[_, value]| value)
     };
     for (curve, &r) in reactions.iter().zip(&wanted.reactions) {
         peaks.reactions[r] = largest(curve, &|results| results.reactions[r]);
