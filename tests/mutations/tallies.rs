@@ -90,9 +90,11 @@ fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static str)> 
         ("geometry", _, "coupling_angle_derivatives") => (17, "moments of couplings"),
         ("geometry", "positions/construct", _) => (3, "positions: triangle, circle, line"),
         ("geometry", "positions/factored_group", _) => (4, "positions: Newton and Jacobian"),
-        ("geometry", "positions" | "positions/closed_forms" | "plan" | "body_frames", _) => {
-            (2, "positions: vectors, loops, revolutions")
-        }
+        (
+            "geometry",
+            "positions" | "positions/closed_forms" | "plan" | "plan/pose" | "body_frames",
+            _,
+        ) => (2, "positions: vectors, loops, revolutions"),
         ("numerics", "lu" | "factor_outcome", _) => (5, "groups: elimination"),
         ("numerics", "qr", _) => (6, "groups: least squares"),
         ("geometry", "structure/coupling", _) => (7, "gears, cams and other couplings"),

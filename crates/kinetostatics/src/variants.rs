@@ -89,6 +89,6 @@ impl Model {
             && self
                 .pass_model
                 .reaction_sources
-                .set_moment_arms(&self.pass_model.plan)
+                .replace_points(&self.pass_model.plan)
     }
 }

@@ -113,7 +113,7 @@ impl ReactionSources {
 
     /// Takes the dimensions that a plan of the same structure has by now; false where an end has a moment arm that
     /// the structure has no place for.
-    pub(crate) fn set_moment_arms(&mut self, plan: &Plan) -> bool {
+    pub(crate) fn replace_points(&mut self, plan: &Plan) -> bool {
         let mut fits = true;
         for (ends, closure) in self.loop_joint_ends.iter_mut().zip(&plan.loop_closures) {
             let points = plan.pairs()[closure.pair].points;

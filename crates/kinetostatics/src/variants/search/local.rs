@@ -9,7 +9,7 @@ const SPACING: f64 = 2e-3;
 /// distance: what they say of its value then errs by less than rounding.
 const CENTERED: f64 = 0.1;
 /// Longest step towards a peak, in distances of its positions.
-const LONGEST_STEP: f64 = 16.0;
+const MAX_STEP: f64 = 16.0;
 /// Peaks that the interpolation puts below the highest by more than this part of the curve's size are left out.
 const CANDIDATE: f64 = 1e-3;
 /// Three values that differ by less than this part of the curve's size are one.
@@ -184,7 +184,7 @@ impl Peak {
         let curved = slope + start * (rate + 0.5 * third * start);
         let refined = start - curved / (rate + third * start);
         let is_vertex = self.sign * rate < 0.0 && refined.is_finite();
-        let limit = LONGEST_STEP * h;
+        let limit = MAX_STEP * h;
         // Uphill where the parabola has no vertex.
         let step = if is_vertex {
             refined.clamp(-limit, limit)
