@@ -12,6 +12,7 @@ from changes import Change
 CLASSES = [
     "readers", "units", "laws", "expressions", "drives", "batches", "samplers", "tables", "files", "printed sentences", "duals",
     "integrators", "faer's groups", "cycle", "equilibria", "linearise", "exported runs",
+    "variants",
 ]
 AUDITED = 10
 
