@@ -308,6 +308,7 @@ fn run_study(
             results,
             shard,
             export,
+            store,
             ..
         } => {
             for axis in vary {
@@ -321,6 +322,7 @@ fn run_study(
                 requests: results,
                 shard: *shard,
                 export: *export,
+                store: *store,
                 folder: out,
             };
             dwell_study::sweep(scene, &sweep, &progress)?

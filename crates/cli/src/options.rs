@@ -5,7 +5,8 @@ use clap::{Args, Parser, Subcommand};
 use dwell_dynamics::Method;
 use dwell_report::TableFormat;
 use dwell_study::{
-    FormulaFormat, Language, OperatingPoint, PictureFormat, Pictures, SampleInterpolation, Shard,
+    FormulaFormat, Language, OperatingPoint, PictureFormat, Pictures, RowStore,
+    SampleInterpolation, Shard,
 };
 use std::path::{Path, PathBuf};
 
@@ -175,8 +176,8 @@ pub(crate) enum Command {
         #[arg(long, value_parser = parse_time, value_name = "SECONDS", allow_hyphen_values = true)]
         period: Option<f64>,
     },
-    /// Parameter study over many variants of a scene, on all cores, stored in an SQLite file; an interrupted run can be
-    /// resumed
+    /// Parameter study over many variants of a scene, on all cores, stored in an SQLite file or in Parquet files; an
+    /// interrupted run can be resumed
     Sweep {
         /// The scene file, or `-` for standard input
         scene: PathBuf,
@@ -203,12 +204,15 @@ pub(crate) enum Command {
         /// Result columns to compute, by name or prefix, such as period or m (default: all)
         #[arg(long = "result", value_name = "RESULT", value_delimiter = ',')]
         results: Vec<String>,
-        /// Compute only this part of the points, such as 2/8, in a separate file
+        /// Compute only this part of the points, such as 2/8, in files of its own
         #[arg(long, value_name = "PART/PARTS", allow_hyphen_values = true)]
         shard: Option<Shard>,
         /// Compute nothing; export the stored results, including those of all shards
         #[arg(long, value_parser = choice(TABLE_FORMATS), value_name = "FORMAT")]
         export: Option<TableFormat>,
+        /// Where rows are stored (default: sqlite below 100 000 points, parquet from there on)
+        #[arg(long, value_parser = choice(ROW_STORES), value_name = "KIND")]
+        store: Option<RowStore>,
     },
     /// Run all checks on all cases, or on the named ones; exit status 1 if a check fails
     Validate {
@@ -381,6 +385,11 @@ const FORMATS: Choices<FormulaFormat> = &[
 const TABLE_FORMATS: Choices<TableFormat> = &[
     ("csv", TableFormat::Csv, "Text"),
     ("npz", TableFormat::Npz, "A NumPy archive"),
+];
+
+const ROW_STORES: Choices<RowStore> = &[
+    ("sqlite", RowStore::Sqlite, "One SQLite file"),
+    ("parquet", RowStore::Parquet, "A folder of Parquet files"),
 ];
 
 /// Former names of values: still accepted, and not shown.

@@ -81,7 +81,7 @@ pub use {
     linearise::output::linearise,
     output::{CommandResult, Outcome, PictureFormat, Pictures, add_summary},
     reduce::output::reduce,
-    sweep::output::{ParameterSweep, sweep},
+    sweep::output::{ParameterSweep, RowStore, sweep},
     symbolic::output::{FormulaFormat, symbolic},
     trajectory::figures::PictureSpan,
     trajectory::output::{TrajectoryOutcome, analyse_trajectory, analyse_trajectory_within},

@@ -4,15 +4,13 @@ use crate::explain::StudyError;
 use crate::number_format::{count, digits, digits_within, number};
 use crate::output::{Outcome, Picture};
 use crate::sweep::compute::{Row, SweepQuantity};
-use crate::sweep::figure::figure;
-use crate::sweep::output::PreparedSweep;
+use crate::sweep::figure::{Drawn, figure};
+use crate::sweep::output::{PreparedSweep, RowStore};
 use crate::sweep::spread::Spread;
+use crate::sweep::stored::{FailedPoints, StoredResults};
 use dwell_findings::Record;
 use dwell_report::{Column, TableExport as _, TableFormat};
 use std::path::Path;
-
-/// Maximum number of messages in a summary.
-const MAX_LISTED: usize = 3;
 
 /// The origin of the rows, and the number of missing ones.
 #[derive(Clone, Copy)]
@@ -23,15 +21,43 @@ pub(crate) struct Counts {
     pub(crate) missing: usize,
 }
 
+/// The distribution of a result, and the points at which it is smallest and largest: of several the first, none where it is constant.
+struct Statistics {
+    spread: Spread,
+    ends: Option<[u64; 2]>,
+}
+
+/// What the summary and its record tell.
+struct SweepReport<'a> {
+    prepared: &'a PreparedSweep<'a>,
+    path: &'a Path,
+    counts: Counts,
+    /// Number of stored points.
+    stored: usize,
+    /// By result.
+    statistics: Vec<Option<Statistics>>,
+    failed: FailedPoints,
+}
+
 pub(crate) fn report_sweep(
     prepared: &PreparedSweep<'_>,
     path: &Path,
-    rows: &[Row],
+    stored: &dyn StoredResults,
     counts: Counts,
 ) -> Result<Outcome, StudyError> {
+    let results = 0..prepared.results.len();
+    let statistics = results.map(|k| Ok(Statistics::of(&stored.values(k)?, stored)));
+    let report = SweepReport {
+        prepared,
+        path,
+        counts,
+        stored: stored.points().count(),
+        statistics: statistics.collect::<Result<_, StudyError>>()?,
+        failed: stored.failed()?,
+    };
     let mut outcome = Outcome {
-        summary: summary(prepared, path, rows, counts),
-        record: record(prepared, path, rows, counts),
+        summary: report.summary(),
+        record: report.record(),
         ..Outcome::default()
     };
     let (scene, sweep) = (prepared.scene, prepared.sweep);
@@ -40,26 +66,45 @@ pub(crate) fn report_sweep(
         return Ok(outcome);
     }
     let name = |rest: &str| format!("{}-sweep{rest}", scene.name);
-    let only = sweep.export;
-    for format in only.map_or(TableFormat::ALL.to_vec(), |only| vec![only]) {
-        let bytes = match format {
-            TableFormat::Csv => csv(prepared, rows)?.into_bytes(),
-            TableFormat::Npz => npz(prepared, rows)?,
-        };
-        let path = name(&format!(".{}", format.extension()));
-        outcome.files.add(path, bytes);
+    let formats = match (sweep.export, prepared.store) {
+        (Some(only), _) => vec![only],
+        (None, RowStore::Sqlite) => TableFormat::ALL.to_vec(),
+        // They would be as large as the Parquet files, and nobody reads 10⁷ lines.
+        (None, RowStore::Parquet) => Vec::new(),
+    };
+    if !formats.is_empty() {
+        let rows = stored.rows()?;
+        for format in formats {
+            let bytes = match format {
+                TableFormat::Csv => csv(prepared, &rows)?.into_bytes(),
+                TableFormat::Npz => npz(prepared, &rows)?,
+            };
+            let path = name(&format!(".{}", format.extension()));
+            outcome.files.add(path, bytes);
+        }
     }
     if sweep.export.is_none() {
-        match figure(prepared, rows) {
-            Ok((figure, note)) => {
-                let picture = Picture::figure(scene, name(".png"), true, figure);
+        match figure(prepared, stored, report.failed.count)? {
+            Drawn::Figure(figure, note) => {
+                let picture = Picture::figure(scene, name(".png"), true, *figure);
                 outcome.pictures.push(picture);
                 outcome.summary += &note.map_or(String::new(), |note| format!("  {note}\n"));
             }
-            Err(why) => outcome.summary += &format!("  no figure: {why}\n"),
+            Drawn::Nothing(why) => outcome.summary += &format!("  no figure: {why}\n"),
         }
     }
     Ok(outcome)
+}
+
+impl Statistics {
+    fn of(values: &[f64], stored: &dyn StoredResults) -> Option<Self> {
+        let spread = Spread::of(values.iter().copied())?;
+        let first = |value: f64| values.iter().position(|v| *v == value);
+        let ends = first(spread.min).zip(first(spread.max));
+        let ends = ends.filter(|_| spread.min < spread.max);
+        let ends = ends.map(|(a, b)| [a, b].map(|position| stored.points().index(position)));
+        Some(Self { spread, ends })
+    }
 }
 
 /// The table as arrays, with the index of each row and whether it has a message.
@@ -90,102 +135,143 @@ fn csv(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Result<String, StudyError>
     Ok(text)
 }
 
-/// The printed summary.
-fn summary(prepared: &PreparedSweep<'_>, path: &Path, rows: &[Row], counts: Counts) -> String {
-    let design = &prepared.design;
-    let points = count_u64(design.points, "point");
-    let mut text = format!("{}: {points}", prepared.scene.title);
-    if design.is_random() {
-        let samples = count_u64(design.samples, "sample");
-        text += &format!(", {samples} with seed {}", design.seed);
-    }
-    if let Some(shard) = prepared.sweep.shard {
-        let points = rows.len() + counts.missing;
-        text += &format!(", of which shard {shard} has {points}");
-    }
-    text += &format!("\n  {}: {}", path.display(), count(rows.len(), "row"));
-    let parts = [
-        (counts.existing, "already stored"),
-        (counts.imported, "imported from shards"),
-        (counts.computed, "computed"),
-    ];
-    let parts = parts.iter().filter(|(n, _)| *n > 0);
-    let parts: Vec<String> = parts.map(|(n, words)| format!("{n} {words}")).collect();
-    if !parts.is_empty() {
-        text += &format!(" ({})", parts.join(", "));
-    }
-    text.push('\n');
-    if counts.missing > 0 {
-        text += &format!("  {} not computed yet\n", count(counts.missing, "point"));
-    }
-    let quantities = &prepared.requested.quantities;
-    if quantities.iter().any(SweepQuantity::is_extremum) {
-        text += "  smallest and largest values of a motion or a range are searched between its positions, too\n";
-    }
-    for (k, heading) in prepared.results.iter().enumerate() {
-        if let Some(spread) = Spread::of(rows.iter().map(|row| row.result.values[k])) {
-            text += &spread_text(heading, &spread, design.is_random());
-            text += &best_text(prepared, rows, k);
+impl SweepReport<'_> {
+    /// The printed summary.
+    fn summary(&self) -> String {
+        let (prepared, counts) = (self.prepared, self.counts);
+        let design = &prepared.design;
+        let points = count_u64(design.points, "point");
+        let mut text = format!("{}: {points}", prepared.scene.title);
+        if design.is_random() {
+            let samples = count_u64(design.samples, "sample");
+            text += &format!(", {samples} with seed {}", design.seed);
         }
+        if let Some(shard) = prepared.sweep.shard {
+            let points = self.stored + counts.missing;
+            text += &format!(", of which shard {shard} has {points}");
+        }
+        text += &format!("\n  {}: {}", self.path.display(), count(self.stored, "row"));
+        let parts = [
+            (counts.existing, "already stored"),
+            (counts.imported, "imported from shards"),
+            (counts.computed, "computed"),
+        ];
+        let parts = parts.iter().filter(|(n, _)| *n > 0);
+        let parts: Vec<String> = parts.map(|(n, words)| format!("{n} {words}")).collect();
+        if !parts.is_empty() {
+            text += &format!(" ({})", parts.join(", "));
+        }
+        text.push('\n');
+        if counts.missing > 0 {
+            text += &format!("  {} not computed yet\n", count(counts.missing, "point"));
+        }
+        let quantities = &prepared.requested.quantities;
+        if quantities.iter().any(SweepQuantity::is_extremum) {
+            text += "  smallest and largest values of a motion or a range are searched between its positions, too\n";
+        }
+        for (heading, statistics) in prepared.results.iter().zip(&self.statistics) {
+            if let Some(statistics) = statistics {
+                text += &spread_text(heading, &statistics.spread, design.is_random());
+                text += &self.best_text(statistics);
+            }
+        }
+        text + &self.failures() + &prepared.requested.notes
     }
-    text + &failures(rows) + &prepared.requested.notes
-}
 
-/// The numbers of the summary.
-fn record(prepared: &PreparedSweep<'_>, path: &Path, rows: &[Row], counts: Counts) -> Record {
-    let (design, quantities) = (&prepared.design, &prepared.requested.quantities);
-    let mut record = Record::default();
-    let file = path.file_name().unwrap_or_default().to_string_lossy();
-    record.files.push(file.into_owned());
-    let failed = rows.iter().filter(|row| row.result.message.is_some());
-    for (name, count) in [
-        (
-            "points",
-            usize::try_from(design.points).unwrap_or(usize::MAX),
-        ),
-        ("rows", rows.len()),
-        ("rows.already_stored", counts.existing),
-        ("rows.imported", counts.imported),
-        ("rows.computed", counts.computed),
-        ("points.missing", counts.missing),
-        ("points.failed", failed.count()),
-    ] {
-        record.add_count(name, count);
-    }
-    if design.is_random() {
-        record.add("samples", "", design.samples as f64);
-        record.add("seed", "", design.seed as f64);
-    }
-    for (k, quantity) in quantities.iter().enumerate() {
-        let values = rows.iter().map(|row| row.result.values[k]);
-        if let Some(spread) = Spread::of(values) {
-            let mut add = |what: &str, value| {
-                let name = format!("{}.{what}", quantity.name);
-                record.add(name, &quantity.unit, value);
-            };
-            add("smallest", spread.min);
-            add("largest", spread.max);
-            add("rms", spread.rms);
-            add("mean", spread.mean);
-            if let Some(deviation) = spread.deviation.filter(|_| design.is_random()) {
-                add("mean.standard_error", spread.sampling_errors(deviation)[0]);
-                add("standard_deviation", deviation);
-                add("quantile_2.5", spread.quantiles[0]);
-                add("quantile_97.5", spread.quantiles[1]);
+    /// The numbers of the summary.
+    fn record(&self) -> Record {
+        let (design, counts) = (&self.prepared.design, self.counts);
+        let mut record = Record::default();
+        let file = self.path.file_name().unwrap_or_default();
+        record.files.push(file.to_string_lossy().into_owned());
+        for (name, count) in [
+            (
+                "points",
+                usize::try_from(design.points).unwrap_or(usize::MAX),
+            ),
+            ("rows", self.stored),
+            ("rows.already_stored", counts.existing),
+            ("rows.imported", counts.imported),
+            ("rows.computed", counts.computed),
+            ("points.missing", counts.missing),
+            ("points.failed", self.failed.count),
+        ] {
+            record.add_count(name, count);
+        }
+        if design.is_random() {
+            record.add("samples", "", design.samples as f64);
+            record.add("seed", "", design.seed as f64);
+        }
+        let quantities = &self.prepared.requested.quantities;
+        for (quantity, statistics) in quantities.iter().zip(&self.statistics) {
+            if let Some(statistics) = statistics {
+                self.record_of(&mut record, quantity, statistics);
             }
-            let ends = ends(rows, k).filter(|_| spread.min < spread.max);
-            for (end, row) in ["smallest", "largest"]
-                .into_iter()
-                .zip(ends.into_iter().flatten())
-            {
-                for (axis, value) in design.axes.iter().zip(&row.inputs) {
-                    let name = format!("{}.{end}.{}", quantity.name, axis.path);
-                    record.add(name, &axis.unit, *value);
-                }
+        }
+        record
+    }
+
+    /// The numbers of the summary about a result.
+    fn record_of(&self, record: &mut Record, quantity: &SweepQuantity, statistics: &Statistics) {
+        let (design, spread) = (&self.prepared.design, &statistics.spread);
+        let mut add = |what: &str, value| {
+            let name = format!("{}.{what}", quantity.name);
+            record.add(name, &quantity.unit, value);
+        };
+        add("smallest", spread.min);
+        add("largest", spread.max);
+        add("rms", spread.rms);
+        add("mean", spread.mean);
+        if let Some(deviation) = spread.deviation.filter(|_| design.is_random()) {
+            add("mean.standard_error", spread.sampling_errors(deviation)[0]);
+            add("standard_deviation", deviation);
+            add("quantile_2.5", spread.quantiles[0]);
+            add("quantile_97.5", spread.quantiles[1]);
+        }
+        let ends = statistics.ends.into_iter().flatten();
+        for (end, index) in ["smallest", "largest"].into_iter().zip(ends) {
+            for (axis, value) in design.axes.iter().zip(design.values(index)) {
+                let name = format!("{}.{end}.{}", quantity.name, axis.path);
+                record.add(name, &axis.unit, value);
             }
         }
     }
-    record
+
+    /// The line about where a result is smallest and largest.
+    fn best_text(&self, statistics: &Statistics) -> String {
+        let Some(ends) = statistics.ends else {
+            return String::new();
+        };
+        let design = &self.prepared.design;
+        let [smallest, largest] = ends.map(|index| {
+            let inputs = design.axes.iter().zip(design.values(index));
+            let inputs = inputs.map(|(axis, value)| {
+                let value = format!("{} = {} {}", axis.path, number(value), axis.unit);
+                value.trim_end().to_owned()
+            });
+            inputs.collect::<Vec<_>>().join(", ")
+        });
+        format!("    smallest at {smallest}; largest at {largest}\n")
+    }
+
+    /// The number of failed points, and the first messages.
+    fn failures(&self) -> String {
+        let FailedPoints { count, first } = &self.failed;
+        if *count == 0 {
+            return String::new();
+        }
+        let points = self.stored;
+        let mut text = format!(
+            "  {count} of {points} could not be computed completely; their rows hold the message\n"
+        );
+        for (index, message) in first {
+            text += &format!("    point {index}: {message}\n");
+        }
+        if *count > first.len() {
+            text += &format!("    and {} more\n", count - first.len());
+        }
+        text
+    }
 }
 
 /// The line about a result.
@@ -208,51 +294,6 @@ fn spread_text(heading: &str, spread: &Spread, random: bool) -> String {
             )
         }
     }
-}
-
-/// The points at which a result is smallest and largest; the first of several.
-fn ends(rows: &[Row], k: usize) -> Option<[&Row; 2]> {
-    let value = |row: &&Row| row.result.values[k];
-    let known = || rows.iter().filter(|row| row.result.values[k].is_finite());
-    let smallest = known().min_by(|a, b| value(a).total_cmp(&value(b)))?;
-    let largest = known().reduce(|a, b| if value(&b) > value(&a) { b } else { a })?;
-    Some([smallest, largest])
-}
-
-/// The line about where a result is smallest and largest.
-fn best_text(prepared: &PreparedSweep<'_>, rows: &[Row], k: usize) -> String {
-    let Some(ends) = ends(rows, k).filter(|[a, b]| a.result.values[k] < b.result.values[k]) else {
-        return String::new();
-    };
-    let [smallest, largest] = ends.map(|row| {
-        let inputs = prepared.design.axes.iter().zip(&row.inputs);
-        let inputs = inputs.map(|(axis, value)| {
-            let value = format!("{} = {} {}", axis.path, number(*value), axis.unit);
-            value.trim_end().to_owned()
-        });
-        inputs.collect::<Vec<_>>().join(", ")
-    });
-    format!("    smallest at {smallest}; largest at {largest}\n")
-}
-
-/// The number of failed points, and the first messages.
-fn failures(rows: &[Row]) -> String {
-    let failed = |row: &'_ Row| Some((row.index, row.result.message.clone()?));
-    let failed: Vec<(u64, String)> = rows.iter().filter_map(failed).collect();
-    if failed.is_empty() {
-        return String::new();
-    }
-    let (failures, points) = (failed.len(), rows.len());
-    let mut text = format!(
-        "  {failures} of {points} could not be computed completely; their rows hold the message\n"
-    );
-    for (index, message) in failed.iter().take(MAX_LISTED) {
-        text += &format!("    point {index}: {message}\n");
-    }
-    if failed.len() > MAX_LISTED {
-        text += &format!("    and {} more\n", failed.len() - MAX_LISTED);
-    }
-    text
 }
 
 fn count_u64(number: u64, thing: &str) -> String {

@@ -1,10 +1,12 @@
 //! The figure of a sweep: results over the varied parameters, or their distribution.
 
+use crate::explain::SweepError;
 use crate::number_format::{count, number};
 use crate::output::{self, scene_caption};
-use crate::sweep::compute::{Axis as SweepAxis, Row, SweepQuantity};
+use crate::sweep::compute::{Axis as SweepAxis, SweepQuantity};
 use crate::sweep::output::PreparedSweep;
 use crate::sweep::spread::Spread;
+use crate::sweep::stored::StoredResults;
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Series, Stroke};
 
 /// Maximum number of charts on the page, and of curves in a chart.
@@ -21,35 +23,49 @@ struct ChartGroup<'a> {
     members: Vec<(usize, &'a str)>,
 }
 
-/// The figure of a sweep, and a note about charts that are left out.
-///
-/// # Errors
-/// Why there is no figure.
+/// What there is to see of a sweep.
+pub(crate) enum Drawn {
+    /// The figure, and a note about charts that are left out.
+    Figure(Box<Figure>, Option<String>),
+    /// Why there is no figure.
+    Nothing(&'static str),
+}
+
+/// The figure of a sweep.
 pub(crate) fn figure(
     prepared: &PreparedSweep<'_>,
-    rows: &[Row],
-) -> Result<(Figure, Option<String>), &'static str> {
+    stored: &dyn StoredResults,
+    failed: usize,
+) -> Result<Drawn, SweepError> {
     let design = &prepared.design;
     let is_listed = |k: &usize| !design.axes[*k].is_random() && design.axes[*k].count() > 1;
     let listed: Vec<usize> = (0..design.axes.len()).filter(is_listed).collect();
-    let quantities = prepared.requested.quantities.iter().enumerate();
-    let of_each = |chart: &dyn Fn(usize, &SweepQuantity) -> Option<Chart>| {
-        let charts = quantities.filter_map(|(k, quantity)| chart(k, quantity));
-        charts.collect()
+    let of_each = |chart: &dyn Fn(&[f64], &SweepQuantity) -> Option<Chart>| {
+        let quantities = prepared.requested.quantities.iter().enumerate();
+        let charts = quantities.filter_map(|(k, quantity)| match stored.values(k) {
+            Ok(values) => chart(&values, quantity).map(Ok),
+            Err(error) => Some(Err(error)),
+        });
+        charts.collect::<Result<Vec<Chart>, SweepError>>()
     };
+    let sweep = SweptCurves { prepared, stored };
     let (charts, caption): (Vec<Chart>, _) = match (listed.as_slice(), design.is_random()) {
-        ([], false) => return Err("a single point has no curve"),
-        ([], true) => (of_each(&|k, of| histogram(rows, k, of)), HISTOGRAM),
-        (&[abscissa], true) => (
-            of_each(&|k, of| band(&design.axes, rows, abscissa, k, of)),
-            BAND,
-        ),
-        (&[abscissa], false) => (curves(prepared, rows, abscissa, None), ""),
-        (&[parameter, abscissa], false) => (curves(prepared, rows, abscissa, Some(parameter)), ""),
-        _ => return Err("more than two numbers vary over lists, or two together with random ones"),
+        ([], false) => return Ok(Drawn::Nothing("a single point has no curve")),
+        ([], true) => (of_each(&histogram)?, HISTOGRAM),
+        (&[abscissa], true) => {
+            let (axis, places) = (&design.axes[abscissa], sweep.inputs(abscissa));
+            let of = |values: &[f64], of: &SweepQuantity| band(axis, &places, values, of);
+            (of_each(&of)?, BAND)
+        }
+        (&[abscissa], false) => (sweep.charts(abscissa, None)?, ""),
+        (&[parameter, abscissa], false) => (sweep.charts(abscissa, Some(parameter))?, ""),
+        _ => {
+            let why = "more than two numbers vary over lists, or two together with random ones";
+            return Ok(Drawn::Nothing(why));
+        }
     };
     if charts.is_empty() {
-        return Err("no result has a value");
+        return Ok(Drawn::Nothing("no result has a value"));
     }
     let all = count(charts.len(), "chart");
     let note = (charts.len() > MAX_CHARTS).then(|| {
@@ -60,25 +76,24 @@ pub(crate) fn figure(
         name: "sweep".to_owned(),
         title: format!("Sweep over {}", axis_names(&design.axes)),
         caption: scene_caption(prepared.scene, caption),
-        provenance: method_text(prepared, rows),
+        provenance: method_text(prepared, stored.points().count(), failed),
         columns: 2,
         panels: charts.map(Into::into).collect(),
     };
-    Ok((figure, note))
+    Ok(Drawn::Figure(Box::new(figure), note))
 }
 
 const HISTOGRAM: &str = "Histogram of each result; the band from the 2.5 % to the 97.5 % quantile holds 95 % of the samples.";
 
 const BAND: &str = "Mean of the samples at each value, with the band between the 2.5 % and the 97.5 % quantile, which holds 95 % of them.";
 
-fn method_text(prepared: &PreparedSweep<'_>, rows: &[Row]) -> String {
-    let failed = rows.iter().filter(|row| row.result.message.is_some());
-    let points = count(rows.len(), "point");
+fn method_text(prepared: &PreparedSweep<'_>, stored: usize, failed: usize) -> String {
+    let points = count(stored, "point");
     let seed = match prepared.design.is_random() {
         true => format!(", seed {}", prepared.design.seed),
         false => String::new(),
     };
-    match failed.count() {
+    match failed {
         0 => format!("{points}{seed}"),
         failed => format!("{points}{seed}, {failed} of them without all results"),
     }
@@ -157,9 +172,8 @@ fn chart(name: &str, unit: &str, x: Axis, series: Vec<Series>) -> Option<Chart> 
         .then(|| output::chart(title, x, Axis::new(label, unit_text(unit)), series))
 }
 
-/// The values of an axis that get curves: the first, the last, and some between them.
-fn chosen_values(rows: &[Row], axis: usize) -> Vec<f64> {
-    let mut values: Vec<f64> = rows.iter().map(|row| row.inputs[axis]).collect();
+/// The values of a parameter that get curves: the first, the last, and some between them.
+fn chosen_values(mut values: Vec<f64>) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     values.dedup();
     let last = values.len().saturating_sub(1);
@@ -171,50 +185,76 @@ fn chosen_values(rows: &[Row], axis: usize) -> Vec<f64> {
     chosen
 }
 
-/// Curves over one axis; of another, a few of its values.
-fn curves(
-    prepared: &PreparedSweep<'_>,
-    rows: &[Row],
-    abscissa: usize,
-    parameter: Option<usize>,
-) -> Vec<Chart> {
-    let axes = &prepared.design.axes;
-    let line = |index: usize, of: &dyn Fn(&Row) -> bool| {
-        let points = rows.iter().filter(|row| of(row));
-        sorted(points.map(|row| [row.inputs[abscissa], row.result.values[index]]))
-    };
-    let one = |group: &ChartGroup<'_>| {
-        let members = group.members.iter();
+/// The curves of a sweep over lists.
+struct SweptCurves<'a> {
+    prepared: &'a PreparedSweep<'a>,
+    stored: &'a dyn StoredResults,
+}
+
+impl SweptCurves<'_> {
+    /// The values of an axis at all stored points.
+    fn inputs(&self, axis: usize) -> Vec<f64> {
+        let design = &self.prepared.design;
+        let indices = self.stored.points().indices();
+        indices.map(|index| design.values(index)[axis]).collect()
+    }
+
+    /// Curves over one axis; of another, a few of its values.
+    fn charts(&self, abscissa: usize, parameter: Option<usize>) -> Result<Vec<Chart>, SweepError> {
+        let axes = &self.prepared.design.axes;
+        let places = self.inputs(abscissa);
+        let parameter = parameter.map(|axis| (&axes[axis], self.inputs(axis)));
+        let mut charts = Vec::new();
+        for group in chart_groups(&self.prepared.requested.quantities) {
+            let series = self.series(&group, &places, parameter.as_ref())?;
+            let chart = chart(group.title, group.unit, axis_of(&axes[abscissa]), series);
+            let Some(mut chart) = chart else { continue };
+            if let Some((axis, _)) = &parameter {
+                chart.title += &format!(", by {}", axis.path);
+            }
+            charts.push(chart);
+        }
+        Ok(charts)
+    }
+
+    fn series(
+        &self,
+        group: &ChartGroup<'_>,
+        places: &[f64],
+        parameter: Option<&(&SweepAxis, Vec<f64>)>,
+    ) -> Result<Vec<Series>, SweepError> {
+        let member = |&(index, member): &(usize, _)| Ok((member, self.stored.values(index)?));
+        let members: Result<Vec<(&str, Vec<f64>)>, SweepError> =
+            group.members.iter().map(member).collect();
+        let members = members?;
+        let points = |values: &[f64]| {
+            let points = places.iter().zip(values);
+            points.map(|(x, y)| [*x, *y]).collect::<Vec<_>>()
+        };
+        let Some((axis, of_points)) = parameter else {
+            let line = |(name, values): &(&str, Vec<f64>)| {
+                Series::line(*name, sorted(points(values).into_iter()))
+            };
+            return Ok(members.iter().map(line).collect());
+        };
         let mut series = Vec::new();
-        match parameter {
-            None => series.extend(members.map(|&(index, member)| {
-                let points = line(index, &|_| true);
-                Series::line(member, points)
-            })),
-            Some(parameter) => {
-                let unit = unit_text(&axes[parameter].unit);
-                for (k, value) in chosen_values(rows, parameter).into_iter().enumerate() {
-                    series.extend(members.clone().map(|&(index, member)| {
-                        let name = format!("{} {unit} {member}", number(value));
-                        let points = line(index, &|row| row.inputs[parameter] == value);
-                        let stroke = match member {
-                            "min" | "lower" => Stroke::Dashed,
-                            _ => Stroke::Solid,
-                        };
-                        let line = Series::line(name.trim_end(), points).stroke(stroke);
-                        line.color(Paint::Palette(k))
-                    }));
-                }
+        let unit = unit_text(&axis.unit);
+        for (k, value) in chosen_values(of_points.clone()).into_iter().enumerate() {
+            for (member, values) in &members {
+                let name = format!("{} {unit} {member}", number(value));
+                let on_curve = points(values).into_iter().zip(of_points);
+                let on_curve = on_curve.filter(|(_, parameter)| **parameter == value);
+                let points = sorted(on_curve.map(|(point, _)| point));
+                let stroke = match *member {
+                    "min" | "lower" => Stroke::Dashed,
+                    _ => Stroke::Solid,
+                };
+                let line = Series::line(name.trim_end(), points).stroke(stroke);
+                series.push(line.color(Paint::Palette(k)));
             }
         }
-        let mut chart = chart(group.title, group.unit, axis_of(&axes[abscissa]), series)?;
-        if let Some(parameter) = parameter {
-            chart.title += &format!(", by {}", axes[parameter].path);
-        }
-        Some(chart)
-    };
-    let groups = chart_groups(&prepared.requested.quantities);
-    groups.iter().filter_map(one).collect()
+        Ok(series)
+    }
 }
 
 fn sorted(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
@@ -225,19 +265,15 @@ fn sorted(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
 
 /// Mean and limits of the samples of a result over one axis.
 fn band(
-    axes: &[SweepAxis],
-    rows: &[Row],
-    abscissa: usize,
-    index: usize,
+    axis: &SweepAxis,
+    places: &[f64],
+    values: &[f64],
     quantity: &SweepQuantity,
 ) -> Option<Chart> {
-    let mut by_value: Vec<&Row> = rows.iter().collect();
-    by_value.sort_by(|a, b| a.inputs[abscissa].total_cmp(&b.inputs[abscissa]));
-    let groups = by_value.chunk_by(|a, b| a.inputs[abscissa] == b.inputs[abscissa]);
-    let spread = |group: &[&Row]| {
-        let values = group.iter().map(|row| row.result.values[index]);
-        Some((group[0].inputs[abscissa], Spread::of(values)?))
-    };
+    let points = places.iter().zip(values).map(|(x, y)| [*x, *y]);
+    let points = sorted(points);
+    let groups = points.chunk_by(|a, b| a[0] == b[0]);
+    let spread = |group: &[[f64; 2]]| Some((group[0][0], Spread::of(group.iter().map(|p| p[1]))?));
     let spreads: Vec<(f64, Spread)> = groups.filter_map(spread).collect();
     let line = |name: &str, of: &dyn Fn(&Spread) -> f64| {
         let points = spreads.iter().map(|(x, spread)| [*x, of(spread)]);
@@ -248,20 +284,18 @@ fn band(
         line("97.5 %", &|s| s.quantiles[1]).stroke(Stroke::Dashed),
         line("2.5 %", &|s| s.quantiles[0]).stroke(Stroke::Dashed),
     ];
-    let x = axis_of(&axes[abscissa]);
-    chart(&quantity.name, &quantity.unit, x, series)
+    chart(&quantity.name, &quantity.unit, axis_of(axis), series)
 }
 
 /// The histogram of a result.
-fn histogram(rows: &[Row], index: usize, quantity: &SweepQuantity) -> Option<Chart> {
-    let values = || rows.iter().map(|row| row.result.values[index]);
-    let spread = Spread::of(values())?;
+fn histogram(values: &[f64], quantity: &SweepQuantity) -> Option<Chart> {
+    let spread = Spread::of(values.iter().copied())?;
     let width = spread.max - spread.min;
     // A result that does not depend on the inputs varies by rounding only.
     if width <= 1e-12 * spread.max.abs().max(spread.min.abs()) {
         return None;
     }
-    let numbers = values().filter(|v| v.is_finite());
+    let numbers = values.iter().copied().filter(|v| v.is_finite());
     let total = numbers.clone().count();
     // Rice's rule.
     let bins = ((2.0 * (total as f64).cbrt()) as usize).clamp(BIN_COUNTS[0], BIN_COUNTS[1]);

@@ -8,11 +8,15 @@ mod figure;
 #[cfg(feature = "output")]
 pub(crate) mod output;
 #[cfg(feature = "output")]
+mod parts;
+#[cfg(feature = "output")]
 mod spread;
 #[cfg(feature = "output")]
 mod store;
 #[cfg(feature = "output")]
 mod store_check;
+#[cfg(feature = "output")]
+mod stored;
 #[cfg(test)]
 #[cfg(feature = "output")]
 mod tests;

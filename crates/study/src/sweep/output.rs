@@ -2,8 +2,9 @@
 //!
 //! ```text
 //! --vary … ── Axis ── Design: point k → values ─┐            (rayon, any order)
-//! scene, --result ── RequestedQuantities ───────┴→ PointResult ── channel ── Store (one writer)
-//!                                                                      └→ Table, figures, summary
+//! scene, --result ── RequestedQuantities ───────┴→ PointResult ─┬ channel ── Store (one writer)
+//!                                                               └ PartFolder (a file for each part)
+//!                                              StoredResults → tables, figures, summary
 //! ```
 
 use super::export;
@@ -13,8 +14,10 @@ use crate::progress::{Progress, Step};
 use crate::sweep::compute::{
     Axis, Design, RequestedQuantities, Row, Shard, VariantFamily, VariationKind, block_length,
 };
-use crate::sweep::store::{SCENE_TEXT, SHARD, Store, StudyIdentity};
+use crate::sweep::parts::PartFolder;
+use crate::sweep::store::{SCENE_TEXT, SHARD, Store, StoreFault, StudyIdentity};
 use crate::sweep::store_check::ExpectedPoints;
+use crate::sweep::stored::{LoadedRows, StoredResults as _};
 use dwell_report::{Column, TableFormat};
 use dwell_scene::Scene;
 use rayon::prelude::*;
@@ -29,6 +32,24 @@ const QUEUE_LENGTH: usize = 4096;
 const MAX_COLUMNS: usize = 1900;
 /// The shard entry of a file that holds the whole study.
 const WHOLE_STUDY: &str = "all";
+
+/// Points from which a study is stored in Parquet files unless it is said otherwise: SQLite's single writer would then be
+/// what takes the time.
+const PARQUET_FROM: u64 = 100_000;
+/// Maximum number of rows in memory, for SQLite files and tables.
+const MAX_ROWS: u64 = 20_000_000;
+/// Points of a Parquet file where a variant takes some microseconds, and where each is compiled: what an interruption
+/// may lose is computed again in seconds.
+const PART_LENGTHS: [u64; 2] = [65_536, 4096];
+
+/// The kind of file that the rows of a sweep are stored in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RowStore {
+    /// One SQLite file.
+    Sqlite,
+    /// A folder of Parquet files.
+    Parquet,
+}
 
 /// The definition of a parameter sweep.
 #[derive(Debug, Clone, Copy)]
@@ -46,6 +67,8 @@ pub struct ParameterSweep<'a> {
     pub shard: Option<Shard>,
     /// Compute nothing; export the stored rows in this format.
     pub export: Option<TableFormat>,
+    /// Where rows are stored; `None` chooses by the number of points.
+    pub store: Option<RowStore>,
     /// The output folder.
     pub folder: &'a Path,
 }
@@ -59,6 +82,7 @@ pub(crate) struct PreparedSweep<'a> {
     pub(crate) study: StudyIdentity,
     pub(crate) inputs: Vec<String>,
     pub(crate) results: Vec<String>,
+    pub(crate) store: RowStore,
 }
 
 impl<'a> PreparedSweep<'a> {
@@ -77,6 +101,18 @@ impl<'a> PreparedSweep<'a> {
         if let (Some(shard), Some(_)) = (sweep.shard, sweep.export) {
             let message = "an export gathers all shards: leave --shard";
             return refuse(format!("{message} {shard} out"));
+        }
+        let by_size = match design.points < PARQUET_FROM {
+            true => RowStore::Sqlite,
+            false => RowStore::Parquet,
+        };
+        let store = sweep.store.unwrap_or(by_size);
+        if design.points > MAX_ROWS && (store == RowStore::Sqlite || sweep.export.is_some()) {
+            let points = design.points;
+            let limit = "are more than an SQLite file or a table may have";
+            return refuse(format!(
+                "{points} points {limit} ({MAX_ROWS}): leave --store and --export out, and read the Parquet files"
+            ));
         }
         let exact: Vec<String> = design.axes.iter().map(exact_text).collect();
         let shard = sweep.shard.map(|shard| shard.to_string());
@@ -106,7 +142,37 @@ impl<'a> PreparedSweep<'a> {
             study,
             inputs,
             results,
+            store,
         })
+    }
+
+    /// The SQLite file of the shard, or of the whole study.
+    fn sqlite_path(&self) -> PathBuf {
+        let name = match self.sweep.shard {
+            None => format!("{}-sweep.sqlite", self.scene.name),
+            Some(Shard { part, of }) => format!("{}-sweep-{part}-of-{of}.sqlite", self.scene.name),
+        };
+        self.sweep.folder.join(name)
+    }
+
+    /// The folder of Parquet files, which all shards share.
+    fn parquet_path(&self) -> PathBuf {
+        self.sweep.folder.join(format!("{}-sweep", self.scene.name))
+    }
+
+    /// Rows of this scene in the other kind of file would be left out without a word.
+    fn refuse_other_store(&self) -> Result<(), SweepError> {
+        let (other, option) = match self.store {
+            RowStore::Sqlite => (self.parquet_path(), "parquet"),
+            RowStore::Parquet => (self.sqlite_path(), "sqlite"),
+        };
+        if !other.exists() {
+            return Ok(());
+        }
+        let fault = format!(
+            "rows of a sweep of this scene are stored there: continue it with --store {option}, or move it"
+        );
+        Err(StoreFault::Reason(fault).with_path(&other))
     }
 
     /// Opens the file of a shard, or that of the whole study.
@@ -141,11 +207,20 @@ pub fn sweep(
         path: sweep.folder.to_owned(),
         reason: format!("the folder cannot be created: {e}"),
     })?;
-    let name = match sweep.shard {
-        None => format!("{}-sweep.sqlite", scene.name),
-        Some(Shard { part, of }) => format!("{}-sweep-{part}-of-{of}.sqlite", scene.name),
-    };
-    let path = sweep.folder.join(name);
+    prepared.refuse_other_store()?;
+    match prepared.store {
+        RowStore::Sqlite => sweep_to_sqlite(&prepared, progress),
+        RowStore::Parquet => sweep_to_parquet(&prepared, progress),
+    }
+}
+
+/// A sweep whose rows go to an SQLite file.
+fn sweep_to_sqlite(
+    prepared: &PreparedSweep<'_>,
+    progress: Progress<'_>,
+) -> Result<Outcome, StudyError> {
+    let (scene, sweep) = (prepared.scene, prepared.sweep);
+    let path = prepared.sqlite_path();
     let mut store = prepared.open(&path, sweep.shard)?;
     let mut existing: BTreeSet<u64> = store.indices()?.into_iter().collect();
     let existing_count = existing.len();
@@ -165,7 +240,7 @@ pub fn sweep(
     let mut computed = 0;
     if sweep.export.is_none() {
         let pending: Vec<u64> = all().filter(|k| !existing.contains(k)).collect();
-        compute(&prepared, &mut store, &pending, progress)?;
+        compute(prepared, &mut store, &pending, progress)?;
         computed = pending.len();
     }
     let rows = store.rows()?;
@@ -175,7 +250,56 @@ pub fn sweep(
         computed,
         missing: all().count().saturating_sub(rows.len()),
     };
-    export::report_sweep(&prepared, &path, &rows, counts)
+    export::report_sweep(prepared, &path, &LoadedRows::new(rows), counts)
+}
+
+/// A sweep whose rows go to Parquet files: a thread that has computed a part writes it.
+fn sweep_to_parquet(
+    prepared: &PreparedSweep<'_>,
+    progress: Progress<'_>,
+) -> Result<Outcome, StudyError> {
+    let (design, requested) = (&prepared.design, &prepared.requested);
+    let family = VariantFamily::new(prepared.scene, design, requested);
+    let length = PART_LENGTHS[usize::from(family.is_none())];
+    let mut study = prepared.study.clone();
+    study.retain(|(key, _)| *key != SHARD);
+    study.push(("part_length", length.to_string()));
+    let headings: [&[String]; 2] = [&prepared.inputs, &prepared.results];
+    let path = prepared.parquet_path();
+    let shard = prepared.sweep.shard;
+    let mut folder = PartFolder::open(&path, &study, headings, (design, length, shard))?;
+    let missing = folder.missing();
+    let pending: u64 = missing.iter().map(|part| part.end - part.start).sum();
+    let pending = usize::try_from(pending).unwrap_or(usize::MAX);
+    let mut counts = export::Counts {
+        existing: folder.points().count(),
+        imported: 0,
+        computed: 0,
+        missing: pending,
+    };
+    if prepared.sweep.export.is_none() {
+        let study = (prepared.scene, design, family.as_ref());
+        missing.par_iter().try_for_each(|part| {
+            let indices: Vec<u64> = part.clone().collect();
+            let blocks = indices.par_chunks(block_length(family.as_ref()));
+            let rows = blocks.flat_map_iter(|block| {
+                let mut rows = Vec::with_capacity(block.len());
+                requested.points(study, block, &mut |row| {
+                    rows.push(row);
+                    progress(Step {
+                        total: pending,
+                        done: "points",
+                    });
+                });
+                rows
+            });
+            folder.write(part, &rows.collect::<Vec<Row>>())
+        })?;
+        folder.complete();
+        (counts.computed, counts.missing) = (pending, 0);
+    }
+    folder.check_inputs()?;
+    export::report_sweep(prepared, &path, &folder, counts)
 }
 
 /// Computes points on all cores; a single writer stores them as they arrive.

@@ -19,20 +19,20 @@ pub(crate) struct Spread {
 impl Spread {
     /// Of the finite values; `None` if there are none.
     pub(crate) fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
-        let mut sorted: Vec<f64> = values.filter(|v| v.is_finite()).collect();
-        sorted.sort_by(f64::total_cmp);
-        let (min, max) = (*sorted.first()?, *sorted.last()?);
-        let count = sorted.len() as f64;
+        let mut values: Vec<f64> = values.filter(|v| v.is_finite()).collect();
+        let min = values.iter().copied().min_by(f64::total_cmp)?;
+        let max = values.iter().copied().max_by(f64::total_cmp)?;
+        let count = values.len() as f64;
         // Relative to the minimum, so that a small spread keeps its digits.
-        let mean = min + sorted.iter().map(|v| v - min).sum::<f64>() / count;
-        let squares: f64 = sorted.iter().map(|v| (v - mean).powi(2)).sum();
+        let mean = min + sum(&values, |v| v - min) / count;
+        let squares = sum(&values, |v| (v - mean).powi(2));
         Some(Self {
             min,
             max,
             mean,
-            rms: (sorted.iter().map(|v| v * v).sum::<f64>() / count).sqrt(),
-            deviation: (sorted.len() > 1).then(|| (squares / (count - 1.0)).sqrt()),
-            quantiles: [0.025, 0.975].map(|probability| quantile(&sorted, probability)),
+            rms: (sum(&values, |v| v * v) / count).sqrt(),
+            deviation: (values.len() > 1).then(|| (squares / (count - 1.0)).sqrt()),
+            quantiles: [0.025, 0.975].map(|probability| quantile(&mut values, probability)),
             count,
         })
     }
@@ -44,11 +44,20 @@ impl Spread {
     }
 }
 
-/// The quantile of sorted values, linearly between them (type 7 of Hyndman and Fan, 1996).
-fn quantile(sorted: &[f64], probability: f64) -> f64 {
-    let position = probability * (sorted.len() - 1) as f64;
+/// A sum in parts, so that the roundings of 10⁸ terms do not add up.
+fn sum(values: &[f64], term: impl Fn(f64) -> f64) -> f64 {
+    let parts = values.chunks(4096);
+    let parts = parts.map(|part| part.iter().map(|v| term(*v)).sum::<f64>());
+    parts.sum()
+}
+
+/// The quantile of values in any order, linearly between two of them (type 7 of Hyndman and Fan, 1996).
+fn quantile(values: &mut [f64], probability: f64) -> f64 {
+    let position = probability * (values.len() - 1) as f64;
     let below = position.floor() as usize;
-    let [low, high] = [below, below + 1].map(|k| sorted[k.min(sorted.len() - 1)]);
+    let (_, low, above) = values.select_nth_unstable_by(below, f64::total_cmp);
+    let low = *low;
+    let high = above.iter().copied().min_by(f64::total_cmp).unwrap_or(low);
     low + (position - below as f64) * (high - low)
 }
 

@@ -7,7 +7,7 @@
 
 use crate::explain::SweepError;
 use crate::sweep::compute::{PointResult, Row};
-use crate::sweep::store_check::{ExpectedPoints, check_file, checksum, damaged};
+use crate::sweep::store_check::{ExpectedPoints, check_file, checksum, damage};
 use rusqlite::types::Value;
 use rusqlite::{Connection, ErrorCode, params_from_iter};
 use std::collections::HashMap;
@@ -211,15 +211,23 @@ fn compare(connection: &Connection, study: &StudyIdentity) -> Result<(), StoreFa
     let mut statement = connection.prepare("SELECT \"key\", value FROM study")?;
     let rows = statement.query_map((), |row| Ok((row.get(0)?, row.get(1)?)))?;
     let stored: HashMap<String, String> = rows.collect::<Result<_, _>>()?;
+    study_difference(&stored, study).map_or(Ok(()), Err)
+}
+
+/// In what a stored study differs from this one.
+pub(crate) fn study_difference(
+    stored: &HashMap<String, String>,
+    study: &StudyIdentity,
+) -> Option<StoreFault> {
     for (key, expected) in study {
         let found = stored.get(*key).map_or("", String::as_str);
         // The scene's hash is independent of line ends and a byte order mark, its text is not.
         let text = |text: &str| text.trim_start_matches('\u{feff}').replace("\r\n", "\n");
         if *key == SCENE_TEXT && text(found) != text(expected) {
-            return damaged("the scene's text is not that of its hash");
+            return Some(damage("the scene's text is not that of its hash"));
         }
         if *key != SCENE_TEXT && found != expected {
-            return Err(StoreFault::Differs(match *key {
+            return Some(StoreFault::Differs(match *key {
                 "scene_sha256" => "the scene has changed since".to_owned(),
                 key => {
                     let [found, expected] = [found, expected].map(shortened);
@@ -228,7 +236,7 @@ fn compare(connection: &Connection, study: &StudyIdentity) -> Result<(), StoreFa
             }));
         }
     }
-    Ok(())
+    None
 }
 
 /// A value in a message, shortened if it is long.

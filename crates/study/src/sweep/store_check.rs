@@ -72,7 +72,7 @@ pub(crate) fn check_file(
 ) -> Result<(), StoreFault> {
     let result: String = connection.query_row("PRAGMA quick_check(1)", (), |row| row.get(0))?;
     if result != "ok" {
-        return damaged(&result);
+        return Err(damage(&result));
     }
     let mut statement = connection.prepare("SELECT name, sql FROM sqlite_schema ORDER BY rowid")?;
     let rows = statement.query_map((), |row| Ok((row.get(0)?, row.get(1)?)))?;
@@ -84,13 +84,11 @@ pub(crate) fn check_file(
             .all(|(a, b)| a.0 == b.0 && a.1 == b.1);
     match same {
         true => Ok(()),
-        false => damaged("its tables are not those of this study"),
+        false => Err(damage("its tables are not those of this study")),
     }
 }
 
 /// A file that is damaged, and what to do.
-pub(crate) fn damaged<T>(fault: &str) -> Result<T, StoreFault> {
-    Err(StoreFault::Reason(format!(
-        "the file is damaged ({fault}): {REMEDY}"
-    )))
+pub(crate) fn damage(fault: &str) -> StoreFault {
+    StoreFault::Reason(format!("the file is damaged ({fault}): {REMEDY}"))
 }

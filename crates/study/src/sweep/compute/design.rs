@@ -5,8 +5,8 @@ use crate::explain::SweepError;
 use crate::sweep::compute::Axis;
 use dwell_scene::Scene;
 
-/// Maximum number of points, all of which are in memory at export.
-const MAX_POINTS: u64 = 20_000_000;
+/// Maximum number of points: a result of all of them, 8 bytes each, is in memory for its mean and quantiles.
+const MAX_POINTS: u64 = 1_000_000_000;
 
 /// The points of a sweep: every combination of listed values, the first axis varying slowest, and for each the
 /// same random samples, so that combinations compare without noise.

@@ -95,12 +95,14 @@ pub(crate) struct RequestedQuantities {
 }
 
 /// The results of a point: a value for each quantity, NaN where there is none, and the reason.
+#[derive(Clone)]
 pub(crate) struct PointResult {
     pub(crate) values: Vec<f64>,
     pub(crate) message: Option<String>,
 }
 
 /// A finished point.
+#[derive(Clone)]
 pub(crate) struct Row {
     #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for the store"))]
     pub(crate) index: u64,
