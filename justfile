@@ -85,18 +85,25 @@ peers:
 octave:
     python3 validation/foreign/run.py
 
+# Ten million designs in Parquet files by a run that is killed twice, read back by Polars, DuckDB and pandas as docs/sweep.md shows. Installs these into a scratch environment
+[group('care')]
+designs points="10000000":
+    cargo build --release --workspace --bins
+    python3 validation/designs/run.py {{ points }}
+
 # Remakes all reference values (or those of the named cases) by the independent program and compares them digit by digit; reports/reference.md. Installs mpmath into a scratch environment; takes minutes
 [group('care')]
 reference *cases:
     python3 validation/reference/run.py {{ cases }}
 
-# What takes too long for each change: 1e5 revolutions, 1000 pulses, 200 random machines, new random draws in every property, 100 000 mutated scenes, peers, the reference values, the dependencies' advisories
+# What takes too long for each change: 1e5 revolutions, 1000 pulses, 200 random machines, new random draws in every property, 100 000 mutated scenes, ten million designs, peers, the reference values, the dependencies' advisories
 [group('care')]
 nightly: validate-slow mutations computing
     PROPTEST_CASES=2000 cargo test --release --workspace
     just fuzz 100000 "$(date +%j)"
     just peers deny
     just octave
+    just designs
     just reference
 
 # What the build server runs

@@ -16,6 +16,7 @@ mod rows;
 mod studies;
 mod summaries;
 mod sweep;
+mod sweep_parts;
 mod test_dir;
 mod trajectories;
 mod written_files;

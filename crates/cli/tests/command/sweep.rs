@@ -77,7 +77,7 @@ fn kill_while_writing(dir: &TestDir, arguments: &[&str], file: &Path, later: u64
 fn a_killed_run_goes_on_and_its_rows_are_those_of_an_unbroken_one() {
     let dir = test_dir();
     let points = 20 * 6000;
-    let broken = arguments("6000", &["--out", "broken"]);
+    let broken = arguments("6000", &["--out", "broken", "--store", "sqlite"]);
     let file = dir.0.join("broken/four-bar-sweep.sqlite");
     let mut kept: Vec<Vec<Value>> = Vec::new();
     let mut killed = 0;
@@ -106,7 +106,7 @@ fn a_killed_run_goes_on_and_its_rows_are_those_of_an_unbroken_one() {
     );
     assert!(run.out.contains(&counts), "{} not in {}", counts, run.out);
 
-    let run = dir.run(&arguments("6000", &["--out", "whole"]));
+    let run = dir.run(&arguments("6000", &["--out", "whole", "--store", "sqlite"]));
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     let complete = rows(&dir.0.join("whole/four-bar-sweep.sqlite"));
     assert_eq!(complete.len(), points);

@@ -1,7 +1,7 @@
 //! The results of a large sweep in a folder of Parquet files.
 //!
 //! ```text
-//! SCENE-sweep/study.toml                          what the study is
+//! SCENE-sweep/_study.toml                         what the study is
 //! SCENE-sweep/part-0000000000-0000065535.parquet  the rows of these points
 //! ```
 //!
@@ -22,9 +22,9 @@ use std::fs;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// The definition of the study, beside its parts.
-const STUDY_FILE: &str = "study.toml";
-/// Ending of the name of a part that is being written.
+/// The definition of the study, beside its parts: readers of a folder of Parquet files leave out names with an underscore.
+const STUDY_FILE: &str = "_study.toml";
+/// Ending of the name of a file that is being written.
 const UNFINISHED: &str = "unfinished";
 
 /// The folder of a study.
@@ -104,8 +104,7 @@ impl<'a> PartFolder<'a> {
     /// Writes a part. Another process may write the same one: both have the same rows.
     pub(crate) fn write(&self, part: &Range<u64>, rows: &[Row]) -> Result<(), SweepError> {
         let file = self.file(part);
-        let unfinished = format!("parquet.{}.{UNFINISHED}", std::process::id());
-        let unfinished = file.with_extension(unfinished);
+        let unfinished = unfinished(&file);
         let write = || -> Result<(), String> {
             let written = self.format.write(&unfinished, rows);
             written.map_err(|e| e.to_string())?;
@@ -268,14 +267,20 @@ fn check_study(path: &Path, study: &StudyIdentity) -> Result<(), SweepError> {
                 entries.map(|(key, value)| ((*key).to_owned(), toml::Value::from(value.as_str())));
             let table: toml::Table = entries.collect();
             // Shards may write it at the same time, with the same content.
-            let unfinished =
-                path.with_extension(format!("toml.{}.{UNFINISHED}", std::process::id()));
+            let unfinished = unfinished(path);
             let text = toml::to_string_pretty(&table).map_err(|e| reason(e.to_string()))?;
             let written = fs::write(&unfinished, text).and_then(|()| fs::rename(&unfinished, path));
             written.map_err(|e| reason(format!("cannot be written: {e}")))
         }
         Err(error) => Err(reason(format!("cannot be read: {error}"))),
     }
+}
+
+/// Where this process writes a file before it has its name.
+fn unfinished(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let name = name.trim_start_matches('_');
+    path.with_file_name(format!("_{name}.{}.{UNFINISHED}", std::process::id()))
 }
 
 /// The hash of a study's definition, by which its parts are known.

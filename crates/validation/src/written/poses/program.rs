@@ -1,6 +1,6 @@
 //! Runs the program as a user does: a process, a scene in a folder of its own, and the files that it leaves there.
 
-use super::read_files::{csv_rows, npz_rows, sqlite_rows};
+use super::read_files::{add_parquet_rows, csv_rows, npz_rows, sqlite_rows};
 use super::rows::Rows;
 use std::fs;
 use std::io;
@@ -108,6 +108,22 @@ impl Run {
     pub(crate) fn sqlite(&self, end: &str, table: &str) -> Result<Rows, String> {
         let file = format!("{}{end}", self.name);
         sqlite_rows(&self.folder.join(&file), table).map_err(|e| format!("{file}: {e}"))
+    }
+
+    /// The columns of numbers of the Parquet files in a folder.
+    pub(crate) fn parquet(&self, end: &str) -> Result<Rows, String> {
+        let folder = format!("{}{end}", self.name);
+        let fault = |e: &dyn std::fmt::Display| format!("{folder}: {e}; {}", self.messages.trim());
+        let entries = fs::read_dir(self.folder.join(&folder)).map_err(|e| fault(&e))?;
+        let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+        let is_part = |path: &PathBuf| path.extension().is_some_and(|end| end == "parquet");
+        let mut parts: Vec<PathBuf> = paths.filter(is_part).collect();
+        parts.sort();
+        let mut rows = Rows::default();
+        for part in parts {
+            add_parquet_rows(&part, &mut rows).map_err(|e| fault(&e))?;
+        }
+        Ok(rows)
     }
 
     /// The summary for programs.

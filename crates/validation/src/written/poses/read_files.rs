@@ -1,9 +1,14 @@
-//! Readers of written tables that share nothing with their writers: CSV, NumPy's archives, and SQLite by SQLite itself.
+//! Readers of written tables: CSV and NumPy's archives by code that shares nothing with their writers, SQLite by SQLite itself, and Parquet files by the crate
+//! that wrote them (`just designs` reads them by other programs).
 
 use super::rows::Rows;
+use parquet::errors::ParquetError;
+use parquet::file::reader::{FileReader as _, SerializedFileReader};
+use parquet::record::Field;
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, OpenFlags};
 use std::collections::BTreeMap;
+use std::fs::File;
 use std::path::Path;
 
 /// The columns of a CSV file without quotes inside numbers; the units in brackets are not part of the names.
@@ -59,6 +64,24 @@ pub(crate) fn sqlite_rows(path: &Path, table: &str) -> rusqlite::Result<Rows> {
         rows.count += 1;
     }
     Ok(rows)
+}
+
+/// Adds the columns of numbers of a Parquet file to those of the files before it; what is null is no number.
+pub(crate) fn add_parquet_rows(path: &Path, rows: &mut Rows) -> Result<(), ParquetError> {
+    let reader = SerializedFileReader::new(File::open(path)?)?;
+    for row in reader.get_row_iter(None)? {
+        for (name, cell) in row?.get_column_iter() {
+            let value = match cell {
+                Field::Double(value) => *value,
+                Field::Long(value) => *value as f64,
+                _ => f64::NAN,
+            };
+            let name = name.split(" [").next().unwrap_or("").to_owned();
+            rows.columns.entry(name).or_default().push(value);
+        }
+        rows.count += 1;
+    }
+    Ok(())
 }
 
 /// The names of the columns with their units; none has "".

@@ -26,15 +26,18 @@ pub(crate) fn beyond_rows(values: &[f64], extremum: f64, sign: f64) -> (f64, f64
     ((-above).max(above - 0.25 * bend).max(0.0), scale)
 }
 
-/// The scene with another number.
+/// The scene with another number; in an array, by its place.
 pub(crate) fn with_number(scene: &Table, path: &[&str], number: f64) -> Option<Table> {
     let mut changed = scene.clone();
-    let (last, sections) = path.split_last()?;
-    let mut table = &mut changed;
-    for section in sections {
-        table = table.get_mut(*section)?.as_table_mut()?;
+    let (first, keys) = path.split_first()?;
+    let mut value = changed.get_mut(*first)?;
+    for key in keys {
+        value = match value {
+            Value::Array(values) => values.get_mut(key.parse::<usize>().ok()?)?,
+            other => other.get_mut(*key)?,
+        };
     }
-    *table.get_mut(*last)? = Value::Float(number);
+    *value = Value::Float(number);
     Some(changed)
 }
 

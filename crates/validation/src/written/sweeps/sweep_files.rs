@@ -1,5 +1,5 @@
-//! The findings over a sweep of a case: masses of its bodies, one by a grid, one drawn of a normal and one of an even
-//! distribution.
+//! The findings over sweeps of a case: masses of its bodies, one by a grid, one drawn of a normal and one of an even
+//! distribution; and a coordinate of one of its points.
 
 use super::draws::{distance, normal, normal_distribution, uniform};
 use super::statistics::Stated;
@@ -13,7 +13,7 @@ use crate::written::poses::scene_text::{Draws, requests_everything, text_of};
 use crate::written::poses::variants::{beyond_rows, with_number};
 use dwell_findings::Finding;
 use std::path::Path;
-use toml::Table;
+use toml::{Table, Value};
 
 /// Samples of every value of the grid.
 const SAMPLES: usize = 256;
@@ -64,12 +64,15 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
     }
     let counts = [SAMPLES.to_string(), seed.to_string()];
     arguments.extend(["--samples", &counts[0], "--seed", &counts[1]].map(str::to_owned));
-    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let mut arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let run = program.run("sweep", &text_of(&everything)?, &arguments);
     let run = run.map_err(|e| e.to_string())?;
     let rows = run.csv("-sweep.csv")?;
     compare_draws(compared, &variations, &rows, seed);
-    compared.merge("written-sweep-files", same_files(&run, &rows)?);
+    arguments.extend(["--store", "parquet"]);
+    let stored = program.run("sweep-parts", &text_of(&everything)?, &arguments);
+    let stored = stored.map_err(|e| e.to_string())?;
+    compared.merge("written-sweep-files", same_files([&run, &stored], &rows)?);
     let summary = run.json("-sweep.json")?;
     let inputs: Vec<String> = variations.iter().map(Variation::path).collect();
     let mut stated = Stated::default();
@@ -87,9 +90,61 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
     compared.merge("written-sweep-sentences", sentences(&run, &summary));
     for _ in 0..REPEATED {
         let row = draws.below(rows.count);
-        compare_row(compared, &program, &everything, (&variations, &rows, row))?;
+        let mut changed = everything.clone();
+        for variation in &variations {
+            let value = rows.get(row, &variation.path()).unwrap_or(f64::NAN);
+            let path = ["bodies", &variation.body, "mass"];
+            changed = with_number(&changed, &path, value).ok_or("the body has no mass")?;
+        }
+        compare_row(compared, &program, &changed, (&rows, row))?;
+    }
+    compare_dimension(compared, &program, &everything, &mut draws)
+}
+
+/// A coordinate of a point that is drawn, at two values next to that of the scene; a variant that cannot be assembled has no row to compare.
+fn compare_dimension(
+    compared: &mut Compared,
+    program: &Program,
+    scene: &Table,
+    draws: &mut Draws,
+) -> Result<(), String> {
+    let coordinates = coordinates(scene);
+    if coordinates.is_empty() {
+        return Ok(());
+    }
+    let (body, point, value) = &coordinates[draws.below(coordinates.len())];
+    let values = [0.998 * value, 1.001 * value];
+    let [low, high] = values;
+    let vary = format!("{body}.points.{point}[0]={low:?},{high:?}");
+    let arguments = ["sweep", "--result", "m", "--vary", &vary];
+    let run = program.run("sweep-dimension", &text_of(scene)?, &arguments);
+    let run = run.map_err(|e| e.to_string())?;
+    // Messages have commas: the database has them in a column of their own.
+    let rows = run.sqlite("-sweep.sqlite", "points")?;
+    for (row, value) in values.into_iter().enumerate() {
+        if rows.get(row, "m.min").is_some_and(f64::is_finite) {
+            let changed = with_number(scene, &["bodies", body, "points", point, "0"], value);
+            let changed = changed.ok_or("the point has no coordinate")?;
+            compare_row(compared, program, &changed, (&rows, row))?;
+        }
     }
     Ok(())
+}
+
+/// The first coordinates of all points that are not zero: body, point, value.
+fn coordinates(scene: &Table) -> Vec<(String, String, f64)> {
+    let tables = |value: Option<&Value>| value.and_then(Value::as_table).cloned();
+    let mut found = Vec::new();
+    for (body, keys) in tables(scene.get("bodies")).unwrap_or_default() {
+        for (point, at) in tables(keys.get("points")).unwrap_or_default() {
+            let first = at.as_array().and_then(|at| at.first());
+            let number = first.and_then(|x| x.as_float().or(x.as_integer().map(|x| x as f64)));
+            if let Some(value) = number.filter(|x| *x != 0.0) {
+                found.push((body.clone(), point, value));
+            }
+        }
+    }
+    found
 }
 
 /// Up to three masses of the scene, in a drawn order.
@@ -214,11 +269,16 @@ fn compare_draws(compared: &mut Compared, variations: &[Variation], rows: &Rows,
     }
 }
 
-/// The archive and the database, each with the table.
-fn same_files(run: &Run, rows: &Rows) -> Result<Differences, String> {
+/// The archive, the database and the Parquet files of a second run, each with the table.
+fn same_files([run, stored]: [&Run; 2], rows: &Rows) -> Result<Differences, String> {
     let mut same = Differences::default();
     let database = run.sqlite("-sweep.sqlite", "points")?;
-    for (file, other) in [("NPZ", run.npz("-sweep.npz")?), ("SQLite", database)] {
+    let parts = stored.parquet("-sweep")?;
+    for (file, other) in [
+        ("NPZ", run.npz("-sweep.npz")?),
+        ("SQLite", database),
+        ("Parquet", parts),
+    ] {
         for (name, column) in rows.columns.iter().filter(|(name, _)| *name != "message") {
             let Some(values) = other.columns.get(name).filter(|v| v.len() == column.len()) else {
                 same.fail(format!("{file} has not the rows of {name}"));
@@ -237,16 +297,10 @@ fn same_files(run: &Run, rows: &Rows) -> Result<Differences, String> {
 fn compare_row(
     compared: &mut Compared,
     program: &Program,
-    scene: &Table,
-    (variations, rows, row): (&[Variation], &Rows, usize),
+    changed: &Table,
+    (rows, row): (&Rows, usize),
 ) -> Result<(), String> {
-    let mut changed = scene.clone();
-    for variation in variations {
-        let value = rows.get(row, &variation.path()).unwrap_or(f64::NAN);
-        let next = with_number(&changed, &["bodies", &variation.body, "mass"], value);
-        changed = next.ok_or("the body has no mass")?;
-    }
-    let single = program.run("point", &text_of(&changed)?, &["reduce"]);
+    let single = program.run("point", &text_of(changed)?, &["reduce"]);
     let single = single.map_err(|e| e.to_string())?.csv("-reduced.csv")?;
     let m = single.columns.get("m").ok_or("`reduce` has no m")?;
     for (name, sign) in [("m.min", -1.0), ("m.max", 1.0)] {
