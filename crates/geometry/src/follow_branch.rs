@@ -369,28 +369,37 @@ impl Plan {
         let mut all = vec![StoredPoses::default(); self.groups.len()];
         for pose in poses {
             self.velocities(pose, &[1.0], &mut motion);
+            self.accelerations(pose, &[0.0], &mut motion);
             for (assur, stored) in self.groups.iter().zip(&mut all) {
                 if !assur.uses_stored_poses {
                     continue;
                 }
-                let value_and_slope = |unknown: &Unknown| match *unknown {
+                let unknowns = assur.group.unknowns.iter();
+                let value = |unknown: &Unknown| match *unknown {
                     Unknown::ClassAngle(c) => {
                         let f = self.class_frame(c);
-                        let counted = self.revolution_counted[f];
                         let angle = vec2(pose.angle[f], 0.0);
-                        let value = if counted { angle } else { pose.rotation[f] };
-                        (value, motion.angular_velocity[f])
+                        let counted = self.revolution_counted[f];
+                        if counted { angle } else { pose.rotation[f] }
+                    }
+                    Unknown::SlideTravel(s) => vec2(pose.slide_travel[s], 0.0),
+                };
+                let derivatives = |unknown: &Unknown| match *unknown {
+                    Unknown::ClassAngle(c) => {
+                        let f = self.class_frame(c);
+                        (motion.angular_velocity[f], motion.angular_acceleration[f])
                     }
                     Unknown::SlideTravel(s) => {
-                        (vec2(pose.slide_travel[s], 0.0), motion.slide_velocity[s])
+                        (motion.slide_velocity[s], motion.slide_acceleration[s])
                     }
                 };
-                let unknowns = assur.group.unknowns.iter();
-                let (values, slopes) = unknowns.map(value_and_slope).unzip();
+                let values = unknowns.clone().map(value).collect();
+                let (slopes, curvatures) = unknowns.map(derivatives).unzip();
                 stored.poses.push(StoredPose {
                     q: pose.q[0],
                     values,
                     slopes,
+                    curvatures,
                 });
             }
         }

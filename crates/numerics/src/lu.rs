@@ -22,7 +22,18 @@ pub fn factor<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> FactorOutcome {
 
 /// The same by elimination written out.
 pub(crate) fn eliminate<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> FactorOutcome {
-    let n = pivots.len();
+    // Of few unknowns the loops are unrolled.
+    match pivots.len() {
+        2 => eliminate_inline(a, pivots, 2),
+        3 => eliminate_inline(a, pivots, 3),
+        4 => eliminate_inline(a, pivots, 4),
+        n => eliminate_inline(a, pivots, n),
+    }
+}
+
+#[inline(always)]
+fn eliminate_inline<T: Scalar>(a: &mut [T], pivots: &mut [usize], n: usize) -> FactorOutcome {
+    let (a, pivots) = (&mut a[..n * n], &mut pivots[..n]);
     let mut sign = 1.0;
     let (mut min_pivot, mut max_pivot) = (f64::INFINITY, 0.0_f64);
     for k in 0..n {
@@ -62,8 +73,10 @@ pub(crate) fn eliminate<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> FactorO
             };
             max_pivot = max_pivot.max(size.abs());
         }
+        // Divisions take longest: one for each pivot.
+        let inverse = T::from_f64(1.0) / pivot;
         for i in k + 1..n {
-            let ratio = a[i * n + k] / pivot;
+            let ratio = a[i * n + k] * inverse;
             a[i * n + k] = ratio;
             for j in k + 1..n {
                 let change = ratio * a[k * n + j];
@@ -76,7 +89,17 @@ pub(crate) fn eliminate<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> FactorO
 
 /// Solves A x = b in place.
 pub fn solve<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
-    let n = pivots.len();
+    match pivots.len() {
+        2 => solve_inline(a, pivots, b, 2),
+        3 => solve_inline(a, pivots, b, 3),
+        4 => solve_inline(a, pivots, b, 4),
+        n => solve_inline(a, pivots, b, n),
+    }
+}
+
+#[inline(always)]
+fn solve_inline<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T], n: usize) {
+    let (a, pivots, b) = (&a[..n * n], &pivots[..n], &mut b[..n]);
     for (k, &row) in pivots.iter().enumerate() {
         b.swap(k, row);
     }
@@ -90,32 +113,44 @@ pub fn solve<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
 }
 
 /// Solves U x = b in place, with U above and on the diagonal of `a`.
-#[inline]
+#[inline(always)]
 pub(crate) fn solve_upper<T: Scalar>(a: &[T], n: usize, b: &mut [T]) {
     for i in (0..n).rev() {
         for j in i + 1..n {
             let change = a[i * n + j] * b[j];
             b[i] -= change;
         }
-        b[i] = b[i] / a[i * n + i];
+        // The reciprocal does not wait for the sum.
+        b[i] = b[i] * (T::from_f64(1.0) / a[i * n + i]);
     }
 }
 
 /// Solves Uᵀ x = b in place, with U above and on the diagonal of `a`.
-#[inline]
+#[inline(always)]
 pub(crate) fn solve_upper_transposed<T: Scalar>(a: &[T], n: usize, b: &mut [T]) {
     for i in 0..n {
         for j in 0..i {
             let change = a[j * n + i] * b[j];
             b[i] -= change;
         }
-        b[i] = b[i] / a[i * n + i];
+        // The reciprocal does not wait for the sum.
+        b[i] = b[i] * (T::from_f64(1.0) / a[i * n + i]);
     }
 }
 
 /// Solves Aᵀ x = b in place.
 pub fn solve_transposed<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
-    let n = pivots.len();
+    match pivots.len() {
+        2 => solve_transposed_inline(a, pivots, b, 2),
+        3 => solve_transposed_inline(a, pivots, b, 3),
+        4 => solve_transposed_inline(a, pivots, b, 4),
+        n => solve_transposed_inline(a, pivots, b, n),
+    }
+}
+
+#[inline(always)]
+fn solve_transposed_inline<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T], n: usize) {
+    let (a, pivots, b) = (&a[..n * n], &pivots[..n], &mut b[..n]);
     solve_upper_transposed(a, n, b);
     for i in (0..n).rev() {
         for j in i + 1..n {

@@ -1,7 +1,7 @@
 //! Groups that are not closed forms throughout: their positions come from Newton's method, linear equations or a
 //! construction; velocities, accelerations and multipliers come from the factors of their Jacobian.
 
-use super::closed_forms::{gap, singular_tolerance, unit};
+use super::closed_forms::{gap, is_finer_than_f64, singular_tolerance, unit};
 use super::{InitialIterate, rotate_frame};
 use crate::error::PositionError;
 use crate::plan::{FactoredGroup, GroupKind, LoopClosure, PlacementMethod, Plan, Pose};
@@ -13,11 +13,35 @@ use std::ops::Range;
 
 /// Newton's correction (rad, or relative to the group's size) after which its square is rounding.
 const CONVERGED: f64 = 1e-9;
+/// A correction after which the factors of the Jacobian before it are those after it, to rounding: as a part of the pivots' ratio.
+const SAME_FACTORS: f64 = 2e-15;
+/// A step whose fourth power is rounding, rad.
+const SHORT_SERIES: f64 = 1e-4;
+/// A step that would change no digit, rad or relative.
+const NO_STEP: f64 = 1e-17;
+/// Second derivatives of the closure equations as a multiple of the first, with room: angles and lengths over the group's size.
+const CURVATURE: f64 = 10.0;
 /// Newton's method doubles the correct digits in each step: 30 steps are far more than it needs.
 const MAX_NEWTON_STEPS: usize = 30;
 /// A group with redundant equations is closed when its residual is at most this part of its size: the precision to
 /// which lengths are written in a scene.
 const REDUNDANT_RESIDUAL: f64 = 1e-9;
+
+/// Sine and cosine of a step, by their series where two terms have all digits.
+fn small_sin_cos<T: Scalar>(step: T) -> (T, T) {
+    if !is_plain::<T>() || step.value().abs() > SHORT_SERIES {
+        return step.sin_cos();
+    }
+    let one = T::from_f64(1.0);
+    let square = step * step;
+    let sin = step * (one - square * T::from_f64(1.0 / 6.0));
+    (sin, one - square * T::from_f64(0.5))
+}
+
+/// Whether numbers have neither derivatives nor more digits than `f64`.
+const fn is_plain<T: Scalar>() -> bool {
+    !T::HAS_DERIVATIVES && !is_finer_than_f64::<T>()
+}
 
 impl FactoredGroup {
     /// Where its factors are in [`Pose::lu`].
@@ -166,28 +190,27 @@ impl Plan {
         })
     }
 
-    /// Sets a group's unknowns to the first-order prediction from its nearest stored pose.
+    /// Sets a group's unknowns to the polynomial between its stored poses with their derivatives.
     fn set_predicted_pose<T: Scalar>(
         &self,
         group: usize,
         pose: &mut Pose<T>,
     ) -> Result<(), PositionError> {
         let stored_poses = &self.groups[group].stored_poses;
-        let nearest = stored_poses.nearest(pose.q[0].value(), self.range)?;
+        let enclosing = stored_poses.enclosing(pose.q[0].value(), self.range)?;
         // The derivative of the prediction does not matter: Newton's last step replaces it.
         for (i, &unknown) in self.groups[group].group.unknowns.iter().enumerate() {
             match unknown {
                 Unknown::ClassAngle(class) if self.revolution_counted[self.class_frame(class)] => {
-                    let angle = T::from_f64(stored_poses.predict(nearest, i));
+                    let angle = T::from_f64(stored_poses.predict_between(enclosing, i));
                     self.set_class_angle(class, angle, pose);
                 }
                 Unknown::ClassAngle(class) => {
-                    let by = Vec2::from_angle(nearest.pose.slopes[i] * nearest.distance);
-                    pose.rotation[self.class_frame(class)] =
-                        nearest.pose.values[i].rotate(by).cast();
+                    pose.rotation[self.class_frame(class)] = enclosing.predict_rotation(i).cast();
                 }
                 Unknown::SlideTravel(slide) => {
-                    pose.slide_travel[slide] = T::from_f64(stored_poses.predict(nearest, i));
+                    let travel = stored_poses.predict_between(enclosing, i);
+                    pose.slide_travel[slide] = T::from_f64(travel);
                 }
             }
         }
@@ -215,15 +238,21 @@ impl Plan {
         for _ in 0..MAX_NEWTON_STEPS {
             self.rotate_group(group, pose);
             residual = self.residual(group, pose);
-            self.factor_jacobian(group, factored_group, pose)?;
+            let outcome = self.factor_jacobian(group, factored_group, pose)?;
             let largest = self.apply_newton_step(group, factored_group, pose);
             if !largest.is_finite() {
                 break;
             }
+            // The next step by the square of this one, over the distance to a singular Jacobian.
+            let next = CURVATURE * largest * largest / outcome.pivot_ratio;
+            let is_exact = is_plain::<T>() && next < NO_STEP;
             // One step past convergence: it makes the derivative of a dual number exact.
-            if largest < converged && !std::mem::replace(&mut once_more, false) {
+            if largest < converged && (is_exact || !std::mem::replace(&mut once_more, false)) {
                 self.rotate_group(group, pose);
                 self.check_redundant(group, factored_group, pose)?;
+                if is_plain::<T>() && largest < SAME_FACTORS * outcome.pivot_ratio {
+                    return Ok(outcome);
+                }
                 return self.factor_jacobian(group, factored_group, pose);
             }
         }
@@ -299,7 +328,7 @@ impl Plan {
                     if self.revolution_counted[frame] {
                         self.set_class_angle(class, pose.angle[frame] - step, pose);
                     } else {
-                        let (sin, cos) = step.sin_cos();
+                        let (sin, cos) = small_sin_cos(step);
                         pose.rotation[frame] = unit(pose.rotation[frame].rotate(vec2(cos, -sin)));
                     }
                 }
@@ -407,13 +436,17 @@ impl Plan {
         };
         for &l in loops {
             let closure = &self.loop_closures[l];
-            let closure_gap = gap(closure, &pose.vector, &pose.slide_travel);
+            // The gap matters only where the axis of a slide turns with an unknown.
+            let turning = closure.axis.map(|(axis, frame)| {
+                let class = self.frames.frames[frame].orientation_class;
+                let closure_gap = gap(closure, &pose.vector, &pose.slide_travel);
+                (pose.vector[axis], Unknown::ClassAngle(class), closure_gap)
+            });
             for (column, &unknown) in unknowns.iter().enumerate() {
                 let change = self.gap_derivative(closure, unknown, pose) * unit_of(unknown);
-                if let Some((axis, frame)) = closure.axis {
-                    let along = pose.vector[axis];
+                if let Some((along, of_axis, closure_gap)) = turning {
                     let mut entry = along.perp().dot(change);
-                    if unknown == Unknown::ClassAngle(self.frames.frames[frame].orientation_class) {
+                    if unknown == of_axis {
                         entry -= along.dot(closure_gap);
                     }
                     pose.lu[row + column] = entry;

@@ -38,10 +38,15 @@ fn the_combined_runs_are_the_reduced_model() {
     ] {
         let scene = case(name);
         let runs = compute_unit_runs(&scene, None, &no_progress).expect("runs");
-        for coefficient in runs.comparison() {
+        let comparison = runs.comparison();
+        let tolerances = comparison.iter().map(|of| of.tolerance);
+        let plain = tolerances.fold(f64::INFINITY, f64::min);
+        for coefficient in comparison {
+            // Where run ii is fast, its forces are this many times the part of the acceleration: 875 for the class-three group.
+            let lost = coefficient.tolerance / plain;
             let difference = coefficient.relative_difference;
             assert!(
-                difference < 1e-12,
+                difference < 1e-13 + 1e-14 * lost,
                 "{name}: {} {difference:e}",
                 coefficient.symbol
             );
