@@ -154,41 +154,66 @@ impl<T: Scalar> BodyStates<T> {
         }
     }
 
-    /// Fills the states from a pose and a motion. If the motion holds no accelerations, those of the states are
-    /// meaningless.
+    /// Fills the states from a pose and a motion with accelerations.
     pub fn fill(&mut self, plan: &Plan, pose: &Pose<T>, motion: &Motion<T>) {
+        self.fill_velocities(plan, pose, motion);
+        self.fill_accelerations(plan, pose, motion);
+    }
+
+    /// Positions and velocities from a pose and a motion; the accelerations stay what they were.
+    pub fn fill_velocities(&mut self, plan: &Plan, pose: &Pose<T>, motion: &Motion<T>) {
         for (moving_body, tree_joint) in plan.moving_bodies().iter().zip(&plan.tree().joints) {
             let body = moving_body.body;
-            let mut state = self.bodies[tree_joint.parent];
+            let parent = &self.bodies[tree_joint.parent];
+            let (mut joint_origin, mut velocity) = (parent.joint_origin, parent.velocity);
             if let Some(vector) = moving_body.joint_vector {
                 let vector = pose.vector[vector];
-                state.velocity = state.velocity_at(vector);
-                state.acceleration = state.acceleration_at(vector);
-                state.joint_origin += vector;
+                velocity = parent.velocity_at(vector);
+                joint_origin += vector;
             } else {
-                state.joint_origin += tree_joint.joint_vector.local.cast();
+                joint_origin += tree_joint.joint_vector.local.cast();
             }
             let orientation = plan.frames().orientations[body];
+            let rotation = pose.rotation[orientation.frame];
+            let angle = plan.counted_angle(body, pose);
+            let state = &mut self.bodies[body];
             state.angular_velocity = motion.angular_velocity[orientation.frame];
-            state.angular_acceleration = motion.angular_acceleration[orientation.frame];
-            state.angle = plan.counted_angle(body, pose);
-            state.rotation = orientation
-                .offset
-                .cast()
-                .rotate(pose.rotation[orientation.frame]);
-            state.local_origin = self.bodies[body].local_origin;
+            state.angle = angle;
+            state.rotation = orientation.offset.cast().rotate(rotation);
+            (state.joint_origin, state.velocity) = (joint_origin, velocity);
+            if let Some((slide, direction)) = moving_body.slide {
+                let along = pose.vector[direction];
+                let travel_vector = along * pose.slide_travel[slide];
+                let speed = motion.slide_velocity[slide];
+                state.velocity = state.velocity_at(travel_vector) + along * speed;
+                state.joint_origin += travel_vector;
+            }
+        }
+    }
+
+    /// Accelerations from a pose and a motion whose velocities the states have.
+    pub fn fill_accelerations(&mut self, plan: &Plan, pose: &Pose<T>, motion: &Motion<T>) {
+        for (moving_body, tree_joint) in plan.moving_bodies().iter().zip(&plan.tree().joints) {
+            let body = moving_body.body;
+            let parent = &self.bodies[tree_joint.parent];
+            let joint_vector = moving_body.joint_vector.map(|vector| pose.vector[vector]);
+            let acceleration = match joint_vector {
+                Some(vector) => parent.acceleration_at(vector),
+                None => parent.acceleration,
+            };
+            let frame = plan.frames().orientations[body].frame;
+            let state = &mut self.bodies[body];
+            state.acceleration = acceleration;
+            state.angular_acceleration = motion.angular_acceleration[frame];
             if let Some((slide, direction)) = moving_body.slide {
                 let along = pose.vector[direction];
                 let travel_vector = along * pose.slide_travel[slide];
                 let speed = motion.slide_velocity[slide];
                 let coriolis = T::from_f64(2.0) * state.angular_velocity * speed;
-                state.velocity = state.velocity_at(travel_vector) + along * speed;
                 state.acceleration = state.acceleration_at(travel_vector)
                     + along * motion.slide_acceleration[slide]
                     + along.perp() * coriolis;
-                state.joint_origin += travel_vector;
             }
-            self.bodies[body] = state;
         }
     }
 

@@ -24,7 +24,7 @@ const MAX_PATH_STEPS: f64 = 120_000.0;
 /// Where Newton's method starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum InitialIterate {
-    /// From the nearest stored pose, so that the pose depends on the coordinate alone.
+    /// From stored poses, so that the pose depends on the coordinate alone.
     StoredPose,
     /// From the values in the pose (while the branch is being followed).
     CurrentPose,

@@ -41,10 +41,14 @@ impl Model {
         q_dot: &[T],
         workspace: &'a mut Workspace<T>,
     ) -> Result<KinematicState<'a, T>, PositionError> {
-        let Workspace { pose, motion, .. } = &mut *workspace;
-        self.plan().positions(q, pose)?;
-        self.plan().velocities(pose, q_dot, motion);
-        Ok(self.given_kinematic_state(q_dot, workspace, |_, _| ()))
+        let plan = self.plan();
+        plan.positions(q, &mut workspace.pose)?;
+        plan.velocities(&workspace.pose, q_dot, &mut workspace.motion);
+        let states = &mut workspace.states;
+        states.fill_velocities(plan, &workspace.pose, &workspace.motion);
+        workspace.q_dot.copy_from_slice(q_dot);
+        let model = self;
+        Ok(KinematicState { model, workspace })
     }
 
     /// Positions and velocities that `set` stores as pose and motion, where they come from elsewhere than
@@ -72,6 +76,14 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
         let workspace = &mut *self.workspace;
         let states = &mut workspace.states;
         states.fill(self.model.plan(), &workspace.pose, &workspace.motion);
+    }
+
+    /// Their accelerations from those of the motion.
+    #[inline]
+    pub(super) fn fill_accelerations(&mut self) {
+        let workspace = &mut *self.workspace;
+        let states = &mut workspace.states;
+        states.fill_accelerations(self.model.plan(), &workspace.pose, &workspace.motion);
     }
 
     /// The wrenches of the loads from their magnitudes.
@@ -115,7 +127,7 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     pub fn bodies_at(&mut self, q_ddot: &[T]) -> &BodyStates<T> {
         let Workspace { pose, motion, .. } = &mut *self.workspace;
         self.model.plan().accelerations(pose, q_ddot, motion);
-        self.fill_bodies();
+        self.fill_accelerations();
         &self.workspace.states
     }
 

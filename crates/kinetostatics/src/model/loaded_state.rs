@@ -111,7 +111,7 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
         result: &'a mut InverseDynamics<T>,
     ) -> Result<EvaluatedState<'a, T>> {
         let mut state = self.inverse_dynamics(q_ddot, result)?;
-        state.0.fill_bodies();
+        state.0.fill_accelerations();
         if !state.model.dependent_loads.is_empty() {
             let mut responses = std::mem::take(&mut state.0.workspace.friction_responses);
             let solved = state.solve_prescribed_friction(&mut responses, &result.reactions);
@@ -168,14 +168,15 @@ impl<T: Scalar> ForceState<'_, T> {
 
     /// The states of the bodies with the accelerations of the inverse dynamics.
     pub fn bodies(&mut self) -> &BodyStates<T> {
-        self.0.fill_bodies();
+        self.0.fill_accelerations();
         &self.0.workspace.states
     }
 
     /// The states of the bodies with the motion that `set` stores, accelerations included.
     pub fn bodies_with(&mut self, set: impl FnOnce(&mut Motion<T>)) -> &BodyStates<T> {
         set(&mut self.0.workspace.motion);
-        self.bodies()
+        self.0.fill_bodies();
+        &self.0.workspace.states
     }
 
     /// What is known of the loads that depend on reactions, in the order of [`Model::frictions`](crate::Model::frictions),
