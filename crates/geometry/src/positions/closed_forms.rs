@@ -20,6 +20,11 @@ pub(crate) const fn is_finer_than_f64<T: Scalar>() -> bool {
     T::EPSILON < f64::EPSILON
 }
 
+/// Whether numbers have neither derivatives nor more digits than `f64`.
+pub(super) const fn is_plain<T: Scalar>() -> bool {
+    !T::HAS_DERIVATIVES && !is_finer_than_f64::<T>()
+}
+
 /// A constant vector and some rotated vectors, summed.
 #[inline(always)]
 fn vector_sum<T: Scalar>(fixed: Vec2, vectors: &[(usize, usize)], vector: &[Vec2<T>]) -> Vec2<T> {

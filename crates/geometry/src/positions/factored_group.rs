@@ -1,7 +1,6 @@
-//! Groups that are not closed forms throughout: their positions come from Newton's method, linear equations or a
-//! construction; velocities, accelerations and multipliers come from the factors of their Jacobian.
+//! Groups that are not closed forms throughout: positions by Newton's method, linear equations or a construction, rates by factors.
 
-use super::closed_forms::{gap, is_finer_than_f64, singular_tolerance, unit};
+use super::closed_forms::{gap, is_plain, singular_tolerance, unit};
 use super::{InitialIterate, rotate_frame};
 use crate::error::PositionError;
 use crate::plan::{FactoredGroup, GroupKind, LoopClosure, PlacementMethod, Plan, Pose};
@@ -23,8 +22,7 @@ const NO_STEP: f64 = 1e-17;
 const CURVATURE: f64 = 10.0;
 /// Newton's method doubles the correct digits in each step: 30 steps are far more than it needs.
 const MAX_NEWTON_STEPS: usize = 30;
-/// A group with redundant equations is closed when its residual is at most this part of its size: the precision to
-/// which lengths are written in a scene.
+/// Residual of a closed group with redundant equations, as a part of its size: the precision of lengths in a scene.
 const REDUNDANT_RESIDUAL: f64 = 1e-9;
 
 /// Sine and cosine of a step, by their series where two terms have all digits.
@@ -36,11 +34,6 @@ fn small_sin_cos<T: Scalar>(step: T) -> (T, T) {
     let square = step * step;
     let sin = step * (one - square * T::from_f64(1.0 / 6.0));
     (sin, one - square * T::from_f64(0.5))
-}
-
-/// Whether numbers have neither derivatives nor more digits than `f64`.
-const fn is_plain<T: Scalar>() -> bool {
-    !T::HAS_DERIVATIVES && !is_finer_than_f64::<T>()
 }
 
 impl FactoredGroup {
