@@ -268,8 +268,11 @@ fn sweep_to_parquet(
     let path = prepared.parquet_path();
     let shard = prepared.sweep.shard;
     let mut folder = PartFolder::open(&path, &study, headings, (design, length, shard))?;
-    let missing = folder.missing();
-    let pending: u64 = missing.iter().map(|part| part.end - part.start).sum();
+    let pending: u64 = folder
+        .missing
+        .iter()
+        .map(|part| part.end - part.start)
+        .sum();
     let pending = usize::try_from(pending).unwrap_or(usize::MAX);
     let mut counts = export::Counts {
         existing: folder.points().count(),
@@ -279,7 +282,7 @@ fn sweep_to_parquet(
     };
     if prepared.sweep.export.is_none() {
         let study = (prepared.scene, design, family.as_ref());
-        missing.par_iter().try_for_each(|part| {
+        folder.missing.par_iter().try_for_each(|part| {
             let indices: Vec<u64> = part.clone().collect();
             let blocks = indices.par_chunks(block_length(family.as_ref()));
             let rows = blocks.flat_map_iter(|block| {

@@ -37,6 +37,8 @@ pub(crate) struct PartFolder<'a> {
     length: u64,
     shard: Option<Shard>,
     existing: Vec<Range<u64>>,
+    /// The parts that had no file when the folder was opened.
+    pub(crate) missing: Vec<Range<u64>>,
     points: StoredPoints,
 }
 
@@ -66,15 +68,17 @@ impl<'a> PartFolder<'a> {
             length,
             shard,
             existing: Vec::new(),
+            missing: Vec::new(),
             points: StoredPoints::default(),
         };
-        let parts = folder.parts();
-        let exists = |part: &Range<u64>| folder.file(part).exists();
-        let existing: Vec<Range<u64>> = parts.into_iter().filter(exists).collect();
-        for part in existing {
-            folder.open_part(&part)?;
-            folder.points.push(part.clone());
-            folder.existing.push(part);
+        for part in folder.parts() {
+            if folder.file(&part).exists() {
+                folder.open_part(&part)?;
+                folder.points.push(part.clone());
+                folder.existing.push(part);
+            } else {
+                folder.missing.push(part);
+            }
         }
         Ok(folder)
     }
@@ -86,13 +90,6 @@ impl<'a> PartFolder<'a> {
         let numbers = numbers.filter(|number| self.shard.is_none_or(|s| s.contains(*number)));
         let part = |number| number * length..points.min((number + 1) * length);
         numbers.map(part).collect()
-    }
-
-    /// The parts that have no file.
-    pub(crate) fn missing(&self) -> Vec<Range<u64>> {
-        let mut parts = self.parts();
-        parts.retain(|part| !self.existing.contains(part));
-        parts
     }
 
     fn file(&self, part: &Range<u64>) -> PathBuf {
@@ -121,6 +118,7 @@ impl<'a> PartFolder<'a> {
     /// Notes that all missing parts are written, and removes what killed runs left.
     pub(crate) fn complete(&mut self) {
         self.existing = self.parts();
+        self.missing.clear();
         self.points = StoredPoints::default();
         for part in &self.existing {
             self.points.push(part.clone());
