@@ -1,0 +1,237 @@
+//! The description of a mechanism in space. Lengths in m, angles in rad.
+
+use super::vector::{Rotation, Vec3};
+use crate::mechanism::{Body, BodyId, JointId};
+
+/// A mechanism in space. Points and directions are given in the frame of the body they belong to.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mechanism {
+    /// Every body, the ground among them.
+    pub bodies: Vec<Body>,
+    /// Index of the fixed body.
+    pub ground: usize,
+    /// Every joint.
+    pub joints: Vec<Joint>,
+    /// Every actuator: one independent coordinate each.
+    pub actuators: Vec<Actuator>,
+}
+
+/// A joint between two bodies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// The name a message and a reaction use.
+    pub name: String,
+    /// The first and the second body; a reaction is the force and moment of the first on the second.
+    pub bodies: [BodyId; 2],
+    /// What it allows.
+    pub kind: JointKind,
+    /// The joint on each body.
+    pub sides: [Side; 2],
+}
+
+/// A joint on one of its bodies: its point (m) and two directions at right angles, unit vectors, in the frame of the body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Side {
+    /// The joint's point.
+    pub point: Vec3,
+    /// Its axis: of a planar joint the normal of the plane, of a spherical joint and a distance without meaning.
+    pub axis: Vec3,
+    /// The direction from which its angle is counted.
+    pub normal: Vec3,
+}
+
+impl Default for Side {
+    fn default() -> Self {
+        Self { point: Vec3::ZERO, axis: Vec3::AXES[2], normal: Vec3::AXES[0] }
+    }
+}
+
+/// Which relative motion a joint allows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum JointKind {
+    /// None: points, axes and normals coincide.
+    Weld,
+    /// Rotation about the common axis; the points coincide.
+    Revolute,
+    /// Translation along the common axis; the normals are parallel.
+    Prismatic,
+    /// Rotation about and translation along the common axis.
+    Cylindrical,
+    /// A screw: translation of `pitch` m for each rad of rotation about the common axis. It is zero where the normals are parallel.
+    Helical {
+        /// Travel over angle, m/rad.
+        pitch: f64,
+    },
+    /// The points coincide, and the axis of the first body stays at right angles to that of the second: a Hooke joint with
+    /// a massless cross.
+    Universal,
+    /// The points coincide.
+    Spherical,
+    /// The second point stays in the plane through the first at right angles to the common axis.
+    Planar,
+    /// A massless rod with balls at its ends.
+    Distance {
+        /// Its length, m.
+        length: f64,
+    },
+}
+
+impl JointKind {
+    /// The relative freedoms.
+    pub fn freedoms(self) -> usize {
+        match self {
+            Self::Weld => 0,
+            Self::Revolute | Self::Prismatic | Self::Helical { .. } => 1,
+            Self::Cylindrical | Self::Universal => 2,
+            Self::Spherical | Self::Planar => 3,
+            Self::Distance { .. } => 5,
+        }
+    }
+}
+
+impl Joint {
+    /// A joint between two bodies, by their numbers. Directions become unit vectors, and the normal the part of it at right
+    /// angles to the axis.
+    pub fn new(name: impl Into<String>, bodies: [impl Into<BodyId>; 2], kind: JointKind, sides: [Side; 2]) -> Self {
+        let orthonormal = |side: Side| {
+            let axis = side.axis.unit().unwrap_or(Vec3::AXES[2]);
+            let part = side.normal - axis.scaled(axis.dot(side.normal));
+            let off_axis = part.norm() > 1e-9 * side.normal.norm();
+            let normal = part.unit().filter(|_| off_axis).unwrap_or_else(|| axis.any_normal());
+            Side { axis, normal, ..side }
+        };
+        Self { name: name.into(), bodies: bodies.map(Into::into), kind, sides: sides.map(orthonormal) }
+    }
+}
+
+/// An independent coordinate.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Actuator {
+    /// The name of the coordinate.
+    pub name: String,
+    /// What it drives.
+    pub kind: ActuatorKind,
+}
+
+/// What an actuator drives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ActuatorKind {
+    /// The angle of a revolute, cylindrical or helical joint, from the first body's normal to the second's about the axis, rad.
+    Angle(JointId),
+    /// The travel of a prismatic or cylindrical joint, along the axis from the first point to the second, m.
+    Travel(JointId),
+}
+
+impl ActuatorKind {
+    /// The joint that is driven.
+    pub fn joint(self) -> JointId {
+        match self {
+            Self::Angle(joint) | Self::Travel(joint) => joint,
+        }
+    }
+}
+
+impl Actuator {
+    /// The angle of a joint, by its number.
+    pub fn angle(name: impl Into<String>, joint: usize) -> Self {
+        Self { name: name.into(), kind: ActuatorKind::Angle(JointId(joint)) }
+    }
+
+    /// The travel of a joint, by its number.
+    pub fn travel(name: impl Into<String>, joint: usize) -> Self {
+        Self { name: name.into(), kind: ActuatorKind::Travel(JointId(joint)) }
+    }
+}
+
+/// Position and orientation of a body: its frame in that of the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Placement {
+    /// Origin, m.
+    pub position: Vec3,
+    /// Orientation.
+    pub rotation: Rotation,
+}
+
+/// Where a mechanism is assembled: the coordinates, and roughly where the bodies are.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Assembly {
+    /// By actuator: its coordinate, rad or m.
+    pub q: Vec<f64>,
+    /// By body: roughly where it is; bodies beyond the end coincide with the ground's frame.
+    pub placements: Vec<Placement>,
+}
+
+impl Assembly {
+    /// At these coordinates, with every body's frame near that of the ground.
+    pub fn at(q: &[f64]) -> Self {
+        Self { q: q.to_vec(), placements: Vec::new() }
+    }
+
+    /// Roughly where a body is.
+    pub(super) fn placement(&self, body: usize) -> Placement {
+        self.placements.get(body).copied().unwrap_or_default()
+    }
+}
+
+impl Mechanism {
+    /// A length of the order of the mechanism: the largest distance between two joints' points on one body, m.
+    pub fn size(&self) -> f64 {
+        let mut size = 0.0_f64;
+        let mut boxes = vec![[Vec3::ZERO; 2]; self.bodies.len()];
+        let mut seen = vec![false; self.bodies.len()];
+        for joint in &self.joints {
+            for (body, side) in joint.bodies.iter().zip(&joint.sides) {
+                let Some([low, high]) = boxes.get_mut(body.0) else { continue };
+                let p = side.point;
+                if !std::mem::replace(&mut seen[body.0], true) {
+                    (*low, *high) = (p, p);
+                }
+                *low = Vec3 { x: low.x.min(p.x), y: low.y.min(p.y), z: low.z.min(p.z) };
+                *high = Vec3 { x: high.x.max(p.x), y: high.y.max(p.y), z: high.z.max(p.z) };
+                size = size.max((*high - *low).norm());
+            }
+            if let JointKind::Distance { length } = joint.kind {
+                size = size.max(length.abs());
+            }
+        }
+        if size > 0.0 { size } else { 1.0 }
+    }
+
+    /// What is inconsistent in the description, if anything.
+    pub(super) fn fault(&self) -> Option<&'static str> {
+        if self.ground >= self.bodies.len() {
+            return Some("there is no ground");
+        }
+        for joint in &self.joints {
+            if joint.bodies.iter().any(|b| b.0 >= self.bodies.len()) {
+                return Some("a joint refers to a body that does not exist");
+            }
+            if joint.bodies[0] == joint.bodies[1] {
+                return Some("a joint connects a body with itself");
+            }
+            let finite = |s: &Side| s.point.is_finite() && s.axis.is_finite() && s.normal.is_finite();
+            let number = match joint.kind {
+                JointKind::Helical { pitch } => pitch.is_finite(),
+                JointKind::Distance { length } => length.is_finite() && length > 0.0,
+                _ => true,
+            };
+            if !(joint.sides.iter().all(finite) && number) {
+                return Some("a joint has a number that is not finite, or a length that is not positive");
+            }
+        }
+        let drives = |a: &Actuator| match (a.kind, self.joints.get(a.kind.joint().0).map(|j| j.kind)) {
+            (ActuatorKind::Angle(_), Some(kind)) => {
+                matches!(kind, JointKind::Revolute | JointKind::Cylindrical | JointKind::Helical { .. })
+            }
+            (ActuatorKind::Travel(_), Some(kind)) => matches!(kind, JointKind::Prismatic | JointKind::Cylindrical),
+            (_, None) => false,
+        };
+        let driven_twice = |i: usize| self.actuators[..i].iter().any(|a| a.kind == self.actuators[i].kind);
+        if !self.actuators.iter().all(drives) {
+            return Some("an actuator drives a joint that has no such coordinate");
+        }
+        (0..self.actuators.len())
+            .any(driven_twice)
+            .then_some("two actuators drive the same coordinate")
+    }
+}

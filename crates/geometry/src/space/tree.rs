@@ -1,0 +1,314 @@
+//! The spanning tree: each body is placed from its parent by one joint. The joints with the fewest freedoms are in
+//! the tree, driven ones first, so that those with many are cut and no orientation is an unknown where it need not be.
+
+use super::mechanism::{ActuatorKind, Assembly, JointKind, Mechanism, Placement, Side};
+use super::vector::{Rotation, Vec3};
+use crate::error::StructureError;
+use crate::mechanism::{BodyId, JointId};
+use std::ops::Range;
+
+/// How a freedom of a tree joint moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum FreedomKind {
+    /// Rotation about the axis: rad.
+    Turn,
+    /// Translation along the axis: m.
+    Slide,
+    /// Rotation, with so much translation along the axis, m/rad.
+    Screw(f64),
+    /// Rotation about an axis of the ground: one of three components of a small turn.
+    BallTurn,
+}
+
+impl FreedomKind {
+    /// The angular part and the linear part of its screw.
+    #[inline(always)]
+    pub(super) fn parts(self) -> (f64, f64) {
+        match self {
+            Self::Turn | Self::BallTurn => (1.0, 0.0),
+            Self::Slide => (0.0, 1.0),
+            Self::Screw(pitch) => (1.0, pitch),
+        }
+    }
+}
+
+/// One step from the frame of the parent to that of the body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Step {
+    /// Rotation about the frame's z axis by a freedom, which may translate along it.
+    Turn(usize),
+    /// Translation along the frame's axis of this number by a freedom.
+    Slide(usize, usize),
+    /// The frame's axes renamed, so that y becomes z: between the two axes of a universal joint.
+    NextAxis,
+    /// Any rotation, of the ball of this number; its three freedoms begin with this one.
+    Ball(usize, usize),
+}
+
+/// How a body is placed from its parent. The body's own frame here is that of the joint on it.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Link {
+    pub(super) body: usize,
+    pub(super) parent: usize,
+    /// None where only distances hold the body.
+    pub(super) joint: Option<JointId>,
+    /// −1 where the body is the joint's first: its coordinates then count backwards.
+    pub(super) sign: f64,
+    /// The joint's frame on the parent.
+    pub(super) on_parent: Placement,
+    pub(super) steps: Vec<Step>,
+    pub(super) freedoms: Range<usize>,
+}
+
+/// The tree.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Tree {
+    /// From the ground outwards.
+    pub(super) links: Vec<Link>,
+    /// By body: the link that places it; none for the ground.
+    pub(super) link_of: Vec<Option<usize>>,
+    /// By body: the frame in which it is evaluated, in its own frame.
+    pub(super) internal: Vec<Placement>,
+    pub(super) freedoms: Vec<FreedomKind>,
+    pub(super) balls: usize,
+    /// The joints that close loops.
+    pub(super) chords: Vec<JointId>,
+}
+
+/// A side as a frame: origin in its point, z along the axis and x along the normal.
+fn frame_of(side: &Side) -> Placement {
+    Placement { position: side.point, rotation: Rotation::of_axes(side.axis, side.normal) }
+}
+
+impl Placement {
+    /// A placement in this one's frame, from outside.
+    pub(super) fn then(&self, inner: &Self) -> Self {
+        Self {
+            position: self.position + self.rotation.apply(inner.position),
+            rotation: self.rotation.after(&inner.rotation),
+        }
+    }
+
+    /// The frame outside in this one.
+    pub(super) fn inverse(&self) -> Self {
+        let rotation = self.rotation.inverse();
+        Self { position: -rotation.apply(self.position), rotation }
+    }
+}
+
+impl Side {
+    /// The same side in a frame of its body.
+    pub(super) fn seen_from(&self, frame: &Placement) -> Self {
+        let inverse = frame.inverse();
+        Self {
+            point: inverse.position + inverse.rotation.apply(self.point),
+            axis: inverse.rotation.apply(self.axis),
+            normal: inverse.rotation.apply(self.normal),
+        }
+    }
+}
+
+impl Tree {
+    /// Finds the tree.
+    ///
+    /// # Errors
+    /// [`StructureError::NotConnected`] for bodies that no joint connects with the ground.
+    pub(super) fn find(mechanism: &Mechanism) -> Result<Self, StructureError> {
+        let in_tree = tree_joints(mechanism);
+        let mut tree = Self {
+            link_of: vec![None; mechanism.bodies.len()],
+            internal: vec![Placement::default(); mechanism.bodies.len()],
+            ..Self::default()
+        };
+        // A point of the ground near the mechanism is its origin: results do not depend on where it stands.
+        let ground = mechanism.ground;
+        let on_ground = mechanism.joints.iter().find_map(|joint| {
+            let side = joint.bodies.iter().position(|b| b.0 == ground)?;
+            Some(joint.sides[side].point)
+        });
+        tree.internal[ground].position = on_ground.unwrap_or(Vec3::ZERO);
+        let mut reached = vec![ground];
+        let mut next = 0;
+        loop {
+            while let Some(&parent) = reached.get(next) {
+                next += 1;
+                for (j, joint) in mechanism.joints.iter().enumerate().filter(|(j, _)| in_tree[*j]) {
+                    for (side, sign) in [(0, 1.0), (1, -1.0)] {
+                        let body = joint.bodies[1 - side].0;
+                        let placed = body == ground || tree.link_of[body].is_some();
+                        if joint.bodies[side].0 == parent && !placed {
+                            tree.add_link(mechanism, body, parent, Some((JointId(j), side, sign)));
+                            reached.push(body);
+                        }
+                    }
+                }
+            }
+            // Whatever only distances hold moves freely from the ground.
+            let is_placed = |b: &usize| *b == ground || tree.link_of[*b].is_some();
+            let held = mechanism.joints.iter().find_map(|joint| {
+                let [a, b] = joint.bodies.map(|b| b.0);
+                match (is_placed(&a), is_placed(&b)) {
+                    (true, false) => Some(b),
+                    (false, true) => Some(a),
+                    _ => None,
+                }
+            });
+            let Some(body) = held else { break };
+            tree.add_link(mechanism, body, ground, None);
+            reached.push(body);
+        }
+        let lost = (0..mechanism.bodies.len()).filter(|b| *b != ground && tree.link_of[*b].is_none());
+        let lost: Vec<BodyId> = lost.map(BodyId).collect();
+        if !lost.is_empty() {
+            return Err(StructureError::NotConnected { bodies: lost });
+        }
+        tree.chords = (0..mechanism.joints.len()).filter(|j| !in_tree[*j]).map(JointId).collect();
+        Ok(tree)
+    }
+
+    fn add_link(&mut self, mechanism: &Mechanism, body: usize, parent: usize, by: Option<(JointId, usize, f64)>) {
+        let first = self.freedoms.len();
+        let (steps, on_parent, sign) = match by {
+            None => {
+                self.freedoms.extend([FreedomKind::Slide; 3]);
+                let mut steps: Vec<Step> = (0..3).map(|k| Step::Slide(k, first + k)).collect();
+                steps.push(self.ball());
+                (steps, Placement::default(), 1.0)
+            }
+            Some((joint, side, sign)) => {
+                let joint = &mechanism.joints[joint.0];
+                self.internal[body] = frame_of(&joint.sides[1 - side]);
+                let mut parent_side = joint.sides[side].seen_from(&self.internal[parent]);
+                if joint.kind == JointKind::Universal {
+                    // The first angle turns from any direction: the axes are at right angles.
+                    self.internal[body] = universal_frame(&joint.sides[1 - side]);
+                    parent_side.normal = parent_side.axis.any_normal();
+                }
+                (self.steps_of(joint.kind), frame_of(&parent_side), sign)
+            }
+        };
+        self.link_of[body] = Some(self.links.len());
+        self.links.push(Link {
+            body,
+            parent,
+            joint: by.map(|(joint, ..)| joint),
+            sign,
+            on_parent,
+            steps,
+            freedoms: first..self.freedoms.len(),
+        });
+    }
+
+    /// A ball with its three freedoms.
+    fn ball(&mut self) -> Step {
+        let step = Step::Ball(self.balls, self.freedoms.len());
+        self.freedoms.extend([FreedomKind::BallTurn; 3]);
+        self.balls += 1;
+        step
+    }
+
+    /// The steps of a tree joint, with its freedoms.
+    fn steps_of(&mut self, kind: JointKind) -> Vec<Step> {
+        let first = self.freedoms.len();
+        let (freedoms, steps): (&[FreedomKind], Vec<Step>) = match kind {
+            JointKind::Weld => (&[], Vec::new()),
+            JointKind::Revolute => (&[FreedomKind::Turn], vec![Step::Turn(first)]),
+            JointKind::Helical { pitch } => (&[FreedomKind::Screw(pitch)], vec![Step::Turn(first)]),
+            JointKind::Prismatic => (&[FreedomKind::Slide], vec![Step::Slide(2, first)]),
+            JointKind::Cylindrical => (
+                &[FreedomKind::Turn, FreedomKind::Slide],
+                vec![Step::Slide(2, first + 1), Step::Turn(first)],
+            ),
+            JointKind::Universal => (
+                &[FreedomKind::Turn; 2],
+                vec![Step::Turn(first), Step::NextAxis, Step::Turn(first + 1)],
+            ),
+            JointKind::Planar => (
+                &[FreedomKind::Slide, FreedomKind::Slide, FreedomKind::Turn],
+                vec![Step::Slide(0, first), Step::Slide(1, first + 1), Step::Turn(first + 2)],
+            ),
+            // A distance is never in the tree.
+            JointKind::Spherical | JointKind::Distance { .. } => return vec![self.ball()],
+        };
+        self.freedoms.extend(freedoms);
+        steps
+    }
+
+    /// The freedom that an actuator drives.
+    pub(super) fn driven(&self, kind: ActuatorKind) -> Option<(usize, f64)> {
+        let link = self.links.iter().find(|link| link.joint == Some(kind.joint()))?;
+        let first = link.freedoms.start;
+        let is_second = matches!(kind, ActuatorKind::Travel(_)) && link.freedoms.len() == 2;
+        Some((first + usize::from(is_second), link.sign))
+    }
+
+    /// Rough coordinates and rotations of the balls from rough placements of the bodies.
+    pub(super) fn rough_coordinates(&self, assembly: &Assembly) -> (Vec<f64>, Vec<Rotation>) {
+        let mut coordinates = vec![0.0; self.freedoms.len()];
+        let mut balls = vec![Rotation::IDENTITY; self.balls];
+        let placed = |body: usize| assembly.placement(body).then(&self.internal[body]);
+        for link in &self.links {
+            let mut from = placed(link.parent).then(&link.on_parent);
+            let to = placed(link.body);
+            for step in &link.steps {
+                let relative = from.inverse().then(&to);
+                match *step {
+                    Step::Turn(c) => {
+                        // Of a universal joint, the turn that brings y nearest to the second axis.
+                        let next = link.steps.contains(&Step::NextAxis) && c == link.freedoms.start;
+                        let x = relative.rotation.columns[if next { 2 } else { 0 }];
+                        let angle = if next { (-x.x).atan2(x.y) } else { x.y.atan2(x.x) };
+                        coordinates[c] = angle;
+                        let travel = self.freedoms[c].parts().1 * angle;
+                        from.position += from.rotation.columns[2].scaled(travel);
+                        from.rotation = from.rotation.turned_about_z(angle.sin_cos());
+                    }
+                    Step::Slide(axis, c) => {
+                        let travel = relative.position.dot(Vec3::AXES[axis]);
+                        coordinates[c] = travel;
+                        from.position += from.rotation.columns[axis].scaled(travel);
+                    }
+                    Step::NextAxis => from.rotation = next_axis(&from.rotation),
+                    Step::Ball(ball, _) => balls[ball] = relative.rotation,
+                }
+            }
+        }
+        (coordinates, balls)
+    }
+}
+
+/// The axes renamed: y becomes z, z becomes x.
+#[inline(always)]
+pub(super) fn next_axis<T: Copy>(frame: &Rotation<T>) -> Rotation<T> {
+    let [x, y, z] = frame.columns;
+    Rotation { columns: [z, x, y] }
+}
+
+/// The frame of a universal joint on the outer body: as any joint's.
+fn universal_frame(side: &Side) -> Placement {
+    frame_of(&Side { normal: side.axis.any_normal(), ..*side })
+}
+
+/// By joint: whether it is in the tree, by Kruskal's rule with the freedoms as weights.
+fn tree_joints(mechanism: &Mechanism) -> Vec<bool> {
+    let driven = |j: usize| mechanism.actuators.iter().any(|a| a.kind.joint().0 == j);
+    let weight = |j: &usize| match mechanism.joints[*j].kind {
+        _ if driven(*j) => 0,
+        // The rows of a screw that closes a loop would need its angle with all revolutions.
+        JointKind::Helical { .. } => 1,
+        kind => 2 + kind.freedoms(),
+    };
+    let can_carry = |j: &usize| !matches!(mechanism.joints[*j].kind, JointKind::Distance { .. });
+    let mut order: Vec<usize> = (0..mechanism.joints.len()).filter(can_carry).collect();
+    order.sort_by_key(weight);
+    let mut part: Vec<usize> = (0..mechanism.bodies.len()).collect();
+    let mut in_tree = vec![false; mechanism.joints.len()];
+    for j in order {
+        let [a, b] = mechanism.joints[j].bodies.map(|b| part[b.0]);
+        if a != b {
+            in_tree[j] = true;
+            part.iter_mut().filter(|p| **p == b).for_each(|p| *p = a);
+        }
+    }
+    in_tree
+}

@@ -1,0 +1,246 @@
+//! Vectors and rotations of space.
+
+use dwell_numerics::Scalar;
+use std::ops::{Add, AddAssign, Neg, Sub, SubAssign};
+
+/// A vector of space.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Vec3<T = f64> {
+    /// Component along the x axis.
+    pub x: T,
+    /// Component along the y axis.
+    pub y: T,
+    /// Component along the z axis.
+    pub z: T,
+}
+
+/// Shorthand for [`Vec3`].
+#[inline]
+pub const fn vec3<T>(x: T, y: T, z: T) -> Vec3<T> {
+    Vec3 { x, y, z }
+}
+
+impl Vec3<f64> {
+    /// The zero vector.
+    pub const ZERO: Self = vec3(0.0, 0.0, 0.0);
+    /// The axes of a frame.
+    pub const AXES: [Self; 3] = [vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0)];
+
+    /// Length, without overflow at the extremes.
+    pub fn norm(self) -> f64 {
+        self.x.hypot(self.y).hypot(self.z)
+    }
+
+    /// All components are finite.
+    pub fn is_finite(self) -> bool {
+        self.x.is_finite() && self.y.is_finite() && self.z.is_finite()
+    }
+
+    /// The unit vector of this direction; none of zero.
+    pub fn unit(self) -> Option<Self> {
+        let norm = self.norm();
+        (norm > 0.0 && norm.is_finite()).then(|| self.scaled(1.0 / norm))
+    }
+
+    /// A unit vector at right angles to this unit vector.
+    pub fn any_normal(self) -> Self {
+        let size = |v: &Self| self.dot(*v).abs();
+        let mut axes = Self::AXES;
+        axes.sort_by(|a, b| size(a).total_cmp(&size(b)));
+        let normal = self.cross(axes[0]);
+        normal.scaled(1.0 / normal.norm())
+    }
+
+    /// The same constants as another number type.
+    #[inline(always)]
+    pub fn cast<T: Scalar>(self) -> Vec3<T> {
+        vec3(T::from_f64(self.x), T::from_f64(self.y), T::from_f64(self.z))
+    }
+}
+
+impl<T: Scalar> Vec3<T> {
+    /// Zero, as any number type.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Vec3::ZERO.cast()
+    }
+
+    /// The values alone.
+    pub fn value(self) -> Vec3 {
+        vec3(self.x.value(), self.y.value(), self.z.value())
+    }
+
+    /// Scalar product.
+    #[inline(always)]
+    pub fn dot(self, o: Self) -> T {
+        self.x * o.x + self.y * o.y + self.z * o.z
+    }
+
+    /// Vector product.
+    #[inline(always)]
+    #[must_use]
+    pub fn cross(self, o: Self) -> Self {
+        vec3(
+            self.y * o.z - self.z * o.y,
+            self.z * o.x - self.x * o.z,
+            self.x * o.y - self.y * o.x,
+        )
+    }
+
+    /// The vector times a number.
+    #[inline(always)]
+    #[must_use]
+    pub fn scaled(self, by: T) -> Self {
+        vec3(self.x * by, self.y * by, self.z * by)
+    }
+}
+
+impl<T: Scalar> Add for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        vec3(self.x + o.x, self.y + o.y, self.z + o.z)
+    }
+}
+
+impl<T: Scalar> Sub for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        vec3(self.x - o.x, self.y - o.y, self.z - o.z)
+    }
+}
+
+impl<T: Scalar> Neg for Vec3<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        vec3(-self.x, -self.y, -self.z)
+    }
+}
+
+impl<T: Scalar> AddAssign for Vec3<T> {
+    #[inline(always)]
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}
+
+impl<T: Scalar> SubAssign for Vec3<T> {
+    #[inline(always)]
+    fn sub_assign(&mut self, o: Self) {
+        *self = *self - o;
+    }
+}
+
+/// A rotation, by the images of the three axes: the columns of its matrix.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rotation<T = f64> {
+    /// Images of the axes x, y, z.
+    pub columns: [Vec3<T>; 3],
+}
+
+impl Rotation<f64> {
+    /// No rotation.
+    pub const IDENTITY: Self = Self { columns: Vec3::AXES };
+
+    /// The frame with this unit vector as its z axis and another at right angles to it as its x axis.
+    pub fn of_axes(z: Vec3, x: Vec3) -> Self {
+        Self { columns: [x, z.cross(x), z] }
+    }
+
+    /// From the rows of its matrix, made orthogonal; none where they are far from it.
+    pub fn of_rows(rows: [[f64; 3]; 3]) -> Option<Self> {
+        let column = |k: usize| vec3(rows[0][k], rows[1][k], rows[2][k]);
+        let z = column(2).unit()?;
+        let x = column(0) - z.scaled(z.dot(column(0)));
+        let found = Self::of_axes(z, x.unit()?);
+        let off = |k: usize| (found.columns[k] - column(k)).norm();
+        (0..3).all(|k| off(k) < 0.1).then_some(found)
+    }
+
+    /// The angle of this rotation as a vector along its axis, rad.
+    pub fn vector(&self) -> Vec3 {
+        let [x, y, z] = self.columns;
+        let axial = vec3(y.z - z.y, z.x - x.z, x.y - y.x).scaled(0.5);
+        let (sin, cos) = (axial.norm(), 0.5 * (x.x + y.y + z.z - 1.0));
+        if sin > 1e-6 {
+            return axial.scaled(sin.atan2(cos) / sin);
+        }
+        if cos > 0.0 {
+            return axial;
+        }
+        // Near a half turn: R + 1 is twice the projection onto the axis.
+        let projected = (0..3).map(|k| self.columns[k] + Vec3::AXES[k]);
+        let longest = projected.max_by(|a, b| a.norm().total_cmp(&b.norm()));
+        let axis = longest.and_then(Vec3::unit).unwrap_or(Vec3::ZERO);
+        axis.scaled(std::f64::consts::PI)
+    }
+
+    /// The same constants as another number type.
+    #[inline(always)]
+    pub fn cast<T: Scalar>(&self) -> Rotation<T> {
+        Rotation { columns: self.columns.map(Vec3::cast) }
+    }
+}
+
+impl<T: Scalar> Default for Rotation<T> {
+    fn default() -> Self {
+        Rotation::IDENTITY.cast()
+    }
+}
+
+impl<T: Scalar> Rotation<T> {
+    /// A vector of the rotated frame in the axes of the other.
+    #[inline(always)]
+    pub fn apply(&self, v: Vec3<T>) -> Vec3<T> {
+        let [x, y, z] = self.columns;
+        x.scaled(v.x) + y.scaled(v.y) + z.scaled(v.z)
+    }
+
+    /// A vector in the axes of the rotated frame.
+    #[inline(always)]
+    pub fn apply_inverse(&self, v: Vec3<T>) -> Vec3<T> {
+        vec3(self.columns[0].dot(v), self.columns[1].dot(v), self.columns[2].dot(v))
+    }
+
+    /// This rotation after another.
+    #[inline(always)]
+    #[must_use]
+    pub fn after(&self, other: &Self) -> Self {
+        let [x, y, z] = other.columns;
+        Self { columns: [self.apply(x), self.apply(y), self.apply(z)] }
+    }
+
+    /// The inverse.
+    #[must_use]
+    pub fn inverse(&self) -> Self {
+        let [x, y, z] = self.columns;
+        Self { columns: [vec3(x.x, y.x, z.x), vec3(x.y, y.y, z.y), vec3(x.z, y.z, z.z)] }
+    }
+
+    /// The frame turned about its own z axis by the angle of this sine and cosine.
+    #[inline(always)]
+    #[must_use]
+    pub fn turned_about_z(&self, (sin, cos): (T, T)) -> Self {
+        let [x, y, z] = self.columns;
+        Self {
+            columns: [x.scaled(cos) + y.scaled(sin), y.scaled(cos) - x.scaled(sin), z],
+        }
+    }
+
+    /// Turned by a rotation about `turn` whose angle is its length to third order: the rotation of the quaternion
+    /// (1, turn/2), which stays orthogonal to rounding.
+    #[inline]
+    #[must_use]
+    pub fn turned_by(&self, turn: Vec3<T>) -> Self {
+        let one = T::from_f64(1.0);
+        let h = turn.scaled(T::from_f64(0.5));
+        let factor = T::from_f64(2.0) / (one + h.dot(h));
+        let turned = |v: Vec3<T>| {
+            let first = h.cross(v);
+            v + (first + h.cross(first)).scaled(factor)
+        };
+        Self { columns: [turned(self.columns[0]), turned(self.columns[1]), turned(self.columns[2])] }
+    }
+}
