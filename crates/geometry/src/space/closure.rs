@@ -1,0 +1,240 @@
+//! The closures of loops: each joint outside the tree takes freedoms away, and each of these is a row of one of a few kinds,
+//! with d = p_b − p_a:
+//!
+//! ```text
+//! Point        e_k·d = 0        Parallel   n_a·w_b = 0        InPlane   u_a·d = 0        Length   |d| = L
+//! ```
+//!
+//! The gradient of a row is a wrench on the second body, a force f at its point and a couple m; the first body feels the
+//! opposite.
+
+use super::frames::{BodyState, Frame};
+use super::mechanism::{Joint, JointKind, Mechanism, Side};
+use super::tree::Tree;
+use super::vector::Vec3;
+use crate::error::StructureError;
+use crate::mechanism::JointId;
+use dwell_numerics::Scalar;
+use std::ops::Range;
+
+/// What a row requires. Directions are in the internal frames of the bodies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum RowKind {
+    /// The points coincide along this axis of the ground.
+    Point(usize),
+    /// A direction of the first body is at right angles to one of the second.
+    Parallel(Vec3, Vec3),
+    /// The second point lies in a plane of the first body through its point.
+    InPlane(Vec3),
+    /// The points keep this distance, m.
+    Length(f64),
+    /// The second body, between two balls, does not turn about their line.
+    NoSpin(Vec3),
+}
+
+impl RowKind {
+    /// Whether its residual is a length, m, and not the cosine of an angle.
+    pub(super) fn is_length(self) -> bool {
+        matches!(self, Self::Point(_) | Self::InPlane(_) | Self::Length(_))
+    }
+}
+
+/// A joint that closes a loop.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Chord {
+    /// None for the row that holds an idle freedom.
+    pub(super) joint: Option<JointId>,
+    pub(super) bodies: [usize; 2],
+    pub(super) points: [Vec3; 2],
+    pub(super) kinds: Vec<RowKind>,
+    /// Its rows among all.
+    pub(super) rows: Range<usize>,
+    /// The freedoms on the path from the first body to the second, with their signs.
+    pub(super) path: Vec<(usize, f64)>,
+    /// Where its entries of the Jacobian begin: row by row, one for each freedom of the path.
+    pub(super) entries: usize,
+}
+
+/// A row's residual with its wrench on the second body: force at that body's point, and couple.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RowValue<T> {
+    pub(super) residual: T,
+    pub(super) force: Vec3<T>,
+    pub(super) couple: Vec3<T>,
+}
+
+/// All chords of a mechanism.
+///
+/// # Errors
+/// [`StructureError::Malformed`] where a loop consists of screws alone.
+pub(super) fn chords(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Chord>, StructureError> {
+    let (mut rows, mut entries) = (0, 0);
+    let mut found = Vec::new();
+    for &id in &tree.chords {
+        let joint = &mechanism.joints[id.0];
+        let bodies = joint.bodies.map(|b| b.0);
+        let side = |k: usize| joint.sides[k].seen_from(&tree.internal[bodies[k]]);
+        let sides = [side(0), side(1)];
+        let Some(kinds) = rows_of(joint, &sides) else {
+            let reason = "a loop consists of helical joints alone; replace one by a cylindrical joint";
+            return Err(StructureError::Malformed { reason });
+        };
+        let mut chord = Chord {
+            joint: Some(id),
+            bodies,
+            points: [sides[0].point, sides[1].point],
+            rows: rows..rows + kinds.len(),
+            kinds,
+            path: path(tree, bodies),
+            entries,
+        };
+        chord.entries = entries;
+        rows += chord.kinds.len();
+        entries += chord.kinds.len() * chord.path.len();
+        found.push(chord);
+    }
+    Ok(found)
+}
+
+/// The rows of a joint; none of a helical one.
+fn rows_of(joint: &Joint, [a, b]: &[Side; 2]) -> Option<Vec<RowKind>> {
+    use RowKind::{InPlane, Length, Parallel, Point};
+    let across = a.axis.cross(a.normal);
+    let points = || (0..3).map(Point);
+    let parallel_axes = || [Parallel(a.normal, b.axis), Parallel(across, b.axis)].into_iter();
+    let on_axis = || [InPlane(a.normal), InPlane(across)].into_iter();
+    let no_turn = || std::iter::once(Parallel(a.normal, b.axis.cross(b.normal)));
+    Some(match joint.kind {
+        JointKind::Weld => points().chain(parallel_axes()).chain(no_turn()).collect(),
+        JointKind::Revolute => points().chain(parallel_axes()).collect(),
+        JointKind::Prismatic => on_axis().chain(parallel_axes()).chain(no_turn()).collect(),
+        JointKind::Cylindrical => on_axis().chain(parallel_axes()).collect(),
+        JointKind::Universal => points().chain([Parallel(a.axis, b.axis)]).collect(),
+        JointKind::Spherical => points().collect(),
+        JointKind::Planar => std::iter::once(InPlane(a.axis)).chain(parallel_axes()).collect(),
+        JointKind::Distance { length } => vec![Length(length)],
+        JointKind::Helical { .. } => return None,
+    })
+}
+
+/// The freedoms on the path from one body to another: those towards the second are positive.
+pub(super) fn path(tree: &Tree, [a, b]: [usize; 2]) -> Vec<(usize, f64)> {
+    let chain = |mut body: usize| {
+        let mut links = Vec::new();
+        while let Some(link) = tree.link_of[body] {
+            links.push(link);
+            body = tree.links[link].parent;
+        }
+        links
+    };
+    let (to_a, to_b) = (chain(a), chain(b));
+    let freedoms = |links: &[usize], others: &[usize], sign: f64| {
+        let own = links.iter().filter(|l| !others.contains(l));
+        own.flat_map(|l| tree.links[*l].freedoms.clone()).map(|f| (f, sign)).collect::<Vec<_>>()
+    };
+    let mut path = freedoms(&to_a, &to_b, -1.0);
+    path.extend(freedoms(&to_b, &to_a, 1.0));
+    path.sort_unstable_by_key(|(f, _)| *f);
+    path
+}
+
+impl Chord {
+    /// The points of both bodies and their difference d.
+    #[inline(always)]
+    pub(super) fn ends<T: Scalar>(&self, frames: &[Frame<T>]) -> [Vec3<T>; 3] {
+        let [a, b] = [0, 1].map(|k| frames[self.bodies[k]].point(self.points[k]));
+        [a, b, b - a]
+    }
+
+    /// The residual of a row and its wrench.
+    #[inline(always)]
+    pub(super) fn row<T: Scalar>(&self, kind: RowKind, frames: &[Frame<T>], d: Vec3<T>) -> RowValue<T> {
+        let [a, b] = self.bodies.map(|body| &frames[body].rotation);
+        let zero = Vec3::zero();
+        match kind {
+            RowKind::Point(k) => {
+                let axis = Vec3::AXES[k].cast();
+                RowValue { residual: axis.dot(d), force: axis, couple: zero }
+            }
+            RowKind::Parallel(n, w) => {
+                let (n, w) = (a.apply(n.cast()), b.apply(w.cast()));
+                RowValue { residual: n.dot(w), force: zero, couple: w.cross(n) }
+            }
+            RowKind::InPlane(u) => {
+                let u = a.apply(u.cast());
+                RowValue { residual: u.dot(d), force: u, couple: zero }
+            }
+            RowKind::Length(length) => {
+                let distance = d.dot(d).sqrt();
+                let along = d.scaled(T::from_f64(1.0) / distance);
+                RowValue { residual: distance - T::from_f64(length), force: along, couple: zero }
+            }
+            RowKind::NoSpin(e) => {
+                RowValue { residual: T::from_f64(0.0), force: zero, couple: b.apply(e.cast()) }
+            }
+        }
+    }
+
+    /// The second derivative of a row by time, at the velocities and accelerations of its bodies.
+    #[inline(always)]
+    pub(super) fn row_acceleration<T: Scalar>(
+        &self,
+        kind: RowKind,
+        frames: &[Frame<T>],
+        states: &[BodyState<T>],
+    ) -> T {
+        let [a, b] = self.bodies;
+        let motion = |body: usize, point: Vec3| {
+            let arm = frames[body].rotation.apply(point.cast());
+            (states[body].point_velocity(arm), states[body].point_acceleration(arm))
+        };
+        let direction = |body: usize, u: Vec3| {
+            let u = frames[body].rotation.apply(u.cast());
+            let (first, second) = states[body].direction_derivatives(u);
+            (u, first, second)
+        };
+        let twice = T::from_f64(2.0);
+        match kind {
+            RowKind::Parallel(n, w) => {
+                let ((n, n1, n2), (w, w1, w2)) = (direction(a, n), direction(b, w));
+                n2.dot(w) + twice * n1.dot(w1) + n.dot(w2)
+            }
+            RowKind::NoSpin(e) => {
+                let e = frames[b].rotation.apply(e.cast());
+                e.dot(states[b].angular_acceleration)
+            }
+            RowKind::Point(_) | RowKind::InPlane(_) | RowKind::Length(_) => {
+                let ((v_a, a_a), (v_b, a_b)) = (motion(a, self.points[0]), motion(b, self.points[1]));
+                let (d1, d2) = (v_b - v_a, a_b - a_a);
+                match kind {
+                    RowKind::InPlane(u) => {
+                        let d = self.ends(frames)[2];
+                        let (u, u1, u2) = direction(a, u);
+                        u2.dot(d) + twice * u1.dot(d1) + u.dot(d2)
+                    }
+                    RowKind::Length(_) => {
+                        let d = self.ends(frames)[2];
+                        let inverse = T::from_f64(1.0) / d.dot(d).sqrt();
+                        let along = d.dot(d1) * inverse;
+                        (d1.dot(d1) + d.dot(d2) - along * along) * inverse
+                    }
+                    RowKind::Point(k) => Vec3::AXES[k].cast().dot(d2),
+                    RowKind::Parallel(..) | RowKind::NoSpin(_) => T::from_f64(0.0),
+                }
+            }
+        }
+    }
+
+    /// How far the axes are from the same sense: of revolute and sliding joints they must not be opposite.
+    pub(super) fn is_flipped(&self, frames: &[Frame<f64>], mechanism: &Mechanism, tree: &Tree) -> bool {
+        let Some(joint) = self.joint.map(|j| &mechanism.joints[j.0]) else { return false };
+        let axis = |k: usize| {
+            let side = joint.sides[k].seen_from(&tree.internal[self.bodies[k]]);
+            frames[self.bodies[k]].rotation.apply(side.axis)
+        };
+        match joint.kind {
+            JointKind::Universal | JointKind::Spherical | JointKind::Distance { .. } => false,
+            _ => axis(0).dot(axis(1)) < 0.0,
+        }
+    }
+}
