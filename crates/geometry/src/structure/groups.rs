@@ -294,7 +294,7 @@ fn absorb_redundant(
 }
 
 /// Matches equations with unknowns, by augmenting paths found breadth first.
-fn match_equations(dependencies: &[Vec<usize>], unknowns: usize) -> (Vec<usize>, Vec<usize>) {
+pub(crate) fn match_equations(dependencies: &[Vec<usize>], unknowns: usize) -> (Vec<usize>, Vec<usize>) {
     let mut of_equation = vec![UNMATCHED; dependencies.len()];
     let mut of_unknown = vec![UNMATCHED; unknowns];
     let mut visited = vec![UNMATCHED; unknowns];
@@ -331,7 +331,7 @@ fn match_equations(dependencies: &[Vec<usize>], unknowns: usize) -> (Vec<usize>,
 
 /// Strongly connected components of "this equation needs the unknown that one determines",
 /// dependencies first (Tarjan 1972, with the recursion on an explicit stack).
-fn strong_components(
+pub(crate) fn strong_components(
     of_equation: &[usize],
     dependencies: &[Vec<usize>],
     of_unknown: &[usize],

@@ -1,0 +1,183 @@
+//! Groups of equations that are solved together. The independent rows are matched with unknowns; strongly connected components,
+//! in order, are the groups, and each redundant row joins the group of its last unknown.
+
+use super::closure::Chord;
+use super::mechanism::Mechanism;
+use super::plan::{Plan, Pose};
+use super::tree::{FreedomKind, Step};
+use crate::error::AssemblyError;
+use crate::structure::groups::{match_equations, strong_components};
+
+/// An entry of a group's matrix.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Inner {
+    /// Where it stands in the matrix.
+    pub(super) at: usize,
+    /// Which entry of the Jacobian it is.
+    pub(super) entry: usize,
+    pub(super) scale: f64,
+}
+
+/// An entry of a group's rows that belongs to a freedom of another group or of an actuator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Outer {
+    pub(super) row: usize,
+    pub(super) entry: usize,
+    pub(super) freedom: usize,
+}
+
+/// Unknowns that are solved together.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Group {
+    pub(super) unknowns: Vec<usize>,
+    /// By chord, and the row's number in it.
+    pub(super) rows: Vec<(usize, usize)>,
+    /// Bodies on its loops that depend on its unknowns.
+    pub(super) links: Vec<usize>,
+    /// Links with a ball among the unknowns, and the position of its first freedom among them.
+    pub(super) balls: Vec<(usize, usize)>,
+    pub(super) inner: Vec<Inner>,
+    pub(super) outer: Vec<Outer>,
+    pub(super) row_scales: Vec<f64>,
+    pub(super) column_scales: Vec<f64>,
+    /// Where its factors and their heads begin.
+    pub(super) factors: usize,
+    pub(super) heads: usize,
+}
+
+impl Plan {
+    /// The unit in which a freedom is measured: the size of the mechanism for translations.
+    pub(super) fn unit(&self, freedom: usize) -> f64 {
+        match self.tree.freedoms[freedom] {
+            FreedomKind::Slide => self.size,
+            FreedomKind::Turn | FreedomKind::Screw(_) | FreedomKind::BallTurn => 1.0,
+        }
+    }
+
+    /// What a row is multiplied by to have no unit.
+    pub(super) fn row_scale(&self, (c, k): (usize, usize)) -> f64 {
+        if self.chords[c].kinds[k].is_length() { 1.0 / self.size } else { 1.0 }
+    }
+
+    /// The freedoms that no actuator drives.
+    pub(super) fn unknowns(&self) -> Vec<usize> {
+        let driven = |f: &usize| self.drivers.iter().any(|(d, _)| d == f);
+        (0..self.tree.freedoms.len()).filter(|f| !driven(f)).collect()
+    }
+
+    /// All rows, by chord and number.
+    pub(super) fn all_rows(&self) -> Vec<(usize, usize)> {
+        let chords = self.chords.iter().enumerate();
+        chords.flat_map(|(c, chord)| (0..chord.kinds.len()).map(move |k| (c, k))).collect()
+    }
+
+    /// A group of these unknowns and rows; the links are added by [`Plan::schedule`].
+    pub(super) fn group(&self, mut unknowns: Vec<usize>, rows: Vec<(usize, usize)>) -> Group {
+        unknowns.sort_unstable();
+        let n = unknowns.len();
+        let mut group = Group {
+            row_scales: rows.iter().map(|r| self.row_scale(*r)).collect(),
+            column_scales: unknowns.iter().map(|f| self.unit(*f)).collect(),
+            ..Group::default()
+        };
+        for (i, &(c, k)) in rows.iter().enumerate() {
+            let chord: &Chord = &self.chords[c];
+            for (p, &(freedom, _)) in chord.path.iter().enumerate() {
+                let entry = chord.entries + k * chord.path.len() + p;
+                match unknowns.binary_search(&freedom) {
+                    Ok(j) => group.inner.push(Inner {
+                        at: i * n + j,
+                        entry,
+                        scale: group.row_scales[i] * group.column_scales[j],
+                    }),
+                    Err(_) => group.outer.push(Outer { row: i, entry, freedom }),
+                }
+            }
+        }
+        for (l, link) in self.tree.links.iter().enumerate() {
+            for step in &link.steps {
+                if let Step::Ball(_, first) = *step
+                    && let Ok(at) = unknowns.binary_search(&first)
+                {
+                    group.balls.push((l, at));
+                }
+            }
+        }
+        (group.unknowns, group.rows) = (unknowns, rows);
+        group
+    }
+
+    /// Sets the groups, with the places of their factors and the links that each one moves.
+    pub(super) fn schedule(&mut self, mut groups: Vec<Group>) {
+        let mut level = vec![0; self.tree.links.len()];
+        for (l, link) in self.tree.links.iter().enumerate() {
+            let before = self.tree.link_of[link.parent].map_or(0, |p| level[p]);
+            let of = |f: usize| groups.iter().position(|g| g.unknowns.contains(&f)).map_or(0, |g| g + 1);
+            level[l] = link.freedoms.clone().map(of).max().unwrap_or(0).max(before);
+        }
+        let (mut factors, mut heads) = (0, 0);
+        let mut placed: Vec<bool> = level.iter().map(|l| *l == 0).collect();
+        self.first_links = (0..level.len()).filter(|l| placed[*l]).collect();
+        for (g, group) in groups.iter_mut().enumerate() {
+            (group.factors, group.heads) = (factors, heads);
+            factors += group.rows.len() * group.unknowns.len();
+            heads += group.unknowns.len();
+            let mut needed = vec![false; level.len()];
+            for &(c, _) in &group.rows {
+                for body in self.chords[c].bodies {
+                    let mut body = body;
+                    while let Some(link) = self.tree.link_of[body] {
+                        needed[link] = true;
+                        body = self.tree.links[link].parent;
+                    }
+                }
+            }
+            group.links = (0..level.len()).filter(|l| needed[*l] && !placed[*l] && level[*l] <= g + 1).collect();
+            group.links.iter().for_each(|l| placed[*l] = true);
+        }
+        self.last_links = (0..level.len()).filter(|l| !placed[*l]).collect();
+        self.groups = groups;
+    }
+
+    /// Replaces the one group of everything by the groups that the structure has, in order, after idle freedoms are held.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] where the freedoms are not those of the actuators, or the position is singular.
+    pub(super) fn find_groups(&mut self, mechanism: &Mechanism, start: Pose) -> Result<Pose, AssemblyError> {
+        let analysed = self.analyse(mechanism, start)?;
+        self.mobility = analysed.mobility;
+        let unknowns = self.unknowns();
+        let position = |f: &usize| unknowns.binary_search(f).ok();
+        let rows = self.all_rows();
+        let dependencies: Vec<Vec<usize>> = rows
+            .iter()
+            .map(|(c, _)| self.chords[*c].path.iter().filter_map(|(f, _)| position(f)).collect())
+            .collect();
+        let independent: Vec<usize> = analysed.independent;
+        let chosen: Vec<Vec<usize>> = independent.iter().map(|r| dependencies[*r].clone()).collect();
+        let (of_equation, of_unknown) = match_equations(&chosen, unknowns.len());
+        let components = strong_components(&of_equation, &chosen, &of_unknown);
+        let mut groups: Vec<(Vec<usize>, Vec<(usize, usize)>)> = components
+            .into_iter()
+            .map(|equations| {
+                let matched = equations.iter().map(|e| unknowns[of_equation[*e]]).collect();
+                (matched, equations.iter().map(|e| rows[independent[*e]]).collect())
+            })
+            .collect();
+        for (r, row) in rows.iter().enumerate().filter(|(r, _)| !independent.contains(r)) {
+            let depends = |g: &(Vec<usize>, _)| dependencies[r].iter().any(|u| g.0.contains(&unknowns[*u]));
+            if let Some(last) = groups.iter().rposition(depends) {
+                groups[last].1.push(*row);
+            }
+        }
+        for (_, rows) in &mut groups {
+            rows.sort_unstable();
+        }
+        let groups = groups.into_iter().map(|(unknowns, rows)| self.group(unknowns, rows)).collect();
+        self.schedule(groups);
+        let mut pose = self.pose();
+        pose.coordinates.copy_from_slice(&analysed.pose.coordinates);
+        pose.balls.copy_from_slice(&analysed.pose.balls);
+        Ok(pose)
+    }
+}

@@ -1,0 +1,124 @@
+//! The compiled mechanism, and the memory of one thread in which it is evaluated.
+
+use super::closure::Chord;
+use super::follow::Node;
+use super::frames::{BodyState, Frame, Screw};
+use super::groups::Group;
+use super::mechanism::{Assembly, Mechanism, Placement};
+use super::rank::Mobility;
+use super::tree::Tree;
+use super::vector::{Rotation, Vec3};
+use crate::error::AssemblyError;
+use crate::plan::range::Range;
+use dwell_numerics::Scalar;
+
+/// A compiled mechanism: constant, shared between threads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    pub(super) ground: usize,
+    pub(super) size: f64,
+    pub(super) tree: Tree,
+    pub(super) chords: Vec<Chord>,
+    pub(super) groups: Vec<Group>,
+    /// Links that depend on the driven freedoms alone; then those that no group places.
+    pub(super) first_links: Vec<usize>,
+    pub(super) last_links: Vec<usize>,
+    /// By actuator: its freedom, and −1 where the tree counts it backwards.
+    pub(super) drivers: Vec<(usize, f64)>,
+    /// Poses along the range, by ascending coordinate; of several actuators that of the assembly alone.
+    pub(super) nodes: Vec<Node>,
+    pub(super) range: Range,
+    pub(super) mobility: Mobility,
+}
+
+/// A pose with its velocities, for one thread.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pose<T = f64> {
+    pub(super) coordinates: Vec<T>,
+    pub(super) balls: Vec<Rotation<T>>,
+    pub(super) frames: Vec<Frame<T>>,
+    pub(super) screws: Vec<Screw<T>>,
+    /// Entries of the Jacobian, by chord, row and freedom of its path.
+    pub(super) entries: Vec<T>,
+    pub(super) residuals: Vec<T>,
+    /// By group: its factors, and the heads of their reflections.
+    pub(super) factors: Vec<T>,
+    pub(super) heads: Vec<T>,
+    pub(super) scratch: Vec<T>,
+    pub(super) rates: Vec<T>,
+    pub(super) accelerations: Vec<T>,
+    pub(super) states: Vec<BodyState<T>>,
+}
+
+impl Plan {
+    /// Assembles a mechanism and compiles it.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] where it cannot be assembled, its freedoms are not those of its actuators, or its loops contradict each other.
+    pub fn compile(mechanism: &Mechanism, assembly: &Assembly) -> Result<Self, AssemblyError> {
+        let mut plan = Self::whole(mechanism)?;
+        let start = plan.assemble(mechanism, assembly)?;
+        let start = plan.find_groups(mechanism, start)?;
+        plan.follow_range(&assembly.q, start);
+        Ok(plan)
+    }
+
+    /// Number of actuators.
+    pub fn actuators(&self) -> usize {
+        self.drivers.len()
+    }
+
+    /// The range of the coordinate.
+    pub fn range(&self) -> Range {
+        self.range
+    }
+
+    /// Degrees of freedom, redundant constraints and determined reactions, by rank.
+    pub fn mobility(&self) -> &Mobility {
+        &self.mobility
+    }
+
+    /// A length of the order of the mechanism, m.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// Memory for one thread.
+    pub fn pose<T: Scalar>(&self) -> Pose<T> {
+        let zero = T::from_f64(0.0);
+        let freedoms = self.tree.freedoms.len();
+        let rows = self.chords.last().map_or(0, |c| c.rows.end);
+        let entries = self.chords.last().map_or(0, |c| c.entries + c.rows.len() * c.path.len());
+        let group = |f: fn(&Group) -> usize| self.groups.iter().map(f).sum::<usize>();
+        let mut pose = Pose {
+            coordinates: vec![zero; freedoms],
+            balls: vec![Rotation::default(); self.tree.balls],
+            frames: vec![Frame::default(); self.tree.internal.len()],
+            screws: vec![Screw::default(); freedoms],
+            entries: vec![zero; entries],
+            residuals: vec![zero; rows],
+            factors: vec![zero; group(|g| g.rows.len() * g.unknowns.len())],
+            heads: vec![zero; group(|g| g.unknowns.len())],
+            scratch: vec![zero; self.groups.iter().map(|g| g.rows.len()).max().unwrap_or(0)],
+            rates: vec![zero; freedoms],
+            accelerations: vec![zero; freedoms],
+            states: vec![BodyState::default(); self.tree.internal.len()],
+        };
+        // The ground is placed once.
+        pose.frames[self.ground].origin = self.tree.internal[self.ground].position.cast();
+        pose
+    }
+
+    /// Where a body is.
+    pub fn placement(&self, pose: &Pose<f64>, body: usize) -> Placement {
+        let frame = &pose.frames[body];
+        let internal = Placement { position: frame.origin, rotation: frame.rotation };
+        internal.then(&self.tree.internal[body].inverse())
+    }
+
+    /// A point of a body, m in its frame, in the frame of the ground.
+    pub fn point(&self, pose: &Pose<f64>, body: usize, point: Vec3) -> Vec3 {
+        let placement = self.placement(pose, body);
+        placement.position + placement.rotation.apply(point)
+    }
+}
