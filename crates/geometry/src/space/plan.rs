@@ -28,6 +28,8 @@ pub struct Plan {
     /// Poses along the range, by ascending coordinate; of several actuators that of the assembly alone.
     pub(super) nodes: Vec<Node>,
     pub(super) range: Range,
+    /// The coordinates at the assembly.
+    pub(super) assembly_q: Vec<f64>,
     pub(super) mobility: Mobility,
 }
 
@@ -59,7 +61,11 @@ impl Plan {
         let mut plan = Self::whole(mechanism)?;
         let start = plan.assemble(mechanism, assembly)?;
         let start = plan.find_groups(mechanism, start)?;
-        plan.follow_range(&assembly.q, start);
+        let kind = mechanism.actuators.first().map(|a| a.kind);
+        plan.assembly_q.clone_from(&assembly.q);
+        // At the assembly everything is closed: what fails there is a singular position.
+        let singular = |_| AssemblyError::SingularAssembly { bodies: Vec::new(), joints: Vec::new() };
+        plan.follow_range(&assembly.q, start, kind).map_err(singular)?;
         Ok(plan)
     }
 

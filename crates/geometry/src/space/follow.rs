@@ -1,0 +1,202 @@
+//! The branch over the range of the coordinate, and the poses stored along it: a pose depends on q alone, never on what was
+//! evaluated before.
+
+use super::mechanism::ActuatorKind;
+use super::plan::{Plan, Pose};
+use super::tree::Step;
+use super::vector::{Rotation, Vec3};
+use crate::error::PositionError;
+use crate::plan::range::Range;
+use dwell_numerics::Scalar;
+use std::f64::consts::TAU;
+
+/// A stored pose with its first and second derivatives by the coordinate.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Node {
+    pub(super) q: f64,
+    coordinates: Vec<[f64; 3]>,
+    balls: Vec<Rotation>,
+    /// By ball: its turn's derivatives, in the axes of the joint's frame on the parent.
+    turns: Vec<[Vec3; 2]>,
+}
+
+/// Steps of one revolution, or of the size of the mechanism.
+const STEPS: f64 = 256.0;
+/// A step is halved where the prediction misses by more, rad or parts of the size.
+const MISS: f64 = 2e-3;
+/// A step this small, relative to the first, ends the range.
+const SMALLEST: f64 = 1e-9;
+/// Revolutions after which a pose that has not come back is taken not to, and sizes after which a stroke has no end.
+const MAX_REVOLUTIONS: u32 = 8;
+/// Two poses are the same: rad, or parts of the size.
+const SAME: f64 = 1e-7;
+
+/// Where a walk along the branch ended.
+enum End {
+    Reached,
+    Blocked,
+}
+
+impl Plan {
+    /// Sets the coordinates to the prediction from a stored pose at so much more of the coordinate.
+    pub(super) fn start_from<T: Scalar>(&self, node: &Node, ahead: f64, pose: &mut Pose<T>) {
+        for (c, [value, first, second]) in pose.coordinates.iter_mut().zip(&node.coordinates) {
+            *c = T::from_f64(value + ahead * (first + 0.5 * ahead * second));
+        }
+        for ((ball, stored), [first, second]) in pose.balls.iter_mut().zip(&node.balls).zip(&node.turns) {
+            let turn = first.scaled(ahead) + second.scaled(0.5 * ahead * ahead);
+            *ball = stored.turned_by(turn).cast();
+        }
+    }
+
+    /// The coordinate in the range of the stored poses.
+    pub(super) fn within_range(&self, q: f64) -> Result<f64, PositionError> {
+        let outside = |from, to| Err(PositionError::OutOfRange { q, from, to });
+        let first = self.nodes[0].q;
+        match self.range {
+            Range::Full => Ok(first + (q - first).rem_euclid(TAU)),
+            Range::Revolutions(count) => Ok(first + (q - first).rem_euclid(TAU * f64::from(count))),
+            Range::Limited(from, to) | Range::Stroke(from, to) | Range::Unresolved(from, to)
+                if q < from || q > to =>
+            {
+                outside(from, to)
+            }
+            _ => Ok(q),
+        }
+    }
+
+    /// A node at the pose, with its derivatives for one actuator.
+    fn node(&self, q: f64, pose: &mut Pose) -> Node {
+        if self.actuators() == 1 {
+            self.velocities(&[1.0], pose);
+            self.accelerations(&[0.0], pose);
+        }
+        let mut turns = vec![[Vec3::ZERO; 2]; self.tree.balls];
+        for link in &self.tree.links {
+            for step in &link.steps {
+                if let Step::Ball(ball, first) = *step {
+                    let of = |values: &[f64]| Vec3 { x: values[first], y: values[first + 1], z: values[first + 2] };
+                    let (rate, second) = (of(&pose.rates), of(&pose.accelerations));
+                    let carried = pose.states[link.body].angular_velocity - rate;
+                    let to_frame = |v: Vec3| {
+                        pose.balls[ball].apply(pose.frames[link.body].rotation.apply_inverse(v))
+                    };
+                    turns[ball] = [to_frame(rate), to_frame(second - carried.cross(rate))];
+                }
+            }
+        }
+        let freedoms = 0..self.tree.freedoms.len();
+        let of = |f: usize| [pose.coordinates[f], pose.rates[f], pose.accelerations[f]];
+        // The coordinates of a ball are its rotation.
+        Node { q, coordinates: freedoms.map(of).collect(), balls: pose.balls.clone(), turns }
+    }
+
+    /// Follows the branch from the assembly.
+    pub(super) fn follow_range(&mut self, q: &[f64], start: Pose, kind: Option<ActuatorKind>) -> Result<(), PositionError> {
+        let mut pose = start;
+        self.close(q, &mut pose)?;
+        let first = self.node(q.first().copied().unwrap_or(0.0), &mut pose);
+        self.nodes = vec![first.clone()];
+        let (true, Some(kind)) = (self.actuators() == 1, kind) else {
+            self.range = Range::Unbounded;
+            return Ok(());
+        };
+        let is_angle = matches!(kind, ActuatorKind::Angle(_));
+        let unit = if is_angle { TAU } else { self.size };
+        let start_frames = pose.frames.clone();
+        let mut forward = vec![first.clone()];
+        for revolution in 1..=MAX_REVOLUTIONS {
+            let end = first.q + f64::from(revolution) * unit;
+            if let End::Blocked = self.walk(&mut forward, end, unit, &mut pose) {
+                return self.follow_back(forward, first, unit, is_angle, &mut pose);
+            }
+            let moved = |(a, b): (&super::frames::Frame<f64>, &super::frames::Frame<f64>)| {
+                let turn = a.rotation.inverse().after(&b.rotation).vector().norm();
+                turn.max((a.origin - b.origin).norm() / self.size)
+            };
+            let same = pose.frames.iter().zip(&start_frames).map(moved).fold(0.0, f64::max) < SAME;
+            if is_angle && same {
+                self.range = if revolution == 1 { Range::Full } else { Range::Revolutions(revolution) };
+                self.nodes = forward;
+                return Ok(());
+            }
+        }
+        self.follow_back(forward, first, unit, is_angle, &mut pose)
+    }
+
+    /// Follows the branch backwards, too.
+    fn follow_back(&mut self, forward: Vec<Node>, first: Node, unit: f64, is_angle: bool, pose: &mut Pose) -> Result<(), PositionError> {
+        let far = f64::from(MAX_REVOLUTIONS) * unit;
+        let mut back = vec![first.clone()];
+        let blocked_back = matches!(self.walk(&mut back, first.q - far, unit, pose), End::Blocked);
+        back.reverse();
+        back.extend(forward.into_iter().skip(1));
+        let [from, to] = [0, back.len() - 1].map(|k| back[k].q);
+        let blocked = to < first.q + 0.99 * far && blocked_back;
+        self.range = match (blocked, is_angle) {
+            (true, true) => Range::Limited(from, to),
+            (true, false) => Range::Stroke(from, to),
+            (false, _) => Range::Unresolved(from, to),
+        };
+        self.nodes = back;
+        Ok(())
+    }
+
+    /// Walks from the last node to a coordinate, in steps that the prediction follows.
+    fn walk(&self, nodes: &mut Vec<Node>, to: f64, unit: f64, pose: &mut Pose) -> End {
+        let largest = unit / STEPS;
+        let mut step = largest;
+        while let Some(last) = nodes.last() {
+            let left = to - last.q;
+            if left.abs() < 1e-12 * unit {
+                return End::Reached;
+            }
+            let ahead = left.signum() * step.min(left.abs());
+            self.start_from(last, ahead, pose);
+            let predicted = (pose.coordinates.clone(), pose.balls.clone());
+            let q = if left.abs() <= step { to } else { last.q + ahead };
+            if self.close(&[q], pose).is_ok() && self.missed_by(&predicted, pose) < MISS {
+                let node = self.node(q, pose);
+                nodes.push(node);
+                step = (2.0 * step).min(largest);
+            } else {
+                step *= 0.5;
+                if step < SMALLEST * unit {
+                    return End::Blocked;
+                }
+            }
+        }
+        End::Blocked
+    }
+
+    /// How far a pose is from its prediction.
+    fn missed_by(&self, (coordinates, balls): &(Vec<f64>, Vec<Rotation>), pose: &Pose) -> f64 {
+        let driven = |f: usize| self.drivers.iter().any(|(d, _)| *d == f);
+        let ball = |f: usize| self.tree.freedoms[f] == super::tree::FreedomKind::BallTurn;
+        let scalar = (0..coordinates.len()).filter(|f| !driven(*f) && !ball(*f));
+        let scalar = scalar.map(|f| (coordinates[f] - pose.coordinates[f]).abs() / self.unit(f));
+        let turned = balls.iter().zip(&pose.balls).map(|(a, b)| a.inverse().after(b).vector().norm());
+        scalar.chain(turned).fold(0.0, f64::max)
+    }
+
+    /// The pose of several coordinates: along the straight line from those of the assembly.
+    pub(super) fn continue_to<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PositionError> {
+        let from = &self.assembly_q;
+        let mut real = self.pose::<f64>();
+        self.start_from(&self.nodes[0], 0.0, &mut real);
+        let span = q.iter().zip(from).map(|(q, a)| (q.value() - a).abs()).fold(0.0, f64::max);
+        let count = (span / 0.05).ceil().clamp(1.0, 1e4);
+        for k in 1..=count as usize {
+            let part = k as f64 / count;
+            let at: Vec<f64> = q.iter().zip(from).map(|(q, a)| a + part * (q.value() - a)).collect();
+            self.close(&at, &mut real)?;
+        }
+        for (to, from) in pose.coordinates.iter_mut().zip(&real.coordinates) {
+            *to = T::from_f64(*from);
+        }
+        for (to, from) in pose.balls.iter_mut().zip(&real.balls) {
+            *to = from.cast();
+        }
+        self.close(q, pose)
+    }
+}

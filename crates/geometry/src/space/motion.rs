@@ -1,0 +1,102 @@
+//! Velocities and accelerations: the factors of each group once more, with other right-hand sides.
+
+use super::groups::Group;
+use super::plan::{Plan, Pose};
+use super::vector::Vec3;
+use dwell_numerics::Scalar;
+
+/// Velocities and accelerations of a body in the axes of the ground, those of its frame's origin among them.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BodyMotion<T = f64> {
+    /// Velocity of the origin, m/s.
+    pub velocity: Vec3<T>,
+    /// Angular velocity, rad/s.
+    pub angular_velocity: Vec3<T>,
+    /// Acceleration of the origin, m/s².
+    pub acceleration: Vec3<T>,
+    /// Angular acceleration, rad/s².
+    pub angular_acceleration: Vec3<T>,
+}
+
+impl Plan {
+    /// The velocities of all freedoms and bodies at those of the actuators, rad/s or m/s. The accelerations of the bodies become
+    /// those at zero accelerations of the freedoms.
+    pub fn velocities<T: Scalar>(&self, q_dot: &[T], pose: &mut Pose<T>) {
+        for (&(freedom, sign), &rate) in self.drivers.iter().zip(q_dot) {
+            pose.rates[freedom] = rate * T::from_f64(sign);
+        }
+        for group in &self.groups {
+            self.carry_known(group, pose, |pose, freedom| pose.rates[freedom], |_, _, _| T::from_f64(0.0));
+            for (j, freedom) in group.unknowns.iter().enumerate() {
+                pose.rates[*freedom] = pose.scratch[j];
+            }
+        }
+        pose.accelerations.fill(T::from_f64(0.0));
+        self.fill_states(pose);
+    }
+
+    /// The accelerations of all freedoms and bodies at those of the actuators, rad/s² or m/s², after the velocities.
+    pub fn accelerations<T: Scalar>(&self, q_ddot: &[T], pose: &mut Pose<T>) {
+        pose.accelerations.fill(T::from_f64(0.0));
+        self.fill_states(pose);
+        for (&(freedom, sign), &acceleration) in self.drivers.iter().zip(q_ddot) {
+            pose.accelerations[freedom] = acceleration * T::from_f64(sign);
+        }
+        for group in &self.groups {
+            let row = |pose: &Pose<T>, c: usize, k: usize| {
+                let chord = &self.chords[c];
+                chord.row_acceleration(chord.kinds[k], &pose.frames, &pose.states)
+            };
+            self.carry_known(group, pose, |pose, freedom| pose.accelerations[freedom], row);
+            for (j, freedom) in group.unknowns.iter().enumerate() {
+                pose.accelerations[*freedom] = pose.scratch[j];
+            }
+        }
+        self.fill_states(pose);
+    }
+
+    /// Solves a group for what is known of the freedoms outside it and of its rows themselves.
+    #[inline(always)]
+    fn carry_known<T: Scalar>(
+        &self,
+        group: &Group,
+        pose: &mut Pose<T>,
+        known: impl Fn(&Pose<T>, usize) -> T,
+        row: impl Fn(&Pose<T>, usize, usize) -> T,
+    ) {
+        for (i, &(c, k)) in group.rows.iter().enumerate() {
+            pose.scratch[i] = -row(pose, c, k);
+        }
+        for outer in &group.outer {
+            let change = pose.entries[outer.entry] * known(pose, outer.freedom);
+            pose.scratch[outer.row] -= change;
+        }
+        self.solve(group, pose);
+    }
+
+    /// The states of the bodies from the rates and accelerations of the freedoms.
+    pub(super) fn fill_states<T: Scalar>(&self, pose: &mut Pose<T>) {
+        let freedoms = &self.tree.freedoms;
+        for link in &self.tree.links {
+            let Pose { frames, screws, rates, accelerations, states, .. } = pose;
+            let between = [&frames[link.parent], &frames[link.body]];
+            let of_freedoms = [&rates[..], &accelerations[..]];
+            states[link.body] = link.motion(between, &states[link.parent], of_freedoms, freedoms, screws);
+        }
+    }
+
+    /// The motion of a body.
+    pub fn body_motion<T: Scalar>(&self, pose: &Pose<T>, body: usize) -> BodyMotion<T> {
+        let state = &pose.states[body];
+        let frame = &pose.frames[body];
+        // From the internal origin to that of the body's frame.
+        let origin = self.tree.internal[body].inverse().position;
+        let arm = frame.rotation.apply(origin.cast());
+        BodyMotion {
+            velocity: state.point_velocity(arm),
+            angular_velocity: state.angular_velocity,
+            acceleration: state.point_acceleration(arm),
+            angular_acceleration: state.angular_acceleration,
+        }
+    }
+}
