@@ -50,6 +50,7 @@ pub mod plan;
 pub mod plane;
 mod positions;
 pub mod structure;
+pub mod space;
 mod variants;
 
 pub use error::{AssemblyError, PositionError, StructureError};

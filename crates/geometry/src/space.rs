@@ -50,8 +50,9 @@ mod rank;
 mod tree;
 mod vector;
 
+pub use frames::{BodyMotion, Frame};
 pub use mechanism::{Actuator, ActuatorKind, Assembly, Joint, JointKind, Mechanism, Placement, Side};
-pub use motion::BodyMotion;
+pub use multipliers::{Forces, Wrench};
 pub use plan::{Plan, Pose};
 pub use rank::{IdleBody, Mobility};
 pub use vector::{Rotation, Vec3, vec3};

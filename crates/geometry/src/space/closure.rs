@@ -8,7 +8,7 @@
 //! The gradient of a row is a wrench on the second body, a force f at its point and a couple m; the first body feels the
 //! opposite.
 
-use super::frames::{BodyState, Frame};
+use super::frames::{BodyMotion, Frame};
 use super::mechanism::{Joint, JointKind, Mechanism, Side};
 use super::tree::Tree;
 use super::vector::Vec3;
@@ -181,7 +181,7 @@ impl Chord {
         &self,
         kind: RowKind,
         frames: &[Frame<T>],
-        states: &[BodyState<T>],
+        states: &[BodyMotion<T>],
     ) -> T {
         let [a, b] = self.bodies;
         let motion = |body: usize, point: Vec3| {

@@ -5,17 +5,25 @@ use super::tree::{FreedomKind, Link, Step, next_axis};
 use super::vector::{Rotation, Vec3};
 use dwell_numerics::Scalar;
 
-/// The internal frame of a body in that of the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Frame<T> {
-    pub(super) origin: Vec3<T>,
-    pub(super) rotation: Rotation<T>,
+/// A frame on a body, in that of the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame<T> {
+    /// Its origin, m.
+    pub origin: Vec3<T>,
+    /// Its orientation.
+    pub rotation: Rotation<T>,
+}
+
+impl<T: Scalar> Default for Frame<T> {
+    fn default() -> Self {
+        Self { origin: Vec3::zero(), rotation: Rotation::default() }
+    }
 }
 
 impl<T: Scalar> Frame<T> {
     /// A point of the body.
     #[inline(always)]
-    pub(super) fn point(&self, point: Vec3) -> Vec3<T> {
+    pub fn point(&self, point: Vec3) -> Vec3<T> {
         self.origin + self.rotation.apply(point.cast())
     }
 
@@ -50,32 +58,35 @@ impl<T: Scalar> Screw<T> {
     }
 }
 
-/// Velocities and accelerations of a body, in the axes of the ground, of its internal origin.
+/// Velocities and accelerations of a body in the axes of the ground, with those of the origin of a frame on it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct BodyState<T> {
-    pub(super) velocity: Vec3<T>,
-    pub(super) angular_velocity: Vec3<T>,
-    pub(super) acceleration: Vec3<T>,
-    pub(super) angular_acceleration: Vec3<T>,
+pub struct BodyMotion<T = f64> {
+    /// Velocity of the origin, m/s.
+    pub velocity: Vec3<T>,
+    /// Angular velocity, rad/s.
+    pub angular_velocity: Vec3<T>,
+    /// Acceleration of the origin, m/s².
+    pub acceleration: Vec3<T>,
+    /// Angular acceleration, rad/s².
+    pub angular_acceleration: Vec3<T>,
 }
 
-impl<T: Scalar> BodyState<T> {
+impl<T: Scalar> BodyMotion<T> {
     /// Velocity of a point at this vector from the origin.
     #[inline(always)]
-    pub(super) fn point_velocity(&self, arm: Vec3<T>) -> Vec3<T> {
+    pub fn point_velocity(&self, arm: Vec3<T>) -> Vec3<T> {
         self.velocity + self.angular_velocity.cross(arm)
     }
 
     /// Acceleration of a point at this vector from the origin.
     #[inline(always)]
-    pub(super) fn point_acceleration(&self, arm: Vec3<T>) -> Vec3<T> {
-        let [_, second] = [arm, self.direction_derivatives(arm).1];
-        self.acceleration + second
+    pub fn point_acceleration(&self, arm: Vec3<T>) -> Vec3<T> {
+        self.acceleration + self.direction_derivatives(arm).1
     }
 
     /// First and second derivative of a vector fixed in the body: ω × u and ω̇ × u + ω × (ω × u).
     #[inline(always)]
-    pub(super) fn direction_derivatives(&self, u: Vec3<T>) -> (Vec3<T>, Vec3<T>) {
+    pub fn direction_derivatives(&self, u: Vec3<T>) -> (Vec3<T>, Vec3<T>) {
         let first = self.angular_velocity.cross(u);
         (first, self.angular_acceleration.cross(u) + self.angular_velocity.cross(first))
     }
@@ -132,13 +143,13 @@ impl Link {
     pub(super) fn motion<T: Scalar>(
         &self,
         [parent, frame]: [&Frame<T>; 2],
-        of_parent: &BodyState<T>,
+        of_parent: &BodyMotion<T>,
         [rates, accelerations]: [&[T]; 2],
         freedoms: &[FreedomKind],
         screws: &[Screw<T>],
-    ) -> BodyState<T> {
+    ) -> BodyMotion<T> {
         let arm = frame.origin - parent.origin;
-        let mut state = BodyState {
+        let mut state = BodyMotion {
             velocity: of_parent.point_velocity(arm),
             acceleration: of_parent.point_acceleration(arm),
             ..*of_parent

@@ -2,21 +2,8 @@
 
 use super::groups::Group;
 use super::plan::{Plan, Pose};
-use super::vector::Vec3;
+use super::frames::BodyMotion;
 use dwell_numerics::Scalar;
-
-/// Velocities and accelerations of a body in the axes of the ground, those of its frame's origin among them.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct BodyMotion<T = f64> {
-    /// Velocity of the origin, m/s.
-    pub velocity: Vec3<T>,
-    /// Angular velocity, rad/s.
-    pub angular_velocity: Vec3<T>,
-    /// Acceleration of the origin, m/s².
-    pub acceleration: Vec3<T>,
-    /// Angular acceleration, rad/s².
-    pub angular_acceleration: Vec3<T>,
-}
 
 impl Plan {
     /// The velocities of all freedoms and bodies at those of the actuators, rad/s or m/s. The accelerations of the bodies become
@@ -85,7 +72,13 @@ impl Plan {
         }
     }
 
-    /// The motion of a body.
+    /// The motion of a body, with velocity and acceleration of its [evaluation frame](Plan::frame)'s origin.
+    #[inline(always)]
+    pub fn state<'a, T: Scalar>(&self, pose: &'a Pose<T>, body: usize) -> &'a BodyMotion<T> {
+        &pose.states[body]
+    }
+
+    /// The motion of a body, with velocity and acceleration of its own frame's origin.
     pub fn body_motion<T: Scalar>(&self, pose: &Pose<T>, body: usize) -> BodyMotion<T> {
         let state = &pose.states[body];
         let frame = &pose.frames[body];

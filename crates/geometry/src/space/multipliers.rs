@@ -1,12 +1,87 @@
-//! Multipliers of the loops: the transposed factors, group by group in reverse order.
+//! Multipliers of the loops by the transposed factors, group by group in reverse order, and the forces and moments in the joints.
 
 use super::plan::{Plan, Pose};
+use super::vector::Vec3;
+use crate::mechanism::JointId;
 use dwell_numerics::{Scalar, qr};
 
+/// A force (N) and a moment (N·m) about a point, in the axes of the ground.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Wrench<T = f64> {
+    /// The force.
+    pub force: Vec3<T>,
+    /// The moment.
+    pub moment: Vec3<T>,
+}
+
+impl<T: Scalar> Wrench<T> {
+    /// Adds a force at this vector from the point, with a couple.
+    #[inline(always)]
+    pub fn add_at(&mut self, arm: Vec3<T>, force: Vec3<T>, couple: Vec3<T>) {
+        self.force += force;
+        self.moment += couple + arm.cross(force);
+    }
+}
+
+/// The forces of one pass, for one thread.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Forces<T = f64> {
+    /// By body: what moves it less the loads on it, about its [evaluation frame](Plan::frame)'s origin. The caller sets it.
+    pub required: Vec<Wrench<T>>,
+    /// By body: what the joint of the tree transmits to it and all that it carries.
+    transmitted: Vec<Wrench<T>>,
+    balance: Vec<T>,
+    multipliers: Vec<T>,
+}
+
 impl Plan {
-    /// Multipliers λ of all rows for the generalised forces `balance` on the freedoms, Jᵀ λ = g, N or N·m; where redundant rows leave
-    /// them open, the smallest. What stays in `balance` on the driven freedoms is the actuators' action.
-    pub fn multipliers<T: Scalar>(&self, pose: &mut Pose<T>, balance: &mut [T], multipliers: &mut [T]) {
+    /// Memory for the forces of one pass.
+    pub fn forces<T: Scalar>(&self) -> Forces<T> {
+        let zero = T::from_f64(0.0);
+        Forces {
+            required: vec![Wrench::default(); self.tree.internal.len()],
+            transmitted: vec![Wrench::default(); self.tree.internal.len()],
+            balance: vec![zero; self.tree.freedoms.len()],
+            multipliers: vec![zero; self.chords.last().map_or(0, |c| c.rows.end)],
+        }
+    }
+
+    /// The forces in all joints from the wrenches that the bodies require: Jᵀ [λ; τ] = M ẍ + h − f. Where redundant constraints
+    /// leave multipliers open, they are the smallest.
+    pub fn balance<T: Scalar>(&self, pose: &mut Pose<T>, forces: &mut Forces<T>) {
+        forces.transmitted.copy_from_slice(&forces.required);
+        self.carry_down(pose, &mut forces.transmitted);
+        for link in &self.tree.links {
+            let wrench = &forces.transmitted[link.body];
+            let at = pose.frames[link.body].origin;
+            for f in link.freedoms.clone() {
+                let kind = self.tree.freedoms[f];
+                forces.balance[f] = pose.screws[f].power(kind, wrench.force, at, wrench.moment);
+            }
+        }
+        self.multipliers(pose, forces);
+        self.transmit(pose, forces);
+    }
+
+    /// The forces in the joints of multipliers alone, with nothing required: of a [self-stress](Plan::self_stresses).
+    pub fn stress<T: Scalar>(&self, multipliers: &[T], pose: &mut Pose<T>, forces: &mut Forces<T>) {
+        forces.required.fill(Wrench::default());
+        forces.balance.fill(T::from_f64(0.0));
+        forces.multipliers.copy_from_slice(multipliers);
+        self.transmit(pose, forces);
+    }
+
+    /// Sums the wrenches from the outermost bodies to the ground.
+    fn carry_down<T: Scalar>(&self, pose: &Pose<T>, wrenches: &mut [Wrench<T>]) {
+        for link in self.tree.links.iter().rev() {
+            let Wrench { force, moment } = wrenches[link.body];
+            let arm = pose.frames[link.body].origin - pose.frames[link.parent].origin;
+            wrenches[link.parent].add_at(arm, force, moment);
+        }
+    }
+
+    fn multipliers<T: Scalar>(&self, pose: &mut Pose<T>, forces: &mut Forces<T>) {
+        let Forces { balance, multipliers, .. } = forces;
         for group in self.groups.iter().rev() {
             let (m, n) = (group.rows.len(), group.unknowns.len());
             let Pose { scratch, factors, heads, entries, .. } = &mut *pose;
@@ -24,5 +99,70 @@ impl Plan {
                 balance[outer.freedom] -= change;
             }
         }
+    }
+
+    /// What the joints of the tree transmit, from what is required and from the loops.
+    fn transmit<T: Scalar>(&self, pose: &Pose<T>, forces: &mut Forces<T>) {
+        forces.transmitted.copy_from_slice(&forces.required);
+        for chord in &self.chords {
+            let (force, couple) = self.chord_action(chord, pose, &forces.multipliers);
+            let at = chord.ends(&pose.frames)[1];
+            for (body, sign) in [(chord.bodies[0], 1.0), (chord.bodies[1], -1.0)] {
+                let (arm, sign) = (at - pose.frames[body].origin, T::from_f64(sign));
+                forces.transmitted[body].add_at(arm, force.scaled(sign), couple.scaled(sign));
+            }
+        }
+        self.carry_down(pose, &mut forces.transmitted);
+    }
+
+    /// Force at the second body's point and couple, of a chord on that body.
+    fn chord_action<T: Scalar>(
+        &self,
+        chord: &super::closure::Chord,
+        pose: &Pose<T>,
+        multipliers: &[T],
+    ) -> (Vec3<T>, Vec3<T>) {
+        let d = chord.ends(&pose.frames)[2];
+        let (mut force, mut couple) = (Vec3::zero(), Vec3::zero());
+        for (kind, r) in chord.kinds.iter().zip(chord.rows.clone()) {
+            let row = chord.row(*kind, &pose.frames, d);
+            force += row.force.scaled(multipliers[r]);
+            couple += row.couple.scaled(multipliers[r]);
+        }
+        (force, couple)
+    }
+
+    /// The action of an actuator, N·m or N, after [`Plan::balance`].
+    pub fn actuator_action<T: Scalar>(&self, forces: &Forces<T>, actuator: usize) -> T {
+        let (freedom, sign) = self.drivers[actuator];
+        forces.balance[freedom] * T::from_f64(sign)
+    }
+
+    /// The action of a joint's first body on the second, about the joint's point on the second, without that of an actuator.
+    pub fn reaction<T: Scalar>(&self, pose: &Pose<T>, forces: &Forces<T>, joint: JointId) -> Wrench<T> {
+        if let Some(chord) = self.chords.iter().find(|c| c.joint == Some(joint)) {
+            let (force, moment) = self.chord_action(chord, pose, &forces.multipliers);
+            return Wrench { force, moment };
+        }
+        let Some(link) = self.tree.links.iter().find(|l| l.joint == Some(joint)) else {
+            return Wrench::default();
+        };
+        let mut wrench = forces.transmitted[link.body];
+        for &(freedom, _) in self.drivers.iter().filter(|(f, _)| link.freedoms.contains(f)) {
+            let action = pose.screws[freedom].axis.scaled(forces.balance[freedom]);
+            match self.tree.freedoms[freedom].parts() {
+                (0.0, _) => wrench.force -= action,
+                _ => wrench.moment -= action,
+            }
+        }
+        if link.sign > 0.0 {
+            return wrench;
+        }
+        // The first body is carried by the second: what the second does to it, reversed, about the second's point.
+        let second = pose.frames[link.parent].point(link.on_parent.position);
+        let mut reversed = Wrench::default();
+        let arm = pose.frames[link.body].origin - second;
+        reversed.add_at(arm, -wrench.force, -wrench.moment);
+        reversed
     }
 }

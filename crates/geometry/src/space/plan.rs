@@ -2,7 +2,7 @@
 
 use super::closure::Chord;
 use super::follow::Node;
-use super::frames::{BodyState, Frame, Screw};
+use super::frames::{BodyMotion, Frame, Screw};
 use super::groups::Group;
 use super::mechanism::{Assembly, Mechanism, Placement};
 use super::rank::Mobility;
@@ -49,7 +49,7 @@ pub struct Pose<T = f64> {
     pub(super) scratch: Vec<T>,
     pub(super) rates: Vec<T>,
     pub(super) accelerations: Vec<T>,
-    pub(super) states: Vec<BodyState<T>>,
+    pub(super) states: Vec<BodyMotion<T>>,
 }
 
 impl Plan {
@@ -108,11 +108,22 @@ impl Plan {
             scratch: vec![zero; self.groups.iter().map(|g| g.rows.len()).max().unwrap_or(0)],
             rates: vec![zero; freedoms],
             accelerations: vec![zero; freedoms],
-            states: vec![BodyState::default(); self.tree.internal.len()],
+            states: vec![BodyMotion::default(); self.tree.internal.len()],
         };
         // The ground is placed once.
         pose.frames[self.ground].origin = self.tree.internal[self.ground].position.cast();
         pose
+    }
+
+    /// The frame in which a body is evaluated, by its own: that of the joint that carries it.
+    pub fn evaluation_frame(&self, body: usize) -> Placement {
+        self.tree.internal[body]
+    }
+
+    /// That frame at a pose.
+    #[inline(always)]
+    pub fn frame<'a, T: Scalar>(&self, pose: &'a Pose<T>, body: usize) -> &'a Frame<T> {
+        &pose.frames[body]
     }
 
     /// Where a body is.

@@ -1,0 +1,181 @@
+//! Closing all loops at the assembly, from rough placements: damped steps of least squares over everything at once.
+
+use super::closure::chords;
+use super::groups::Group;
+use super::mechanism::{Assembly, Mechanism};
+use super::plan::{Plan, Pose};
+use super::positions::OPEN;
+use super::rank::Mobility;
+use super::tree::Tree;
+use super::vector::vec3;
+use crate::error::{AssemblyError, StructureError};
+use crate::mechanism::{BodyId, JointId};
+use crate::plan::range::Range;
+use faer::Mat;
+
+/// Steps at most.
+const MAX_STEPS: usize = 300;
+/// The longest step, rad or parts of the size.
+const LONGEST: f64 = 0.3;
+/// Closed, relative to the size.
+const CLOSED: f64 = 1e-13;
+/// Singular values this small against the largest are zero.
+pub(super) const RANK_TOLERANCE: f64 = 1e-9;
+/// Loops that nearly close, relative to the size: their dimensions contradict each other where joints are redundant.
+const NEARLY_CLOSED: f64 = 0.05;
+
+impl Plan {
+    /// The mechanism with everything in one group, not yet assembled.
+    pub(super) fn whole(mechanism: &Mechanism) -> Result<Self, StructureError> {
+        if let Some(reason) = mechanism.fault() {
+            return Err(StructureError::Malformed { reason });
+        }
+        let tree = Tree::find(mechanism)?;
+        let chords = chords(mechanism, &tree)?;
+        let drivers = mechanism.actuators.iter().map(|a| tree.driven(a.kind));
+        let Some(drivers) = drivers.collect::<Option<Vec<_>>>() else {
+            let reason = "the driven joints form a loop of their own";
+            return Err(StructureError::Malformed { reason });
+        };
+        let mut plan = Self {
+            ground: mechanism.ground,
+            size: mechanism.size(),
+            tree,
+            chords,
+            groups: Vec::new(),
+            first_links: Vec::new(),
+            last_links: Vec::new(),
+            drivers,
+            nodes: Vec::new(),
+            range: Range::Unbounded,
+            assembly_q: Vec::new(),
+            mobility: Mobility::default(),
+        };
+        plan.schedule_whole();
+        Ok(plan)
+    }
+
+    /// One group of all unknowns and rows.
+    pub(super) fn schedule_whole(&mut self) {
+        let group = self.group(self.unknowns(), self.all_rows());
+        self.schedule(vec![group]);
+    }
+
+    /// The whole group's Jacobian, scaled.
+    pub(super) fn dense(&self, group: &Group, pose: &Pose) -> Mat<f64> {
+        let n = group.unknowns.len();
+        let mut matrix = Mat::zeros(group.rows.len(), n);
+        for inner in &group.inner {
+            matrix[(inner.at / n, inner.at % n)] = pose.entries[inner.entry] * inner.scale;
+        }
+        matrix
+    }
+
+    /// Moves everything to the coordinates in the pose, with the rows of the whole.
+    pub(super) fn evaluate_whole(&self, pose: &mut Pose) {
+        self.place(&self.first_links, pose);
+        self.place(&self.groups[0].links, pose);
+        self.place(&self.last_links, pose);
+        self.fill_rows(&self.groups[0], pose);
+    }
+
+    /// The pose of the assembly.
+    ///
+    /// # Errors
+    /// [`AssemblyError::NoAssembly`] and [`AssemblyError::Inconsistent`] with what stays open.
+    pub(super) fn assemble(&self, mechanism: &Mechanism, assembly: &Assembly) -> Result<Pose, AssemblyError> {
+        if assembly.q.len() != self.drivers.len() || !assembly.q.iter().all(|q| q.is_finite()) {
+            let reason = "the assembly does not give one finite coordinate for each actuator";
+            return Err(StructureError::Malformed { reason }.into());
+        }
+        let mut pose = self.pose::<f64>();
+        let (coordinates, balls) = self.tree.rough_coordinates(assembly);
+        pose.coordinates = coordinates;
+        pose.balls = balls;
+        for (&(freedom, sign), q) in self.drivers.iter().zip(&assembly.q) {
+            pose.coordinates[freedom] = sign * q;
+        }
+        self.evaluate_whole(&mut pose);
+        let mut damping = 1e-3;
+        let mut residual = self.residual_norm(&pose);
+        for _ in 0..MAX_STEPS {
+            if residual < CLOSED || damping > 1e12 {
+                break;
+            }
+            let before = pose.clone();
+            self.damped_step(damping, &mut pose);
+            self.evaluate_whole(&mut pose);
+            let new = self.residual_norm(&pose);
+            if new < residual {
+                residual = new;
+                damping = (damping * 0.1).max(1e-18);
+            } else {
+                pose = before;
+                damping = (damping * 10.0).max(1e-15);
+            }
+        }
+        let flipped = self.chords.iter().filter(|c| c.is_flipped(&pose.frames, mechanism, &self.tree));
+        let flipped: Vec<JointId> = flipped.filter_map(|c| c.joint).collect();
+        if residual < OPEN && flipped.is_empty() {
+            return Ok(pose);
+        }
+        Err(self.open_loops(mechanism, &pose, flipped))
+    }
+
+    /// The error of loops that stay open.
+    fn open_loops(&self, mechanism: &Mechanism, pose: &Pose, flipped: Vec<JointId>) -> AssemblyError {
+        let open = |c: &&super::closure::Chord| {
+            c.rows.clone().any(|r| pose.residuals[r].abs() > OPEN * self.size)
+        };
+        let mut joints: Vec<JointId> = self.chords.iter().filter(open).filter_map(|c| c.joint).collect();
+        joints.extend(flipped);
+        let largest = self.largest_residual(&self.groups[0], pose);
+        let gap = largest * self.size;
+        let svd = self.dense(&self.groups[0], pose).svd();
+        let rank = svd.map_or(0, |svd| super::rank::rank_of(&svd));
+        let redundant_count = self.groups[0].rows.len().saturating_sub(rank);
+        if redundant_count > 0 && largest < NEARLY_CLOSED {
+            return AssemblyError::Inconsistent { joints, redundant_count, gap };
+        }
+        let of = |joint: &JointId| mechanism.joints[joint.0].bodies;
+        let mut bodies: Vec<BodyId> = joints.iter().flat_map(of).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        AssemblyError::NoAssembly { bodies, joints, gap }
+    }
+
+    fn residual_norm(&self, pose: &Pose) -> f64 {
+        let group = &self.groups[0];
+        let rows = group.rows.iter().zip(&group.row_scales);
+        let squares = rows.map(|(&(c, k), s)| (s * pose.residuals[self.chords[c].rows.start + k]).powi(2));
+        squares.sum::<f64>().sqrt()
+    }
+
+    /// One damped step, δ = V σ/(σ² + µ) Uᵀ (−φ).
+    fn damped_step(&self, damping: f64, pose: &mut Pose) {
+        let group = &self.groups[0];
+        let Ok(svd) = self.dense(group, pose).svd() else { return };
+        let (u, s, v) = (svd.U(), svd.S().column_vector(), svd.V());
+        let largest = s.iter().fold(0.0_f64, |a, b| a.max(*b));
+        let mut step = vec![0.0; group.unknowns.len()];
+        for (k, &sigma) in s.iter().enumerate().filter(|(_, s)| **s > RANK_TOLERANCE * largest) {
+            let rows = group.rows.iter().zip(&group.row_scales).enumerate();
+            let part: f64 = rows
+                .map(|(i, (&(c, r), scale))| {
+                    u[(i, k)] * -scale * pose.residuals[self.chords[c].rows.start + r]
+                })
+                .sum();
+            let factor = part * sigma / (sigma * sigma + damping);
+            step.iter_mut().enumerate().for_each(|(j, s)| *s += factor * v[(j, k)]);
+        }
+        let size = step.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+        let shorten = if size > LONGEST { LONGEST / size } else { 1.0 };
+        for ((value, freedom), unit) in step.iter_mut().zip(&group.unknowns).zip(&group.column_scales) {
+            *value *= shorten * unit;
+            pose.coordinates[*freedom] += *value;
+        }
+        for &(link, first) in &group.balls {
+            self.turn_ball(link, vec3(step[first], step[first + 1], step[first + 2]), pose);
+        }
+    }
+}

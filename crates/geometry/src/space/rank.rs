@@ -1,0 +1,200 @@
+//! Mobility by rank: degrees of freedom, redundant constraints, bodies that turn idly between two balls, and the forces that the
+//! redundant constraints leave open.
+
+use super::assemble::RANK_TOLERANCE;
+use super::closure::{Chord, RowKind, path};
+use super::mechanism::Mechanism;
+use super::plan::{Plan, Pose};
+use super::vector::Vec3;
+use crate::error::{AssemblyError, StructureError};
+use crate::mechanism::BodyId;
+use faer::linalg::solvers::Svd;
+
+/// A twist or a force is none below this.
+const PART: f64 = 1e-6;
+
+/// Degrees of freedom and redundant constraints of a mechanism in space.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mobility {
+    /// Degrees of freedom, idle ones not counted.
+    pub degrees_of_freedom: usize,
+    /// Constraints that are too many.
+    pub redundant_count: usize,
+    /// Bodies that turn idly.
+    pub idle: Vec<IdleBody>,
+}
+
+/// A body that can turn about the line of its two balls while nothing else moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IdleBody {
+    /// The body.
+    pub body: BodyId,
+    /// A point of the line, m in the body's frame.
+    pub point: Vec3,
+    /// Its direction, a unit vector in the body's frame.
+    pub axis: Vec3,
+}
+
+/// What the rank of the whole shows.
+pub(super) struct Analysed {
+    pub(super) mobility: Mobility,
+    pub(super) pose: Pose,
+    /// Rows that determine all unknowns, of [`Plan::all_rows`].
+    pub(super) independent: Vec<usize>,
+}
+
+/// The rank by singular values.
+pub(super) fn rank_of(svd: &Svd<f64>) -> usize {
+    let values = svd.S().column_vector();
+    let largest = values.iter().fold(0.0_f64, |a, b| a.max(*b));
+    values.iter().filter(|s| **s > RANK_TOLERANCE * largest).count()
+}
+
+impl Plan {
+    /// Analyses the assembled mechanism, with a row added for each idle freedom.
+    pub(super) fn analyse(&mut self, mechanism: &Mechanism, mut pose: Pose) -> Result<Analysed, AssemblyError> {
+        let group = &self.groups[0];
+        let (rows, n) = (group.rows.len(), group.unknowns.len());
+        let svd = if rows * n > 0 { self.dense(group, &pose).svd().ok() } else { None };
+        let rank = svd.as_ref().map_or(0, rank_of);
+        let mut idle = Vec::new();
+        if rank < n {
+            idle = self.idle_bodies(mechanism, svd.as_ref(), rank, &mut pose)?;
+            self.hold(&idle);
+            let (coordinates, balls) = (pose.coordinates, pose.balls);
+            pose = self.pose();
+            (pose.coordinates, pose.balls) = (coordinates, balls);
+            self.evaluate_whole(&mut pose);
+        }
+        let independent = self.independent_rows(&pose);
+        if independent.len() < n {
+            return Err(self.under_actuated(mechanism, n - independent.len(), Vec::new()));
+        }
+        let mobility = Mobility {
+            degrees_of_freedom: self.actuators(),
+            redundant_count: rows - rank,
+            idle,
+        };
+        Ok(Analysed { mobility, pose, independent })
+    }
+
+    fn under_actuated(&self, mechanism: &Mechanism, missing: usize, bodies: Vec<BodyId>) -> AssemblyError {
+        let all = (0..mechanism.bodies.len()).filter(|b| *b != self.ground).map(BodyId);
+        StructureError::UnderActuated {
+            degrees_of_freedom: self.actuators() + missing,
+            actuators: self.actuators(),
+            bodies: if bodies.is_empty() { all.collect() } else { bodies },
+            redundant_joints: Vec::new(),
+        }
+        .into()
+    }
+
+    /// The bodies that turn idly, if that is all that moves while the actuators are locked.
+    fn idle_bodies(
+        &self,
+        mechanism: &Mechanism,
+        svd: Option<&Svd<f64>>,
+        rank: usize,
+        pose: &mut Pose,
+    ) -> Result<Vec<IdleBody>, AssemblyError> {
+        let group = &self.groups[0];
+        let n = group.unknowns.len();
+        let mut found: Vec<Option<IdleBody>> = vec![None; mechanism.bodies.len()];
+        let mut moves = vec![false; mechanism.bodies.len()];
+        let mut is_spin = true;
+        for k in rank..n {
+            pose.rates.fill(0.0);
+            for (j, (freedom, unit)) in group.unknowns.iter().zip(&group.column_scales).enumerate() {
+                pose.rates[*freedom] = svd.map_or(f64::from(j == k), |svd| svd.V()[(j, k)]) * unit;
+            }
+            self.fill_states(pose);
+            for body in 0..mechanism.bodies.len() {
+                let motion = self.body_motion(pose, body);
+                let (w, v) = (motion.angular_velocity, motion.velocity);
+                if w.norm().max(v.norm() / self.size) < PART {
+                    continue;
+                }
+                moves[body] = true;
+                // A rotation about a line: v·ω = 0, and the line's nearest point is ω × v / ω².
+                let along = if w.norm() > PART { v.dot(w).abs() / w.norm() / self.size } else { 1.0 };
+                let placement = self.placement(pose, body);
+                let to_body = |u: Vec3| placement.rotation.apply_inverse(u);
+                let axis = to_body(w).unit().unwrap_or(Vec3::ZERO);
+                let point = to_body(w.cross(v).scaled(1.0 / w.dot(w).max(f64::MIN_POSITIVE)));
+                is_spin &= along < PART;
+                let here = IdleBody { body: BodyId(body), point, axis };
+                let other = found[body].replace(here);
+                is_spin &= other.is_none_or(|o| {
+                    o.axis.cross(axis).norm() < PART && (o.point - point).cross(axis).norm() < PART * self.size
+                });
+            }
+        }
+        let idle: Vec<IdleBody> = found.into_iter().flatten().collect();
+        if is_spin && idle.len() == n - rank {
+            return Ok(idle);
+        }
+        let bodies = (0..moves.len()).filter(|b| moves[*b]).map(BodyId).collect();
+        Err(self.under_actuated(mechanism, n - rank, bodies))
+    }
+
+    /// Adds a row for each idle body: it does not turn about its line.
+    fn hold(&mut self, idle: &[IdleBody]) {
+        for one in idle {
+            let body = one.body.0;
+            let rows = self.chords.last().map_or(0, |c| c.rows.end);
+            let entries = self.chords.last().map_or(0, |c| c.entries + c.rows.len() * c.path.len());
+            let axis = self.tree.internal[body].rotation.apply_inverse(one.axis);
+            let bodies = [self.ground, body];
+            self.chords.push(Chord {
+                joint: None,
+                bodies,
+                points: [Vec3::ZERO; 2],
+                kinds: vec![RowKind::NoSpin(axis)],
+                rows: rows..rows + 1,
+                path: path(&self.tree, bodies),
+                entries,
+            });
+        }
+        self.schedule_whole();
+    }
+
+    /// Rows that determine all unknowns: in the order of how few unknowns they have, each that is independent of those before.
+    fn independent_rows(&self, pose: &Pose) -> Vec<usize> {
+        let group = &self.groups[0];
+        let matrix = self.dense(group, pose);
+        let n = group.unknowns.len();
+        let mut order: Vec<usize> = (0..group.rows.len()).collect();
+        order.sort_by_key(|r| self.chords[group.rows[*r].0].path.len());
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        let mut chosen = Vec::new();
+        for r in order {
+            let mut row: Vec<f64> = (0..n).map(|j| matrix[(r, j)]).collect();
+            let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let before = norm(&row);
+            for _ in 0..2 {
+                for b in &basis {
+                    let part: f64 = row.iter().zip(b).map(|(x, y)| x * y).sum();
+                    row.iter_mut().zip(b).for_each(|(x, y)| *x -= part * y);
+                }
+            }
+            let after = norm(&row);
+            if after > 1e-7 * before && before > 0.0 {
+                row.iter_mut().for_each(|x| *x /= after);
+                basis.push(row);
+                chosen.push(r);
+            }
+        }
+        chosen.sort_unstable();
+        chosen
+    }
+
+    /// Multipliers of all rows, N or N·m, that no load makes: Jᵀ λ = 0 at the pose. A reaction that one of them changes is not
+    /// determined.
+    pub fn self_stresses(&self, pose: &Pose) -> Vec<Vec<f64>> {
+        let group = self.group(self.unknowns(), self.all_rows());
+        let Ok(svd) = self.dense(&group, pose).svd() else { return Vec::new() };
+        let rank = rank_of(&svd);
+        let of = |k: usize| (0..group.rows.len()).map(|i| svd.U()[(i, k)] * group.row_scales[i]).collect();
+        (rank..group.rows.len()).map(of).collect()
+    }
+}
