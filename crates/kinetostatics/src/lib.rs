@@ -36,6 +36,7 @@ pub mod model;
 mod pass;
 pub mod reduced;
 pub mod results;
+pub mod space;
 mod rounding;
 pub mod table;
 pub mod variants;

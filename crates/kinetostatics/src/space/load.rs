@@ -1,0 +1,88 @@
+//! Loads in space: shapes, each times a magnitude.
+
+use dwell_geometry::BodyId;
+use dwell_geometry::space::{Plan, Pose, Vec3, Wrench};
+use dwell_numerics::Scalar;
+
+/// A direction in the axes of the ground or of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Direction {
+    /// In those of the ground.
+    Ground(Vec3),
+    /// In those of the body that the load acts on.
+    Body(Vec3),
+}
+
+/// How a load acts; its magnitude multiplies what is described here.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LoadKind {
+    /// On every mass, along this direction of the ground, N/kg.
+    Gravity(Vec3),
+    /// A force at a point (m in the body's frame), N.
+    Force {
+        /// The body.
+        body: BodyId,
+        /// Its point.
+        point: Vec3,
+        /// The direction.
+        direction: Direction,
+    },
+    /// A couple on the second body, the opposite on the first, along a direction of the first or the ground, N·m.
+    Couple {
+        /// The bodies.
+        bodies: [BodyId; 2],
+        /// The direction.
+        direction: Direction,
+    },
+    /// Tension between two points (m in the frames of the bodies), N.
+    Tension {
+        /// The bodies.
+        bodies: [BodyId; 2],
+        /// Their points.
+        points: [Vec3; 2],
+    },
+}
+
+impl LoadKind {
+    /// Takes a unit of the load off what the bodies require.
+    pub(super) fn subtract<T: Scalar>(
+        &self,
+        plan: &Plan,
+        pose: &Pose<T>,
+        masses: &[super::Mass],
+        required: &mut [Wrench<T>],
+    ) {
+        let arm = |body: usize, point: Vec3| {
+            let local = plan.evaluation_frame(body).rotation.apply_inverse(point - plan.evaluation_frame(body).position);
+            plan.frame(pose, body).rotation.apply(local.cast())
+        };
+        let turned = |body: usize, direction: Direction| match direction {
+            Direction::Ground(u) => u.cast(),
+            Direction::Body(u) => arm(body, u + plan.evaluation_frame(body).position),
+        };
+        match *self {
+            Self::Gravity(direction) => {
+                for (body, mass) in masses.iter().enumerate() {
+                    let at = plan.frame(pose, body).rotation.apply(mass.center.cast());
+                    required[body].add_at(at, (-direction.scaled(mass.mass)).cast(), Vec3::zero());
+                }
+            }
+            Self::Force { body: BodyId(body), point, direction } => {
+                required[body].add_at(arm(body, point), -turned(body, direction), Vec3::zero());
+            }
+            Self::Couple { bodies: [a, b], direction } => {
+                let couple = turned(a.0, direction);
+                required[b.0].moment -= couple;
+                required[a.0].moment += couple;
+            }
+            Self::Tension { bodies, points } => {
+                let [a, b] = [0, 1].map(|k| arm(bodies[k].0, points[k]));
+                let [from, to] = bodies.map(|body| plan.frame(pose, body.0).origin);
+                let d = to + b - (from + a);
+                let along = d.scaled(T::from_f64(1.0) / d.dot(d).sqrt());
+                required[bodies[0].0].add_at(a, -along, Vec3::zero());
+                required[bodies[1].0].add_at(b, along, Vec3::zero());
+            }
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! Mass and inertia of a body in space.
+
+use dwell_geometry::space::{BodyMotion, Frame, Placement, Vec3, Wrench, vec3};
+use dwell_numerics::Scalar;
+
+/// Mass, centre of mass and moments of inertia of a body, in its frame.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Mass {
+    /// Mass, kg.
+    pub mass: f64,
+    /// Centre of mass, m.
+    pub center: Vec3,
+    /// Elements of the inertia tensor about the centre of mass, kg m²: I_xx, I_yy, I_zz, I_xy, I_xz, I_yz, where
+    /// I_xy = −∫ x y dm.
+    pub inertia: [f64; 6],
+}
+
+/// The rows of a tensor by its elements.
+fn rows([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [Vec3; 3] {
+    [vec3(xx, xy, xz), vec3(xy, yy, yz), vec3(xz, yz, zz)]
+}
+
+impl Mass {
+    /// The tensor times a vector of the body's frame.
+    pub fn angular_momentum(&self, w: Vec3) -> Vec3 {
+        let [x, y, z] = rows(self.inertia);
+        vec3(x.dot(w), y.dot(w), z.dot(w))
+    }
+
+    /// Whether it is a mass: not negative, with a tensor that no distribution of mass contradicts by more than rounding.
+    pub fn is_valid(&self) -> bool {
+        let [xx, yy, zz, xy, xz, yz] = self.inertia;
+        let finite = self.mass.is_finite() && self.center.is_finite() && self.inertia.iter().all(|i| i.is_finite());
+        let slack = 1e-9 * (xx + yy + zz).abs();
+        let minors = [xx * yy - xy * xy, xx * zz - xz * xz, yy * zz - yz * yz];
+        let determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+        finite
+            && self.mass >= 0.0
+            && [xx, yy, zz].iter().all(|i| *i >= -slack)
+            && minors.iter().all(|m| *m >= -slack * slack.max(xx + yy + zz))
+            && determinant >= -slack * (xx + yy + zz).powi(2)
+    }
+
+    /// The same in another frame of the body.
+    pub(super) fn seen_from(&self, frame: &Placement) -> Self {
+        let to = |v: Vec3| frame.rotation.apply_inverse(v);
+        let image = |k: usize| to(self.angular_momentum(frame.rotation.columns[k]));
+        let [x, y, z] = [image(0), image(1), image(2)];
+        Self {
+            mass: self.mass,
+            center: to(self.center - frame.position),
+            inertia: [x.x, y.y, z.z, x.y, x.z, y.z],
+        }
+    }
+
+    /// The force and the moment about the origin of the frame that move it so, by (1) of the [module](super).
+    #[inline(always)]
+    pub(super) fn required<T: Scalar>(&self, frame: &Frame<T>, motion: &BodyMotion<T>) -> Wrench<T> {
+        let arm = frame.rotation.apply(self.center.cast());
+        let force = motion.point_acceleration(arm).scaled(T::from_f64(self.mass));
+        let [x, y, z] = rows(self.inertia).map(Vec3::cast);
+        let tensor = |v: Vec3<T>| {
+            let v = frame.rotation.apply_inverse(v);
+            frame.rotation.apply(vec3(x.dot(v), y.dot(v), z.dot(v)))
+        };
+        let w = motion.angular_velocity;
+        let couple = tensor(motion.angular_acceleration) + w.cross(tensor(w));
+        let mut wrench = Wrench::default();
+        wrench.add_at(arm, force, couple);
+        wrench
+    }
+}

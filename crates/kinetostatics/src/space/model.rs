@@ -1,0 +1,245 @@
+//! A mechanism in space with its masses and requested reactions, and the passes over it.
+
+use super::load::LoadKind;
+use super::mass::Mass;
+use crate::error::PositionResult;
+use dwell_geometry::space::{Assembly, Forces, Mechanism, Plan, Pose, Rotation, Vec3, Wrench};
+use dwell_geometry::{AssemblyError, BodyId, JointId};
+use dwell_numerics::Scalar;
+use thiserror::Error;
+
+/// Axes in which a component is given.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axes {
+    /// Those of the ground.
+    Ground,
+    /// Those of the joint on its first body: normal, axis × normal, axis.
+    Joint,
+}
+
+/// A component of a reaction, by its number: 0, 1, 2 for x, y, z. The moment is about the joint's point on the second body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Component {
+    /// Of the force, N.
+    Force(Axes, usize),
+    /// Of the moment, N·m.
+    Moment(Axes, usize),
+}
+
+/// A component of the action of a joint's first body on the second.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Reaction {
+    /// The joint.
+    pub joint: JointId,
+    /// The component.
+    pub component: Component,
+}
+
+/// Why a model in space cannot be built.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ModelError {
+    /// The mechanism cannot be assembled.
+    #[error(transparent)]
+    Assembly(#[from] AssemblyError),
+    /// Not one mass for each body, or one that no body can have.
+    #[error("the masses do not fit the bodies")]
+    Masses,
+    /// A reaction of a joint or component that does not exist.
+    #[error("the mechanism has no such reaction: {0:?}")]
+    Reaction(Reaction),
+    /// A body that can turn between its two balls, and whose inertia feels it.
+    #[error(
+        "body {} turns freely about the line of its two balls, and its mass feels it: replace one ball by a universal \
+         joint, or give it a centre on that line and equal moments of inertia across it", body.0
+    )]
+    FeltSpin {
+        /// The body.
+        body: BodyId,
+    },
+}
+
+/// A mechanism in space with its masses: constant, shared between threads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model {
+    plan: Plan,
+    /// In the evaluation frames; the ground has none.
+    masses: Vec<Mass>,
+    /// The bodies that have mass or inertia.
+    inertial: Vec<usize>,
+    reactions: Vec<(Reaction, Option<(usize, Rotation)>)>,
+}
+
+/// The memory of one thread.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Workspace<T = f64> {
+    pub(super) pose: Pose<T>,
+    pub(super) forces: Forces<T>,
+}
+
+impl Model {
+    /// Compiles a mechanism with one mass for each body, for the requested reactions.
+    ///
+    /// # Errors
+    /// [`ModelError`] when the mechanism cannot be assembled, or masses or reactions do not fit it.
+    pub fn new(
+        mechanism: &Mechanism,
+        masses: &[Mass],
+        assembly: &Assembly,
+        reactions: &[Reaction],
+    ) -> Result<Self, ModelError> {
+        if masses.len() != mechanism.bodies.len() || !masses.iter().all(Mass::is_valid) {
+            return Err(ModelError::Masses);
+        }
+        let plan = Plan::compile(mechanism, assembly)?;
+        let felt = plan.mobility().idle.iter().find(|idle| feels_spin(&masses[idle.body.0], idle.point, idle.axis));
+        if let Some(idle) = felt {
+            return Err(ModelError::FeltSpin { body: idle.body });
+        }
+        let frame = |b: usize| plan.evaluation_frame(b);
+        let mut internal: Vec<Mass> = masses.iter().enumerate().map(|(b, m)| m.seen_from(&frame(b))).collect();
+        internal[mechanism.ground] = Mass::default();
+        let has_inertia = |b: &usize| internal[*b].mass > 0.0 || internal[*b].inertia != [0.0; 6];
+        let inertial = (0..internal.len()).filter(has_inertia).collect();
+        let compile = |reaction: &Reaction| {
+            let (Component::Force(axes, k) | Component::Moment(axes, k)) = reaction.component;
+            let joint = mechanism.joints.get(reaction.joint.0).filter(|_| k < 3);
+            let joint = joint.ok_or(ModelError::Reaction(*reaction))?;
+            let of_joint = (axes == Axes::Joint).then(|| {
+                let (body, side) = (joint.bodies[0].0, &joint.sides[0]);
+                let in_body = Rotation::of_axes(side.axis, side.normal);
+                (body, frame(body).rotation.inverse().after(&in_body))
+            });
+            Ok((*reaction, of_joint))
+        };
+        let reactions = reactions.iter().map(compile).collect::<Result<_, ModelError>>()?;
+        Ok(Self { plan, masses: internal, inertial, reactions })
+    }
+
+    /// The compiled mechanism.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// The requested reactions.
+    pub fn reactions(&self) -> impl ExactSizeIterator<Item = Reaction> + '_ {
+        self.reactions.iter().map(|(reaction, _)| *reaction)
+    }
+
+    /// The same model with no reaction.
+    #[must_use]
+    pub fn without_reactions(&self) -> Self {
+        Self { reactions: Vec::new(), ..self.clone() }
+    }
+
+    /// Memory for one thread.
+    pub fn workspace<T: Scalar>(&self) -> Workspace<T> {
+        Workspace { pose: self.plan.pose(), forces: self.plan.forces() }
+    }
+
+    /// By reaction: whether the loads determine it at `q` (rad or m). Redundant constraints leave others open; their values
+    /// here are those of the smallest multipliers and mean nothing.
+    ///
+    /// # Errors
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
+    pub fn determined(&self, q: &[f64], workspace: &mut Workspace) -> PositionResult<Vec<bool>> {
+        let Workspace { pose, forces } = workspace;
+        self.plan.positions(q, pose)?;
+        let mut determined = vec![true; self.reactions.len()];
+        for stress in self.plan.self_stresses(pose) {
+            let largest = stress.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            self.plan.stress(&stress, pose, forces);
+            for (determined, compiled) in determined.iter_mut().zip(&self.reactions) {
+                let part = self.read(compiled, pose, forces).abs();
+                *determined &= part < 1e-7 * largest;
+            }
+        }
+        Ok(determined)
+    }
+
+    /// The inertia of all bodies as what they require.
+    pub(super) fn require_inertia<T: Scalar>(&self, workspace: &mut Workspace<T>) {
+        let Workspace { pose, forces } = workspace;
+        forces.required.fill(Wrench::default());
+        for &b in &self.inertial {
+            forces.required[b] = self.masses[b].required(self.plan.frame(pose, b), self.plan.state(pose, b));
+        }
+    }
+
+    /// The inertia of all bodies in unit acceleration from rest, after the velocities at unit speed.
+    pub(super) fn require_unit_acceleration<T: Scalar>(&self, workspace: &mut Workspace<T>) {
+        let Workspace { pose, forces } = workspace;
+        forces.required.fill(Wrench::default());
+        for &b in &self.inertial {
+            let moving = self.plan.state(pose, b);
+            let from_rest = dwell_geometry::space::BodyMotion {
+                acceleration: moving.velocity,
+                angular_acceleration: moving.angular_velocity,
+                ..Default::default()
+            };
+            forces.required[b] = self.masses[b].required(self.plan.frame(pose, b), &from_rest);
+        }
+    }
+
+    /// A requested reaction of the last pass.
+    #[inline]
+    pub(super) fn read<T: Scalar>(
+        &self,
+        (reaction, axes): &(Reaction, Option<(usize, Rotation)>),
+        pose: &Pose<T>,
+        forces: &Forces<T>,
+    ) -> T {
+        let wrench = self.plan.reaction(pose, forces, reaction.joint);
+        let (vector, k) = match reaction.component {
+            Component::Force(_, k) => (wrench.force, k),
+            Component::Moment(_, k) => (wrench.moment, k),
+        };
+        let along = match axes {
+            None => Vec3::AXES[k].cast(),
+            Some((body, axes)) => self.plan.frame(pose, *body).rotation.apply(axes.columns[k].cast()),
+        };
+        along.dot(vector)
+    }
+
+    /// All requested reactions of the last pass.
+    pub(super) fn read_all<T: Scalar>(&self, workspace: &Workspace<T>, out: &mut [T]) {
+        for (value, compiled) in out.iter_mut().zip(&self.reactions) {
+            *value = self.read(compiled, &workspace.pose, &workspace.forces);
+        }
+    }
+
+    /// The response to a unit of a load at `q` (rad or m), at rest: by actuator w = −τ, and by requested reaction c.
+    ///
+    /// # Errors
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
+    pub fn unit_load_response<T: Scalar>(
+        &self,
+        q: &[T],
+        load: &LoadKind,
+        workspace: &mut Workspace<T>,
+        w: &mut [T],
+        c: &mut [T],
+    ) -> PositionResult {
+        self.plan.positions(q, &mut workspace.pose)?;
+        let Workspace { pose, forces } = &mut *workspace;
+        forces.required.fill(Wrench::default());
+        load.subtract(&self.plan, pose, &self.masses, &mut forces.required);
+        self.plan.balance(pose, forces);
+        for (i, w) in w.iter_mut().enumerate() {
+            *w = -self.plan.actuator_action(forces, i);
+        }
+        self.read_all(workspace, c);
+        Ok(())
+    }
+}
+
+/// Whether a body's inertia feels that it turns about a line: the centre is off it, or the inertia is not that of a body of revolution.
+fn feels_spin(mass: &Mass, point: Vec3, axis: Vec3) -> bool {
+    let off = (mass.center - point).cross(axis);
+    let x = axis.any_normal();
+    let y = axis.cross(x);
+    let [z, along_x, along_y] = [axis, x, y].map(|v| mass.angular_momentum(v));
+    let scale = mass.inertia[..3].iter().sum::<f64>() + mass.mass * off.dot(off);
+    let products = [z.dot(x), z.dot(y), along_x.dot(y), along_x.dot(x) - along_y.dot(y)];
+    mass.mass * off.norm() * (off.norm() + mass.center.norm()) > 1e-12 * scale
+        || products.iter().any(|p| p.abs() > 1e-9 * scale)
+}
