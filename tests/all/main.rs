@@ -46,6 +46,7 @@ mod rounding;
 mod scaling;
 mod separating;
 mod slides;
+mod space;
 mod symbolic;
 mod tables;
 mod tabulated;

@@ -49,8 +49,8 @@ pub mod motion;
 pub mod plan;
 pub mod plane;
 mod positions;
-pub mod structure;
 pub mod space;
+pub mod structure;
 mod variants;
 
 pub use error::{AssemblyError, PositionError, StructureError};

@@ -51,7 +51,9 @@ mod tree;
 mod vector;
 
 pub use frames::{BodyMotion, Frame};
-pub use mechanism::{Actuator, ActuatorKind, Assembly, Joint, JointKind, Mechanism, Placement, Side};
+pub use mechanism::{
+    Actuator, ActuatorKind, Assembly, Joint, JointKind, Mechanism, Placement, Side,
+};
 pub use multipliers::{Forces, Wrench};
 pub use plan::{Plan, Pose};
 pub use rank::{IdleBody, Mobility};

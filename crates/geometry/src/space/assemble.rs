@@ -1,6 +1,6 @@
-//! Closing all loops at the assembly, from rough placements: damped steps of least squares over everything at once.
+//! Closing all loops at the assembly, from approximate placements: damped steps of least squares over everything at once.
 
-use super::closure::chords;
+use super::closure::closures;
 use super::groups::Group;
 use super::mechanism::{Assembly, Mechanism};
 use super::plan::{Plan, Pose};
@@ -15,8 +15,8 @@ use faer::Mat;
 
 /// Steps at most.
 const MAX_STEPS: usize = 300;
-/// The longest step, rad or parts of the size.
-const LONGEST: f64 = 0.3;
+/// the largest step, rad or parts of the size.
+const MAX_STEP_SIZE: f64 = 0.3;
 /// Closed, relative to the size.
 const CLOSED: f64 = 1e-13;
 /// Singular values this small against the largest are zero.
@@ -31,7 +31,7 @@ impl Plan {
             return Err(StructureError::Malformed { reason });
         }
         let tree = Tree::find(mechanism)?;
-        let chords = chords(mechanism, &tree)?;
+        let closures = closures(mechanism, &tree)?;
         let drivers = mechanism.actuators.iter().map(|a| tree.driven(a.kind));
         let Some(drivers) = drivers.collect::<Option<Vec<_>>>() else {
             let reason = "the driven joints form a loop of their own";
@@ -41,7 +41,7 @@ impl Plan {
             ground: mechanism.ground,
             size: mechanism.size(),
             tree,
-            chords,
+            closures,
             groups: Vec::new(),
             first_links: Vec::new(),
             last_links: Vec::new(),
@@ -83,13 +83,17 @@ impl Plan {
     ///
     /// # Errors
     /// [`AssemblyError::NoAssembly`] and [`AssemblyError::Inconsistent`] with what stays open.
-    pub(super) fn assemble(&self, mechanism: &Mechanism, assembly: &Assembly) -> Result<Pose, AssemblyError> {
+    pub(super) fn assemble(
+        &self,
+        mechanism: &Mechanism,
+        assembly: &Assembly,
+    ) -> Result<Pose, AssemblyError> {
         if assembly.q.len() != self.drivers.len() || !assembly.q.iter().all(|q| q.is_finite()) {
             let reason = "the assembly does not give one finite coordinate for each actuator";
             return Err(StructureError::Malformed { reason }.into());
         }
         let mut pose = self.pose::<f64>();
-        let (coordinates, balls) = self.tree.rough_coordinates(assembly);
+        let (coordinates, balls) = self.tree.approximate_coordinates(assembly);
         pose.coordinates = coordinates;
         pose.balls = balls;
         for (&(freedom, sign), q) in self.drivers.iter().zip(&assembly.q) {
@@ -114,7 +118,10 @@ impl Plan {
                 damping = (damping * 10.0).max(1e-15);
             }
         }
-        let flipped = self.chords.iter().filter(|c| c.is_flipped(&pose.frames, mechanism, &self.tree));
+        let flipped = self
+            .closures
+            .iter()
+            .filter(|c| c.is_flipped(&pose.frames, mechanism, &self.tree));
         let flipped: Vec<JointId> = flipped.filter_map(|c| c.joint).collect();
         if residual < OPEN && flipped.is_empty() {
             return Ok(pose);
@@ -123,11 +130,23 @@ impl Plan {
     }
 
     /// The error of loops that stay open.
-    fn open_loops(&self, mechanism: &Mechanism, pose: &Pose, flipped: Vec<JointId>) -> AssemblyError {
-        let open = |c: &&super::closure::Chord| {
-            c.rows.clone().any(|r| pose.residuals[r].abs() > OPEN * self.size)
+    fn open_loops(
+        &self,
+        mechanism: &Mechanism,
+        pose: &Pose,
+        flipped: Vec<JointId>,
+    ) -> AssemblyError {
+        let open = |c: &&super::closure::Closure| {
+            c.rows
+                .clone()
+                .any(|r| pose.residuals[r].abs() > OPEN * self.size)
         };
-        let mut joints: Vec<JointId> = self.chords.iter().filter(open).filter_map(|c| c.joint).collect();
+        let mut joints: Vec<JointId> = self
+            .closures
+            .iter()
+            .filter(open)
+            .filter_map(|c| c.joint)
+            .collect();
         joints.extend(flipped);
         let largest = self.largest_residual(&self.groups[0], pose);
         let gap = largest * self.size;
@@ -135,47 +154,76 @@ impl Plan {
         let rank = svd.map_or(0, |svd| super::rank::rank_of(&svd));
         let redundant_count = self.groups[0].rows.len().saturating_sub(rank);
         if redundant_count > 0 && largest < NEARLY_CLOSED {
-            return AssemblyError::Inconsistent { joints, redundant_count, gap };
+            return AssemblyError::Inconsistent {
+                joints,
+                redundant_count,
+                gap,
+            };
         }
         let of = |joint: &JointId| mechanism.joints[joint.0].bodies;
         let mut bodies: Vec<BodyId> = joints.iter().flat_map(of).collect();
         bodies.sort_unstable();
         bodies.dedup();
-        AssemblyError::NoAssembly { bodies, joints, gap }
+        AssemblyError::NoAssembly {
+            bodies,
+            joints,
+            gap,
+        }
     }
 
     fn residual_norm(&self, pose: &Pose) -> f64 {
         let group = &self.groups[0];
         let rows = group.rows.iter().zip(&group.row_scales);
-        let squares = rows.map(|(&(c, k), s)| (s * pose.residuals[self.chords[c].rows.start + k]).powi(2));
+        let squares =
+            rows.map(|(&(c, k), s)| (s * pose.residuals[self.closures[c].rows.start + k]).powi(2));
         squares.sum::<f64>().sqrt()
     }
 
     /// One damped step, δ = V σ/(σ² + µ) Uᵀ (−φ).
     fn damped_step(&self, damping: f64, pose: &mut Pose) {
         let group = &self.groups[0];
-        let Ok(svd) = self.dense(group, pose).svd() else { return };
+        let Ok(svd) = self.dense(group, pose).svd() else {
+            return;
+        };
         let (u, s, v) = (svd.U(), svd.S().column_vector(), svd.V());
         let largest = s.iter().fold(0.0_f64, |a, b| a.max(*b));
         let mut step = vec![0.0; group.unknowns.len()];
-        for (k, &sigma) in s.iter().enumerate().filter(|(_, s)| **s > RANK_TOLERANCE * largest) {
+        for (k, &sigma) in s
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| **s > RANK_TOLERANCE * largest)
+        {
             let rows = group.rows.iter().zip(&group.row_scales).enumerate();
             let part: f64 = rows
                 .map(|(i, (&(c, r), scale))| {
-                    u[(i, k)] * -scale * pose.residuals[self.chords[c].rows.start + r]
+                    u[(i, k)] * -scale * pose.residuals[self.closures[c].rows.start + r]
                 })
                 .sum();
             let factor = part * sigma / (sigma * sigma + damping);
-            step.iter_mut().enumerate().for_each(|(j, s)| *s += factor * v[(j, k)]);
+            step.iter_mut()
+                .enumerate()
+                .for_each(|(j, s)| *s += factor * v[(j, k)]);
         }
         let size = step.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-        let shorten = if size > LONGEST { LONGEST / size } else { 1.0 };
-        for ((value, freedom), unit) in step.iter_mut().zip(&group.unknowns).zip(&group.column_scales) {
+        let shorten = if size > MAX_STEP_SIZE {
+            MAX_STEP_SIZE / size
+        } else {
+            1.0
+        };
+        for ((value, freedom), unit) in step
+            .iter_mut()
+            .zip(&group.unknowns)
+            .zip(&group.column_scales)
+        {
             *value *= shorten * unit;
             pose.coordinates[*freedom] += *value;
         }
         for &(link, first) in &group.balls {
-            self.turn_ball(link, vec3(step[first], step[first + 1], step[first + 2]), pose);
+            self.turn_ball(
+                link,
+                vec3(step[first], step[first + 1], step[first + 2]),
+                pose,
+            );
         }
     }
 }

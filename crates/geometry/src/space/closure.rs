@@ -41,7 +41,7 @@ impl RowKind {
 
 /// A joint that closes a loop.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Chord {
+pub(super) struct Closure {
     /// None for the row that holds an idle freedom.
     pub(super) joint: Option<JointId>,
     pub(super) bodies: [usize; 2],
@@ -63,23 +63,24 @@ pub(super) struct RowValue<T> {
     pub(super) couple: Vec3<T>,
 }
 
-/// All chords of a mechanism.
+/// All closures of a mechanism.
 ///
 /// # Errors
 /// [`StructureError::Malformed`] where a loop consists of screws alone.
-pub(super) fn chords(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Chord>, StructureError> {
+pub(super) fn closures(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Closure>, StructureError> {
     let (mut rows, mut entries) = (0, 0);
     let mut found = Vec::new();
-    for &id in &tree.chords {
+    for &id in &tree.closures {
         let joint = &mechanism.joints[id.0];
         let bodies = joint.bodies.map(|b| b.0);
-        let side = |k: usize| joint.sides[k].seen_from(&tree.internal[bodies[k]]);
+        let side = |k: usize| joint.sides[k].in_frame(&tree.internal[bodies[k]]);
         let sides = [side(0), side(1)];
         let Some(kinds) = rows_of(joint, &sides) else {
-            let reason = "a loop consists of helical joints alone; replace one by a cylindrical joint";
+            let reason =
+                "a loop consists of helical joints alone; replace one by a cylindrical joint";
             return Err(StructureError::Malformed { reason });
         };
-        let mut chord = Chord {
+        let mut closure = Closure {
             joint: Some(id),
             bodies,
             points: [sides[0].point, sides[1].point],
@@ -88,10 +89,10 @@ pub(super) fn chords(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Chord>, S
             path: path(tree, bodies),
             entries,
         };
-        chord.entries = entries;
-        rows += chord.kinds.len();
-        entries += chord.kinds.len() * chord.path.len();
-        found.push(chord);
+        closure.entries = entries;
+        rows += closure.kinds.len();
+        entries += closure.kinds.len() * closure.path.len();
+        found.push(closure);
     }
     Ok(found)
 }
@@ -111,7 +112,9 @@ fn rows_of(joint: &Joint, [a, b]: &[Side; 2]) -> Option<Vec<RowKind>> {
         JointKind::Cylindrical => on_axis().chain(parallel_axes()).collect(),
         JointKind::Universal => points().chain([Parallel(a.axis, b.axis)]).collect(),
         JointKind::Spherical => points().collect(),
-        JointKind::Planar => std::iter::once(InPlane(a.axis)).chain(parallel_axes()).collect(),
+        JointKind::Planar => std::iter::once(InPlane(a.axis))
+            .chain(parallel_axes())
+            .collect(),
         JointKind::Distance { length } => vec![Length(length)],
         JointKind::Helical { .. } => return None,
     })
@@ -130,7 +133,9 @@ pub(super) fn path(tree: &Tree, [a, b]: [usize; 2]) -> Vec<(usize, f64)> {
     let (to_a, to_b) = (chain(a), chain(b));
     let freedoms = |links: &[usize], others: &[usize], sign: f64| {
         let own = links.iter().filter(|l| !others.contains(l));
-        own.flat_map(|l| tree.links[*l].freedoms.clone()).map(|f| (f, sign)).collect::<Vec<_>>()
+        own.flat_map(|l| tree.links[*l].freedoms.clone())
+            .map(|f| (f, sign))
+            .collect::<Vec<_>>()
     };
     let mut path = freedoms(&to_a, &to_b, -1.0);
     path.extend(freedoms(&to_b, &to_a, 1.0));
@@ -138,7 +143,7 @@ pub(super) fn path(tree: &Tree, [a, b]: [usize; 2]) -> Vec<(usize, f64)> {
     path
 }
 
-impl Chord {
+impl Closure {
     /// The points of both bodies and their difference d.
     #[inline(always)]
     pub(super) fn ends<T: Scalar>(&self, frames: &[Frame<T>]) -> [Vec3<T>; 3] {
@@ -148,30 +153,53 @@ impl Chord {
 
     /// The residual of a row and its wrench.
     #[inline(always)]
-    pub(super) fn row<T: Scalar>(&self, kind: RowKind, frames: &[Frame<T>], d: Vec3<T>) -> RowValue<T> {
+    pub(super) fn row<T: Scalar>(
+        &self,
+        kind: RowKind,
+        frames: &[Frame<T>],
+        d: Vec3<T>,
+    ) -> RowValue<T> {
         let [a, b] = self.bodies.map(|body| &frames[body].rotation);
         let zero = Vec3::zero();
         match kind {
             RowKind::Point(k) => {
                 let axis = Vec3::AXES[k].cast();
-                RowValue { residual: axis.dot(d), force: axis, couple: zero }
+                RowValue {
+                    residual: axis.dot(d),
+                    force: axis,
+                    couple: zero,
+                }
             }
             RowKind::Parallel(n, w) => {
                 let (n, w) = (a.apply(n.cast()), b.apply(w.cast()));
-                RowValue { residual: n.dot(w), force: zero, couple: w.cross(n) }
+                RowValue {
+                    residual: n.dot(w),
+                    force: zero,
+                    couple: w.cross(n),
+                }
             }
             RowKind::InPlane(u) => {
                 let u = a.apply(u.cast());
-                RowValue { residual: u.dot(d), force: u, couple: zero }
+                RowValue {
+                    residual: u.dot(d),
+                    force: u,
+                    couple: zero,
+                }
             }
             RowKind::Length(length) => {
                 let distance = d.dot(d).sqrt();
                 let along = d.scaled(T::from_f64(1.0) / distance);
-                RowValue { residual: distance - T::from_f64(length), force: along, couple: zero }
+                RowValue {
+                    residual: distance - T::from_f64(length),
+                    force: along,
+                    couple: zero,
+                }
             }
-            RowKind::NoSpin(e) => {
-                RowValue { residual: T::from_f64(0.0), force: zero, couple: b.apply(e.cast()) }
-            }
+            RowKind::NoSpin(e) => RowValue {
+                residual: T::from_f64(0.0),
+                force: zero,
+                couple: b.apply(e.cast()),
+            },
         }
     }
 
@@ -186,7 +214,10 @@ impl Chord {
         let [a, b] = self.bodies;
         let motion = |body: usize, point: Vec3| {
             let arm = frames[body].rotation.apply(point.cast());
-            (states[body].point_velocity(arm), states[body].point_acceleration(arm))
+            (
+                states[body].point_velocity(arm),
+                states[body].point_acceleration(arm),
+            )
         };
         let direction = |body: usize, u: Vec3| {
             let u = frames[body].rotation.apply(u.cast());
@@ -204,7 +235,8 @@ impl Chord {
                 e.dot(states[b].angular_acceleration)
             }
             RowKind::Point(_) | RowKind::InPlane(_) | RowKind::Length(_) => {
-                let ((v_a, a_a), (v_b, a_b)) = (motion(a, self.points[0]), motion(b, self.points[1]));
+                let ((v_a, a_a), (v_b, a_b)) =
+                    (motion(a, self.points[0]), motion(b, self.points[1]));
                 let (d1, d2) = (v_b - v_a, a_b - a_a);
                 match kind {
                     RowKind::InPlane(u) => {
@@ -226,10 +258,17 @@ impl Chord {
     }
 
     /// How far the axes are from the same sense: of revolute and sliding joints they must not be opposite.
-    pub(super) fn is_flipped(&self, frames: &[Frame<f64>], mechanism: &Mechanism, tree: &Tree) -> bool {
-        let Some(joint) = self.joint.map(|j| &mechanism.joints[j.0]) else { return false };
+    pub(super) fn is_flipped(
+        &self,
+        frames: &[Frame<f64>],
+        mechanism: &Mechanism,
+        tree: &Tree,
+    ) -> bool {
+        let Some(joint) = self.joint.map(|j| &mechanism.joints[j.0]) else {
+            return false;
+        };
         let axis = |k: usize| {
-            let side = joint.sides[k].seen_from(&tree.internal[self.bodies[k]]);
+            let side = joint.sides[k].in_frame(&tree.internal[self.bodies[k]]);
             frames[self.bodies[k]].rotation.apply(side.axis)
         };
         match joint.kind {

@@ -1,6 +1,7 @@
 //! The branch over the range of the coordinate, and the poses stored along it: a pose depends on q alone, never on what was
 //! evaluated before.
 
+use super::frames::Frame;
 use super::mechanism::ActuatorKind;
 use super::plan::{Plan, Pose};
 use super::tree::Step;
@@ -31,7 +32,7 @@ const MAX_REVOLUTIONS: u32 = 8;
 /// Two poses are the same: rad, or parts of the size.
 const SAME: f64 = 1e-7;
 
-/// Where a walk along the branch ended.
+/// Where a continuation along the branch ended.
 enum End {
     Reached,
     Blocked,
@@ -43,7 +44,9 @@ impl Plan {
         for (c, [value, first, second]) in pose.coordinates.iter_mut().zip(&node.coordinates) {
             *c = T::from_f64(value + ahead * (first + 0.5 * ahead * second));
         }
-        for ((ball, stored), [first, second]) in pose.balls.iter_mut().zip(&node.balls).zip(&node.turns) {
+        for ((ball, stored), [first, second]) in
+            pose.balls.iter_mut().zip(&node.balls).zip(&node.turns)
+        {
             let turn = first.scaled(ahead) + second.scaled(0.5 * ahead * ahead);
             *ball = stored.turned_by(turn).cast();
         }
@@ -75,7 +78,11 @@ impl Plan {
         for link in &self.tree.links {
             for step in &link.steps {
                 if let Step::Ball(ball, first) = *step {
-                    let of = |values: &[f64]| Vec3 { x: values[first], y: values[first + 1], z: values[first + 2] };
+                    let of = |values: &[f64]| Vec3 {
+                        x: values[first],
+                        y: values[first + 1],
+                        z: values[first + 2],
+                    };
                     let (rate, second) = (of(&pose.rates), of(&pose.accelerations));
                     let carried = pose.states[link.body].angular_velocity - rate;
                     let to_frame = |v: Vec3| {
@@ -88,11 +95,21 @@ impl Plan {
         let freedoms = 0..self.tree.freedoms.len();
         let of = |f: usize| [pose.coordinates[f], pose.rates[f], pose.accelerations[f]];
         // The coordinates of a ball are its rotation.
-        Node { q, coordinates: freedoms.map(of).collect(), balls: pose.balls.clone(), turns }
+        Node {
+            q,
+            coordinates: freedoms.map(of).collect(),
+            balls: pose.balls.clone(),
+            turns,
+        }
     }
 
     /// Follows the branch from the assembly.
-    pub(super) fn follow_range(&mut self, q: &[f64], start: Pose, kind: Option<ActuatorKind>) -> Result<(), PositionError> {
+    pub(super) fn follow_range(
+        &mut self,
+        q: &[f64],
+        start: Pose,
+        kind: Option<ActuatorKind>,
+    ) -> Result<(), PositionError> {
         let mut pose = start;
         self.close(q, &mut pose)?;
         let first = self.node(q.first().copied().unwrap_or(0.0), &mut pose);
@@ -107,16 +124,16 @@ impl Plan {
         let mut forward = vec![first.clone()];
         for revolution in 1..=MAX_REVOLUTIONS {
             let end = first.q + f64::from(revolution) * unit;
-            if let End::Blocked = self.walk(&mut forward, end, unit, &mut pose) {
+            if let End::Blocked = self.continue_branch(&mut forward, end, unit, &mut pose) {
                 return self.follow_back(forward, first, unit, is_angle, &mut pose);
             }
-            let moved = |(a, b): (&super::frames::Frame<f64>, &super::frames::Frame<f64>)| {
-                let turn = a.rotation.inverse().after(&b.rotation).vector().norm();
-                turn.max((a.origin - b.origin).norm() / self.size)
-            };
-            let same = pose.frames.iter().zip(&start_frames).map(moved).fold(0.0, f64::max) < SAME;
+            let same = self.moved_by(&start_frames, &pose.frames) < SAME;
             if is_angle && same {
-                self.range = if revolution == 1 { Range::Full } else { Range::Revolutions(revolution) };
+                self.range = if revolution == 1 {
+                    Range::Full
+                } else {
+                    Range::Revolutions(revolution)
+                };
                 self.nodes = forward;
                 return Ok(());
             }
@@ -124,11 +141,37 @@ impl Plan {
         self.follow_back(forward, first, unit, is_angle, &mut pose)
     }
 
+    /// How far bodies are from where they were, rad or parts of the size; how a body that turns idly stands about its line
+    /// does not count.
+    fn moved_by(&self, before: &[Frame<f64>], after: &[Frame<f64>]) -> f64 {
+        let moved = |body: usize| {
+            let (a, b) = (&before[body], &after[body]);
+            let idle = self.mobility.idle.iter().find(|idle| idle.body.0 == body);
+            let turned =
+                match idle.map(|idle| self.tree.internal[body].rotation.apply_inverse(idle.axis)) {
+                    Some(axis) => (a.rotation.apply(axis) - b.rotation.apply(axis)).norm(),
+                    None => a.rotation.inverse().after(&b.rotation).vector().norm(),
+                };
+            turned.max((a.origin - b.origin).norm() / self.size)
+        };
+        (0..before.len()).map(moved).fold(0.0, f64::max)
+    }
+
     /// Follows the branch backwards, too.
-    fn follow_back(&mut self, forward: Vec<Node>, first: Node, unit: f64, is_angle: bool, pose: &mut Pose) -> Result<(), PositionError> {
+    fn follow_back(
+        &mut self,
+        forward: Vec<Node>,
+        first: Node,
+        unit: f64,
+        is_angle: bool,
+        pose: &mut Pose,
+    ) -> Result<(), PositionError> {
         let far = f64::from(MAX_REVOLUTIONS) * unit;
         let mut back = vec![first.clone()];
-        let blocked_back = matches!(self.walk(&mut back, first.q - far, unit, pose), End::Blocked);
+        let blocked_back = matches!(
+            self.continue_branch(&mut back, first.q - far, unit, pose),
+            End::Blocked
+        );
         back.reverse();
         back.extend(forward.into_iter().skip(1));
         let [from, to] = [0, back.len() - 1].map(|k| back[k].q);
@@ -142,8 +185,8 @@ impl Plan {
         Ok(())
     }
 
-    /// Walks from the last node to a coordinate, in steps that the prediction follows.
-    fn walk(&self, nodes: &mut Vec<Node>, to: f64, unit: f64, pose: &mut Pose) -> End {
+    /// Continues from the last node to a coordinate, in steps that the prediction follows.
+    fn continue_branch(&self, nodes: &mut Vec<Node>, to: f64, unit: f64, pose: &mut Pose) -> End {
         let largest = unit / STEPS;
         let mut step = largest;
         while let Some(last) = nodes.last() {
@@ -154,7 +197,11 @@ impl Plan {
             let ahead = left.signum() * step.min(left.abs());
             self.start_from(last, ahead, pose);
             let predicted = (pose.coordinates.clone(), pose.balls.clone());
-            let q = if left.abs() <= step { to } else { last.q + ahead };
+            let q = if left.abs() <= step {
+                to
+            } else {
+                last.q + ahead
+            };
             if self.close(&[q], pose).is_ok() && self.missed_by(&predicted, pose) < MISS {
                 let node = self.node(q, pose);
                 nodes.push(node);
@@ -175,20 +222,35 @@ impl Plan {
         let ball = |f: usize| self.tree.freedoms[f] == super::tree::FreedomKind::BallTurn;
         let scalar = (0..coordinates.len()).filter(|f| !driven(*f) && !ball(*f));
         let scalar = scalar.map(|f| (coordinates[f] - pose.coordinates[f]).abs() / self.unit(f));
-        let turned = balls.iter().zip(&pose.balls).map(|(a, b)| a.inverse().after(b).vector().norm());
+        let turned = balls
+            .iter()
+            .zip(&pose.balls)
+            .map(|(a, b)| a.inverse().after(b).vector().norm());
         scalar.chain(turned).fold(0.0, f64::max)
     }
 
     /// The pose of several coordinates: along the straight line from those of the assembly.
-    pub(super) fn continue_to<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PositionError> {
+    pub(super) fn continue_to<T: Scalar>(
+        &self,
+        q: &[T],
+        pose: &mut Pose<T>,
+    ) -> Result<(), PositionError> {
         let from = &self.assembly_q;
         let mut real = self.pose::<f64>();
         self.start_from(&self.nodes[0], 0.0, &mut real);
-        let span = q.iter().zip(from).map(|(q, a)| (q.value() - a).abs()).fold(0.0, f64::max);
+        let span = q
+            .iter()
+            .zip(from)
+            .map(|(q, a)| (q.value() - a).abs())
+            .fold(0.0, f64::max);
         let count = (span / 0.05).ceil().clamp(1.0, 1e4);
         for k in 1..=count as usize {
             let part = k as f64 / count;
-            let at: Vec<f64> = q.iter().zip(from).map(|(q, a)| a + part * (q.value() - a)).collect();
+            let at: Vec<f64> = q
+                .iter()
+                .zip(from)
+                .map(|(q, a)| a + part * (q.value() - a))
+                .collect();
             self.close(&at, &mut real)?;
         }
         for (to, from) in pose.coordinates.iter_mut().zip(&real.coordinates) {

@@ -16,7 +16,10 @@ pub struct Frame<T> {
 
 impl<T: Scalar> Default for Frame<T> {
     fn default() -> Self {
-        Self { origin: Vec3::zero(), rotation: Rotation::default() }
+        Self {
+            origin: Vec3::zero(),
+            rotation: Rotation::default(),
+        }
     }
 }
 
@@ -30,7 +33,10 @@ impl<T: Scalar> Frame<T> {
     /// A frame fixed in this one.
     #[inline(always)]
     pub(super) fn then(&self, inner: &Placement) -> Self {
-        Self { origin: self.point(inner.position), rotation: self.rotation.after(&inner.rotation.cast()) }
+        Self {
+            origin: self.point(inner.position),
+            rotation: self.rotation.after(&inner.rotation.cast()),
+        }
     }
 }
 
@@ -44,7 +50,13 @@ pub(super) struct Screw<T> {
 impl<T: Scalar> Screw<T> {
     /// The power of a wrench, a force at a point and a couple, at unit speed.
     #[inline(always)]
-    pub(super) fn power(&self, kind: FreedomKind, force: Vec3<T>, at: Vec3<T>, couple: Vec3<T>) -> T {
+    pub(super) fn power(
+        &self,
+        kind: FreedomKind,
+        force: Vec3<T>,
+        at: Vec3<T>,
+        couple: Vec3<T>,
+    ) -> T {
         match kind {
             FreedomKind::Turn | FreedomKind::BallTurn => {
                 self.axis.dot(couple + (at - self.point).cross(force))
@@ -88,7 +100,10 @@ impl<T: Scalar> BodyMotion<T> {
     #[inline(always)]
     pub fn direction_derivatives(&self, u: Vec3<T>) -> (Vec3<T>, Vec3<T>) {
         let first = self.angular_velocity.cross(u);
-        (first, self.angular_acceleration.cross(u) + self.angular_velocity.cross(first))
+        (
+            first,
+            self.angular_acceleration.cross(u) + self.angular_velocity.cross(first),
+        )
     }
 }
 
@@ -111,18 +126,27 @@ impl Link {
                     if let FreedomKind::Screw(pitch) = freedoms[c] {
                         frame.origin += axis.scaled(coordinates[c] * T::from_f64(pitch));
                     }
-                    screws[c] = Screw { axis, point: frame.origin };
+                    screws[c] = Screw {
+                        axis,
+                        point: frame.origin,
+                    };
                     frame.rotation = frame.rotation.turned_about_z(coordinates[c].sin_cos());
                 }
                 Step::Slide(k, c) => {
                     let axis = frame.rotation.columns[k];
                     frame.origin += axis.scaled(coordinates[c]);
-                    screws[c] = Screw { axis, point: frame.origin };
+                    screws[c] = Screw {
+                        axis,
+                        point: frame.origin,
+                    };
                 }
                 Step::NextAxis => frame.rotation = next_axis(&frame.rotation),
                 Step::Ball(ball, first) => {
                     for (k, axis) in Vec3::AXES.iter().enumerate() {
-                        screws[first + k] = Screw { axis: axis.cast(), point: frame.origin };
+                        screws[first + k] = Screw {
+                            axis: axis.cast(),
+                            point: frame.origin,
+                        };
                     }
                     frame.rotation = frame.rotation.after(&balls[ball]);
                 }
@@ -161,7 +185,8 @@ impl Link {
             if slide != 0.0 {
                 let (slide, carried) = (T::from_f64(slide), of_parent.angular_velocity.cross(axis));
                 state.velocity += axis.scaled(rate * slide);
-                state.acceleration += (axis.scaled(acceleration) + carried.scaled(two * rate)).scaled(slide);
+                state.acceleration +=
+                    (axis.scaled(acceleration) + carried.scaled(two * rate)).scaled(slide);
             }
             if turn != 0.0 {
                 state.angular_acceleration += axis.scaled(acceleration);

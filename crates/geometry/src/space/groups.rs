@@ -1,7 +1,7 @@
 //! Groups of equations that are solved together. The independent rows are matched with unknowns; strongly connected components,
 //! in order, are the groups, and each redundant row joins the group of its last unknown.
 
-use super::closure::Chord;
+use super::closure::Closure;
 use super::mechanism::Mechanism;
 use super::plan::{Plan, Pose};
 use super::tree::{FreedomKind, Step};
@@ -30,7 +30,7 @@ pub(super) struct Outer {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Group {
     pub(super) unknowns: Vec<usize>,
-    /// By chord, and the row's number in it.
+    /// By closure, and the row's number in it.
     pub(super) rows: Vec<(usize, usize)>,
     /// Bodies on its loops that depend on its unknowns.
     pub(super) links: Vec<usize>,
@@ -56,19 +56,27 @@ impl Plan {
 
     /// What a row is multiplied by to have no unit.
     pub(super) fn row_scale(&self, (c, k): (usize, usize)) -> f64 {
-        if self.chords[c].kinds[k].is_length() { 1.0 / self.size } else { 1.0 }
+        if self.closures[c].kinds[k].is_length() {
+            1.0 / self.size
+        } else {
+            1.0
+        }
     }
 
     /// The freedoms that no actuator drives.
     pub(super) fn unknowns(&self) -> Vec<usize> {
         let driven = |f: &usize| self.drivers.iter().any(|(d, _)| d == f);
-        (0..self.tree.freedoms.len()).filter(|f| !driven(f)).collect()
+        (0..self.tree.freedoms.len())
+            .filter(|f| !driven(f))
+            .collect()
     }
 
-    /// All rows, by chord and number.
+    /// All rows, by closure and number.
     pub(super) fn all_rows(&self) -> Vec<(usize, usize)> {
-        let chords = self.chords.iter().enumerate();
-        chords.flat_map(|(c, chord)| (0..chord.kinds.len()).map(move |k| (c, k))).collect()
+        let closures = self.closures.iter().enumerate();
+        closures
+            .flat_map(|(c, closure)| (0..closure.kinds.len()).map(move |k| (c, k)))
+            .collect()
     }
 
     /// A group of these unknowns and rows; the links are added by [`Plan::schedule`].
@@ -81,16 +89,20 @@ impl Plan {
             ..Group::default()
         };
         for (i, &(c, k)) in rows.iter().enumerate() {
-            let chord: &Chord = &self.chords[c];
-            for (p, &(freedom, _)) in chord.path.iter().enumerate() {
-                let entry = chord.entries + k * chord.path.len() + p;
+            let closure: &Closure = &self.closures[c];
+            for (p, &(freedom, _)) in closure.path.iter().enumerate() {
+                let entry = closure.entries + k * closure.path.len() + p;
                 match unknowns.binary_search(&freedom) {
                     Ok(j) => group.inner.push(Inner {
                         at: i * n + j,
                         entry,
                         scale: group.row_scales[i] * group.column_scales[j],
                     }),
-                    Err(_) => group.outer.push(Outer { row: i, entry, freedom }),
+                    Err(_) => group.outer.push(Outer {
+                        row: i,
+                        entry,
+                        freedom,
+                    }),
                 }
             }
         }
@@ -112,7 +124,12 @@ impl Plan {
         let mut level = vec![0; self.tree.links.len()];
         for (l, link) in self.tree.links.iter().enumerate() {
             let before = self.tree.link_of[link.parent].map_or(0, |p| level[p]);
-            let of = |f: usize| groups.iter().position(|g| g.unknowns.contains(&f)).map_or(0, |g| g + 1);
+            let of = |f: usize| {
+                groups
+                    .iter()
+                    .position(|g| g.unknowns.contains(&f))
+                    .map_or(0, |g| g + 1)
+            };
             level[l] = link.freedoms.clone().map(of).max().unwrap_or(0).max(before);
         }
         let (mut factors, mut heads) = (0, 0);
@@ -124,7 +141,7 @@ impl Plan {
             heads += group.unknowns.len();
             let mut needed = vec![false; level.len()];
             for &(c, _) in &group.rows {
-                for body in self.chords[c].bodies {
+                for body in self.closures[c].bodies {
                     let mut body = body;
                     while let Some(link) = self.tree.link_of[body] {
                         needed[link] = true;
@@ -132,7 +149,9 @@ impl Plan {
                     }
                 }
             }
-            group.links = (0..level.len()).filter(|l| needed[*l] && !placed[*l] && level[*l] <= g + 1).collect();
+            group.links = (0..level.len())
+                .filter(|l| needed[*l] && !placed[*l] && level[*l] <= g + 1)
+                .collect();
             group.links.iter().for_each(|l| placed[*l] = true);
         }
         self.last_links = (0..level.len()).filter(|l| !placed[*l]).collect();
@@ -143,7 +162,11 @@ impl Plan {
     ///
     /// # Errors
     /// [`AssemblyError`] where the freedoms are not those of the actuators, or the position is singular.
-    pub(super) fn find_groups(&mut self, mechanism: &Mechanism, start: Pose) -> Result<Pose, AssemblyError> {
+    pub(super) fn find_groups(
+        &mut self,
+        mechanism: &Mechanism,
+        start: Pose,
+    ) -> Result<Pose, AssemblyError> {
         let analysed = self.analyse(mechanism, start)?;
         self.mobility = analysed.mobility;
         let unknowns = self.unknowns();
@@ -151,33 +174,60 @@ impl Plan {
         let rows = self.all_rows();
         let dependencies: Vec<Vec<usize>> = rows
             .iter()
-            .map(|(c, _)| self.chords[*c].path.iter().filter_map(|(f, _)| position(f)).collect())
+            .map(|(c, _)| {
+                self.closures[*c]
+                    .path
+                    .iter()
+                    .filter_map(|(f, _)| position(f))
+                    .collect()
+            })
             .collect();
         let independent: Vec<usize> = analysed.independent;
-        let chosen: Vec<Vec<usize>> = independent.iter().map(|r| dependencies[*r].clone()).collect();
+        let chosen: Vec<Vec<usize>> = independent
+            .iter()
+            .map(|r| dependencies[*r].clone())
+            .collect();
         let (of_equation, of_unknown) = match_equations(&chosen, unknowns.len());
         let components = strong_components(&of_equation, &chosen, &of_unknown);
         let mut groups: Vec<(Vec<usize>, Vec<(usize, usize)>)> = components
             .into_iter()
             .map(|equations| {
-                let matched = equations.iter().map(|e| unknowns[of_equation[*e]]).collect();
-                (matched, equations.iter().map(|e| rows[independent[*e]]).collect())
+                let matched = equations
+                    .iter()
+                    .map(|e| unknowns[of_equation[*e]])
+                    .collect();
+                (
+                    matched,
+                    equations.iter().map(|e| rows[independent[*e]]).collect(),
+                )
             })
             .collect();
-        for (r, row) in rows.iter().enumerate().filter(|(r, _)| !independent.contains(r)) {
-            let depends = |g: &(Vec<usize>, _)| dependencies[r].iter().any(|u| g.0.contains(&unknowns[*u]));
-            if let Some(last) = groups.iter().rposition(depends) {
-                groups[last].1.push(*row);
-            }
+        let redundant = (0..rows.len()).filter(|r| !independent.contains(r));
+        for r in redundant {
+            let unknown = |u: &usize| unknowns[*u];
+            add_redundant(&mut groups, rows[r], dependencies[r].iter().map(unknown));
         }
-        for (_, rows) in &mut groups {
-            rows.sort_unstable();
-        }
-        let groups = groups.into_iter().map(|(unknowns, rows)| self.group(unknowns, rows)).collect();
+        let groups = groups
+            .into_iter()
+            .map(|(unknowns, rows)| self.group(unknowns, rows))
+            .collect();
         self.schedule(groups);
         let mut pose = self.pose();
         pose.coordinates.copy_from_slice(&analysed.pose.coordinates);
         pose.balls.copy_from_slice(&analysed.pose.balls);
         Ok(pose)
+    }
+}
+
+/// Adds a redundant row to the last of the groups on whose unknowns it depends.
+fn add_redundant(
+    groups: &mut [(Vec<usize>, Vec<(usize, usize)>)],
+    row: (usize, usize),
+    unknowns: impl Iterator<Item = usize> + Clone,
+) {
+    let depends = |g: &(Vec<usize>, _)| unknowns.clone().any(|u| g.0.contains(&u));
+    if let Some(last) = groups.iter().rposition(depends) {
+        groups[last].1.push(row);
+        groups[last].1.sort_unstable();
     }
 }

@@ -42,7 +42,11 @@ pub struct Side {
 
 impl Default for Side {
     fn default() -> Self {
-        Self { point: Vec3::ZERO, axis: Vec3::AXES[2], normal: Vec3::AXES[0] }
+        Self {
+            point: Vec3::ZERO,
+            axis: Vec3::AXES[2],
+            normal: Vec3::AXES[0],
+        }
     }
 }
 
@@ -92,15 +96,32 @@ impl JointKind {
 impl Joint {
     /// A joint between two bodies, by their numbers. Directions become unit vectors, and the normal the part of it at right
     /// angles to the axis.
-    pub fn new(name: impl Into<String>, bodies: [impl Into<BodyId>; 2], kind: JointKind, sides: [Side; 2]) -> Self {
+    pub fn new(
+        name: impl Into<String>,
+        bodies: [impl Into<BodyId>; 2],
+        kind: JointKind,
+        sides: [Side; 2],
+    ) -> Self {
         let orthonormal = |side: Side| {
             let axis = side.axis.unit().unwrap_or(Vec3::AXES[2]);
             let part = side.normal - axis.scaled(axis.dot(side.normal));
             let off_axis = part.norm() > 1e-9 * side.normal.norm();
-            let normal = part.unit().filter(|_| off_axis).unwrap_or_else(|| axis.any_normal());
-            Side { axis, normal, ..side }
+            let normal = part
+                .unit()
+                .filter(|_| off_axis)
+                .unwrap_or_else(|| axis.any_normal());
+            Side {
+                axis,
+                normal,
+                ..side
+            }
         };
-        Self { name: name.into(), bodies: bodies.map(Into::into), kind, sides: sides.map(orthonormal) }
+        Self {
+            name: name.into(),
+            bodies: bodies.map(Into::into),
+            kind,
+            sides: sides.map(orthonormal),
+        }
     }
 }
 
@@ -134,12 +155,18 @@ impl ActuatorKind {
 impl Actuator {
     /// The angle of a joint, by its number.
     pub fn angle(name: impl Into<String>, joint: usize) -> Self {
-        Self { name: name.into(), kind: ActuatorKind::Angle(JointId(joint)) }
+        Self {
+            name: name.into(),
+            kind: ActuatorKind::Angle(JointId(joint)),
+        }
     }
 
     /// The travel of a joint, by its number.
     pub fn travel(name: impl Into<String>, joint: usize) -> Self {
-        Self { name: name.into(), kind: ActuatorKind::Travel(JointId(joint)) }
+        Self {
+            name: name.into(),
+            kind: ActuatorKind::Travel(JointId(joint)),
+        }
     }
 }
 
@@ -152,19 +179,22 @@ pub struct Placement {
     pub rotation: Rotation,
 }
 
-/// Where a mechanism is assembled: the coordinates, and roughly where the bodies are.
+/// Where a mechanism is assembled: the coordinates, and approximately where the bodies are.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Assembly {
     /// By actuator: its coordinate, rad or m.
     pub q: Vec<f64>,
-    /// By body: roughly where it is; bodies beyond the end coincide with the ground's frame.
+    /// By body: approximately where it is; bodies beyond the end coincide with the ground's frame.
     pub placements: Vec<Placement>,
 }
 
 impl Assembly {
     /// At these coordinates, with every body's frame near that of the ground.
     pub fn at(q: &[f64]) -> Self {
-        Self { q: q.to_vec(), placements: Vec::new() }
+        Self {
+            q: q.to_vec(),
+            placements: Vec::new(),
+        }
     }
 
     /// Roughly where a body is.
@@ -181,13 +211,23 @@ impl Mechanism {
         let mut seen = vec![false; self.bodies.len()];
         for joint in &self.joints {
             for (body, side) in joint.bodies.iter().zip(&joint.sides) {
-                let Some([low, high]) = boxes.get_mut(body.0) else { continue };
+                let Some([low, high]) = boxes.get_mut(body.0) else {
+                    continue;
+                };
                 let p = side.point;
                 if !std::mem::replace(&mut seen[body.0], true) {
                     (*low, *high) = (p, p);
                 }
-                *low = Vec3 { x: low.x.min(p.x), y: low.y.min(p.y), z: low.z.min(p.z) };
-                *high = Vec3 { x: high.x.max(p.x), y: high.y.max(p.y), z: high.z.max(p.z) };
+                *low = Vec3 {
+                    x: low.x.min(p.x),
+                    y: low.y.min(p.y),
+                    z: low.z.min(p.z),
+                };
+                *high = Vec3 {
+                    x: high.x.max(p.x),
+                    y: high.y.max(p.y),
+                    z: high.z.max(p.z),
+                };
                 size = size.max((*high - *low).norm());
             }
             if let JointKind::Distance { length } = joint.kind {
@@ -209,24 +249,37 @@ impl Mechanism {
             if joint.bodies[0] == joint.bodies[1] {
                 return Some("a joint connects a body with itself");
             }
-            let finite = |s: &Side| s.point.is_finite() && s.axis.is_finite() && s.normal.is_finite();
+            let finite =
+                |s: &Side| s.point.is_finite() && s.axis.is_finite() && s.normal.is_finite();
             let number = match joint.kind {
                 JointKind::Helical { pitch } => pitch.is_finite(),
                 JointKind::Distance { length } => length.is_finite() && length > 0.0,
                 _ => true,
             };
             if !(joint.sides.iter().all(finite) && number) {
-                return Some("a joint has a number that is not finite, or a length that is not positive");
+                return Some(
+                    "a joint has a number that is not finite, or a length that is not positive",
+                );
             }
         }
-        let drives = |a: &Actuator| match (a.kind, self.joints.get(a.kind.joint().0).map(|j| j.kind)) {
-            (ActuatorKind::Angle(_), Some(kind)) => {
-                matches!(kind, JointKind::Revolute | JointKind::Cylindrical | JointKind::Helical { .. })
-            }
-            (ActuatorKind::Travel(_), Some(kind)) => matches!(kind, JointKind::Prismatic | JointKind::Cylindrical),
-            (_, None) => false,
+        let drives =
+            |a: &Actuator| match (a.kind, self.joints.get(a.kind.joint().0).map(|j| j.kind)) {
+                (ActuatorKind::Angle(_), Some(kind)) => {
+                    matches!(
+                        kind,
+                        JointKind::Revolute | JointKind::Cylindrical | JointKind::Helical { .. }
+                    )
+                }
+                (ActuatorKind::Travel(_), Some(kind)) => {
+                    matches!(kind, JointKind::Prismatic | JointKind::Cylindrical)
+                }
+                (_, None) => false,
+            };
+        let driven_twice = |i: usize| {
+            self.actuators[..i]
+                .iter()
+                .any(|a| a.kind == self.actuators[i].kind)
         };
-        let driven_twice = |i: usize| self.actuators[..i].iter().any(|a| a.kind == self.actuators[i].kind);
         if !self.actuators.iter().all(drives) {
             return Some("an actuator drives a joint that has no such coordinate");
         }

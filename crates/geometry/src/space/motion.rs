@@ -1,8 +1,8 @@
 //! Velocities and accelerations: the factors of each group once more, with other right-hand sides.
 
+use super::frames::BodyMotion;
 use super::groups::Group;
 use super::plan::{Plan, Pose};
-use super::frames::BodyMotion;
 use dwell_numerics::Scalar;
 
 impl Plan {
@@ -13,7 +13,12 @@ impl Plan {
             pose.rates[freedom] = rate * T::from_f64(sign);
         }
         for group in &self.groups {
-            self.carry_known(group, pose, |pose, freedom| pose.rates[freedom], |_, _, _| T::from_f64(0.0));
+            self.carry_known(
+                group,
+                pose,
+                |pose, freedom| pose.rates[freedom],
+                |_, _, _| T::from_f64(0.0),
+            );
             for (j, freedom) in group.unknowns.iter().enumerate() {
                 pose.rates[*freedom] = pose.scratch[j];
             }
@@ -31,10 +36,15 @@ impl Plan {
         }
         for group in &self.groups {
             let row = |pose: &Pose<T>, c: usize, k: usize| {
-                let chord = &self.chords[c];
-                chord.row_acceleration(chord.kinds[k], &pose.frames, &pose.states)
+                let closure = &self.closures[c];
+                closure.row_acceleration(closure.kinds[k], &pose.frames, &pose.states)
             };
-            self.carry_known(group, pose, |pose, freedom| pose.accelerations[freedom], row);
+            self.carry_known(
+                group,
+                pose,
+                |pose, freedom| pose.accelerations[freedom],
+                row,
+            );
             for (j, freedom) in group.unknowns.iter().enumerate() {
                 pose.accelerations[*freedom] = pose.scratch[j];
             }
@@ -65,10 +75,18 @@ impl Plan {
     pub(super) fn fill_states<T: Scalar>(&self, pose: &mut Pose<T>) {
         let freedoms = &self.tree.freedoms;
         for link in &self.tree.links {
-            let Pose { frames, screws, rates, accelerations, states, .. } = pose;
+            let Pose {
+                frames,
+                screws,
+                rates,
+                accelerations,
+                states,
+                ..
+            } = pose;
             let between = [&frames[link.parent], &frames[link.body]];
             let of_freedoms = [&rates[..], &accelerations[..]];
-            states[link.body] = link.motion(between, &states[link.parent], of_freedoms, freedoms, screws);
+            states[link.body] =
+                link.motion(between, &states[link.parent], of_freedoms, freedoms, screws);
         }
     }
 

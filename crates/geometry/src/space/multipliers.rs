@@ -42,7 +42,7 @@ impl Plan {
             required: vec![Wrench::default(); self.tree.internal.len()],
             transmitted: vec![Wrench::default(); self.tree.internal.len()],
             balance: vec![zero; self.tree.freedoms.len()],
-            multipliers: vec![zero; self.chords.last().map_or(0, |c| c.rows.end)],
+            multipliers: vec![zero; self.closures.last().map_or(0, |c| c.rows.end)],
         }
     }
 
@@ -81,18 +81,33 @@ impl Plan {
     }
 
     fn multipliers<T: Scalar>(&self, pose: &mut Pose<T>, forces: &mut Forces<T>) {
-        let Forces { balance, multipliers, .. } = forces;
+        let Forces {
+            balance,
+            multipliers,
+            ..
+        } = forces;
         for group in self.groups.iter().rev() {
             let (m, n) = (group.rows.len(), group.unknowns.len());
-            let Pose { scratch, factors, heads, entries, .. } = &mut *pose;
-            for (j, (&freedom, scale)) in group.unknowns.iter().zip(&group.column_scales).enumerate() {
+            let Pose {
+                scratch,
+                factors,
+                heads,
+                entries,
+                ..
+            } = &mut *pose;
+            for (j, (&freedom, scale)) in
+                group.unknowns.iter().zip(&group.column_scales).enumerate()
+            {
                 scratch[j] = balance[freedom] * T::from_f64(*scale);
             }
-            let (factors, heads) = (&factors[group.factors..][..m * n], &heads[group.heads..][..n]);
+            let (factors, heads) = (
+                &factors[group.factors..][..m * n],
+                &heads[group.heads..][..n],
+            );
             qr::solve_transposed(factors, heads, m, &mut scratch[..m]);
             for (i, (&(c, k), scale)) in group.rows.iter().zip(&group.row_scales).enumerate() {
                 scratch[i] = scratch[i] * T::from_f64(*scale);
-                multipliers[self.chords[c].rows.start + k] = scratch[i];
+                multipliers[self.closures[c].rows.start + k] = scratch[i];
             }
             for outer in &group.outer {
                 let change = entries[outer.entry] * scratch[outer.row];
@@ -104,10 +119,10 @@ impl Plan {
     /// What the joints of the tree transmit, from what is required and from the loops.
     fn transmit<T: Scalar>(&self, pose: &Pose<T>, forces: &mut Forces<T>) {
         forces.transmitted.copy_from_slice(&forces.required);
-        for chord in &self.chords {
-            let (force, couple) = self.chord_action(chord, pose, &forces.multipliers);
-            let at = chord.ends(&pose.frames)[1];
-            for (body, sign) in [(chord.bodies[0], 1.0), (chord.bodies[1], -1.0)] {
+        for closure in &self.closures {
+            let (force, couple) = self.closure_action(closure, pose, &forces.multipliers);
+            let at = closure.ends(&pose.frames)[1];
+            for (body, sign) in [(closure.bodies[0], 1.0), (closure.bodies[1], -1.0)] {
                 let (arm, sign) = (at - pose.frames[body].origin, T::from_f64(sign));
                 forces.transmitted[body].add_at(arm, force.scaled(sign), couple.scaled(sign));
             }
@@ -115,17 +130,17 @@ impl Plan {
         self.carry_down(pose, &mut forces.transmitted);
     }
 
-    /// Force at the second body's point and couple, of a chord on that body.
-    fn chord_action<T: Scalar>(
+    /// Force at the second body's point and couple, of a closure on that body.
+    fn closure_action<T: Scalar>(
         &self,
-        chord: &super::closure::Chord,
+        closure: &super::closure::Closure,
         pose: &Pose<T>,
         multipliers: &[T],
     ) -> (Vec3<T>, Vec3<T>) {
-        let d = chord.ends(&pose.frames)[2];
+        let d = closure.ends(&pose.frames)[2];
         let (mut force, mut couple) = (Vec3::zero(), Vec3::zero());
-        for (kind, r) in chord.kinds.iter().zip(chord.rows.clone()) {
-            let row = chord.row(*kind, &pose.frames, d);
+        for (kind, r) in closure.kinds.iter().zip(closure.rows.clone()) {
+            let row = closure.row(*kind, &pose.frames, d);
             force += row.force.scaled(multipliers[r]);
             couple += row.couple.scaled(multipliers[r]);
         }
@@ -139,16 +154,25 @@ impl Plan {
     }
 
     /// The action of a joint's first body on the second, about the joint's point on the second, without that of an actuator.
-    pub fn reaction<T: Scalar>(&self, pose: &Pose<T>, forces: &Forces<T>, joint: JointId) -> Wrench<T> {
-        if let Some(chord) = self.chords.iter().find(|c| c.joint == Some(joint)) {
-            let (force, moment) = self.chord_action(chord, pose, &forces.multipliers);
+    pub fn reaction<T: Scalar>(
+        &self,
+        pose: &Pose<T>,
+        forces: &Forces<T>,
+        joint: JointId,
+    ) -> Wrench<T> {
+        if let Some(closure) = self.closures.iter().find(|c| c.joint == Some(joint)) {
+            let (force, moment) = self.closure_action(closure, pose, &forces.multipliers);
             return Wrench { force, moment };
         }
         let Some(link) = self.tree.links.iter().find(|l| l.joint == Some(joint)) else {
             return Wrench::default();
         };
         let mut wrench = forces.transmitted[link.body];
-        for &(freedom, _) in self.drivers.iter().filter(|(f, _)| link.freedoms.contains(f)) {
+        for &(freedom, _) in self
+            .drivers
+            .iter()
+            .filter(|(f, _)| link.freedoms.contains(f))
+        {
             let action = pose.screws[freedom].axis.scaled(forces.balance[freedom]);
             match self.tree.freedoms[freedom].parts() {
                 (0.0, _) => wrench.force -= action,

@@ -1,6 +1,6 @@
 //! The compiled mechanism, and the memory of one thread in which it is evaluated.
 
-use super::closure::Chord;
+use super::closure::Closure;
 use super::follow::Node;
 use super::frames::{BodyMotion, Frame, Screw};
 use super::groups::Group;
@@ -18,7 +18,7 @@ pub struct Plan {
     pub(super) ground: usize,
     pub(super) size: f64,
     pub(super) tree: Tree,
-    pub(super) chords: Vec<Chord>,
+    pub(super) closures: Vec<Closure>,
     pub(super) groups: Vec<Group>,
     /// Links that depend on the driven freedoms alone; then those that no group places.
     pub(super) first_links: Vec<usize>,
@@ -40,7 +40,7 @@ pub struct Pose<T = f64> {
     pub(super) balls: Vec<Rotation<T>>,
     pub(super) frames: Vec<Frame<T>>,
     pub(super) screws: Vec<Screw<T>>,
-    /// Entries of the Jacobian, by chord, row and freedom of its path.
+    /// Entries of the Jacobian, by closure, row and freedom of its path.
     pub(super) entries: Vec<T>,
     pub(super) residuals: Vec<T>,
     /// By group: its factors, and the heads of their reflections.
@@ -64,8 +64,12 @@ impl Plan {
         let kind = mechanism.actuators.first().map(|a| a.kind);
         plan.assembly_q.clone_from(&assembly.q);
         // At the assembly everything is closed: what fails there is a singular position.
-        let singular = |_| AssemblyError::SingularAssembly { bodies: Vec::new(), joints: Vec::new() };
-        plan.follow_range(&assembly.q, start, kind).map_err(singular)?;
+        let singular = |_| AssemblyError::SingularAssembly {
+            bodies: Vec::new(),
+            joints: Vec::new(),
+        };
+        plan.follow_range(&assembly.q, start, kind)
+            .map_err(singular)?;
         Ok(plan)
     }
 
@@ -93,8 +97,11 @@ impl Plan {
     pub fn pose<T: Scalar>(&self) -> Pose<T> {
         let zero = T::from_f64(0.0);
         let freedoms = self.tree.freedoms.len();
-        let rows = self.chords.last().map_or(0, |c| c.rows.end);
-        let entries = self.chords.last().map_or(0, |c| c.entries + c.rows.len() * c.path.len());
+        let rows = self.closures.last().map_or(0, |c| c.rows.end);
+        let entries = self
+            .closures
+            .last()
+            .map_or(0, |c| c.entries + c.rows.len() * c.path.len());
         let group = |f: fn(&Group) -> usize| self.groups.iter().map(f).sum::<usize>();
         let mut pose = Pose {
             coordinates: vec![zero; freedoms],
@@ -129,7 +136,10 @@ impl Plan {
     /// Where a body is.
     pub fn placement(&self, pose: &Pose<f64>, body: usize) -> Placement {
         let frame = &pose.frames[body];
-        let internal = Placement { position: frame.origin, rotation: frame.rotation };
+        let internal = Placement {
+            position: frame.origin,
+            rotation: frame.rotation,
+        };
         internal.then(&self.tree.internal[body].inverse())
     }
 

@@ -36,7 +36,10 @@ impl Plan {
             return self.continue_to(q, pose);
         }
         let value = self.within_range(first.value())?;
-        let node = self.nodes.partition_point(|n| n.q < value).min(self.nodes.len() - 1);
+        let node = self
+            .nodes
+            .partition_point(|n| n.q < value)
+            .min(self.nodes.len() - 1);
         let nearer = node > 0 && value - self.nodes[node - 1].q < self.nodes[node].q - value;
         let node = &self.nodes[node - usize::from(nearer)];
         self.start_from(node, value - node.q, pose);
@@ -44,7 +47,11 @@ impl Plan {
     }
 
     /// Closes all groups in order, from the coordinates in the pose.
-    pub(super) fn close<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PositionError> {
+    pub(super) fn close<T: Scalar>(
+        &self,
+        q: &[T],
+        pose: &mut Pose<T>,
+    ) -> Result<(), PositionError> {
         for (&(freedom, sign), &q) in self.drivers.iter().zip(q) {
             pose.coordinates[freedom] = q * T::from_f64(sign);
         }
@@ -60,12 +67,24 @@ impl Plan {
     pub(super) fn place<T: Scalar>(&self, links: &[usize], pose: &mut Pose<T>) {
         let freedoms = &self.tree.freedoms;
         for link in links.iter().map(|l| &self.tree.links[*l]) {
-            let Pose { coordinates, balls, frames, screws, .. } = pose;
-            frames[link.body] = link.place(&frames[link.parent], coordinates, balls, freedoms, screws);
+            let Pose {
+                coordinates,
+                balls,
+                frames,
+                screws,
+                ..
+            } = pose;
+            frames[link.body] =
+                link.place(&frames[link.parent], coordinates, balls, freedoms, screws);
         }
     }
 
-    fn close_group<T: Scalar>(&self, g: usize, q: f64, pose: &mut Pose<T>) -> Result<(), PositionError> {
+    fn close_group<T: Scalar>(
+        &self,
+        g: usize,
+        q: f64,
+        pose: &mut Pose<T>,
+    ) -> Result<(), PositionError> {
         let group = &self.groups[g];
         let mut settled = false;
         for _ in 0..MAX_STEPS {
@@ -74,19 +93,31 @@ impl Plan {
             let outcome = self.factor(group, pose);
             if outcome.pivot_ratio.is_nan() || outcome.pivot_ratio < SINGULAR {
                 let relative_determinant = outcome.pivot_ratio;
-                return Err(PositionError::Singular { group: g, q, relative_determinant });
+                return Err(PositionError::Singular {
+                    group: g,
+                    q,
+                    relative_determinant,
+                });
             }
             if settled {
                 let residual = self.largest_residual(group, pose);
                 return if residual <= OPEN {
                     Ok(())
                 } else {
-                    Err(PositionError::NoAssembly { group: g, q, gap: residual * self.size })
+                    Err(PositionError::NoAssembly {
+                        group: g,
+                        q,
+                        gap: residual * self.size,
+                    })
                 };
             }
             let step = self.newton_step(group, pose);
             if step.is_nan() || step > LONG_STEP {
-                return Err(PositionError::NotConverged { group: g, q, residual: step });
+                return Err(PositionError::NotConverged {
+                    group: g,
+                    q,
+                    residual: step,
+                });
             }
             // Derivatives are exact after one step more than values.
             settled = match T::HAS_DERIVATIVES {
@@ -95,18 +126,22 @@ impl Plan {
             };
         }
         let residual = self.largest_residual(group, pose) * self.size;
-        Err(PositionError::NotConverged { group: g, q, residual })
+        Err(PositionError::NotConverged {
+            group: g,
+            q,
+            residual,
+        })
     }
 
     /// Residuals and Jacobian of a group's rows.
     pub(super) fn fill_rows<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) {
         for &(c, k) in &group.rows {
-            let chord = &self.chords[c];
-            let [_, at, d] = chord.ends(&pose.frames);
-            let row = chord.row(chord.kinds[k], &pose.frames, d);
-            pose.residuals[chord.rows.start + k] = row.residual;
-            let first = chord.entries + k * chord.path.len();
-            for (entry, &(freedom, sign)) in pose.entries[first..].iter_mut().zip(&chord.path) {
+            let closure = &self.closures[c];
+            let [_, at, d] = closure.ends(&pose.frames);
+            let row = closure.row(closure.kinds[k], &pose.frames, d);
+            pose.residuals[closure.rows.start + k] = row.residual;
+            let first = closure.entries + k * closure.path.len();
+            for (entry, &(freedom, sign)) in pose.entries[first..].iter_mut().zip(&closure.path) {
                 let kind = self.tree.freedoms[freedom];
                 let power = pose.screws[freedom].power(kind, row.force, at, row.couple);
                 *entry = if sign > 0.0 { power } else { -power };
@@ -128,11 +163,21 @@ impl Plan {
     /// The solution of a group's equations for the right-hand sides in the scratch memory, by row; it leaves the unknowns there.
     pub(super) fn solve<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) {
         let (m, n) = (group.rows.len(), group.unknowns.len());
-        let Pose { scratch, factors, heads, .. } = pose;
+        let Pose {
+            scratch,
+            factors,
+            heads,
+            ..
+        } = pose;
         for (value, scale) in scratch.iter_mut().zip(&group.row_scales) {
             *value = *value * T::from_f64(*scale);
         }
-        qr::solve(&factors[group.factors..][..m * n], &heads[group.heads..][..n], m, &mut scratch[..m]);
+        qr::solve(
+            &factors[group.factors..][..m * n],
+            &heads[group.heads..][..n],
+            m,
+            &mut scratch[..m],
+        );
         for (value, scale) in scratch.iter_mut().zip(&group.column_scales) {
             *value = *value * T::from_f64(*scale);
         }
@@ -141,7 +186,7 @@ impl Plan {
     /// One step of Newton's method; its largest component, over the unit of its freedom.
     fn newton_step<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) -> f64 {
         for (i, &(c, k)) in group.rows.iter().enumerate() {
-            pose.scratch[i] = -pose.residuals[self.chords[c].rows.start + k];
+            pose.scratch[i] = -pose.residuals[self.closures[c].rows.start + k];
         }
         self.solve(group, pose);
         let mut largest = 0.0_f64;
@@ -149,17 +194,30 @@ impl Plan {
             let step = pose.scratch[j];
             pose.coordinates[freedom] += step;
             let size = step.value().abs() / scale;
-            largest = if size.is_nan() { f64::NAN } else { largest.max(size) };
+            largest = if size.is_nan() {
+                f64::NAN
+            } else {
+                largest.max(size)
+            };
         }
         for &(link, first) in &group.balls {
-            let step = vec3(pose.scratch[first], pose.scratch[first + 1], pose.scratch[first + 2]);
+            let step = vec3(
+                pose.scratch[first],
+                pose.scratch[first + 1],
+                pose.scratch[first + 2],
+            );
             self.turn_ball(link, step, pose);
         }
         largest
     }
 
     /// Turns the ball of a link by a small turn in the axes of the ground.
-    pub(super) fn turn_ball<T: Scalar>(&self, link: usize, turn: super::Vec3<T>, pose: &mut Pose<T>) {
+    pub(super) fn turn_ball<T: Scalar>(
+        &self,
+        link: usize,
+        turn: super::Vec3<T>,
+        pose: &mut Pose<T>,
+    ) {
         let link = &self.tree.links[link];
         for step in &link.steps {
             if let Step::Ball(ball, _) = *step {
@@ -174,7 +232,10 @@ impl Plan {
     pub(super) fn largest_residual<T: Scalar>(&self, group: &Group, pose: &Pose<T>) -> f64 {
         let rows = group.rows.iter().zip(&group.row_scales);
         let sizes = rows.map(|(&(c, k), scale)| {
-            pose.residuals[self.chords[c].rows.start + k].value().abs() * scale
+            pose.residuals[self.closures[c].rows.start + k]
+                .value()
+                .abs()
+                * scale
         });
         sizes.fold(0.0, f64::max)
     }

@@ -2,7 +2,7 @@
 //! redundant constraints leave open.
 
 use super::assemble::RANK_TOLERANCE;
-use super::closure::{Chord, RowKind, path};
+use super::closure::{Closure, RowKind, path};
 use super::mechanism::Mechanism;
 use super::plan::{Plan, Pose};
 use super::vector::Vec3;
@@ -47,15 +47,26 @@ pub(super) struct Analysed {
 pub(super) fn rank_of(svd: &Svd<f64>) -> usize {
     let values = svd.S().column_vector();
     let largest = values.iter().fold(0.0_f64, |a, b| a.max(*b));
-    values.iter().filter(|s| **s > RANK_TOLERANCE * largest).count()
+    values
+        .iter()
+        .filter(|s| **s > RANK_TOLERANCE * largest)
+        .count()
 }
 
 impl Plan {
     /// Analyses the assembled mechanism, with a row added for each idle freedom.
-    pub(super) fn analyse(&mut self, mechanism: &Mechanism, mut pose: Pose) -> Result<Analysed, AssemblyError> {
+    pub(super) fn analyse(
+        &mut self,
+        mechanism: &Mechanism,
+        mut pose: Pose,
+    ) -> Result<Analysed, AssemblyError> {
         let group = &self.groups[0];
         let (rows, n) = (group.rows.len(), group.unknowns.len());
-        let svd = if rows * n > 0 { self.dense(group, &pose).svd().ok() } else { None };
+        let svd = if rows * n > 0 {
+            self.dense(group, &pose).svd().ok()
+        } else {
+            None
+        };
         let rank = svd.as_ref().map_or(0, rank_of);
         let mut idle = Vec::new();
         if rank < n {
@@ -75,15 +86,30 @@ impl Plan {
             redundant_count: rows - rank,
             idle,
         };
-        Ok(Analysed { mobility, pose, independent })
+        Ok(Analysed {
+            mobility,
+            pose,
+            independent,
+        })
     }
 
-    fn under_actuated(&self, mechanism: &Mechanism, missing: usize, bodies: Vec<BodyId>) -> AssemblyError {
-        let all = (0..mechanism.bodies.len()).filter(|b| *b != self.ground).map(BodyId);
+    fn under_actuated(
+        &self,
+        mechanism: &Mechanism,
+        missing: usize,
+        bodies: Vec<BodyId>,
+    ) -> AssemblyError {
+        let all = (0..mechanism.bodies.len())
+            .filter(|b| *b != self.ground)
+            .map(BodyId);
         StructureError::UnderActuated {
             degrees_of_freedom: self.actuators() + missing,
             actuators: self.actuators(),
-            bodies: if bodies.is_empty() { all.collect() } else { bodies },
+            bodies: if bodies.is_empty() {
+                all.collect()
+            } else {
+                bodies
+            },
             redundant_joints: Vec::new(),
         }
         .into()
@@ -104,7 +130,8 @@ impl Plan {
         let mut is_spin = true;
         for k in rank..n {
             pose.rates.fill(0.0);
-            for (j, (freedom, unit)) in group.unknowns.iter().zip(&group.column_scales).enumerate() {
+            for (j, (freedom, unit)) in group.unknowns.iter().zip(&group.column_scales).enumerate()
+            {
                 pose.rates[*freedom] = svd.map_or(f64::from(j == k), |svd| svd.V()[(j, k)]) * unit;
             }
             self.fill_states(pose);
@@ -116,16 +143,25 @@ impl Plan {
                 }
                 moves[body] = true;
                 // A rotation about a line: v·ω = 0, and the line's nearest point is ω × v / ω².
-                let along = if w.norm() > PART { v.dot(w).abs() / w.norm() / self.size } else { 1.0 };
+                let along = if w.norm() > PART {
+                    v.dot(w).abs() / w.norm() / self.size
+                } else {
+                    1.0
+                };
                 let placement = self.placement(pose, body);
                 let to_body = |u: Vec3| placement.rotation.apply_inverse(u);
                 let axis = to_body(w).unit().unwrap_or(Vec3::ZERO);
                 let point = to_body(w.cross(v).scaled(1.0 / w.dot(w).max(f64::MIN_POSITIVE)));
                 is_spin &= along < PART;
-                let here = IdleBody { body: BodyId(body), point, axis };
+                let here = IdleBody {
+                    body: BodyId(body),
+                    point,
+                    axis,
+                };
                 let other = found[body].replace(here);
                 is_spin &= other.is_none_or(|o| {
-                    o.axis.cross(axis).norm() < PART && (o.point - point).cross(axis).norm() < PART * self.size
+                    o.axis.cross(axis).norm() < PART
+                        && (o.point - point).cross(axis).norm() < PART * self.size
                 });
             }
         }
@@ -141,11 +177,14 @@ impl Plan {
     fn hold(&mut self, idle: &[IdleBody]) {
         for one in idle {
             let body = one.body.0;
-            let rows = self.chords.last().map_or(0, |c| c.rows.end);
-            let entries = self.chords.last().map_or(0, |c| c.entries + c.rows.len() * c.path.len());
+            let rows = self.closures.last().map_or(0, |c| c.rows.end);
+            let entries = self
+                .closures
+                .last()
+                .map_or(0, |c| c.entries + c.rows.len() * c.path.len());
             let axis = self.tree.internal[body].rotation.apply_inverse(one.axis);
             let bodies = [self.ground, body];
-            self.chords.push(Chord {
+            self.closures.push(Closure {
                 joint: None,
                 bodies,
                 points: [Vec3::ZERO; 2],
@@ -164,7 +203,7 @@ impl Plan {
         let matrix = self.dense(group, pose);
         let n = group.unknowns.len();
         let mut order: Vec<usize> = (0..group.rows.len()).collect();
-        order.sort_by_key(|r| self.chords[group.rows[*r].0].path.len());
+        order.sort_by_key(|r| self.closures[group.rows[*r].0].path.len());
         let mut basis: Vec<Vec<f64>> = Vec::new();
         let mut chosen = Vec::new();
         for r in order {
@@ -192,9 +231,15 @@ impl Plan {
     /// determined.
     pub fn self_stresses(&self, pose: &Pose) -> Vec<Vec<f64>> {
         let group = self.group(self.unknowns(), self.all_rows());
-        let Ok(svd) = self.dense(&group, pose).svd() else { return Vec::new() };
+        let Ok(svd) = self.dense(&group, pose).svd() else {
+            return Vec::new();
+        };
         let rank = rank_of(&svd);
-        let of = |k: usize| (0..group.rows.len()).map(|i| svd.U()[(i, k)] * group.row_scales[i]).collect();
+        let of = |k: usize| {
+            (0..group.rows.len())
+                .map(|i| svd.U()[(i, k)] * group.row_scales[i])
+                .collect()
+        };
         (rank..group.rows.len()).map(of).collect()
     }
 }

@@ -72,12 +72,15 @@ pub(super) struct Tree {
     pub(super) freedoms: Vec<FreedomKind>,
     pub(super) balls: usize,
     /// The joints that close loops.
-    pub(super) chords: Vec<JointId>,
+    pub(super) closures: Vec<JointId>,
 }
 
 /// A side as a frame: origin in its point, z along the axis and x along the normal.
 fn frame_of(side: &Side) -> Placement {
-    Placement { position: side.point, rotation: Rotation::of_axes(side.axis, side.normal) }
+    Placement {
+        position: side.point,
+        rotation: Rotation::of_axes(side.axis, side.normal),
+    }
 }
 
 impl Placement {
@@ -92,13 +95,16 @@ impl Placement {
     /// The frame outside in this one.
     pub(super) fn inverse(&self) -> Self {
         let rotation = self.rotation.inverse();
-        Self { position: -rotation.apply(self.position), rotation }
+        Self {
+            position: -rotation.apply(self.position),
+            rotation,
+        }
     }
 }
 
 impl Side {
     /// The same side in a frame of its body.
-    pub(super) fn seen_from(&self, frame: &Placement) -> Self {
+    pub(super) fn in_frame(&self, frame: &Placement) -> Self {
         let inverse = frame.inverse();
         Self {
             point: inverse.position + inverse.rotation.apply(self.point),
@@ -132,7 +138,12 @@ impl Tree {
         loop {
             while let Some(&parent) = reached.get(next) {
                 next += 1;
-                for (j, joint) in mechanism.joints.iter().enumerate().filter(|(j, _)| in_tree[*j]) {
+                for (j, joint) in mechanism
+                    .joints
+                    .iter()
+                    .enumerate()
+                    .filter(|(j, _)| in_tree[*j])
+                {
                     for (side, sign) in [(0, 1.0), (1, -1.0)] {
                         let body = joint.bodies[1 - side].0;
                         let placed = body == ground || tree.link_of[body].is_some();
@@ -144,29 +155,44 @@ impl Tree {
                 }
             }
             // Whatever only distances hold moves freely from the ground.
-            let is_placed = |b: &usize| *b == ground || tree.link_of[*b].is_some();
-            let held = mechanism.joints.iter().find_map(|joint| {
-                let [a, b] = joint.bodies.map(|b| b.0);
-                match (is_placed(&a), is_placed(&b)) {
-                    (true, false) => Some(b),
-                    (false, true) => Some(a),
-                    _ => None,
-                }
-            });
+            let held = tree.next_held(mechanism);
             let Some(body) = held else { break };
             tree.add_link(mechanism, body, ground, None);
             reached.push(body);
         }
-        let lost = (0..mechanism.bodies.len()).filter(|b| *b != ground && tree.link_of[*b].is_none());
+        let lost =
+            (0..mechanism.bodies.len()).filter(|b| *b != ground && tree.link_of[*b].is_none());
         let lost: Vec<BodyId> = lost.map(BodyId).collect();
         if !lost.is_empty() {
             return Err(StructureError::NotConnected { bodies: lost });
         }
-        tree.chords = (0..mechanism.joints.len()).filter(|j| !in_tree[*j]).map(JointId).collect();
+        tree.closures = (0..mechanism.joints.len())
+            .filter(|j| !in_tree[*j])
+            .map(JointId)
+            .collect();
         Ok(tree)
     }
 
-    fn add_link(&mut self, mechanism: &Mechanism, body: usize, parent: usize, by: Option<(JointId, usize, f64)>) {
+    /// A body that is not placed yet and that a joint connects with one that is.
+    fn next_held(&self, mechanism: &Mechanism) -> Option<usize> {
+        let is_placed = |b: usize| b == mechanism.ground || self.link_of[b].is_some();
+        mechanism.joints.iter().find_map(|joint| {
+            let [a, b] = joint.bodies.map(|b| b.0);
+            match (is_placed(a), is_placed(b)) {
+                (true, false) => Some(b),
+                (false, true) => Some(a),
+                _ => None,
+            }
+        })
+    }
+
+    fn add_link(
+        &mut self,
+        mechanism: &Mechanism,
+        body: usize,
+        parent: usize,
+        by: Option<(JointId, usize, f64)>,
+    ) {
         let first = self.freedoms.len();
         let (steps, on_parent, sign) = match by {
             None => {
@@ -178,7 +204,7 @@ impl Tree {
             Some((joint, side, sign)) => {
                 let joint = &mechanism.joints[joint.0];
                 self.internal[body] = frame_of(&joint.sides[1 - side]);
-                let mut parent_side = joint.sides[side].seen_from(&self.internal[parent]);
+                let mut parent_side = joint.sides[side].in_frame(&self.internal[parent]);
                 if joint.kind == JointKind::Universal {
                     // The first angle turns from any direction: the axes are at right angles.
                     self.internal[body] = universal_frame(&joint.sides[1 - side]);
@@ -225,7 +251,11 @@ impl Tree {
             ),
             JointKind::Planar => (
                 &[FreedomKind::Slide, FreedomKind::Slide, FreedomKind::Turn],
-                vec![Step::Slide(0, first), Step::Slide(1, first + 1), Step::Turn(first + 2)],
+                vec![
+                    Step::Slide(0, first),
+                    Step::Slide(1, first + 1),
+                    Step::Turn(first + 2),
+                ],
             ),
             // A distance is never in the tree.
             JointKind::Spherical | JointKind::Distance { .. } => return vec![self.ball()],
@@ -236,14 +266,17 @@ impl Tree {
 
     /// The freedom that an actuator drives.
     pub(super) fn driven(&self, kind: ActuatorKind) -> Option<(usize, f64)> {
-        let link = self.links.iter().find(|link| link.joint == Some(kind.joint()))?;
+        let link = self
+            .links
+            .iter()
+            .find(|link| link.joint == Some(kind.joint()))?;
         let first = link.freedoms.start;
         let is_second = matches!(kind, ActuatorKind::Travel(_)) && link.freedoms.len() == 2;
         Some((first + usize::from(is_second), link.sign))
     }
 
-    /// Rough coordinates and rotations of the balls from rough placements of the bodies.
-    pub(super) fn rough_coordinates(&self, assembly: &Assembly) -> (Vec<f64>, Vec<Rotation>) {
+    /// Approximate coordinates and rotations of the balls from approximate placements of the bodies.
+    pub(super) fn approximate_coordinates(&self, assembly: &Assembly) -> (Vec<f64>, Vec<Rotation>) {
         let mut coordinates = vec![0.0; self.freedoms.len()];
         let mut balls = vec![Rotation::IDENTITY; self.balls];
         let placed = |body: usize| assembly.placement(body).then(&self.internal[body]);
@@ -257,7 +290,11 @@ impl Tree {
                         // Of a universal joint, the turn that brings y nearest to the second axis.
                         let next = link.steps.contains(&Step::NextAxis) && c == link.freedoms.start;
                         let x = relative.rotation.columns[if next { 2 } else { 0 }];
-                        let angle = if next { (-x.x).atan2(x.y) } else { x.y.atan2(x.x) };
+                        let angle = if next {
+                            (-x.x).atan2(x.y)
+                        } else {
+                            x.y.atan2(x.x)
+                        };
                         coordinates[c] = angle;
                         let travel = self.freedoms[c].parts().1 * angle;
                         from.position += from.rotation.columns[2].scaled(travel);
@@ -286,7 +323,10 @@ pub(super) fn next_axis<T: Copy>(frame: &Rotation<T>) -> Rotation<T> {
 
 /// The frame of a universal joint on the outer body: as any joint's.
 fn universal_frame(side: &Side) -> Placement {
-    frame_of(&Side { normal: side.axis.any_normal(), ..*side })
+    frame_of(&Side {
+        normal: side.axis.any_normal(),
+        ..*side
+    })
 }
 
 /// By joint: whether it is in the tree, by Kruskal's rule with the freedoms as weights.

@@ -24,7 +24,11 @@ impl Vec3<f64> {
     /// The zero vector.
     pub const ZERO: Self = vec3(0.0, 0.0, 0.0);
     /// The axes of a frame.
-    pub const AXES: [Self; 3] = [vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0), vec3(0.0, 0.0, 1.0)];
+    pub const AXES: [Self; 3] = [
+        vec3(1.0, 0.0, 0.0),
+        vec3(0.0, 1.0, 0.0),
+        vec3(0.0, 0.0, 1.0),
+    ];
 
     /// Length, without overflow at the extremes.
     pub fn norm(self) -> f64 {
@@ -54,7 +58,11 @@ impl Vec3<f64> {
     /// The same constants as another number type.
     #[inline(always)]
     pub fn cast<T: Scalar>(self) -> Vec3<T> {
-        vec3(T::from_f64(self.x), T::from_f64(self.y), T::from_f64(self.z))
+        vec3(
+            T::from_f64(self.x),
+            T::from_f64(self.y),
+            T::from_f64(self.z),
+        )
     }
 }
 
@@ -142,11 +150,15 @@ pub struct Rotation<T = f64> {
 
 impl Rotation<f64> {
     /// No rotation.
-    pub const IDENTITY: Self = Self { columns: Vec3::AXES };
+    pub const IDENTITY: Self = Self {
+        columns: Vec3::AXES,
+    };
 
     /// The frame with this unit vector as its z axis and another at right angles to it as its x axis.
     pub fn of_axes(z: Vec3, x: Vec3) -> Self {
-        Self { columns: [x, z.cross(x), z] }
+        Self {
+            columns: [x, z.cross(x), z],
+        }
     }
 
     /// From the rows of its matrix, made orthogonal; none where they are far from it.
@@ -172,15 +184,17 @@ impl Rotation<f64> {
         }
         // Near a half turn: R + 1 is twice the projection onto the axis.
         let projected = (0..3).map(|k| self.columns[k] + Vec3::AXES[k]);
-        let longest = projected.max_by(|a, b| a.norm().total_cmp(&b.norm()));
-        let axis = longest.and_then(Vec3::unit).unwrap_or(Vec3::ZERO);
+        let largest = projected.max_by(|a, b| a.norm().total_cmp(&b.norm()));
+        let axis = largest.and_then(Vec3::unit).unwrap_or(Vec3::ZERO);
         axis.scaled(std::f64::consts::PI)
     }
 
     /// The same constants as another number type.
     #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Rotation<T> {
-        Rotation { columns: self.columns.map(Vec3::cast) }
+        Rotation {
+            columns: self.columns.map(Vec3::cast),
+        }
     }
 }
 
@@ -201,7 +215,11 @@ impl<T: Scalar> Rotation<T> {
     /// A vector in the axes of the rotated frame.
     #[inline(always)]
     pub fn apply_inverse(&self, v: Vec3<T>) -> Vec3<T> {
-        vec3(self.columns[0].dot(v), self.columns[1].dot(v), self.columns[2].dot(v))
+        vec3(
+            self.columns[0].dot(v),
+            self.columns[1].dot(v),
+            self.columns[2].dot(v),
+        )
     }
 
     /// This rotation after another.
@@ -209,14 +227,22 @@ impl<T: Scalar> Rotation<T> {
     #[must_use]
     pub fn after(&self, other: &Self) -> Self {
         let [x, y, z] = other.columns;
-        Self { columns: [self.apply(x), self.apply(y), self.apply(z)] }
+        Self {
+            columns: [self.apply(x), self.apply(y), self.apply(z)],
+        }
     }
 
     /// The inverse.
     #[must_use]
     pub fn inverse(&self) -> Self {
         let [x, y, z] = self.columns;
-        Self { columns: [vec3(x.x, y.x, z.x), vec3(x.y, y.y, z.y), vec3(x.z, y.z, z.z)] }
+        Self {
+            columns: [
+                vec3(x.x, y.x, z.x),
+                vec3(x.y, y.y, z.y),
+                vec3(x.z, y.z, z.z),
+            ],
+        }
     }
 
     /// The frame turned about its own z axis by the angle of this sine and cosine.
@@ -225,7 +251,11 @@ impl<T: Scalar> Rotation<T> {
     pub fn turned_about_z(&self, (sin, cos): (T, T)) -> Self {
         let [x, y, z] = self.columns;
         Self {
-            columns: [x.scaled(cos) + y.scaled(sin), y.scaled(cos) - x.scaled(sin), z],
+            columns: [
+                x.scaled(cos) + y.scaled(sin),
+                y.scaled(cos) - x.scaled(sin),
+                z,
+            ],
         }
     }
 
@@ -241,6 +271,12 @@ impl<T: Scalar> Rotation<T> {
             let first = h.cross(v);
             v + (first + h.cross(first)).scaled(factor)
         };
-        Self { columns: [turned(self.columns[0]), turned(self.columns[1]), turned(self.columns[2])] }
+        Self {
+            columns: [
+                turned(self.columns[0]),
+                turned(self.columns[1]),
+                turned(self.columns[2]),
+            ],
+        }
     }
 }

@@ -294,7 +294,10 @@ fn absorb_redundant(
 }
 
 /// Matches equations with unknowns, by augmenting paths found breadth first.
-pub(crate) fn match_equations(dependencies: &[Vec<usize>], unknowns: usize) -> (Vec<usize>, Vec<usize>) {
+pub(crate) fn match_equations(
+    dependencies: &[Vec<usize>],
+    unknowns: usize,
+) -> (Vec<usize>, Vec<usize>) {
     let mut of_equation = vec![UNMATCHED; dependencies.len()];
     let mut of_unknown = vec![UNMATCHED; unknowns];
     let mut visited = vec![UNMATCHED; unknowns];

@@ -53,7 +53,10 @@ impl LoadKind {
         required: &mut [Wrench<T>],
     ) {
         let arm = |body: usize, point: Vec3| {
-            let local = plan.evaluation_frame(body).rotation.apply_inverse(point - plan.evaluation_frame(body).position);
+            let local = plan
+                .evaluation_frame(body)
+                .rotation
+                .apply_inverse(point - plan.evaluation_frame(body).position);
             plan.frame(pose, body).rotation.apply(local.cast())
         };
         let turned = |body: usize, direction: Direction| match direction {
@@ -67,10 +70,17 @@ impl LoadKind {
                     required[body].add_at(at, (-direction.scaled(mass.mass)).cast(), Vec3::zero());
                 }
             }
-            Self::Force { body: BodyId(body), point, direction } => {
+            Self::Force {
+                body: BodyId(body),
+                point,
+                direction,
+            } => {
                 required[body].add_at(arm(body, point), -turned(body, direction), Vec3::zero());
             }
-            Self::Couple { bodies: [a, b], direction } => {
+            Self::Couple {
+                bodies: [a, b],
+                direction,
+            } => {
                 let couple = turned(a.0, direction);
                 required[b.0].moment -= couple;
                 required[a.0].moment += couple;

@@ -30,19 +30,24 @@ impl Mass {
     /// Whether it is a mass: not negative, with a tensor that no distribution of mass contradicts by more than rounding.
     pub fn is_valid(&self) -> bool {
         let [xx, yy, zz, xy, xz, yz] = self.inertia;
-        let finite = self.mass.is_finite() && self.center.is_finite() && self.inertia.iter().all(|i| i.is_finite());
+        let finite = self.mass.is_finite()
+            && self.center.is_finite()
+            && self.inertia.iter().all(|i| i.is_finite());
         let slack = 1e-9 * (xx + yy + zz).abs();
         let minors = [xx * yy - xy * xy, xx * zz - xz * xz, yy * zz - yz * yz];
-        let determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+        let determinant =
+            xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
         finite
             && self.mass >= 0.0
             && [xx, yy, zz].iter().all(|i| *i >= -slack)
-            && minors.iter().all(|m| *m >= -slack * slack.max(xx + yy + zz))
+            && minors
+                .iter()
+                .all(|m| *m >= -slack * slack.max(xx + yy + zz))
             && determinant >= -slack * (xx + yy + zz).powi(2)
     }
 
     /// The same in another frame of the body.
-    pub(super) fn seen_from(&self, frame: &Placement) -> Self {
+    pub(super) fn in_frame(&self, frame: &Placement) -> Self {
         let to = |v: Vec3| frame.rotation.apply_inverse(v);
         let image = |k: usize| to(self.angular_momentum(frame.rotation.columns[k]));
         let [x, y, z] = [image(0), image(1), image(2)];
@@ -55,9 +60,15 @@ impl Mass {
 
     /// The force and the moment about the origin of the frame that move it so, by (1) of the [module](super).
     #[inline(always)]
-    pub(super) fn required<T: Scalar>(&self, frame: &Frame<T>, motion: &BodyMotion<T>) -> Wrench<T> {
+    pub(super) fn required<T: Scalar>(
+        &self,
+        frame: &Frame<T>,
+        motion: &BodyMotion<T>,
+    ) -> Wrench<T> {
         let arm = frame.rotation.apply(self.center.cast());
-        let force = motion.point_acceleration(arm).scaled(T::from_f64(self.mass));
+        let force = motion
+            .point_acceleration(arm)
+            .scaled(T::from_f64(self.mass));
         let [x, y, z] = rows(self.inertia).map(Vec3::cast);
         let tensor = |v: Vec3<T>| {
             let v = frame.rotation.apply_inverse(v);

@@ -47,12 +47,12 @@ pub enum ModelError {
     /// A reaction of a joint or component that does not exist.
     #[error("the mechanism has no such reaction: {0:?}")]
     Reaction(Reaction),
-    /// A body that can turn between its two balls, and whose inertia feels it.
+    /// A body that can turn between its two balls, and whose inertia couples that with the motion.
     #[error(
-        "body {} turns freely about the line of its two balls, and its mass feels it: replace one ball by a universal \
+        "body {} turns freely about the line of its two balls, and its mass couples that with the motion: replace one ball by a universal \
          joint, or give it a centre on that line and equal moments of inertia across it", body.0
     )]
-    FeltSpin {
+    CoupledSpin {
         /// The body.
         body: BodyId,
     },
@@ -91,12 +91,20 @@ impl Model {
             return Err(ModelError::Masses);
         }
         let plan = Plan::compile(mechanism, assembly)?;
-        let felt = plan.mobility().idle.iter().find(|idle| feels_spin(&masses[idle.body.0], idle.point, idle.axis));
-        if let Some(idle) = felt {
-            return Err(ModelError::FeltSpin { body: idle.body });
+        let coupled = plan
+            .mobility()
+            .idle
+            .iter()
+            .find(|idle| is_coupled_with_spin(&masses[idle.body.0], idle.point, idle.axis));
+        if let Some(idle) = coupled {
+            return Err(ModelError::CoupledSpin { body: idle.body });
         }
         let frame = |b: usize| plan.evaluation_frame(b);
-        let mut internal: Vec<Mass> = masses.iter().enumerate().map(|(b, m)| m.seen_from(&frame(b))).collect();
+        let mut internal: Vec<Mass> = masses
+            .iter()
+            .enumerate()
+            .map(|(b, m)| m.in_frame(&frame(b)))
+            .collect();
         internal[mechanism.ground] = Mass::default();
         let has_inertia = |b: &usize| internal[*b].mass > 0.0 || internal[*b].inertia != [0.0; 6];
         let inertial = (0..internal.len()).filter(has_inertia).collect();
@@ -111,8 +119,16 @@ impl Model {
             });
             Ok((*reaction, of_joint))
         };
-        let reactions = reactions.iter().map(compile).collect::<Result<_, ModelError>>()?;
-        Ok(Self { plan, masses: internal, inertial, reactions })
+        let reactions = reactions
+            .iter()
+            .map(compile)
+            .collect::<Result<_, ModelError>>()?;
+        Ok(Self {
+            plan,
+            masses: internal,
+            inertial,
+            reactions,
+        })
     }
 
     /// The compiled mechanism.
@@ -128,12 +144,18 @@ impl Model {
     /// The same model with no reaction.
     #[must_use]
     pub fn without_reactions(&self) -> Self {
-        Self { reactions: Vec::new(), ..self.clone() }
+        Self {
+            reactions: Vec::new(),
+            ..self.clone()
+        }
     }
 
     /// Memory for one thread.
     pub fn workspace<T: Scalar>(&self) -> Workspace<T> {
-        Workspace { pose: self.plan.pose(), forces: self.plan.forces() }
+        Workspace {
+            pose: self.plan.pose(),
+            forces: self.plan.forces(),
+        }
     }
 
     /// By reaction: whether the loads determine it at `q` (rad or m). Redundant constraints leave others open; their values
@@ -156,12 +178,37 @@ impl Model {
         Ok(determined)
     }
 
+    /// The actuators' actions `tau` (N·m or N) that inertia alone requires at coordinates (rad or m), speeds and accelerations.
+    ///
+    /// # Errors
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose.
+    pub fn inverse_dynamics<T: Scalar>(
+        &self,
+        q: &[T],
+        q_dot: &[T],
+        q_ddot: &[T],
+        workspace: &mut Workspace<T>,
+        tau: &mut [T],
+    ) -> PositionResult {
+        self.plan.positions(q, &mut workspace.pose)?;
+        self.plan.velocities(q_dot, &mut workspace.pose);
+        self.plan.accelerations(q_ddot, &mut workspace.pose);
+        self.require_inertia(workspace);
+        self.plan
+            .balance(&mut workspace.pose, &mut workspace.forces);
+        for (i, tau) in tau.iter_mut().enumerate() {
+            *tau = self.plan.actuator_action(&workspace.forces, i);
+        }
+        Ok(())
+    }
+
     /// The inertia of all bodies as what they require.
     pub(super) fn require_inertia<T: Scalar>(&self, workspace: &mut Workspace<T>) {
         let Workspace { pose, forces } = workspace;
         forces.required.fill(Wrench::default());
         for &b in &self.inertial {
-            forces.required[b] = self.masses[b].required(self.plan.frame(pose, b), self.plan.state(pose, b));
+            forces.required[b] =
+                self.masses[b].required(self.plan.frame(pose, b), self.plan.state(pose, b));
         }
     }
 
@@ -195,7 +242,11 @@ impl Model {
         };
         let along = match axes {
             None => Vec3::AXES[k].cast(),
-            Some((body, axes)) => self.plan.frame(pose, *body).rotation.apply(axes.columns[k].cast()),
+            Some((body, axes)) => self
+                .plan
+                .frame(pose, *body)
+                .rotation
+                .apply(axes.columns[k].cast()),
         };
         along.dot(vector)
     }
@@ -232,14 +283,19 @@ impl Model {
     }
 }
 
-/// Whether a body's inertia feels that it turns about a line: the centre is off it, or the inertia is not that of a body of revolution.
-fn feels_spin(mass: &Mass, point: Vec3, axis: Vec3) -> bool {
+/// Whether a body's inertia couples its rotation about a line with the motion: the centre is off it, or the inertia is not that of a body of revolution.
+fn is_coupled_with_spin(mass: &Mass, point: Vec3, axis: Vec3) -> bool {
     let off = (mass.center - point).cross(axis);
     let x = axis.any_normal();
     let y = axis.cross(x);
     let [z, along_x, along_y] = [axis, x, y].map(|v| mass.angular_momentum(v));
     let scale = mass.inertia[..3].iter().sum::<f64>() + mass.mass * off.dot(off);
-    let products = [z.dot(x), z.dot(y), along_x.dot(y), along_x.dot(x) - along_y.dot(y)];
+    let products = [
+        z.dot(x),
+        z.dot(y),
+        along_x.dot(y),
+        along_x.dot(x) - along_y.dot(y),
+    ];
     mass.mass * off.norm() * (off.norm() + mass.center.norm()) > 1e-12 * scale
         || products.iter().any(|p| p.abs() > 1e-9 * scale)
 }

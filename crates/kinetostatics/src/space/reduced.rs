@@ -36,7 +36,11 @@ impl Model {
     /// A buffer for the coefficients of this model.
     pub fn coefficient_buffer<T: Scalar>(&self) -> Coefficients<T> {
         let zeros = vec![T::from_f64(0.0); self.reactions().len()];
-        Coefficients { a: zeros.clone(), b: zeros, ..Coefficients::default() }
+        Coefficients {
+            a: zeros.clone(),
+            b: zeros,
+            ..Coefficients::default()
+        }
     }
 }
 
@@ -58,7 +62,10 @@ impl ExactModel {
     /// The reduced model; none unless there is exactly one actuator.
     pub fn new(model: Model) -> Option<Self> {
         let inertia_model = model.without_reactions();
-        (model.plan().actuators() == 1).then_some(Self { model, inertia_model })
+        (model.plan().actuators() == 1).then_some(Self {
+            model,
+            inertia_model,
+        })
     }
 
     /// The model that is evaluated.
@@ -71,7 +78,10 @@ impl ReducedModel for ExactModel {
     type Workspace = ExactWorkspace;
 
     fn workspace(&self) -> ExactWorkspace {
-        ExactWorkspace { real: self.model.workspace(), dual: self.inertia_model.workspace() }
+        ExactWorkspace {
+            real: self.model.workspace(),
+            dual: self.inertia_model.workspace(),
+        }
     }
 
     fn reactions(&self) -> usize {
@@ -90,11 +100,21 @@ impl ReducedModel for ExactModel {
 
     fn inertia_derivatives(&self, q: f64, work: &mut ExactWorkspace) -> PositionResult<Inertia> {
         let mut out = Coefficients::default();
-        self.inertia_model.reduce(Dual::variable(q), &mut work.dual, &mut out)?;
-        Ok(Inertia { m: out.m.v, half_dm: out.half_dm.v, half_ddm: out.half_dm.d })
+        self.inertia_model
+            .reduce(Dual::variable(q), &mut work.dual, &mut out)?;
+        Ok(Inertia {
+            m: out.m.v,
+            half_dm: out.half_dm.v,
+            half_ddm: out.half_dm.d,
+        })
     }
 
-    fn coefficients(&self, q: f64, work: &mut ExactWorkspace, out: &mut Coefficients) -> PositionResult {
+    fn coefficients(
+        &self,
+        q: f64,
+        work: &mut ExactWorkspace,
+        out: &mut Coefficients,
+    ) -> PositionResult {
         self.model.reduce(q, &mut work.real, out)
     }
 }

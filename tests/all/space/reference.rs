@@ -1,7 +1,8 @@
 //! Reads a reference as a mechanism in space.
 
 use dwell_geometry::space::{
-    Actuator, Assembly, Joint, JointKind, Mechanism, Placement, Plan, Pose, Rotation, Side, Vec3, vec3,
+    Actuator, Assembly, Joint, JointKind, Mechanism, Placement, Plan, Pose, Rotation, Side, Vec3,
+    vec3,
 };
 use dwell_geometry::{Body, BodyId, JointId};
 use dwell_kinetostatics::space::{Axes, Component, Mass, Model, Reaction};
@@ -14,7 +15,9 @@ pub(crate) fn number(value: &Value) -> f64 {
         Value::Number(n) => n.as_f64().expect("a number"),
         Value::String(text) => text.parse().unwrap_or_else(|_| {
             let text = text.replace("**", "^");
-            Expression::parse(&text, &[]).unwrap_or_else(|e| panic!("{text}: {e}")).eval(&[])
+            Expression::parse(&text, &[])
+                .unwrap_or_else(|e| panic!("{text}: {e}"))
+                .eval(&[])
         }),
         other => panic!("no number: {other}"),
     }
@@ -40,12 +43,25 @@ pub(crate) struct Reference {
 
 impl Reference {
     pub(crate) fn read(name: &str) -> Self {
-        let path = format!("{}/../../validation/spatial/{name}.json", env!("CARGO_MANIFEST_DIR"));
+        let path = format!(
+            "{}/../validation/spatial/{name}.json",
+            env!("CARGO_MANIFEST_DIR")
+        );
         let text = std::fs::read_to_string(path).expect("the file");
         let data: Value = serde_json::from_str(&text).expect("JSON");
         let mut bodies = vec!["ground".to_owned()];
-        bodies.extend(data["definition"]["bodies"].as_object().expect("bodies").keys().cloned());
-        Self { name: name.to_owned(), data, bodies }
+        bodies.extend(
+            data["definition"]["bodies"]
+                .as_object()
+                .expect("bodies")
+                .keys()
+                .cloned(),
+        );
+        Self {
+            name: name.to_owned(),
+            data,
+            bodies,
+        }
     }
 
     pub(crate) fn samples(&self) -> &[Value] {
@@ -58,12 +74,18 @@ impl Reference {
 
     /// The largest value of this name in the samples.
     pub(crate) fn scale_of(&self, name: &str) -> f64 {
-        let values = self.samples().iter().map(|s| number(&s[name]["gravity"]).abs());
+        let values = self
+            .samples()
+            .iter()
+            .map(|s| number(&s[name]["gravity"]).abs());
         values.fold(0.0, f64::max)
     }
 
     fn body(&self, value: &Value) -> usize {
-        self.bodies.iter().position(|b| b == value.as_str().expect("a name")).expect("a body")
+        self.bodies
+            .iter()
+            .position(|b| b == value.as_str().expect("a name"))
+            .expect("a body")
     }
 
     pub(crate) fn mechanism(&self) -> Mechanism {
@@ -72,7 +94,10 @@ impl Reference {
         let mut driven = Vec::new();
         let mut joints = Vec::new();
         let all = definition["joints"].as_array().expect("joints");
-        let fixed = definition["fixed_drivers"].as_array().cloned().unwrap_or_default();
+        let fixed = definition["fixed_drivers"]
+            .as_array()
+            .cloned()
+            .unwrap_or_default();
         for (j, joint) in all.iter().enumerate() {
             let bodies = [self.body(&joint["a"]), self.body(&joint["b"])];
             let drives = |d: &&Value| [self.body(&d["a"]), self.body(&d["b"])] == bodies;
@@ -80,11 +105,22 @@ impl Reference {
             let side = |p: &str, u: &str, n: &str| {
                 let get = |key: &str| joint.get(key).map(vector);
                 let normal = by.and_then(|d| d.get(n)).map(vector).or_else(|| get(n));
-                let side = Side { point: get(p).unwrap_or(Vec3::ZERO), ..Side::default() };
+                let side = Side {
+                    point: get(p).unwrap_or(Vec3::ZERO),
+                    ..Side::default()
+                };
                 let axis = get(u).unwrap_or(side.axis);
                 let parallel = axis.cross(side.normal).norm() == 0.0;
-                let any = if parallel { vec3(0.0, 1.0, 0.0) } else { side.normal };
-                Side { axis, normal: normal.unwrap_or(any), ..side }
+                let any = if parallel {
+                    vec3(0.0, 1.0, 0.0)
+                } else {
+                    side.normal
+                };
+                Side {
+                    axis,
+                    normal: normal.unwrap_or(any),
+                    ..side
+                }
             };
             let kind = match joint["kind"].as_str().expect("a kind") {
                 "revolute" => JointKind::Revolute,
@@ -92,7 +128,9 @@ impl Reference {
                 "cylindrical" => JointKind::Cylindrical,
                 "universal" => JointKind::Universal,
                 "spherical" => JointKind::Spherical,
-                "distance" => JointKind::Distance { length: number(&joint["length"]) },
+                "distance" => JointKind::Distance {
+                    length: number(&joint["length"]),
+                },
                 other => panic!("{other}"),
             };
             if by.is_some() && kind == JointKind::Revolute {
@@ -105,25 +143,42 @@ impl Reference {
             if kind != JointKind::Universal && axis(0).dot(axis(1)) < 0.0 {
                 sides[1].axis = -sides[1].axis;
             }
-            joints.push(Joint::new(joint["name"].as_str().expect("a name"), bodies, kind, sides));
+            joints.push(Joint::new(
+                joint["name"].as_str().expect("a name"),
+                bodies,
+                kind,
+                sides,
+            ));
         }
         driven.sort_by_key(|(_, main)| !main);
         Mechanism {
             bodies: self.bodies.iter().map(Body::named).collect(),
             ground: 0,
             joints,
-            actuators: driven.iter().map(|(j, _)| Actuator::angle("q", *j)).collect(),
+            actuators: driven
+                .iter()
+                .map(|(j, _)| Actuator::angle("q", *j))
+                .collect(),
         }
     }
 
     pub(crate) fn masses(&self) -> Vec<Mass> {
         let of = |body: &String| {
-            let Some(body) = self.data["definition"]["bodies"].get(body) else { return Mass::default() };
+            let Some(body) = self.data["definition"]["bodies"].get(body) else {
+                return Mass::default();
+            };
             let mut inertia = [0.0; 6];
-            for (to, from) in inertia.iter_mut().zip(body["inertia"].as_array().expect("inertia")) {
+            for (to, from) in inertia
+                .iter_mut()
+                .zip(body["inertia"].as_array().expect("inertia"))
+            {
                 *to = number(from);
             }
-            Mass { mass: number(&body["mass"]), center: vector(&body["com"]), inertia }
+            Mass {
+                mass: number(&body["mass"]),
+                center: vector(&body["com"]),
+                inertia,
+            }
         };
         self.bodies.iter().map(of).collect()
     }
@@ -136,7 +191,10 @@ impl Reference {
             },
             None => Placement::default(),
         };
-        Assembly { q: q.to_vec(), placements: self.bodies.iter().map(of).collect() }
+        Assembly {
+            q: q.to_vec(),
+            placements: self.bodies.iter().map(of).collect(),
+        }
     }
 
     /// The model with all components of all joints in ground axes, and their names.
@@ -145,10 +203,14 @@ impl Reference {
         let mut names = Vec::new();
         for (j, joint) in mechanism.joints.iter().enumerate() {
             for (k, axis) in ["x", "y", "z"].iter().enumerate() {
-                for (letter, component) in
-                    [("F", Component::Force(Axes::Ground, k)), ("M", Component::Moment(Axes::Ground, k))]
-                {
-                    let reaction = Reaction { joint: JointId(j), component };
+                for (letter, component) in [
+                    ("F", Component::Force(Axes::Ground, k)),
+                    ("M", Component::Moment(Axes::Ground, k)),
+                ] {
+                    let reaction = Reaction {
+                        joint: JointId(j),
+                        component,
+                    };
                     names.push((format!("{}.{letter}{axis}", joint.name), reaction));
                 }
             }
@@ -156,11 +218,19 @@ impl Reference {
         let reactions: Vec<Reaction> = names.iter().map(|(_, r)| *r).collect();
         let q = number(&self.data["assembly"]["at_q"]);
         let model = Model::new(&mechanism, &self.masses(), &self.assembly(&[q]), &reactions);
-        (model.unwrap_or_else(|e| panic!("{}: {e:?}", self.name)), names)
+        (
+            model.unwrap_or_else(|e| panic!("{}: {e:?}", self.name)),
+            names,
+        )
     }
 
     /// The largest differences of positions, velocities and accelerations, but of the idle body its turn.
-    pub(crate) fn motion_differences(&self, plan: &Plan, pose: &Pose<f64>, sample: &Value) -> [f64; 3] {
+    pub(crate) fn motion_differences(
+        &self,
+        plan: &Plan,
+        pose: &Pose<f64>,
+        sample: &Value,
+    ) -> [f64; 3] {
         let mut found = [0.0_f64; 3];
         let idle: Vec<BodyId> = plan.mobility().idle.iter().map(|i| i.body).collect();
         for (b, name) in self.bodies.iter().enumerate().skip(1) {
@@ -172,7 +242,11 @@ impl Reference {
             let size = plan.size();
             let spins = idle.contains(&BodyId(b));
             if !spins {
-                let turn = rotation(&want["rotation_rows"]).inverse().after(&placed.rotation).vector().norm();
+                let turn = rotation(&want["rotation_rows"])
+                    .inverse()
+                    .after(&placed.rotation)
+                    .vector()
+                    .norm();
                 found[0] = found[0].max(turn);
             }
             let differ = |got: Vec3, key: &str, unit: f64| {
