@@ -125,7 +125,7 @@ impl Plan {
         for revolution in 1..=MAX_REVOLUTIONS {
             let end = first.q + f64::from(revolution) * unit;
             if let End::Blocked = self.continue_branch(&mut forward, end, unit, &mut pose) {
-                return self.follow_back(forward, first, unit, is_angle, &mut pose);
+                return self.follow_back(forward, &first, unit, is_angle, &mut pose);
             }
             let same = self.moved_by(&start_frames, &pose.frames) < SAME;
             if is_angle && same {
@@ -138,7 +138,7 @@ impl Plan {
                 return Ok(());
             }
         }
-        self.follow_back(forward, first, unit, is_angle, &mut pose)
+        self.follow_back(forward, &first, unit, is_angle, &mut pose)
     }
 
     /// How far bodies are from where they were, rad or parts of the size; how a body that turns idly stands about its line
@@ -161,7 +161,7 @@ impl Plan {
     fn follow_back(
         &mut self,
         forward: Vec<Node>,
-        first: Node,
+        first: &Node,
         unit: f64,
         is_angle: bool,
         pose: &mut Pose,

@@ -189,7 +189,7 @@ impl Plan {
             .collect();
         let (of_equation, of_unknown) = match_equations(&chosen, unknowns.len());
         let components = strong_components(&of_equation, &chosen, &of_unknown);
-        let mut groups: Vec<(Vec<usize>, Vec<(usize, usize)>)> = components
+        let mut groups: Vec<Members> = components
             .into_iter()
             .map(|equations| {
                 let matched = equations
@@ -204,8 +204,8 @@ impl Plan {
             .collect();
         let redundant = (0..rows.len()).filter(|r| !independent.contains(r));
         for r in redundant {
-            let unknown = |u: &usize| unknowns[*u];
-            add_redundant(&mut groups, rows[r], dependencies[r].iter().map(unknown));
+            let of_row: Vec<usize> = dependencies[r].iter().map(|u| unknowns[*u]).collect();
+            add_redundant(&mut groups, rows[r], &of_row);
         }
         let groups = groups
             .into_iter()
@@ -219,13 +219,12 @@ impl Plan {
     }
 }
 
+/// The unknowns of a group and its rows, by closure and number.
+type Members = (Vec<usize>, Vec<(usize, usize)>);
+
 /// Adds a redundant row to the last of the groups on whose unknowns it depends.
-fn add_redundant(
-    groups: &mut [(Vec<usize>, Vec<(usize, usize)>)],
-    row: (usize, usize),
-    unknowns: impl Iterator<Item = usize> + Clone,
-) {
-    let depends = |g: &(Vec<usize>, _)| unknowns.clone().any(|u| g.0.contains(&u));
+fn add_redundant(groups: &mut [Members], row: (usize, usize), unknowns: &[usize]) {
+    let depends = |g: &Members| unknowns.iter().any(|u| g.0.contains(u));
     if let Some(last) = groups.iter().rposition(depends) {
         groups[last].1.push(row);
         groups[last].1.sort_unstable();
