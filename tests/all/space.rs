@@ -283,7 +283,7 @@ fn a_rod_whose_mass_couples_its_turn_is_refused() {
         let error = with(change).expect_err("its turn is coupled");
         assert_eq!(
             error,
-            ModelError::CoupledSpin {
+            ModelError::UnbalancedRod {
                 body: BodyId(coupler)
             }
         );

@@ -52,7 +52,7 @@ pub enum ModelError {
         "body {} turns freely about the line of its two balls, and its mass couples that with the motion: replace one ball by a universal \
          joint, or give it a centre on that line and equal moments of inertia across it", body.0
     )]
-    CoupledSpin {
+    UnbalancedRod {
         /// The body.
         body: BodyId,
     },
@@ -95,9 +95,9 @@ impl Model {
             .mobility()
             .idle
             .iter()
-            .find(|idle| is_coupled_with_spin(&masses[idle.body.0], idle.point, idle.axis));
+            .find(|idle| has_dynamic_imbalance(&masses[idle.body.0], idle.point, idle.axis));
         if let Some(idle) = coupled {
-            return Err(ModelError::CoupledSpin { body: idle.body });
+            return Err(ModelError::UnbalancedRod { body: idle.body });
         }
         let frame = |b: usize| plan.evaluation_frame(b);
         let mut internal: Vec<Mass> = masses
@@ -284,7 +284,7 @@ impl Model {
 }
 
 /// Whether a body's inertia couples its rotation about a line with the motion: the centre is off it, or the inertia is not that of a body of revolution.
-fn is_coupled_with_spin(mass: &Mass, point: Vec3, axis: Vec3) -> bool {
+fn has_dynamic_imbalance(mass: &Mass, point: Vec3, axis: Vec3) -> bool {
     let off = (mass.center - point).cross(axis);
     let x = axis.any_normal();
     let y = axis.cross(x);
