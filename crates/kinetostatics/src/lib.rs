@@ -53,7 +53,9 @@ pub use load::{
 pub use mass::Mass;
 pub use model::{EvaluatedState, ForceState, KinematicState, LoadedState, Model, Workspace};
 pub use pass::InverseDynamics;
-pub use reduced::{Batch, Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel};
+pub use reduced::{
+    Batch, Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel, ReducibleModel,
+};
 pub use results::{
     Distribution, FreeBodyForces, LinkForces, PowerBalance, Section, ShakingForce, Wrench,
 };

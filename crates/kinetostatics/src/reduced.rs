@@ -87,34 +87,113 @@ pub trait ReducedModel: Sync {
     ) -> PositionResult;
 }
 
+/// A mechanism whose two unit passes give the reduced coefficients, in the plane or in space.
+pub trait ReducibleModel: Sync + Sized {
+    /// Working memory of one thread for passes in a kind of number.
+    type Workspace<T: Scalar>: Send;
+
+    /// Such memory.
+    fn pass_workspace<T: Scalar>(&self) -> Self::Workspace<T>;
+
+    /// Number of actuators.
+    fn actuators(&self) -> usize;
+
+    /// Number of reactions.
+    fn reaction_count(&self) -> usize;
+
+    /// The range of the coordinate.
+    fn range(&self) -> Range;
+
+    /// The same without reactions and whatever else m and ½m′ do not need.
+    #[must_use]
+    fn for_inertia(&self) -> Self;
+
+    /// The reduced coefficients at `q` (rad or m), for one actuator.
+    ///
+    /// # Errors
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
+    fn reduce_at<T: Scalar>(
+        &self,
+        q: T,
+        workspace: &mut Self::Workspace<T>,
+        out: &mut Coefficients<T>,
+    ) -> PositionResult;
+}
+
 /// Working memory of the exact reduced model: one for values, one for derivatives.
 #[derive(Debug, Clone)]
-pub struct ExactWorkspace {
-    real: Workspace<f64>,
-    dual: Workspace<Dual>,
+pub struct ExactWorkspace<R = Workspace<f64>, D = Workspace<Dual>> {
+    real: R,
+    dual: D,
 }
 
 /// The reduced model evaluated from the mechanism itself. The model must have one actuator.
 #[derive(Debug, Clone)]
-pub struct ExactModel {
-    model: Model,
+pub struct ExactModel<M = Model> {
+    model: M,
     /// The same mechanism without reactions: enough for the equation of motion.
-    inertia_model: Model,
+    inertia_model: M,
 }
 
-impl ExactModel {
+impl<M: ReducibleModel> ExactModel<M> {
     /// The reduced model of a mechanism; none unless it has exactly one actuator.
-    pub fn new(model: Model) -> Option<Self> {
-        let inertia_model = model.inertia_only();
-        (model.plan().actuators() == 1).then_some(Self {
+    pub fn new(model: M) -> Option<Self> {
+        let inertia_model = model.for_inertia();
+        (model.actuators() == 1).then_some(Self {
             model,
             inertia_model,
         })
     }
 
     /// The mechanism it is evaluated from.
-    pub fn model(&self) -> &Model {
+    pub fn model(&self) -> &M {
         &self.model
+    }
+}
+
+impl<T: Scalar> Coefficients<T> {
+    /// A buffer for so many reactions.
+    pub(crate) fn buffer(reactions: usize) -> Self {
+        let zeros = vec![T::from_f64(0.0); reactions];
+        Self {
+            a: zeros.clone(),
+            b: zeros,
+            ..Self::default()
+        }
+    }
+}
+
+impl ReducibleModel for Model {
+    type Workspace<T: Scalar> = Workspace<T>;
+
+    fn pass_workspace<T: Scalar>(&self) -> Workspace<T> {
+        self.workspace()
+    }
+
+    fn actuators(&self) -> usize {
+        self.plan().actuators()
+    }
+
+    fn reaction_count(&self) -> usize {
+        self.reactions().len()
+    }
+
+    fn range(&self) -> Range {
+        self.plan().range()
+    }
+
+    fn for_inertia(&self) -> Self {
+        self.inertia_only()
+    }
+
+    #[inline(always)]
+    fn reduce_at<T: Scalar>(
+        &self,
+        q: T,
+        workspace: &mut Workspace<T>,
+        out: &mut Coefficients<T>,
+    ) -> PositionResult {
+        self.reduce(q, workspace, out)
     }
 }
 
@@ -155,48 +234,43 @@ impl Model {
 
     /// A buffer for the coefficients of this model.
     pub fn coefficient_buffer<T: Scalar>(&self) -> Coefficients<T> {
-        Coefficients {
-            m: T::from_f64(0.0),
-            half_dm: T::from_f64(0.0),
-            a: vec![T::from_f64(0.0); self.reactions().len()],
-            b: vec![T::from_f64(0.0); self.reactions().len()],
-        }
+        Coefficients::buffer(self.reactions().len())
     }
 }
 
-impl ReducedModel for ExactModel {
-    type Workspace = ExactWorkspace;
+impl<M: ReducibleModel> ReducedModel for ExactModel<M> {
+    type Workspace = ExactWorkspace<M::Workspace<f64>, M::Workspace<Dual>>;
 
-    fn workspace(&self) -> ExactWorkspace {
+    fn workspace(&self) -> Self::Workspace {
         ExactWorkspace {
-            real: self.model.workspace(),
-            dual: self.inertia_model.workspace(),
+            real: self.model.pass_workspace(),
+            dual: self.inertia_model.pass_workspace(),
         }
     }
 
     fn reactions(&self) -> usize {
-        self.model.reactions().len()
+        self.model.reaction_count()
     }
 
     fn range(&self) -> Range {
-        self.model.plan().range()
+        self.model.range()
     }
 
-    fn inertia(&self, q: f64, workspace: &mut ExactWorkspace) -> PositionResult<(f64, f64)> {
+    fn inertia(&self, q: f64, workspace: &mut Self::Workspace) -> PositionResult<(f64, f64)> {
         let mut out = Coefficients::default();
         let model = &self.inertia_model;
-        model.reduce(q, &mut workspace.real, &mut out)?;
+        model.reduce_at(q, &mut workspace.real, &mut out)?;
         Ok((out.m, out.half_dm))
     }
 
     fn inertia_derivatives(
         &self,
         q: f64,
-        workspace: &mut ExactWorkspace,
+        workspace: &mut Self::Workspace,
     ) -> PositionResult<Inertia> {
         let mut out = Coefficients::default();
         let model = &self.inertia_model;
-        model.reduce(Dual::variable(q), &mut workspace.dual, &mut out)?;
+        model.reduce_at(Dual::variable(q), &mut workspace.dual, &mut out)?;
         Ok(Inertia {
             m: out.m.v,
             half_dm: out.half_dm.v,
@@ -207,9 +281,9 @@ impl ReducedModel for ExactModel {
     fn coefficients(
         &self,
         q: f64,
-        workspace: &mut ExactWorkspace,
+        workspace: &mut Self::Workspace,
         out: &mut Coefficients,
     ) -> PositionResult {
-        self.model.reduce(q, &mut workspace.real, out)
+        self.model.reduce_at(q, &mut workspace.real, out)
     }
 }

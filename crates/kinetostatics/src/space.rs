@@ -10,8 +10,8 @@
 //! ```
 //! use dwell_geometry::space::{Actuator, Assembly, Joint, JointKind, Mechanism, Side, vec3};
 //! use dwell_geometry::{Body, JointId};
-//! use dwell_kinetostatics::space::{Axes, Component, ExactModel, Mass, Model, Reaction};
-//! use dwell_kinetostatics::ReducedModel;
+//! use dwell_kinetostatics::space::{Axes, Component, Mass, Model, Reaction};
+//! use dwell_kinetostatics::{ExactModel, ReducedModel};
 //!
 //! // A disc on a shaft along z, tilted by its products of inertia: turning it takes a moment in the bearing.
 //! let mechanism = Mechanism {
@@ -41,4 +41,3 @@ mod reduced;
 pub use load::{Direction, LoadKind};
 pub use mass::Mass;
 pub use model::{Axes, Component, Model, ModelError, Reaction, Workspace};
-pub use reduced::{ExactModel, ExactWorkspace};

@@ -199,6 +199,11 @@ impl Reference {
 
     /// The model with all components of all joints in ground axes, and their names.
     pub(crate) fn model(&self) -> (Model, Vec<(String, Reaction)>) {
+        self.model_at(&[number(&self.data["assembly"]["at_q"])])
+    }
+
+    /// The same, assembled at these coordinates.
+    pub(crate) fn model_at(&self, q: &[f64]) -> (Model, Vec<(String, Reaction)>) {
         let mechanism = self.mechanism();
         let mut names = Vec::new();
         for (j, joint) in mechanism.joints.iter().enumerate() {
@@ -216,15 +221,14 @@ impl Reference {
             }
         }
         let reactions: Vec<Reaction> = names.iter().map(|(_, r)| *r).collect();
-        let q = number(&self.data["assembly"]["at_q"]);
-        let model = Model::new(&mechanism, &self.masses(), &self.assembly(&[q]), &reactions);
+        let model = Model::new(&mechanism, &self.masses(), &self.assembly(q), &reactions);
         (
             model.unwrap_or_else(|e| panic!("{}: {e:?}", self.name)),
             names,
         )
     }
 
-    /// The largest differences of positions, velocities and accelerations, but of the idle body its turn.
+    /// The largest differences of positions, velocities and accelerations, in parts of the mechanism's size and rad.
     pub(crate) fn motion_differences(
         &self,
         plan: &Plan,
@@ -232,34 +236,38 @@ impl Reference {
         sample: &Value,
     ) -> [f64; 3] {
         let mut found = [0.0_f64; 3];
-        let idle: Vec<BodyId> = plan.mobility().idle.iter().map(|i| i.body).collect();
+        let mobility = plan.mobility();
+        let size = plan.size();
         for (b, name) in self.bodies.iter().enumerate().skip(1) {
             let want = &sample["bodies"][name];
             if want.is_null() {
                 continue;
             }
             let (placed, motion) = (plan.placement(pose, b), plan.body_motion(pose, b));
-            let size = plan.size();
-            let spins = idle.contains(&BodyId(b));
-            if !spins {
-                let turn = rotation(&want["rotation_rows"])
-                    .inverse()
-                    .after(&placed.rotation)
-                    .vector()
-                    .norm();
-                found[0] = found[0].max(turn);
+            let turned = rotation(&want["rotation_rows"]);
+            let idle = mobility.idle.iter().find(|i| i.body == BodyId(b));
+            // Of a body that turns idly, its line is compared: how it stands about it is nobody's.
+            let turn = idle.map_or_else(
+                || turned.inverse().after(&placed.rotation).vector(),
+                |i| turned.apply(i.axis) - placed.rotation.apply(i.axis),
+            );
+            let point = idle.map_or(Vec3::ZERO, |i| i.point);
+            let differ =
+                |got: Vec3, want: Vec3, unit: f64| (got - want).norm() / (unit + want.norm());
+            let wanted = |key: &str| vector(&want[key]);
+            let at = |r: &Rotation, origin: Vec3| origin + r.apply(point);
+            let position = differ(
+                at(&placed.rotation, placed.position),
+                at(&turned, wanted("position")),
+                size,
+            );
+            found[0] = found[0].max(turn.norm()).max(position);
+            if point.norm() < 1e-12 * size {
+                found[1] = found[1].max(differ(motion.velocity, wanted("v"), size));
+                found[2] = found[2].max(differ(motion.acceleration, wanted("vdot"), size));
             }
-            let differ = |got: Vec3, key: &str, unit: f64| {
-                let want = vector(&want[key]);
-                (got - want).norm() / (unit + want.norm())
-            };
-            if !spins || placed.position.norm() == 0.0 {
-                found[0] = found[0].max(differ(placed.position, "position", size));
-                found[1] = found[1].max(differ(motion.velocity, "v", size));
-                found[2] = found[2].max(differ(motion.acceleration, "vdot", size));
-            }
-            found[1] = found[1].max(differ(motion.angular_velocity, "omega", 1.0));
-            found[2] = found[2].max(differ(motion.angular_acceleration, "omegadot", 1.0));
+            found[1] = found[1].max(differ(motion.angular_velocity, wanted("omega"), 1.0));
+            found[2] = found[2].max(differ(motion.angular_acceleration, wanted("omegadot"), 1.0));
         }
         found
     }

@@ -1,9 +1,9 @@
 //! Closing all loops at the assembly, from approximate placements: damped steps of least squares over everything at once.
 
-use super::closure::closures;
+use super::closure::{Closure, closures};
 use super::groups::Group;
 use super::mechanism::{Assembly, Mechanism};
-use super::plan::{Plan, Pose};
+use super::plan::{JointPlace, Plan, Pose};
 use super::positions::OPEN;
 use super::rank::Mobility;
 use super::tree::Tree;
@@ -15,7 +15,7 @@ use faer::Mat;
 
 /// Steps at most.
 const MAX_STEPS: usize = 300;
-/// the largest step, rad or parts of the size.
+/// The largest step, rad or parts of the size.
 const MAX_STEP_SIZE: f64 = 0.3;
 /// Closed, relative to the size.
 const CLOSED: f64 = 1e-13;
@@ -37,11 +37,13 @@ impl Plan {
             let reason = "the driven joints form a loop of their own";
             return Err(StructureError::Malformed { reason });
         };
+        let joint_places = joint_places(mechanism.joints.len(), &tree, &closures);
         let mut plan = Self {
             ground: mechanism.ground,
             size: mechanism.size(),
             tree,
             closures,
+            joint_places,
             groups: Vec::new(),
             first_links: Vec::new(),
             last_links: Vec::new(),
@@ -137,9 +139,9 @@ impl Plan {
         flipped: Vec<JointId>,
     ) -> AssemblyError {
         let open = |c: &&super::closure::Closure| {
-            c.rows
-                .clone()
-                .any(|r| pose.residuals[r].abs() > OPEN * self.size)
+            let unit = |length| if length { self.size } else { 1.0 };
+            let mut rows = c.kinds.iter().zip(c.rows.clone());
+            rows.any(|(kind, r)| pose.residuals[r].abs() > OPEN * unit(kind.is_length()))
         };
         let mut joints: Vec<JointId> = self
             .closures
@@ -147,8 +149,12 @@ impl Plan {
             .filter(open)
             .filter_map(|c| c.joint)
             .collect();
+        let mut largest = self.largest_residual(&self.groups[0], pose);
+        // Axes of opposite sense: their unit vectors differ by two.
+        if !flipped.is_empty() {
+            largest = largest.max(2.0);
+        }
         joints.extend(flipped);
-        let largest = self.largest_residual(&self.groups[0], pose);
         let gap = largest * self.size;
         let svd = self.dense(&self.groups[0], pose).svd();
         let rank = svd.map_or(0, |svd| super::rank::rank_of(&svd));
@@ -226,4 +232,20 @@ impl Plan {
             );
         }
     }
+}
+
+/// By joint: the link or the closure that it is.
+fn joint_places(joints: usize, tree: &Tree, closures: &[Closure]) -> Vec<JointPlace> {
+    let mut places = vec![JointPlace::Link(0); joints];
+    for (l, link) in tree.links.iter().enumerate() {
+        if let Some(joint) = link.joint {
+            places[joint.0] = JointPlace::Link(l);
+        }
+    }
+    for (c, closure) in closures.iter().enumerate() {
+        if let Some(joint) = closure.joint {
+            places[joint.0] = JointPlace::Closure(c);
+        }
+    }
+    places
 }

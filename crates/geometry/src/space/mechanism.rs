@@ -95,7 +95,7 @@ impl JointKind {
 
 impl Joint {
     /// A joint between two bodies, by their numbers. Directions become unit vectors, and the normal the part of it at right
-    /// angles to the axis.
+    /// angles to the axis; where that is nothing, any. A direction of no length stays, and compiling refuses it.
     pub fn new(
         name: impl Into<String>,
         bodies: [impl Into<BodyId>; 2],
@@ -103,7 +103,9 @@ impl Joint {
         sides: [Side; 2],
     ) -> Self {
         let orthonormal = |side: Side| {
-            let axis = side.axis.unit().unwrap_or(Vec3::AXES[2]);
+            let Some(axis) = side.axis.unit() else {
+                return side;
+            };
             let part = side.normal - axis.scaled(axis.dot(side.normal));
             let off_axis = part.norm() > 1e-9 * side.normal.norm();
             let normal = part
@@ -256,6 +258,17 @@ impl Mechanism {
                 JointKind::Distance { length } => length.is_finite() && length > 0.0,
                 _ => true,
             };
+            let square = |s: &Side| {
+                let off = [
+                    s.axis.norm() - 1.0,
+                    s.normal.norm() - 1.0,
+                    s.axis.dot(s.normal),
+                ];
+                off.iter().all(|o| o.abs() < 1e-9)
+            };
+            if !joint.sides.iter().all(square) {
+                return Some("a joint's axis and normal are not unit vectors at right angles");
+            }
             if !(joint.sides.iter().all(finite) && number) {
                 return Some(
                     "a joint has a number that is not finite, or a length that is not positive",

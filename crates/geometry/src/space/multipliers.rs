@@ -1,6 +1,6 @@
 //! Multipliers of the loops by the transposed factors, group by group in reverse order, and the forces and moments in the joints.
 
-use super::plan::{Plan, Pose};
+use super::plan::{JointPlace, Plan, Pose};
 use super::vector::Vec3;
 use crate::mechanism::JointId;
 use dwell_numerics::{Scalar, qr};
@@ -32,6 +32,8 @@ pub struct Forces<T = f64> {
     transmitted: Vec<Wrench<T>>,
     balance: Vec<T>,
     multipliers: Vec<T>,
+    /// By closure: its force and couple on the second body, at the point of that body.
+    closure_actions: Vec<Wrench<T>>,
 }
 
 impl Plan {
@@ -43,6 +45,7 @@ impl Plan {
             transmitted: vec![Wrench::default(); self.tree.internal.len()],
             balance: vec![zero; self.tree.freedoms.len()],
             multipliers: vec![zero; self.closures.last().map_or(0, |c| c.rows.end)],
+            closure_actions: vec![Wrench::default(); self.closures.len()],
         }
     }
 
@@ -116,35 +119,30 @@ impl Plan {
         }
     }
 
-    /// What the joints of the tree transmit, from what is required and from the loops.
+    /// What all joints transmit, from what is required and from the multipliers.
     fn transmit<T: Scalar>(&self, pose: &Pose<T>, forces: &mut Forces<T>) {
         forces.transmitted.copy_from_slice(&forces.required);
-        for closure in &self.closures {
-            let (force, couple) = self.closure_action(closure, pose, &forces.multipliers);
-            let at = closure.ends(&pose.frames)[1];
-            for (body, sign) in [(closure.bodies[0], 1.0), (closure.bodies[1], -1.0)] {
-                let (arm, sign) = (at - pose.frames[body].origin, T::from_f64(sign));
-                forces.transmitted[body].add_at(arm, force.scaled(sign), couple.scaled(sign));
+        for (closure, action) in self.closures.iter().zip(&mut forces.closure_actions) {
+            let [_, at, d] = closure.ends(&pose.frames);
+            *action = Wrench::default();
+            for (kind, r) in closure.kinds.iter().zip(closure.rows.clone()) {
+                let row = closure.row(*kind, &pose.frames, d);
+                action.force += row.force.scaled(forces.multipliers[r]);
+                action.moment += row.couple.scaled(forces.multipliers[r]);
             }
+            let [first, second] = closure.bodies;
+            forces.transmitted[first].add_at(
+                at - pose.frames[first].origin,
+                action.force,
+                action.moment,
+            );
+            forces.transmitted[second].add_at(
+                at - pose.frames[second].origin,
+                -action.force,
+                -action.moment,
+            );
         }
         self.carry_down(pose, &mut forces.transmitted);
-    }
-
-    /// Force at the second body's point and couple, of a closure on that body.
-    fn closure_action<T: Scalar>(
-        &self,
-        closure: &super::closure::Closure,
-        pose: &Pose<T>,
-        multipliers: &[T],
-    ) -> (Vec3<T>, Vec3<T>) {
-        let d = closure.ends(&pose.frames)[2];
-        let (mut force, mut couple) = (Vec3::zero(), Vec3::zero());
-        for (kind, r) in closure.kinds.iter().zip(closure.rows.clone()) {
-            let row = closure.row(*kind, &pose.frames, d);
-            force += row.force.scaled(multipliers[r]);
-            couple += row.couple.scaled(multipliers[r]);
-        }
-        (force, couple)
     }
 
     /// The action of an actuator, N·m or N, after [`Plan::balance`].
@@ -160,12 +158,9 @@ impl Plan {
         forces: &Forces<T>,
         joint: JointId,
     ) -> Wrench<T> {
-        if let Some(closure) = self.closures.iter().find(|c| c.joint == Some(joint)) {
-            let (force, moment) = self.closure_action(closure, pose, &forces.multipliers);
-            return Wrench { force, moment };
-        }
-        let Some(link) = self.tree.links.iter().find(|l| l.joint == Some(joint)) else {
-            return Wrench::default();
+        let link = match self.joint_places[joint.0] {
+            JointPlace::Closure(closure) => return forces.closure_actions[closure],
+            JointPlace::Link(link) => &self.tree.links[link],
         };
         let mut wrench = forces.transmitted[link.body];
         for &(freedom, _) in self

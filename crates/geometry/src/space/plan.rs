@@ -12,6 +12,15 @@ use crate::error::AssemblyError;
 use crate::plan::range::Range;
 use dwell_numerics::Scalar;
 
+/// Where a joint is in the plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum JointPlace {
+    /// It carries a body of the tree: the index of the link.
+    Link(usize),
+    /// It closes a loop: the index of the closure.
+    Closure(usize),
+}
+
 /// A compiled mechanism: constant, shared between threads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
@@ -19,6 +28,8 @@ pub struct Plan {
     pub(super) size: f64,
     pub(super) tree: Tree,
     pub(super) closures: Vec<Closure>,
+    /// By joint.
+    pub(super) joint_places: Vec<JointPlace>,
     pub(super) groups: Vec<Group>,
     /// Links that depend on the driven freedoms alone; then those that no group places.
     pub(super) first_links: Vec<usize>,

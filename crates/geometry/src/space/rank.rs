@@ -3,11 +3,11 @@
 
 use super::assemble::RANK_TOLERANCE;
 use super::closure::{Closure, RowKind, path};
-use super::mechanism::Mechanism;
+use super::mechanism::{JointKind, Mechanism};
 use super::plan::{Plan, Pose};
 use super::vector::Vec3;
 use crate::error::{AssemblyError, StructureError};
-use crate::mechanism::BodyId;
+use crate::mechanism::{ActuatorId, BodyId};
 use faer::linalg::solvers::Svd;
 
 /// A twist or a force is none below this.
@@ -41,6 +41,15 @@ pub(super) struct Analysed {
     pub(super) pose: Pose,
     /// Rows that determine all unknowns, of [`Plan::all_rows`].
     pub(super) independent: Vec<usize>,
+}
+
+/// Whether nothing but balls and rods with balls holds a body.
+fn hangs_between_balls(mechanism: &Mechanism, body: usize) -> bool {
+    let mut of_body = mechanism
+        .joints
+        .iter()
+        .filter(|j| j.bodies.contains(&BodyId(body)));
+    of_body.all(|j| matches!(j.kind, JointKind::Spherical | JointKind::Distance { .. }))
 }
 
 /// The rank by singular values.
@@ -77,6 +86,7 @@ impl Plan {
             (pose.coordinates, pose.balls) = (coordinates, balls);
             self.evaluate_whole(&mut pose);
         }
+        self.require_independent_actuators(mechanism, &pose)?;
         let independent = self.independent_rows(&pose);
         if independent.len() < n {
             return Err(self.under_actuated(mechanism, n - independent.len(), Vec::new()));
@@ -91,6 +101,32 @@ impl Plan {
             pose,
             independent,
         })
+    }
+
+    /// Refuses actuators that drive the same freedom: with every coordinate free, the rows must leave one freedom for each of them.
+    fn require_independent_actuators(
+        &self,
+        mechanism: &Mechanism,
+        pose: &Pose,
+    ) -> Result<(), AssemblyError> {
+        let freedoms = self.tree.freedoms.len();
+        let everything = self.group((0..freedoms).collect(), self.all_rows());
+        let empty = freedoms * everything.rows.len() == 0;
+        let svd = (!empty)
+            .then(|| self.dense(&everything, pose).svd().ok())
+            .flatten();
+        let left = freedoms - svd.as_ref().map_or(0, rank_of);
+        // The rows that hold idle bodies are among all rows.
+        let redundant_count = self.actuators().saturating_sub(left);
+        if redundant_count == 0 {
+            return Ok(());
+        }
+        let error = StructureError::OverConstrained {
+            redundant_count,
+            joints: mechanism.actuators.iter().map(|a| a.kind.joint()).collect(),
+            actuators: (0..self.actuators()).map(ActuatorId).collect(),
+        };
+        Err(error.into())
     }
 
     fn under_actuated(
@@ -152,7 +188,7 @@ impl Plan {
                 let to_body = |u: Vec3| placement.rotation.apply_inverse(u);
                 let axis = to_body(w).unit().unwrap_or(Vec3::ZERO);
                 let point = to_body(w.cross(v).scaled(1.0 / w.dot(w).max(f64::MIN_POSITIVE)));
-                is_spin &= along < PART;
+                is_spin &= along < PART && hangs_between_balls(mechanism, body);
                 let here = IdleBody {
                     body: BodyId(body),
                     point,

@@ -73,11 +73,6 @@ impl<T: Scalar> Vec3<T> {
         Vec3::ZERO.cast()
     }
 
-    /// The values alone.
-    pub fn value(self) -> Vec3 {
-        vec3(self.x.value(), self.y.value(), self.z.value())
-    }
-
     /// Scalar product.
     #[inline(always)]
     pub fn dot(self, o: Self) -> T {

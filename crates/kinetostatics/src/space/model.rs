@@ -3,6 +3,7 @@
 use super::load::LoadKind;
 use super::mass::Mass;
 use crate::error::PositionResult;
+use crate::pass::InverseDynamics;
 use dwell_geometry::space::{Assembly, Forces, Mechanism, Plan, Pose, Rotation, Vec3, Wrench};
 use dwell_geometry::{AssemblyError, BodyId, JointId};
 use dwell_numerics::Scalar;
@@ -178,7 +179,15 @@ impl Model {
         Ok(determined)
     }
 
-    /// The actuators' actions `tau` (N·m or N) that inertia alone requires at coordinates (rad or m), speeds and accelerations.
+    /// A buffer for the results of this model.
+    pub fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T> {
+        InverseDynamics {
+            tau: vec![T::from_f64(0.0); self.plan.actuators()],
+            reactions: vec![T::from_f64(0.0); self.reactions.len()],
+        }
+    }
+
+    /// What inertia alone requires at coordinates (rad or m), speeds and accelerations: actuators' actions and reactions.
     ///
     /// # Errors
     /// [`PositionError`](dwell_geometry::PositionError) when there is no pose.
@@ -188,18 +197,24 @@ impl Model {
         q_dot: &[T],
         q_ddot: &[T],
         workspace: &mut Workspace<T>,
-        tau: &mut [T],
+        result: &mut InverseDynamics<T>,
     ) -> PositionResult {
         self.plan.positions(q, &mut workspace.pose)?;
         self.plan.velocities(q_dot, &mut workspace.pose);
         self.plan.accelerations(q_ddot, &mut workspace.pose);
         self.require_inertia(workspace);
+        self.balance(workspace, result);
+        Ok(())
+    }
+
+    /// The actions and reactions of what is required.
+    fn balance<T: Scalar>(&self, workspace: &mut Workspace<T>, result: &mut InverseDynamics<T>) {
         self.plan
             .balance(&mut workspace.pose, &mut workspace.forces);
-        for (i, tau) in tau.iter_mut().enumerate() {
+        for (i, tau) in result.tau.iter_mut().enumerate() {
             *tau = self.plan.actuator_action(&workspace.forces, i);
         }
-        Ok(())
+        self.read_all(workspace, &mut result.reactions);
     }
 
     /// The inertia of all bodies as what they require.
@@ -258,7 +273,7 @@ impl Model {
         }
     }
 
-    /// The response to a unit of a load at `q` (rad or m), at rest: by actuator w = −τ, and by requested reaction c.
+    /// The response to a load of magnitude 1 at `q` (rad or m), at rest: τ = −w and the reactions c.
     ///
     /// # Errors
     /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
@@ -267,18 +282,13 @@ impl Model {
         q: &[T],
         load: &LoadKind,
         workspace: &mut Workspace<T>,
-        w: &mut [T],
-        c: &mut [T],
+        result: &mut InverseDynamics<T>,
     ) -> PositionResult {
         self.plan.positions(q, &mut workspace.pose)?;
         let Workspace { pose, forces } = &mut *workspace;
         forces.required.fill(Wrench::default());
         load.subtract(&self.plan, pose, &self.masses, &mut forces.required);
-        self.plan.balance(pose, forces);
-        for (i, w) in w.iter_mut().enumerate() {
-            *w = -self.plan.actuator_action(forces, i);
-        }
-        self.read_all(workspace, c);
+        self.balance(workspace, result);
         Ok(())
     }
 }

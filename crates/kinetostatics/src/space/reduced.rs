@@ -2,9 +2,9 @@
 
 use super::model::{Model, Workspace};
 use crate::error::PositionResult;
-use crate::reduced::{Coefficients, Inertia, ReducedModel};
+use crate::reduced::{Coefficients, ReducibleModel};
 use dwell_geometry::Range;
-use dwell_numerics::{Dual, Scalar};
+use dwell_numerics::Scalar;
 
 impl Model {
     /// The reduced coefficients at `q` (rad or m) in any kind of number, for one actuator.
@@ -35,86 +35,39 @@ impl Model {
 
     /// A buffer for the coefficients of this model.
     pub fn coefficient_buffer<T: Scalar>(&self) -> Coefficients<T> {
-        let zeros = vec![T::from_f64(0.0); self.reactions().len()];
-        Coefficients {
-            a: zeros.clone(),
-            b: zeros,
-            ..Coefficients::default()
-        }
+        Coefficients::buffer(self.reactions().len())
     }
 }
 
-/// Working memory of the exact reduced model: one for values, one for derivatives.
-#[derive(Debug, Clone)]
-pub struct ExactWorkspace {
-    real: Workspace<f64>,
-    dual: Workspace<Dual>,
-}
+impl ReducibleModel for Model {
+    type Workspace<T: Scalar> = Workspace<T>;
 
-/// The reduced model evaluated from the mechanism itself.
-#[derive(Debug, Clone)]
-pub struct ExactModel {
-    model: Model,
-    inertia_model: Model,
-}
-
-impl ExactModel {
-    /// The reduced model; none unless there is exactly one actuator.
-    pub fn new(model: Model) -> Option<Self> {
-        let inertia_model = model.without_reactions();
-        (model.plan().actuators() == 1).then_some(Self {
-            model,
-            inertia_model,
-        })
+    fn pass_workspace<T: Scalar>(&self) -> Workspace<T> {
+        self.workspace()
     }
 
-    /// The model that is evaluated.
-    pub fn model(&self) -> &Model {
-        &self.model
-    }
-}
-
-impl ReducedModel for ExactModel {
-    type Workspace = ExactWorkspace;
-
-    fn workspace(&self) -> ExactWorkspace {
-        ExactWorkspace {
-            real: self.model.workspace(),
-            dual: self.inertia_model.workspace(),
-        }
+    fn actuators(&self) -> usize {
+        self.plan().actuators()
     }
 
-    fn reactions(&self) -> usize {
-        self.model.reactions().len()
+    fn reaction_count(&self) -> usize {
+        self.reactions().len()
     }
 
     fn range(&self) -> Range {
-        self.model.plan().range()
+        self.plan().range()
     }
 
-    fn inertia(&self, q: f64, work: &mut ExactWorkspace) -> PositionResult<(f64, f64)> {
-        let mut out = Coefficients::default();
-        self.inertia_model.reduce(q, &mut work.real, &mut out)?;
-        Ok((out.m, out.half_dm))
+    fn for_inertia(&self) -> Self {
+        self.without_reactions()
     }
 
-    fn inertia_derivatives(&self, q: f64, work: &mut ExactWorkspace) -> PositionResult<Inertia> {
-        let mut out = Coefficients::default();
-        self.inertia_model
-            .reduce(Dual::variable(q), &mut work.dual, &mut out)?;
-        Ok(Inertia {
-            m: out.m.v,
-            half_dm: out.half_dm.v,
-            half_ddm: out.half_dm.d,
-        })
-    }
-
-    fn coefficients(
+    fn reduce_at<T: Scalar>(
         &self,
-        q: f64,
-        work: &mut ExactWorkspace,
-        out: &mut Coefficients,
+        q: T,
+        workspace: &mut Workspace<T>,
+        out: &mut Coefficients<T>,
     ) -> PositionResult {
-        self.model.reduce(q, &mut work.real, out)
+        self.reduce(q, workspace, out)
     }
 }
