@@ -17,7 +17,7 @@ mod validate;
 use clap::{CommandFactory as _, FromArgMatches as _};
 use dwell_findings::all_pass;
 use dwell_report::{Files, OutputFolder, ReportError};
-use dwell_scene::{Scene, SceneError};
+use dwell_scene::{AnyScene, Scene, SceneError, SceneFile, SpaceScene};
 use dwell_study::{
     Analysis, CommandResult, MotionSolver, Outcome, ParameterSweep, PictureFormat, PictureSpan,
     Pictures, Shard, SolverSettings, Step, StudyError, TableRequest, TrajectoryOutcome,
@@ -94,7 +94,10 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
         study => {
             let done = read(options, study, &bar);
             let done = done.and_then(|scene| {
-                let done = run_study(study, &scene, &options.out, &bar);
+                let done = match &scene {
+                    AnyScene::Plane(scene) => run_study(study, scene, &options.out, &bar),
+                    AnyScene::Space(scene) => run_in_space(study, scene),
+                };
                 times.add("computing");
                 let TrajectoryOutcome {
                     outcome,
@@ -106,7 +109,7 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
                 Ok(Done {
                     outcome,
                     early_stop: early_stop.map(as_scene_error),
-                    scene: Some(scene),
+                    scene: Some(scene.file().clone()),
                     ..Done::default()
                 })
             });
@@ -124,8 +127,8 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
 #[derive(Default)]
 struct Done {
     outcome: Outcome,
-    /// The scene, of a command that studies one.
-    scene: Option<Scene>,
+    /// The scene's file, of a command that studies one.
+    scene: Option<SceneFile>,
     /// The name of the results, of a command that studies exported tables.
     exported: Option<String>,
     /// Why a trajectory ended early.
@@ -337,6 +340,24 @@ fn run_study(
     })
 }
 
+/// Runs a study of a scene in space.
+fn run_in_space(command: &Command, scene: &SpaceScene) -> Result<TrajectoryOutcome, StudyError> {
+    let outcome = match command {
+        Command::Check { .. } => dwell_study::check_in_space(scene)?,
+        Command::Reduce {
+            table_accuracy: None,
+            accuracy: None,
+            points,
+            ..
+        } => dwell_study::reduce_in_space(scene, points.map(|n| n as usize))?,
+        _ => return Err(scene.planar_only().into()),
+    };
+    Ok(TrajectoryOutcome {
+        outcome,
+        early_stop: None,
+    })
+}
+
 /// Analyses a scene along its trajectory.
 fn run_trajectory(
     arguments: &TrajectoryArgs,
@@ -427,21 +448,21 @@ fn progress_bar() -> ProgressBar {
 }
 
 /// Reads the scene of a command.
-fn read(options: &Options, command: &Command, bar: &ProgressBar) -> Result<Scene, StudyError> {
+fn read(options: &Options, command: &Command, bar: &ProgressBar) -> Result<AnyScene, StudyError> {
     let path = command.scene().unwrap_or_else(|| Path::new(STANDARD_INPUT));
-    let mut scene = match path == Path::new(STANDARD_INPUT) {
-        true => Scene::read_from(std::io::stdin().lock(), STANDARD_INPUT_NAME, "<stdin>")?,
-        false => Scene::read(path)?,
+    let scene = match path == Path::new(STANDARD_INPUT) {
+        true => AnyScene::read_from(std::io::stdin().lock(), STANDARD_INPUT_NAME, "<stdin>")?,
+        false => AnyScene::read(path)?,
     };
-    scene.name = scene_name(options, path);
-    print_warnings(&scene);
+    let scene = scene.named(scene_name(options, path));
+    print_warnings(scene.file());
     // From now on a terminal shows every second that the study goes on.
     bar.enable_steady_tick(Duration::from_secs(1));
     Ok(scene)
 }
 
 /// Shows on standard error which former names the scene uses; the exit status does not change.
-fn print_warnings(scene: &Scene) {
+fn print_warnings(scene: &SceneFile) {
     for warning in &scene.warnings {
         print_note(&format!("{:?}", Report::new(warning.clone())));
     }

@@ -173,6 +173,18 @@ pub enum PositionError {
 }
 
 impl PositionError {
+    /// The coordinate of the first actuator at which it occurred, rad or m.
+    pub fn coordinate(&self) -> f64 {
+        let (Self::NoAssembly { q, .. }
+        | Self::Singular { q, .. }
+        | Self::OtherBranch { q, .. }
+        | Self::NotConverged { q, .. }
+        | Self::OutOfRange { q, .. }
+        | Self::LanesDiverge { q }
+        | Self::NotFinite { q }) = *self;
+        q
+    }
+
     /// The group in which the error occurred.
     pub fn group(&self) -> Option<usize> {
         match *self {

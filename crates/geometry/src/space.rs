@@ -55,6 +55,6 @@ pub use mechanism::{
     Actuator, ActuatorKind, Assembly, Joint, JointKind, Mechanism, Placement, Side,
 };
 pub use multipliers::{Forces, Wrench};
-pub use plan::{Plan, Pose};
+pub use plan::{GroupDescription, Plan, Pose};
 pub use rank::{IdleBody, Mobility};
 pub use vector::{Rotation, Vec3, vec3};

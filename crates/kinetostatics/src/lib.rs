@@ -59,5 +59,6 @@ pub use reduced::{
 pub use results::{
     Distribution, FreeBodyForces, LinkForces, PowerBalance, Section, ShakingForce, Wrench,
 };
+pub use rounding::reduction_rounding_errors;
 pub use table::{TableDomain, TableError, TableQuantity, TabulatedModel, UnitLoadResponses};
 pub use varying_inertia::{KnownReaction, VaryingInertia};

@@ -7,7 +7,7 @@
 use crate::error::KinetostaticsError;
 use crate::model::{Model, Workspace};
 use crate::pass::InverseDynamics;
-use crate::reduced::Coefficients;
+use crate::reduced::{Coefficients, ReducibleModel};
 use dwell_geometry::PositionError;
 use dwell_numerics::{DoubleDouble, Scalar};
 
@@ -28,6 +28,27 @@ fn rounding_errors(errors: &mut [f64], values: &[f64], precise: &[DoubleDouble])
     }
 }
 
+/// Estimates into `errors` the rounding errors of the reduced `coefficients` at `q` (rad or m) of a model in the plane or in space,
+/// each in its own unit.
+///
+/// # Errors
+/// [`PositionError`] when there is no pose at `q`.
+pub fn reduction_rounding_errors<M: ReducibleModel>(
+    model: &M,
+    q: f64,
+    coefficients: &Coefficients,
+    workspace: &mut M::Workspace<DoubleDouble>,
+    errors: &mut Coefficients,
+) -> Result<(), PositionError> {
+    let mut precise = Coefficients::buffer(model.reaction_count());
+    model.reduce_at(DoubleDouble::from_f64(q), workspace, &mut precise)?;
+    errors.m = rounding_error(coefficients.m, precise.m);
+    errors.half_dm = rounding_error(coefficients.half_dm, precise.half_dm);
+    rounding_errors(&mut errors.a, &coefficients.a, &precise.a);
+    rounding_errors(&mut errors.b, &coefficients.b, &precise.b);
+    Ok(())
+}
+
 impl Model {
     /// Estimates into `errors` the rounding errors of the reduced `coefficients` that
     /// [`Model::reduce`] found at `q` (rad or m), each in its own unit.
@@ -41,12 +62,7 @@ impl Model {
         workspace: &mut Workspace<DoubleDouble>,
         errors: &mut Coefficients,
     ) -> Result<(), PositionError> {
-        let mut precise = self.coefficient_buffer();
-        self.reduce(DoubleDouble::from_f64(q), workspace, &mut precise)?;
-        errors.m = rounding_error(coefficients.m, precise.m);
-        errors.half_dm = rounding_error(coefficients.half_dm, precise.half_dm);
-        rounding_errors(&mut errors.a, &coefficients.a, &precise.a);
-        rounding_errors(&mut errors.b, &coefficients.b, &precise.b);
+        reduction_rounding_errors(self, q, coefficients, workspace, errors)?;
         if !self.mechanism().couplings.is_empty() {
             let law = |value: f64| LAW_ROUNDINGS * f64::EPSILON * value.abs();
             errors.m += law(coefficients.m);

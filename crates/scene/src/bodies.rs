@@ -1,6 +1,7 @@
 //! The bodies: their points, their masses, and which of them is the ground.
 
 use crate::diagnostics::{Diagnostics, Span};
+use crate::dimensions::{Dimensions, Plane};
 use crate::keys::table;
 use crate::names::check;
 use crate::spans::SceneLocation;
@@ -9,8 +10,8 @@ use crate::units::Unit;
 use crate::value::Value;
 use crate::varying_inertia::varying_inertia;
 use crate::wording::shorten;
-use dwell_geometry::{BodyId, Vec2};
-use dwell_kinetostatics::{Mass, VaryingInertia};
+use dwell_geometry::BodyId;
+use dwell_kinetostatics::VaryingInertia;
 use std::collections::HashMap;
 use std::fmt::Display;
 use toml::de::DeValue;
@@ -18,15 +19,15 @@ use toml::de::DeValue;
 /// A body as read. What could not be read is zero: the scene fails anyway, and the names still
 /// serve to check the rest of the file.
 #[derive(Debug)]
-pub(crate) struct ParsedBody<'a> {
+pub(crate) struct ParsedBody<'a, D: Dimensions = Plane> {
     pub(crate) name: &'a str,
     pub(crate) key: Span,
     /// In m.
-    pub(crate) points: Vec<(&'a str, Vec2)>,
+    pub(crate) points: Vec<(&'a str, D::Point)>,
     by_name: HashMap<&'a str, usize>,
     /// Its points were read: a name that is not among them does not exist.
     points_known: bool,
-    pub(crate) mass: Mass,
+    pub(crate) mass: D::Mass,
     pub(crate) varying_inertia: Option<VaryingInertia>,
 }
 
@@ -38,14 +39,14 @@ pub(crate) const TWO_POINTS: &str = "two points [\"body.point\", \"body.point\"]
 
 /// All the bodies as read.
 #[derive(Debug)]
-pub(crate) struct Bodies<'a> {
-    pub(crate) list: Vec<ParsedBody<'a>>,
+pub(crate) struct Bodies<'a, D: Dimensions = Plane> {
+    pub(crate) list: Vec<ParsedBody<'a, D>>,
     by_name: HashMap<&'a str, usize>,
     pub(crate) ground: Option<usize>,
     log: &'a Diagnostics,
 }
 
-impl<'a> Bodies<'a> {
+impl<'a, D: Dimensions> Bodies<'a, D> {
     pub(crate) fn read(fields: &TableReader<'a>) -> Self {
         let open = |e| TableReader::open(e, format!("body `{}`", shorten(e.name)));
         let tables: Vec<_> = fields.entries.iter().map(open).collect();
@@ -134,7 +135,7 @@ impl<'a> Bodies<'a> {
     }
 
     /// Where a point is in its body's frame, m.
-    pub(crate) fn at(&self, point: &NamedPoint) -> Vec2 {
+    pub(crate) fn at(&self, point: &NamedPoint) -> D::Point {
         self.list[point.0.0].points[point.1].1
     }
 
@@ -163,7 +164,7 @@ impl<'a> Bodies<'a> {
     }
 }
 
-impl ParsedBody<'_> {
+impl<D: Dimensions> ParsedBody<'_, D> {
     /// Reports a point that it does not have; `name` is what it may have been meant to be.
     fn report_unknown_point(
         &self,
@@ -218,24 +219,24 @@ fn ground(fields: &TableReader<'_>, tables: &[Option<TableReader<'_>>]) -> Optio
     fixed.first().map(|(k, ..)| *k)
 }
 
-fn read_body<'a>(
+fn read_body<'a, D: Dimensions>(
     entry: &Entry<'a>,
     fields: Option<&TableReader<'a>>,
     id: BodyId,
     is_ground: bool,
-) -> ParsedBody<'a> {
+) -> ParsedBody<'a, D> {
     let mut body = ParsedBody {
         name: entry.name,
         key: entry.key.clone(),
         points: Vec::new(),
         by_name: HashMap::new(),
         points_known: false,
-        mass: Mass::default(),
+        mass: D::Mass::default(),
         varying_inertia: None,
     };
     entry.log().place(SceneLocation::Body(id), &entry.key);
     let Some(fields) = fields else { return body };
-    fields.reject_unknown_keys(table("body"));
+    fields.reject_unknown_keys(table(D::BODY));
     body.read_points(id, fields);
     fields.place("mass", SceneLocation::Mass(id));
     fields.place("inertia", SceneLocation::Inertia(id));
@@ -250,7 +251,7 @@ fn read_body<'a>(
     body
 }
 
-impl<'a> ParsedBody<'a> {
+impl<'a, D: Dimensions> ParsedBody<'a, D> {
     fn read_points(&mut self, id: BodyId, fields: &TableReader<'a>) {
         let name = shorten(self.name);
         let entry = fields.get("points");
@@ -261,24 +262,25 @@ impl<'a> ParsedBody<'a> {
         if points.is_empty() {
             let at = entry.map_or(&self.key, |e| &e.key);
             let message = format!("body `{name}` has no points");
-            let help = "a body is joined at its points: `points = { A = [0, 0] }`";
+            let help = format!(
+                "a body is joined at its points: `points = {{ A = {} }}`",
+                D::ORIGIN
+            );
             return fields.log().report(message, &[(at, "no points")], help);
         }
         self.points_known = true;
         for (k, point) in points.iter().enumerate() {
             check("a point", point);
             let what = format!("point `{}` of `{name}`", shorten(point.name));
-            let at = point.value.point(&what).unwrap_or(Vec2::ZERO);
+            let at = D::point(point.value, &what).unwrap_or_default();
             self.by_name.insert(point.name, k);
             self.points.push((point.name, at));
             point.log().place(SceneLocation::Point(id, k), &point.key);
         }
     }
 
-    fn read_mass(&self, fields: &TableReader<'a>, is_ground: bool) -> Mass {
-        let units = fields.units();
-        let mass = mass_or_inertia(fields, "mass", &units.mass);
-        let inertia = mass_or_inertia(fields, "inertia", &units.inertia);
+    fn read_mass(&self, fields: &TableReader<'a>, is_ground: bool) -> D::Mass {
+        let mass = mass_or_inertia(fields, "mass", &fields.units().mass);
         let given = fields.get("center");
         let center = given.and_then(|entry| self.read_center(entry.value));
         if let (false, Some(entry), None) = (is_ground, fields.get("mass"), given)
@@ -289,19 +291,18 @@ impl<'a> ParsedBody<'a> {
                 shorten(self.name)
             );
             let labels = [(&entry.value.span(), "no centre of mass")];
-            let help = "add `center`: the name of one of its points, or [x, y]";
+            let help = format!(
+                "add `center`: the name of one of its points, or {}",
+                D::POINT
+            );
             fields.log().report(message, &labels, help);
         }
-        Mass {
-            mass: mass.unwrap_or(0.0),
-            center: center.unwrap_or(Vec2::ZERO),
-            inertia: inertia.unwrap_or(0.0),
-        }
+        D::mass(mass.unwrap_or(0.0), center.unwrap_or_default(), fields)
     }
 
-    fn read_center(&self, value: Value<'_>) -> Option<Vec2> {
+    fn read_center(&self, value: Value<'_>) -> Option<D::Point> {
         let DeValue::String(text) = value.get() else {
-            return value.point(&format!("the center of `{}`", shorten(self.name)));
+            return D::point(value, &format!("the center of `{}`", shorten(self.name)));
         };
         let point = self.by_name.get(text.as_ref());
         if point.is_none() && self.points_known {
@@ -316,7 +317,7 @@ impl<'a> ParsedBody<'a> {
 }
 
 /// A mass or an inertia, in SI: not negative.
-fn mass_or_inertia(fields: &TableReader<'_>, key: &str, unit: &Unit) -> Option<f64> {
+pub(crate) fn mass_or_inertia(fields: &TableReader<'_>, key: &str, unit: &Unit) -> Option<f64> {
     let value = fields.get(key)?.value;
     let what = format!("{key} of {}", fields.what);
     let si = value.quantity(unit, &what)?;

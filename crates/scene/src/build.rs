@@ -4,8 +4,10 @@ use crate::assembly::ParsedAssembly;
 use crate::bodies::Bodies;
 use crate::coordinates::{ParsedCoordinate, ParsedCoordinates, actuators};
 use crate::diagnostics::{Diagnostics, Span};
+use crate::dimensions::Dimensions;
 use crate::drives::reject_drives_of_prescribed;
 use crate::error::{SceneError, Source};
+use crate::file::SceneFile;
 use crate::former_keys::rename_former_keys;
 use crate::friction::add_friction;
 use crate::joints::Joints;
@@ -17,13 +19,14 @@ use crate::number_paths::{body_numbers, section_numbers};
 use crate::prescribed::{coordinate_sweep, prescribed_motion};
 use crate::requests::requests;
 use crate::scene::{Assembly, NamedCoordinate, Scene};
+use crate::space::three_numbers;
 use crate::spans::SceneLocation;
 use crate::stops::stops as stops_of;
 use crate::table_reader::TableReader;
 use crate::units::Units;
 use crate::value::Context;
 use crate::wording::shorten;
-use dwell_geometry::{Body, Joint, JointKind, Mechanism, Vec2};
+use dwell_geometry::{Body, BodyId, Joint, JointKind, Mechanism, Vec2};
 use dwell_kinetostatics::VaryingInertia;
 use dwell_laws::expression::nearest;
 use toml::de::DeValue;
@@ -32,6 +35,9 @@ impl Scene {
     pub(crate) fn build(name: String, source: &Source) -> Result<Self, SceneError> {
         let mut root = crate::read::syntax(source)?;
         let log = &Diagnostics::new(source);
+        if let Some(point) = three_numbers(root.get_ref()) {
+            return Err(planar_only(source, point));
+        }
         rename_former_keys(root.get_mut(), table("scene"), log);
         let fields = |units| {
             let context = Context { units, log };
@@ -47,6 +53,17 @@ impl Scene {
         let incomplete = || SceneError::without_labels("the scene is incomplete".to_owned(), None);
         scene.ok_or_else(incomplete)
     }
+}
+
+/// A scene in space where one in the plane is needed.
+pub(crate) fn planar_only(source: &Source, point: Span) -> SceneError {
+    let help = "`dwell check` and `dwell reduce` take mechanisms in space; for one in the plane, points have two numbers [x, y]";
+    SceneError::with_labels(
+        source,
+        "this is a mechanism in space, and what is asked for is only for mechanisms in the plane yet".to_owned(),
+        Some(help.to_owned()),
+        [(point, "three numbers".to_owned())],
+    )
 }
 
 /// Longest title, in characters: it heads a page and a picture.
@@ -98,7 +115,8 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     joints.read_couplings(&named);
     // A joint that could not be read may be the one that holds a body.
     if !joints.list.is_empty() && joints.list.iter().all(|j| j.joint.is_some()) {
-        report_unjoined_bodies(&bodies, &joints);
+        let joined = joints.list.iter().filter_map(|j| j.joint.as_ref());
+        report_unjoined_bodies(&bodies, joined.flat_map(|j| j.bodies), log);
     }
     let varying_inertias = bodies.list.iter().filter_map(|b| b.varying_inertia.clone());
     let varying_inertias: Vec<_> = varying_inertias.collect();
@@ -177,9 +195,12 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
             .collect()
     };
     Some(Scene {
-        title: title.map_or_else(|| name.clone(), one_line),
-        name,
-        note: note.map(printable),
+        file: SceneFile::new(
+            (name, source),
+            (title.map(one_line), note.map(printable)),
+            fields.units(),
+            log,
+        ),
         masses: bodies.list.iter().map(|b| b.mass).collect(),
         varying_inertias,
         points: bodies.list.iter().map(|b| points(&b.points)).collect(),
@@ -198,22 +219,18 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
         stops,
         requests,
         calibration,
-        source: Source::clone(source),
-        warnings: log.warnings(),
-        units: fields.units().clone(),
-        spans: log.take_spans(),
         body_numbers,
         section_numbers: section_numbers(fields),
     })
 }
 
 /// The table of a section.
-fn section<'a>(fields: &TableReader<'a>, key: &str) -> Option<TableReader<'a>> {
+pub(crate) fn section<'a>(fields: &TableReader<'a>, key: &str) -> Option<TableReader<'a>> {
     TableReader::open(fields.get(key)?, format!("[{key}]"))
 }
 
 /// The table of a section that has to be there, and not empty.
-fn needed_section<'a>(fields: &TableReader<'a>, key: &str) -> Option<TableReader<'a>> {
+pub(crate) fn needed_section<'a>(fields: &TableReader<'a>, key: &str) -> Option<TableReader<'a>> {
     let missing = |span: &Span, label: &str| {
         let help = match key {
             "bodies" => "describe the bodies: `[bodies.crank]` with `points = { A = [0, 0] }`",
@@ -237,7 +254,7 @@ fn is_filled(fields: &TableReader<'_>, key: &str) -> bool {
     matches!(value, Some(DeValue::Table(table)) if !table.is_empty())
 }
 
-fn title<'a>(fields: &TableReader<'a>) -> Option<&'a str> {
+pub(crate) fn title<'a>(fields: &TableReader<'a>) -> Option<&'a str> {
     let (title, entry) = (text_of(fields, "title")?, fields.get("title")?);
     if title.chars().count() > MAX_TITLE_LENGTH {
         let message = format!("the title is longer than {MAX_TITLE_LENGTH} characters");
@@ -248,19 +265,21 @@ fn title<'a>(fields: &TableReader<'a>) -> Option<&'a str> {
 }
 
 /// A text shown to people; blank it is as good as absent.
-fn text_of<'a>(fields: &TableReader<'a>, key: &str) -> Option<&'a str> {
+pub(crate) fn text_of<'a>(fields: &TableReader<'a>, key: &str) -> Option<&'a str> {
     let value = fields.get(key)?.value;
     let text = value.string(format_args!("the {key}"))?.trim();
     (!text.is_empty()).then_some(text)
 }
 
 /// Reports the bodies that no joint holds.
-fn report_unjoined_bodies(bodies: &Bodies<'_>, joints: &Joints<'_>) {
+pub(crate) fn report_unjoined_bodies<D: Dimensions>(
+    bodies: &Bodies<'_, D>,
+    of_joints: impl Iterator<Item = BodyId>,
+    log: &Diagnostics,
+) {
     let mut joined = vec![false; bodies.list.len()];
-    for joint in joints.list.iter().filter_map(|j| j.joint.as_ref()) {
-        for body in joint.bodies {
-            joined[body.0] = true;
-        }
+    for body in of_joints {
+        joined[body.0] = true;
     }
     let by_body = || bodies.list.iter().zip(&joined);
     let others = by_body()
@@ -272,18 +291,18 @@ fn report_unjoined_bodies(bodies: &Bodies<'_>, joints: &Joints<'_>) {
         if let Some(near) = nearest(body.name, others.clone()) {
             help += &format!("; or did you mean `{near}`?");
         }
-        (joints.log).report(message, &[(&body.key, "not connected")], help);
+        log.report(message, &[(&body.key, "not connected")], help);
     }
 }
 
 /// A title heads a page: whatever white space it is written with becomes single spaces.
-fn one_line(text: &str) -> String {
+pub(crate) fn one_line(text: &str) -> String {
     let text = printable(text);
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 /// Control characters other than line breaks would reach the reader's terminal: they become spaces.
-fn printable(text: &str) -> String {
+pub(crate) fn printable(text: &str) -> String {
     let visible = |c: char| if c.is_control() && c != '\n' { ' ' } else { c };
     text.chars().map(visible).collect()
 }

@@ -66,6 +66,12 @@ pub(crate) enum ValueShape {
     Pair,
     /// `[[x, y], [x, y]]`, two of them exactly.
     TwoPairs,
+    /// `[x, y, z]`.
+    Triple,
+    /// `[[x, y, z], [x, y, z]]`, two of them exactly.
+    TwoTriples,
+    /// Three or six numbers.
+    Tensor,
     /// `[[x, y], ...]`, two or more.
     Rows,
     /// `[x, x, ...]`, four or more.
@@ -87,9 +93,16 @@ pub(crate) enum ValueShape {
 }
 
 static KEYS: LazyLock<Keys> = LazyLock::new(|| {
-    // The file is part of the program: every test would meet a mistake in it.
+    // The files are part of the program: every test would meet a mistake in them.
     #[allow(clippy::expect_used, reason = "no user can influence it")]
-    toml::from_str(include_str!("keys.toml")).expect("keys.toml has tables of this form")
+    let read = |text| toml::from_str::<Keys>(text).expect("keys.toml has tables of this form");
+    let (mut keys, space) = (
+        read(include_str!("keys.toml")),
+        read(include_str!("space/keys.toml")),
+    );
+    keys.kinds.extend(space.kinds);
+    keys.tables.extend(space.tables);
+    keys
 });
 
 /// The table that `keys.toml` describes under `id`. Panics where there is none: ids stand in this crate and in the file, and a test

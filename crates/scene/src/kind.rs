@@ -10,11 +10,19 @@ pub(crate) fn kind<'f, 'a>(
     fields: &'f TableReader<'a>,
     thing: &str,
 ) -> Option<(&'static str, &'f Entry<'a>)> {
-    let kinds = kinds(&format!("{thing}s"));
+    kind_among(fields, thing, &kinds(&format!("{thing}s")))
+}
+
+/// The same among these kinds.
+pub(crate) fn kind_among<'f, 'a>(
+    fields: &'f TableReader<'a>,
+    thing: &str,
+    kinds: &[&'static TableSchema],
+) -> Option<(&'static str, &'f Entry<'a>)> {
     let named = |n: &str| kinds.iter().find(|t| t.kind_key() == n);
     let chosen = fields.one_of(|n| named(n).is_some()).ok()?;
     let Some(entry) = chosen else {
-        report_missing_kind(fields, thing, &kinds);
+        report_missing_kind(fields, thing, kinds);
         return None;
     };
     let table = named(entry.name)?;

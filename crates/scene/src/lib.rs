@@ -65,10 +65,12 @@ mod bodies;
 mod build;
 mod coordinates;
 mod diagnostics;
+mod dimensions;
 mod drives;
 mod error;
 mod events;
 mod expression;
+mod file;
 mod former_keys;
 mod friction;
 mod joints;
@@ -78,7 +80,6 @@ mod kind;
 mod law;
 mod load_functions;
 mod loads;
-mod location;
 mod magnitude;
 mod motion;
 mod names;
@@ -89,6 +90,7 @@ mod read;
 mod requests;
 mod scene;
 mod schema;
+mod space;
 mod spans;
 mod stops;
 mod table_reader;
@@ -102,6 +104,7 @@ mod wording;
 mod tests;
 
 pub use error::{SceneError, SceneWarning};
+pub use file::SceneFile;
 pub use key_uses::{KeyUse, PathStep, SceneKey, WrittenAs, key_uses, scene_keys};
 pub use scene::{
     Assembly, Calibration, CoordinateSweep, DwellRequest, EventTrigger, FreeMotionSpec,
@@ -109,6 +112,7 @@ pub use scene::{
     Scene, SectionRequest,
 };
 pub use schema::schema;
+pub use space::{AnyScene, NamedLoad, SpaceScene};
 pub use spans::SceneLocation;
 pub use value::MAX_ANGLE;
 pub use wording::choices;

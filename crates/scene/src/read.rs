@@ -17,10 +17,18 @@ const MAX_SCENE_BYTES: u64 = 1 << 26;
 impl Scene {
     /// Reads a scene file.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
-        let path = path.as_ref();
+        let (name, source) = Self::text_of_file(path.as_ref())?;
+        Self::build(name, &source)
+    }
+
+    /// The name of a scene in a file, and its text.
+    pub(crate) fn text_of_file(path: &Path) -> Result<(String, Source), SceneError> {
         let display_path = path.display().to_string();
         let bytes = bytes(path, &display_path)?;
-        Self::from_bytes(Self::name_of_file(path), &display_path, bytes)
+        Ok((
+            Self::name_of_file(path),
+            text_of_bytes(&display_path, bytes)?,
+        ))
     }
 
     /// Reads a scene from a stream, such as standard input: `name` is the scene's, `source_name` that of the stream in
@@ -30,23 +38,23 @@ impl Scene {
         name: impl Into<String>,
         source_name: &str,
     ) -> Result<Self, SceneError> {
+        let source = Self::text_of_stream(stream, source_name)?;
+        Self::build(name.into(), &source)
+    }
+
+    /// The text of a stream.
+    pub(crate) fn text_of_stream(
+        stream: impl std::io::Read,
+        source_name: &str,
+    ) -> Result<Source, SceneError> {
         let unreadable = |e: &std::io::Error| {
             let message = format!("`{source_name}` cannot be read: {e}");
             SceneError::without_labels(message, None)
         };
-        let bytes = limited_bytes(stream, source_name, &unreadable)?;
-        Self::from_bytes(name.into(), source_name, bytes)
-    }
-
-    fn from_bytes(name: String, source_name: &str, bytes: Vec<u8>) -> Result<Self, SceneError> {
-        let text = match String::from_utf8(bytes) {
-            Ok(text) if text.contains('\0') => return Err(not_text(source_name)),
-            Ok(text) => text,
-            Err(error) if error.as_bytes().contains(&0) => return Err(not_text(source_name)),
-            Err(error) => return Err(not_utf8(source_name, &error)),
-        };
-        let source = Arc::new(NamedSource::new(source_name, text));
-        Self::build(name, &source)
+        text_of_bytes(
+            source_name,
+            limited_bytes(stream, source_name, &unreadable)?,
+        )
     }
 
     /// The name of the scene in a file: its stem, or its folder's name if it is `scene.toml`.
@@ -60,9 +68,14 @@ impl Scene {
 
     /// Reads the text of a scene. `source_name` is the file's name in messages.
     pub fn parse(source_name: &str, text: &str) -> Result<Self, SceneError> {
-        let name = scene_name(Path::new(source_name));
+        let (name, source) = Self::named_text(source_name, text);
+        Self::build(name, &source)
+    }
+
+    /// The name of a scene, and its text.
+    pub(crate) fn named_text(source_name: &str, text: &str) -> (String, Source) {
         let source = NamedSource::new(source_name, text.to_owned());
-        Self::build(name, &Arc::new(source))
+        (scene_name(Path::new(source_name)), Arc::new(source))
     }
 }
 
@@ -75,6 +88,17 @@ pub(crate) fn scene_name(path: &Path) -> String {
         _ if stem.is_empty() => "scene".to_owned(),
         _ => stem.into_owned(),
     }
+}
+
+/// The text in the bytes of a file.
+fn text_of_bytes(source_name: &str, bytes: Vec<u8>) -> Result<Source, SceneError> {
+    let text = match String::from_utf8(bytes) {
+        Ok(text) if text.contains('\0') => return Err(not_text(source_name)),
+        Ok(text) => text,
+        Err(error) if error.as_bytes().contains(&0) => return Err(not_text(source_name)),
+        Err(error) => return Err(not_utf8(source_name, &error)),
+    };
+    Ok(Arc::new(NamedSource::new(source_name, text)))
 }
 
 fn bytes(path: &Path, display_path: &str) -> Result<Vec<u8>, SceneError> {

@@ -37,7 +37,7 @@ pub(crate) fn requests(
 }
 
 /// The strings of an array, those that are none being reported.
-fn strings<'a>(entry: &Entry<'a>, expected: &str) -> Vec<(&'a str, Span)> {
+pub(crate) fn strings<'a>(entry: &Entry<'a>, expected: &str) -> Vec<(&'a str, Span)> {
     let what = format!("{} in [requests]", entry.name);
     let values = entry.value.array(expected, &what).into_iter().flatten();
     let one = |value: Value<'a>| {

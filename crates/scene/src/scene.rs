@@ -1,29 +1,20 @@
 //! The scene as plain data.
 
-use crate::error::SceneWarning;
+use crate::file::SceneFile;
 use crate::number_paths::SceneNumber;
-use crate::spans::SceneSpans;
-use crate::units::Units;
 use dwell_geometry::{
     ActuatorId, AssemblyConfiguration, BodyId, Coordinate, Mechanism, Reaction, Vec2,
 };
 use dwell_kinetostatics::{Drive, Load, Mass, VaryingInertia};
 use dwell_laws::Law;
-use miette::NamedSource;
-use sha2::{Digest, Sha256};
-use std::fmt::Write as _;
-use std::sync::Arc;
+use std::ops::Deref;
 
 /// A scene: a mechanism, its masses, where it starts and what is asked of it. SI throughout; the
 /// bodies, joints and actuators are in the order of the file.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// The file's stem, or its folder's name if the file is `scene.toml`.
-    pub name: String,
-    /// The title, or the name if there is none.
-    pub title: String,
-    /// A remark that is shown with all results.
-    pub note: Option<String>,
+    /// Its file, with its name and title.
+    pub file: SceneFile,
     /// Bodies, joints and actuators.
     pub mechanism: Mechanism,
     /// Of each body. The ground has none, whatever the file says.
@@ -53,15 +44,17 @@ pub struct Scene {
     pub motion: Option<FreeMotionSpec>,
     /// The one fitted number.
     pub calibration: Option<Calibration>,
-    /// Name and text of the file. After [`with_value`](Self::with_value) the changed text.
-    pub source: Arc<NamedSource<String>>,
-    /// Former names that the file uses: they are read, and a program should show these to its user.
-    pub warnings: Vec<SceneWarning>,
-    pub(crate) units: Units,
-    pub(crate) spans: SceneSpans,
     pub(crate) body_numbers: Vec<SceneNumber>,
     /// Those outside the bodies.
     pub(crate) section_numbers: Vec<SceneNumber>,
+}
+
+impl Deref for Scene {
+    type Target = SceneFile;
+
+    fn deref(&self) -> &SceneFile {
+        &self.file
+    }
 }
 
 /// An end stop of an actuator's coordinate.
@@ -268,17 +261,5 @@ impl Scene {
         actuators
             .map(|a| (a.name.as_str(), a.coordinate()))
             .chain(named)
-    }
-
-    /// SHA-256 of the scene's text, as 64 hexadecimal digits: what a result names its scene by. Line ends count as `\n` and a
-    /// byte order mark for nothing, so that a file has one hash wherever it is checked out.
-    pub fn hash(&self) -> String {
-        let text = self.source.inner().trim_start_matches('\u{feff}');
-        let digest = Sha256::digest(text.replace("\r\n", "\n"));
-        digest.iter().fold(String::new(), |mut hash, byte| {
-            // Writing to a string cannot fail.
-            let _ = write!(hash, "{byte:02x}");
-            hash
-        })
     }
 }

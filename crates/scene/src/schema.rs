@@ -8,9 +8,12 @@ use toml::de::{DeTable, DeValue};
 /// scene: keys and the kinds of their values. Whether names exist and numbers make sense is for
 /// [`Scene::read`](crate::Scene::read) to say.
 pub fn schema() -> String {
-    let mut schema = table(keys::table("scene"));
-    schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
-    schema["title"] = json!("Scene of Dwell");
+    let scenes = ["scene", "scene-in-space"].map(|id| table(keys::table(id)));
+    let schema = json!({
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "title": "Scene of Dwell",
+        "anyOf": scenes,
+    });
     // The alternate form of `Display` is the indented one.
     format!("{schema:#}\n")
 }
@@ -57,22 +60,26 @@ fn key(key: &KeySchema) -> Value {
 }
 
 fn shape(shape: &ValueShape) -> Value {
-    let number = json!({ "type": "number" });
+    let number = &json!({ "type": "number" });
     let string = |what: &str| json!({ "type": "string", "title": what });
     let list = |item: Value, min_items: usize| json!({ "type": "array", "items": item, "minItems": min_items });
     let two = |item: Value| json!({ "type": "array", "items": item, "minItems": 2, "maxItems": 2 });
+    let numbers = |min: usize, max: usize| json!({ "type": "array", "items": number, "minItems": min, "maxItems": max });
     match shape {
         ValueShape::Text => string("text"),
         ValueShape::Expression => string("expression"),
         ValueShape::Name(what) => string(what),
-        ValueShape::Number => number,
+        ValueShape::Number => number.clone(),
         ValueShape::Boolean => json!({ "type": "boolean" }),
         ValueShape::Count => json!({ "type": "integer", "minimum": 2, "maximum": 1_000_000 }),
         ValueShape::Word(words) => json!({ "enum": words }),
-        ValueShape::Pair => two(number),
-        ValueShape::TwoPairs => two(two(number)),
-        ValueShape::Rows => list(two(number), 2),
-        ValueShape::Numbers => list(number, 4),
+        ValueShape::Pair => numbers(2, 2),
+        ValueShape::TwoPairs => two(numbers(2, 2)),
+        ValueShape::Triple => numbers(3, 3),
+        ValueShape::TwoTriples => two(numbers(3, 3)),
+        ValueShape::Tensor => json!({ "anyOf": [numbers(3, 3), numbers(6, 6)] }),
+        ValueShape::Rows => list(numbers(2, 2), 2),
+        ValueShape::Numbers => list(number.clone(), 4),
         ValueShape::TwoNames(what) => two(string(what)),
         ValueShape::Names(min_items, what) => list(string(what), *min_items),
         ValueShape::Table(id) => table(keys::table(id)),

@@ -48,6 +48,8 @@ pub mod exported_runs;
 pub mod free_motion;
 pub mod linearise;
 pub mod reduce;
+#[cfg(feature = "output")]
+mod space;
 mod suspicious_units;
 pub mod sweep;
 mod symbolic;
@@ -81,6 +83,7 @@ pub use {
     linearise::output::linearise,
     output::{CommandResult, Outcome, PictureFormat, Pictures, add_summary},
     reduce::output::reduce,
+    space::{PreparedSpaceScene, check_in_space, reduce_in_space},
     sweep::output::{ParameterSweep, RowStore, sweep},
     symbolic::output::{FormulaFormat, symbolic},
     trajectory::figures::PictureSpan,

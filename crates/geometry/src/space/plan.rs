@@ -9,6 +9,7 @@ use super::rank::Mobility;
 use super::tree::Tree;
 use super::vector::{Rotation, Vec3};
 use crate::error::AssemblyError;
+use crate::mechanism::JointId;
 use crate::plan::range::Range;
 use dwell_numerics::Scalar;
 
@@ -19,6 +20,17 @@ pub(super) enum JointPlace {
     Link(usize),
     /// It closes a loop: the index of the closure.
     Closure(usize),
+}
+
+/// A group of unknowns that are solved together.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct GroupDescription {
+    /// The joints that close its loops.
+    pub joints: Vec<JointId>,
+    /// Number of unknowns.
+    pub unknowns: usize,
+    /// Number of equations, redundant ones among them.
+    pub equations: usize,
 }
 
 /// A compiled mechanism: constant, shared between threads.
@@ -97,6 +109,28 @@ impl Plan {
     /// Degrees of freedom, redundant constraints and determined reactions, by rank.
     pub fn mobility(&self) -> &Mobility {
         &self.mobility
+    }
+
+    /// The groups of unknowns that are solved together, in their order.
+    pub fn described_groups(&self) -> Vec<GroupDescription> {
+        let describe = |group: &Group| {
+            let mut joints: Vec<JointId> = Vec::new();
+            for joint in group
+                .rows
+                .iter()
+                .filter_map(|&(c, _)| self.closures[c].joint)
+            {
+                if !joints.contains(&joint) {
+                    joints.push(joint);
+                }
+            }
+            GroupDescription {
+                joints,
+                unknowns: group.unknowns.len(),
+                equations: group.rows.len(),
+            }
+        };
+        self.groups.iter().map(describe).collect()
     }
 
     /// A length of the order of the mechanism, m.

@@ -27,15 +27,15 @@ pub enum LoadKind {
         /// The direction.
         direction: Direction,
     },
-    /// A couple on the second body, the opposite on the first, along a direction of the first or the ground, N·m.
-    Couple {
+    /// A torque on the second body, the opposite on the first, about a direction of the first or the ground, N·m.
+    Torque {
         /// The bodies.
         bodies: [BodyId; 2],
         /// The direction.
         direction: Direction,
     },
-    /// Tension between two points (m in the frames of the bodies), N.
-    Tension {
+    /// A force that pushes two points (m in the frames of the bodies) apart, N.
+    PointToPointForce {
         /// The bodies.
         bodies: [BodyId; 2],
         /// Their points.
@@ -44,6 +44,42 @@ pub enum LoadKind {
 }
 
 impl LoadKind {
+    /// The potential energy of a unit of the load at a pose, J; none of one that has no potential.
+    pub(super) fn potential(
+        &self,
+        plan: &Plan,
+        pose: &Pose,
+        masses: &[super::Mass],
+    ) -> Option<f64> {
+        match *self {
+            Self::Gravity(direction) => {
+                let weights = masses.iter().enumerate().map(|(body, mass)| {
+                    let center = plan.frame(pose, body).point(mass.center);
+                    -mass.mass * center.dot(direction)
+                });
+                Some(weights.sum())
+            }
+            Self::Force {
+                body: BodyId(body),
+                point,
+                direction: Direction::Ground(direction),
+            } => Some(-plan.point(pose, body, point).dot(direction)),
+            Self::Force { .. } | Self::Torque { .. } | Self::PointToPointForce { .. } => None,
+        }
+    }
+
+    /// Whether it has a potential.
+    pub fn is_conservative(&self) -> bool {
+        matches!(
+            self,
+            Self::Gravity(_)
+                | Self::Force {
+                    direction: Direction::Ground(_),
+                    ..
+                }
+        )
+    }
+
     /// Takes a unit of the load off what the bodies require.
     pub(super) fn subtract<T: Scalar>(
         &self,
@@ -77,7 +113,7 @@ impl LoadKind {
             } => {
                 required[body].add_at(arm(body, point), -turned(body, direction), Vec3::zero());
             }
-            Self::Couple {
+            Self::Torque {
                 bodies: [a, b],
                 direction,
             } => {
@@ -85,13 +121,13 @@ impl LoadKind {
                 required[b.0].moment -= couple;
                 required[a.0].moment += couple;
             }
-            Self::Tension { bodies, points } => {
+            Self::PointToPointForce { bodies, points } => {
                 let [a, b] = [0, 1].map(|k| arm(bodies[k].0, points[k]));
                 let [from, to] = bodies.map(|body| plan.frame(pose, body.0).origin);
                 let d = to + b - (from + a);
                 let along = d.scaled(T::from_f64(1.0) / d.dot(d).sqrt());
-                required[bodies[0].0].add_at(a, -along, Vec3::zero());
-                required[bodies[1].0].add_at(b, along, Vec3::zero());
+                required[bodies[0].0].add_at(a, along, Vec3::zero());
+                required[bodies[1].0].add_at(b, -along, Vec3::zero());
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Mass and inertia of a body in space.
 
-use dwell_geometry::space::{BodyMotion, Frame, Placement, Vec3, Wrench, vec3};
+use dwell_geometry::space::{BodyMotion, Frame, Placement, Rotation, Vec3, Wrench, vec3};
 use dwell_numerics::Scalar;
 
 /// Mass, centre of mass and moments of inertia of a body, in its frame.
@@ -44,6 +44,18 @@ impl Mass {
                 .iter()
                 .all(|m| *m >= -slack * slack.max(xx + yy + zz))
             && determinant >= -slack * (xx + yy + zz).powi(2)
+    }
+
+    /// The same with a tensor that refers to these axes of the body.
+    #[must_use]
+    pub fn turned(&self, axes: &Rotation) -> Self {
+        let image = |k: usize| {
+            let along = axes.apply_inverse(Vec3::AXES[k]);
+            axes.apply(self.angular_momentum(along))
+        };
+        let [x, y, z] = [image(0), image(1), image(2)];
+        let inertia = [x.x, y.y, z.z, x.y, x.z, y.z];
+        Self { inertia, ..*self }
     }
 
     /// The same in another frame of the body.

@@ -217,6 +217,11 @@ impl Model {
         self.read_all(workspace, &mut result.reactions);
     }
 
+    /// The potential energy of a unit of a load at the last pose, J; none of one that has no potential.
+    pub fn potential_energy(&self, load: &LoadKind, workspace: &Workspace) -> Option<f64> {
+        load.potential(&self.plan, &workspace.pose, &self.masses)
+    }
+
     /// The inertia of all bodies as what they require.
     pub(super) fn require_inertia<T: Scalar>(&self, workspace: &mut Workspace<T>) {
         let Workspace { pose, forces } = workspace;

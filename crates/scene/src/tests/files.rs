@@ -62,7 +62,7 @@ fn a_scene_is_named_after_its_file_or_folder() {
     for file in ["press/scene.toml", "press/variant 2.toml"] {
         std::fs::write(folder.join(file), WHOLE).unwrap();
     }
-    let name = |file: &str| Scene::read(folder.join(file)).unwrap().name;
+    let name = |file: &str| Scene::read(folder.join(file)).unwrap().file.name;
     assert_eq!(name("press/scene.toml"), "press");
     assert_eq!(name("press/../press/scene.toml"), "press");
     assert_eq!(name("press/variant 2.toml"), "variant 2");

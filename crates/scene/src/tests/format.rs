@@ -30,6 +30,7 @@ pub(super) fn tables() -> Vec<&'static TableSchema> {
     }
     let mut found = Vec::new();
     visit(keys::table("scene"), &mut found);
+    visit(keys::table("scene-in-space"), &mut found);
     found
 }
 
@@ -47,6 +48,9 @@ fn value(shape: &ValueShape) -> String {
         ValueShape::Expression => "expression".to_owned(),
         ValueShape::Pair => "two numbers".to_owned(),
         ValueShape::TwoPairs => "two pairs of numbers".to_owned(),
+        ValueShape::Triple => "three numbers".to_owned(),
+        ValueShape::TwoTriples => "two times three numbers".to_owned(),
+        ValueShape::Tensor => "three or six numbers".to_owned(),
         ValueShape::Rows => "two or more pairs of numbers".to_owned(),
         ValueShape::Numbers => "four or more numbers".to_owned(),
         ValueShape::Name(what) => what.clone(),

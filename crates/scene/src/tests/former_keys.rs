@@ -104,7 +104,7 @@ fn each_former_name_gives_one_warning_however_often_it_stands() {
         "regulator = \"omega\"",
     );
     let text = changed(&text, "speed-controller = \"rise\"", "regulator = \"rise\"");
-    let warnings = parse(&text).unwrap().warnings;
+    let warnings = parse(&text).unwrap().file.warnings;
     assert_eq!(warnings.len(), 1);
     assert_eq!(
         warnings[0].message,

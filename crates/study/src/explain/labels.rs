@@ -2,7 +2,7 @@
 
 use crate::explain::StudyError;
 use dwell_geometry::{ActuatorId, BodyId, JointId, Mechanism};
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{Scene, SceneFile, SceneLocation};
 
 /// Places in the scene file, each with its remark.
 pub(crate) type Labels = Vec<(SceneLocation, String)>;
@@ -12,7 +12,7 @@ const MAX_MARKED: usize = 8;
 
 /// An error of a scene, what to try (nothing if that is empty), and its places in the file.
 pub fn scene_error<L: Into<String>>(
-    scene: &Scene,
+    scene: &SceneFile,
     message: impl Into<String>,
     help: impl Into<String>,
     labels: impl IntoIterator<Item = (SceneLocation, L)>,

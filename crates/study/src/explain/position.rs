@@ -66,14 +66,7 @@ pub fn explain_position(scene: &Scene, plan: &Plan, error: &PositionError) -> St
     const RANGE_ENDS: &str = "this is outside the range; `dwell check` shows the range";
     let phi = quoted_coordinate(scene);
     let unit = coordinate_unit(plan.is_angle(0));
-    let (PositionError::NoAssembly { q, .. }
-    | PositionError::Singular { q, .. }
-    | PositionError::OtherBranch { q, .. }
-    | PositionError::NotConverged { q, .. }
-    | PositionError::OutOfRange { q, .. }
-    | PositionError::LanesDiverge { q }
-    | PositionError::NotFinite { q }) = *error;
-    let at = format!("{phi} = {} {unit}", number(q));
+    let at = format!("{phi} = {} {unit}", number(error.coordinate()));
     let group = error.group();
     let bodies = group.map(|g| body_names(&scene.mechanism, &plan.group_bodies(g)));
     let bodies = bodies.unwrap_or_default();
@@ -110,7 +103,7 @@ pub fn explain_position(scene: &Scene, plan: &Plan, error: &PositionError) -> St
             format!("the poses near {at} cannot be evaluated together in SIMD lanes"),
             "evaluate them one by one",
         ),
-        PositionError::NotFinite { .. } => (
+        PositionError::NotFinite { q } => (
             format!("{phi} = {q} {unit} is not a finite number"),
             "check the numbers of the motion",
         ),

@@ -56,6 +56,11 @@ pub(crate) fn determinate_model(scene: &Scene) -> Result<Model, StudyError> {
         .map_err(|e| explain_model(scene, &e))
 }
 
+/// Whether a scene lists some of its reactions; otherwise it requests all of them.
+pub(crate) fn lists_reactions(scene: &Scene) -> bool {
+    scene.requests.reactions.len() < scene.mechanism.reactions().len()
+}
+
 /// The bodies of the joints whose reactions are requested.
 pub(crate) fn requested_reaction_bodies(scene: &Scene) -> Vec<BodyId> {
     let joints = scene.requests.reactions.iter();

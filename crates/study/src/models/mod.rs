@@ -3,6 +3,7 @@
 mod compile;
 mod drives;
 mod prepared_scene;
+mod reduced_scene;
 mod scene_machine;
 mod solver_settings;
 
@@ -11,11 +12,12 @@ pub use compile::{
     with_drive_loads,
 };
 pub(crate) use compile::{
-    determinate_model, exact_model, loaded_determinate_model, requested_reaction_bodies,
-    requested_reactions, with_loads,
+    determinate_model, exact_model, lists_reactions, loaded_determinate_model,
+    requested_reaction_bodies, requested_reactions, with_loads,
 };
 pub(crate) use drives::{drive_states, motor_columns, motor_of, source_name};
 pub use prepared_scene::PreparedScene;
 pub(crate) use prepared_scene::initial_reduced_state;
+pub use reduced_scene::{InertiaAt, ReducedScene};
 pub use scene_machine::SceneMachine;
 pub use solver_settings::{PRESETS, SolverSettings};

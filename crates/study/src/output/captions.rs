@@ -1,20 +1,18 @@
 //! Captions, labels, limits and axes that figures share.
 
-use crate::models::PreparedScene;
+use crate::models::{PreparedScene, ReducedScene};
 use crate::ranges::extent;
 use dwell_geometry::Range;
-use dwell_kinetostatics::ReducedModel;
 use dwell_report::{Axis, Chart, Figure, Panel, Series};
-use dwell_scene::Scene;
+use dwell_scene::{Scene, SceneFile};
 
 /// Maximum number of reaction figures if none is requested by name.
 pub(crate) const MAX_REACTION_FIGURES: usize = 8;
 
 /// The number of reaction figures to draw, of `figures` possible ones, and a note if some are left out.
 /// Reactions requested by name are all drawn.
-pub(crate) fn reaction_figure_count(scene: &Scene, figures: usize) -> (usize, Option<String>) {
-    let named = scene.requests.reactions.len() < scene.mechanism.reactions().len();
-    if named || figures <= MAX_REACTION_FIGURES {
+pub(crate) fn reaction_figure_count(are_listed: bool, figures: usize) -> (usize, Option<String>) {
+    if are_listed || figures <= MAX_REACTION_FIGURES {
         return (figures, None);
     }
     let note = format!(
@@ -33,7 +31,7 @@ pub(crate) fn add_note(figures: &mut [Figure], note: Option<&str>) {
 
 /// A figure of a scene with its caption, one panel below another.
 pub fn figure(
-    scene: &Scene,
+    scene: &SceneFile,
     name: impl Into<String>,
     title: impl Into<String>,
     text: &str,
@@ -70,10 +68,10 @@ pub(crate) fn coordinate_axis(label: &str, is_angle: bool) -> Axis {
 }
 
 /// The text of a caption of a figure over the range, which explains why curves may leave it.
-pub(crate) fn range_caption(prepared: &PreparedScene<'_>, text: &str) -> String {
-    let limits = match prepared.model.model().plan().range_limits() {
-        [None, None] => "",
-        [Some(_), Some(_)] => {
+pub(crate) fn range_caption(prepared: &dyn ReducedScene, text: &str) -> String {
+    let limits = match prepared.has_limits() {
+        [false, false] => "",
+        [true, true] => {
             " Towards the limit positions at both ends all quantities grow without bound."
         }
         _ => " Towards the limit position all quantities grow without bound.",
@@ -87,7 +85,7 @@ pub fn caption(prepared: &PreparedScene<'_>, text: &str) -> String {
 }
 
 /// The same from a scene.
-pub fn scene_caption(scene: &Scene, text: &str) -> String {
+pub fn scene_caption(scene: &SceneFile, text: &str) -> String {
     format!("{}. {text}", scene.title.trim_end_matches('.'))
 }
 
@@ -126,8 +124,8 @@ pub fn coordinate_label(prepared: &PreparedScene<'_>) -> String {
 
 /// The vertical extent of the curves. Towards a limit position they grow without bound, so there the extent
 /// is that of the inner nine tenths of the range.
-pub(crate) fn inner_range(prepared: &PreparedScene<'_>, curves: &[Series]) -> Option<[f64; 2]> {
-    if prepared.model.range() == Range::Full {
+pub(crate) fn inner_range(prepared: &dyn ReducedScene, curves: &[Series]) -> Option<[f64; 2]> {
+    if prepared.range() == Range::Full {
         return None;
     }
     let inner = |c: &Series| {
@@ -178,14 +176,19 @@ mod tests {
             );
             Scene::parse("crank.toml", &text).expect("a scene")
         };
+        let lists = |scene: &Scene| {
+            PreparedScene::new(scene)
+                .expect("a model")
+                .lists_reactions()
+        };
         assert_eq!(
-            reaction_figure_count(&scene(""), MAX_REACTION_FIGURES),
+            reaction_figure_count(lists(&scene("")), MAX_REACTION_FIGURES),
             (MAX_REACTION_FIGURES, None)
         );
-        let (pages, note) = reaction_figure_count(&scene(""), 176);
+        let (pages, note) = reaction_figure_count(lists(&scene("")), 176);
         assert_eq!(pages, MAX_REACTION_FIGURES);
         assert!(note.expect("a note").starts_with("of 176 reaction figures"));
         let named = scene("[requests]\nreactions = [\"A.x\"]");
-        assert_eq!(reaction_figure_count(&named, 176), (176, None));
+        assert_eq!(reaction_figure_count(lists(&named), 176), (176, None));
     }
 }

@@ -6,7 +6,7 @@ use crate::explain::StudyError;
 use crate::number_format::count;
 use crate::progress::{Progress, Step};
 use dwell_report::{Animation, Block, Document, Figure, Layout, ReportError, png, svg};
-use dwell_scene::Scene;
+use dwell_scene::SceneFile;
 use rayon::prelude::*;
 
 /// Which pictures are drawn. Drawing takes most of the time of a command.
@@ -61,7 +61,7 @@ enum Content {
 
 impl Picture {
     /// A figure of a scene, with its provenance.
-    pub fn figure(scene: &Scene, path: String, is_main: bool, figure: Figure) -> Self {
+    pub fn figure(scene: &SceneFile, path: String, is_main: bool, figure: Figure) -> Self {
         let provenance = signature(scene, &figure.provenance);
         Self {
             path,
@@ -94,7 +94,7 @@ impl Picture {
     }
 
     /// An animation of a scene, with its provenance.
-    pub(crate) fn animation(scene: &Scene, path: String, animation: Animation) -> Self {
+    pub(crate) fn animation(scene: &SceneFile, path: String, animation: Animation) -> Self {
         let provenance = signature(scene, &animation.provenance);
         Self {
             path,

@@ -1,22 +1,22 @@
 //! Provenance of results: version, scene and method, without dates and host names.
 
-use dwell_scene::Scene;
+use dwell_scene::SceneFile;
 
 /// Digits of a hash in figures; documents have all of them.
 const SHORT_HASH: usize = 12;
 
 /// Version, scene and the hash of its text.
-pub fn provenance_line(scene: &Scene) -> String {
+pub fn provenance_line(scene: &SceneFile) -> String {
     line(scene, &scene.hash())
 }
 
-fn line(scene: &Scene, hash: &str) -> String {
+fn line(scene: &SceneFile, hash: &str) -> String {
     let version = env!("CARGO_PKG_VERSION");
     format!("Dwell {version} · scene {} (sha256 {hash})", scene.name)
 }
 
 /// The same with a short hash, and the method.
-pub(super) fn signature(scene: &Scene, method_text: &str) -> String {
+pub(super) fn signature(scene: &SceneFile, method_text: &str) -> String {
     let line = line(scene, &scene.hash()[..SHORT_HASH]);
     match method_text {
         "" => line,
@@ -27,6 +27,7 @@ pub(super) fn signature(scene: &Scene, method_text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use dwell_scene::Scene;
 
     #[test]
     fn a_signature_names_version_scene_hash_and_method_and_nothing_that_changes() {

@@ -3,7 +3,7 @@
 use super::Outcome;
 use crate::explain::StudyError;
 use dwell_report::{Message, SceneRecord, Summary};
-use dwell_scene::{Scene, SceneError};
+use dwell_scene::{SceneError, SceneFile};
 
 /// What a command came to, beside its outcome.
 #[derive(Debug, Clone, Copy)]
@@ -11,7 +11,7 @@ pub struct CommandResult<'a> {
     /// The name of the command.
     pub command: &'a str,
     /// Its scene, where it reads one.
-    pub scene: Option<&'a Scene>,
+    pub scene: Option<&'a SceneFile>,
     /// The path of the file, relative to the output folder.
     pub path: &'a str,
     /// The exit status.

@@ -6,11 +6,11 @@
 //!
 //! F is the magnitude that the scene gives; for a damper, friction or a separating force, the force or moment itself.
 
-use crate::models::PreparedScene;
+use crate::models::ReducedScene;
 use crate::number_format::count;
 use crate::output::{
-    add_note, chart, coordinate_axis, coordinate_label, figure, inner_range, range_caption,
-    reaction_figure_count, symbol,
+    add_note, chart, coordinate_axis, figure, inner_range, range_caption, reaction_figure_count,
+    symbol,
 };
 use crate::reduce::compute::{ReducedCurves, UnitLoadCurves, coefficient_units, inertia_units};
 use dwell_kinetostatics::Coefficients;
@@ -21,7 +21,7 @@ const MAX_CURVES: usize = 6;
 
 /// What the figures share: the scene with its model, and the coordinates.
 struct RangeFigures<'a> {
-    prepared: &'a PreparedScene<'a>,
+    prepared: &'a dyn ReducedScene,
     q: &'a [f64],
 }
 
@@ -40,7 +40,7 @@ impl RangeFigures<'_> {
     fn panel(&self, title: &str, label: &str, unit: &str, series: Vec<Series>) -> Panel {
         let mut y = Axis::new(label, unit);
         y.range = inner_range(self.prepared, &series);
-        let label = coordinate_label(self.prepared);
+        let label = self.prepared.coordinate_label();
         let x = coordinate_axis(&label, self.prepared.is_angle());
         chart(title, x, y, series).into()
     }
@@ -55,14 +55,13 @@ impl RangeFigures<'_> {
         let text = range_caption(self.prepared, text);
         let positions = count(self.q.len(), "position");
         let provenance = format!("reduced model by unit runs, at {positions}");
-        let scene = self.prepared.scene;
-        figure(scene, name, title, &text, panels, provenance)
+        figure(self.prepared.file(), name, title, &text, panels, provenance)
     }
 }
 
 /// m and ½m′; nothing that [`ReducedCurves::rounding`] says to be zero.
 pub fn reduced(
-    prepared: &PreparedScene<'_>,
+    prepared: &dyn ReducedScene,
     curves: &ReducedCurves,
     is_rounding: &[bool],
 ) -> Figure {
@@ -89,7 +88,7 @@ pub fn reduced(
 /// a and b of the requested reactions, separately for forces and moments, a few per figure; and a note if
 /// not all are drawn. Nothing that [`ReducedCurves::rounding`] says to be zero.
 pub fn coefficients(
-    prepared: &PreparedScene<'_>,
+    prepared: &dyn ReducedScene,
     curves: &ReducedCurves,
     is_rounding: &[bool],
 ) -> (Vec<Figure>, Option<String>) {
@@ -101,7 +100,7 @@ pub fn coefficients(
         let of_unit: Vec<usize> = of_unit.collect();
         pages.extend(of_unit.chunks(MAX_CURVES).map(|some| (some.to_vec(), of)));
     }
-    let (drawn, note) = reaction_figure_count(prepared.scene, pages.len());
+    let (drawn, note) = reaction_figure_count(prepared.lists_reactions(), pages.len());
     let pages = pages.iter().take(drawn).enumerate();
     let figures = pages
         .map(|(k, (some, of))| coefficient_figure((prepared, curves), is_rounding, some, of, k));
@@ -117,7 +116,7 @@ fn coefficients_of(is_rounding: &[bool], reaction: usize) -> [bool; 2] {
 }
 
 fn coefficient_figure(
-    (prepared, curves): (&PreparedScene<'_>, &ReducedCurves),
+    (prepared, curves): (&dyn ReducedScene, &ReducedCurves),
     is_rounding: &[bool],
     group: &[usize],
     of: &str,
@@ -177,7 +176,7 @@ fn coefficient_figure(
 /// w of the loads by their units, and V.
 pub(crate) fn unit_loads(
     curves: &UnitLoadCurves,
-    prepared: &PreparedScene<'_>,
+    prepared: &dyn ReducedScene,
     q: &[f64],
 ) -> Figure {
     let range = RangeFigures { prepared, q };

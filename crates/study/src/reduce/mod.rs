@@ -5,3 +5,5 @@ pub mod compute;
 pub mod figures;
 #[cfg(feature = "output")]
 pub(crate) mod output;
+#[cfg(feature = "output")]
+pub(crate) use output::reduction_outcome;

@@ -1,18 +1,17 @@
 //! Writes the reduced parameters: table, figures, summary and interpolation table.
 
 use super::figures;
-use crate::branch_note::branch_note;
 use crate::explain::StudyError;
-use crate::models::requested_reactions;
+use crate::models::ReducedScene;
 use crate::number_format::{coordinate_unit, digits, digits_within};
-use crate::output::{Outcome, Picture, indeterminate_note, separating_note};
+use crate::output::{Outcome, Picture};
 use crate::ranges::extent;
 use crate::reduce::compute::{
     Peak, Reduction, RoundingErrors, TableRequest, compute_reduction, inertia_units,
     peak_between_rows, tabulate,
 };
 use dwell_findings::Record;
-use dwell_kinetostatics::{Coefficients, ReducedModel as _};
+use dwell_kinetostatics::Coefficients;
 use dwell_report::{Figure, Files, TableFormat};
 use dwell_scene::Scene;
 
@@ -31,6 +30,23 @@ pub fn reduce(
     table: Option<TableRequest>,
 ) -> Result<Outcome, StudyError> {
     let reduction = compute_reduction(scene, points)?;
+    let mut outcome = reduction_outcome(&reduction)?;
+    if let Some(request) = table {
+        let tabulation = tabulate(&reduction.prepared, &request)?;
+        outcome.summary += &tabulation.summary;
+        outcome.record.extend(tabulation.record);
+        if let Some(text) = tabulation.text {
+            outcome.files.add(format!("{}.table", scene.name), text);
+        }
+    }
+    Ok(outcome)
+}
+
+/// The table, the figures and the summary of a reduction.
+pub(crate) fn reduction_outcome<P: ReducedScene>(
+    reduction: &Reduction<P>,
+) -> Result<Outcome, StudyError> {
+    let scene = reduction.prepared.file();
     let (prepared, curves) = (&reduction.prepared, &reduction.curves);
     let is_rounding = &reduction.errors.is_rounding;
     let mut figures: Vec<Figure> = vec![figures::reduced(prepared, curves, is_rounding)];
@@ -51,19 +67,9 @@ pub fn reduce(
     };
     let pictures = figures.into_iter().map(picture).collect();
     let peak = peak_between_rows(prepared, curves);
-    let mut summary = summary(&reduction, peak, note.as_deref());
-    let mut record = record(&reduction, peak);
-    if let Some(request) = table {
-        let tabulation = tabulate(prepared, &request)?;
-        summary += &tabulation.summary;
-        record.extend(tabulation.record);
-        if let Some(text) = tabulation.text {
-            files.add(format!("{}.table", scene.name), text);
-        }
-    }
     Ok(Outcome {
-        summary,
-        record,
+        summary: summary(reduction, peak, note.as_deref()),
+        record: record(reduction, peak),
         files,
         pictures,
         ..Outcome::default()
@@ -82,12 +88,11 @@ fn describe_rounding(errors: &RoundingErrors) -> String {
 }
 
 /// The numbers of the summary.
-fn record(reduction: &Reduction<'_>, peak: Option<Peak>) -> Record {
+fn record<P: ReducedScene>(reduction: &Reduction<P>, peak: Option<Peak>) -> Record {
     let curves = &reduction.curves;
     let mut record = Record::default();
     record.add_count("positions", curves.q.len());
-    if let (Some(_), [first, .., last]) = (reduction.prepared.model.range().limits(), &curves.q[..])
-    {
+    if let (Some(_), [first, .., last]) = (reduction.prepared.range().limits(), &curves.q[..]) {
         let (name, unit) = (
             reduction.prepared.coordinate_name(),
             coordinate_unit(reduction.prepared.is_angle()),
@@ -128,7 +133,11 @@ fn record(reduction: &Reduction<'_>, peak: Option<Peak>) -> Record {
 }
 
 /// The printed summary.
-pub(crate) fn summary(reduction: &Reduction<'_>, peak: Option<Peak>, note: Option<&str>) -> String {
+pub(crate) fn summary<P: ReducedScene>(
+    reduction: &Reduction<P>,
+    peak: Option<Peak>,
+    note: Option<&str>,
+) -> String {
     let (prepared, curves) = (&reduction.prepared, &reduction.curves);
     let extent_of = |pick: fn(&Coefficients) -> f64| extent(curves.coefficients.iter().map(pick));
     let m = extent_of(|c| c.m);
@@ -143,14 +152,14 @@ pub(crate) fn summary(reduction: &Reduction<'_>, peak: Option<Peak>, note: Optio
     };
     let [m_error, half_dm_error, _] = reduction.errors.max_errors;
     let ([m_min, m_max], [h_min, h_max]) = (texts(m, m_error), texts(half_dm, half_dm_error));
-    let (title, count) = (&prepared.scene.title, curves.q.len());
+    let (title, count) = (&prepared.file().title, curves.q.len());
     let name = prepared.coordinate_name();
     let [m_unit, half_dm_unit] = match prepared.is_angle() {
         true => ["kg m²", "kg m²/rad"],
         false => inertia_units(false),
     };
     // Over a whole revolution nothing need be said of it.
-    let range = match (prepared.model.range().limits(), &curves.q[..]) {
+    let range = match (prepared.range().limits(), &curves.q[..]) {
         (Some(_), [first, .., last]) => {
             let [first, last] = [first, last].map(|q| digits(*q, 6));
             format!(
@@ -178,10 +187,5 @@ pub(crate) fn summary(reduction: &Reduction<'_>, peak: Option<Peak>, note: Optio
     if m[1] == 0.0 {
         summary += "  no body with mass moves: there is no equation of motion, and every inertial reaction is zero\n";
     }
-    let scene = prepared.scene;
-    summary += &separating_note(scene);
-    summary += &branch_note(scene, prepared.model.model().plan());
-    let [_, indeterminate] = requested_reactions(scene, prepared.model.model().plan());
-    let names = indeterminate.iter();
-    summary + &indeterminate_note(names.map(|&r| scene.mechanism.reaction_name(r)))
+    summary + &prepared.notes()
 }

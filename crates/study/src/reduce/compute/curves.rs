@@ -1,14 +1,13 @@
 //! Reduced coefficients over the range, and their rounding errors.
 
 use crate::estimate::{is_rounding, relative};
-use crate::explain::{StudyError, explain_position};
-use crate::models::PreparedScene;
+use crate::explain::StudyError;
+use crate::models::{PreparedScene, ReducedScene};
 use crate::number_format::coordinate_unit;
-use crate::ranges::equally_spaced;
 use crate::reduce::compute::UnitLoadCurves;
-use crate::trajectory::compute::{default_limits, force_scales, reject_unknown_variables};
+use crate::trajectory::compute::{force_scales, reject_unknown_variables};
 use dwell_findings::{Column, Table};
-use dwell_kinetostatics::{Batch, Coefficients};
+use dwell_kinetostatics::Coefficients;
 use dwell_scene::Scene;
 use rayon::prelude::*;
 
@@ -44,15 +43,11 @@ pub(crate) fn flat(at: &Coefficients) -> Vec<f64> {
 impl RoundingErrors {
     /// Evaluates the curves again in 32-digit arithmetic.
     pub(crate) fn new(
-        prepared: &PreparedScene<'_>,
+        prepared: &dyn ReducedScene,
         curves: &ReducedCurves,
     ) -> Result<Self, StudyError> {
-        let model = prepared.model.model();
         let errors_at = |(&q, at): (&f64, &Coefficients)| {
-            let (mut workspace, mut errors) = (model.workspace(), model.coefficient_buffer());
-            model
-                .reduction_rounding_errors(q, at, &mut workspace, &mut errors)
-                .map_err(|e| explain_position(prepared.scene, model.plan(), &e))?;
+            let errors = prepared.rounding_errors(q, at)?;
             Ok(flat(&errors))
         };
         let all = curves.q.par_iter().zip(&curves.coefficients);
@@ -90,55 +85,39 @@ impl ReducedCurves {
     ///
     /// # Errors
     /// [`StudyError::Scene`] where a position cannot be reached.
-    pub fn new(prepared: &PreparedScene<'_>, points: Option<usize>) -> Result<Self, StudyError> {
+    pub fn new(prepared: &dyn ReducedScene, points: Option<usize>) -> Result<Self, StudyError> {
         let intervals = points.unwrap_or(DEFAULT_POINTS).max(2) - 1;
-        let q = match prepared.is_angle() {
-            true => prepared.range_positions(intervals),
-            // As `dwell kinematics` follows a length.
-            false => {
-                let plan = prepared.model.model().plan();
-                let (limits, ..) = default_limits(prepared.scene, plan);
-                equally_spaced(limits, intervals)
-            }
-        };
-        Self::at(prepared, q)
+        Self::at(prepared, prepared.positions(intervals))
     }
 
     /// Evaluates the model at given coordinates, rad or m.
     ///
     /// # Errors
     /// [`StudyError::Scene`] where a position cannot be reached.
-    pub(crate) fn at(prepared: &PreparedScene<'_>, q: Vec<f64>) -> Result<Self, StudyError> {
-        let model = &prepared.model;
-        let mut batch = Batch::default();
-        model.reduce_batch(&q, &mut batch);
-        if let Some((_, error)) = batch.errors.first() {
-            let plan = model.model().plan();
-            return Err(explain_position(prepared.scene, plan, error));
-        }
-        let coefficients = (0..q.len()).map(|i| batch.coefficients(i)).collect();
+    pub(crate) fn at(prepared: &dyn ReducedScene, q: Vec<f64>) -> Result<Self, StudyError> {
+        let coefficients = prepared.coefficients(&q)?;
         Ok(Self { q, coefficients })
     }
 
     /// Of m, of ½m′, of every a, of every b: the largest value, and what it would come to by m and the other reactions.
-    pub(crate) fn scales(&self, prepared: &PreparedScene<'_>) -> [Vec<f64>; 2] {
-        let reactions = prepared.model.model().reactions();
+    pub(crate) fn scales(&self, prepared: &dyn ReducedScene) -> [Vec<f64>; 2] {
+        let reactions = prepared.reaction_units();
         let mut sizes = vec![0.0_f64; 2 + 2 * reactions.len()];
         for at in &self.coefficients {
             for (size, value) in sizes.iter_mut().zip(flat(at)) {
                 *size = size.max(value.abs());
             }
         }
-        let (m, arm) = (sizes[0], prepared.scene.mechanism.size());
+        let (m, arm) = (sizes[0], prepared.size());
         let mut references = vec![m; 2];
         for part in sizes[2..].chunks(reactions.len().max(1)) {
             let of_unit = |unit: &str| {
-                let alike = part.iter().zip(reactions);
-                let alike = alike.filter(|(_, r)| r.component.unit() == unit);
+                let alike = part.iter().zip(&reactions);
+                let alike = alike.filter(|(_, (_, of))| *of == unit);
                 alike.fold(0.0_f64, |scale, (&size, _)| scale.max(size))
             };
             let [force, moment] = force_scales(arm, ["N", "N m"].map(of_unit), m);
-            references.extend(reactions.iter().map(|r| match r.component.unit() {
+            references.extend(reactions.iter().map(|(_, of)| match *of {
                 "N" => force,
                 _ => moment,
             }));
@@ -147,56 +126,15 @@ impl ReducedCurves {
     }
 
     /// Of m, of ½m′, of every a, of every b: whether it is zero everywhere but for rounding.
-    pub fn rounding(&self, prepared: &PreparedScene<'_>) -> Vec<bool> {
+    pub fn rounding(&self, prepared: &dyn ReducedScene) -> Vec<bool> {
         let [sizes, references] = self.scales(prepared);
         let both = sizes.iter().zip(&references);
         both.map(|(&size, &reference)| is_rounding(size, reference))
             .collect()
     }
 
-    /// a and b of the reactions within mechanisms that bodies of varying inertia stand for: at unit acceleration and at unit
-    /// speed of the coordinate.
-    fn known_reactions(&self, prepared: &PreparedScene<'_>) -> Vec<(Column, Vec<f64>)> {
-        let scene = prepared.scene;
-        let mut columns = Vec::new();
-        for varying in &scene.varying_inertias {
-            for reaction in &varying.reactions {
-                let unit = if reaction.is_moment { "N m" } else { "N" };
-                let units = coefficient_units(unit, prepared.is_angle());
-                let [a, b] = [("a", units[0]), ("b", units[1])]
-                    .map(|(of, unit)| Column::new(format!("{}.{of}", reaction.name), unit));
-                columns.extend([(a, Vec::new()), (b, Vec::new())]);
-            }
-        }
-        let model = prepared.model.model();
-        let mut workspace = model.workspace();
-        let positions: &[f64] = if columns.is_empty() { &[] } else { &self.q };
-        for &q in positions {
-            // The batch has found a pose at every coordinate.
-            let Ok(mut state) = model.kinematic_state(&[q], &[1.0], &mut workspace) else {
-                continue;
-            };
-            let states = state.bodies_at(&[0.0]);
-            let mut values = columns.iter_mut().map(|(_, values)| values);
-            for varying in &scene.varying_inertias {
-                let body = states.body(varying.body);
-                let (angle, ratio) = (body.rotation.angle(), body.angular_velocity);
-                for reaction in &varying.reactions {
-                    let a = reaction.value(angle, 0.0, ratio);
-                    let b = reaction.value(angle, ratio, body.angular_acceleration);
-                    for value in [a, b] {
-                        if let Some(values) = values.next() {
-                            values.push(value);
-                        }
-                    }
-                }
-            }
-        }
-        columns
-    }
-
     /// The table: coordinate, m, ½m′, then a and b of each requested reaction.
-    pub fn table(&self, prepared: &PreparedScene<'_>) -> Table {
+    pub fn table(&self, prepared: &dyn ReducedScene) -> Table {
         let mut columns = vec![
             Column::new(
                 prepared.coordinate_name(),
@@ -243,9 +181,9 @@ pub(crate) fn coefficient_units(unit: &str, is_angle: bool) -> [&'static str; 2]
 }
 
 /// The reduced parameters of a scene over its range.
-pub struct Reduction<'a> {
+pub struct Reduction<P> {
     /// The scene and its model.
-    pub prepared: PreparedScene<'a>,
+    pub prepared: P,
     /// The coefficients.
     pub curves: ReducedCurves,
     /// The unit-load response, if there are loads.
@@ -261,28 +199,35 @@ pub struct Reduction<'a> {
 pub fn compute_reduction(
     scene: &Scene,
     points: Option<usize>,
-) -> Result<Reduction<'_>, StudyError> {
+) -> Result<Reduction<PreparedScene<'_>>, StudyError> {
     reject_unknown_variables(scene)?;
-    let prepared = PreparedScene::without_loads(scene)?;
-    let curves = ReducedCurves::new(&prepared, points)?;
-    let unit_loads = UnitLoadCurves::new(&prepared, &curves.q)?;
-    let errors = RoundingErrors::new(&prepared, &curves)?;
-    Ok(Reduction {
-        prepared,
-        curves,
-        unit_loads,
-        errors,
-    })
+    Reduction::new(PreparedScene::without_loads(scene)?, points)
 }
 
-impl Reduction<'_> {
+impl<P: ReducedScene> Reduction<P> {
+    /// The reduced parameters over the range of a model.
+    ///
+    /// # Errors
+    /// [`StudyError`] when a position of the range cannot be evaluated.
+    pub(crate) fn new(prepared: P, points: Option<usize>) -> Result<Self, StudyError> {
+        let curves = ReducedCurves::new(&prepared, points)?;
+        let unit_loads = prepared.unit_loads(&curves.q)?;
+        let errors = RoundingErrors::new(&prepared, &curves)?;
+        Ok(Self {
+            prepared,
+            curves,
+            unit_loads,
+            errors,
+        })
+    }
+
     /// Coordinate, m, ½m′, a and b of each requested reaction; V, w and c of the loads; relative rounding error.
     pub fn table(&self) -> Table {
         let mut table = self.curves.table(&self.prepared);
         let unit_loads = self.unit_loads.iter();
         let unit_loads = unit_loads.flat_map(|l| l.columns(&self.prepared));
         let errors = (Column::new("relative_error", ""), self.errors.rows.clone());
-        let known = self.curves.known_reactions(&self.prepared);
+        let known = self.prepared.known_reactions(&self.curves.q);
         for (column, values) in known.into_iter().chain(unit_loads).chain([errors]) {
             table.columns.push(column);
             for (row, value) in table.rows.iter_mut().zip(values) {

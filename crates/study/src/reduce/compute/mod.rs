@@ -1,6 +1,7 @@
 //! Computes the reduced parameters over the range, the unit-load response and the interpolation table.
 
 mod curves;
+mod known_reactions;
 #[cfg(feature = "output")]
 mod peak;
 mod table;
@@ -8,9 +9,9 @@ mod unit_load_curves;
 
 pub(crate) use curves::flat;
 pub use curves::{ReducedCurves, Reduction, RoundingErrors, compute_reduction};
-#[cfg(feature = "output")]
 pub(crate) use curves::{coefficient_units, inertia_units};
 #[cfg(feature = "output")]
-pub(crate) use peak::{Peak, peak_between_rows};
+pub(crate) use peak::{Peak, fast_turns, peak_between_rows};
 pub use table::{TableRequest, Tabulation, tabulate};
+pub(crate) use unit_load_curves::ReducedLoad;
 pub use unit_load_curves::UnitLoadCurves;

@@ -1,6 +1,6 @@
 //! Where m is largest between the positions of the rows: near a limit position or a change point it rises and falls within a step.
 
-use crate::models::PreparedScene;
+use crate::models::{InertiaAt, PreparedScene, ReducedScene};
 use crate::reduce::compute::ReducedCurves;
 use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{ExactWorkspace, ReducedModel as _, Workspace};
@@ -28,7 +28,7 @@ pub(crate) struct Peak {
 
 /// Where m is largest between two rows; none where a row shows it to a thousandth.
 pub(crate) fn peak_between_rows(
-    prepared: &PreparedScene<'_>,
+    prepared: &dyn ReducedScene,
     curves: &ReducedCurves,
 ) -> Option<Peak> {
     let all = &curves.coefficients;
@@ -39,16 +39,41 @@ pub(crate) fn peak_between_rows(
         false => largest.checked_sub(1),
     };
     let beside = first.and_then(|first| Some([curves.q[first], *curves.q.get(first + 1)?]));
-    let mut search = PeakSearch::new(prepared);
-    let fast = search.fast_turns(&curves.q).into_iter();
-    let fast: Vec<_> = fast
-        .filter_map(|step| search.around_fast_turn(step))
-        .collect();
+    let mut inertia = prepared.inertia();
+    let fast = prepared.fast_turns(&curves.q);
     let highest = (beside.into_iter().chain(fast))
-        .filter_map(|bracket| search.highest(bracket))
+        .filter_map(|bracket| highest(&mut inertia, bracket))
         .max_by(|one, other| one[1].total_cmp(&other[1]));
     let [q, _] = highest.filter(|[_, m]| *m > all[largest].m * (1.0 + MIN_EXCESS))?;
-    search.peak(q)
+    let at_peak = prepared.coefficients(&[q]).ok()?.pop()?;
+    // Next to a limit position there may be no pose in 32 digits.
+    let errors = prepared.rounding_errors(q, &at_peak);
+    let error = errors.map_or(at_peak.m, |errors| errors.m);
+    let m = at_peak.m;
+    Some(Peak { q, m, error })
+}
+
+/// The highest m between a place where it rises and one where it falls, and where.
+fn highest(inertia: &mut InertiaAt<'_>, [mut low, mut high]: [f64; 2]) -> Option<[f64; 2]> {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        let (_, half_dm) = inertia(middle)?;
+        match half_dm > 0.0 {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    let (m, _) = inertia(low)?;
+    Some([low, m])
+}
+
+/// The steps between rows in which a body turns fast, each from where m rises to where it falls: m may be largest there.
+pub(crate) fn fast_turns(prepared: &PreparedScene<'_>, rows: &[f64]) -> Vec<[f64; 2]> {
+    let mut search = PeakSearch::new(prepared);
+    let steps = search.fast_turns(rows).into_iter();
+    steps
+        .filter_map(|step| search.around_fast_turn(step))
+        .collect()
 }
 
 /// The orientation of a body, and its angular velocity over that of the coordinate.
@@ -95,19 +120,6 @@ impl<'a> PeakSearch<'a> {
         fast.map(|(q, _)| [q[0], q[1]]).collect()
     }
 
-    /// The highest m between a place where it rises and one where it falls, and where.
-    fn highest(&mut self, [mut low, mut high]: [f64; 2]) -> Option<[f64; 2]> {
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            match self.rises(middle)? {
-                true => low = middle,
-                false => high = middle,
-            }
-        }
-        let (m, _) = self.prepared.model.inertia(low, &mut self.inertia).ok()?;
-        Some([low, m])
-    }
-
     /// The part of a step in which a body turns fast: from where m rises to where it falls.
     fn around_fast_turn(&mut self, [mut low, mut high]: [f64; 2]) -> Option<[f64; 2]> {
         let mut middle = 0.5 * (low + high);
@@ -148,19 +160,6 @@ impl<'a> PeakSearch<'a> {
     fn rises(&mut self, q: f64) -> Option<bool> {
         let (_, half_dm) = self.prepared.model.inertia(q, &mut self.inertia).ok()?;
         Some(half_dm > 0.0)
-    }
-
-    /// m at a coordinate with its estimated error.
-    fn peak(&mut self, q: f64) -> Option<Peak> {
-        let model = self.prepared.model.model();
-        let (mut at_peak, mut errors) = (model.coefficient_buffer(), model.coefficient_buffer());
-        model.reduce(q, &mut self.workspace, &mut at_peak).ok()?;
-        let mut precise = model.workspace();
-        let known = model.reduction_rounding_errors(q, &at_peak, &mut precise, &mut errors);
-        // Next to a limit position there may be no pose in 32 digits.
-        let error = known.map_or(at_peak.m, |()| errors.m);
-        let m = at_peak.m;
-        Some(Peak { q, m, error })
     }
 }
 

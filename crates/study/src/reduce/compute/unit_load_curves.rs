@@ -9,24 +9,32 @@
 //! response to one newton of it. Its w is zero and has no column.
 
 use crate::explain::{StudyError, explain_motion};
-use crate::models::{PreparedScene, loaded_determinate_model};
+use crate::models::{PreparedScene, ReducedScene, loaded_determinate_model};
 use dwell_findings::Column;
-use dwell_kinetostatics::{KinetostaticsError, Load, LoadKind};
+use dwell_kinetostatics::{KinetostaticsError, LoadKind};
 
 /// The unit-load response of every load over the range.
 pub struct UnitLoadCurves {
-    pub(crate) loads: Vec<Load>,
+    pub(crate) loads: Vec<ReducedLoad>,
     /// By position and load: w, then c of each reaction.
     pub(crate) rows: Vec<Vec<Vec<f64>>>,
     /// By position: the potential of all conservative loads, J.
     pub(crate) potential: Vec<f64>,
     pub(crate) conservative: bool,
-    is_angle: bool,
+    pub(crate) is_angle: bool,
+}
+
+/// A load, by what its columns say of it.
+pub(crate) struct ReducedLoad {
+    pub(crate) name: String,
+    /// Units of w along an angle, and of c of a force and of a moment.
+    pub(crate) units: [&'static str; 3],
+    /// Whether it has a w.
+    pub(crate) does_work: bool,
 }
 
 /// Unit of w and of c (of a force and of a moment) for a load; w is along an angle or a length.
-fn units(kind: LoadKind, is_angle: bool) -> [&'static str; 3] {
-    let [w, force, moment] = units_of_angle(kind);
+fn units([w, force, moment]: [&'static str; 3], is_angle: bool) -> [&'static str; 3] {
     let per_length = match w {
         "kg m" => "kg",
         "m2" => "m",
@@ -56,13 +64,13 @@ fn units_of_angle(kind: LoadKind) -> [&'static str; 3] {
 impl UnitLoadCurves {
     /// The unit of w of a load.
     pub fn unit(&self, load: usize) -> &'static str {
-        units(self.loads[load].kind, self.is_angle)[0]
+        units(self.loads[load].units, self.is_angle)[0]
     }
 
     /// The indices of the loads that have a w.
     pub(crate) fn working(&self) -> impl Iterator<Item = usize> {
         let all = 0..self.loads.len();
-        all.filter(|&l| self.loads[l].does_work())
+        all.filter(|&l| self.loads[l].does_work)
     }
 
     /// The unit-load response at the coordinates `q` (rad or m); `None` without loads.
@@ -76,7 +84,13 @@ impl UnitLoadCurves {
         let (mut workspace, mut results) = (model.workspace(), model.result_buffer());
         let loads = 0..scene.loads.len();
         let mut curves = Self {
-            loads: scene.loads.clone(),
+            loads: (scene.loads.iter())
+                .map(|load| ReducedLoad {
+                    name: load.name.clone(),
+                    units: units_of_angle(load.kind),
+                    does_work: load.does_work(),
+                })
+                .collect(),
             rows: Vec::with_capacity(q.len()),
             potential: Vec::with_capacity(q.len()),
             conservative: loads.clone().any(|l| {
@@ -107,19 +121,19 @@ impl UnitLoadCurves {
     }
 
     /// The columns and their values: V, w of each load, c of each reaction and load.
-    pub(crate) fn columns(&self, prepared: &PreparedScene<'_>) -> Vec<(Column, Vec<f64>)> {
+    pub(crate) fn columns(&self, prepared: &dyn ReducedScene) -> Vec<(Column, Vec<f64>)> {
         let mut all = Vec::new();
         if self.conservative {
             all.push((Column::new("V", "J"), self.potential.clone()));
         }
         let value = |load: usize, k: usize| self.rows.iter().map(|row| row[load][k]).collect();
         for (l, load) in self.working().map(|l| (l, &self.loads[l])) {
-            let [unit, ..] = units(load.kind, self.is_angle);
+            let [unit, ..] = units(load.units, self.is_angle);
             all.push((Column::new(format!("{}.w", load.name), unit), value(l, 0)));
         }
         for (k, (name, of)) in prepared.reaction_units().into_iter().enumerate() {
             for (l, load) in self.loads.iter().enumerate() {
-                let [_, force, moment] = units(load.kind, self.is_angle);
+                let [_, force, moment] = units(load.units, self.is_angle);
                 let unit = if of == "N" { force } else { moment };
                 let name = format!("{name}.c.{}", load.name);
                 all.push((Column::new(name, unit), value(l, k + 1)));

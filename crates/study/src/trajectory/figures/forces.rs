@@ -1,5 +1,6 @@
 //! Actuator forces, reactions, power and internal forces.
 
+use crate::models::lists_reactions;
 use crate::output::{add_note, chart, figure, reaction_figure_count, symbol};
 use crate::trajectory::compute::{Analysis, Column, Quantity, SectionedLink};
 use crate::trajectory::figures::{FigureContext, MAX_CURVES};
@@ -65,7 +66,8 @@ impl FigureContext<'_> {
             }
         }
         // Three panels fill a page.
-        let (shown, note) = reaction_figure_count(self.scene, panels.len().div_ceil(3));
+        let (shown, note) =
+            reaction_figure_count(lists_reactions(self.scene), panels.len().div_ceil(3));
         let page = |(i, panels): (usize, &[Panel])| {
             let name = match i {
                 0 => "reactions".to_owned(),

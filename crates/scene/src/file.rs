@@ -1,0 +1,85 @@
+//! The file of a scene: its name, its text, and where in the text its things are.
+
+use crate::diagnostics::Diagnostics;
+use crate::error::{SceneError, SceneWarning, Source};
+use crate::spans::{SceneLocation, SceneSpans};
+use crate::units::Units;
+use miette::NamedSource;
+use sha2::{Digest, Sha256};
+use std::fmt::Write as _;
+use std::sync::Arc;
+
+/// The file of a scene, in the plane or in space.
+#[derive(Debug, Clone)]
+pub struct SceneFile {
+    /// The file's stem, or its folder's name if the file is `scene.toml`.
+    pub name: String,
+    /// The title, or the name if there is none.
+    pub title: String,
+    /// A remark that is shown with all results.
+    pub note: Option<String>,
+    /// Name and text of the file. After [`with_value`](crate::Scene::with_value) the changed text.
+    pub source: Arc<NamedSource<String>>,
+    /// Former names that the file uses: they are read, and a program should show these to its user.
+    pub warnings: Vec<SceneWarning>,
+    pub(crate) units: Units,
+    pub(crate) spans: SceneSpans,
+}
+
+impl SceneFile {
+    /// A file that has been read without errors.
+    pub(crate) fn new(
+        (name, source): (String, &Source),
+        (title, note): (Option<String>, Option<String>),
+        units: &Units,
+        log: &Diagnostics,
+    ) -> Self {
+        Self {
+            title: title.unwrap_or_else(|| name.clone()),
+            name,
+            note,
+            source: Source::clone(source),
+            warnings: log.warnings(),
+            units: units.clone(),
+            spans: log.take_spans(),
+        }
+    }
+
+    /// SHA-256 of the scene's text, as 64 hexadecimal digits: what a result names its scene by. Line ends count as `\n` and a
+    /// byte order mark for nothing, so that a file has one hash wherever it is checked out.
+    pub fn hash(&self) -> String {
+        let text = self.source.inner().trim_start_matches('\u{feff}');
+        let digest = Sha256::digest(text.replace("\r\n", "\n"));
+        digest.iter().fold(String::new(), |mut hash, byte| {
+            // Writing to a string cannot fail.
+            let _ = write!(hash, "{byte:02x}");
+            hash
+        })
+    }
+
+    /// An error at places of the scene, each with a remark of its own, for what is found out
+    /// about the scene later.
+    pub fn error(
+        &self,
+        message: String,
+        help: Option<String>,
+        at: &[(SceneLocation, String)],
+    ) -> SceneError {
+        let labels = at
+            .iter()
+            .map(|(location, label)| (self.span(*location), label.clone()));
+        SceneError::with_labels(&self.source, message, help, labels)
+    }
+
+    /// Bytes of the text where a place is.
+    pub fn span(&self, mut location: SceneLocation) -> std::ops::Range<usize> {
+        // Every step outwards ends at the whole, which has no span: three steps at most.
+        while location != SceneLocation::Whole {
+            if let Some(span) = self.spans.get(&location) {
+                return span.clone();
+            }
+            location = location.enclosing();
+        }
+        0..0
+    }
+}

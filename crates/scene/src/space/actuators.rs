@@ -1,0 +1,110 @@
+//! The independent coordinates: angles and travels of joints.
+
+use super::bodies::Space;
+use super::joints::Joints;
+use crate::bodies::Bodies;
+use crate::keys::table;
+use crate::names::check;
+use crate::spans::SceneLocation;
+use crate::table_reader::{Entry, TableReader};
+use crate::wording::shorten;
+use dwell_geometry::space::{Actuator, ActuatorKind, JointKind};
+use dwell_geometry::{ActuatorId, JointId};
+
+/// An actuator as read; nothing in it if it was wrong.
+#[derive(Debug)]
+pub(super) struct ParsedActuator<'a> {
+    pub(super) name: &'a str,
+    pub(super) actuator: Option<Actuator>,
+}
+
+impl ParsedActuator<'_> {
+    /// Whether its coordinate is an angle; one that could not be read counts as one.
+    pub(super) fn is_angle(&self) -> bool {
+        let kind = self.actuator.as_ref().map(|a| a.kind);
+        !matches!(kind, Some(ActuatorKind::Travel(_)))
+    }
+}
+
+pub(super) fn actuators<'a>(
+    fields: &TableReader<'a>,
+    bodies: &Bodies<'_, Space>,
+    joints: &Joints<'_>,
+) -> Vec<ParsedActuator<'a>> {
+    let mut found: Vec<ParsedActuator<'a>> = Vec::new();
+    for (k, entry) in fields.entries.iter().enumerate() {
+        check("an actuator", entry);
+        entry
+            .log()
+            .place(SceneLocation::Actuator(ActuatorId(k)), &entry.key);
+        if bodies.position(entry.name).is_some() {
+            let message = format!(
+                "`{}` is the name of a body and of an actuator",
+                shorten(entry.name)
+            );
+            entry.reject::<()>(
+                message,
+                "and of an actuator",
+                "rename one: both are keys of [assembly]",
+            );
+        }
+        found.push(ParsedActuator {
+            name: entry.name,
+            actuator: read_actuator(entry, joints),
+        });
+    }
+    found
+}
+
+fn read_actuator(entry: &Entry<'_>, joints: &Joints<'_>) -> Option<Actuator> {
+    let fields = TableReader::open(entry, format!("actuator `{}`", shorten(entry.name)))?;
+    let help =
+        "write it as `{ angle = \"A\" }` or `{ travel = \"slide\" }`, with the name of a joint";
+    fields.reject_unknown_keys(table("actuator-in-space"));
+    let lacks = ("drives nothing", "neither `angle` nor `travel`");
+    let coordinate = fields.alternative(table("actuator-in-space"), lacks, help)?;
+    let name = coordinate.value.string(fields.name_of(coordinate))?;
+    let at = coordinate.value.span();
+    let joint = joints.find(name, &at)?;
+    let parsed = &joints.list[joint];
+    let (kind, id) = (parsed.joint.as_ref()?.kind, JointId(joint));
+    let is_angle = coordinate.name == "angle";
+    let (drives, others) = match is_angle {
+        true => (
+            matches!(
+                kind,
+                JointKind::Revolute | JointKind::Cylindrical | JointKind::Helical { .. }
+            ),
+            "revolute, cylindrical and helical joints have an angle that can be driven",
+        ),
+        false => (
+            matches!(kind, JointKind::Prismatic | JointKind::Cylindrical),
+            "prismatic and cylindrical joints have a travel",
+        ),
+    };
+    if !drives {
+        let message = format!(
+            "joint `{}` has no {} to be driven",
+            shorten(name),
+            coordinate.name
+        );
+        return fields.log().reject(message, &[(&at, "this joint")], others);
+    }
+    if is_angle && !parsed.has_zero {
+        let message = format!("the angle of joint `{}` has no zero", shorten(name));
+        let labels = [
+            (&at, "driven here"),
+            (&parsed.key, "with `axes`, but without `normals`"),
+        ];
+        let help = "add `normals` to the joint: a direction across the axis in the frame of each body, parallel at zero";
+        return fields.log().reject(message, &labels, help);
+    }
+    let kind = match is_angle {
+        true => ActuatorKind::Angle(id),
+        false => ActuatorKind::Travel(id),
+    };
+    Some(Actuator {
+        name: entry.name.to_owned(),
+        kind,
+    })
+}

@@ -1,0 +1,157 @@
+//! The sections of a scene in space, read in an order in which each finds what it refers to.
+
+use super::actuators::{ParsedActuator, actuators};
+use super::assembly::assembly;
+use super::bodies::Space;
+use super::joints::Joints;
+use super::loads::loads;
+use super::requests::{in_ground_axes, reactions};
+use super::scene::SpaceScene;
+use crate::bodies::Bodies;
+use crate::build::{
+    needed_section, one_line, printable, report_unjoined_bodies, section, text_of, title,
+};
+use crate::diagnostics::{Diagnostics, Span};
+use crate::error::{SceneError, Source};
+use crate::file::SceneFile;
+use crate::keys::table;
+use crate::spans::SceneLocation;
+use crate::table_reader::TableReader;
+use crate::units::Units;
+use crate::value::Context;
+use dwell_geometry::space::{Joint, Mechanism};
+use dwell_geometry::{Body, JointId};
+use dwell_kinetostatics::space::Reaction;
+use toml::de::{DeTable, DeValue};
+
+/// Whether a scene is one in space: whether any of its points or centres of mass has three numbers.
+pub(crate) fn is_in_space(source: &Source) -> Result<bool, SceneError> {
+    let root = crate::read::syntax(source)?;
+    Ok(three_numbers(root.get_ref()).is_some())
+}
+
+/// Where the first point or centre of three numbers is.
+pub(crate) fn three_numbers(root: &DeTable<'_>) -> Option<Span> {
+    let DeValue::Table(bodies) = root.get("bodies")?.get_ref() else {
+        return None;
+    };
+    let tables = bodies.iter().filter_map(|(_, body)| match body.get_ref() {
+        DeValue::Table(body) => Some(body),
+        _ => None,
+    });
+    let values = tables.flat_map(|body| {
+        let points = body.get("points").map(toml::Spanned::get_ref);
+        let points = match points {
+            Some(DeValue::Table(points)) => points.iter().map(|(_, point)| point).collect(),
+            _ => Vec::new(),
+        };
+        points.into_iter().chain(body.get("center"))
+    });
+    let is_triple = |value: &DeValue<'_>| matches!(value, DeValue::Array(all) if all.len() == 3);
+    values
+        .filter(|value| is_triple(value.get_ref()))
+        .map(toml::Spanned::span)
+        .min_by_key(|span| span.start)
+}
+
+impl SpaceScene {
+    pub(crate) fn build(name: String, source: &Source) -> Result<Self, SceneError> {
+        let root = crate::read::syntax(source)?;
+        let log = &Diagnostics::new(source);
+        let fields = |units| {
+            let context = Context { units, log };
+            TableReader::new("the scene", (0..0, 0..0), root.get_ref(), context)
+        };
+        let si = Units::default();
+        let units = Units::read(fields(&si).get("units"));
+        let scene = read(name, source, &fields(&units));
+        if let Some(error) = log.to_error() {
+            return Err(error);
+        }
+        // Parts are missing only where something was found wrong.
+        let incomplete = || SceneError::without_labels("the scene is incomplete".to_owned(), None);
+        scene.ok_or_else(incomplete)
+    }
+}
+
+/// The scene; none if anything was found wrong.
+fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<SpaceScene> {
+    let log = fields.log();
+    reject_unknown_sections(fields);
+    for (key, location) in [
+        ("units", SceneLocation::Units),
+        ("assembly", SceneLocation::Assembly),
+        ("requests", SceneLocation::Requests),
+    ] {
+        fields.place(key, location);
+    }
+    let section = |key| section(fields, key);
+    let (title, note) = (title(fields), text_of(fields, "note"));
+    // Without bodies every other name would be unknown: one message is enough.
+    let bodies: Bodies<'_, Space> = Bodies::read(&needed_section(fields, "bodies")?);
+    let joints = Joints::read(needed_section(fields, "joints").as_ref(), &bodies, log);
+    let actuators = section("actuators").map_or_else(Vec::new, |f| actuators(&f, &bodies, &joints));
+    let assembly = assembly(section("assembly").as_ref(), &bodies, &actuators);
+    let loads = section("loads").map_or_else(Vec::new, |f| loads(&f, &bodies));
+    let listed = section("requests").and_then(|f| reactions(&f, &joints));
+    let joined = || joints.list.iter().filter_map(|j| j.joint.as_ref());
+    // A joint that could not be read may be the one that holds a body.
+    if !joints.list.is_empty() && joined().count() == joints.list.len() {
+        report_unjoined_bodies(&bodies, joined().flat_map(|j| j.bodies), log);
+    }
+    if log.count() > 0 {
+        return None;
+    }
+    let ground = bodies.ground?;
+    let joints: Vec<Joint> = joints.list.into_iter().filter_map(|j| j.joint).collect();
+    let all = joints.iter().enumerate().flat_map(|(j, joint)| {
+        let reaction = move |component| Reaction {
+            joint: JointId(j),
+            component,
+        };
+        in_ground_axes(joint.kind).map(reaction)
+    });
+    let points = bodies.list.iter().map(|b| {
+        let points = b.points.iter();
+        points
+            .map(|(name, at)| (str::to_owned(name), *at))
+            .collect()
+    });
+    Some(SpaceScene {
+        lists_reactions: listed.is_some(),
+        reactions: listed.unwrap_or_else(|| all.collect()),
+        masses: bodies.list.iter().map(|b| b.mass).collect(),
+        points: points.collect(),
+        mechanism: Mechanism {
+            bodies: bodies.list.iter().map(|b| Body::named(b.name)).collect(),
+            ground,
+            actuators: actuators
+                .into_iter()
+                .filter_map(|a: ParsedActuator<'_>| a.actuator)
+                .collect(),
+            joints,
+        },
+        assembly,
+        loads,
+        file: SceneFile::new(
+            (name, source),
+            (title.map(one_line), note.map(printable)),
+            fields.units(),
+            log,
+        ),
+    })
+}
+
+/// Sections of scenes in the plane that those in space do not have yet are named as such.
+fn reject_unknown_sections(fields: &TableReader<'_>) {
+    let planar = table("scene");
+    for entry in fields.unknown_entries(table("scene-in-space")) {
+        if planar.contains_key(entry.name) {
+            let message = format!("a scene in space has no `[{}]` yet", entry.name);
+            let help = "its points have three numbers; leave this section out";
+            entry.reject::<()>(message, "for scenes in the plane", help);
+        } else {
+            fields.report_unknown_key(entry, "keys here", table("scene-in-space").names());
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! The joints: which points of which bodies they connect, along which axes.
+
+use super::bodies::Space;
+use super::values::{direction, two_directions};
+use crate::bodies::{Bodies, TWO_POINTS};
+use crate::diagnostics::{Diagnostics, Span};
+use crate::keys::kinds;
+use crate::kind::{kind_among, reject_unread_kind};
+use crate::names::check;
+use crate::spans::SceneLocation;
+use crate::table_reader::{Entry, TableReader};
+use crate::value::{NumberRule, SignRule};
+use crate::wording::shorten;
+use dwell_geometry::JointId;
+use dwell_geometry::space::{Joint, JointKind, Side, Vec3};
+use std::f64::consts::TAU;
+
+/// A joint as read; nothing in it if it was wrong, while its name still counts as known.
+#[derive(Debug)]
+pub(super) struct ParsedJoint<'a> {
+    pub(super) name: &'a str,
+    pub(super) key: Span,
+    pub(super) joint: Option<Joint>,
+    /// Whether the zero of its angle is stated: by normals, or by frames with one axis.
+    pub(super) has_zero: bool,
+}
+
+/// All the joints as read.
+#[derive(Debug)]
+pub(super) struct Joints<'a> {
+    pub(super) list: Vec<ParsedJoint<'a>>,
+    log: &'a Diagnostics,
+}
+
+impl<'a> Joints<'a> {
+    pub(super) fn read(
+        fields: Option<&TableReader<'a>>,
+        bodies: &Bodies<'_, Space>,
+        log: &'a Diagnostics,
+    ) -> Self {
+        let mut list = Vec::new();
+        for (j, entry) in fields.iter().flat_map(|f| &f.entries).enumerate() {
+            check("a joint", entry);
+            entry
+                .log()
+                .place(SceneLocation::Joint(JointId(j)), &entry.key);
+            let count = log.count();
+            let read = read_joint(entry, JointId(j), bodies);
+            let (joint, has_zero) = read.filter(|_| log.count() == count).unzip();
+            list.push(ParsedJoint {
+                name: entry.name,
+                key: entry.key.clone(),
+                joint,
+                has_zero: has_zero.unwrap_or(true),
+            });
+        }
+        Self { list, log }
+    }
+
+    /// The joint of that name; `at` is where the text names it.
+    pub(super) fn find(&self, name: &str, at: &Span) -> Option<usize> {
+        let found = self.list.iter().position(|j| j.name == name);
+        // Without any joint the scene has a greater problem, reported by now.
+        if found.is_none() && !self.list.is_empty() {
+            let help = self
+                .log
+                .choices(name, "joints", self.list.iter().map(|j| j.name));
+            let message = format!("there is no joint `{}`", shorten(name));
+            self.log.report(message, &[(at, "unknown joint")], help);
+        }
+        found
+    }
+}
+
+/// The joint, and whether the zero of its angle is stated.
+fn read_joint(entry: &Entry<'_>, id: JointId, bodies: &Bodies<'_, Space>) -> Option<(Joint, bool)> {
+    let fields = TableReader::open(entry, format!("joint `{}`", shorten(entry.name)))?;
+    let (kind, kind_entry) = kind_among(&fields, "joint", &kinds("joints-in-space"))?;
+    for key in ["axis", "axes"] {
+        fields.place(key, SceneLocation::Axis(id));
+    }
+    let what = fields.name_of(kind_entry);
+    let points = bodies.find_two_points(kind_entry.value, TWO_POINTS, what);
+    let joint_kind = joint_kind(kind, kind_entry, &fields);
+    let directions = directions(kind, &fields);
+    let [a, b] = points?;
+    let message = |name: &str| format!("{} joins body `{name}` to itself", fields.what);
+    let help = "a joint holds two different bodies together";
+    bodies.require_different([(a.0, &a.2), (b.0, &b.2)], message, help)?;
+    for (k, point) in [&a, &b].into_iter().enumerate() {
+        entry
+            .log()
+            .place(SceneLocation::JointPoint(id, k), &point.2);
+    }
+    let Directions {
+        axes,
+        normals,
+        has_zero,
+    } = directions?;
+    let side = |k: usize, point| Side {
+        point: bodies.at(point),
+        axis: axes[k],
+        normal: normals[k],
+    };
+    let sides = [side(0, &a), side(1, &b)];
+    Some((
+        Joint::new(entry.name, [a.0, b.0], joint_kind?, sides),
+        has_zero,
+    ))
+}
+
+fn joint_kind(kind: &str, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<JointKind> {
+    Some(match kind {
+        "revolute" => JointKind::Revolute,
+        "prismatic" => JointKind::Prismatic,
+        "cylindrical" => JointKind::Cylindrical,
+        "universal" => JointKind::Universal,
+        "spherical" => JointKind::Spherical,
+        "planar" => JointKind::Planar,
+        "weld" => JointKind::Weld,
+        "helical" => {
+            let help = "add `pitch = 5`: the travel for one revolution";
+            let rule = NumberRule::new(&fields.units().length, SignRule::NotZero);
+            let rule = rule.because("without travel it is a revolute joint");
+            let pitch = fields.number("pitch", help, &rule)? / TAU;
+            JointKind::Helical { pitch }
+        }
+        "distance" => {
+            let help = "add `length = 200`: the distance the two points keep";
+            let rule = NumberRule::new(&fields.units().length, SignRule::Positive);
+            let rule = rule.because("two coinciding points are a spherical joint");
+            let length = fields.number("length", help, &rule)?;
+            JointKind::Distance { length }
+        }
+        _ => return reject_unread_kind(entry),
+    })
+}
+
+/// The axes of a joint and the normals from which its angle counts, in the frame of each body.
+struct Directions {
+    axes: [Vec3; 2],
+    normals: [Vec3; 2],
+    has_zero: bool,
+}
+
+fn directions(kind: &str, fields: &TableReader<'_>) -> Option<Directions> {
+    let z = Side::default();
+    let two = |key: &str| {
+        let entry = fields.get(key)?;
+        Some(two_directions(entry.value, &fields.name_of(entry)))
+    };
+    let axes = match (kind, fields.get("axis"), two("axes")) {
+        ("spherical" | "distance" | "weld", None, None) => [z.axis; 2],
+        (_, Some(axis), None) => {
+            let axis = direction(axis.value, format_args!("the axis of {}", fields.what))?;
+            [axis; 2]
+        }
+        (_, None, Some(axes)) => axes?,
+        (_, Some(a), Some(_)) => {
+            let b = fields.get("axes")?;
+            fields.reject_both(
+                a,
+                b,
+                ["the same axis in both bodies", "one axis for each body"],
+            );
+            return None;
+        }
+        (_, None, None) => {
+            let help = match kind {
+                "universal" => {
+                    "add `axes = [[0, 1, 0], [1, 0, 0]]`: the axis of the cross on each body"
+                }
+                _ => {
+                    "add `axis = [0, 0, 1]`, in the frames of both bodies, or `axes` with one for each"
+                }
+            };
+            let missing = if kind == "universal" {
+                "`axes` is missing"
+            } else {
+                "`axis` is missing"
+            };
+            let message = format!("{} has no axis", fields.what);
+            return fields
+                .log()
+                .reject(message, &[(&fields.key, missing)], help);
+        }
+    };
+    let given = two("normals");
+    let is_common = axes[0] == axes[1];
+    let has_zero = is_common || given.is_some();
+    if !has_zero && matches!(kind, "prismatic" | "helical" | "weld") {
+        return missing_normals(
+            fields,
+            fields.get("axes"),
+            "with two axes nothing says how the bodies stand to each other",
+        );
+    }
+    let normals = match given {
+        Some(normals) => normals?,
+        // Whatever the axis, the frames of both bodies are parallel at zero.
+        None => axes.map(Vec3::any_normal),
+    };
+    for (k, name) in ["first", "second"].into_iter().enumerate() {
+        let across = normals[k] - axes[k].scaled(axes[k].dot(normals[k]));
+        if across.norm() < 1e-6 {
+            let message = format!(
+                "the {name} of the normals of {} lies along the axis",
+                fields.what
+            );
+            let entry = fields.get("normals")?;
+            return entry.value.reject(
+                message,
+                "along the axis",
+                "give a direction across the axis",
+            );
+        }
+    }
+    Some(Directions {
+        axes,
+        normals,
+        has_zero,
+    })
+}
+
+/// Reports normals that are needed.
+pub(super) fn missing_normals<T>(
+    fields: &TableReader<'_>,
+    at: Option<&Entry<'_>>,
+    why: &str,
+) -> Option<T> {
+    let help = "add `normals = [[1, 0, 0], [0, 1, 0]]`: a direction across the axis in the frame of each body, parallel at zero";
+    let span = at.map_or_else(|| fields.key.clone(), |e| e.key.clone());
+    fields.log().reject(
+        format!("{} needs normals", fields.what),
+        &[(&span, why)],
+        help,
+    )
+}

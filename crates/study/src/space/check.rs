@@ -1,0 +1,213 @@
+//! `dwell check` of a scene in space: degrees of freedom, range, groups, placements and reactions, before anything moves.
+
+use super::prepared::{compile, is_angle, sort_reactions};
+use crate::explain::{StudyError, describe_ends};
+use crate::number_format::{coordinate_unit, count, number};
+use crate::output::Outcome;
+use dwell_findings::Record;
+use dwell_geometry::Range;
+use dwell_geometry::space::Plan;
+use dwell_kinetostatics::space::{Model, Reaction};
+use dwell_scene::SpaceScene;
+
+/// Describes a scene in space. It writes no file.
+///
+/// # Errors
+/// [`StudyError::Scene`] when the mechanism cannot be assembled.
+pub fn check_in_space(scene: &SpaceScene) -> Result<Outcome, StudyError> {
+    let mechanism = &scene.mechanism;
+    let mut record = Record::default();
+    let model = compile(scene, &scene.reactions)?;
+    let sorted = sort_reactions(scene, &model)?;
+    let plan = model.plan();
+    let names = mechanism.actuators.iter().map(|a| a.name.as_str());
+    let mut text = format!(
+        "{}\n  in space: {}, {}, {}, driven by {}\n",
+        scene.title,
+        count(mechanism.bodies.len() - 1, "moving body"),
+        count(mechanism.joints.len(), "joint"),
+        count(plan.actuators(), "degree of freedom"),
+        names.collect::<Vec<_>>().join(", "),
+    );
+    record.add_count("moving_bodies", mechanism.bodies.len() - 1);
+    record.add_count("joints", mechanism.joints.len());
+    record.add_count("degrees_of_freedom", plan.actuators());
+    text += &describe_freedom(scene, plan, &mut record);
+    text += &describe_range(scene, plan, &mut record);
+    text += &describe_groups(scene, plan, &mut record);
+    text += &describe_placements(scene, &model, &mut record);
+    text += &describe_reactions(scene, &sorted, &mut record);
+    if let Some(note) = &scene.note {
+        text += &format!("  note: {note}\n");
+    }
+    Ok(Outcome {
+        summary: text,
+        record,
+        ..Outcome::default()
+    })
+}
+
+/// Redundant constraints and idle rotations, which counting does not show.
+fn describe_freedom(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> String {
+    let mobility = plan.mobility();
+    let by_rank = mobility.degrees_of_freedom;
+    // Each body has six freedoms, and each joint takes away what it does not allow; an idle rotation is a freedom, too.
+    let counted = (by_rank + mobility.idle.len()) as f64 - mobility.redundant_count as f64;
+    let mut text = String::new();
+    if mobility.redundant_count > 0 {
+        let redundant = match mobility.redundant_count {
+            1 => "one constraint is redundant".to_owned(),
+            n => format!("{n} constraints are redundant"),
+        };
+        record.add("degrees_of_freedom.counted", "", counted);
+        record.add_count("redundant_constraints", mobility.redundant_count);
+        text += &format!(
+            "  {counted} degrees of freedom by counting (Grübler), {by_rank} by rank: {redundant}, consistently\n"
+        );
+    }
+    for idle in &mobility.idle {
+        let name = &scene.mechanism.bodies[idle.body.0].name;
+        text += &format!(
+            "  {name} turns idly about the line of its two balls: nothing else feels it, and here it does not turn about that line\n"
+        );
+    }
+    if !mobility.idle.is_empty() {
+        record.add_count("idle_rotations", mobility.idle.len());
+    }
+    text
+}
+
+/// The range of the actuator.
+fn describe_range(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> String {
+    let [actuator] = scene.mechanism.actuators.as_slice() else {
+        return "  several actuators: limit positions are not looked for\n".to_owned();
+    };
+    let (name, is_angle) = (&actuator.name, is_angle(scene));
+    let unit = coordinate_unit(is_angle);
+    if let Some((from, to)) = plan.range().limits() {
+        record.add("range.lower", unit, from);
+        record.add("range.upper", unit, to);
+    }
+    match plan.range() {
+        Range::Full => format!("  {name} rotates fully\n"),
+        Range::Revolutions(revolutions) => {
+            record.add("period.revolutions", "", f64::from(revolutions));
+            format!(
+                "  {name} rotates fully; the mechanism is periodic after {revolutions} revolutions\n"
+            )
+        }
+        Range::Unbounded => format!("  no limit of {name} was found\n"),
+        Range::Limited(from, to) => {
+            let ends = describe_ends(from, to, is_angle);
+            format!("  {name} ranges from {ends}: limit positions at both ends\n")
+        }
+        Range::Stroke(from, to) | Range::Unresolved(from, to) => {
+            let ends = describe_ends(from, to, is_angle);
+            format!("  {name} ranges from {ends}; how it goes on from there is not known\n")
+        }
+    }
+}
+
+/// The groups of unknowns that are solved together.
+fn describe_groups(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> String {
+    let groups = plan.described_groups();
+    if groups.is_empty() {
+        return String::new();
+    }
+    let mut text = "  groups, in the order of solution:\n".to_owned();
+    for (g, group) in groups.iter().enumerate() {
+        let number = g + 1;
+        let joints = group.joints.iter();
+        let joints: Vec<_> = joints
+            .map(|j| scene.mechanism.joints[j.0].name.as_str())
+            .collect();
+        record.add_count(format!("group.{number}.unknowns"), group.unknowns);
+        record.add_count(format!("group.{number}.equations"), group.equations);
+        text += &format!(
+            "    {number}. closed by {}: {} from {}, Newton's method\n",
+            joints.join(", "),
+            count(group.unknowns, "unknown"),
+            count(group.equations, "equation"),
+        );
+    }
+    text
+}
+
+/// Where the bodies are at the start.
+fn describe_placements(scene: &SpaceScene, model: &Model, record: &mut Record) -> String {
+    let (mechanism, plan) = (&scene.mechanism, model.plan());
+    let mut pose = plan.pose();
+    let start = &scene.assembly.q;
+    if plan.positions(start, &mut pose).is_err() {
+        return String::new();
+    }
+    let unit = coordinate_unit(is_angle(scene));
+    let at = mechanism.actuators.iter().zip(start);
+    let at = at.map(|(a, &q)| format!("{} = {} {unit}", a.name, number(q)));
+    let mut text = format!(
+        "  at {}: origin of each body's frame in m, and its rotation as a vector in degrees\n",
+        at.collect::<Vec<_>>().join(", ")
+    );
+    for (actuator, &q) in mechanism.actuators.iter().zip(start) {
+        record.add(format!("start.{}", actuator.name), unit, q);
+    }
+    let moving = (0..mechanism.bodies.len()).filter(|&b| b != mechanism.ground);
+    let widths = mechanism.bodies.iter().map(|b| b.name.chars().count());
+    let width = widths.max().unwrap_or(0);
+    for b in moving {
+        let (name, placement) = (&mechanism.bodies[b].name, plan.placement(&pose, b));
+        let (at, turn) = (placement.position, placement.rotation.vector());
+        let vectors = [("position", "m", at), ("rotation", "rad", turn)];
+        for (what, unit, vector) in vectors {
+            for (axis, value) in ["x", "y", "z"]
+                .into_iter()
+                .zip([vector.x, vector.y, vector.z])
+            {
+                record.add(format!("start.{name}.{what}.{axis}"), unit, value);
+            }
+        }
+        // Rounded first, so that no zero keeps a minus sign.
+        let show = |value: f64, parts: f64| (value * parts).round() / parts + 0.0;
+        let [x, y, z] = [at.x, at.y, at.z].map(|v| show(v, 1e6));
+        let [a, b, c] = [turn.x, turn.y, turn.z].map(|v| show(v.to_degrees(), 1e3));
+        text += &format!(
+            "    {name:<width$}  ({x:9.6}, {y:9.6}, {z:9.6})  ({a:8.3}°, {b:8.3}°, {c:8.3}°)\n"
+        );
+    }
+    text
+}
+
+/// The requested reactions: which the loads determine, and which redundant constraints leave open.
+fn describe_reactions(
+    scene: &SpaceScene,
+    [determined, others]: &[Vec<Reaction>; 2],
+    record: &mut Record,
+) -> String {
+    let names = |some: &[Reaction]| {
+        let names: Vec<_> = some.iter().map(|&r| scene.reaction_name(r)).collect();
+        if names.is_empty() {
+            "none".to_owned()
+        } else {
+            names.join(", ")
+        }
+    };
+    record.add_count("reactions.determined", determined.len());
+    record.add_count("reactions.indeterminate", others.len());
+    let requested = if scene.lists_reactions {
+        "requested"
+    } else {
+        "all requested, in the axes of the ground"
+    };
+    let all = count(determined.len() + others.len(), "component");
+    let mut text = format!(
+        "  reactions: {all} {requested}\n    statically determinate: {}\n",
+        names(determined)
+    );
+    if !others.is_empty() {
+        text += &format!(
+            "    statically indeterminate, because redundant constraints share the load: {}\n",
+            names(others)
+        );
+    }
+    text
+}

@@ -1,0 +1,263 @@
+//! A scene in space with the exact reduced model of what it requests.
+
+use super::explain::{explain_model, explain_position};
+use crate::explain::{StudyError, scene_error};
+use crate::models::{InertiaAt, ReducedScene};
+use crate::number_format::count;
+use crate::output::{indeterminate_note, symbol};
+use crate::ranges::equally_spaced;
+use crate::reduce::compute::{ReducedLoad, UnitLoadCurves};
+use dwell_geometry::space::ActuatorKind;
+use dwell_geometry::{ActuatorId, PositionError, Range};
+use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};
+use dwell_kinetostatics::{Coefficients, ExactModel, ReducedModel as _, reduction_rounding_errors};
+use dwell_scene::{SceneFile, SceneLocation, SpaceScene};
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// Part of the range that is left out at each limit position, where everything grows.
+const LIMIT_MARGIN: f64 = 1e-3;
+/// Half a stroke without limits, in sizes of the mechanism.
+const DEFAULT_STROKE: f64 = 0.5;
+
+/// A scene in space and the reduced model of what it requests.
+#[derive(Debug)]
+pub struct PreparedSpaceScene<'a> {
+    /// The scene.
+    pub scene: &'a SpaceScene,
+    /// The model, with the requested reactions that the loads determine.
+    pub model: ExactModel<Model>,
+    /// Requested reactions that redundant constraints leave open.
+    pub indeterminate: Vec<Reaction>,
+}
+
+impl<'a> PreparedSpaceScene<'a> {
+    /// Compiles what a scene requests.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] when the mechanism cannot be assembled, or does not have one actuator.
+    pub fn new(scene: &'a SpaceScene) -> Result<Self, StudyError> {
+        let model = compile(scene, &scene.reactions)?;
+        let [determined, indeterminate] = sort_reactions(scene, &model)?;
+        let model = match indeterminate.is_empty() {
+            true => model,
+            false => compile(scene, &determined)?,
+        };
+        let Some(model) = ExactModel::new(model) else {
+            let given = count(scene.mechanism.actuators.len(), "actuator");
+            let message = format!("the scene has {given}: the reduced model needs exactly one");
+            let help = "give exactly one actuator in [actuators]";
+            let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
+            let labels = actuators.map(|a| (SceneLocation::Actuator(a), "drives it"));
+            return Err(scene_error(scene, message, help, labels));
+        };
+        Ok(Self {
+            scene,
+            model,
+            indeterminate,
+        })
+    }
+
+    fn explain(&self, error: &PositionError) -> StudyError {
+        explain_position(self.scene, self.model.model().plan(), error)
+    }
+}
+
+/// A model of a scene for some reactions.
+pub(super) fn compile(scene: &SpaceScene, reactions: &[Reaction]) -> Result<Model, StudyError> {
+    Model::new(&scene.mechanism, &scene.masses, &scene.assembly, reactions)
+        .map_err(|e| explain_model(scene, &e))
+}
+
+/// The reactions of a model: those that the loads determine, and those that redundant constraints leave open.
+pub(super) fn sort_reactions(
+    scene: &SpaceScene,
+    model: &Model,
+) -> Result<[Vec<Reaction>; 2], StudyError> {
+    let workspace = &mut model.workspace();
+    let mut determined = model
+        .determined(&scene.assembly.q, workspace)
+        .map_err(|e| explain_position(scene, model.plan(), &e))?;
+    // A symmetric start may hide what is open elsewhere.
+    for q in elsewhere(scene, model) {
+        if let Ok(there) = model.determined(&[q], workspace) {
+            (determined.iter_mut().zip(there)).for_each(|(all, here)| *all &= here);
+        }
+    }
+    let all = model.reactions().zip(determined);
+    let (determined, others): (Vec<_>, Vec<_>) = all.partition(|(_, determined)| *determined);
+    Ok([determined, others].map(|some| some.into_iter().map(|(reaction, _)| reaction).collect()))
+}
+
+/// Other coordinates of a mechanism with one actuator, within its range.
+fn elsewhere(scene: &SpaceScene, model: &Model) -> Vec<f64> {
+    let [start] = scene.assembly.q[..] else {
+        return Vec::new();
+    };
+    let step = match model.plan().range().limits() {
+        None => 1.0,
+        Some((from, to)) => 0.2 * (to - from),
+    };
+    [-1.13, -0.41, 0.37, 1.21]
+        .map(|parts| start + parts * step)
+        .to_vec()
+}
+
+/// Units of w along an angle, and of c of a force and of a moment.
+fn load_units(kind: LoadKind) -> [&'static str; 3] {
+    match kind {
+        LoadKind::Gravity(_) => ["kg m", "kg", "kg m"],
+        LoadKind::Torque { .. } => ["", "1/m", ""],
+        LoadKind::Force { .. } | LoadKind::PointToPointForce { .. } => ["m", "", "m"],
+    }
+}
+
+impl ReducedScene for PreparedSpaceScene<'_> {
+    fn file(&self) -> &SceneFile {
+        &self.scene.file
+    }
+
+    fn coordinate_name(&self) -> &str {
+        &self.scene.mechanism.actuators[0].name
+    }
+
+    fn is_angle(&self) -> bool {
+        is_angle(self.scene)
+    }
+
+    fn reaction_units(&self) -> Vec<(String, &'static str)> {
+        let named = |reaction: Reaction| {
+            let unit = match reaction.component {
+                Component::Force(..) => "N",
+                Component::Moment(..) => "N m",
+            };
+            (self.scene.reaction_name(reaction), unit)
+        };
+        self.model.model().reactions().map(named).collect()
+    }
+
+    fn lists_reactions(&self) -> bool {
+        self.scene.lists_reactions
+    }
+
+    fn range(&self) -> Range {
+        self.model.range()
+    }
+
+    fn has_limits(&self) -> [bool; 2] {
+        [matches!(self.range(), Range::Limited(..)); 2]
+    }
+
+    fn positions(&self, intervals: usize) -> Vec<f64> {
+        let start = self.scene.assembly.q[0];
+        let within = |from: f64, to: f64| {
+            let margin = LIMIT_MARGIN * (to - from);
+            [from + margin, to - margin]
+        };
+        let limits = match self.range() {
+            Range::Limited(from, to) => within(from, to),
+            Range::Full => [0.0, TAU],
+            Range::Revolutions(count) => [0.0, TAU * f64::from(count)],
+            Range::Stroke(from, to) | Range::Unresolved(from, to) => {
+                let half = if self.is_angle() {
+                    TAU
+                } else {
+                    DEFAULT_STROKE * self.size()
+                };
+                [from.max(start - half), to.min(start + half)]
+            }
+            Range::Unbounded if self.is_angle() => [start, start + TAU],
+            Range::Unbounded => {
+                let half = DEFAULT_STROKE * self.size();
+                [start - half, start + half]
+            }
+        };
+        equally_spaced(limits, intervals)
+    }
+
+    fn size(&self) -> f64 {
+        self.model.model().plan().size()
+    }
+
+    fn coefficients(&self, q: &[f64]) -> Result<Vec<Coefficients>, StudyError> {
+        let model = self.model.model();
+        let at = |workspace: &mut _, &q: &f64| {
+            let mut out = model.coefficient_buffer();
+            model
+                .reduce(q, workspace, &mut out)
+                .map_err(|e| self.explain(&e))?;
+            Ok(out)
+        };
+        q.par_iter().map_init(|| model.workspace(), at).collect()
+    }
+
+    fn rounding_errors(&self, q: f64, at: &Coefficients) -> Result<Coefficients, StudyError> {
+        let model = self.model.model();
+        let (mut workspace, mut errors) = (model.workspace(), model.coefficient_buffer());
+        reduction_rounding_errors(model, q, at, &mut workspace, &mut errors)
+            .map_err(|e| self.explain(&e))?;
+        Ok(errors)
+    }
+
+    fn inertia(&self) -> InertiaAt<'_> {
+        let mut workspace = self.model.workspace();
+        Box::new(move |q| self.model.inertia(q, &mut workspace).ok())
+    }
+
+    fn unit_loads(&self, q: &[f64]) -> Result<Option<UnitLoadCurves>, StudyError> {
+        let loads = &self.scene.loads;
+        if loads.is_empty() {
+            return Ok(None);
+        }
+        let model = self.model.model();
+        let (mut workspace, mut response) = (model.workspace(), model.result_buffer());
+        let mut curves = UnitLoadCurves {
+            loads: loads
+                .iter()
+                .map(|load| ReducedLoad {
+                    name: load.name.clone(),
+                    units: load_units(load.kind),
+                    does_work: true,
+                })
+                .collect(),
+            rows: Vec::with_capacity(q.len()),
+            potential: Vec::with_capacity(q.len()),
+            conservative: loads.iter().any(|load| load.kind.is_conservative()),
+            is_angle: self.is_angle(),
+        };
+        for &q in q {
+            let (mut row, mut potential) = (Vec::with_capacity(loads.len()), 0.0);
+            for load in loads {
+                model
+                    .unit_load_response(&[q], &load.kind, &mut workspace, &mut response)
+                    .map_err(|e| self.explain(&e))?;
+                let unit = model.potential_energy(&load.kind, &workspace);
+                potential += load.magnitude * unit.unwrap_or_default();
+                let mut values = vec![-response.tau[0]];
+                values.extend(&response.reactions);
+                row.push(values);
+            }
+            curves.rows.push(row);
+            curves.potential.push(potential);
+        }
+        Ok(Some(curves))
+    }
+
+    fn coordinate_label(&self) -> String {
+        let actuator = &self.scene.mechanism.actuators[0];
+        let joint = &self.scene.mechanism.joints[actuator.kind.joint().0].name;
+        let what = if self.is_angle() { "angle" } else { "travel" };
+        format!("{what} {} of joint {joint}", symbol(&actuator.name))
+    }
+
+    fn notes(&self) -> String {
+        let names = self.indeterminate.iter();
+        indeterminate_note(names.map(|&r| self.scene.reaction_name(r)))
+    }
+}
+
+/// Whether the first coordinate is an angle.
+pub(super) fn is_angle(scene: &SpaceScene) -> bool {
+    let kind = scene.mechanism.actuators.first().map(|a| a.kind);
+    !matches!(kind, Some(ActuatorKind::Travel(_)))
+}
