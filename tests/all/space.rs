@@ -1,7 +1,9 @@
 //! Mechanisms in space: the thirteen references of `validation/spatial`, made by an independent program with 40 digits, and what
 //! must be refused.
 
+mod random_loops;
 mod reference;
+mod scenes;
 
 use dwell_geometry::space::{
     Actuator, ActuatorKind, Assembly, Joint, JointKind, Mechanism, Plan, Side, Vec3,
@@ -229,8 +231,8 @@ fn the_governor_agrees_in_two_coordinates() {
                 );
                 compared += 1;
             };
-            for k in 0..2 {
-                agree("actuator", found.tau[k], wanted[k]);
+            for (found, wanted) in found.tau.iter().zip(wanted) {
+                agree("actuator", *found, wanted);
             }
             for (k, (name, _)) in names.iter().enumerate() {
                 if let Some(wanted) = sample["reactions"].get(name) {

@@ -6,6 +6,7 @@
 mod cases;
 mod exported_runs;
 mod former;
+mod in_space;
 mod init;
 mod instants;
 mod interface;
@@ -17,7 +18,7 @@ mod validate;
 use clap::{CommandFactory as _, FromArgMatches as _};
 use dwell_findings::all_pass;
 use dwell_report::{Files, OutputFolder, ReportError};
-use dwell_scene::{AnyScene, Scene, SceneError, SceneFile, SpaceScene};
+use dwell_scene::{AnyScene, Scene, SceneError, SceneFile};
 use dwell_study::{
     Analysis, CommandResult, MotionSolver, Outcome, ParameterSweep, PictureFormat, PictureSpan,
     Pictures, Shard, SolverSettings, Step, StudyError, TableRequest, TrajectoryOutcome,
@@ -96,7 +97,7 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
             let done = done.and_then(|scene| {
                 let done = match &scene {
                     AnyScene::Plane(scene) => run_study(study, scene, &options.out, &bar),
-                    AnyScene::Space(scene) => run_in_space(study, scene),
+                    AnyScene::Space(scene) => in_space::run_study(study, scene),
                 };
                 times.add("computing");
                 let TrajectoryOutcome {
@@ -337,24 +338,6 @@ fn run_study(
     Ok(TrajectoryOutcome {
         outcome,
         early_stop,
-    })
-}
-
-/// Runs a study of a scene in space.
-fn run_in_space(command: &Command, scene: &SpaceScene) -> Result<TrajectoryOutcome, StudyError> {
-    let outcome = match command {
-        Command::Check { .. } => dwell_study::check_in_space(scene)?,
-        Command::Reduce {
-            table_accuracy: None,
-            accuracy: None,
-            points,
-            ..
-        } => dwell_study::reduce_in_space(scene, points.map(|n| n as usize))?,
-        _ => return Err(scene.planar_only().into()),
-    };
-    Ok(TrajectoryOutcome {
-        outcome,
-        early_stop: None,
     })
 }
 

@@ -26,7 +26,10 @@ pub(crate) fn validate(
     let read = |case: &PathBuf| Scene::read(case.join("scene.toml"));
     let scenes: Vec<_> = cases.iter().map(read).collect();
     reject_duplicate_names(&cases, &scenes)?;
-    scenes.iter().flatten().for_each(|scene| print_warnings(scene));
+    scenes
+        .iter()
+        .flatten()
+        .for_each(|scene| print_warnings(scene));
     let program = std::env::current_exe().ok();
     let one = |(scene, case): (&Result<Scene, SceneError>, &PathBuf)| {
         let scene = scene.as_ref().map_err(Clone::clone)?;

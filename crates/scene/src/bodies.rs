@@ -1,12 +1,11 @@
 //! The bodies: their points, their masses, and which of them is the ground.
 
 use crate::diagnostics::{Diagnostics, Span};
-use crate::dimensions::{Dimensions, Plane};
+use crate::dimensions::{Dimensions, Plane, mass_or_inertia};
 use crate::keys::table;
 use crate::names::check;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
-use crate::units::Unit;
 use crate::value::Value;
 use crate::varying_inertia::varying_inertia;
 use crate::wording::shorten;
@@ -242,7 +241,10 @@ fn read_body<'a, D: Dimensions>(
     fields.place("inertia", SceneLocation::Inertia(id));
     fields.place("center", SceneLocation::Center(id));
     let mass = body.read_mass(fields, is_ground);
-    let varying = varying_inertia(fields, id, body.name);
+    let varying = match table(D::BODY).contains_key("varying-inertia") {
+        true => varying_inertia(fields, id, body.name),
+        false => None,
+    };
     // The ground never moves: what it weighs has no effect, and must not appear in any balance.
     if !is_ground {
         body.mass = mass;
@@ -314,16 +316,4 @@ impl<'a, D: Dimensions> ParsedBody<'a, D> {
         }
         point.map(|&k| self.points[k].1)
     }
-}
-
-/// A mass or an inertia, in SI: not negative.
-pub(crate) fn mass_or_inertia(fields: &TableReader<'_>, key: &str, unit: &Unit) -> Option<f64> {
-    let value = fields.get(key)?.value;
-    let what = format!("{key} of {}", fields.what);
-    let si = value.quantity(unit, &what)?;
-    if si < 0.0 {
-        let message = format!("the {what} is negative");
-        return value.reject(message, "expected 0 or more", "");
-    }
-    Some(si)
 }

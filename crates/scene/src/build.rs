@@ -3,8 +3,7 @@
 use crate::assembly::ParsedAssembly;
 use crate::bodies::Bodies;
 use crate::coordinates::{ParsedCoordinate, ParsedCoordinates, actuators};
-use crate::diagnostics::{Diagnostics, Span};
-use crate::dimensions::Dimensions;
+use crate::diagnostics::Diagnostics;
 use crate::drives::reject_drives_of_prescribed;
 use crate::error::{SceneError, Source};
 use crate::file::SceneFile;
@@ -19,16 +18,18 @@ use crate::number_paths::{body_numbers, section_numbers};
 use crate::prescribed::{coordinate_sweep, prescribed_motion};
 use crate::requests::requests;
 use crate::scene::{Assembly, NamedCoordinate, Scene};
-use crate::space::three_numbers;
+use crate::sections::{
+    needed_section, one_line, printable, report_unjoined_bodies, section, text_of, title,
+};
+use crate::space::{planar_only, three_numbers};
 use crate::spans::SceneLocation;
 use crate::stops::stops as stops_of;
 use crate::table_reader::TableReader;
 use crate::units::Units;
 use crate::value::Context;
 use crate::wording::shorten;
-use dwell_geometry::{Body, BodyId, Joint, JointKind, Mechanism, Vec2};
+use dwell_geometry::{Body, Joint, JointKind, Mechanism, Vec2};
 use dwell_kinetostatics::VaryingInertia;
-use dwell_laws::expression::nearest;
 use toml::de::DeValue;
 
 impl Scene {
@@ -54,20 +55,6 @@ impl Scene {
         scene.ok_or_else(incomplete)
     }
 }
-
-/// A scene in space where one in the plane is needed.
-pub(crate) fn planar_only(source: &Source, point: Span) -> SceneError {
-    let help = "`dwell check` and `dwell reduce` take mechanisms in space; for one in the plane, points have two numbers [x, y]";
-    SceneError::with_labels(
-        source,
-        "this is a mechanism in space, and what is asked for is only for mechanisms in the plane yet".to_owned(),
-        Some(help.to_owned()),
-        [(point, "three numbers".to_owned())],
-    )
-}
-
-/// Longest title, in characters: it heads a page and a picture.
-const MAX_TITLE_LENGTH: usize = 200;
 
 /// What some editors put before the first character of a file.
 const BYTE_ORDER_MARK: char = '\u{feff}';
@@ -224,87 +211,10 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     })
 }
 
-/// The table of a section.
-pub(crate) fn section<'a>(fields: &TableReader<'a>, key: &str) -> Option<TableReader<'a>> {
-    TableReader::open(fields.get(key)?, format!("[{key}]"))
-}
-
-/// The table of a section that has to be there, and not empty.
-pub(crate) fn needed_section<'a>(fields: &TableReader<'a>, key: &str) -> Option<TableReader<'a>> {
-    let missing = |span: &Span, label: &str| {
-        let help = match key {
-            "bodies" => "describe the bodies: `[bodies.crank]` with `points = { A = [0, 0] }`",
-            _ => "connect the bodies: `A = { revolute = [\"ground.A\", \"crank.A\"] }`",
-        };
-        let message = format!("the scene has no {key}");
-        fields.log().reject(message, &[(span, label)], help)
-    };
-    match fields.get(key) {
-        None => missing(&(0..0), &format!("there is no [{key}] in this file")),
-        Some(entry) => match section(fields, key)? {
-            table if table.entries.is_empty() => missing(&entry.key, "nothing in it"),
-            table => Some(table),
-        },
-    }
-}
-
 /// Whether there is something in a section; what is wrong with it is reported where it is read.
 fn is_filled(fields: &TableReader<'_>, key: &str) -> bool {
     let value = fields.get(key).map(|e| e.value.get());
     matches!(value, Some(DeValue::Table(table)) if !table.is_empty())
-}
-
-pub(crate) fn title<'a>(fields: &TableReader<'a>) -> Option<&'a str> {
-    let (title, entry) = (text_of(fields, "title")?, fields.get("title")?);
-    if title.chars().count() > MAX_TITLE_LENGTH {
-        let message = format!("the title is longer than {MAX_TITLE_LENGTH} characters");
-        let help = "a title is a line at the head of a page; the rest can go into `note`";
-        entry.reject::<()>(message, "this text", help);
-    }
-    Some(title)
-}
-
-/// A text shown to people; blank it is as good as absent.
-pub(crate) fn text_of<'a>(fields: &TableReader<'a>, key: &str) -> Option<&'a str> {
-    let value = fields.get(key)?.value;
-    let text = value.string(format_args!("the {key}"))?.trim();
-    (!text.is_empty()).then_some(text)
-}
-
-/// Reports the bodies that no joint holds.
-pub(crate) fn report_unjoined_bodies<D: Dimensions>(
-    bodies: &Bodies<'_, D>,
-    of_joints: impl Iterator<Item = BodyId>,
-    log: &Diagnostics,
-) {
-    let mut joined = vec![false; bodies.list.len()];
-    for body in of_joints {
-        joined[body.0] = true;
-    }
-    let by_body = || bodies.list.iter().zip(&joined);
-    let others = by_body()
-        .filter(|(_, joined)| **joined)
-        .map(|(b, _)| b.name);
-    for (body, _) in by_body().filter(|(_, joined)| !**joined) {
-        let message = format!("body `{}` is in no joint", shorten(body.name));
-        let mut help = "join it to another body in [joints], or leave it out".to_owned();
-        if let Some(near) = nearest(body.name, others.clone()) {
-            help += &format!("; or did you mean `{near}`?");
-        }
-        log.report(message, &[(&body.key, "not connected")], help);
-    }
-}
-
-/// A title heads a page: whatever white space it is written with becomes single spaces.
-pub(crate) fn one_line(text: &str) -> String {
-    let text = printable(text);
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-/// Control characters other than line breaks would reach the reader's terminal: they become spaces.
-pub(crate) fn printable(text: &str) -> String {
-    let visible = |c: char| if c.is_control() && c != '\n' { ' ' } else { c };
-    text.chars().map(visible).collect()
 }
 
 /// Reports bodies that no revolute joint holds on the ground, and reactions whose names are those of joints.

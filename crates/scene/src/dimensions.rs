@@ -1,7 +1,7 @@
 //! What differs between bodies in the plane and in space: how points and inertias are written.
 
-use crate::bodies::mass_or_inertia;
 use crate::table_reader::TableReader;
+use crate::units::Unit;
 use crate::value::Value;
 use dwell_geometry::Vec2;
 use dwell_kinetostatics::Mass;
@@ -50,4 +50,16 @@ impl Dimensions for Plane {
             inertia: inertia.unwrap_or(0.0),
         }
     }
+}
+
+/// A mass or an inertia, in SI: not negative.
+pub(crate) fn mass_or_inertia(fields: &TableReader<'_>, key: &str, unit: &Unit) -> Option<f64> {
+    let value = fields.get(key)?.value;
+    let what = format!("{key} of {}", fields.what);
+    let si = value.quantity(unit, &what)?;
+    if si < 0.0 {
+        let message = format!("the {what} is negative");
+        return value.reject(message, "expected 0 or more", "");
+    }
+    Some(si)
 }

@@ -90,6 +90,7 @@ mod read;
 mod requests;
 mod scene;
 mod schema;
+mod sections;
 mod space;
 mod spans;
 mod stops;

@@ -58,6 +58,7 @@ mod multibody;
 mod rank;
 mod redundant_rows;
 mod rounding;
+pub mod space;
 mod state;
 mod subject;
 mod wrenches;

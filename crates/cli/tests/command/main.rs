@@ -13,6 +13,7 @@ mod output;
 mod pictures;
 mod results;
 mod rows;
+mod space;
 mod studies;
 mod summaries;
 mod sweep;

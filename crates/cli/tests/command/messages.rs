@@ -35,7 +35,7 @@ impl Group {
     }
 
     /// The same for a scene, in a file of its own.
-    fn scene(&mut self, title: &str, command: &str, scene: impl AsRef<[u8]>) {
+    pub(crate) fn scene(&mut self, title: &str, command: &str, scene: impl AsRef<[u8]>) {
         self.dir.put("scene.toml", scene);
         self.refused(title, &[command, "scene.toml"]);
     }

@@ -1,8 +1,9 @@
 //! The independent coordinates: angles and travels of joints.
 
 use super::bodies::Space;
-use super::joints::Joints;
+use super::joints::{Joints, ParsedJoint};
 use crate::bodies::Bodies;
+use crate::diagnostics::Span;
 use crate::keys::table;
 use crate::names::check;
 use crate::spans::SceneLocation;
@@ -10,6 +11,7 @@ use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
 use dwell_geometry::space::{Actuator, ActuatorKind, JointKind};
 use dwell_geometry::{ActuatorId, JointId};
+use toml::de::DeValue;
 
 /// An actuator as read; nothing in it if it was wrong.
 #[derive(Debug)]
@@ -63,42 +65,21 @@ fn read_actuator(entry: &Entry<'_>, joints: &Joints<'_>) -> Option<Actuator> {
     fields.reject_unknown_keys(table("actuator-in-space"));
     let lacks = ("drives nothing", "neither `angle` nor `travel`");
     let coordinate = fields.alternative(table("actuator-in-space"), lacks, help)?;
+    if matches!(coordinate.value.get(), DeValue::Array(_)) {
+        let message = format!(
+            "{} names two things, and not a joint",
+            fields.name_of(coordinate)
+        );
+        return coordinate
+            .value
+            .reject(message, "expected the name of a joint", help);
+    }
     let name = coordinate.value.string(fields.name_of(coordinate))?;
     let at = coordinate.value.span();
     let joint = joints.find(name, &at)?;
-    let parsed = &joints.list[joint];
-    let (kind, id) = (parsed.joint.as_ref()?.kind, JointId(joint));
     let is_angle = coordinate.name == "angle";
-    let (drives, others) = match is_angle {
-        true => (
-            matches!(
-                kind,
-                JointKind::Revolute | JointKind::Cylindrical | JointKind::Helical { .. }
-            ),
-            "revolute, cylindrical and helical joints have an angle that can be driven",
-        ),
-        false => (
-            matches!(kind, JointKind::Prismatic | JointKind::Cylindrical),
-            "prismatic and cylindrical joints have a travel",
-        ),
-    };
-    if !drives {
-        let message = format!(
-            "joint `{}` has no {} to be driven",
-            shorten(name),
-            coordinate.name
-        );
-        return fields.log().reject(message, &[(&at, "this joint")], others);
-    }
-    if is_angle && !parsed.has_zero {
-        let message = format!("the angle of joint `{}` has no zero", shorten(name));
-        let labels = [
-            (&at, "driven here"),
-            (&parsed.key, "with `axes`, but without `normals`"),
-        ];
-        let help = "add `normals` to the joint: a direction across the axis in the frame of each body, parallel at zero";
-        return fields.log().reject(message, &labels, help);
-    }
+    require_freedom(is_angle, &joints.list[joint], &at)?;
+    let id = JointId(joint);
     let kind = match is_angle {
         true => ActuatorKind::Angle(id),
         false => ActuatorKind::Travel(id),
@@ -107,4 +88,39 @@ fn read_actuator(entry: &Entry<'_>, joints: &Joints<'_>) -> Option<Actuator> {
         name: entry.name.to_owned(),
         kind,
     })
+}
+
+/// Reports a joint that has no such coordinate, or whose angle has no zero.
+fn require_freedom(is_angle: bool, parsed: &ParsedJoint<'_>, at: &Span) -> Option<()> {
+    let kind = parsed.joint.as_ref()?.kind;
+    let (what, drives, others) = match is_angle {
+        true => (
+            "angle",
+            matches!(
+                kind,
+                JointKind::Revolute | JointKind::Cylindrical | JointKind::Helical { .. }
+            ),
+            "revolute, cylindrical and helical joints have an angle that can be driven",
+        ),
+        false => (
+            "travel",
+            matches!(kind, JointKind::Prismatic | JointKind::Cylindrical),
+            "prismatic and cylindrical joints have a travel",
+        ),
+    };
+    let name = shorten(parsed.name);
+    if !drives {
+        let message = format!("joint `{name}` has no {what} to be driven");
+        return (parsed.log).reject(message, &[(at, "this joint")], others);
+    }
+    if is_angle && !parsed.has_zero {
+        let message = format!("the angle of joint `{name}` has no zero");
+        let labels = [
+            (at, "driven here"),
+            (&parsed.key, "with `axes`, but without `normals`"),
+        ];
+        let help = "add `normals` to the joint: a direction across the axis in the frame of each body, parallel at zero";
+        return (parsed.log).reject(message, &labels, help);
+    }
+    Some(())
 }

@@ -8,13 +8,13 @@ use super::loads::loads;
 use super::requests::{in_ground_axes, reactions};
 use super::scene::SpaceScene;
 use crate::bodies::Bodies;
-use crate::build::{
-    needed_section, one_line, printable, report_unjoined_bodies, section, text_of, title,
-};
-use crate::diagnostics::{Diagnostics, Span};
+use crate::diagnostics::Diagnostics;
 use crate::error::{SceneError, Source};
 use crate::file::SceneFile;
 use crate::keys::table;
+use crate::sections::{
+    needed_section, one_line, printable, report_unjoined_bodies, section, text_of, title,
+};
 use crate::spans::SceneLocation;
 use crate::table_reader::TableReader;
 use crate::units::Units;
@@ -22,37 +22,6 @@ use crate::value::Context;
 use dwell_geometry::space::{Joint, Mechanism};
 use dwell_geometry::{Body, JointId};
 use dwell_kinetostatics::space::Reaction;
-use toml::de::{DeTable, DeValue};
-
-/// Whether a scene is one in space: whether any of its points or centres of mass has three numbers.
-pub(crate) fn is_in_space(source: &Source) -> Result<bool, SceneError> {
-    let root = crate::read::syntax(source)?;
-    Ok(three_numbers(root.get_ref()).is_some())
-}
-
-/// Where the first point or centre of three numbers is.
-pub(crate) fn three_numbers(root: &DeTable<'_>) -> Option<Span> {
-    let DeValue::Table(bodies) = root.get("bodies")?.get_ref() else {
-        return None;
-    };
-    let tables = bodies.iter().filter_map(|(_, body)| match body.get_ref() {
-        DeValue::Table(body) => Some(body),
-        _ => None,
-    });
-    let values = tables.flat_map(|body| {
-        let points = body.get("points").map(toml::Spanned::get_ref);
-        let points = match points {
-            Some(DeValue::Table(points)) => points.iter().map(|(_, point)| point).collect(),
-            _ => Vec::new(),
-        };
-        points.into_iter().chain(body.get("center"))
-    });
-    let is_triple = |value: &DeValue<'_>| matches!(value, DeValue::Array(all) if all.len() == 3);
-    values
-        .filter(|value| is_triple(value.get_ref()))
-        .map(toml::Spanned::span)
-        .min_by_key(|span| span.start)
-}
 
 impl SpaceScene {
     pub(crate) fn build(name: String, source: &Source) -> Result<Self, SceneError> {
@@ -75,6 +44,8 @@ impl SpaceScene {
 }
 
 /// The scene; none if anything was found wrong.
+//
+// Long: one section after another, in an order in which each finds the names it refers to.
 fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<SpaceScene> {
     let log = fields.log();
     reject_unknown_sections(fields);
@@ -93,7 +64,8 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
     let actuators = section("actuators").map_or_else(Vec::new, |f| actuators(&f, &bodies, &joints));
     let assembly = assembly(section("assembly").as_ref(), &bodies, &actuators);
     let loads = section("loads").map_or_else(Vec::new, |f| loads(&f, &bodies));
-    let listed = section("requests").and_then(|f| reactions(&f, &joints));
+    let ground = bodies.ground.unwrap_or_default();
+    let listed = section("requests").and_then(|f| reactions(&f, &joints, ground));
     let joined = || joints.list.iter().filter_map(|j| j.joint.as_ref());
     // A joint that could not be read may be the one that holds a body.
     if !joints.list.is_empty() && joined().count() == joints.list.len() {
@@ -109,7 +81,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
             joint: JointId(j),
             component,
         };
-        in_ground_axes(joint.kind).map(reaction)
+        in_ground_axes(joint, ground).into_iter().map(reaction)
     });
     let points = bodies.list.iter().map(|b| {
         let points = b.points.iter();

@@ -23,6 +23,7 @@ pub(super) struct ParsedJoint<'a> {
     pub(super) joint: Option<Joint>,
     /// Whether the zero of its angle is stated: by normals, or by frames with one axis.
     pub(super) has_zero: bool,
+    pub(super) log: &'a Diagnostics,
 }
 
 /// All the joints as read.
@@ -52,6 +53,7 @@ impl<'a> Joints<'a> {
                 key: entry.key.clone(),
                 joint,
                 has_zero: has_zero.unwrap_or(true),
+                log,
             });
         }
         Self { list, log }
@@ -144,56 +146,13 @@ struct Directions {
 }
 
 fn directions(kind: &str, fields: &TableReader<'_>) -> Option<Directions> {
-    let z = Side::default();
-    let two = |key: &str| {
-        let entry = fields.get(key)?;
-        Some(two_directions(entry.value, &fields.name_of(entry)))
-    };
-    let axes = match (kind, fields.get("axis"), two("axes")) {
-        ("spherical" | "distance" | "weld", None, None) => [z.axis; 2],
-        (_, Some(axis), None) => {
-            let axis = direction(axis.value, format_args!("the axis of {}", fields.what))?;
-            [axis; 2]
-        }
-        (_, None, Some(axes)) => axes?,
-        (_, Some(a), Some(_)) => {
-            let b = fields.get("axes")?;
-            fields.reject_both(
-                a,
-                b,
-                ["the same axis in both bodies", "one axis for each body"],
-            );
-            return None;
-        }
-        (_, None, None) => {
-            let help = match kind {
-                "universal" => {
-                    "add `axes = [[0, 1, 0], [1, 0, 0]]`: the axis of the cross on each body"
-                }
-                _ => {
-                    "add `axis = [0, 0, 1]`, in the frames of both bodies, or `axes` with one for each"
-                }
-            };
-            let missing = if kind == "universal" {
-                "`axes` is missing"
-            } else {
-                "`axis` is missing"
-            };
-            let message = format!("{} has no axis", fields.what);
-            return fields
-                .log()
-                .reject(message, &[(&fields.key, missing)], help);
-        }
-    };
-    let given = two("normals");
+    let axes = axes(kind, fields)?;
+    let given = two(fields, "normals");
     let is_common = axes[0] == axes[1];
     let has_zero = is_common || given.is_some();
     if !has_zero && matches!(kind, "prismatic" | "helical" | "weld") {
-        return missing_normals(
-            fields,
-            fields.get("axes"),
-            "with two axes nothing says how the bodies stand to each other",
-        );
+        let why = "with two axes nothing says how the bodies stand to each other";
+        return missing_normals(fields, fields.get("axes"), why);
     }
     let normals = match given {
         Some(normals) => normals?,
@@ -207,12 +166,9 @@ fn directions(kind: &str, fields: &TableReader<'_>) -> Option<Directions> {
                 "the {name} of the normals of {} lies along the axis",
                 fields.what
             );
+            let help = "give a direction across the axis";
             let entry = fields.get("normals")?;
-            return entry.value.reject(
-                message,
-                "along the axis",
-                "give a direction across the axis",
-            );
+            return entry.value.reject(message, "along the axis", help);
         }
     }
     Some(Directions {
@@ -220,6 +176,45 @@ fn directions(kind: &str, fields: &TableReader<'_>) -> Option<Directions> {
         normals,
         has_zero,
     })
+}
+
+/// Two directions under a key, if it is there.
+fn two(fields: &TableReader<'_>, key: &str) -> Option<Option<[Vec3; 2]>> {
+    let entry = fields.get(key)?;
+    Some(two_directions(entry.value, &fields.name_of(entry)))
+}
+
+/// The axis of a joint in the frame of each body.
+fn axes(kind: &str, fields: &TableReader<'_>) -> Option<[Vec3; 2]> {
+    match (kind, fields.get("axis"), two(fields, "axes")) {
+        ("spherical" | "distance" | "weld", None, None) => Some([Side::default().axis; 2]),
+        (_, Some(axis), None) => {
+            let axis = direction(axis.value, format_args!("the axis of {}", fields.what))?;
+            Some([axis; 2])
+        }
+        (_, None, Some(axes)) => axes,
+        (_, Some(a), Some(_)) => {
+            let labels = ["the same axis in both bodies", "one axis for each body"];
+            fields.reject_both(a, fields.get("axes")?, labels);
+            None
+        }
+        (_, None, None) => {
+            let (missing, help) = match kind {
+                "universal" => (
+                    "`axes` is missing",
+                    "add `axes = [[0, 1, 0], [1, 0, 0]]`: the axis of the cross on each body",
+                ),
+                _ => (
+                    "`axis` is missing",
+                    "add `axis = [0, 0, 1]`, in the frames of both bodies, or `axes` with one for each",
+                ),
+            };
+            let message = format!("{} has no axis", fields.what);
+            fields
+                .log()
+                .reject(message, &[(&fields.key, missing)], help)
+        }
+    }
 }
 
 /// Reports normals that are needed.

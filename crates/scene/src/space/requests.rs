@@ -8,7 +8,7 @@ use crate::spans::SceneLocation;
 use crate::table_reader::TableReader;
 use crate::wording::shorten;
 use dwell_geometry::JointId;
-use dwell_geometry::space::JointKind;
+use dwell_geometry::space::{Joint, JointKind, Vec3};
 use dwell_kinetostatics::space::{Axes, Component, Reaction};
 
 /// The components by their names.
@@ -35,14 +35,10 @@ pub(super) fn component_name(component: Component) -> &'static str {
 
 /// Whether a joint of a kind can have a component that is not zero.
 fn exists(kind: JointKind, component: Component) -> bool {
-    let has_moment = !matches!(kind, JointKind::Spherical | JointKind::Distance { .. });
     match (kind, component) {
-        (_, Component::Moment(..)) if !has_moment => false,
-        // A ball and a link have no axes of their own.
-        (JointKind::Spherical | JointKind::Distance { .. }, Component::Force(Axes::Joint, _)) => {
-            false
-        }
-        (JointKind::Revolute, Component::Moment(Axes::Joint, 2)) => false,
+        (kind, Component::Moment(..)) if !has_axis(kind) => false,
+        (kind, Component::Force(Axes::Joint, _)) if !has_axis(kind) => false,
+        (JointKind::Revolute | JointKind::Universal, Component::Moment(Axes::Joint, 2)) => false,
         (JointKind::Prismatic, Component::Force(Axes::Joint, 2)) => false,
         (
             JointKind::Cylindrical,
@@ -56,14 +52,36 @@ fn exists(kind: JointKind, component: Component) -> bool {
     }
 }
 
-/// The components of a joint in the axes of the ground.
-pub(super) fn in_ground_axes(kind: JointKind) -> impl Iterator<Item = Component> {
+/// The components of a joint in the axes of the ground, but those that are always zero.
+pub(super) fn in_ground_axes(joint: &Joint, ground: usize) -> Vec<Component> {
+    let own_axis = joint.bodies.iter().position(|b| b.0 == ground);
+    let own_axis = own_axis.map(|k| joint.sides[k].axis);
+    // Where the joint's axis is one of the ground's, the component along it is the axial one.
+    let is_along = |k: usize| own_axis.is_some_and(|u| Vec3::AXES[k].cross(u).norm() == 0.0);
+    let is_never_zero = |component: &Component| match *component {
+        Component::Force(_, k) if is_along(k) => {
+            exists(joint.kind, Component::Force(Axes::Joint, 2)) || !has_axis(joint.kind)
+        }
+        Component::Moment(_, k) if is_along(k) => {
+            exists(joint.kind, Component::Moment(Axes::Joint, 2))
+        }
+        component => exists(joint.kind, component),
+    };
     let all = COMPONENTS[..6].iter().map(|(_, component)| *component);
-    all.filter(move |component| exists(kind, *component))
+    all.filter(is_never_zero).collect()
+}
+
+/// A ball and a link have no axes of their own.
+fn has_axis(kind: JointKind) -> bool {
+    !matches!(kind, JointKind::Spherical | JointKind::Distance { .. })
 }
 
 /// The reactions that are listed, each once.
-pub(super) fn reactions(fields: &TableReader<'_>, joints: &Joints<'_>) -> Option<Vec<Reaction>> {
+pub(super) fn reactions(
+    fields: &TableReader<'_>,
+    joints: &Joints<'_>,
+    ground: usize,
+) -> Option<Vec<Reaction>> {
     fields.reject_unknown_keys(table("requests-in-space"));
     let entry = fields.get("reactions")?;
     let mut found: Vec<Reaction> = Vec::new();
@@ -77,7 +95,7 @@ pub(super) fn reactions(fields: &TableReader<'_>, joints: &Joints<'_>) -> Option
             continue;
         };
         let components = match component {
-            None => in_ground_axes(joint.kind).collect(),
+            None => in_ground_axes(joint, ground),
             Some(component) => one(joint.kind, component, name, (entry.log(), &at)),
         };
         for component in components {

@@ -17,7 +17,7 @@ fn triple<'a>(value: Value<'a>, expected: &str, what: impl Display) -> Option<[V
     let message = format!("{what}: expected {expected}, found {count} of them");
     let help = match count {
         2 => {
-            "points with three numbers make this a scene in space: all points and directions have three"
+            "most points of this scene have three numbers, which makes it one in space: all its points and directions have three"
         }
         _ => "",
     };

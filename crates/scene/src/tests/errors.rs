@@ -47,6 +47,12 @@ fn every_careless_scene_is_told_what_is_wrong() {
             FREE_MOTION,
             35,
         ),
+        (
+            "src/tests/space.txt",
+            include_str!("space.txt"),
+            IN_SPACE,
+            30,
+        ),
     ] {
         let (now, cases) = catalogue(text, scene);
         assert!(cases >= min_cases, "{cases} cases in {path}");

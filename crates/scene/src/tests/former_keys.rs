@@ -52,7 +52,7 @@ fn data(scene: &Scene) -> String {
 }
 
 fn former_names() -> Vec<(&'static TableSchema, &'static str)> {
-    let keys = tables().into_iter().flat_map(|table| {
+    let keys = tables("scene").into_iter().flat_map(|table| {
         let former = table.keys.iter().filter_map(|k| k.former.as_deref());
         former.map(move |former| (table, former))
     });
@@ -134,7 +134,7 @@ fn no_former_name_is_a_current_one_beside_it() {
     for (table, former) in former_names() {
         assert!(!table.contains_key(former), "`{former}` of {}", table.name);
     }
-    let keys = tables()
+    let keys = tables("scene")
         .into_iter()
         .flat_map(|table| table.keys.iter().chain(&table.named));
     for key in keys {

@@ -8,9 +8,10 @@ mod former_keys;
 mod free_motion;
 mod machine;
 mod mutations;
+mod space;
 mod values;
 
-use crate::{Scene, SceneError};
+use crate::{AnyScene, Scene, SceneError};
 use miette::{GraphicalReportHandler, GraphicalTheme};
 
 /// A scene that uses the whole language.
@@ -65,6 +66,9 @@ const MACHINE: &str = include_str!("machine.toml");
 /// And one for what moves freely: drives, friction, led actuators, events.
 const FREE_MOTION: &str = include_str!("driven.toml");
 
+/// And one in space.
+const IN_SPACE: &str = include_str!("space.toml");
+
 /// `WHOLE` with one piece of text, which it must contain once, replaced.
 fn with(old: &str, new: &str) -> String {
     changed(WHOLE, old, new)
@@ -118,7 +122,7 @@ fn render(error: &SceneError) -> String {
 
 /// Message, labelled text, its label and help of each error, one line each.
 fn messages(text: &str) -> Vec<String> {
-    let Err(error) = parse(text) else {
+    let Err(error) = AnyScene::parse("test.toml", text) else {
         return vec!["nothing is wrong".to_owned()];
     };
     assert!(!render(&error).is_empty());

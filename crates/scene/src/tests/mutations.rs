@@ -44,7 +44,7 @@ fn survive(text: &str) -> bool {
 }
 
 /// Byte ranges of the pieces of a text: words, and single other characters.
-fn pieces(text: &str) -> Vec<std::ops::Range<usize>> {
+pub(super) fn pieces(text: &str) -> Vec<std::ops::Range<usize>> {
     let mut pieces: Vec<std::ops::Range<usize>> = Vec::new();
     let mut in_word = false;
     for (at, c) in text.char_indices() {

@@ -3,7 +3,6 @@
 mod compile;
 mod drives;
 mod prepared_scene;
-mod reduced_scene;
 mod scene_machine;
 mod solver_settings;
 
@@ -18,6 +17,5 @@ pub(crate) use compile::{
 pub(crate) use drives::{drive_states, motor_columns, motor_of, source_name};
 pub use prepared_scene::PreparedScene;
 pub(crate) use prepared_scene::initial_reduced_state;
-pub use reduced_scene::{InertiaAt, ReducedScene};
 pub use scene_machine::SceneMachine;
 pub use solver_settings::{PRESETS, SolverSettings};

@@ -1,6 +1,6 @@
 //! Captions, labels, limits and axes that figures share.
 
-use crate::models::{PreparedScene, ReducedScene};
+use crate::models::PreparedScene;
 use crate::ranges::extent;
 use dwell_geometry::Range;
 use dwell_report::{Axis, Chart, Figure, Panel, Series};
@@ -68,8 +68,8 @@ pub(crate) fn coordinate_axis(label: &str, is_angle: bool) -> Axis {
 }
 
 /// The text of a caption of a figure over the range, which explains why curves may leave it.
-pub(crate) fn range_caption(prepared: &dyn ReducedScene, text: &str) -> String {
-    let limits = match prepared.has_limits() {
+pub(crate) fn range_caption(has_limits: [bool; 2], text: &str) -> String {
+    let limits = match has_limits {
         [false, false] => "",
         [true, true] => {
             " Towards the limit positions at both ends all quantities grow without bound."
@@ -124,8 +124,8 @@ pub fn coordinate_label(prepared: &PreparedScene<'_>) -> String {
 
 /// The vertical extent of the curves. Towards a limit position they grow without bound, so there the extent
 /// is that of the inner nine tenths of the range.
-pub(crate) fn inner_range(prepared: &dyn ReducedScene, curves: &[Series]) -> Option<[f64; 2]> {
-    if prepared.range() == Range::Full {
+pub(crate) fn inner_range(range: Range, curves: &[Series]) -> Option<[f64; 2]> {
+    if range == Range::Full {
         return None;
     }
     let inner = |c: &Series| {
@@ -176,11 +176,7 @@ mod tests {
             );
             Scene::parse("crank.toml", &text).expect("a scene")
         };
-        let lists = |scene: &Scene| {
-            PreparedScene::new(scene)
-                .expect("a model")
-                .lists_reactions()
-        };
+        let lists = crate::models::lists_reactions;
         assert_eq!(
             reaction_figure_count(lists(&scene("")), MAX_REACTION_FIGURES),
             (MAX_REACTION_FIGURES, None)

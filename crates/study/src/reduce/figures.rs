@@ -6,13 +6,14 @@
 //!
 //! F is the magnitude that the scene gives; for a damper, friction or a separating force, the force or moment itself.
 
-use crate::models::ReducedScene;
 use crate::number_format::count;
 use crate::output::{
     add_note, chart, coordinate_axis, figure, inner_range, range_caption, reaction_figure_count,
     symbol,
 };
-use crate::reduce::compute::{ReducedCurves, UnitLoadCurves, coefficient_units, inertia_units};
+use crate::reduce::compute::{
+    ReducedCurves, ReducedScene, UnitLoadCurves, coefficient_units, inertia_units,
+};
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Axis, Figure, Panel, Series};
 
@@ -39,7 +40,7 @@ impl RangeFigures<'_> {
     /// Curves over the range; next to a limit position they may leave the chart.
     fn panel(&self, title: &str, label: &str, unit: &str, series: Vec<Series>) -> Panel {
         let mut y = Axis::new(label, unit);
-        y.range = inner_range(self.prepared, &series);
+        y.range = inner_range(self.prepared.range(), &series);
         let label = self.prepared.coordinate_label();
         let x = coordinate_axis(&label, self.prepared.is_angle());
         chart(title, x, y, series).into()
@@ -52,7 +53,7 @@ impl RangeFigures<'_> {
         text: &str,
         panels: Vec<Panel>,
     ) -> Figure {
-        let text = range_caption(self.prepared, text);
+        let text = range_caption(self.prepared.has_limits(), text);
         let positions = count(self.q.len(), "position");
         let provenance = format!("reduced model by unit runs, at {positions}");
         figure(self.prepared.file(), name, title, &text, panels, provenance)

@@ -2,12 +2,11 @@
 
 use super::figures;
 use crate::explain::StudyError;
-use crate::models::ReducedScene;
 use crate::number_format::{coordinate_unit, digits, digits_within};
 use crate::output::{Outcome, Picture};
 use crate::ranges::extent;
 use crate::reduce::compute::{
-    Peak, Reduction, RoundingErrors, TableRequest, compute_reduction, inertia_units,
+    Peak, ReducedScene, Reduction, RoundingErrors, TableRequest, compute_reduction, inertia_units,
     peak_between_rows, tabulate,
 };
 use dwell_findings::Record;

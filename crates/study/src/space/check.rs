@@ -6,7 +6,7 @@ use crate::number_format::{coordinate_unit, count, number};
 use crate::output::Outcome;
 use dwell_findings::Record;
 use dwell_geometry::Range;
-use dwell_geometry::space::Plan;
+use dwell_geometry::space::{Actuator, ActuatorKind, Plan};
 use dwell_kinetostatics::space::{Model, Reaction};
 use dwell_scene::SpaceScene;
 
@@ -141,15 +141,15 @@ fn describe_placements(scene: &SpaceScene, model: &Model, record: &mut Record) -
     if plan.positions(start, &mut pose).is_err() {
         return String::new();
     }
-    let unit = coordinate_unit(is_angle(scene));
+    let unit = |a: &Actuator| coordinate_unit(matches!(a.kind, ActuatorKind::Angle(_)));
     let at = mechanism.actuators.iter().zip(start);
-    let at = at.map(|(a, &q)| format!("{} = {} {unit}", a.name, number(q)));
+    let at = at.map(|(a, &q)| format!("{} = {} {}", a.name, number(q), unit(a)));
     let mut text = format!(
         "  at {}: origin of each body's frame in m, and its rotation as a vector in degrees\n",
         at.collect::<Vec<_>>().join(", ")
     );
     for (actuator, &q) in mechanism.actuators.iter().zip(start) {
-        record.add(format!("start.{}", actuator.name), unit, q);
+        record.add(format!("start.{}", actuator.name), unit(actuator), q);
     }
     let moving = (0..mechanism.bodies.len()).filter(|&b| b != mechanism.ground);
     let widths = mechanism.bodies.iter().map(|b| b.name.chars().count());

@@ -114,6 +114,7 @@ fn explain_assembly(scene: &SpaceScene, error: &AssemblyError) -> StudyError {
     }
 }
 
+/// One arm for each error, so longer than a screen.
 fn explain_structure(scene: &SpaceScene, error: &StructureError) -> StudyError {
     let driven = |text: &str| {
         let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);

@@ -2,11 +2,10 @@
 
 use super::explain::{explain_model, explain_position};
 use crate::explain::{StudyError, scene_error};
-use crate::models::{InertiaAt, ReducedScene};
 use crate::number_format::count;
 use crate::output::{indeterminate_note, symbol};
 use crate::ranges::equally_spaced;
-use crate::reduce::compute::{ReducedLoad, UnitLoadCurves};
+use crate::reduce::compute::{InertiaAt, ReducedLoad, ReducedScene, UnitLoadCurves};
 use dwell_geometry::space::ActuatorKind;
 use dwell_geometry::{ActuatorId, PositionError, Range};
 use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};

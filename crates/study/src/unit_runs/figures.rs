@@ -3,6 +3,7 @@
 use super::compute::{UnitRuns, values};
 use crate::number_format::count;
 use crate::output::{chart, coordinate_axis, coordinate_label, figure, inner_range, range_caption};
+use crate::reduce::compute::ReducedScene as _;
 use crate::reduce::compute::{coefficient_units, inertia_units};
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Axis, Figure, Panel, Series, Stroke};
@@ -32,13 +33,13 @@ impl UnitRuns<'_> {
 
     fn panel(&self, title: &str, label: &str, unit: &str, series: Vec<Series>) -> Panel {
         let mut y = Axis::new(label, unit.replace('2', "²"));
-        y.range = inner_range(&self.prepared, &series);
+        y.range = inner_range(self.prepared.range(), &series);
         let x = coordinate_axis(&coordinate_label(&self.prepared), self.prepared.is_angle());
         chart(title, x, y, series).into()
     }
 
     fn figure(&self, name: &str, title: &str, text: &str, panels: Vec<Panel>) -> Figure {
-        let text = range_caption(&self.prepared, text);
+        let text = range_caption(self.prepared.has_limits(), text);
         let positions = count(self.combined.q.len(), "position");
         let provenance = format!("two kinetostatic runs, at {positions}");
         figure(self.prepared.scene, name, title, &text, panels, provenance)

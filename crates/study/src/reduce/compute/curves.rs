@@ -2,9 +2,9 @@
 
 use crate::estimate::{is_rounding, relative};
 use crate::explain::StudyError;
-use crate::models::{PreparedScene, ReducedScene};
+use crate::models::PreparedScene;
 use crate::number_format::coordinate_unit;
-use crate::reduce::compute::UnitLoadCurves;
+use crate::reduce::compute::{ReducedScene, UnitLoadCurves};
 use crate::trajectory::compute::{force_scales, reject_unknown_variables};
 use dwell_findings::{Column, Table};
 use dwell_kinetostatics::Coefficients;

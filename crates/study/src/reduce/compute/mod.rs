@@ -4,6 +4,7 @@ mod curves;
 mod known_reactions;
 #[cfg(feature = "output")]
 mod peak;
+mod reduced_scene;
 mod table;
 mod unit_load_curves;
 
@@ -12,6 +13,7 @@ pub use curves::{ReducedCurves, Reduction, RoundingErrors, compute_reduction};
 pub(crate) use curves::{coefficient_units, inertia_units};
 #[cfg(feature = "output")]
 pub(crate) use peak::{Peak, fast_turns, peak_between_rows};
+pub use reduced_scene::{InertiaAt, ReducedScene};
 pub use table::{TableRequest, Tabulation, tabulate};
 pub(crate) use unit_load_curves::ReducedLoad;
 pub use unit_load_curves::UnitLoadCurves;

@@ -1,7 +1,7 @@
 //! Where m is largest between the positions of the rows: near a limit position or a change point it rises and falls within a step.
 
-use crate::models::{InertiaAt, PreparedScene, ReducedScene};
-use crate::reduce::compute::ReducedCurves;
+use crate::models::PreparedScene;
+use crate::reduce::compute::{InertiaAt, ReducedCurves, ReducedScene};
 use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{ExactWorkspace, ReducedModel as _, Workspace};
 

@@ -9,7 +9,8 @@
 //! response to one newton of it. Its w is zero and has no column.
 
 use crate::explain::{StudyError, explain_motion};
-use crate::models::{PreparedScene, ReducedScene, loaded_determinate_model};
+use crate::models::{PreparedScene, loaded_determinate_model};
+use crate::reduce::compute::ReducedScene;
 use dwell_findings::Column;
 use dwell_kinetostatics::{KinetostaticsError, LoadKind};
 
@@ -121,7 +122,7 @@ impl UnitLoadCurves {
     }
 
     /// The columns and their values: V, w of each load, c of each reaction and load.
-    pub(crate) fn columns(&self, prepared: &dyn ReducedScene) -> Vec<(Column, Vec<f64>)> {
+    pub fn columns(&self, prepared: &dyn ReducedScene) -> Vec<(Column, Vec<f64>)> {
         let mut all = Vec::new();
         if self.conservative {
             all.push((Column::new("V", "J"), self.potential.clone()));

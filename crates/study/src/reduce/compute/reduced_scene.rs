@@ -1,12 +1,12 @@
 //! What tables, figures and sentences of reduced parameters need of a scene with its model, in the plane or in space.
 
+use super::UnitLoadCurves;
 use crate::branch_note::branch_note;
 use crate::explain::{StudyError, explain_position};
 use crate::models::{PreparedScene, lists_reactions, requested_reactions};
 #[cfg(feature = "output")]
 use crate::output::{coordinate_label, indeterminate_note, separating_note};
 use crate::ranges::equally_spaced;
-use crate::reduce::compute::UnitLoadCurves;
 use crate::trajectory::compute::default_limits;
 use dwell_findings::Column;
 use dwell_geometry::Range;
@@ -162,7 +162,7 @@ impl ReducedScene for PreparedScene<'_> {
 
     #[cfg(feature = "output")]
     fn fast_turns(&self, rows: &[f64]) -> Vec<[f64; 2]> {
-        crate::reduce::compute::fast_turns(self, rows)
+        super::fast_turns(self, rows)
     }
 
     #[cfg(feature = "output")]

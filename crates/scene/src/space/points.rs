@@ -1,0 +1,61 @@
+//! Whether a scene is one in space, by its points.
+
+use crate::diagnostics::Span;
+use crate::error::{SceneError, Source};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Whether a scene is one in space.
+pub(crate) fn is_in_space(source: &Source) -> Result<bool, SceneError> {
+    let root = crate::read::syntax(source)?;
+    Ok(three_numbers(root.get_ref()).is_some())
+}
+
+/// Where the first point or centre of three numbers is, in a scene in space: one in which more of them have three numbers than two.
+pub(crate) fn three_numbers(root: &DeTable<'_>) -> Option<Span> {
+    let DeValue::Table(bodies) = root.get("bodies")?.get_ref() else {
+        return None;
+    };
+    let (mut first, mut triples, mut pairs) = (None::<Span>, 0, 0);
+    for value in bodies
+        .iter()
+        .flat_map(|(_, body)| points_and_center(body.get_ref()))
+    {
+        match value.get_ref() {
+            DeValue::Array(all) if all.len() == 3 => {
+                triples += 1;
+                if first
+                    .as_ref()
+                    .is_none_or(|first| value.span().start < first.start)
+                {
+                    first = Some(value.span());
+                }
+            }
+            DeValue::Array(all) if all.len() == 2 => pairs += 1,
+            _ => {}
+        }
+    }
+    first.filter(|_| triples > pairs)
+}
+
+fn points_and_center<'v>(body: &'v DeValue<'v>) -> Vec<&'v Spanned<DeValue<'v>>> {
+    let DeValue::Table(body) = body else {
+        return Vec::new();
+    };
+    let points = match body.get("points").map(Spanned::get_ref) {
+        Some(DeValue::Table(points)) => points.iter().map(|(_, point)| point).collect(),
+        _ => Vec::new(),
+    };
+    points.into_iter().chain(body.get("center")).collect()
+}
+
+/// A scene in space where one in the plane is needed.
+pub(crate) fn planar_only(source: &Source, point: Span) -> SceneError {
+    let help = "`dwell check` and `dwell reduce` take mechanisms in space; for one in the plane, points have two numbers [x, y]";
+    SceneError::with_labels(
+        source,
+        "this mechanism is in space, and the command takes only mechanisms in the plane".to_owned(),
+        Some(help.to_owned()),
+        [(point, "three numbers".to_owned())],
+    )
+}

@@ -1,0 +1,192 @@
+//! What a scene in space is read as.
+
+use super::format::{merged, tables, tables_of_examples};
+use super::mutations::pieces;
+use super::{IN_SPACE, WHOLE, render};
+use crate::keys::kinds;
+use crate::{AnyScene, Scene, SpaceScene};
+use dwell_geometry::space::{ActuatorKind, JointKind, Rotation, Vec3, vec3};
+use dwell_geometry::{BodyId, JointId};
+use dwell_kinetostatics::space::{Direction, LoadKind};
+use std::f64::consts::{PI, TAU};
+
+fn close(a: Vec3, b: Vec3) -> bool {
+    (a - b).norm() < 1e-15
+}
+
+#[test]
+fn points_with_three_numbers_make_a_scene_one_in_space() {
+    let read = |text: &str| AnyScene::parse("test.toml", text).expect("a scene");
+    assert!(matches!(read(IN_SPACE), AnyScene::Space(_)));
+    assert!(matches!(read(WHOLE), AnyScene::Plane(_)));
+    let error = Scene::parse("test.toml", IN_SPACE).expect_err("not in the plane");
+    assert!(error.message.contains("mechanism in space"), "{error}");
+    assert!(!error.labels.is_empty());
+}
+
+#[test]
+fn bodies_and_joints_are_read_in_si() {
+    let scene = SpaceScene::parse("test.toml", IN_SPACE).expect("a scene");
+    let mechanism = &scene.mechanism;
+    assert_eq!(mechanism.bodies.len(), 7);
+    assert!(close(scene.masses[1].center, vec3(0.05, 0.001, 0.0)));
+    let [xx, yy, ..] = scene.masses[1].inertia;
+    assert!((xx - 1e-5).abs() < 1e-20 && (yy - 1.666e-3).abs() < 1e-18);
+    // About its axes (y, z, x of the body) I_xx of the file is the body's I_yy, and I_xy its I_yz.
+    let turned = scene.masses[2].inertia;
+    let expected = [40e-6, 20e-6, 30e-6, 2e-6, 3e-6, 1e-6];
+    for (found, expected) in turned.into_iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-20, "{turned:?}");
+    }
+    let [a, _, p, slide, _, screw, _, weld, link] = &mechanism.joints[..] else {
+        panic!("{} joints", mechanism.joints.len())
+    };
+    assert_eq!(a.kind, JointKind::Revolute);
+    assert!(close(a.sides[1].axis, vec3(0.0, 0.0, 1.0)));
+    assert!(close(p.sides[1].axis, vec3(0.0, 0.0, 1.0)));
+    assert!(close(slide.sides[1].normal, vec3(0.0, 0.0, 1.0)));
+    assert!(
+        matches!(screw.kind, JointKind::Helical { pitch } if (pitch - 0.005 / TAU).abs() < 1e-18)
+    );
+    assert_eq!(weld.sides[0].axis, weld.sides[1].axis);
+    assert_eq!(link.kind, JointKind::Distance { length: 0.02 });
+    let kinds = mechanism.actuators.iter().map(|a| a.kind);
+    assert!(kinds.eq([
+        ActuatorKind::Angle(JointId(0)),
+        ActuatorKind::Travel(JointId(4))
+    ]));
+}
+
+#[test]
+fn assembly_loads_and_requests_are_read_in_si() {
+    let scene = SpaceScene::parse("test.toml", IN_SPACE).expect("a scene");
+    assert_eq!(scene.assembly.q, [PI / 2.0, 0.0]);
+    let rod = scene.assembly.placements[2];
+    assert!(close(rod.position, vec3(0.0, 0.1, 0.0)));
+    let turned = Rotation::IDENTITY.turned_by(vec3(0.0, 0.0, -PI / 9.0));
+    assert!(close(
+        rod.rotation.apply(vec3(1.0, 0.0, 0.0)),
+        turned.apply(vec3(1.0, 0.0, 0.0))
+    ));
+    let [weight, push, twist, drag, _] = &scene.loads[..] else {
+        panic!("{} loads", scene.loads.len())
+    };
+    assert!((weight.magnitude - 9.81).abs() < 1e-15);
+    assert_eq!(weight.kind, LoadKind::Gravity(vec3(0.0, 0.0, -1.0)));
+    assert!(
+        matches!(push.kind, LoadKind::Force { direction: Direction::Body(u), .. } if u.x == -1.0)
+    );
+    let of = |kind: LoadKind| match kind {
+        LoadKind::Torque { bodies, .. } => bodies,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(of(twist.kind), [BodyId(0), BodyId(1)]);
+    assert_eq!(of(drag.kind), [BodyId(0), BodyId(2)]);
+    let names = scene.reactions.iter().map(|&r| scene.reaction_name(r));
+    let names: Vec<_> = names.collect();
+    assert_eq!(
+        names,
+        [
+            "slide.y",
+            "slide.z",
+            "slide.moment-x",
+            "slide.moment-y",
+            "slide.moment-z",
+            "A.z",
+            "A.moment-across",
+            "P.axial"
+        ]
+    );
+}
+
+/// A scene cut short anywhere, or with a piece of it replaced, is read or told what is wrong with it.
+#[test]
+fn no_text_breaks_the_reader() {
+    let survive = |text: &str| match AnyScene::parse("test.toml", text) {
+        Ok(_) => true,
+        Err(error) => {
+            assert!(!render(&error).is_empty());
+            false
+        }
+    };
+    assert!(survive(IN_SPACE));
+    for (at, _) in IN_SPACE.char_indices() {
+        survive(&IN_SPACE[..at]);
+    }
+    for piece in pieces(IN_SPACE) {
+        for other in [
+            "",
+            "x",
+            "-1",
+            "1e300",
+            "nan",
+            "[",
+            "}",
+            "\"A\"",
+            "[1, 2, 3]",
+            "{ at = [1, 0, 0] }",
+        ] {
+            survive(&[&IN_SPACE[..piece.start], other, &IN_SPACE[piece.end..]].concat());
+        }
+    }
+}
+
+/// The bodies that the examples of keys name.
+const BODIES: &str = r#"
+bodies.ground = { points = { A = [0, 0, 0], S = [0, 0, 0] } }
+bodies.crank = { points = { A = [0, 0, 0], B = [1, 0, 0], C = [2, 0, 0] }, center = "A" }
+bodies.rod = { points = { A = [0, 0, 0], B = [0, 0, 0], P = [3, 0, 0] } }
+bodies.piston = { points = { P = [0, 0, 0] } }
+bodies.shaft = { points = { A = [0, 0, 0] } }
+bodies.nut = { points = { A = [0, 0, 0] } }
+bodies.block = { points = { A = [0, 0, 0] } }
+joints.A = { revolute = ["ground.A", "crank.A"], axis = [0, 0, 1] }
+joints.B = { spherical = ["crank.B", "rod.B"] }
+joints.slide = { prismatic = ["ground.S", "piston.P"], axis = [1, 0, 0] }
+joints.S = { spherical = ["rod.A", "shaft.A"] }
+joints.N = { spherical = ["rod.A", "nut.A"] }
+joints.K = { spherical = ["rod.A", "block.A"] }
+actuators.phi = { angle = "A" }
+assembly.phi = 0.5
+"#;
+
+#[test]
+fn every_example_of_a_key_in_space_is_read() {
+    let mut read = 0;
+    for table in tables("scene-in-space") {
+        for (key, inner) in tables_of_examples(table) {
+            let inner = match table.keys.iter().find(|k| k.name == "normals") {
+                Some(normals) if key == "axes" => {
+                    let inner = inner.trim_end_matches('}');
+                    format!("{inner}, normals = {} }}", normals.example)
+                }
+                _ => inner,
+            };
+            let first = table.kind_key();
+            let fragment = match table.name.as_str() {
+                "[bodies.<body>] in space" => format!("bodies.crank = {inner}"),
+                "[actuators.<actuator>] in space" => format!("actuators.other = {inner}"),
+                "[assembly.<body>] in space" => format!("assembly.rod = {inner}"),
+                "[requests] in space" => format!("requests = {inner}"),
+                _ if kinds("joints-in-space")
+                    .iter()
+                    .any(|t| t.kind_key() == first) =>
+                {
+                    format!("joints.other = {inner}")
+                }
+                _ if kinds("loads-in-space")
+                    .iter()
+                    .any(|t| t.kind_key() == first) =>
+                {
+                    format!("loads.other = {inner}")
+                }
+                _ => continue,
+            };
+            if let Err(error) = SpaceScene::parse("test.toml", &merged(BODIES, &fragment)) {
+                panic!("{fragment}\n{}", render(&error));
+            }
+            read += 1;
+        }
+    }
+    assert!(read >= 40, "{read}");
+}

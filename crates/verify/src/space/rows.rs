@@ -1,0 +1,206 @@
+//! The rows of joints and actuators, and how far joints are from closed.
+
+use dwell_geometry::space::{BodyMotion, Joint, JointKind, Mechanism, Placement, Vec3, Wrench};
+use std::f64::consts::TAU;
+
+/// The gradient of a row by one body: a force at its frame's origin, and a couple.
+pub(super) type Gradient = Wrench;
+
+/// A row of the constraints: on which bodies, with which gradients, and J̇ẋ.
+pub(super) struct Row {
+    pub(super) bodies: [usize; 2],
+    pub(super) gradients: [Gradient; 2],
+    pub(super) bias: f64,
+}
+
+/// The bodies in a pass.
+pub(super) struct Bodies<'a> {
+    pub(super) mechanism: &'a Mechanism,
+    pub(super) placements: &'a [Placement],
+    pub(super) motions: Vec<BodyMotion>,
+}
+
+impl Bodies<'_> {
+    /// From a body's origin to a point of it.
+    pub(super) fn arm(&self, body: usize, point: Vec3) -> Vec3 {
+        self.placements[body].rotation.apply(point)
+    }
+
+    pub(super) fn point(&self, body: usize, point: Vec3) -> Vec3 {
+        self.placements[body].position + self.arm(body, point)
+    }
+
+    /// ω × (ω × u).
+    fn turned_twice(&self, body: usize, u: Vec3) -> Vec3 {
+        let w = self.motions[body].angular_velocity;
+        w.cross(w.cross(u))
+    }
+
+    /// u·w of directions in the first and the second body.
+    fn right_angle(&self, [a, b]: [usize; 2], u: Vec3, w: Vec3) -> Row {
+        let couple = u.cross(w);
+        let [wa, wb] = [a, b].map(|body| self.motions[body].angular_velocity);
+        let (u1, w1) = (wa.cross(u), wb.cross(w));
+        let bias =
+            self.turned_twice(a, u).dot(w) + 2.0 * u1.dot(w1) + u.dot(self.turned_twice(b, w));
+        let on = |moment| Gradient {
+            force: Vec3::ZERO,
+            moment,
+        };
+        Row {
+            bodies: [a, b],
+            gradients: [on(couple), on(-couple)],
+            bias,
+        }
+    }
+
+    /// u·d of a direction in the first body.
+    pub(super) fn in_plane(&self, joint: &Joint, u: Vec3) -> Row {
+        let (bodies, arms, d) = self.ends(joint);
+        let [a, b] = bodies;
+        let wa = self.motions[a].angular_velocity;
+        let d1 = self.velocity(b, arms[1]) - self.velocity(a, arms[0]);
+        let d2 = self.turned_twice(b, arms[1]) - self.turned_twice(a, arms[0]);
+        let bias = self.turned_twice(a, u).dot(d) + 2.0 * wa.cross(u).dot(d1) + u.dot(d2);
+        Row {
+            bodies,
+            gradients: [
+                Gradient {
+                    force: -u,
+                    moment: u.cross(d) - arms[0].cross(u),
+                },
+                Gradient {
+                    force: u,
+                    moment: arms[1].cross(u),
+                },
+            ],
+            bias,
+        }
+    }
+
+    /// e·d of a direction of the ground, or d·d of a distance.
+    fn along(&self, joint: &Joint, e: Vec3, of_velocity: impl Fn(Vec3) -> f64) -> Row {
+        let (bodies, arms, _) = self.ends(joint);
+        let [a, b] = bodies;
+        let d1 = self.velocity(b, arms[1]) - self.velocity(a, arms[0]);
+        let d2 = self.turned_twice(b, arms[1]) - self.turned_twice(a, arms[0]);
+        Row {
+            bodies,
+            gradients: [
+                Gradient {
+                    force: -e,
+                    moment: -arms[0].cross(e),
+                },
+                Gradient {
+                    force: e,
+                    moment: arms[1].cross(e),
+                },
+            ],
+            bias: e.dot(d2) + of_velocity(d1),
+        }
+    }
+
+    fn velocity(&self, body: usize, arm: Vec3) -> Vec3 {
+        let motion = &self.motions[body];
+        motion.velocity + motion.angular_velocity.cross(arm)
+    }
+
+    fn ends(&self, joint: &Joint) -> ([usize; 2], [Vec3; 2], Vec3) {
+        let bodies = joint.bodies.map(|b| b.0);
+        let arms = [0, 1].map(|k| self.arm(bodies[k], joint.sides[k].point));
+        let [a, b] = [0, 1].map(|k| self.point(bodies[k], joint.sides[k].point));
+        (bodies, arms, b - a)
+    }
+
+    /// The angle of a joint about the axis u of the first body.
+    pub(super) fn angle(&self, joint: &Joint, u: Vec3) -> Row {
+        let bodies = joint.bodies.map(|b| b.0);
+        let [wa, wb] = bodies.map(|body| self.motions[body].angular_velocity);
+        let on = |moment| Gradient {
+            force: Vec3::ZERO,
+            moment,
+        };
+        Row {
+            bodies,
+            gradients: [on(-u), on(u)],
+            bias: wa.cross(u).dot(wb - wa),
+        }
+    }
+
+    /// The rows (2) of a joint.
+    pub(super) fn rows(&self, joint: &Joint) -> Vec<Row> {
+        let bodies = joint.bodies.map(|b| b.0);
+        let [u, w] = [0, 1].map(|k| self.arm(bodies[k], joint.sides[k].axis));
+        let [n, p] = [0, 1].map(|k| self.arm(bodies[k], joint.sides[k].normal));
+        let across = u.cross(n);
+        let mut rows = Vec::new();
+        let meets = |rows: &mut Vec<Row>| {
+            rows.extend(Vec3::AXES.map(|e| self.along(joint, e, |_| 0.0)));
+        };
+        let parallel = |rows: &mut Vec<Row>| {
+            rows.extend([n, across].map(|v| self.right_angle(bodies, v, w)));
+        };
+        let on_line =
+            |rows: &mut Vec<Row>| rows.extend([n, across].map(|v| self.in_plane(joint, v)));
+        let no_turn = |rows: &mut Vec<Row>| rows.push(self.right_angle(bodies, n, w.cross(p)));
+        match joint.kind {
+            JointKind::Weld => (meets(&mut rows), parallel(&mut rows), no_turn(&mut rows)).2,
+            JointKind::Revolute => (meets(&mut rows), parallel(&mut rows)).1,
+            JointKind::Prismatic => (on_line(&mut rows), parallel(&mut rows), no_turn(&mut rows)).2,
+            JointKind::Cylindrical => (on_line(&mut rows), parallel(&mut rows)).1,
+            JointKind::Helical { pitch } => {
+                on_line(&mut rows);
+                parallel(&mut rows);
+                let (mut travel, turn) = (self.in_plane(joint, u), self.angle(joint, u));
+                for (row, turn) in travel.gradients.iter_mut().zip(turn.gradients) {
+                    row.moment += turn.moment.scaled(-pitch);
+                }
+                travel.bias -= pitch * turn.bias;
+                rows.push(travel);
+            }
+            JointKind::Universal => {
+                meets(&mut rows);
+                rows.push(self.right_angle(bodies, u, w));
+            }
+            JointKind::Spherical => meets(&mut rows),
+            JointKind::Planar => {
+                rows.push(self.in_plane(joint, u));
+                parallel(&mut rows);
+            }
+            JointKind::Distance { length } => {
+                let (_, _, d) = self.ends(joint);
+                rows.push(self.along(joint, d.scaled(1.0 / length), |d1| d1.dot(d1) / length));
+            }
+        }
+        rows
+    }
+}
+
+/// How far a joint is from closed, m and rad: the residual of its rows (2) at placements of all bodies.
+pub fn closure_error(joint: &Joint, placements: &[Placement]) -> f64 {
+    let bodies = joint.bodies.map(|b| b.0);
+    let at = |k: usize, v: Vec3| placements[bodies[k]].rotation.apply(v);
+    let point = |k: usize| placements[bodies[k]].position + at(k, joint.sides[k].point);
+    let d = point(1) - point(0);
+    let [u, w] = [0, 1].map(|k| at(k, joint.sides[k].axis));
+    let [n, p] = [0, 1].map(|k| at(k, joint.sides[k].normal));
+    let (apart, tilt) = (d.norm(), (u - w).norm());
+    let (off_line, turn) = (d.cross(u).norm(), (n - p).norm());
+    let angle = n.cross(p).dot(u).atan2(n.dot(p));
+    let found: &[f64] = match joint.kind {
+        JointKind::Weld => &[apart, tilt, turn],
+        JointKind::Revolute => &[apart, tilt],
+        JointKind::Prismatic => &[off_line, tilt, turn],
+        JointKind::Cylindrical => &[off_line, tilt],
+        JointKind::Helical { pitch } => {
+            // The angle may have whole turns, each of 2π pitch.
+            let turns = (d.dot(u) / pitch - angle) / TAU;
+            &[off_line, tilt, (turns - turns.round()) * TAU * pitch]
+        }
+        JointKind::Universal => &[apart, u.dot(w)],
+        JointKind::Spherical => &[apart],
+        JointKind::Planar => &[d.dot(u), tilt],
+        JointKind::Distance { length } => &[apart - length],
+    };
+    found.iter().fold(0.0, |all, part| all.max(part.abs()))
+}
