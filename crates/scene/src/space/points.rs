@@ -54,7 +54,7 @@ pub(crate) fn planar_only(source: &Source, point: Span) -> SceneError {
     let help = "`dwell check` and `dwell reduce` take mechanisms in space; for one in the plane, points have two numbers [x, y]";
     SceneError::with_labels(
         source,
-        "this mechanism is in space, and the command takes only mechanisms in the plane".to_owned(),
+        "this mechanism is in space, where one in the plane is needed".to_owned(),
         Some(help.to_owned()),
         [(point, "three numbers".to_owned())],
     )

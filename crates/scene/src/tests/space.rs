@@ -20,7 +20,7 @@ fn points_with_three_numbers_make_a_scene_one_in_space() {
     assert!(matches!(read(IN_SPACE), AnyScene::Space(_)));
     assert!(matches!(read(WHOLE), AnyScene::Plane(_)));
     let error = Scene::parse("test.toml", IN_SPACE).expect_err("not in the plane");
-    assert!(error.message.contains("mechanism in space"), "{error}");
+    assert!(error.message.contains("is in space"), "{error}");
     assert!(!error.labels.is_empty());
 }
 

@@ -80,7 +80,7 @@ fn describe_freedom(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Str
 /// The range of the actuator.
 fn describe_range(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> String {
     let [actuator] = scene.mechanism.actuators.as_slice() else {
-        return "  several actuators: limit positions are not looked for\n".to_owned();
+        return "  several actuators: limit positions are found along a motion only\n".to_owned();
     };
     let (name, is_angle) = (&actuator.name, is_angle(scene));
     let unit = coordinate_unit(is_angle);
