@@ -70,6 +70,7 @@ mod shared_system;
 mod sliding;
 mod sliding_system;
 pub mod solve;
+pub mod space;
 pub mod state_space;
 mod state_switches;
 mod switch_monitor;
@@ -109,5 +110,6 @@ pub use solve::{
     Event, EventKind, EventOccurrence, Observed, ObservedMachine, ObservedValue, Solution, solve,
     solve_orbit, solve_system,
 };
+pub use space::{SpaceMachine, SpaceOde};
 pub use state_space::{StateSpace, eigenvalues_about, is_equilibrium, linearise};
 pub use tabulated::{TabulatedMachine, TabulatedMachineOde, TabulationError};

@@ -102,6 +102,11 @@ impl Orbit {
         Self::of_system(&mut LoadedSystem::new(machine)?, start, 0.0)
     }
 
+    /// The motion of a conservative system.
+    pub(crate) fn of(system: &mut dyn ConservativeSystem, start: ReducedState) -> Result<Self> {
+        Self::of_system(system, start, 0.0)
+    }
+
     fn of_system(
         system: &mut dyn ConservativeSystem,
         start: ReducedState,

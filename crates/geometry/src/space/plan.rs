@@ -101,6 +101,12 @@ impl Plan {
         self.drivers.len()
     }
 
+    /// Whether an actuator drives an angle; otherwise it drives a travel.
+    pub fn is_angle(&self, actuator: usize) -> bool {
+        let (freedom, _) = self.drivers[actuator];
+        !matches!(self.tree.freedoms[freedom].parts(), (0.0, _))
+    }
+
     /// The range of the coordinate.
     pub fn range(&self) -> Range {
         self.range

@@ -80,9 +80,10 @@ impl LoadKind {
         )
     }
 
-    /// Takes a unit of the load off what the bodies require.
+    /// Takes the load, with its magnitude, off what the bodies require.
     pub(super) fn subtract<T: Scalar>(
         &self,
+        magnitude: f64,
         plan: &Plan,
         pose: &Pose<T>,
         masses: &[super::Mass],
@@ -96,14 +97,21 @@ impl LoadKind {
             plan.frame(pose, body).rotation.apply(local.cast())
         };
         let turned = |body: usize, direction: Direction| match direction {
-            Direction::Ground(u) => u.cast(),
-            Direction::Body(u) => arm(body, u + plan.evaluation_frame(body).position),
+            Direction::Ground(u) => u.scaled(magnitude).cast(),
+            Direction::Body(u) => {
+                let from_origin = u.scaled(magnitude) + plan.evaluation_frame(body).position;
+                arm(body, from_origin)
+            }
         };
         match *self {
             Self::Gravity(direction) => {
                 for (body, mass) in masses.iter().enumerate() {
                     let at = plan.frame(pose, body).rotation.apply(mass.center.cast());
-                    required[body].add_at(at, (-direction.scaled(mass.mass)).cast(), Vec3::zero());
+                    required[body].add_at(
+                        at,
+                        (-direction.scaled(magnitude * mass.mass)).cast(),
+                        Vec3::zero(),
+                    );
                 }
             }
             Self::Force {
@@ -125,7 +133,7 @@ impl LoadKind {
                 let [a, b] = [0, 1].map(|k| arm(bodies[k].0, points[k]));
                 let [from, to] = bodies.map(|body| plan.frame(pose, body.0).origin);
                 let d = to + b - (from + a);
-                let along = d.scaled(T::from_f64(1.0) / d.dot(d).sqrt());
+                let along = d.scaled(T::from_f64(magnitude) / d.dot(d).sqrt());
                 required[bodies[0].0].add_at(a, along, Vec3::zero());
                 required[bodies[1].0].add_at(b, -along, Vec3::zero());
             }

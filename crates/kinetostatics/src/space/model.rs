@@ -75,6 +75,8 @@ pub struct Model {
 pub struct Workspace<T = f64> {
     pub(super) pose: Pose<T>,
     pub(super) forces: Forces<T>,
+    /// Speeds or accelerations of the actuators.
+    pub(super) rates: Vec<T>,
 }
 
 impl Model {
@@ -156,6 +158,7 @@ impl Model {
         Workspace {
             pose: self.plan.pose(),
             forces: self.plan.forces(),
+            rates: vec![T::from_f64(0.0); self.plan.actuators()],
         }
     }
 
@@ -165,7 +168,7 @@ impl Model {
     /// # Errors
     /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
     pub fn determined(&self, q: &[f64], workspace: &mut Workspace) -> PositionResult<Vec<bool>> {
-        let Workspace { pose, forces } = workspace;
+        let Workspace { pose, forces, .. } = workspace;
         self.plan.positions(q, pose)?;
         let mut determined = vec![true; self.reactions.len()];
         for stress in self.plan.self_stresses(pose) {
@@ -224,7 +227,7 @@ impl Model {
 
     /// The inertia of all bodies as what they require.
     pub(super) fn require_inertia<T: Scalar>(&self, workspace: &mut Workspace<T>) {
-        let Workspace { pose, forces } = workspace;
+        let Workspace { pose, forces, .. } = workspace;
         forces.required.fill(Wrench::default());
         for &b in &self.inertial {
             forces.required[b] =
@@ -234,7 +237,7 @@ impl Model {
 
     /// The inertia of all bodies in unit acceleration from rest, after the velocities at unit speed.
     pub(super) fn require_unit_acceleration<T: Scalar>(&self, workspace: &mut Workspace<T>) {
-        let Workspace { pose, forces } = workspace;
+        let Workspace { pose, forces, .. } = workspace;
         forces.required.fill(Wrench::default());
         for &b in &self.inertial {
             let moving = self.plan.state(pose, b);
@@ -245,6 +248,18 @@ impl Model {
             };
             forces.required[b] = self.masses[b].required(self.plan.frame(pose, b), &from_rest);
         }
+    }
+
+    /// Takes a load off what the bodies require.
+    pub(super) fn subtract_load<T: Scalar>(
+        &self,
+        load: &LoadKind,
+        magnitude: f64,
+        workspace: &mut Workspace<T>,
+    ) {
+        let Workspace { pose, forces, .. } = workspace;
+        let required = &mut forces.required;
+        load.subtract(magnitude, &self.plan, pose, &self.masses, required);
     }
 
     /// A requested reaction of the last pass.
@@ -290,9 +305,8 @@ impl Model {
         result: &mut InverseDynamics<T>,
     ) -> PositionResult {
         self.plan.positions(q, &mut workspace.pose)?;
-        let Workspace { pose, forces } = &mut *workspace;
-        forces.required.fill(Wrench::default());
-        load.subtract(&self.plan, pose, &self.masses, &mut forces.required);
+        workspace.forces.required.fill(Wrench::default());
+        self.subtract_load(load, 1.0, workspace);
         self.balance(workspace, result);
         Ok(())
     }
