@@ -1,5 +1,33 @@
 //! Motions of mechanisms in space under loads that do not vary: by integration with any number of coordinates, and by
 //! quadrature with one.
+//!
+//! ```
+//! use dwell_dynamics::{ReducedState, SpaceMachine};
+//! use dwell_geometry::Body;
+//! use dwell_geometry::space::{Actuator, Assembly, Joint, JointKind, Mechanism, Side, vec3};
+//! use dwell_kinetostatics::space::{LoadKind, Mass, Model};
+//! use std::f64::consts::{PI, TAU};
+//!
+//! // Mach's pendulum: 1 kg at 1 m from an axis that is inclined by 60°, so that it swings as under g cos 60°.
+//! let (sin, cos) = (PI / 3.0).sin_cos();
+//! let lowest = vec3(sin, 0.0, -cos);
+//! let side = Side { axis: vec3(cos, 0.0, sin), normal: lowest, ..Side::default() };
+//! let mechanism = Mechanism {
+//!     bodies: ["ground", "pendulum"].map(Body::named).into(),
+//!     ground: 0,
+//!     joints: vec![Joint::new("A", [0, 1], JointKind::Revolute, [side; 2])],
+//!     actuators: vec![Actuator::angle("q", 0)],
+//! };
+//! let masses = [Mass::default(), Mass { mass: 1.0, center: lowest, inertia: [0.0; 6] }];
+//! let model = Model::new(&mechanism, &masses, &Assembly::at(&[0.0]), &[])?;
+//! let machine = SpaceMachine::new(&model, vec![(LoadKind::Gravity(vec3(0.0, 0.0, -1.0)), 9.81)]);
+//!
+//! let orbit = machine.orbit(ReducedState { t: 0.0, q: 0.01, q_dot: 0.0 })?;
+//! // T = 2π √(l / g cos α) (1 + q₀²/16 + …)
+//! let period = TAU / (9.81 * cos).sqrt() * (1.0 + 0.01 * 0.01 / 16.0);
+//! assert!((orbit.period / period - 1.0).abs() < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 use crate::conservative::{ConservativeSystem, EnergyTerms};
 use crate::error::{DynamicsError, Result, positive_inertia};

@@ -14,8 +14,8 @@ use closed_form::ClosedForm;
 use closed_form_four_bar::{FourBar, SCENE, with_a_dyad};
 use closed_form_general::General;
 use dwell_geometry::Reaction;
-use dwell_kinetostatics::{ExactModel, Model, ReducedModel};
-use dwell_scene::Scene;
+use dwell_kinetostatics::{Coefficients, ExactModel, Model, ReducedModel, space};
+use dwell_scene::{Scene, SpaceScene};
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
@@ -33,6 +33,11 @@ fn main() {
     let six_bar = Case::read("class-three-six-bar");
     let near = (six_bar.scene.assembly.coordinates[0] - 0.1, 0.2);
     let six_bar = six_bar.model(&six_bar.scene.requests.reactions);
+
+    let one_force = Case::read("crank-rocker");
+    let one_force = one_force.model(&one_force.scene.requests.reactions[..1]);
+    let rssr = in_space("rssr", "B.x");
+    let bricard = in_space("bricard-a04", "P2.moment-x");
 
     let closed_form_four_bar = FourBar::new();
     let (bars, dyad) = (loaded_model(SCENE), loaded_model(&with_a_dyad()));
@@ -69,6 +74,13 @@ fn main() {
         inertia("crank-rocker, m and m'/2", FULL_REVOLUTION, &four_bar),
         coefficients("class-three six-bar, all reactions", near, &six_bar),
         inertia("class-three six-bar, m and m'/2", near, &six_bar),
+        coefficients(
+            "four-bar linkage in space (RSSR), a force",
+            FULL_REVOLUTION,
+            &rssr,
+        ),
+        coefficients("Bricard linkage, a moment", (0.3, 2.5), &bricard),
+        coefficients("crank-rocker, a force", FULL_REVOLUTION, &one_force),
     ]);
 
     let mut forces = vec![
@@ -93,6 +105,23 @@ fn main() {
     }
     print(&mut subjects);
     print_forces(&mut forces);
+}
+
+/// A mechanism in space with one of its reactions.
+fn in_space(name: &str, reaction: &str) -> ExactModel<space::Model> {
+    let path = format!(
+        "{}/../../validation/spatial/{name}.toml",
+        env!("CARGO_MANIFEST_DIR")
+    );
+    let scene = SpaceScene::read(path).unwrap_or_else(|e| stop(name, &e.to_string()));
+    let all = scene.reactions.iter().copied();
+    let wanted: Vec<_> = all
+        .filter(|&r| scene.reaction_name(r) == reaction)
+        .collect();
+    assert_eq!(wanted.len(), 1, "{reaction}");
+    let model = space::Model::new(&scene.mechanism, &scene.masses, &scene.assembly, &wanted);
+    let model = model.unwrap_or_else(|e| stop(name, &e.to_string()));
+    ExactModel::new(model).unwrap_or_else(|| stop(name, "it has several actuators"))
 }
 
 /// A mechanism under its loads with every reaction, and its scene.
@@ -185,9 +214,18 @@ fn print(subjects: &mut [Subject<'_>]) {
     }
 }
 
-fn coefficients<'a>(name: &'static str, range: (f64, f64), model: &'a ExactModel) -> Subject<'a> {
+fn coefficients<'a, R: ReducedModel>(
+    name: &'static str,
+    range: (f64, f64),
+    model: &'a R,
+) -> Subject<'a> {
     let mut workspace = model.workspace();
-    let mut out = model.model().coefficient_buffer();
+    let zeros = vec![0.0; model.reactions()];
+    let mut out = Coefficients {
+        a: zeros.clone(),
+        b: zeros,
+        ..Coefficients::default()
+    };
     Subject::new(name, range, move |q| {
         black_box(model.coefficients(q, &mut workspace, &mut out).is_ok());
         black_box(&out);
