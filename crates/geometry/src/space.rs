@@ -46,15 +46,18 @@ mod motion;
 mod multipliers;
 mod plan;
 mod positions;
+mod prediction;
 mod rank;
 mod tree;
 mod vector;
+mod wrench;
 
 pub use frames::{BodyMotion, Frame};
 pub use mechanism::{
     Actuator, ActuatorKind, Assembly, Joint, JointKind, Mechanism, Placement, Side,
 };
-pub use multipliers::{Forces, Wrench};
+pub use multipliers::Forces;
 pub use plan::{GroupDescription, Plan, Pose};
 pub use rank::{IdleBody, Mobility};
 pub use vector::{Rotation, Vec3, vec3};
+pub use wrench::Wrench;

@@ -49,6 +49,7 @@ impl Plan {
             last_links: Vec::new(),
             drivers,
             nodes: Vec::new(),
+            pieces: Vec::new(),
             range: Range::Unbounded,
             assembly_q: Vec::new(),
             mobility: Mobility::default(),

@@ -12,6 +12,7 @@ use super::frames::{BodyMotion, Frame};
 use super::mechanism::{Joint, JointKind, Mechanism, Side};
 use super::tree::Tree;
 use super::vector::Vec3;
+use super::wrench::Wrench;
 use crate::error::StructureError;
 use crate::mechanism::JointId;
 use dwell_numerics::Scalar;
@@ -59,8 +60,7 @@ pub(super) struct Closure {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RowValue<T> {
     pub(super) residual: T,
-    pub(super) force: Vec3<T>,
-    pub(super) couple: Vec3<T>,
+    pub(super) wrench: Wrench<T>,
 }
 
 /// All closures of a mechanism.
@@ -161,64 +161,62 @@ impl Closure {
     ) -> RowValue<T> {
         let [a, b] = self.bodies.map(|body| &frames[body].rotation);
         let zero = Vec3::zero();
+        let of = |residual, force, moment| RowValue {
+            residual,
+            wrench: Wrench { force, moment },
+        };
         match kind {
             RowKind::Point(k) => {
                 let axis = Vec3::AXES[k].cast();
-                RowValue {
-                    residual: axis.dot(d),
-                    force: axis,
-                    couple: zero,
-                }
+                of(axis.dot(d), axis, zero)
             }
             RowKind::Parallel(n, w) => {
                 let (n, w) = (a.apply(n.cast()), b.apply(w.cast()));
-                RowValue {
-                    residual: n.dot(w),
-                    force: zero,
-                    couple: w.cross(n),
-                }
+                of(n.dot(w), zero, w.cross(n))
             }
             RowKind::InPlane(u) => {
                 let u = a.apply(u.cast());
-                RowValue {
-                    residual: u.dot(d),
-                    force: u,
-                    couple: zero,
-                }
+                of(u.dot(d), u, zero)
             }
             RowKind::Length(length) => {
                 let distance = d.dot(d).sqrt();
                 let along = d.scaled(T::from_f64(1.0) / distance);
-                RowValue {
-                    residual: distance - T::from_f64(length),
-                    force: along,
-                    couple: zero,
-                }
+                of(distance - T::from_f64(length), along, zero)
             }
-            RowKind::NoSpin(e) => RowValue {
-                residual: T::from_f64(0.0),
-                force: zero,
-                couple: b.apply(e.cast()),
-            },
+            RowKind::NoSpin(e) => of(T::from_f64(0.0), zero, b.apply(e.cast())),
         }
     }
 
-    /// The second derivative of a row by time, at the velocities and accelerations of its bodies.
+    /// The difference d of the points with its first two derivatives, at the velocities and accelerations of the bodies.
+    #[inline(always)]
+    pub(super) fn point_motion<T: Scalar>(
+        &self,
+        frames: &[Frame<T>],
+        states: &[BodyMotion<T>],
+    ) -> [Vec3<T>; 3] {
+        let [a, b] = [0, 1].map(|k| {
+            let (frame, state) = (&frames[self.bodies[k]], &states[self.bodies[k]]);
+            let arm = frame.rotation.apply(self.points[k].cast());
+            let (first, second) = state.direction_derivatives(arm);
+            [
+                frame.origin + arm,
+                state.velocity + first,
+                state.acceleration + second,
+            ]
+        });
+        [b[0] - a[0], b[1] - a[1], b[2] - a[2]]
+    }
+
+    /// The second derivative of a row by time, with those of the difference of the points.
     #[inline(always)]
     pub(super) fn row_acceleration<T: Scalar>(
         &self,
         kind: RowKind,
         frames: &[Frame<T>],
         states: &[BodyMotion<T>],
+        [d, d1, d2]: [Vec3<T>; 3],
     ) -> T {
         let [a, b] = self.bodies;
-        let motion = |body: usize, point: Vec3| {
-            let arm = frames[body].rotation.apply(point.cast());
-            (
-                states[body].point_velocity(arm),
-                states[body].point_acceleration(arm),
-            )
-        };
         let direction = |body: usize, u: Vec3| {
             let u = frames[body].rotation.apply(u.cast());
             let (first, second) = states[body].direction_derivatives(u);
@@ -226,33 +224,23 @@ impl Closure {
         };
         let twice = T::from_f64(2.0);
         match kind {
+            RowKind::Point(k) => Vec3::AXES[k].cast().dot(d2),
             RowKind::Parallel(n, w) => {
                 let ((n, n1, n2), (w, w1, w2)) = (direction(a, n), direction(b, w));
                 n2.dot(w) + twice * n1.dot(w1) + n.dot(w2)
             }
+            RowKind::InPlane(u) => {
+                let (u, u1, u2) = direction(a, u);
+                u2.dot(d) + twice * u1.dot(d1) + u.dot(d2)
+            }
+            RowKind::Length(_) => {
+                let inverse = T::from_f64(1.0) / d.dot(d).sqrt();
+                let along = d.dot(d1) * inverse;
+                (d1.dot(d1) + d.dot(d2) - along * along) * inverse
+            }
             RowKind::NoSpin(e) => {
                 let e = frames[b].rotation.apply(e.cast());
                 e.dot(states[b].angular_acceleration)
-            }
-            RowKind::Point(_) | RowKind::InPlane(_) | RowKind::Length(_) => {
-                let ((v_a, a_a), (v_b, a_b)) =
-                    (motion(a, self.points[0]), motion(b, self.points[1]));
-                let (d1, d2) = (v_b - v_a, a_b - a_a);
-                match kind {
-                    RowKind::InPlane(u) => {
-                        let d = self.ends(frames)[2];
-                        let (u, u1, u2) = direction(a, u);
-                        u2.dot(d) + twice * u1.dot(d1) + u.dot(d2)
-                    }
-                    RowKind::Length(_) => {
-                        let d = self.ends(frames)[2];
-                        let inverse = T::from_f64(1.0) / d.dot(d).sqrt();
-                        let along = d.dot(d1) * inverse;
-                        (d1.dot(d1) + d.dot(d2) - along * along) * inverse
-                    }
-                    RowKind::Point(k) => Vec3::AXES[k].cast().dot(d2),
-                    RowKind::Parallel(..) | RowKind::NoSpin(_) => T::from_f64(0.0),
-                }
             }
         }
     }

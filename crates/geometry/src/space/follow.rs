@@ -4,6 +4,7 @@
 use super::frames::Frame;
 use super::mechanism::ActuatorKind;
 use super::plan::{Plan, Pose};
+use super::prediction::Piece;
 use super::tree::Step;
 use super::vector::{Rotation, Vec3};
 use crate::error::PositionError;
@@ -15,10 +16,10 @@ use std::f64::consts::TAU;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Node {
     pub(super) q: f64,
-    coordinates: Vec<[f64; 3]>,
-    balls: Vec<Rotation>,
+    pub(super) coordinates: Vec<[f64; 3]>,
+    pub(super) balls: Vec<Rotation>,
     /// By ball: its turn's derivatives, in the axes of the joint's frame on the parent.
-    turns: Vec<[Vec3; 2]>,
+    pub(super) turns: Vec<[Vec3; 2]>,
 }
 
 /// Steps of one revolution, or of the size of the mechanism.
@@ -134,7 +135,7 @@ impl Plan {
                 } else {
                     Range::Revolutions(revolution)
                 };
-                self.nodes = forward;
+                self.store(forward);
                 return Ok(());
             }
         }
@@ -181,8 +182,15 @@ impl Plan {
             (true, false) => Range::Stroke(from, to),
             (false, _) => Range::Unresolved(from, to),
         };
-        self.nodes = back;
+        self.store(back);
         Ok(())
+    }
+
+    /// Stores the poses along the range, with the predictions between them.
+    fn store(&mut self, nodes: Vec<Node>) {
+        let pairs = nodes.windows(2);
+        self.pieces = pairs.map(|pair| Piece::new(&pair[0], &pair[1])).collect();
+        self.nodes = nodes;
     }
 
     /// Continues from the last node to a coordinate, in steps that the prediction follows.

@@ -3,6 +3,7 @@
 use super::mechanism::Placement;
 use super::tree::{FreedomKind, Link, Step, next_axis};
 use super::vector::{Rotation, Vec3};
+use super::wrench::Wrench;
 use dwell_numerics::Scalar;
 
 /// A frame on a body, in that of the ground.
@@ -48,22 +49,17 @@ pub(super) struct Screw<T> {
 }
 
 impl<T: Scalar> Screw<T> {
-    /// The power of a wrench, a force at a point and a couple, at unit speed.
+    /// The power of a wrench about a point, at unit speed.
     #[inline(always)]
-    pub(super) fn power(
-        &self,
-        kind: FreedomKind,
-        force: Vec3<T>,
-        at: Vec3<T>,
-        couple: Vec3<T>,
-    ) -> T {
+    pub(super) fn power(&self, kind: FreedomKind, wrench: Wrench<T>, at: Vec3<T>) -> T {
+        let Wrench { force, moment } = wrench;
         match kind {
             FreedomKind::Turn | FreedomKind::BallTurn => {
-                self.axis.dot(couple + (at - self.point).cross(force))
+                self.axis.dot(moment + (at - self.point).cross(force))
             }
             FreedomKind::Slide => self.axis.dot(force),
             FreedomKind::Screw(pitch) => {
-                let moment = couple + (at - self.point).cross(force);
+                let moment = moment + (at - self.point).cross(force);
                 self.axis.dot(moment + force.scaled(T::from_f64(pitch)))
             }
         }

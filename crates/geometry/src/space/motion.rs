@@ -3,6 +3,7 @@
 use super::frames::BodyMotion;
 use super::groups::Group;
 use super::plan::{Plan, Pose};
+use super::vector::Vec3;
 use dwell_numerics::Scalar;
 
 impl Plan {
@@ -25,19 +26,27 @@ impl Plan {
         }
         pose.accelerations.fill(T::from_f64(0.0));
         self.fill_states(pose);
+        pose.has_no_acceleration = true;
     }
 
     /// The accelerations of all freedoms and bodies at those of the actuators, rad/s² or m/s², after the velocities.
     pub fn accelerations<T: Scalar>(&self, q_ddot: &[T], pose: &mut Pose<T>) {
-        pose.accelerations.fill(T::from_f64(0.0));
-        self.fill_states(pose);
+        if !std::mem::take(&mut pose.has_no_acceleration) {
+            pose.accelerations.fill(T::from_f64(0.0));
+            self.fill_states(pose);
+        }
         for (&(freedom, sign), &acceleration) in self.drivers.iter().zip(q_ddot) {
             pose.accelerations[freedom] = acceleration * T::from_f64(sign);
         }
         for group in &self.groups {
+            let (mut last, mut points) = (usize::MAX, [Vec3::zero(); 3]);
             let row = |pose: &Pose<T>, c: usize, k: usize| {
                 let closure = &self.closures[c];
-                closure.row_acceleration(closure.kinds[k], &pose.frames, &pose.states)
+                if c != last {
+                    points = closure.point_motion(&pose.frames, &pose.states);
+                    last = c;
+                }
+                closure.row_acceleration(closure.kinds[k], &pose.frames, &pose.states, points)
             };
             self.carry_known(
                 group,
@@ -59,7 +68,7 @@ impl Plan {
         group: &Group,
         pose: &mut Pose<T>,
         known: impl Fn(&Pose<T>, usize) -> T,
-        row: impl Fn(&Pose<T>, usize, usize) -> T,
+        mut row: impl FnMut(&Pose<T>, usize, usize) -> T,
     ) {
         for (i, &(c, k)) in group.rows.iter().enumerate() {
             pose.scratch[i] = -row(pose, c, k);

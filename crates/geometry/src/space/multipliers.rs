@@ -1,27 +1,9 @@
 //! Multipliers of the loops by the transposed factors, group by group in reverse order, and the forces and moments in the joints.
 
 use super::plan::{JointPlace, Plan, Pose};
-use super::vector::Vec3;
+use super::wrench::Wrench;
 use crate::mechanism::JointId;
 use dwell_numerics::{Scalar, qr};
-
-/// A force (N) and a moment (N·m) about a point, in the axes of the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Wrench<T = f64> {
-    /// The force.
-    pub force: Vec3<T>,
-    /// The moment.
-    pub moment: Vec3<T>,
-}
-
-impl<T: Scalar> Wrench<T> {
-    /// Adds a force at this vector from the point, with a couple.
-    #[inline(always)]
-    pub fn add_at(&mut self, arm: Vec3<T>, force: Vec3<T>, couple: Vec3<T>) {
-        self.force += force;
-        self.moment += couple + arm.cross(force);
-    }
-}
 
 /// The forces of one pass, for one thread.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,7 +41,7 @@ impl Plan {
             let at = pose.frames[link.body].origin;
             for f in link.freedoms.clone() {
                 let kind = self.tree.freedoms[f];
-                forces.balance[f] = pose.screws[f].power(kind, wrench.force, at, wrench.moment);
+                forces.balance[f] = pose.screws[f].power(kind, *wrench, at);
             }
         }
         self.multipliers(pose, forces);
@@ -123,12 +105,12 @@ impl Plan {
     fn transmit<T: Scalar>(&self, pose: &Pose<T>, forces: &mut Forces<T>) {
         forces.transmitted.copy_from_slice(&forces.required);
         for (closure, action) in self.closures.iter().zip(&mut forces.closure_actions) {
-            let [_, at, d] = closure.ends(&pose.frames);
+            let [_, at, _] = closure.ends(&pose.frames);
             *action = Wrench::default();
-            for (kind, r) in closure.kinds.iter().zip(closure.rows.clone()) {
-                let row = closure.row(*kind, &pose.frames, d);
-                action.force += row.force.scaled(forces.multipliers[r]);
-                action.moment += row.couple.scaled(forces.multipliers[r]);
+            for r in closure.rows.clone() {
+                let (row, multiplier) = (&pose.row_wrenches[r], forces.multipliers[r]);
+                action.force += row.force.scaled(multiplier);
+                action.moment += row.moment.scaled(multiplier);
             }
             let [first, second] = closure.bodies;
             forces.transmitted[first].add_at(

@@ -5,9 +5,11 @@ use super::follow::Node;
 use super::frames::{BodyMotion, Frame, Screw};
 use super::groups::Group;
 use super::mechanism::{Assembly, Mechanism, Placement};
+use super::prediction::Piece;
 use super::rank::Mobility;
 use super::tree::Tree;
 use super::vector::{Rotation, Vec3};
+use super::wrench::Wrench;
 use crate::error::AssemblyError;
 use crate::mechanism::JointId;
 use crate::plan::range::Range;
@@ -50,6 +52,8 @@ pub struct Plan {
     pub(super) drivers: Vec<(usize, f64)>,
     /// Poses along the range, by ascending coordinate; of several actuators that of the assembly alone.
     pub(super) nodes: Vec<Node>,
+    /// The predictions between each of them and the next.
+    pub(super) pieces: Vec<Piece>,
     pub(super) range: Range,
     /// The coordinates at the assembly.
     pub(super) assembly_q: Vec<f64>,
@@ -66,12 +70,16 @@ pub struct Pose<T = f64> {
     /// Entries of the Jacobian, by closure, row and freedom of its path.
     pub(super) entries: Vec<T>,
     pub(super) residuals: Vec<T>,
+    /// By row: its wrench on the second body, at that body's point.
+    pub(super) row_wrenches: Vec<Wrench<T>>,
     /// By group: its factors, and the heads of their reflections.
     pub(super) factors: Vec<T>,
     pub(super) heads: Vec<T>,
     pub(super) scratch: Vec<T>,
     pub(super) rates: Vec<T>,
     pub(super) accelerations: Vec<T>,
+    /// Whether the states of the bodies are those without accelerations of the freedoms.
+    pub(super) has_no_acceleration: bool,
     pub(super) states: Vec<BodyMotion<T>>,
 }
 
@@ -161,11 +169,13 @@ impl Plan {
             screws: vec![Screw::default(); freedoms],
             entries: vec![zero; entries],
             residuals: vec![zero; rows],
+            row_wrenches: vec![Wrench::default(); rows],
             factors: vec![zero; group(|g| g.rows.len() * g.unknowns.len())],
             heads: vec![zero; group(|g| g.unknowns.len())],
             scratch: vec![zero; self.groups.iter().map(|g| g.rows.len()).max().unwrap_or(0)],
             rates: vec![zero; freedoms],
             accelerations: vec![zero; freedoms],
+            has_no_acceleration: false,
             states: vec![BodyMotion::default(); self.tree.internal.len()],
         };
         // The ground is placed once.

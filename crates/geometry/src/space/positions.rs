@@ -4,7 +4,7 @@
 use super::groups::Group;
 use super::plan::{Plan, Pose};
 use super::tree::Step;
-use super::vector::vec3;
+use super::vector::{Vec3, vec3};
 use crate::error::PositionError;
 use dwell_numerics::{FactorOutcome, Scalar, qr};
 
@@ -36,13 +36,14 @@ impl Plan {
             return self.continue_to(q, pose);
         }
         let value = self.within_range(first.value())?;
-        let node = self
-            .nodes
-            .partition_point(|n| n.q < value)
-            .min(self.nodes.len() - 1);
-        let nearer = node > 0 && value - self.nodes[node - 1].q < self.nodes[node].q - value;
-        let node = &self.nodes[node - usize::from(nearer)];
-        self.start_from(node, value - node.q, pose);
+        let next = self.nodes.partition_point(|n| n.q < value);
+        match self.pieces.get(next.max(1) - 1) {
+            Some(piece) => piece.predict(value, pose),
+            None => {
+                let node = &self.nodes[next.min(self.nodes.len() - 1)];
+                self.start_from(node, value - node.q, pose);
+            }
+        }
         self.close(q, pose)
     }
 
@@ -135,15 +136,23 @@ impl Plan {
 
     /// Residuals and Jacobian of a group's rows.
     pub(super) fn fill_rows<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) {
+        let mut last = usize::MAX;
+        let [mut at, mut d] = [Vec3::zero(); 2];
         for &(c, k) in &group.rows {
             let closure = &self.closures[c];
-            let [_, at, d] = closure.ends(&pose.frames);
+            // The rows of a closure follow each other: its points are the same for all.
+            if c != last {
+                [_, at, d] = closure.ends(&pose.frames);
+                last = c;
+            }
             let row = closure.row(closure.kinds[k], &pose.frames, d);
-            pose.residuals[closure.rows.start + k] = row.residual;
+            let index = closure.rows.start + k;
+            pose.residuals[index] = row.residual;
+            pose.row_wrenches[index] = row.wrench;
             let first = closure.entries + k * closure.path.len();
             for (entry, &(freedom, sign)) in pose.entries[first..].iter_mut().zip(&closure.path) {
                 let kind = self.tree.freedoms[freedom];
-                let power = pose.screws[freedom].power(kind, row.force, at, row.couple);
+                let power = pose.screws[freedom].power(kind, row.wrench, at);
                 *entry = if sign > 0.0 { power } else { -power };
             }
         }

@@ -166,6 +166,30 @@ impl Rotation<f64> {
         (0..3).all(|k| off(k) < 0.1).then_some(found)
     }
 
+    /// The rotation about a vector by its length, rad.
+    pub fn of_vector(turn: Vec3) -> Self {
+        let Some(axis) = turn.unit() else {
+            return Self::IDENTITY;
+        };
+        let (sin, cos) = turn.norm().sin_cos();
+        let turned = |v: Vec3| {
+            let across = axis.cross(v);
+            v + across.scaled(sin) + axis.cross(across).scaled(1.0 - cos)
+        };
+        Self {
+            columns: Vec3::AXES.map(turned),
+        }
+    }
+
+    /// The vector by which [`Rotation::turned_by`] makes this rotation: along its axis, twice the tangent of half its angle.
+    pub(super) fn tangent(&self) -> Vec3 {
+        let turn = self.vector();
+        match turn.unit() {
+            Some(axis) => axis.scaled(2.0 * (0.5 * turn.norm()).tan()),
+            None => turn,
+        }
+    }
+
     /// The angle of this rotation as a vector along its axis, rad.
     pub fn vector(&self) -> Vec3 {
         let [x, y, z] = self.columns;

@@ -66,6 +66,6 @@ fn placement(entry: &Entry<'_>, what: String) -> Option<Placement> {
     );
     Some(Placement {
         position: position?,
-        rotation: Rotation::IDENTITY.turned_by(turn?),
+        rotation: Rotation::of_vector(turn?),
     })
 }

@@ -63,11 +63,12 @@ fn assembly_loads_and_requests_are_read_in_si() {
     assert_eq!(scene.assembly.q, [PI / 2.0, 0.0]);
     let rod = scene.assembly.placements[2];
     assert!(close(rod.position, vec3(0.0, 0.1, 0.0)));
-    let turned = Rotation::IDENTITY.turned_by(vec3(0.0, 0.0, -PI / 9.0));
-    assert!(close(
-        rod.rotation.apply(vec3(1.0, 0.0, 0.0)),
-        turned.apply(vec3(1.0, 0.0, 0.0))
-    ));
+    let (sin, cos) = (-PI / 9.0).sin_cos();
+    let turned = rod.rotation.apply(vec3(1.0, 0.0, 0.0));
+    assert!(close(turned, vec3(cos, sin, 0.0)), "{turned:?}");
+    // A vector of two right angles turns by two right angles.
+    let half = Rotation::of_vector(vec3(PI, 0.0, 0.0)).apply(vec3(0.0, 1.0, 0.0));
+    assert!((half - vec3(0.0, -1.0, 0.0)).norm() < 1e-15);
     let [weight, push, twist, drag, _] = &scene.loads[..] else {
         panic!("{} loads", scene.loads.len())
     };
