@@ -1,6 +1,7 @@
 //! Mechanisms in space: the thirteen references of `validation/spatial`, made by an independent program with 40 digits, and what
 //! must be refused.
 
+mod hooke_joint;
 mod motions;
 mod random_loops;
 mod reference;

@@ -2,7 +2,7 @@
 
     python3 tests/handout/theory_numbers.py
 
-Sections 1 to 9 and 12 are computed by `mechanism.py`, the values of the reference are read from the case's file. Section 10 is about
+Sections 1 to 9 and 12 are computed by `mechanism.py`, section 13 here, the values of the reference are read from the case's file. Section 10 is about
 other programs, and section 11 has no such number.
 """
 
@@ -162,6 +162,22 @@ def of_exercises():
     yield from flat(2 * inertia, 2 * sum(free_motion(ONE)[2:]))
 
 
+def of_hooke_joint():
+    """Section 13: β = 30°, q = 60°."""
+    half, root = D("0.5"), D(3).sqrt() / 2
+    sin_b, cos_b, sin_q, cos_q = half, root, root, half
+    one, two = D("0.02"), D("0.03")
+    square = 1 - sin_b**2 * cos_q**2
+    ratio, slope = cos_b / square, -cos_b * sin_b**2 * 2 * sin_q * cos_q / square**2
+    u, e = (D(0), cos_q, sin_q), (cos_b, sin_b, D(0))
+    along = sum(x * y for x, y in zip(e, u))
+    normal = [x - along * y for x, y in zip(e, u)]
+    couples = [[two * acceleration / square * k for k in normal] for acceleration in (ratio, slope)]
+    turning = sum(x * y for x, y in zip(e, couples[0]))
+    bending = (sum(x * x for x in couples[0]) - turning**2).sqrt()
+    yield from flat(square, ratio, slope, one + two * ratio**2, two * ratio * slope, normal, couples, turning, bending)
+
+
 def of_reference():
     """The values of the case at φ = 1."""
     case = tomllib.loads((ROOT / "validation/single-dwell/case.toml").read_text(encoding="utf-8"))
@@ -181,7 +197,7 @@ def main():
     text = (ROOT / "docs/theory.md").read_text(encoding="utf-8")
     checked = text.split("## 10. ")[0] + "## 12. " + text.split("## 12. ")[1].split("## References")[0]
     values = list(of_runs()) + list(of_meaning()) + list(of_motion()) + list(of_period(text)) + list(of_checks())
-    values += list(of_exercises()) + list(of_reference())
+    values += list(of_exercises()) + list(of_hooke_joint()) + list(of_reference())
     values += [-value for value in values]
     # Data of section 1, and what the text says about the complex zero of m, which another program found.
     given = [m.I_C, m.I_O, D("0.00390625"), D("5.9297")]
