@@ -6,6 +6,7 @@ mod motions;
 mod random_loops;
 mod reference;
 mod scenes;
+mod tilted;
 
 use dwell_geometry::space::{
     Actuator, ActuatorKind, Assembly, Joint, JointKind, Mechanism, Plan, Side, Vec3,

@@ -240,11 +240,15 @@ impl Plan {
         let n = group.unknowns.len();
         let mut order: Vec<usize> = (0..group.rows.len()).collect();
         order.sort_by_key(|r| self.closures[group.rows[*r].0].path.len());
+        let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let row = |r: usize| -> Vec<f64> { (0..n).map(|j| matrix[(r, j)]).collect() };
+        let largest = (0..group.rows.len())
+            .map(|r| norm(&row(r)))
+            .fold(0.0, f64::max);
         let mut basis: Vec<Vec<f64>> = Vec::new();
         let mut chosen = Vec::new();
         for r in order {
-            let mut row: Vec<f64> = (0..n).map(|j| matrix[(r, j)]).collect();
-            let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let mut row = row(r);
             let before = norm(&row);
             for _ in 0..2 {
                 for b in &basis {
@@ -253,7 +257,8 @@ impl Plan {
                 }
             }
             let after = norm(&row);
-            if after > 1e-7 * before && before > 0.0 {
+            // A row that no unknown changes, such as one across the plane of a planar mechanism, is not zero but rounding.
+            if after > 1e-7 * before && before > RANK_TOLERANCE * largest {
                 row.iter_mut().for_each(|x| *x /= after);
                 basis.push(row);
                 chosen.push(r);
