@@ -5,7 +5,7 @@
 //! parabolas and golden sections, each of whose points is evaluated like a row.
 
 use crate::trajectory::compute::{
-    BALANCE, Column, PositionEvaluator, Quantity, Trajectory, TrajectorySample,
+    BALANCE, Column, Quantity, RowEvaluator, Trajectory, TrajectorySample,
 };
 use SamplePrecision::{Exact, Interpolated};
 use rayon::prelude::*;
@@ -104,17 +104,17 @@ impl<'s> BetweenRows<'s> {
 }
 
 /// What is searched.
-pub(crate) struct ExtremaSearch<'a, 'e> {
+pub(crate) struct ExtremaSearch<'a, E> {
     pub(crate) trajectory: &'a Trajectory<'a>,
     pub(crate) columns: &'a [Column],
     /// The index of the abscissa's column.
     pub(crate) abscissa: usize,
     /// All values of a column.
     pub(crate) values: &'a (dyn Fn(usize) -> io::Result<Vec<f64>> + Sync),
-    pub(crate) evaluators: &'a [PositionEvaluator<'e>],
+    pub(crate) evaluators: &'a [E],
 }
 
-impl ExtremaSearch<'_, '_> {
+impl<E: RowEvaluator> ExtremaSearch<'_, E> {
     /// The extrema in the rows.
     pub(crate) fn in_rows(&self) -> io::Result<Extrema> {
         let at = (self.values)(self.abscissa)?;
@@ -247,15 +247,15 @@ impl<'b> KnownPoints<'b> {
 }
 
 /// The search for extrema of one column after another.
-struct ColumnSearch<'a, 'e, 's> {
+struct ColumnSearch<'a, 's, E> {
     trajectory: &'a Trajectory<'a>,
     columns: &'a [Column],
     abscissa: usize,
-    evaluators: Vec<PositionEvaluator<'e>>,
+    evaluators: Vec<E>,
     sample: Sampler<'s>,
 }
 
-impl ColumnSearch<'_, '_, '_> {
+impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
     /// Some columns at a position.
     fn evaluate(
         &mut self,
@@ -318,7 +318,7 @@ impl ColumnSearch<'_, '_, '_> {
 /// Some of all columns at a position.
 fn evaluate(
     trajectory: &Trajectory<'_>,
-    evaluators: &mut [PositionEvaluator<'_>],
+    evaluators: &mut [impl RowEvaluator],
     (all, columns): (&[Column], &[usize]),
     sample: &TrajectorySample,
 ) -> Option<Vec<f64>> {
@@ -331,14 +331,14 @@ fn evaluate(
 }
 
 /// Whether a column has its extrema between rows: not the error of the integration, and nothing that is infinite in
-/// some positions.
+/// some positions or counts revolutions from row to row.
 fn is_continuous(column: &Column) -> bool {
-    use Quantity::{MechanicalAdvantage, Pole, Power, Time};
+    use Quantity::{MechanicalAdvantage, Pole, Power, RotationInSpace, Time};
     let quantity = column.quantity;
     column.name != BALANCE
         && !matches!(
             quantity,
-            Time | Power(3) | MechanicalAdvantage(..) | Pole(..)
+            Time | Power(3) | MechanicalAdvantage(..) | Pole(..) | RotationInSpace(_, 0..3)
         )
 }
 
