@@ -72,7 +72,8 @@ fn times_and_balances_of_every_integrator() {
     let fall = (2.0 / G).sqrt();
     let slips = (0.3 * 2.0 * G / 8.0_f64).asin() / std::f64::consts::TAU;
     // Measured: the times within 1e-13 of the span; the energy, which lower orders integrate with more steps and their
-    // rounding, within 1e-12 by DOP853, 2e-12 by Tsit45, 7e-11 by BDF and 3e-10 by ESDIRK34.
+    // rounding, within 1e-12 by DOP853, 2e-12 by Tsit45, 7e-11 by BDF, 6e-11 by ESDIRK34 and 2e-8 by TR-BDF2, whose second
+    // order would need 14 times as many steps for 1e-10: at 9000 evaluations for an event that is no use.
     for (method, rtol, allowed) in [
         (Method::Dop853, 1e-13, 1e-11),
         (Method::Tsit45, 1e-13, 1e-11),
