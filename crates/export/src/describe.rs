@@ -66,6 +66,11 @@ pub(crate) fn describe(export: &Export) -> Vec<String> {
         ),
         None => format!("step: no error is stated, since the motion from q = {from}, q' = {speed} ends before 1 s"),
     });
-    lines.extend(machine.left_out.iter().map(|words| format!("left out: {words}")));
+    lines.extend(
+        machine
+            .left_out
+            .iter()
+            .map(|words| format!("left out: {words}")),
+    );
     lines
 }

@@ -47,8 +47,7 @@ impl Export {
             one(PartKind::Reactions)?,
             one(PartKind::Positions)?,
         ];
-        let measured =
-            measure(&machine, &fitted, precision, sampler).map_err(FitError::Sampler)?;
+        let measured = measure(&machine, &fitted, precision, sampler).map_err(FitError::Sampler)?;
         let parts = fitted.map(|fitted| fitted.part);
         Ok(Self {
             machine,

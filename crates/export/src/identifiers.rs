@@ -74,7 +74,9 @@ pub(crate) fn comment(text: &str) -> String {
         '\\' => '/',
         '?' => '.',
         c if c.is_alphanumeric() || c.is_ascii_graphic() || c == ' ' => c,
-        '²' | '′' | '½' | '·' | '–' | '“' | '”' | '°' | '±' | '≤' | '≥' | '−' => c,
+        '²' | '′' | '½' | '·' | '–' | '“' | '”' | '°' | '±' | '≤' | '≥' | '−' => {
+            c
+        }
         _ => ' ',
     };
     text.chars().map(safe).collect()
@@ -86,7 +88,15 @@ mod tests {
 
     #[test]
     fn different_names_stay_different() {
-        let names = ["slide.normal", "slide_normal", "φ", "u03c6", "A", "a", "a_2"];
+        let names = [
+            "slide.normal",
+            "slide_normal",
+            "φ",
+            "u03c6",
+            "A",
+            "a",
+            "a_2",
+        ];
         let owned: Vec<String> = names.iter().map(|&n| n.to_owned()).collect();
         let found = distinct(&owned.iter().collect::<Vec<_>>());
         let capitals: HashSet<_> = found.iter().map(|n| n.to_ascii_uppercase()).collect();

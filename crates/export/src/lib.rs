@@ -1,5 +1,6 @@
 //! Out of the workbench: the reduced model of a machine of one degree of freedom as source text that needs nothing.
 
+mod balance;
 mod c;
 mod describe;
 mod evaluator;
@@ -10,6 +11,7 @@ mod machine;
 mod measure;
 mod part;
 mod real;
+mod rust;
 mod writer;
 
 pub use c::c_files;
@@ -24,3 +26,4 @@ pub use machine::{
 pub use measure::{Errors, Measured, STATED_STEP, SelfTestMotion, SelfTestRow, measure};
 pub use part::{Column, Part, Precision};
 pub use real::Real;
+pub use rust::rust_files;

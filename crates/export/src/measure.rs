@@ -297,11 +297,13 @@ fn measure_steps(
         Precision::Double => 1e-12,
         Precision::Float => 2e-5,
     };
-    let end = run(steps, 1).zip(run(steps, REFINEMENT)).map(|(one, many)| {
-        let tolerance =
-            |k: usize| 2.0 * (one[k] - many[k]).abs() + rounding * many[k].abs().max(1.0);
-        [many, [tolerance(0), tolerance(1)]]
-    });
+    let end = run(steps, 1)
+        .zip(run(steps, REFINEMENT))
+        .map(|(one, many)| {
+            let tolerance =
+                |k: usize| 2.0 * (one[k] - many[k]).abs() + rounding * many[k].abs().max(1.0);
+            [many, [tolerance(0), tolerance(1)]]
+        });
     let motion = SelfTestMotion {
         step: STATED_STEP,
         steps,

@@ -152,7 +152,8 @@ impl CWriter<'_> {
         } else {
             "N"
         };
-        let arguments = "const @p@_parameters *parameters, const @p@_inputs *inputs, const @p@_state *state";
+        let arguments =
+            "const @p@_parameters *parameters, const @p@_inputs *inputs, const @p@_state *state";
         *text += "/* Parameters, inputs and initial state of the scene. */\nvoid @p@_scene(@p@_parameters *parameters, @p@_inputs *inputs, @p@_state *state);\n\n";
         *text += "/* q with all revolutions. */\n@p@_real @p@_whole_coordinate(const @p@_state *state);\n\n";
         *text += "/* The coefficients at q. */\n@p@_status @p@_motion_terms_at(@p@_real q, @p@_motion_terms *terms);\n";

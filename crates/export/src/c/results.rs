@@ -61,7 +61,8 @@ impl CWriter<'_> {
 
     /// Reactions, energies and inverse dynamics.
     pub(super) fn results(&self, text: &mut String) {
-        let arguments = "const @p@_parameters *parameters, const @p@_inputs *inputs, const @p@_state *state";
+        let arguments =
+            "const @p@_parameters *parameters, const @p@_inputs *inputs, const @p@_state *state";
         let begin = "    @p@_motion_terms terms;\n    forces f;\n";
         let evaluate = "    forces_of(parameters, inputs, &terms, state, &f);\n";
         if self.has_reactions() {
@@ -82,9 +83,7 @@ impl CWriter<'_> {
                 true => {
                     "        int l;\n        @p@_real sum = of.a[k] * q_ddot + of.b[k] * speed2;\n        for (l = 0; l < @U@_LOAD_COUNT; l++) {\n            sum = sum + of.c[l * @U@_REACTION_COUNT + k] * f.f[l];\n        }\n"
                 }
-                false => {
-                    "        const @p@_real sum = of.a[k] * q_ddot + of.b[k] * speed2;\n"
-                }
+                false => "        const @p@_real sum = of.a[k] * q_ddot + of.b[k] * speed2;\n",
             };
             if !self.has_loads() {
                 *text += "    (void)f;\n";
@@ -96,14 +95,9 @@ impl CWriter<'_> {
         }
         let (counter, potential) = match self.has_potentials() {
             true => {
-                let conservative = self
-                    .export
-                    .machine
-                    .loads_where(LoadEffect::is_conservative);
+                let conservative = self.export.machine.loads_where(LoadEffect::is_conservative);
                 let terms: String = conservative
-                    .map(|k| {
-                        format!("    energies[1] = energies[1] + f.f[{k}] * terms.v[{k}];\n")
-                    })
+                    .map(|k| format!("    energies[1] = energies[1] + f.f[{k}] * terms.v[{k}];\n"))
                     .collect();
                 ("", terms)
             }

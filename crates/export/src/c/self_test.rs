@@ -21,7 +21,9 @@ impl CWriter<'_> {
             values + 1
         );
         for row in &measured.rows {
-            let all: Vec<f64> = std::iter::once(row.q).chain(row.values.iter().copied()).collect();
+            let all: Vec<f64> = std::iter::once(row.q)
+                .chain(row.values.iter().copied())
+                .collect();
             _ = writeln!(text, "    {{{}}},", list(&all));
         }
         _ = write!(

@@ -188,7 +188,9 @@ impl CWriter<'_> {
         let array = |array: &'static str, count: usize| {
             (0..count).map(move |k| (format!("terms->{array}"), k))
         };
-        let targets = array("a", n).chain(array("b", n)).chain(array("c", n * loads));
+        let targets = array("a", n)
+            .chain(array("b", n))
+            .chain(array("c", n * loads));
         let targets: Vec<_> = targets.collect();
         *text += "static void reactions_at(@p@_real q, @p@_reaction_terms *terms)\n{\n";
         self.columns_body(PartKind::Reactions, &targets, text);
@@ -263,7 +265,11 @@ impl CWriter<'_> {
         _ = writeln!(text, "    state->q = {q};\n    state->q_dot = {q_dot};");
         let currents = self.currents();
         for &(load, _) in &currents {
-            _ = writeln!(text, "    state->current_{} = ZERO;", self.names.loads[load]);
+            _ = writeln!(
+                text,
+                "    state->current_{} = ZERO;",
+                self.names.loads[load]
+            );
         }
         _ = write!(
             text,
@@ -272,7 +278,9 @@ impl CWriter<'_> {
         );
         *text += match self.export.machine.domain.revolutions {
             0 => "    return state->q;\n}\n\n",
-            _ => "    const @p@_real periods = (@p@_real)state->periods;\n    return periods * PERIOD_COARSE + (state->q + periods * PERIOD_FINE);\n}\n\n",
+            _ => {
+                "    const @p@_real periods = (@p@_real)state->periods;\n    return periods * PERIOD_COARSE + (state->q + periods * PERIOD_FINE);\n}\n\n"
+            }
         };
     }
 }

@@ -81,17 +81,22 @@ impl<R: Real> Evaluator<R> {
             *counter += 1;
             let motor = load.effect.motor();
             let current = motor.is_some_and(|motor| motor.inductance > 0.0);
-            let numbers = motor.map_or([0.0; 4], |m| {
-                let constant = m.gear_ratio * m.torque_constant;
-                let reflected = m.gear_ratio * m.gear_ratio * m.rotor_inertia;
-                [constant, m.resistance, m.inductance, reflected]
+            let motor = motor.map_or([R::of(0.0); 4], |m| {
+                let [ratio, torque] = [m.gear_ratio, m.torque_constant].map(R::of);
+                let reflected = ratio * ratio * R::of(m.rotor_inertia);
+                [
+                    ratio * torque,
+                    R::of(m.resistance),
+                    R::of(m.inductance),
+                    reflected,
+                ]
             });
             order += usize::from(current);
             Load {
                 effect: load.effect,
                 place,
                 value: R::of(scene_value(&load.effect)),
-                motor: numbers.map(R::of),
+                motor,
                 current: current.then_some(order - 1),
             }
         });
@@ -166,9 +171,7 @@ impl<R: Real> Evaluator<R> {
     /// [`Status`] outside the domain.
     pub fn positions(&self, q: R) -> Result<Vec<R>, Status> {
         let (pieces, at) = self.at(PartKind::Positions, q)?;
-        Ok((0..2 * self.points)
-            .map(|k| pieces.column(k, at))
-            .collect())
+        Ok((0..2 * self.points).map(|k| pieces.column(k, at)).collect())
     }
 
     /// F of each load, m and ½m′ with rotors, at a state.
@@ -238,17 +241,18 @@ impl<R: Real> Evaluator<R> {
     /// [`Status`] outside the domain.
     pub fn reactions(&self, y: &[R], q_ddot: R) -> Result<Vec<R>, Status> {
         let terms = self.motion_terms(y[0])?;
+        let speed2 = y[1] * y[1];
         let (mut forces, _) = self.forces(&terms, y);
         for (k, load) in self.loads.iter().enumerate() {
             if has_rotor(&load.effect) {
-                let s_ddot = terms.w[k] * q_ddot + terms.dw[k] * y[1] * y[1];
+                let s_ddot = terms.w[k] * q_ddot + terms.dw[k] * speed2;
                 forces[k] = forces[k] - load.motor[3] * s_ddot;
             }
         }
         let of = self.reaction_terms(y[0])?;
         let n = self.reactions;
         let reaction = |k: usize| {
-            let inertial = of.a[k] * q_ddot + of.b[k] * y[1] * y[1];
+            let inertial = of.a[k] * q_ddot + of.b[k] * speed2;
             let loads = forces.iter().enumerate();
             loads.fold(inertial, |sum, (l, f)| sum + of.c[l * n + k] * *f)
         };

@@ -88,9 +88,7 @@ impl<R: Real> Pieces<R> {
     pub(crate) fn slope(&self, k: usize, at: Place<R>) -> R {
         match self.columns[k] {
             (Column::Constant(_), _) => R::of(0.0),
-            (Column::Tabulated(j), _) => {
-                slope(self.terms(j, at), at) * self.cells[at.begin + 1]
-            }
+            (Column::Tabulated(j), _) => slope(self.terms(j, at), at) * self.cells[at.begin + 1],
         }
     }
 
@@ -103,8 +101,7 @@ impl<R: Real> Pieces<R> {
 /// Seven powers in pairs of terms (Estrin's scheme), which are independent of each other.
 fn polynomial<R: Real>(c: &[R], at: Place<R>) -> R {
     let Place { x, x2, x4, .. } = at;
-    ((c[0] + c[1] * x) + (c[2] + c[3] * x) * x2)
-        + ((c[4] + c[5] * x) + (c[6] + c[7] * x) * x2) * x4
+    ((c[0] + c[1] * x) + (c[2] + c[3] * x) * x2) + ((c[4] + c[5] * x) + (c[6] + c[7] * x) * x2) * x4
 }
 
 /// The integral of the same from zero.

@@ -32,10 +32,7 @@ impl<'a> ExportedScene<'a> {
     ///
     /// # Errors
     /// [`StudyError::Scene`] where the scene has several freedoms, dry friction, end stops or change points.
-    pub(crate) fn new(
-        scene: &'a Scene,
-        interval: Option<(f64, f64)>,
-    ) -> Result<Self, StudyError> {
+    pub(crate) fn new(scene: &'a Scene, interval: Option<(f64, f64)>) -> Result<Self, StudyError> {
         if scene.mechanism.actuators.len() != 1 {
             return Err(not_one_actuator(scene));
         }
@@ -80,7 +77,11 @@ fn reject_contacts(scene: &Scene) -> Result<(), StudyError> {
             [(SceneLocation::Load(load), "dry friction")],
         ));
     }
-    if let Some(load) = scene.loads.iter().position(|l| l.pressure_angle().is_some()) {
+    if let Some(load) = scene
+        .loads
+        .iter()
+        .position(|l| l.pressure_angle().is_some())
+    {
         return Err(scene_error(
             scene,
             "no export: the separating force of teeth depends on a reaction",
@@ -177,10 +178,7 @@ fn domain(
                     scene,
                     "no export: the coordinate has no ends",
                     "give the interval with --from and --until",
-                    [(
-                        SceneLocation::Actuator(ActuatorId(0)),
-                        "this coordinate",
-                    )],
+                    [(SceneLocation::Actuator(ActuatorId(0)), "this coordinate")],
                 ));
             }
         },
@@ -230,10 +228,12 @@ fn describe(scene: &Scene, loaded: &Scene, model: &Model, domain: Domain) -> Mac
 fn left_out(scene: &Scene, model: &Model) -> Vec<String> {
     let mut all = Vec::new();
     let known = model.reactions();
-    let missing = scene.requests.reactions.iter().filter(|r| !known.contains(r));
-    let missing: Vec<_> = missing
-        .map(|&r| scene.mechanism.reaction_name(r))
-        .collect();
+    let missing = scene
+        .requests
+        .reactions
+        .iter()
+        .filter(|r| !known.contains(r));
+    let missing: Vec<_> = missing.map(|&r| scene.mechanism.reaction_name(r)).collect();
     if !missing.is_empty() {
         all.push(format!(
             "the statically indeterminate reactions {}",
@@ -262,12 +262,7 @@ fn initial(scene: &Scene, domain: Domain) -> [f64; 2] {
 }
 
 /// What m, the forces and lengths come to.
-fn reference_sizes(
-    scene: &Scene,
-    loaded: &Scene,
-    model: &Model,
-    domain: Domain,
-) -> ReferenceSizes {
+fn reference_sizes(scene: &Scene, loaded: &Scene, model: &Model, domain: Domain) -> ReferenceSizes {
     let length = scene.mechanism.size();
     let mut workspace = model.workspace::<f64>();
     let mut found: Coefficients = model.coefficient_buffer();

@@ -73,9 +73,8 @@ fn summary(scene: &Scene, export: &Export) -> String {
     );
     if let Some([q, q_dot]) = measured.step_error {
         let unit = if machine.is_angle { "rad" } else { "m" };
-        text += &format!(
-            "  after 1 s of steps of 1 ms: {q:.1e} {unit} and {q_dot:.1e} {unit}/s off\n"
-        );
+        text +=
+            &format!("  after 1 s of steps of 1 ms: {q:.1e} {unit} and {q_dot:.1e} {unit}/s off\n");
     }
     for sentence in &machine.left_out {
         text += &format!("  left out: {sentence}\n");
