@@ -6,6 +6,7 @@ mod describe;
 mod evaluator;
 mod export;
 mod fit;
+mod fmu;
 mod identifiers;
 mod machine;
 mod measure;
@@ -18,6 +19,7 @@ pub use c::c_files;
 pub use evaluator::{Evaluator, MotionTerms, ReactionTerms, State, Status};
 pub use export::{Export, Request};
 pub use fit::{FitError, FittedPart, fit};
+pub use fmu::{FmiVersion, FmuFiles, fmu_files};
 pub use identifiers::Identifiers;
 pub use machine::{
     Domain, Function, FunctionSampler, LoadDescription, LoadEffect, MachineDescription, Motor,

@@ -55,7 +55,7 @@ impl Counted {
         OPERATIONS.get()
     }
 
-    fn counted(value: f64) -> Self {
+    fn count(value: f64) -> Self {
         OPERATIONS.set(OPERATIONS.get() + 1);
         Self(value)
     }
@@ -75,7 +75,7 @@ impl Add for Counted {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        Self::counted(self.0 + other.0)
+        Self::count(self.0 + other.0)
     }
 }
 
@@ -83,7 +83,7 @@ impl Sub for Counted {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
-        Self::counted(self.0 - other.0)
+        Self::count(self.0 - other.0)
     }
 }
 
@@ -91,7 +91,7 @@ impl Mul for Counted {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        Self::counted(self.0 * other.0)
+        Self::count(self.0 * other.0)
     }
 }
 
@@ -99,6 +99,6 @@ impl Div for Counted {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
-        Self::counted(self.0 / other.0)
+        Self::count(self.0 / other.0)
     }
 }

@@ -4,6 +4,7 @@
 
 mod c;
 mod energy;
+mod fmu;
 mod hostile;
 mod machine;
 mod rust;
