@@ -3,6 +3,7 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use dwell_dynamics::Method;
+use dwell_export::FmiVersion;
 use dwell_report::TableFormat;
 use dwell_study::{
     ExportTarget, FormulaFormat, Language, OperatingPoint, PictureFormat, Pictures, RowStore,
@@ -407,11 +408,28 @@ const FORMATS: Choices<FormulaFormat> = &[
     ),
 ];
 
-const EXPORT_TARGETS: Choices<ExportTarget> = &[(
-    "c",
-    ExportTarget::C,
-    "C99: a header and a source that need no library",
-)];
+const EXPORT_TARGETS: Choices<ExportTarget> = &[
+    (
+        "c",
+        ExportTarget::C,
+        "C99: a header and a source that need no library",
+    ),
+    (
+        "rust",
+        ExportTarget::Rust,
+        "A crate without the standard library, allocation or unsafe code",
+    ),
+    (
+        "fmu",
+        ExportTarget::Fmu(FmiVersion::Three),
+        "An FMU of FMI 3.0, for model exchange and co-simulation",
+    ),
+    (
+        "fmu2",
+        ExportTarget::Fmu(FmiVersion::Two),
+        "The same of FMI 2.0",
+    ),
+];
 
 const TABLE_FORMATS: Choices<TableFormat> = &[
     ("csv", TableFormat::Csv, "Text"),

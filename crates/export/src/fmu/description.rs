@@ -33,7 +33,11 @@ pub(super) fn model_description(
     variables: &[Variable],
 ) -> String {
     let machine = &export.machine;
-    let about: Vec<String> = describe(export).iter().skip(2).map(|line| comment(line)).collect();
+    let about: Vec<String> = describe(export)
+        .iter()
+        .skip(2)
+        .map(|line| comment(line))
+        .collect();
     let (title, token, about) = (
         attribute(&machine.title),
         token(export),
@@ -41,7 +45,10 @@ pub(super) fn model_description(
     );
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
     let tool = format!("dwell {}", attribute(&machine.version));
-    let indicators = variables.iter().filter(|v| v.role == Role::Indicator).count();
+    let indicators = variables
+        .iter()
+        .filter(|v| v.role == Role::Indicator)
+        .count();
     let common = "canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\"";
     match version {
         FmiVersion::Three => {
@@ -139,7 +146,11 @@ fn is_initial_unknown(variable: &Variable) -> bool {
 fn three(variables: &[Variable], text: &mut String) {
     *text += "  <ModelVariables>\n";
     for (k, variable) in variables.iter().enumerate() {
-        let kind = if variable.role == Role::Periods { "Int32" } else { "Float64" };
+        let kind = if variable.role == Role::Periods {
+            "Int32"
+        } else {
+            "Float64"
+        };
         let derivative = state_of(variables, variable.role);
         let derivative = derivative.map_or_else(String::new, |s| format!(" derivative=\"{s}\""));
         let unit = match variable.unit.as_str() {
@@ -161,7 +172,9 @@ fn three(variables: &[Variable], text: &mut String) {
         }
     };
     list("Output", &is_output);
-    list("ContinuousStateDerivative", &|v| matches!(v.role, Role::Rate(_)));
+    list("ContinuousStateDerivative", &|v| {
+        matches!(v.role, Role::Rate(_))
+    });
     list("InitialUnknown", &is_initial_unknown);
     list("EventIndicator", &|v| v.role == Role::Indicator);
     *text += "  </ModelStructure>\n";
@@ -177,10 +190,14 @@ fn two(variables: &[Variable], text: &mut String) {
             None => (properties, String::new()),
         };
         let derivative = state_of(variables, variable.role);
-        let derivative = derivative.map_or_else(String::new, |s| format!(" derivative=\"{}\"", s + 1));
+        let derivative =
+            derivative.map_or_else(String::new, |s| format!(" derivative=\"{}\"", s + 1));
         let inner = match variable.role {
             Role::Periods => "<Integer/>".to_owned(),
-            _ => format!("<Real unit=\"{}\"{derivative}{start}/>", attribute(&variable.unit)),
+            _ => format!(
+                "<Real unit=\"{}\"{derivative}{start}/>",
+                attribute(&variable.unit)
+            ),
         };
         _ = writeln!(
             text,

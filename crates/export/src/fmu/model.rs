@@ -73,9 +73,13 @@ pub(super) fn model(export: &Export, variables: &[Variable]) -> String {
     );
     text += "static void model_reset(model *m)\n{\n    @p@_scene(&m->parameters, &m->inputs, &m->state);\n    m->time = 0;\n    m->max_step = 1e-3;\n    m->periods = 0;\n}\n\n";
     // Where a variable that may be set is.
-    text += "static double *model_slot(model *m, unsigned reference)\n{\n    switch (reference) {\n";
+    text +=
+        "static double *model_slot(model *m, unsigned reference)\n{\n    switch (reference) {\n";
     for (k, variable) in references.clone() {
-        if matches!(variable.role, Role::State(_) | Role::Parameter | Role::Input) {
+        if matches!(
+            variable.role,
+            Role::State(_) | Role::Parameter | Role::Input
+        ) {
             _ = writeln!(text, "    case {k}: return &{};", variable.code);
         }
     }
@@ -107,11 +111,19 @@ pub(super) fn token(export: &Export) -> String {
 fn states_functions(writer: &Writer<'_>, text: &mut String) {
     *text += "static void model_states(const model *m, double *x)\n{\n    x[0] = @p@_whole_coordinate(&m->state);\n    x[1] = m->state.q_dot;\n";
     for (load, place) in writer.currents() {
-        _ = writeln!(text, "    x[{place}] = m->state.current_{};", writer.names.loads[load]);
+        _ = writeln!(
+            text,
+            "    x[{place}] = m->state.current_{};",
+            writer.names.loads[load]
+        );
     }
     *text += "}\n\nstatic void model_set_states(model *m, const double *x)\n{\n    int k;\n    m->state.q = x[0];\n    m->state.q_dot = x[1];\n";
     for (load, place) in writer.currents() {
-        _ = writeln!(text, "    m->state.current_{} = x[{place}];", writer.names.loads[load]);
+        _ = writeln!(
+            text,
+            "    m->state.current_{} = x[{place}];",
+            writer.names.loads[load]
+        );
     }
     *text += "    m->state.periods = 0;\n    for (k = 0; k < MODEL_STATES; k++) {\n        m->state.carry[k] = 0;\n    }\n}\n\n";
 }
@@ -158,7 +170,9 @@ fn get(writer: &Writer<'_>, variables: &[Variable], text: &mut String) {
             Role::Time => format!("*value = {code}; return 1;"),
             Role::State(0) => "*value = @p@_whole_coordinate(&m->state); return 1;".to_owned(),
             Role::Rate(_) => format!("ok = model_rates(m, rates); *value = {code}; return ok;"),
-            Role::Indicator => format!("model_indicators(m, indicators); *value = {code}; return 1;"),
+            Role::Indicator => {
+                format!("model_indicators(m, indicators); *value = {code}; return 1;")
+            }
             Role::Output if code.starts_with("energies") => format!(
                 "ok = @p@_energies(&m->parameters, &m->inputs, &m->state, energies) == @U@_OK; *value = {code}; return ok;"
             ),
@@ -174,6 +188,9 @@ fn get(writer: &Writer<'_>, variables: &[Variable], text: &mut String) {
     }
     *text += "    default: break;\n    }\n    if (slot == 0) {\n        return 0;\n    }\n    *value = *slot;\n    return ok;\n}\n";
     if machine.domain.revolutions == 0 {
-        *text = text.replace("    double rates[MODEL_STATES], energies[2], indicators[2];", "    double rates[MODEL_STATES], energies[2];");
+        *text = text.replace(
+            "    double rates[MODEL_STATES], energies[2], indicators[2];",
+            "    double rates[MODEL_STATES], energies[2];",
+        );
     }
 }

@@ -55,19 +55,61 @@ pub(super) fn variables(export: &Export) -> Vec<Variable> {
     let unit = if machine.is_angle { "rad" } else { "m" };
     let (rate, second) = (format!("{unit}/s"), format!("{unit}/s2"));
     let [start, speed] = machine.initial;
-    add("time".to_owned(), Role::Time, "s", 0.0, "time", "m->time".to_owned());
-    add(q.to_owned(), Role::State(0), unit, start, "coordinate", "m->state.q".to_owned());
-    add(format!("der({q})"), Role::Rate(0), &rate, 0.0, "its rate", "rates[0]".to_owned());
+    add(
+        "time".to_owned(),
+        Role::Time,
+        "s",
+        0.0,
+        "time",
+        "m->time".to_owned(),
+    );
+    add(
+        q.to_owned(),
+        Role::State(0),
+        unit,
+        start,
+        "coordinate",
+        "m->state.q".to_owned(),
+    );
+    add(
+        format!("der({q})"),
+        Role::Rate(0),
+        &rate,
+        0.0,
+        "its rate",
+        "rates[0]".to_owned(),
+    );
     let name = format!("{q}.velocity");
-    add(name.clone(), Role::State(1), &rate, speed, "speed", "m->state.q_dot".to_owned());
+    add(
+        name.clone(),
+        Role::State(1),
+        &rate,
+        speed,
+        "speed",
+        "m->state.q_dot".to_owned(),
+    );
     let acceleration = format!("der({name})");
-    add(acceleration, Role::Rate(1), &second, 0.0, "acceleration", "rates[1]".to_owned());
+    add(
+        acceleration,
+        Role::Rate(1),
+        &second,
+        0.0,
+        "acceleration",
+        "rates[1]".to_owned(),
+    );
     for (load, place) in writer.currents() {
         let name = format!("{}.current", machine.loads[load].name);
         let code = format!("m->state.current_{}", writer.names.loads[load]);
         add(name.clone(), Role::State(place), "A", 0.0, "current", code);
         let code = format!("rates[{place}]");
-        add(format!("der({name})"), Role::Rate(place), "A/s", 0.0, "its rate", code);
+        add(
+            format!("der({name})"),
+            Role::Rate(place),
+            "A/s",
+            0.0,
+            "its rate",
+            code,
+        );
     }
     for (k, (name, meaning)) in [
         ("energy.kinetic", "kinetic energy"),
@@ -76,38 +118,94 @@ pub(super) fn variables(export: &Export) -> Vec<Variable> {
     .into_iter()
     .enumerate()
     {
-        add(name.to_owned(), Role::Output, "J", 0.0, meaning, format!("energies[{k}]"));
+        add(
+            name.to_owned(),
+            Role::Output,
+            "J",
+            0.0,
+            meaning,
+            format!("energies[{k}]"),
+        );
     }
     for (k, (name, unit)) in machine.reactions.iter().enumerate() {
         let unit = if *unit == "N" { "N" } else { "N.m" };
         let code = format!("reactions[{k}]");
-        add(name.clone(), Role::Output, unit, 0.0, "action of the joint's first body on its second", code);
+        add(
+            name.clone(),
+            Role::Output,
+            unit,
+            0.0,
+            "action of the joint's first body on its second",
+            code,
+        );
     }
     for (k, name) in machine.points.iter().enumerate() {
         for (axis, letter) in ["x", "y"].iter().enumerate() {
             let code = format!("xy[{}]", 2 * k + axis);
-            add(format!("{name}.{letter}"), Role::Output, "m", 0.0, "position", code);
+            add(
+                format!("{name}.{letter}"),
+                Role::Output,
+                "m",
+                0.0,
+                "position",
+                code,
+            );
         }
     }
     for (name, value, meaning) in writer.parameters() {
         let (unit, meaning) = meaning.split_once(": ").unwrap_or(("1", &meaning));
         let code = format!("m->parameters.{name}");
-        add(format!("parameters.{name}"), Role::Parameter, &fmi_unit(unit), value, meaning, code);
+        add(
+            format!("parameters.{name}"),
+            Role::Parameter,
+            &fmi_unit(unit),
+            value,
+            meaning,
+            code,
+        );
     }
     let meaning = "largest step of the co-simulation's integrator";
-    add("parameters.max_step".to_owned(), Role::Parameter, "s", 1e-3, meaning, "m->max_step".to_owned());
+    add(
+        "parameters.max_step".to_owned(),
+        Role::Parameter,
+        "s",
+        1e-3,
+        meaning,
+        "m->max_step".to_owned(),
+    );
     for (_, name, value, meaning) in writer.inputs() {
         let (unit, meaning) = meaning.split_once(": ").unwrap_or(("1", &meaning));
         let code = format!("m->inputs.{name}");
-        add(format!("inputs.{name}"), Role::Input, &fmi_unit(unit), value, meaning, code);
+        add(
+            format!("inputs.{name}"),
+            Role::Input,
+            &fmi_unit(unit),
+            value,
+            meaning,
+            code,
+        );
     }
     if machine.domain.revolutions > 0 {
         for (k, name) in ["upper", "lower"].iter().enumerate() {
             let name = format!("next_period.{name}");
             let code = format!("indicators[{k}]");
-            add(name, Role::Indicator, unit, 0.0, "distance from the end of the period", code);
+            add(
+                name,
+                Role::Indicator,
+                unit,
+                0.0,
+                "distance from the end of the period",
+                code,
+            );
         }
-        add("periods".to_owned(), Role::Periods, "", 0.0, "whole periods of the coordinate", String::new());
+        add(
+            "periods".to_owned(),
+            Role::Periods,
+            "",
+            0.0,
+            "whole periods of the coordinate",
+            String::new(),
+        );
     }
     all
 }

@@ -19,18 +19,41 @@ fn the_libraries_have_every_function() {
                 let files = fmu_files(&export, version);
                 let scratch = Scratch::new();
                 scratch.write(&files.texts);
-                let sources: Vec<String> =
-                    files.sources.iter().map(|name| format!("sources/{name}")).collect();
+                let sources: Vec<String> = files
+                    .sources
+                    .iter()
+                    .map(|name| format!("sources/{name}"))
+                    .collect();
                 let mut arguments = FLAGS.to_vec();
-                arguments.extend(["-fPIC", "-shared", "-fvisibility=hidden", "-o", "library.so"]);
+                arguments.extend([
+                    "-fPIC",
+                    "-shared",
+                    "-fvisibility=hidden",
+                    "-o",
+                    "library.so",
+                ]);
                 arguments.extend(sources.iter().map(String::as_str));
                 run(&scratch.0, compiler, &arguments);
-                if std::process::Command::new("nm").arg("--version").output().is_ok() {
+                if std::process::Command::new("nm")
+                    .arg("--version")
+                    .output()
+                    .is_ok()
+                {
                     let text = run(&scratch.0, "nm", &["-D", "library.so"]);
                     let found = text.lines().filter(|line| line.contains(symbol)).count();
                     assert_eq!(found, functions, "{text}");
                 }
-                if let Ok(to) = std::env::var("DUMP") { run(&scratch.0, "cp", &["-r", ".", &format!("{to}/{symbol}{}", machine.loads.len()).replace(' ', "")]); }
+                if let Ok(to) = std::env::var("DUMP") {
+                    run(
+                        &scratch.0,
+                        "cp",
+                        &[
+                            "-r",
+                            ".",
+                            &format!("{to}/{symbol}{}", machine.loads.len()).replace(' ', ""),
+                        ],
+                    );
+                }
             }
         }
     }

@@ -2,6 +2,8 @@
 
 pub(crate) mod description;
 #[cfg(feature = "output")]
+mod fmu_archive;
+#[cfg(feature = "output")]
 pub(crate) mod output;
 pub(crate) mod sampler;
 

@@ -1,18 +1,23 @@
 //! Writes an export.
 
-use crate::explain::StudyError;
+use crate::explain::{StudyError, scene_error};
+use crate::export::fmu_archive::fmu_archive;
 use crate::export::{ExportRequest, compute_export};
 use crate::number_format::count;
 use crate::output::Outcome;
-use dwell_export::{Export, PartKind, Precision, c_files};
+use dwell_export::{Export, FmiVersion, Identifiers, PartKind, Precision, c_files, rust_files};
 use dwell_findings::Record;
-use dwell_scene::Scene;
+use dwell_scene::{Scene, SceneLocation};
 
 /// The target of an export.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExportTarget {
     /// One header and one source in C99.
     C,
+    /// A Rust crate without the standard library.
+    Rust,
+    /// An FMU.
+    Fmu(FmiVersion),
 }
 
 /// Exports the reduced model of a scene's machine.
@@ -24,21 +29,44 @@ pub fn export(
     target: ExportTarget,
     asked: &ExportRequest,
 ) -> Result<Outcome, StudyError> {
+    if matches!(target, ExportTarget::Fmu(_)) && asked.request.precision == Precision::Float {
+        return Err(scene_error(
+            scene,
+            "an FMU computes in double precision, as its interface does",
+            "leave --float out",
+            [(SceneLocation::Whole, "of this scene")],
+        ));
+    }
     let export = compute_export(scene, asked)?;
     let mut outcome = Outcome {
         summary: summary(scene, &export),
         record: record(&export),
         ..Outcome::default()
     };
-    let files = match target {
-        ExportTarget::C => c_files(&export),
+    let mut add = |path: String, bytes: Vec<u8>| {
+        outcome.summary += &format!("  written: {path}\n");
+        outcome.files.add(path, bytes);
     };
-    outcome.summary += "  written:";
-    for (path, text) in files {
-        outcome.summary += &format!(" {path}");
-        outcome.files.add(path, text);
+    match target {
+        ExportTarget::C => {
+            for (path, text) in c_files(&export) {
+                add(path, text.into_bytes());
+            }
+        }
+        ExportTarget::Rust => {
+            for (path, text) in rust_files(&export) {
+                add(path, text.into_bytes());
+            }
+        }
+        ExportTarget::Fmu(version) => {
+            let (bytes, sentence) = fmu_archive(scene, &export, version)?;
+            add(
+                format!("{}.fmu", Identifiers::new(&export.machine).prefix),
+                bytes,
+            );
+            outcome.summary += &format!("  {sentence}\n");
+        }
     }
-    outcome.summary += "\n";
     Ok(outcome)
 }
 

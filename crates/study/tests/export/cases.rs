@@ -22,7 +22,10 @@ fn every_case_exports_or_says_why_not() {
         let text = std::fs::read_to_string(cases().join(name).join("scene.toml")).unwrap();
         let scene = Scene::parse(&format!("{name}.toml"), &text).unwrap();
         let refused = REFUSED.iter().find(|(refused, _)| refused == name);
-        let export = match (compute_export(&scene, &request(1e-7, Precision::Double)), refused) {
+        let export = match (
+            compute_export(&scene, &request(1e-7, Precision::Double)),
+            refused,
+        ) {
             (Ok(export), None) => export,
             (Ok(_), Some((_, reason))) => panic!("{name} exports, though {reason}"),
             (Err(error), Some((_, reason))) => {
@@ -41,8 +44,15 @@ fn every_case_exports_or_says_why_not() {
         let scratch = Scratch::new();
         let files = c_files(&export);
         scratch.write(&files);
-        let define = format!("-D{}_SELF_TEST", files[0].0.trim_end_matches(".h").to_uppercase());
-        compile(&scratch.0, compiler, &[&define, &files[1].0, "-o", "program"]);
+        let define = format!(
+            "-D{}_SELF_TEST",
+            files[0].0.trim_end_matches(".h").to_uppercase()
+        );
+        compile(
+            &scratch.0,
+            compiler,
+            &[&define, &files[1].0, "-o", "program"],
+        );
         run(&scratch.0, "./program", &[]);
     }
     assert!(exported >= 10, "{exported}");

@@ -68,17 +68,29 @@ fn compare(scene: &Scene, states: &[Vec<f64>]) {
         let state = machine.evaluate(0.0, &full, &mut workspace).unwrap();
         let q_ddot = state.q_ddot()[0];
         let rates = twin.rates(y).unwrap();
-        assert!((rates[1] - q_ddot).abs() < 1e-7 * (1.0 + q_ddot.abs()), "{y:?}: {rates:?} {q_ddot}");
+        assert!(
+            (rates[1] - q_ddot).abs() < 1e-7 * (1.0 + q_ddot.abs()),
+            "{y:?}: {rates:?} {q_ddot}"
+        );
         let reactions = twin.reactions(y, q_ddot).unwrap();
         let exact = state.inverse_dynamics().reactions.clone();
         let largest = exact.iter().fold(1.0_f64, |max, r| max.max(r.abs()));
         for (k, (found, exact)) in reactions.iter().zip(&exact).enumerate() {
-            assert!((found - exact).abs() < 1e-7 * largest, "reaction {k} at {y:?}: {found} {exact}");
+            assert!(
+                (found - exact).abs() < 1e-7 * largest,
+                "reaction {k} at {y:?}: {found} {exact}"
+            );
         }
         let [kinetic, potential] = state.energy();
         let found = twin.energies(y).unwrap();
-        assert!((found[0] - kinetic).abs() < 1e-8 * (1.0 + kinetic), "{found:?} {kinetic}");
-        assert!((found[1] - potential).abs() < 1e-8 * (1.0 + potential.abs()), "{found:?} {potential}");
+        assert!(
+            (found[0] - kinetic).abs() < 1e-8 * (1.0 + kinetic),
+            "{found:?} {kinetic}"
+        );
+        assert!(
+            (found[1] - potential).abs() < 1e-8 * (1.0 + potential.abs()),
+            "{found:?} {potential}"
+        );
     }
 }
 

@@ -46,12 +46,18 @@ fn passage(line: &[f64], value: f64) -> f64 {
     let h = 1e-3;
     let at = |x: f64| {
         let (one, x2, x3) = (1.0 - x, x * x, x * x * x);
-        q0 * (1.0 - 3.0 * x2 + 2.0 * x3) + q1 * (3.0 * x2 - 2.0 * x3) + h * x * one * (v0 * one - v1 * x)
+        q0 * (1.0 - 3.0 * x2 + 2.0 * x3)
+            + q1 * (3.0 * x2 - 2.0 * x3)
+            + h * x * one * (v0 * one - v1 * x)
     };
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if at(middle) < value { low = middle } else { high = middle }
+        if at(middle) < value {
+            low = middle
+        } else {
+            high = middle
+        }
     }
     t + h * low
 }
@@ -64,7 +70,11 @@ fn the_c_has_the_exact_coefficients_and_the_period() {
     let scratch = Scratch::new();
     scratch.write(&c_files(&export));
     scratch.write(&[("main.c".to_owned(), PROGRAM.to_owned())]);
-    compile(&scratch.0, compiler, &["single_dwell.c", "main.c", "-o", "program"]);
+    compile(
+        &scratch.0,
+        compiler,
+        &["single_dwell.c", "main.c", "-o", "program"],
+    );
     let lines = numbers(&run(&scratch.0, "./program", &[]));
     let prepared = PreparedScene::new(&scene).unwrap();
     let mut workspace = prepared.model.workspace();
@@ -73,7 +83,10 @@ fn the_c_has_the_exact_coefficients_and_the_period() {
     let mut largest = [0.0_f64; 4];
     let mut errors = [0.0_f64; 4];
     for row in rows {
-        prepared.model.coefficients(row[0], &mut workspace, &mut exact).unwrap();
+        prepared
+            .model
+            .coefficients(row[0], &mut workspace, &mut exact)
+            .unwrap();
         let exact = [exact.m, exact.half_dm, exact.a[0], exact.b[0]];
         for k in 0..4 {
             largest[k] = largest[k].max(exact[k].abs());
@@ -91,7 +104,11 @@ fn the_c_has_the_exact_coefficients_and_the_period() {
 #[test]
 fn the_code_is_small() {
     let Some(compiler) = c_compiler() else { return };
-    if std::process::Command::new("size").arg("--version").output().is_err() {
+    if std::process::Command::new("size")
+        .arg("--version")
+        .output()
+        .is_err()
+    {
         eprintln!("skipped: no `size`");
         return;
     }
@@ -104,12 +121,39 @@ fn the_code_is_small() {
         let scratch = Scratch::new();
         scratch.write(&c_files(&export));
         // For size, as firmware is compiled.
-        compile(&scratch.0, compiler, &["-Os", "-fno-asynchronous-unwind-tables", "-c", "single_dwell.c"]);
+        compile(
+            &scratch.0,
+            compiler,
+            &[
+                "-Os",
+                "-fno-asynchronous-unwind-tables",
+                "-c",
+                "single_dwell.c",
+            ],
+        );
         let text = run(&scratch.0, "size", &["single_dwell.o"]);
-        let size: f64 = text.lines().nth(1).unwrap().split_whitespace().next().unwrap().parse().unwrap();
-        eprintln!("{accuracy:e} {precision:?}: {size} bytes, {} of them constants", export.constant_bytes());
+        let size: f64 = text
+            .lines()
+            .nth(1)
+            .unwrap()
+            .split_whitespace()
+            .next()
+            .unwrap()
+            .parse()
+            .unwrap();
+        eprintln!(
+            "{accuracy:e} {precision:?}: {size} bytes, {} of them constants",
+            export.constant_bytes()
+        );
         assert!(size < limit, "{size}");
-        assert!(export.measured.errors.max() <= if precision == Precision::Float { 5e-6 } else { accuracy });
+        assert!(
+            export.measured.errors.max()
+                <= if precision == Precision::Float {
+                    5e-6
+                } else {
+                    accuracy
+                }
+        );
     }
 }
 

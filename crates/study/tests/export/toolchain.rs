@@ -79,7 +79,11 @@ pub(crate) fn compile(folder: &Path, compiler: &str, arguments: &[&str]) {
 
 /// The numbers of a program's output, line by line.
 pub(crate) fn numbers(text: &str) -> Vec<Vec<f64>> {
-    let line = |line: &str| line.split_whitespace().map(|n| n.parse().unwrap()).collect();
+    let line = |line: &str| {
+        line.split_whitespace()
+            .map(|n| n.parse().unwrap())
+            .collect()
+    };
     text.lines().map(line).collect()
 }
 
