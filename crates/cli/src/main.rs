@@ -98,7 +98,9 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
             let done = done.and_then(|scene| {
                 let done = match &scene {
                     AnyScene::Plane(scene) => run_study(study, scene, &options.out, &bar),
-                    AnyScene::Space(scene) => in_space::run_study(study, scene),
+                    AnyScene::Space(scene) => {
+                        in_space::run_study(study, scene, &|step| show_step(&bar, step))
+                    }
                 };
                 times.add("computing");
                 let TrajectoryOutcome {

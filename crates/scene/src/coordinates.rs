@@ -23,6 +23,46 @@ pub(crate) struct ParsedActuator<'a> {
     pub(crate) actuator: Option<Actuator>,
 }
 
+/// An actuator as sections of motion name it, in the plane or in space.
+pub(crate) trait NamedActuator {
+    /// Its name.
+    fn name(&self) -> &str;
+
+    /// Where it is declared.
+    fn key(&self) -> &Span;
+
+    /// Whether its coordinate is an angle; one that could not be read counts as one.
+    fn is_angle(&self) -> bool;
+
+    /// A value of its coordinate, SI.
+    fn coordinate_value(&self, value: Value<'_>, what: &str) -> Option<f64> {
+        value.coordinate(self.is_angle(), what)
+    }
+
+    /// The unit of its coordinate.
+    fn unit<'u>(&self, units: &'u Units) -> &'u Unit {
+        units.coordinate_unit(self.is_angle())
+    }
+}
+
+impl NamedActuator for ParsedActuator<'_> {
+    fn name(&self) -> &str {
+        self.name
+    }
+
+    fn key(&self) -> &Span {
+        &self.key
+    }
+
+    fn is_angle(&self) -> bool {
+        self.is_angle()
+    }
+
+    fn coordinate_value(&self, value: Value<'_>, what: &str) -> Option<f64> {
+        self.coordinate_value(value, what)
+    }
+}
+
 impl ParsedActuator<'_> {
     fn coordinate(&self) -> Option<Coordinate> {
         self.actuator.as_ref().map(Actuator::coordinate)

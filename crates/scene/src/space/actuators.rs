@@ -3,6 +3,7 @@
 use super::bodies::Space;
 use super::joints::{Joints, ParsedJoint};
 use crate::bodies::Bodies;
+use crate::coordinates::NamedActuator;
 use crate::diagnostics::Span;
 use crate::keys::table;
 use crate::names::check;
@@ -17,6 +18,7 @@ use toml::de::DeValue;
 #[derive(Debug)]
 pub(super) struct ParsedActuator<'a> {
     pub(super) name: &'a str,
+    key: Span,
     pub(super) actuator: Option<Actuator>,
 }
 
@@ -25,6 +27,20 @@ impl ParsedActuator<'_> {
     pub(super) fn is_angle(&self) -> bool {
         let kind = self.actuator.as_ref().map(|a| a.kind);
         !matches!(kind, Some(ActuatorKind::Travel(_)))
+    }
+}
+
+impl NamedActuator for ParsedActuator<'_> {
+    fn name(&self) -> &str {
+        self.name
+    }
+
+    fn key(&self) -> &Span {
+        &self.key
+    }
+
+    fn is_angle(&self) -> bool {
+        self.is_angle()
     }
 }
 
@@ -52,6 +68,7 @@ pub(super) fn actuators<'a>(
         }
         found.push(ParsedActuator {
             name: entry.name,
+            key: entry.key.clone(),
             actuator: read_actuator(entry, joints),
         });
     }

@@ -12,6 +12,7 @@ use crate::diagnostics::Diagnostics;
 use crate::error::{SceneError, Source};
 use crate::file::SceneFile;
 use crate::keys::table;
+use crate::prescribed::{coordinate_sweep, prescribed_motion};
 use crate::sections::{
     needed_section, one_line, printable, report_unjoined_bodies, section, text_of, title,
 };
@@ -52,6 +53,8 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
     for (key, location) in [
         ("units", SceneLocation::Units),
         ("assembly", SceneLocation::Assembly),
+        ("prescribed", SceneLocation::Prescribed),
+        ("coordinate-sweep", SceneLocation::CoordinateSweep),
         ("requests", SceneLocation::Requests),
     ] {
         fields.place(key, location);
@@ -63,6 +66,9 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
     let joints = Joints::read(needed_section(fields, "joints").as_ref(), &bodies, log);
     let actuators = section("actuators").map_or_else(Vec::new, |f| actuators(&f, &bodies, &joints));
     let assembly = assembly(section("assembly").as_ref(), &bodies, &actuators);
+    let start = assembly.q.as_slice();
+    let prescribed = section("prescribed").and_then(|f| prescribed_motion(&f, &actuators, start));
+    let sweep = section("coordinate-sweep").and_then(|f| coordinate_sweep(&f, &actuators, start));
     let loads = section("loads").map_or_else(Vec::new, |f| loads(&f, &bodies));
     let ground = bodies.ground.unwrap_or_default();
     let listed = section("requests").and_then(|f| reactions(&f, &joints, ground));
@@ -104,6 +110,8 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
             joints,
         },
         assembly,
+        prescribed,
+        sweep,
         loads,
         file: SceneFile::new(
             (name, source),

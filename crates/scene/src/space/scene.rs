@@ -1,6 +1,7 @@
 //! A scene in space as plain data.
 
 use crate::file::SceneFile;
+use crate::scene::{CoordinateSweep, PrescribedMotion};
 use dwell_geometry::space::{Assembly, Mechanism, Vec3};
 use dwell_kinetostatics::space::{LoadKind, Mass, Reaction};
 use std::ops::Deref;
@@ -20,6 +21,10 @@ pub struct SpaceScene {
     pub assembly: Assembly,
     /// The loads.
     pub loads: Vec<NamedLoad>,
+    /// The prescribed motion of `[prescribed]`.
+    pub prescribed: Option<PrescribedMotion>,
+    /// The sweep of `[coordinate-sweep]`.
+    pub sweep: Option<CoordinateSweep>,
     /// The requested reactions.
     pub reactions: Vec<Reaction>,
     /// Whether the file lists the reactions; otherwise all in the axes of the ground are requested.
