@@ -52,6 +52,7 @@ impl Plan {
             pieces: Vec::new(),
             range: Range::Unbounded,
             assembly_q: Vec::new(),
+            closure_angles: Vec::new(),
             mobility: Mobility::default(),
         };
         plan.schedule_whole();
