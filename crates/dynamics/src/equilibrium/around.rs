@@ -1,6 +1,7 @@
 //! What is around an equilibrium: how far it is known, and the directions in which it goes on.
 
 use super::at_rest::AtRest;
+use crate::machine::MovingModel;
 use super::{Equilibrium, NeutralDirection, Stability};
 use crate::error::Result;
 use crate::state_space::{eigenvalues_about, linearise_where_it_holds};
@@ -20,7 +21,7 @@ const SLIDE_STEPS: usize = 64;
 const MAX_SLIDE: f64 = 0.3;
 const MIN_SLIDE: f64 = 1e-12;
 
-impl AtRest<'_> {
+impl<M: MovingModel> AtRest<'_, M> {
     /// The equilibrium at the present state, which is one.
     pub(super) fn equilibrium(&mut self) -> Result<Equilibrium> {
         let factored = self.factor_here()?;

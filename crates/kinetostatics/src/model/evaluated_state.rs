@@ -59,6 +59,11 @@ impl<'a, T: Scalar, M: MachineModel> EvaluatedState<'a, T, M> {
         self.model
     }
 
+    /// The magnitudes of the loads, in the units of their kinds.
+    pub fn magnitudes(&self) -> &[T] {
+        M::magnitudes(self.state.workspace)
+    }
+
     /// The actuator forces and reactions.
     pub fn inverse_dynamics(&self) -> &'a InverseDynamics<T> {
         self.result

@@ -193,6 +193,11 @@ impl<T: Scalar> ForceState<'_, T> {
         &self.0.workspace.states
     }
 
+    /// The states of the bodies with the accelerations that were last computed.
+    pub fn bodies_as_they_are(&self) -> &BodyStates<T> {
+        &self.0.workspace.states
+    }
+
     /// The states of the bodies with the motion that `set` stores, accelerations included.
     pub fn bodies_with(&mut self, set: impl FnOnce(&mut Motion<T>)) -> &BodyStates<T> {
         set(&mut self.0.workspace.motion);

@@ -13,13 +13,13 @@ use std::fmt::Debug;
 
 /// A mechanism with masses and loads that can be evaluated at a state of motion. The methods with a workspace are the steps
 /// of the [stages](super::stages), which call them in the right order: kinematics, magnitudes of loads, forces.
-pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send {
+pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send + 'static {
     /// How a coordinate of the mechanism is described.
-    type Coordinate: Debug + Copy + PartialEq + Send + Sync;
+    type Coordinate: Debug + Copy + PartialEq + Send + Sync + 'static;
     /// The same of a compiled mechanism.
-    type CoordinateFunction: Debug + Copy + PartialEq + Send + Sync;
+    type CoordinateFunction: Debug + Copy + PartialEq + Send + Sync + 'static;
     /// The shape of a load.
-    type LoadKind: Debug + Copy + PartialEq + Send + Sync;
+    type LoadKind: Debug + Copy + PartialEq + Send + Sync + 'static;
 
     /// A buffer for the results of this model.
     fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T>;
