@@ -90,7 +90,11 @@ impl Cycle {
 /// # Errors
 /// [`DynamicsError::NoCycle`], [`DynamicsError::ComesToRest`] where the guess does not complete a cycle, and as of
 /// [`Machine::evaluate`] and [`integrate`].
-pub fn steady_cycle<M: MovingModel>(machine: &Machine<M>, guess: &[f64], options: &Options) -> Result<Cycle> {
+pub fn steady_cycle<M: MovingModel>(
+    machine: &Machine<M>,
+    guess: &[f64],
+    options: &Options,
+) -> Result<Cycle> {
     machine.require_smooth(NO_CYCLE)?;
     let problem = CycleProblem::new(machine, guess, options)?;
     let mut z: Vec<f64> = guess[1..machine.work_offset()].to_vec();

@@ -33,10 +33,10 @@ use dwell_kinetostatics::{
 use dwell_laws::{Features, Law};
 use dwell_numerics::{Scalar, lu};
 pub use on_fit::MovingModel;
+pub use on_fit::NoFit;
 pub use sliding::SlidingForces;
 pub use state::MachineState;
 use std::sync::Arc;
-pub use on_fit::NoFit;
 pub use workspace::{EquationWorkspace, MachineWorkspace};
 
 /// How a coordinate moves.

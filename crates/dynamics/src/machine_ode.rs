@@ -7,8 +7,8 @@ use crate::machine::{Machine, MachineState, MachineWorkspace, MovingModel};
 use crate::ode::{DualWorkspace, OdeState, OdeSystem};
 use crate::sliding::Sliding;
 use crate::state_switches::{HeldSource, signal_value};
-use dwell_laws::{Features, SwitchKind};
 use dwell_kinetostatics::Model;
+use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::Dual;
 use std::sync::Arc;
 

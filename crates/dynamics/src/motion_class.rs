@@ -70,7 +70,10 @@ pub enum MotionClass {
 ///
 /// # Errors
 /// [`DynamicsError::NotConservative`], or the error of an evaluation.
-pub fn motion_class<M: MovingModel>(machine: &Machine<M>, start: ReducedState) -> Result<MotionClass> {
+pub fn motion_class<M: MovingModel>(
+    machine: &Machine<M>,
+    start: ReducedState,
+) -> Result<MotionClass> {
     Ok(EnergyScan::new(&mut LoadedSystem::new(machine)?, start)?.1)
 }
 

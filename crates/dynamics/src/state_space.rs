@@ -41,7 +41,11 @@ pub fn linearise<M: MovingModel>(machine: &Machine<M>, t: f64, y: &[f64]) -> Res
 }
 
 /// The same, where friction that holds keeps everything at rest.
-pub(crate) fn linearise_where_it_holds<M: MovingModel>(machine: &Machine<M>, t: f64, y: &[f64]) -> Result<StateSpace> {
+pub(crate) fn linearise_where_it_holds<M: MovingModel>(
+    machine: &Machine<M>,
+    t: f64,
+    y: &[f64],
+) -> Result<StateSpace> {
     let (states, inputs) = (machine.drive_states().end, machine.drives());
     let mut workspace: MachineWorkspace<Dual, M> = machine.workspace();
     let mut at: Vec<Dual> = y.iter().map(|&y| Dual::from_f64(y)).collect();
@@ -100,7 +104,12 @@ const ROUNDINGS: f64 = 8.0;
 ///
 /// # Errors
 /// As [`Machine::evaluate`].
-pub fn is_equilibrium<M: MovingModel>(machine: &Machine<M>, t: f64, y: &[f64], linear: &StateSpace) -> Result<bool> {
+pub fn is_equilibrium<M: MovingModel>(
+    machine: &Machine<M>,
+    t: f64,
+    y: &[f64],
+    linear: &StateSpace,
+) -> Result<bool> {
     let coordinates = machine.free().len();
     let size = |j: usize| match j < coordinates {
         true => y[j].abs().max(1.0),

@@ -39,6 +39,7 @@
 mod assemble;
 mod closure;
 mod coordinate;
+mod factors;
 mod follow;
 mod frames;
 mod groups;

@@ -52,7 +52,8 @@ pub use load::{
 };
 pub use mass::Mass;
 pub use model::{
-    EvaluatedState, ForceState, KinematicState, LoadedState, MachineModel, Model, ModelLoad, Workspace,
+    EvaluatedState, ForceState, KinematicState, LoadedState, MachineModel, Model, ModelLoad,
+    Workspace,
 };
 pub use pass::InverseDynamics;
 pub use reduced::{

@@ -12,9 +12,9 @@ mod wrench;
 pub(crate) use compiled::CompiledLoads;
 pub use compiled::LoadState;
 pub use friction::{Friction, FrictionContact};
-pub(crate) use signal::{SignalWorkspace, compile_signals_by};
 pub use function::{MAX_FUNCTION_SIGNALS, MagnitudeFunction};
 pub use separating::{Mesh, PitchLines, PressureAngle};
+pub(crate) use signal::{SignalWorkspace, compile_signals_by};
 pub use wrench::{AppliedWrench, ForceSource};
 pub(crate) use wrench::{find_couple_points, on_two_bodies};
 

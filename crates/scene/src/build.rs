@@ -2,13 +2,11 @@
 
 use crate::assembly::ParsedAssembly;
 use crate::bodies::Bodies;
-use crate::coordinates::{
-    NamedActuator, ParsedCoordinate, ParsedCoordinates, actuators, is_same,
-};
+use crate::coordinates::{NamedActuator, ParsedCoordinate, ParsedCoordinates, actuators, is_same};
 use crate::diagnostics::Diagnostics;
 use crate::drives::{DriveReader, reject_drives_of_prescribed};
-use crate::events::EventReader;
 use crate::error::{SceneError, Source};
+use crate::events::EventReader;
 use crate::file::SceneFile;
 use crate::former_keys::rename_former_keys;
 use crate::friction::add_friction;

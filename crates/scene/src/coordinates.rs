@@ -195,11 +195,7 @@ impl<'a, C: AnyCoordinate> ParsedCoordinates<'a, C> {
     }
 
     /// The coordinate that the value of an entry of `fields` names.
-    pub(crate) fn named_by(
-        &self,
-        entry: &Entry<'_>,
-        fields: &TableReader<'_>,
-    ) -> Option<C> {
+    pub(crate) fn named_by(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<C> {
         let name = entry.value.string(fields.name_of(entry))?;
         self.find(name, &entry.value.span())
     }

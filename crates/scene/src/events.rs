@@ -1,8 +1,8 @@
 //! The events of a free motion.
 
+use crate::coordinates::{AnyCoordinate, ParsedCoordinates};
 use crate::diagnostics::Span;
 use crate::kind::{kind, reject_unread_kind};
-use crate::coordinates::{AnyCoordinate, ParsedCoordinates};
 use crate::magnitude::Names;
 use crate::names::check;
 use crate::requests::{components, joint_and_component};
@@ -120,7 +120,7 @@ fn revolution<C: AnyCoordinate, R>(
     angle: C,
     entry: &Entry<'_>,
     fields: &TableReader<'_>,
-    ) -> Option<EventTrigger<C, R>> {
+) -> Option<EventTrigger<C, R>> {
     if angle.is_angle() {
         return Some(EventTrigger::Revolution(angle));
     }

@@ -107,9 +107,7 @@ impl<C: AnyCoordinate> Magnitudes<C> {
         let (table, signal) = (table?.value, signal?);
         let unit = match signal {
             Signal::Time => &SI,
-            Signal::Value(c) | Signal::Velocity(c) => {
-                fields.units().coordinate_unit(c.is_angle())
-            }
+            Signal::Value(c) | Signal::Velocity(c) => fields.units().coordinate_unit(c.is_angle()),
         };
         let name = format!("the table of {what}");
         let rows = table.rows([unit, rule.unit], &name)?;

@@ -38,7 +38,10 @@ x = { angle = "P3" }
 "#;
 
 fn scene(name: &str, loads: &str) -> SpaceScene {
-    let path = format!("{}/../validation/spatial/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let path = format!(
+        "{}/../validation/spatial/{name}.toml",
+        env!("CARGO_MANIFEST_DIR")
+    );
     let mut text = std::fs::read_to_string(path).expect("the file");
     text.push_str(loads);
     SpaceScene::parse(name, &text).unwrap_or_else(|e| panic!("{name}: {e:?}"))
@@ -70,7 +73,9 @@ fn loads_in_space_act_as_in_the_dense_equations() {
         assert_eq!(scene.loads.len(), kinds);
         let model = model(&scene);
         let (mut workspace, mut result) = (model.workspace(), model.result_buffer());
-        let determined = model.determined(&[0.37], &mut model.workspace()).expect("a pose");
+        let determined = model
+            .determined(&[0.37], &mut model.workspace())
+            .expect("a pose");
         let mut compared = 0;
         for [q, q_dot, q_ddot] in STATES {
             let t = 0.3 + q;
@@ -97,8 +102,11 @@ fn loads_in_space_act_as_in_the_dense_equations() {
             let scale = result.reactions.iter().fold(1.0_f64, |s, r| s.max(r.abs()));
             let off = (result.tau[0] - dense.actuator_actions[0]).abs();
             assert!(off < 1e-11 * scale, "{name}: {off:.1e} of {scale}");
-            for ((found, reaction), determined) in
-                result.reactions.iter().zip(model.reactions()).zip(&determined)
+            for ((found, reaction), determined) in result
+                .reactions
+                .iter()
+                .zip(model.reactions())
+                .zip(&determined)
             {
                 let wrench = dense.reactions[reaction.joint.0];
                 let (vector, k) = match reaction.component {
@@ -108,7 +116,10 @@ fn loads_in_space_act_as_in_the_dense_equations() {
                 };
                 if *determined {
                     let wanted = [vector.x, vector.y, vector.z][k];
-                    assert!((found - wanted).abs() < 1e-10 * scale, "{name}: {found} for {wanted}");
+                    assert!(
+                        (found - wanted).abs() < 1e-10 * scale,
+                        "{name}: {found} for {wanted}"
+                    );
                     compared += 1;
                 }
             }
@@ -151,11 +162,17 @@ fn loads_in_space_work_as_they_push_the_coordinate() {
                 let at = machine.evaluate(0.2, &y, &mut work).expect("a state");
                 at.energy().iter().sum::<f64>()
             });
-            let slope = (energies[0] - 8.0 * energies[1] + 8.0 * energies[2] - energies[3]) / (12.0 * h);
+            let slope =
+                (energies[0] - 8.0 * energies[1] + 8.0 * energies[2] - energies[3]) / (12.0 * h);
             let powers: f64 = rates[machine.work_offset()..].iter().sum();
             let scale = powers.abs() + energies[0].abs();
-            assert!((slope - powers).abs() < 1e-8 * scale.max(1.0), "{name}: {slope} for {powers}");
-            with_potential = (0..scene.loads.len()).filter(|&k| model.is_conservative(k)).count();
+            assert!(
+                (slope - powers).abs() < 1e-8 * scale.max(1.0),
+                "{name}: {slope} for {powers}"
+            );
+            with_potential = (0..scene.loads.len())
+                .filter(|&k| model.is_conservative(k))
+                .count();
         }
         assert_eq!(with_potential, conservative, "{name}");
     }
@@ -165,7 +182,12 @@ fn loads_in_space_work_as_they_push_the_coordinate() {
 #[test]
 fn angles_of_joints_in_space_count_revolutions() {
     let mut closing = 0;
-    for name in ["bricard-a04", "slider-crank-haug", "bennett", "double-hooke"] {
+    for name in [
+        "bricard-a04",
+        "slider-crank-haug",
+        "bennett",
+        "double-hooke",
+    ] {
         let scene = scene(name, "");
         let model = model(&scene);
         let ranges = model.plan().range();
@@ -186,7 +208,10 @@ fn angles_of_joints_in_space_count_revolutions() {
                     let step = (to - from) / f64::from(n);
                     let expected = 0.5 * (rate + rate_before) * step;
                     let off = (value - before - expected).abs();
-                    assert!(off < 0.05 * (expected.abs() + step), "{name}, joint {joint} at {q}: {off}");
+                    assert!(
+                        off < 0.05 * (expected.abs() + step),
+                        "{name}, joint {joint} at {q}: {off}"
+                    );
                 }
                 last = Some([value, rate]);
             }
@@ -205,7 +230,11 @@ fn coordinates_in_space_change_at_their_rates() {
         bodies: [BodyId(1), BodyId(3)],
         points: [point(1, 1), point(3, 0)],
     };
-    for of in [Coordinate::Travel(JointId(3)), Coordinate::Angle(JointId(0)), distance] {
+    for of in [
+        Coordinate::Travel(JointId(3)),
+        Coordinate::Angle(JointId(0)),
+        distance,
+    ] {
         let of = model.coordinate_function(of).expect("a coordinate");
         let mut workspace = model.workspace();
         let mut at = |t: f64| {
@@ -217,12 +246,15 @@ fn coordinates_in_space_change_at_their_rates() {
         };
         let h = 1e-4;
         let near = [-2.0, -1.0, 1.0, 2.0].map(|k| at(k * h));
-        let slope = |k: usize| {
-            (near[0][k] - 8.0 * near[1][k] + 8.0 * near[2][k] - near[3][k]) / (12.0 * h)
-        };
+        let slope =
+            |k: usize| (near[0][k] - 8.0 * near[1][k] + 8.0 * near[2][k] - near[3][k]) / (12.0 * h);
         let found = at(0.0);
         for k in [0, 1] {
-            assert!((slope(k) - found[k + 1]).abs() < 1e-9, "{of:?}: {} for {found:?}", slope(k));
+            assert!(
+                (slope(k) - found[k + 1]).abs() < 1e-9,
+                "{of:?}: {} for {found:?}",
+                slope(k)
+            );
         }
     }
 }

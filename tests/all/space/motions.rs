@@ -68,8 +68,7 @@ fn motions_of_one_coordinate_agree_with_the_references() {
                 q: start[0],
                 q_dot: start[1],
             };
-            let orbit =
-                Orbit::loaded(&machine, from).unwrap_or_else(|e| panic!("{name}: {e}"));
+            let orbit = Orbit::loaded(&machine, from).unwrap_or_else(|e| panic!("{name}: {e}"));
             let period = number(&motion["period_s"]);
             largest[0] = largest[0].max((orbit.period / period - 1.0).abs());
             let states = motion["states"].as_array().expect("states");

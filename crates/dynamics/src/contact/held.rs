@@ -127,7 +127,10 @@ pub(super) fn solve_at_modes<T: Scalar, M: MachineModel>(
 }
 
 /// The magnitudes of the loads that depend on reactions, as their forces.
-fn read_forces<T: Scalar, M: MachineModel>(state: &ForceState<'_, T, M>, workspace: &mut ContactWorkspace<T>) {
+fn read_forces<T: Scalar, M: MachineModel>(
+    state: &ForceState<'_, T, M>,
+    workspace: &mut ContactWorkspace<T>,
+) {
     for (force, load) in workspace.forces.iter_mut().zip(state.frictions()) {
         *force = state.magnitudes()[load];
     }

@@ -68,14 +68,15 @@ pub(crate) fn pass<M: MovingModel>(
     let entry: Vec<ContactMode> = entry.into_iter().map(ContactMode::of_code).collect();
     let each = machine.contacts.iter().zip(entry.iter().zip(after));
     let changed = each.filter(|(_, (from, to))| !from.is_open() && from != to);
-    let event =
-        |(contact, (from, to)): (&Contact<_>, (&ContactMode, &ContactMode))| ContactEvent::Friction {
+    let event = |(contact, (from, to)): (&Contact<_>, (&ContactMode, &ContactMode))| {
+        ContactEvent::Friction {
             t,
             y: y.to_vec(),
             load: contact.load,
             from: *from,
             to: *to,
-        };
+        }
+    };
     events.extend(changed.map(event));
     Ok(events)
 }

@@ -1,9 +1,9 @@
 //! What is around an equilibrium: how far it is known, and the directions in which it goes on.
 
 use super::at_rest::AtRest;
-use crate::machine::MovingModel;
 use super::{Equilibrium, NeutralDirection, Stability};
 use crate::error::Result;
+use crate::machine::MovingModel;
 use crate::state_space::{eigenvalues_about, linearise_where_it_holds};
 
 /// Below this part of the largest singular value the Jacobian says nothing of its direction, which is looked at over a

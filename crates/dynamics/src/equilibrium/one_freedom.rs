@@ -53,7 +53,10 @@ enum Zero {
 /// # Errors
 /// [`DynamicsError::NoEquilibrium`](crate::DynamicsError::NoEquilibrium) where a drive never settles; and what stands in
 /// the way of an evaluation.
-pub fn equilibria<M: MovingModel>(machine: &Machine<M>, [from, to]: [f64; 2]) -> Result<Vec<Equilibrium>> {
+pub fn equilibria<M: MovingModel>(
+    machine: &Machine<M>,
+    [from, to]: [f64; 2],
+) -> Result<Vec<Equilibrium>> {
     let mut search = Search::new(machine, [from, to])?;
     let mut zeros = search.zeros()?;
     let revolutions = (to - from) / TAU;
@@ -88,7 +91,10 @@ pub fn equilibria<M: MovingModel>(machine: &Machine<M>, [from, to]: [f64; 2]) ->
 ///
 /// # Errors
 /// As of [`equilibria`].
-pub fn static_force_and_potential<M: MovingModel>(machine: &Machine<M>, coordinates: &[f64]) -> Result<Vec<[f64; 2]>> {
+pub fn static_force_and_potential<M: MovingModel>(
+    machine: &Machine<M>,
+    coordinates: &[f64],
+) -> Result<Vec<[f64; 2]>> {
     let mut at_rest = of_one_freedom(machine)?;
     let mut workspace = machine.workspace();
     let mut found = Vec::with_capacity(coordinates.len());

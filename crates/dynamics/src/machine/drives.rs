@@ -52,7 +52,8 @@ impl<M: MovingModel> Machine<M> {
     ) -> Result<()> {
         let mut state = self.evaluate(t, y, workspace)?;
         let of_drives = 2 * self.free.len();
-        let moving = |state: &mut MachineState<'_, f64, M>, of| state.coordinate_with_acceleration(of);
+        let moving =
+            |state: &mut MachineState<'_, f64, M>, of| state.coordinate_with_acceleration(of);
         let source_state = |load: usize, signals: &mut Vec<[f64; 2]>| {
             for signal in self.model.compiled_signals(load) {
                 signals.push(match *signal {

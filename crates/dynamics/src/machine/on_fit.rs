@@ -175,9 +175,17 @@ impl MovingModel for Model {
         result: &'o mut InverseDynamics<f64>,
     ) -> Result<EvaluatedState<'o>> {
         let fit = window.fit.as_ref();
-        let (q_dot, q_ddot) = (&machine_state.equation.q_dot, &machine_state.equation.q_ddot);
+        let (q_dot, q_ddot) = (
+            &machine_state.equation.q_dot,
+            &machine_state.equation.q_ddot,
+        );
         result.tau.fill(0.0);
-        let q = machine_state.equation.q.first().copied().unwrap_or(fit.center);
+        let q = machine_state
+            .equation
+            .q
+            .first()
+            .copied()
+            .unwrap_or(fit.center);
         let center = q - x;
         // Reactions are known worse than poses, and needed in the window alone.
         let fit_radius = fit.fit_radius.min(3.0 * fit.half_width);

@@ -83,6 +83,9 @@ pub enum CoordinateFunction {
     },
 }
 
+/// Stored angles of a revolution, or of a stroke of the size of the mechanism.
+const ANGLES_PER_UNIT: f64 = 256.0;
+
 /// How the revolutions of an angle are counted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Counting {
@@ -92,11 +95,11 @@ pub enum Counting {
     Stored(usize),
 }
 
-/// The angles of a joint that closes a loop at the stored poses, with their revolutions.
+/// The angles of a joint that closes a loop, with their revolutions.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct StoredAngles {
     joint: JointId,
-    /// By stored pose.
+    /// At equally spaced coordinates of the range.
     angles: Vec<f64>,
 }
 
@@ -172,40 +175,54 @@ impl Plan {
         )
     }
 
-    /// Stores the angles of the joints that close loops along the range of one coordinate.
-    pub(super) fn store_closure_angles(&mut self, mechanism: &Mechanism) {
-        let closing = self.closures.iter().filter_map(|closure| closure.joint);
-        let with_angle: Vec<JointId> = closing
-            .filter(|joint| has(mechanism.joints[joint.0].kind)[0])
-            .collect();
-        if self.actuators() != 1 || with_angle.is_empty() {
+    /// Stores what counts revolutions along the range of one coordinate.
+    pub(super) fn count_revolutions(&mut self, mechanism: &Mechanism) {
+        let (1, Some([first, last])) = (self.actuators(), self.predictions.range()) else {
             return;
-        }
+        };
         let mut pose = self.pose::<f64>();
-        let mut stored: Vec<StoredAngles> = with_angle
-            .iter()
-            .map(|&joint| StoredAngles {
+        let at = |q: f64, pose: &mut Pose| {
+            if let Some(piece) = self.predictions.at(q) {
+                self.predictions.predict(piece, q, pose);
+            }
+            self.close(&[q], None, pose).is_ok()
+        };
+        let mut ends = [Vec::new(), Vec::new()];
+        for (end, q) in ends.iter_mut().zip([first, last]) {
+            at(q, &mut pose);
+            end.clone_from(&pose.coordinates);
+        }
+        let closing = self.closures.iter().filter_map(|closure| closure.joint);
+        let angles = closing.filter(|joint| has(mechanism.joints[joint.0].kind)[0]);
+        let mut stored: Vec<StoredAngles> = angles
+            .map(|joint| StoredAngles {
                 joint,
-                angles: Vec::with_capacity(self.nodes.len()),
+                angles: Vec::new(),
             })
             .collect();
-        for node in &self.nodes {
-            self.start_from(node, 0.0, &mut pose);
-            let closed = self.close(&[node.q], &mut pose).is_ok();
+        let unit = if self.is_angle(0) { TAU } else { self.size };
+        let count = match stored.is_empty() {
+            true => 0,
+            false => ((last - first) / unit * ANGLES_PER_UNIT).ceil().max(1.0) as usize,
+        };
+        for k in 0..=count {
+            let q = first + (last - first) * (k as f64 / count.max(1) as f64);
+            let closed = at(q, &mut pose);
             for StoredAngles { joint, angles } in &mut stored {
                 let joint = &mechanism.joints[joint.0];
-                let side = |k: usize| joint.sides[k].in_frame(&self.tree.internal[joint.bodies[k].0]);
-                let (first, second) = (side(0), side(1));
-                let last = angles.last().copied();
-                let angle = self.wrapped_angle(&pose, joint.bodies, first.axis, [first.normal, second.normal]);
-                angles.push(match last {
-                    // A stored pose closes; were it not so, the angle before it is nearest.
-                    Some(last) if !closed => last,
-                    Some(last) => near(angle, last),
+                let [a, b] =
+                    [0, 1].map(|k| joint.sides[k].in_frame(&self.tree.internal[joint.bodies[k].0]));
+                let angle = self.wrapped_angle(&pose, joint.bodies, a.axis, [a.normal, b.normal]);
+                angles.push(match angles.last() {
+                    // Along the range every pose closes; were it not so, the angle before it is nearest.
+                    Some(&last) if !closed => last,
+                    Some(&last) => angle + TAU * ((last - angle) / TAU).round(),
                     None => angle,
                 });
             }
         }
+        let gains = ends[1].iter().zip(&ends[0]).map(|(b, a)| b - a);
+        self.freedom_gains = gains.collect();
         self.closure_angles = stored;
     }
 
@@ -225,15 +242,12 @@ impl Plan {
         second.dot(across).atan2(second.dot(first))
     }
 
-    /// The revolutions that a stored quantity gains by whole periods of the coordinate; `ends` are its values at the ends of the range.
+    /// The whole periods of the only coordinate from the first stored pose.
     #[inline(always)]
-    fn gained(&self, pose_q: f64, ends: [f64; 2]) -> f64 {
-        match self.range.period() {
-            Some(period) => {
-                let periods = ((pose_q - self.nodes[0].q) / period).floor();
-                periods * (ends[1] - ends[0])
-            }
-            None => 0.0,
+    fn periods(&self, q: f64) -> f64 {
+        match (self.range.period(), self.predictions.range()) {
+            (Some(period), Some([first, _])) => ((q - first) / period).floor(),
+            _ => 0.0,
         }
     }
 
@@ -241,7 +255,9 @@ impl Plan {
     #[inline(always)]
     fn first_coordinate<T: Scalar>(&self, pose: &Pose<T>) -> f64 {
         let driver = self.drivers.first();
-        driver.map_or(0.0, |&(freedom, sign)| pose.coordinates[freedom].value() * sign)
+        driver.map_or(0.0, |&(freedom, sign)| {
+            pose.coordinates[freedom].value() * sign
+        })
     }
 
     /// The value of an angle with its revolutions.
@@ -259,9 +275,8 @@ impl Plan {
                 if self.drivers.iter().any(|(driver, _)| *driver == freedom) {
                     return value;
                 }
-                let [first, last] = [self.nodes.first(), self.nodes.last()]
-                    .map(|node| node.map_or(0.0, |n| n.coordinates[freedom][0] * sign));
-                value + T::from_f64(self.gained(self.first_coordinate(pose), [first, last]))
+                let gain = self.freedom_gains.get(freedom).copied().unwrap_or(0.0);
+                value + T::from_f64(self.periods(self.first_coordinate(pose)) * gain * sign)
             }
             Counting::Stored(index) => {
                 let wrapped = self.wrapped_angle(pose, bodies, axis, normals);
@@ -274,22 +289,18 @@ impl Plan {
         }
     }
 
-    /// A stored quantity near a coordinate, by straight lines.
-    fn stored_near(&self, q: f64, values: &[f64]) -> f64 {
-        let (Some(first), Some(last)) = (values.first(), values.last()) else {
-            return 0.0;
+    /// A stored angle near a coordinate, by straight lines.
+    fn stored_near(&self, q: f64, angles: &[f64]) -> f64 {
+        let (Some([from, to]), [first, .., last]) = (self.predictions.range(), angles) else {
+            return angles.first().copied().unwrap_or(0.0);
         };
-        let gained = self.gained(q, [*first, *last]);
         let within = self.within_range(q).unwrap_or(q);
-        let next = self.nodes.partition_point(|n| n.q < within);
-        let (before, after) = (next.max(1) - 1, next.min(values.len() - 1));
-        let [from, to] = [before, after].map(|k| self.nodes[k].q);
-        let part = if to > from {
-            ((within - from) / (to - from)).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
-        gained + values[before] + part * (values[after] - values[before])
+        let intervals = (angles.len() - 1) as f64;
+        let at = ((within - from) / (to - from) * intervals).clamp(0.0, intervals);
+        let k = (at as usize).min(angles.len() - 2);
+        let part = at - k as f64;
+        let here = angles[k] + part * (angles[k + 1] - angles[k]);
+        here + self.periods(q) * (last - first)
     }
 
     /// A coordinate with its rate and its acceleration, rad or m, per s and s²; the last after [`Plan::accelerations`].
@@ -353,9 +364,4 @@ impl Plan {
         let ([a, a1, a2], [b, b1, b2]) = (at(0), at(1));
         [b - a, b1 - a1, b2 - a2]
     }
-}
-
-/// An angle that differs by whole revolutions, nearest to another.
-fn near(angle: f64, to: f64) -> f64 {
-    angle + TAU * ((to - angle) / TAU).round()
 }

@@ -6,7 +6,7 @@ use super::follow::Node;
 use super::frames::{BodyMotion, Frame, Screw};
 use super::groups::Group;
 use super::mechanism::{Assembly, Mechanism, Placement};
-use super::prediction::Piece;
+use super::prediction::Predictions;
 use super::rank::Mobility;
 use super::tree::Tree;
 use super::vector::{Rotation, Vec3};
@@ -51,16 +51,18 @@ pub struct Plan {
     pub(super) last_links: Vec<usize>,
     /// By actuator: its freedom, and −1 where the tree counts it backwards.
     pub(super) drivers: Vec<(usize, f64)>,
-    /// Poses along the range, by ascending coordinate; of several actuators that of the assembly alone.
-    pub(super) nodes: Vec<Node>,
-    /// The predictions between each of them and the next.
-    pub(super) pieces: Vec<Piece>,
+    /// The stored pose of the assembly.
+    pub(super) start: Node,
+    /// The poses stored along the range of one actuator.
+    pub(super) predictions: Predictions,
     pub(super) range: Range,
     /// The coordinates at the assembly.
     pub(super) assembly_q: Vec<f64>,
     pub(super) mobility: Mobility,
     /// The angles along the range of joints that close loops.
     pub(super) closure_angles: Vec<StoredAngles>,
+    /// By freedom: what it gains in a period of the only coordinate.
+    pub(super) freedom_gains: Vec<f64>,
 }
 
 /// A pose with its velocities, for one thread.
@@ -75,15 +77,18 @@ pub struct Pose<T = f64> {
     pub(super) residuals: Vec<T>,
     /// By row: its wrench on the second body, at that body's point.
     pub(super) row_wrenches: Vec<Wrench<T>>,
-    /// By group: its factors, and the heads of their reflections.
+    /// By group: its factors; by column of them the row exchanged with it, or the factor of its reflection.
     pub(super) factors: Vec<T>,
-    pub(super) heads: Vec<T>,
+    pub(super) pivots: Vec<usize>,
+    pub(super) reflections: Vec<T>,
     pub(super) scratch: Vec<T>,
     pub(super) rates: Vec<T>,
     pub(super) accelerations: Vec<T>,
     /// Whether the states of the bodies are those without accelerations of the freedoms.
     pub(super) has_no_acceleration: bool,
     pub(super) states: Vec<BodyMotion<T>>,
+    /// By body: what the accelerations of the freedoms add to those of its origin and of its rotation.
+    pub(super) added: Vec<[Vec3<T>; 2]>,
 }
 
 /// The velocities and accelerations of a pose, for one thread.
@@ -102,7 +107,10 @@ impl<T> Pose<T> {
         std::mem::swap(&mut self.rates, &mut other.rates);
         std::mem::swap(&mut self.accelerations, &mut other.accelerations);
         std::mem::swap(&mut self.states, &mut other.states);
-        std::mem::swap(&mut self.has_no_acceleration, &mut other.has_no_acceleration);
+        std::mem::swap(
+            &mut self.has_no_acceleration,
+            &mut other.has_no_acceleration,
+        );
     }
 }
 
@@ -135,7 +143,7 @@ impl Plan {
         };
         plan.follow_range(&assembly.q, start, kind)
             .map_err(singular)?;
-        plan.store_closure_angles(mechanism);
+        plan.count_revolutions(mechanism);
         Ok(plan)
     }
 
@@ -206,12 +214,14 @@ impl Plan {
             residuals: vec![zero; rows],
             row_wrenches: vec![Wrench::default(); rows],
             factors: vec![zero; group(|g| g.rows.len() * g.unknowns.len())],
-            heads: vec![zero; group(|g| g.unknowns.len())],
+            pivots: vec![0; group(|g| g.unknowns.len())],
+            reflections: vec![zero; group(|g| g.unknowns.len())],
             scratch: vec![zero; self.groups.iter().map(|g| g.rows.len()).max().unwrap_or(0)],
             rates: vec![zero; freedoms],
             accelerations: vec![zero; freedoms],
             has_no_acceleration: false,
             states: vec![BodyMotion::default(); self.tree.internal.len()],
+            added: vec![[Vec3::zero(); 2]; self.tree.internal.len()],
         };
         // The ground is placed once.
         pose.frames[self.ground].origin = self.tree.internal[self.ground].position.cast();

@@ -59,6 +59,11 @@ impl<'a, T: Scalar, M: MachineModel> EvaluatedState<'a, T, M> {
         self.model
     }
 
+    /// The power of a load, W.
+    pub fn load_power(&self, load: usize) -> T {
+        self.state.model.load_power(load, self.state.workspace)
+    }
+
     /// The magnitudes of the loads, in the units of their kinds.
     pub fn magnitudes(&self) -> &[T] {
         M::magnitudes(self.state.workspace)

@@ -173,7 +173,8 @@ impl MachineModel for Model {
     ) -> Result<T> {
         let Workspace { states, loads, .. } = workspace;
         let signals = &mut loads.signal_workspace;
-        self.loads.eval_magnitude(load, magnitude, t, states, signals)
+        self.loads
+            .eval_magnitude(load, magnitude, t, states, signals)
     }
 
     fn held_pieces<T: Scalar>(workspace: &mut Workspace<T>, load: usize) -> &mut HeldPieces {

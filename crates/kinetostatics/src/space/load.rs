@@ -1,10 +1,8 @@
 //! Loads in space: shapes, each times a magnitude.
 
-use crate::load::{Load as AnyLoad, Magnitude, Signal, compile_signals_by};
 use crate::error::LoadError;
-use dwell_geometry::space::{
-    Coordinate, CoordinateFunction, Mechanism, Plan, Pose, Vec3,
-};
+use crate::load::{Load as AnyLoad, Magnitude, Signal, compile_signals_by};
+use dwell_geometry::space::{Coordinate, CoordinateFunction, Mechanism, Plan, Pose, Vec3};
 use dwell_geometry::{BodyId, JointId};
 use dwell_numerics::Scalar;
 
@@ -197,7 +195,8 @@ impl CompiledKind {
             plan.coordinate_function(mechanism, coordinate)
                 .map(Action::Along)
         };
-        let finite = "its points, directions and free value must be finite, its free length not negative";
+        let finite =
+            "its points, directions and free value must be finite, its free length not negative";
         let is_finite = |direction: Direction| match direction {
             Direction::Ground(u) | Direction::Body(u) => u.is_finite(),
         };
@@ -224,9 +223,10 @@ impl CompiledKind {
                 let bodies = bodies.map(|b| b.0);
                 (Action::Torque { bodies, direction }, Resistance::None)
             }
-            LoadKind::PointToPointForce { bodies, points } => {
-                (along(Coordinate::Distance { bodies, points })?, Resistance::None)
-            }
+            LoadKind::PointToPointForce { bodies, points } => (
+                along(Coordinate::Distance { bodies, points })?,
+                Resistance::None,
+            ),
             LoadKind::Spring {
                 bodies,
                 points,
@@ -235,13 +235,15 @@ impl CompiledKind {
                 let action = along(Coordinate::Distance { bodies, points })?;
                 (action, Resistance::Spring(free_length))
             }
-            LoadKind::Damper { bodies, points } => {
-                (along(Coordinate::Distance { bodies, points })?, Resistance::Damper)
-            }
+            LoadKind::Damper { bodies, points } => (
+                along(Coordinate::Distance { bodies, points })?,
+                Resistance::Damper,
+            ),
             LoadKind::JointTorque(joint) => (along(Coordinate::Angle(joint))?, Resistance::None),
-            LoadKind::TorsionSpring { joint, free_angle } if free_angle.is_finite() => {
-                (along(Coordinate::Angle(joint))?, Resistance::Spring(free_angle))
-            }
+            LoadKind::TorsionSpring { joint, free_angle } if free_angle.is_finite() => (
+                along(Coordinate::Angle(joint))?,
+                Resistance::Spring(free_angle),
+            ),
             LoadKind::RotationalDamper(joint) => {
                 (along(Coordinate::Angle(joint))?, Resistance::Damper)
             }
@@ -267,7 +269,13 @@ impl CompiledKind {
             Resistance::None | Resistance::Spring(_) => (*self, 1.0),
             Resistance::Damper => {
                 let resistance = Resistance::None;
-                (Self { resistance, ..*self }, -1.0)
+                (
+                    Self {
+                        resistance,
+                        ..*self
+                    },
+                    -1.0,
+                )
             }
         }
     }
@@ -278,9 +286,9 @@ impl CompiledKind {
             Action::Gravity(_) => return size * mass,
             Action::Force { .. } => size,
             Action::Torque { .. } | Action::Along(CoordinateFunction::Angle { .. }) => 1.0,
-            Action::Along(CoordinateFunction::Travel { .. } | CoordinateFunction::Distance { .. }) => {
-                size
-            }
+            Action::Along(
+                CoordinateFunction::Travel { .. } | CoordinateFunction::Distance { .. },
+            ) => size,
         };
         match self.resistance {
             Resistance::None => length,

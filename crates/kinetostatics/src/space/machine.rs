@@ -12,7 +12,7 @@ use super::model::{Model, Workspace};
 use crate::drive::Drive;
 use crate::error::{KinetostaticsError, LoadError, PositionResult, Result};
 use crate::load::{Friction, Magnitude, Signal};
-use crate::model::{MachineModel, EvaluatedState, KinematicState};
+use crate::model::{EvaluatedState, KinematicState, MachineModel};
 use crate::pass::InverseDynamics;
 use dwell_geometry::PositionError;
 use dwell_geometry::space::{BodyMotion, Coordinate, CoordinateFunction, Wrench};
@@ -101,7 +101,8 @@ impl MachineModel for Model {
         &self,
         coordinate: Coordinate,
     ) -> Result<CoordinateFunction, &'static str> {
-        self.plan().coordinate_function(self.mechanism(), coordinate)
+        self.plan()
+            .coordinate_function(self.mechanism(), coordinate)
     }
 
     fn with_loads(mut self, loads: Vec<Load>) -> Result<Self, LoadError> {
@@ -262,7 +263,7 @@ impl MachineModel for Model {
             load_wrenches,
             ..
         } = &mut *workspace;
-        for (required, load) in forces.required.iter_mut().zip(load_wrenches) {
+        for ([required], load) in forces.required.iter_mut().zip(load_wrenches) {
             required.force -= load.force;
             required.moment -= load.moment;
         }
@@ -307,10 +308,16 @@ impl MachineModel for Model {
     fn load_power<T: Scalar>(&self, load: usize, workspace: &Workspace<T>) -> T {
         let mut power = T::from_f64(0.0);
         let plan = self.plan();
-        let acted = self.act(load, workspace.magnitudes[load], workspace, |body, wrench| {
-            let state = plan.state(&workspace.pose, body);
-            power += wrench.force.dot(state.velocity) + wrench.moment.dot(state.angular_velocity);
-        });
+        let acted = self.act(
+            load,
+            workspace.magnitudes[load],
+            workspace,
+            |body, wrench| {
+                let state = plan.state(&workspace.pose, body);
+                power +=
+                    wrench.force.dot(state.velocity) + wrench.moment.dot(state.angular_velocity);
+            },
+        );
         // Its wrenches were computed before: it has a direction.
         acted.map_or(T::from_f64(f64::NAN), |()| power)
     }
@@ -326,8 +333,7 @@ impl MachineModel for Model {
             };
             let frame = self.plan().frame(&workspace.pose, b);
             let momentum = self.inner_masses()[b].required(frame, &from_rest);
-            0.5 * (momentum.force.dot(state.velocity)
-                + momentum.moment.dot(state.angular_velocity))
+            0.5 * (momentum.force.dot(state.velocity) + momentum.moment.dot(state.angular_velocity))
         };
         self.inertial().iter().map(energy).sum()
     }

@@ -3,8 +3,8 @@
 use super::actuators::{ParsedActuator, actuators};
 use super::assembly::assembly;
 use super::bodies::Space;
-use super::joints::Joints;
 use super::coordinates::coordinates;
+use super::joints::Joints;
 use super::loads::LoadReader;
 use super::requests::{in_ground_axes, one_reaction, reactions};
 use super::scene::SpaceScene;
@@ -83,10 +83,15 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
     let ground = bodies.ground.unwrap_or_default();
     let can_start_at_rest = is_filled(fields, "loads") || is_filled(fields, "drives");
     let motion_section = section("motion");
-    let mut motion = (motion_section.as_ref())
-        .map(|f| ParsedMotion::read(f, &by_name, can_start_at_rest));
+    let mut motion =
+        (motion_section.as_ref()).map(|f| ParsedMotion::read(f, &by_name, can_start_at_rest));
     let initial = motion.as_ref().map_or(&[][..], |m| &m.initial_coordinates);
-    let start = starting_coordinates(&mut assembly.q, initial, &by_name, assembly_section.as_ref());
+    let start = starting_coordinates(
+        &mut assembly.q,
+        initial,
+        &by_name,
+        assembly_section.as_ref(),
+    );
     let mut events = Vec::new();
     if let (Some(motion), Some(f)) = (&mut motion, &motion_section) {
         motion.read_laws(&by_name, &start);

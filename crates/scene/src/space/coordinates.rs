@@ -33,7 +33,8 @@ fn read_coordinate(
 ) -> Option<Coordinate> {
     let fields = TableReader::open(entry, format!("coordinate `{}`", shorten(entry.name)))?;
     fields.reject_unknown_keys(table("coordinate-in-space"));
-    let help = "add `angle = \"A\"` or `travel = \"slide\"` of a joint, or `length` with two points";
+    let help =
+        "add `angle = \"A\"` or `travel = \"slide\"` of a joint, or `length` with two points";
     let lacks = ("measures nothing", "which angle, travel or length?");
     let chosen = fields.alternative(table("coordinate-in-space"), lacks, help)?;
     match chosen.name {
@@ -42,7 +43,8 @@ fn read_coordinate(
         _ => {
             let what = fields.name_of(chosen);
             let [a, b] = bodies.find_two_points(chosen.value, TWO_POINTS, what)?;
-            let message = |name: &str| format!("{} measures a length within body `{name}`", fields.what);
+            let message =
+                |name: &str| format!("{} measures a length within body `{name}`", fields.what);
             let help = "a length that can change is between two different bodies";
             let points = [bodies.at(&a), bodies.at(&b)];
             let bodies = bodies.require_different([(a.0, &a.2), (b.0, &b.2)], message, help)?;

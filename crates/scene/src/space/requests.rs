@@ -139,7 +139,9 @@ pub(super) fn one_reaction(
             let names = list(names).unwrap_or_default();
             let message = format!("{} names {} reactions", fields.what, components.len());
             let help = format!("name one component of `{}`: {names}", shorten(name));
-            fields.log().reject(message, &[(at, "which of them?")], help)
+            fields
+                .log()
+                .reject(message, &[(at, "which of them?")], help)
         }
     }
 }

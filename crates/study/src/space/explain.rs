@@ -229,9 +229,15 @@ pub(super) fn explain_position(
     scene_error(scene, message, help, places)
 }
 
-/// The same model under the loads of the scene.
+/// The same model under the loads of the scene, the drives' last.
 pub(super) fn with_loads(scene: &SpaceScene, model: Model) -> Result<Model, StudyError> {
-    let loaded = model.with_loads(scene.loads.clone());
+    let mut loads = scene.loads.clone();
+    for drive in &scene.drives {
+        let load = loads.len();
+        let wrong = |what| explain_load_error(scene, &LoadError { load, what });
+        loads.push(model.drive_load(drive).map_err(wrong)?);
+    }
+    let loaded = model.with_loads(loads);
     loaded.map_err(|error| explain_load_error(scene, &error))
 }
 

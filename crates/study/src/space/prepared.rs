@@ -1,17 +1,17 @@
 //! A scene in space with the exact reduced model of what it requests.
 
 use super::explain::{explain_loads, explain_model, explain_position, with_loads};
+use super::views::SpacePositions;
 use crate::explain::{StudyError, scene_error};
-use crate::number_format::count;
+use crate::number_format::{count, digits};
 use crate::output::{indeterminate_note, symbol};
 use crate::ranges::equally_spaced;
 use crate::reduce::compute::{InertiaAt, ReducedLoad, ReducedScene, UnitLoadCurves};
-use dwell_geometry::space::ActuatorKind;
+use dwell_geometry::space::{ActuatorKind, Placement, Plan};
 use dwell_geometry::{ActuatorId, PositionError, Range};
 use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};
 use dwell_kinetostatics::{
-    Coefficients, ExactModel, MachineModel as _, ReducedModel as _,
-    reduction_rounding_errors,
+    Coefficients, ExactModel, MachineModel as _, ReducedModel as _, reduction_rounding_errors,
 };
 use dwell_scene::{SceneFile, SceneLocation, SpaceScene};
 use rayon::prelude::*;
@@ -19,6 +19,8 @@ use std::f64::consts::TAU;
 
 /// Part of the range that is left out at each limit position, where everything grows.
 const LIMIT_MARGIN: f64 = 1e-3;
+/// Intervals of a revolution, or of the range, from which paths are drawn.
+const DRAWN_INTERVALS: usize = 120;
 /// Half a stroke without limits, in sizes of the mechanism.
 const DEFAULT_STROKE: f64 = 0.5;
 
@@ -57,6 +59,43 @@ impl<'a> PreparedSpaceScene<'a> {
             scene,
             model,
             indeterminate,
+        })
+    }
+
+    /// The mechanism over its range, for pictures: at the start, and in positions that follow each other.
+    pub(super) fn drawn_positions(&self) -> Result<SpacePositions<'a>, StudyError> {
+        let plan = self.model.model().plan();
+        let mut pose = plan.pose();
+        let bodies = 0..self.scene.mechanism.bodies.len();
+        let mut placements = |q: f64| {
+            plan.positions(&[q], &mut pose)
+                .map_err(|e| self.explain(&e))?;
+            let all = bodies.clone().map(|b| plan.placement(&pose, b));
+            Ok::<Vec<Placement>, StudyError>(all.collect())
+        };
+        let turns = match self.range() {
+            Range::Revolutions(count) => count as usize,
+            _ => 1,
+        };
+        let q = self.positions(DRAWN_INTERVALS * turns);
+        let describe = |q: f64| match self.is_angle() {
+            true => format!(
+                "{} = {:.1}°",
+                symbol(self.coordinate_name()),
+                q.to_degrees()
+            ),
+            false => format!("{} = {} m", symbol(self.coordinate_name()), digits(q, 4)),
+        };
+        let describe = |q: f64| describe(q).replace('-', "−");
+        let all = q.iter().map(|&q| Ok((placements(q)?, describe(q))));
+        let all = all.collect::<Result<Vec<_>, StudyError>>()?;
+        let start = self.scene.assembly.q[0];
+        Ok(SpacePositions {
+            scene: self.scene,
+            drawn: placements(start)?,
+            drawn_at: describe(start),
+            provenance: format!("the mechanism at {}", count(all.len(), "position")),
+            all,
         })
     }
 
@@ -159,29 +198,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
     }
 
     fn positions(&self, intervals: usize) -> Vec<f64> {
-        let start = self.scene.assembly.q[0];
-        let within = |from: f64, to: f64| {
-            let margin = LIMIT_MARGIN * (to - from);
-            [from + margin, to - margin]
-        };
-        let limits = match self.range() {
-            Range::Limited(from, to) => within(from, to),
-            Range::Full => [0.0, TAU],
-            Range::Revolutions(count) => [0.0, TAU * f64::from(count)],
-            Range::Stroke(from, to) | Range::Unresolved(from, to) => {
-                let half = if self.is_angle() {
-                    TAU
-                } else {
-                    DEFAULT_STROKE * self.size()
-                };
-                [from.max(start - half), to.min(start + half)]
-            }
-            Range::Unbounded if self.is_angle() => [start, start + TAU],
-            Range::Unbounded => {
-                let half = DEFAULT_STROKE * self.size();
-                [start - half, start + half]
-            }
-        };
+        let (limits, ..) = range_limits(self.scene, self.model.model().plan());
         equally_spaced(limits, intervals)
     }
 
@@ -265,6 +282,30 @@ impl ReducedScene for PreparedSpaceScene<'_> {
     fn notes(&self) -> String {
         let names = self.indeterminate.iter();
         indeterminate_note(names.map(|&r| self.scene.reaction_name(r)))
+    }
+}
+
+/// The part of the range of the only actuator that is shown, whether its ends are next to limit positions, and what it is.
+pub(super) fn range_limits(scene: &SpaceScene, plan: &Plan) -> ([f64; 2], [bool; 2], &'static str) {
+    let (start, is_angle) = (scene.assembly.q[0], is_angle(scene));
+    let half_stroke = DEFAULT_STROKE * plan.size();
+    match plan.range() {
+        Range::Limited(from, to) => {
+            let margin = LIMIT_MARGIN * (to - from);
+            ([from + margin, to - margin], [true; 2], "the range")
+        }
+        Range::Full => ([0.0, TAU], [false; 2], "one revolution"),
+        Range::Revolutions(count) => ([0.0, TAU * f64::from(count)], [false; 2], "the period"),
+        Range::Stroke(from, to) | Range::Unresolved(from, to) => {
+            let half = if is_angle { TAU } else { half_stroke };
+            let ends = [from.max(start - half), to.min(start + half)];
+            (ends, [false; 2], "the range")
+        }
+        Range::Unbounded if is_angle => ([start, start + TAU], [false; 2], "one revolution"),
+        Range::Unbounded => {
+            let ends = [start - half_stroke, start + half_stroke];
+            (ends, [false; 2], "a stroke")
+        }
     }
 }
 
