@@ -16,7 +16,7 @@
 use super::mode::sign;
 use super::{Contact, ContactMode, ContactWorkspace};
 use crate::error::Result;
-use dwell_kinetostatics::{ForceState, FrictionState, InverseDynamics};
+use dwell_kinetostatics::{ForceState, FrictionState, InverseDynamics, MachineModel};
 use dwell_numerics::{Scalar, lu};
 
 /// A contact whose row is that of others to this part of it, squared, is not independent of them.
@@ -51,9 +51,9 @@ pub(super) struct HeldContacts<T> {
 /// # Errors
 /// [`KinetostaticsError::SelfLocking`](dwell_kinetostatics::KinetostaticsError::SelfLocking) where surfaces that slide have
 /// no unique force, [`DynamicsError::NoContactMode`](crate::DynamicsError::NoContactMode) where no mode agrees with the forces.
-pub(crate) fn solve_contacts<T: Scalar>(
-    contacts: &[Contact],
-    state: &mut ForceState<'_, T>,
+pub(crate) fn solve_contacts<T: Scalar, M: MachineModel>(
+    contacts: &[Contact<M::CoordinateFunction>],
+    state: &mut ForceState<'_, T, M>,
     workspace: &mut ContactWorkspace<T>,
     unloaded: &Unloaded<'_, T>,
     accelerations: (&[T], &[Vec<T>]),
@@ -82,9 +82,9 @@ pub(crate) fn solve_contacts<T: Scalar>(
 }
 
 /// Solves for the forces at the modes of the workspace.
-pub(super) fn solve_at_modes<T: Scalar>(
-    contacts: &[Contact],
-    state: &mut ForceState<'_, T>,
+pub(super) fn solve_at_modes<T: Scalar, M: MachineModel>(
+    contacts: &[Contact<M::CoordinateFunction>],
+    state: &mut ForceState<'_, T, M>,
     workspace: &mut ContactWorkspace<T>,
     unloaded: &Unloaded<'_, T>,
 ) -> Result<HeldContacts<T>> {
@@ -127,7 +127,10 @@ pub(super) fn solve_at_modes<T: Scalar>(
 }
 
 /// The magnitudes of the loads that depend on reactions, as their forces.
-fn read_forces<T: Scalar>(state: &ForceState<'_, T>, workspace: &mut ContactWorkspace<T>) {
+fn read_forces<T: Scalar, M: MachineModel>(
+    state: &ForceState<'_, T, M>,
+    workspace: &mut ContactWorkspace<T>,
+) {
     for (force, load) in workspace.forces.iter_mut().zip(state.frictions()) {
         *force = state.magnitudes()[load];
     }
@@ -135,9 +138,9 @@ fn read_forces<T: Scalar>(state: &ForceState<'_, T>, workspace: &mut ContactWork
 
 /// Solves for the forces of contacts that hold, with those of all others.
 // Long because it is one loop: the weights of those that hold depend on the reactions under all forces.
-fn hold<T: Scalar>(
-    contacts: &[Contact],
-    state: &mut ForceState<'_, T>,
+fn hold<T: Scalar, M: MachineModel>(
+    contacts: &[Contact<M::CoordinateFunction>],
+    state: &mut ForceState<'_, T, M>,
     workspace: &mut ContactWorkspace<T>,
     unloaded: &Unloaded<'_, T>,
     held: &HeldContacts<T>,
@@ -228,7 +231,7 @@ fn hold<T: Scalar>(
 
 impl<T: Scalar> HeldContacts<T> {
     /// Those whose mode is to hold.
-    pub(super) fn of(contacts: &[Contact], workspace: &ContactWorkspace<T>) -> Self {
+    pub(super) fn of<F>(contacts: &[Contact<F>], workspace: &ContactWorkspace<T>) -> Self {
         let modes = workspace.modes.iter().enumerate();
         let held: Vec<usize> = modes
             .filter(|(_, mode)| **mode == ContactMode::Holds)
@@ -257,10 +260,10 @@ impl<T: Scalar> HeldContacts<T> {
     }
 
     /// By contact that holds: a weight over √D.
-    fn weights(
+    fn weights<F>(
         &self,
-        contacts: &[Contact],
-        of: impl Fn(&Contact) -> T,
+        contacts: &[Contact<F>],
+        of: impl Fn(&Contact<F>) -> T,
         workspace: &ContactWorkspace<T>,
     ) -> Vec<T> {
         let weight = |&i: &usize| {
@@ -274,10 +277,10 @@ impl<T: Scalar> HeldContacts<T> {
     }
 
     /// Whether a contact is held by those that hold, whatever its own force is.
-    pub(super) fn hold_still(
+    pub(super) fn hold_still<F>(
         &self,
         i: usize,
-        contacts: &[Contact],
+        contacts: &[Contact<F>],
         workspace: &ContactWorkspace<T>,
     ) -> bool {
         let mut with: Vec<usize> = self.basis.clone();
@@ -337,8 +340,8 @@ struct HoldingSystem<'h, T> {
 }
 
 impl<'h, T: Scalar> HoldingSystem<'h, T> {
-    fn new(
-        contacts: &[Contact],
+    fn new<F>(
+        contacts: &[Contact<F>],
         workspace: &ContactWorkspace<T>,
         held: &'h HeldContacts<T>,
         weights: &[T],
@@ -368,7 +371,7 @@ impl<'h, T: Scalar> HoldingSystem<'h, T> {
     }
 
     /// Composes and factors the matrix; whether it is regular.
-    fn factor(&mut self, contacts: &[Contact], workspace: &ContactWorkspace<T>) -> bool {
+    fn factor<F>(&mut self, contacts: &[Contact<F>], workspace: &ContactWorkspace<T>) -> bool {
         let r = self.held.basis.len();
         self.matrix.fill(T::from_f64(0.0));
         for (h, &j) in self.held.held.iter().enumerate() {
