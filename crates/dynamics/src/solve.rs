@@ -70,8 +70,8 @@ impl Solution {
         }
     }
 
-    /// Adds the changes of contacts up to the end.
-    pub(crate) fn add_contact_events(&mut self, mut events: Vec<ContactEvent>) {
+    /// Adds the changes of contacts, and the motion's slides along switches, up to the end.
+    pub fn add_contact_events(&mut self, mut events: Vec<ContactEvent>) {
         let end = self.steps.last().map_or(f64::NEG_INFINITY, |step| step.t);
         events.retain(|event| event.t() <= end);
         self.contact_events = events;

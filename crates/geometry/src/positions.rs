@@ -9,6 +9,7 @@ use crate::plan::{ActuatedFrame, GroupKind, PlacementMethod, Plan, Pose, Step};
 use crate::plane::{Vec2, vec2};
 use crate::structure::groups::Unknown;
 use crate::structure::tree::FrameVector;
+pub(crate) use closed_forms::is_plain;
 use closed_forms::{guided_point_positions, rrr_dyad_positions};
 use dwell_numerics::{Scalar, lu};
 use std::f64::consts::TAU;

@@ -38,6 +38,7 @@
 
 mod assemble;
 mod closure;
+mod factors;
 mod follow;
 mod frames;
 mod groups;

@@ -27,6 +27,7 @@ pub(crate) fn eliminate<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> FactorO
         2 => eliminate_inline(a, pivots, 2),
         3 => eliminate_inline(a, pivots, 3),
         4 => eliminate_inline(a, pivots, 4),
+        5 => eliminate_inline(a, pivots, 5),
         n => eliminate_inline(a, pivots, n),
     }
 }
@@ -93,6 +94,7 @@ pub fn solve<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
         2 => solve_inline(a, pivots, b, 2),
         3 => solve_inline(a, pivots, b, 3),
         4 => solve_inline(a, pivots, b, 4),
+        5 => solve_inline(a, pivots, b, 5),
         n => solve_inline(a, pivots, b, n),
     }
 }
@@ -144,6 +146,7 @@ pub fn solve_transposed<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
         2 => solve_transposed_inline(a, pivots, b, 2),
         3 => solve_transposed_inline(a, pivots, b, 3),
         4 => solve_transposed_inline(a, pivots, b, 4),
+        5 => solve_transposed_inline(a, pivots, b, 5),
         n => solve_transposed_inline(a, pivots, b, n),
     }
 }

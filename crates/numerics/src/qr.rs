@@ -5,10 +5,21 @@ use crate::factor_outcome::FactorOutcome;
 use crate::lu;
 use crate::scalar::Scalar;
 
-/// Factors the row-major m × n matrix `a` (m > n) in place: R above, the reflections' vectors below
-/// and the vectors' first components in `heads` (n entries).
-pub fn factor<T: Scalar>(a: &mut [T], heads: &mut [T], m: usize) -> FactorOutcome {
-    let n = heads.len();
+/// Factors the row-major m × n matrix `a` (m > n) in place: R above, the reflections' vectors below, whose first components are
+/// one, and their factors in `factors` (n entries): each reflection is 1 − factor v vᵀ.
+pub fn factor<T: Scalar>(a: &mut [T], factors: &mut [T], m: usize) -> FactorOutcome {
+    // Of few unknowns the loops are unrolled.
+    match (m, factors.len()) {
+        (4, 3) => factor_inline(a, factors, 4, 3),
+        (5, 4) => factor_inline(a, factors, 5, 4),
+        (6, 5) => factor_inline(a, factors, 6, 5),
+        (m, n) => factor_inline(a, factors, m, n),
+    }
+}
+
+#[inline(always)]
+fn factor_inline<T: Scalar>(a: &mut [T], factors: &mut [T], m: usize, n: usize) -> FactorOutcome {
+    let (a, factors) = (&mut a[..m * n], &mut factors[..n]);
     let (mut min_pivot, mut max_pivot) = (f64::INFINITY, 0.0_f64);
     for k in 0..n {
         let mut square = T::from_f64(0.0);
@@ -23,7 +34,7 @@ pub fn factor<T: Scalar>(a: &mut [T], heads: &mut [T], m: usize) -> FactorOutcom
         };
         max_pivot = max_pivot.max(size);
         if size == 0.0 || size.is_nan() {
-            heads[k] = T::from_f64(0.0);
+            factors[k] = T::from_f64(0.0);
             continue;
         }
         let length = square.sqrt();
@@ -31,23 +42,26 @@ pub fn factor<T: Scalar>(a: &mut [T], heads: &mut [T], m: usize) -> FactorOutcom
         // Away from cancellation.
         let alpha = if first.value() > 0.0 { -length } else { length };
         let head = first - alpha;
-        // v = (head, a below); v·v = 2 length (length + |first|).
-        let norm = T::from_f64(2.0) * (square - first * alpha);
+        let (one, inverse) = (T::from_f64(1.0), T::from_f64(1.0) / head);
+        // v = (1, a below / head) and v·v = −2 alpha / head.
+        let factor = -head * (one / alpha);
+        for i in k + 1..m {
+            a[i * n + k] = a[i * n + k] * inverse;
+        }
         for j in k + 1..n {
-            let mut dot = head * a[k * n + j];
+            let mut dot = a[k * n + j];
             for i in k + 1..m {
                 dot += a[i * n + k] * a[i * n + j];
             }
-            let factor = (dot + dot) / norm;
-            let change = factor * head;
+            let change = factor * dot;
             a[k * n + j] -= change;
             for i in k + 1..m {
-                let change = factor * a[i * n + k];
-                a[i * n + j] -= change;
+                let part = change * a[i * n + k];
+                a[i * n + j] -= part;
             }
         }
         a[k * n + k] = alpha;
-        heads[k] = head;
+        factors[k] = factor;
     }
     // The matrix is not square: it has no determinant. Without a column none depends on others.
     let (min_pivot, max_pivot) = if n == 0 {
@@ -59,40 +73,56 @@ pub fn factor<T: Scalar>(a: &mut [T], heads: &mut [T], m: usize) -> FactorOutcom
 }
 
 /// Applies the k-th reflection to `b`.
-fn apply_reflector<T: Scalar>(a: &[T], heads: &[T], m: usize, k: usize, b: &mut [T]) {
-    let n = heads.len();
-    let head = heads[k];
-    let (mut dot, mut norm) = (head * b[k], head * head);
+#[inline(always)]
+fn apply_reflector<T: Scalar>(a: &[T], [m, n]: [usize; 2], k: usize, factor: T, b: &mut [T]) {
+    let mut dot = b[k];
     for i in k + 1..m {
         dot += a[i * n + k] * b[i];
-        norm += a[i * n + k] * a[i * n + k];
     }
-    if norm.value() == 0.0 {
-        return;
-    }
-    let factor = (dot + dot) / norm;
-    b[k] -= factor * head;
+    let change = factor * dot;
+    b[k] -= change;
     for i in k + 1..m {
-        b[i] -= factor * a[i * n + k];
+        let part = change * a[i * n + k];
+        b[i] -= part;
     }
 }
 
 /// The least-squares solution of A x = b, in the first entries of `b` (m entries).
-pub fn solve<T: Scalar>(a: &[T], heads: &[T], m: usize, b: &mut [T]) {
-    let n = heads.len();
-    for k in 0..n {
-        apply_reflector(a, heads, m, k, b);
+pub fn solve<T: Scalar>(a: &[T], factors: &[T], m: usize, b: &mut [T]) {
+    match (m, factors.len()) {
+        (4, 3) => solve_inline(a, factors, [4, 3], b),
+        (5, 4) => solve_inline(a, factors, [5, 4], b),
+        (6, 5) => solve_inline(a, factors, [6, 5], b),
+        (m, n) => solve_inline(a, factors, [m, n], b),
+    }
+}
+
+#[inline(always)]
+fn solve_inline<T: Scalar>(a: &[T], factors: &[T], [m, n]: [usize; 2], b: &mut [T]) {
+    let (a, factors, b) = (&a[..m * n], &factors[..n], &mut b[..m]);
+    for (k, factor) in factors.iter().enumerate() {
+        apply_reflector(a, [m, n], k, *factor, b);
     }
     lu::solve_upper(a, n, b);
 }
 
 /// The smallest solution of Aᵀ x = b: `b` holds n entries of b, and then m of x.
-pub fn solve_transposed<T: Scalar>(a: &[T], heads: &[T], m: usize, b: &mut [T]) {
-    let n = heads.len();
+pub fn solve_transposed<T: Scalar>(a: &[T], factors: &[T], m: usize, b: &mut [T]) {
+    match (m, factors.len()) {
+        (4, 3) => solve_transposed_inline(a, factors, [4, 3], b),
+        (5, 4) => solve_transposed_inline(a, factors, [5, 4], b),
+        (6, 5) => solve_transposed_inline(a, factors, [6, 5], b),
+        (m, n) => solve_transposed_inline(a, factors, [m, n], b),
+    }
+}
+
+#[inline(always)]
+fn solve_transposed_inline<T: Scalar>(a: &[T], factors: &[T], [m, n]: [usize; 2], b: &mut [T]) {
+    let (a, factors, b) = (&a[..m * n], &factors[..n], &mut b[..m]);
     lu::solve_upper_transposed(a, n, b);
     b[n..m].fill(T::from_f64(0.0));
-    for k in (0..n).rev() {
-        apply_reflector(a, heads, m, k, b);
+    for (k, factor) in factors.iter().enumerate().rev() {
+        apply_reflector(a, [m, n], k, *factor, b);
     }
 }
 

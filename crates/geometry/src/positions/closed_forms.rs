@@ -21,7 +21,7 @@ pub(crate) const fn is_finer_than_f64<T: Scalar>() -> bool {
 }
 
 /// Whether numbers have neither derivatives nor more digits than `f64`.
-pub(super) const fn is_plain<T: Scalar>() -> bool {
+pub(crate) const fn is_plain<T: Scalar>() -> bool {
     !T::HAS_DERIVATIVES && !is_finer_than_f64::<T>()
 }
 

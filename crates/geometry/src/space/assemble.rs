@@ -1,10 +1,12 @@
 //! Closing all loops at the assembly, from approximate placements: damped steps of least squares over everything at once.
 
 use super::closure::{Closure, closures};
+use super::follow::Node;
 use super::groups::Group;
 use super::mechanism::{Assembly, Mechanism};
 use super::plan::{JointPlace, Plan, Pose};
 use super::positions::OPEN;
+use super::prediction::Predictions;
 use super::rank::Mobility;
 use super::tree::Tree;
 use super::vector::vec3;
@@ -48,8 +50,8 @@ impl Plan {
             first_links: Vec::new(),
             last_links: Vec::new(),
             drivers,
-            nodes: Vec::new(),
-            pieces: Vec::new(),
+            start: Node::default(),
+            predictions: Predictions::default(),
             range: Range::Unbounded,
             assembly_q: Vec::new(),
             mobility: Mobility::default(),

@@ -50,7 +50,9 @@ pub(super) struct Closure {
     pub(super) kinds: Vec<RowKind>,
     /// Its rows among all.
     pub(super) rows: Range<usize>,
-    /// The freedoms on the path from the first body to the second, with their signs.
+    /// The links on the path from the first body to the second, with their signs: those towards the second are positive.
+    pub(super) links: Vec<(usize, f64)>,
+    /// The freedoms on that path, with their signs.
     pub(super) path: Vec<(usize, f64)>,
     /// Where its entries of the Jacobian begin: row by row, one for each freedom of the path.
     pub(super) entries: usize,
@@ -80,16 +82,8 @@ pub(super) fn closures(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Closure
                 "a loop consists of helical joints alone; replace one by a cylindrical joint";
             return Err(StructureError::Malformed { reason });
         };
-        let mut closure = Closure {
-            joint: Some(id),
-            bodies,
-            points: [sides[0].point, sides[1].point],
-            rows: rows..rows + kinds.len(),
-            kinds,
-            path: path(tree, bodies),
-            entries,
-        };
-        closure.entries = entries;
+        let points = [sides[0].point, sides[1].point];
+        let closure = Closure::new(tree, Some(id), (bodies, points), kinds, [rows, entries]);
         rows += closure.kinds.len();
         entries += closure.kinds.len() * closure.path.len();
         found.push(closure);
@@ -120,8 +114,8 @@ fn rows_of(joint: &Joint, [a, b]: &[Side; 2]) -> Option<Vec<RowKind>> {
     })
 }
 
-/// The freedoms on the path from one body to another: those towards the second are positive.
-pub(super) fn path(tree: &Tree, [a, b]: [usize; 2]) -> Vec<(usize, f64)> {
+/// The links on the path from one body to another: those towards the second are positive.
+fn links_between(tree: &Tree, [a, b]: [usize; 2]) -> Vec<(usize, f64)> {
     let chain = |mut body: usize| {
         let mut links = Vec::new();
         while let Some(link) = tree.link_of[body] {
@@ -131,19 +125,42 @@ pub(super) fn path(tree: &Tree, [a, b]: [usize; 2]) -> Vec<(usize, f64)> {
         links
     };
     let (to_a, to_b) = (chain(a), chain(b));
-    let freedoms = |links: &[usize], others: &[usize], sign: f64| {
+    let part = |links: &[usize], others: &[usize], sign: f64| {
         let own = links.iter().filter(|l| !others.contains(l));
-        own.flat_map(|l| tree.links[*l].freedoms.clone())
-            .map(|f| (f, sign))
-            .collect::<Vec<_>>()
+        own.map(|l| (*l, sign)).collect::<Vec<_>>()
     };
-    let mut path = freedoms(&to_a, &to_b, -1.0);
-    path.extend(freedoms(&to_b, &to_a, 1.0));
-    path.sort_unstable_by_key(|(f, _)| *f);
-    path
+    let mut links = part(&to_a, &to_b, -1.0);
+    links.extend(part(&to_b, &to_a, 1.0));
+    links.sort_unstable_by_key(|(l, _)| *l);
+    links
 }
 
 impl Closure {
+    /// A closure of these rows between points of two bodies, whose rows and entries begin at these numbers.
+    pub(super) fn new(
+        tree: &Tree,
+        joint: Option<JointId>,
+        (bodies, points): ([usize; 2], [Vec3; 2]),
+        kinds: Vec<RowKind>,
+        [rows, entries]: [usize; 2],
+    ) -> Self {
+        let links = links_between(tree, bodies);
+        let freedoms = |&(l, sign): &(usize, f64)| {
+            let freedoms = tree.links[l].freedoms.clone();
+            freedoms.map(move |f| (f, sign))
+        };
+        Self {
+            joint,
+            bodies,
+            points,
+            rows: rows..rows + kinds.len(),
+            kinds,
+            path: links.iter().flat_map(freedoms).collect(),
+            links,
+            entries,
+        }
+    }
+
     /// The points of both bodies and their difference d.
     #[inline(always)]
     pub(super) fn ends<T: Scalar>(&self, frames: &[Frame<T>]) -> [Vec3<T>; 3] {

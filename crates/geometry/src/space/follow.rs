@@ -4,8 +4,8 @@
 use super::frames::Frame;
 use super::mechanism::ActuatorKind;
 use super::plan::{Plan, Pose};
-use super::prediction::Piece;
-use super::tree::Step;
+use super::prediction::Predictions;
+use super::tree::{FreedomKind, Step};
 use super::vector::{Rotation, Vec3};
 use crate::error::PositionError;
 use crate::plan::range::Range;
@@ -20,6 +20,8 @@ pub(super) struct Node {
     pub(super) balls: Vec<Rotation>,
     /// By ball: its turn's derivatives, in the axes of the joint's frame on the parent.
     pub(super) turns: Vec<[Vec3; 2]>,
+    /// The inverses of the groups' Jacobians, one after the other.
+    pub(super) inverses: Vec<f64>,
 }
 
 /// Steps of one revolution, or of the size of the mechanism.
@@ -56,7 +58,10 @@ impl Plan {
     /// The coordinate in the range of the stored poses.
     pub(super) fn within_range(&self, q: f64) -> Result<f64, PositionError> {
         let outside = |from, to| Err(PositionError::OutOfRange { q, from, to });
-        let first = self.nodes[0].q;
+        let [first, last] = self.predictions.range().unwrap_or([self.start.q; 2]);
+        if q >= first && q < last {
+            return Ok(q);
+        }
         match self.range {
             Range::Full => Ok(first + (q - first).rem_euclid(TAU)),
             Range::Revolutions(count) => Ok(first + (q - first).rem_euclid(TAU * f64::from(count))),
@@ -93,6 +98,10 @@ impl Plan {
                 }
             }
         }
+        let mut inverses = Vec::new();
+        for group in &self.groups {
+            inverses.extend(self.inverse(group, pose));
+        }
         let freedoms = 0..self.tree.freedoms.len();
         let of = |f: usize| [pose.coordinates[f], pose.rates[f], pose.accelerations[f]];
         // The coordinates of a ball are its rotation.
@@ -101,6 +110,7 @@ impl Plan {
             coordinates: freedoms.map(of).collect(),
             balls: pose.balls.clone(),
             turns,
+            inverses,
         }
     }
 
@@ -112,9 +122,9 @@ impl Plan {
         kind: Option<ActuatorKind>,
     ) -> Result<(), PositionError> {
         let mut pose = start;
-        self.close(q, &mut pose)?;
+        self.close(q, None, &mut pose)?;
         let first = self.node(q.first().copied().unwrap_or(0.0), &mut pose);
-        self.nodes = vec![first.clone()];
+        self.start = first.clone();
         let (true, Some(kind)) = (self.actuators() == 1, kind) else {
             self.range = Range::Unbounded;
             return Ok(());
@@ -135,7 +145,7 @@ impl Plan {
                 } else {
                     Range::Revolutions(revolution)
                 };
-                self.store(forward);
+                self.store(&forward);
                 return Ok(());
             }
         }
@@ -182,15 +192,16 @@ impl Plan {
             (true, false) => Range::Stroke(from, to),
             (false, _) => Range::Unresolved(from, to),
         };
-        self.store(back);
+        self.store(&back);
         Ok(())
     }
 
     /// Stores the poses along the range, with the predictions between them.
-    fn store(&mut self, nodes: Vec<Node>) {
-        let pairs = nodes.windows(2);
-        self.pieces = pairs.map(|pair| Piece::new(&pair[0], &pair[1])).collect();
-        self.nodes = nodes;
+    fn store(&mut self, nodes: &[Node]) {
+        let scalars = self.unknowns();
+        let scalars = scalars.into_iter();
+        let scalars = scalars.filter(|f| self.tree.freedoms[*f] != FreedomKind::BallTurn);
+        self.predictions = Predictions::new(nodes, scalars.collect());
     }
 
     /// Continues from the last node to a coordinate, in steps that the prediction follows.
@@ -210,7 +221,7 @@ impl Plan {
             } else {
                 last.q + ahead
             };
-            if self.close(&[q], pose).is_ok() && self.missed_by(&predicted, pose) < MISS {
+            if self.close(&[q], None, pose).is_ok() && self.missed_by(&predicted, pose) < MISS {
                 let node = self.node(q, pose);
                 nodes.push(node);
                 step = (2.0 * step).min(largest);
@@ -227,7 +238,7 @@ impl Plan {
     /// How far a pose is from its prediction.
     fn missed_by(&self, (coordinates, balls): &(Vec<f64>, Vec<Rotation>), pose: &Pose) -> f64 {
         let driven = |f: usize| self.drivers.iter().any(|(d, _)| *d == f);
-        let ball = |f: usize| self.tree.freedoms[f] == super::tree::FreedomKind::BallTurn;
+        let ball = |f: usize| self.tree.freedoms[f] == FreedomKind::BallTurn;
         let scalar = (0..coordinates.len()).filter(|f| !driven(*f) && !ball(*f));
         let scalar = scalar.map(|f| (coordinates[f] - pose.coordinates[f]).abs() / self.unit(f));
         let turned = balls
@@ -245,7 +256,7 @@ impl Plan {
     ) -> Result<(), PositionError> {
         let from = &self.assembly_q;
         let mut real = self.pose::<f64>();
-        self.start_from(&self.nodes[0], 0.0, &mut real);
+        self.start_from(&self.start, 0.0, &mut real);
         let span = q
             .iter()
             .zip(from)
@@ -259,7 +270,7 @@ impl Plan {
                 .zip(from)
                 .map(|(q, a)| a + part * (q.value() - a))
                 .collect();
-            self.close(&at, &mut real)?;
+            self.close(&at, None, &mut real)?;
         }
         for (to, from) in pose.coordinates.iter_mut().zip(&real.coordinates) {
             *to = T::from_f64(*from);
@@ -267,6 +278,6 @@ impl Plan {
         for (to, from) in pose.balls.iter_mut().zip(&real.balls) {
             *to = from.cast();
         }
-        self.close(q, pose)
+        self.close(q, None, pose)
     }
 }

@@ -48,21 +48,33 @@ pub(super) struct Screw<T> {
     pub(super) point: Vec3<T>,
 }
 
-impl<T: Scalar> Screw<T> {
-    /// The power of a wrench about a point, at unit speed.
+/// The velocities of a body that a unit of a freedom makes: of one of its points, and angular.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Twist<T> {
+    linear: Vec3<T>,
+    angular: Vec3<T>,
+}
+
+impl<T: Scalar> Twist<T> {
+    /// The power of a wrench about that point.
     #[inline(always)]
-    pub(super) fn power(&self, kind: FreedomKind, wrench: Wrench<T>, at: Vec3<T>) -> T {
-        let Wrench { force, moment } = wrench;
-        match kind {
-            FreedomKind::Turn | FreedomKind::BallTurn => {
-                self.axis.dot(moment + (at - self.point).cross(force))
-            }
-            FreedomKind::Slide => self.axis.dot(force),
-            FreedomKind::Screw(pitch) => {
-                let moment = moment + (at - self.point).cross(force);
-                self.axis.dot(moment + force.scaled(T::from_f64(pitch)))
-            }
-        }
+    pub(super) fn power(&self, wrench: &Wrench<T>) -> T {
+        self.linear.dot(wrench.force) + self.angular.dot(wrench.moment)
+    }
+}
+
+impl<T: Scalar> Screw<T> {
+    /// The twist of so many units at a point.
+    #[inline(always)]
+    pub(super) fn twist(&self, kind: FreedomKind, at: Vec3<T>, units: f64) -> Twist<T> {
+        let axis = self.axis.scaled(T::from_f64(units));
+        let turned = || axis.cross(at - self.point);
+        let (linear, angular) = match kind {
+            FreedomKind::Turn | FreedomKind::BallTurn => (turned(), axis),
+            FreedomKind::Slide => (axis, Vec3::zero()),
+            FreedomKind::Screw(pitch) => (turned() + axis.scaled(T::from_f64(pitch)), axis),
+        };
+        Twist { linear, angular }
     }
 }
 
@@ -151,47 +163,78 @@ impl Link {
         frame
     }
 
-    /// The body's velocities and accelerations from those of the parent and of the freedoms.
+    /// The body's velocities, and its accelerations without those of the freedoms, from those of the parent.
     ///
     /// ```text
-    /// ω̇ = ω̇_p + Σ u c̈ + ω×u ċ,     v̇ = v̇_p + ω̇_p×r + ω_p×(ω_p×r) + Σ u c̈ + 2 ω_p×u ċ
+    /// ω̇ = ω̇_p + Σ ω×u ċ,     v̇ = v̇_p + ω̇_p×r + ω_p×(ω_p×r) + Σ 2 ω_p×u ċ                            (1)
     /// ```
     ///
     /// with ω that of the frame in which the axis u is fixed, and r from the parent's origin to the body's. The three
     /// freedoms of a ball are components of the relative ω along axes of the ground: their c̈ is the whole of its change.
-    #[inline]
+    #[inline(always)]
     pub(super) fn motion<T: Scalar>(
         &self,
-        [parent, frame]: [&Frame<T>; 2],
+        arm: Vec3<T>,
         of_parent: &BodyMotion<T>,
-        [rates, accelerations]: [&[T]; 2],
+        rates: &[T],
         freedoms: &[FreedomKind],
         screws: &[Screw<T>],
     ) -> BodyMotion<T> {
-        let arm = frame.origin - parent.origin;
         let mut state = BodyMotion {
             velocity: of_parent.point_velocity(arm),
             acceleration: of_parent.point_acceleration(arm),
             ..*of_parent
         };
-        let two = T::from_f64(2.0);
         for c in self.freedoms.clone() {
-            let (axis, rate, acceleration) = (screws[c].axis, rates[c], accelerations[c]);
-            let (turn, slide) = freedoms[c].parts();
-            if slide != 0.0 {
-                let (slide, carried) = (T::from_f64(slide), of_parent.angular_velocity.cross(axis));
-                state.velocity += axis.scaled(rate * slide);
-                state.acceleration +=
-                    (axis.scaled(acceleration) + carried.scaled(two * rate)).scaled(slide);
-            }
-            if turn != 0.0 {
-                state.angular_acceleration += axis.scaled(acceleration);
-                if freedoms[c] != FreedomKind::BallTurn {
-                    state.angular_acceleration += state.angular_velocity.cross(axis).scaled(rate);
+            let along = screws[c].axis.scaled(rates[c]);
+            let slide = |state: &mut BodyMotion<T>, along: Vec3<T>| {
+                let carried = of_parent.angular_velocity.cross(along);
+                state.velocity += along;
+                state.acceleration += carried + carried;
+            };
+            match freedoms[c] {
+                FreedomKind::Slide => slide(&mut state, along),
+                FreedomKind::Screw(pitch) => {
+                    slide(&mut state, along.scaled(T::from_f64(pitch)));
+                    state.angular_acceleration += state.angular_velocity.cross(along);
+                    state.angular_velocity += along;
                 }
-                state.angular_velocity += axis.scaled(rate);
+                FreedomKind::Turn => {
+                    state.angular_acceleration += state.angular_velocity.cross(along);
+                    state.angular_velocity += along;
+                }
+                FreedomKind::BallTurn => state.angular_velocity += along,
             }
         }
         state
+    }
+
+    /// What the accelerations of the freedoms add to the body's, from what they add to the parent's: of the origin and of the rotation.
+    ///
+    /// ```text
+    /// Δω̇ = Δω̇_p + Σ u c̈,     Δv̇ = Δv̇_p + Δω̇_p×r + Σ u c̈                                            (2)
+    /// ```
+    #[inline(always)]
+    pub(super) fn added<T: Scalar>(
+        &self,
+        arm: Vec3<T>,
+        [origin, turn]: [Vec3<T>; 2],
+        accelerations: &[T],
+        freedoms: &[FreedomKind],
+        screws: &[Screw<T>],
+    ) -> [Vec3<T>; 2] {
+        let mut added = [origin + turn.cross(arm), turn];
+        for c in self.freedoms.clone() {
+            let along = screws[c].axis.scaled(accelerations[c]);
+            match freedoms[c] {
+                FreedomKind::Slide => added[0] += along,
+                FreedomKind::Screw(pitch) => {
+                    added[0] += along.scaled(T::from_f64(pitch));
+                    added[1] += along;
+                }
+                FreedomKind::Turn | FreedomKind::BallTurn => added[1] += along,
+            }
+        }
+        added
     }
 }

@@ -7,6 +7,7 @@ use super::plan::{Plan, Pose};
 use super::tree::{FreedomKind, Step};
 use crate::error::AssemblyError;
 use crate::structure::groups::{match_equations, strong_components};
+use std::ops::Range;
 
 /// An entry of a group's matrix.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,6 +33,10 @@ pub(super) struct Group {
     pub(super) unknowns: Vec<usize>,
     /// By closure, and the row's number in it.
     pub(super) rows: Vec<(usize, usize)>,
+    /// By row: its number among all.
+    pub(super) residuals: Vec<usize>,
+    /// Each closure with the range of its rows in this group; they follow each other.
+    pub(super) closures: Vec<(usize, Range<usize>)>,
     /// Bodies on its loops that depend on its unknowns.
     pub(super) links: Vec<usize>,
     /// Links with a ball among the unknowns, and the position of its first freedom among them.
@@ -40,9 +45,17 @@ pub(super) struct Group {
     pub(super) outer: Vec<Outer>,
     pub(super) row_scales: Vec<f64>,
     pub(super) column_scales: Vec<f64>,
-    /// Where its factors and their heads begin.
+    /// Where its factors begin, and what belongs to each of their columns.
     pub(super) factors: usize,
-    pub(super) heads: usize,
+    pub(super) columns: usize,
+}
+
+impl Group {
+    /// Whether it has as many equations as unknowns; otherwise some are redundant.
+    #[inline(always)]
+    pub(super) fn is_square(&self) -> bool {
+        self.rows.len() == self.unknowns.len()
+    }
 }
 
 impl Plan {
@@ -84,11 +97,16 @@ impl Plan {
         unknowns.sort_unstable();
         let n = unknowns.len();
         let mut group = Group {
+            residuals: rows.iter().map(|&(c, k)| self.closures[c].rows.start + k).collect(),
             row_scales: rows.iter().map(|r| self.row_scale(*r)).collect(),
             column_scales: unknowns.iter().map(|f| self.unit(*f)).collect(),
             ..Group::default()
         };
         for (i, &(c, k)) in rows.iter().enumerate() {
+            match group.closures.last_mut() {
+                Some((last, rows)) if *last == c => rows.end = i + 1,
+                _ => group.closures.push((c, i..i + 1)),
+            }
             let closure: &Closure = &self.closures[c];
             for (p, &(freedom, _)) in closure.path.iter().enumerate() {
                 let entry = closure.entries + k * closure.path.len() + p;
@@ -132,13 +150,13 @@ impl Plan {
             };
             level[l] = link.freedoms.clone().map(of).max().unwrap_or(0).max(before);
         }
-        let (mut factors, mut heads) = (0, 0);
+        let (mut factors, mut columns) = (0, 0);
         let mut placed: Vec<bool> = level.iter().map(|l| *l == 0).collect();
         self.first_links = (0..level.len()).filter(|l| placed[*l]).collect();
         for (g, group) in groups.iter_mut().enumerate() {
-            (group.factors, group.heads) = (factors, heads);
+            (group.factors, group.columns) = (factors, columns);
             factors += group.rows.len() * group.unknowns.len();
-            heads += group.unknowns.len();
+            columns += group.unknowns.len();
             let mut needed = vec![false; level.len()];
             for &(c, _) in &group.rows {
                 for body in self.closures[c].bodies {

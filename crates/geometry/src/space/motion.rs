@@ -24,16 +24,14 @@ impl Plan {
                 pose.rates[*freedom] = pose.scratch[j];
             }
         }
-        pose.accelerations.fill(T::from_f64(0.0));
         self.fill_states(pose);
-        pose.has_no_acceleration = true;
     }
 
     /// The accelerations of all freedoms and bodies at those of the actuators, rad/s² or m/s², after the velocities.
     pub fn accelerations<T: Scalar>(&self, q_ddot: &[T], pose: &mut Pose<T>) {
         if !std::mem::take(&mut pose.has_no_acceleration) {
-            pose.accelerations.fill(T::from_f64(0.0));
             self.fill_states(pose);
+            pose.has_no_acceleration = false;
         }
         for (&(freedom, sign), &acceleration) in self.drivers.iter().zip(q_ddot) {
             pose.accelerations[freedom] = acceleration * T::from_f64(sign);
@@ -58,7 +56,7 @@ impl Plan {
                 pose.accelerations[*freedom] = pose.scratch[j];
             }
         }
-        self.fill_states(pose);
+        self.add_accelerations(pose);
     }
 
     /// Solves a group for what is known of the freedoms outside it and of its rows themselves.
@@ -80,22 +78,43 @@ impl Plan {
         self.solve(group, pose);
     }
 
-    /// The states of the bodies from the rates and accelerations of the freedoms.
+    /// The states of the bodies from the rates of the freedoms, without their accelerations.
+    #[inline(always)]
     pub(super) fn fill_states<T: Scalar>(&self, pose: &mut Pose<T>) {
         let freedoms = &self.tree.freedoms;
+        let Pose {
+            frames,
+            screws,
+            rates,
+            states,
+            ..
+        } = pose;
         for link in &self.tree.links {
-            let Pose {
-                frames,
-                screws,
-                rates,
-                accelerations,
-                states,
-                ..
-            } = pose;
-            let between = [&frames[link.parent], &frames[link.body]];
-            let of_freedoms = [&rates[..], &accelerations[..]];
-            states[link.body] =
-                link.motion(between, &states[link.parent], of_freedoms, freedoms, screws);
+            let arm = frames[link.body].origin - frames[link.parent].origin;
+            states[link.body] = link.motion(arm, &states[link.parent], rates, freedoms, screws);
+        }
+        pose.has_no_acceleration = true;
+    }
+
+    /// Adds the accelerations of the freedoms to the states of the bodies.
+    #[inline(always)]
+    fn add_accelerations<T: Scalar>(&self, pose: &mut Pose<T>) {
+        let freedoms = &self.tree.freedoms;
+        let Pose {
+            frames,
+            screws,
+            accelerations,
+            states,
+            added,
+            ..
+        } = pose;
+        for link in &self.tree.links {
+            let arm = frames[link.body].origin - frames[link.parent].origin;
+            let [origin, turn] =
+                link.added(arm, added[link.parent], accelerations, freedoms, screws);
+            added[link.body] = [origin, turn];
+            states[link.body].acceleration += origin;
+            states[link.body].angular_acceleration += turn;
         }
     }
 

@@ -1,169 +1,204 @@
 //! Multipliers of the loops by the transposed factors, group by group in reverse order, and the forces and moments in the joints.
 
 use super::plan::{JointPlace, Plan, Pose};
+use super::tree::FreedomKind;
 use super::wrench::Wrench;
 use crate::mechanism::JointId;
-use dwell_numerics::{Scalar, qr};
+use dwell_numerics::Scalar;
 
-/// The forces of one pass, for one thread.
+/// The forces of `N` passes at one pose, for one thread.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Forces<T = f64> {
+pub struct Forces<T = f64, const N: usize = 1> {
     /// By body: what moves it less the loads on it, about its [evaluation frame](Plan::frame)'s origin. The caller sets it.
-    pub required: Vec<Wrench<T>>,
-    /// By body: what the joint of the tree transmits to it and all that it carries.
-    transmitted: Vec<Wrench<T>>,
-    balance: Vec<T>,
-    multipliers: Vec<T>,
+    pub required: Vec<[Wrench<T>; N]>,
+    /// By body: what the joint of the tree transmits to it and all that it carries, without the forces of closures.
+    transmitted: Vec<[Wrench<T>; N]>,
+    balance: Vec<[T; N]>,
+    multipliers: Vec<[T; N]>,
     /// By closure: its force and couple on the second body, at the point of that body.
-    closure_actions: Vec<Wrench<T>>,
+    closure_actions: Vec<[Wrench<T>; N]>,
+    /// What a group requires, and then its multipliers.
+    scratch: [Vec<T>; N],
 }
 
 impl Plan {
-    /// Memory for the forces of one pass.
-    pub fn forces<T: Scalar>(&self) -> Forces<T> {
-        let zero = T::from_f64(0.0);
+    /// Memory for the forces of `N` passes.
+    pub fn forces<T: Scalar, const N: usize>(&self) -> Forces<T, N> {
+        let zero = [T::from_f64(0.0); N];
+        let bodies = vec![[Wrench::default(); N]; self.tree.internal.len()];
+        let largest = self.groups.iter().map(|g| g.rows.len()).max().unwrap_or(0);
         Forces {
-            required: vec![Wrench::default(); self.tree.internal.len()],
-            transmitted: vec![Wrench::default(); self.tree.internal.len()],
+            required: bodies.clone(),
+            transmitted: bodies,
             balance: vec![zero; self.tree.freedoms.len()],
             multipliers: vec![zero; self.closures.last().map_or(0, |c| c.rows.end)],
-            closure_actions: vec![Wrench::default(); self.closures.len()],
+            closure_actions: vec![[Wrench::default(); N]; self.closures.len()],
+            scratch: [(); N].map(|()| vec![T::from_f64(0.0); largest]),
         }
     }
 
     /// The forces in all joints from the wrenches that the bodies require: Jᵀ [λ; τ] = M ẍ + h − f. Where redundant constraints
-    /// leave multipliers open, they are the smallest.
-    pub fn balance<T: Scalar>(&self, pose: &mut Pose<T>, forces: &mut Forces<T>) {
-        forces.transmitted.copy_from_slice(&forces.required);
-        self.carry_down(pose, &mut forces.transmitted);
+    /// leave multipliers open, the forces are those of some of them.
+    #[inline(always)]
+    pub fn balance<T: Scalar, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
+        self.carry_down(pose, forces);
         for link in &self.tree.links {
-            let wrench = &forces.transmitted[link.body];
+            let wrenches = &forces.transmitted[link.body];
             let at = pose.frames[link.body].origin;
             for f in link.freedoms.clone() {
-                let kind = self.tree.freedoms[f];
-                forces.balance[f] = pose.screws[f].power(kind, *wrench, at);
+                let twist = pose.screws[f].twist(self.tree.freedoms[f], at, 1.0);
+                for (balance, wrench) in forces.balance[f].iter_mut().zip(wrenches) {
+                    *balance = twist.power(wrench);
+                }
             }
         }
         self.multipliers(pose, forces);
-        self.transmit(pose, forces);
+        self.close_forces(pose, forces);
     }
 
     /// The forces in the joints of multipliers alone, with nothing required: of a [self-stress](Plan::self_stresses).
-    pub fn stress<T: Scalar>(&self, multipliers: &[T], pose: &mut Pose<T>, forces: &mut Forces<T>) {
-        forces.required.fill(Wrench::default());
-        forces.balance.fill(T::from_f64(0.0));
-        forces.multipliers.copy_from_slice(multipliers);
-        self.transmit(pose, forces);
+    pub fn stress<T: Scalar>(&self, multipliers: &[T], pose: &Pose<T>, forces: &mut Forces<T>) {
+        forces.required.fill([Wrench::default()]);
+        forces.transmitted.fill([Wrench::default()]);
+        forces.balance.fill([T::from_f64(0.0)]);
+        for (to, from) in forces.multipliers.iter_mut().zip(multipliers) {
+            *to = [*from];
+        }
+        self.close_forces(pose, forces);
     }
 
-    /// Sums the wrenches from the outermost bodies to the ground.
-    fn carry_down<T: Scalar>(&self, pose: &Pose<T>, wrenches: &mut [Wrench<T>]) {
+    /// Sums what is required from the outermost bodies to the ground.
+    #[inline(always)]
+    fn carry_down<T: Scalar, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
+        let wrenches = &mut forces.transmitted;
+        wrenches.copy_from_slice(&forces.required);
         for link in self.tree.links.iter().rev() {
-            let Wrench { force, moment } = wrenches[link.body];
+            // What the ground carries is read by nobody.
+            if link.parent == self.ground {
+                continue;
+            }
+            let carried = wrenches[link.body];
             let arm = pose.frames[link.body].origin - pose.frames[link.parent].origin;
-            wrenches[link.parent].add_at(arm, force, moment);
+            for (sum, Wrench { force, moment }) in wrenches[link.parent].iter_mut().zip(carried) {
+                sum.add_at(arm, force, moment);
+            }
         }
     }
 
-    fn multipliers<T: Scalar>(&self, pose: &mut Pose<T>, forces: &mut Forces<T>) {
+    #[inline(always)]
+    fn multipliers<T: Scalar, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
         let Forces {
             balance,
             multipliers,
+            scratch,
             ..
         } = forces;
         for group in self.groups.iter().rev() {
-            let (m, n) = (group.rows.len(), group.unknowns.len());
-            let Pose {
-                scratch,
-                factors,
-                heads,
-                entries,
-                ..
-            } = &mut *pose;
-            for (j, (&freedom, scale)) in
-                group.unknowns.iter().zip(&group.column_scales).enumerate()
-            {
-                scratch[j] = balance[freedom] * T::from_f64(*scale);
-            }
-            let (factors, heads) = (
-                &factors[group.factors..][..m * n],
-                &heads[group.heads..][..n],
-            );
-            qr::solve_transposed(factors, heads, m, &mut scratch[..m]);
-            for (i, (&(c, k), scale)) in group.rows.iter().zip(&group.row_scales).enumerate() {
-                scratch[i] = scratch[i] * T::from_f64(*scale);
-                multipliers[self.closures[c].rows.start + k] = scratch[i];
-            }
-            for outer in &group.outer {
-                let change = entries[outer.entry] * scratch[outer.row];
-                balance[outer.freedom] -= change;
+            for (pass, values) in scratch.iter_mut().enumerate() {
+                for (value, freedom) in values.iter_mut().zip(&group.unknowns) {
+                    *value = balance[*freedom][pass];
+                }
+                self.solve_transposed(group, pose, values);
+                for (value, row) in values.iter().zip(&group.residuals) {
+                    multipliers[*row][pass] = *value;
+                }
+                for outer in &group.outer {
+                    let change = pose.entries[outer.entry] * values[outer.row];
+                    balance[outer.freedom][pass] -= change;
+                }
             }
         }
     }
 
-    /// What all joints transmit, from what is required and from the multipliers.
-    fn transmit<T: Scalar>(&self, pose: &Pose<T>, forces: &mut Forces<T>) {
-        forces.transmitted.copy_from_slice(&forces.required);
-        for (closure, action) in self.closures.iter().zip(&mut forces.closure_actions) {
-            let [_, at, _] = closure.ends(&pose.frames);
-            *action = Wrench::default();
+    /// The forces of the closures from the multipliers.
+    #[inline(always)]
+    fn close_forces<T: Scalar, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
+        for (closure, actions) in self.closures.iter().zip(&mut forces.closure_actions) {
+            *actions = [Wrench::default(); N];
             for r in closure.rows.clone() {
-                let (row, multiplier) = (&pose.row_wrenches[r], forces.multipliers[r]);
-                action.force += row.force.scaled(multiplier);
-                action.moment += row.moment.scaled(multiplier);
+                let row = &pose.row_wrenches[r];
+                for (action, multiplier) in actions.iter_mut().zip(forces.multipliers[r]) {
+                    action.force += row.force.scaled(multiplier);
+                    action.moment += row.moment.scaled(multiplier);
+                }
             }
-            let [first, second] = closure.bodies;
-            forces.transmitted[first].add_at(
-                at - pose.frames[first].origin,
-                action.force,
-                action.moment,
-            );
-            forces.transmitted[second].add_at(
-                at - pose.frames[second].origin,
-                -action.force,
-                -action.moment,
-            );
         }
-        self.carry_down(pose, &mut forces.transmitted);
     }
 
     /// The action of an actuator, N·m or N, after [`Plan::balance`].
-    pub fn actuator_action<T: Scalar>(&self, forces: &Forces<T>, actuator: usize) -> T {
+    #[inline(always)]
+    pub fn actuator_action<T: Scalar, const N: usize>(
+        &self,
+        forces: &Forces<T, N>,
+        actuator: usize,
+    ) -> [T; N] {
         let (freedom, sign) = self.drivers[actuator];
-        forces.balance[freedom] * T::from_f64(sign)
+        forces.balance[freedom].map(|action| action * T::from_f64(sign))
+    }
+
+    /// What a link transmits to its body, about the origin of that body's frame, with the actions of its actuators.
+    #[inline(always)]
+    fn transmitted<T: Scalar, const N: usize>(
+        &self,
+        pose: &Pose<T>,
+        forces: &Forces<T, N>,
+        link: usize,
+    ) -> [Wrench<T>; N] {
+        let body = self.tree.links[link].body;
+        let mut wrenches = forces.transmitted[body];
+        for (closure, actions) in self.closures.iter().zip(&forces.closure_actions) {
+            let Some(&(_, sign)) = closure.links.iter().find(|(l, _)| *l == link) else {
+                continue;
+            };
+            // Of a closure between what this link carries and the rest.
+            let [_, at, _] = closure.ends(&pose.frames);
+            let (arm, by) = (at - pose.frames[body].origin, T::from_f64(-sign));
+            for (wrench, action) in wrenches.iter_mut().zip(actions) {
+                wrench.add_at(arm, action.force.scaled(by), action.moment.scaled(by));
+            }
+        }
+        wrenches
     }
 
     /// The action of a joint's first body on the second, about the joint's point on the second, without that of an actuator.
-    pub fn reaction<T: Scalar>(
+    #[inline(always)]
+    pub fn reaction<T: Scalar, const N: usize>(
         &self,
         pose: &Pose<T>,
-        forces: &Forces<T>,
+        forces: &Forces<T, N>,
         joint: JointId,
-    ) -> Wrench<T> {
-        let link = match self.joint_places[joint.0] {
+    ) -> [Wrench<T>; N] {
+        let index = match self.joint_places[joint.0] {
             JointPlace::Closure(closure) => return forces.closure_actions[closure],
-            JointPlace::Link(link) => &self.tree.links[link],
+            JointPlace::Link(link) => link,
         };
-        let mut wrench = forces.transmitted[link.body];
+        let link = &self.tree.links[index];
+        let mut wrenches = self.transmitted(pose, forces, index);
         for &(freedom, _) in self
             .drivers
             .iter()
             .filter(|(f, _)| link.freedoms.contains(f))
         {
-            let action = pose.screws[freedom].axis.scaled(forces.balance[freedom]);
-            match self.tree.freedoms[freedom].parts() {
-                (0.0, _) => wrench.force -= action,
-                _ => wrench.moment -= action,
+            for (wrench, action) in wrenches.iter_mut().zip(forces.balance[freedom]) {
+                let action = pose.screws[freedom].axis.scaled(action);
+                match self.tree.freedoms[freedom] {
+                    FreedomKind::Slide => wrench.force -= action,
+                    FreedomKind::Turn | FreedomKind::Screw(_) | FreedomKind::BallTurn => {
+                        wrench.moment -= action;
+                    }
+                }
             }
         }
         if link.sign > 0.0 {
-            return wrench;
+            return wrenches;
         }
         // The first body is carried by the second: what the second does to it, reversed, about the second's point.
         let second = pose.frames[link.parent].point(link.on_parent.position);
-        let mut reversed = Wrench::default();
         let arm = pose.frames[link.body].origin - second;
-        reversed.add_at(arm, -wrench.force, -wrench.moment);
-        reversed
+        wrenches.map(|wrench| {
+            let mut reversed = Wrench::default();
+            reversed.add_at(arm, -wrench.force, -wrench.moment);
+            reversed
+        })
     }
 }

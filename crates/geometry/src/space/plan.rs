@@ -5,7 +5,7 @@ use super::follow::Node;
 use super::frames::{BodyMotion, Frame, Screw};
 use super::groups::Group;
 use super::mechanism::{Assembly, Mechanism, Placement};
-use super::prediction::Piece;
+use super::prediction::Predictions;
 use super::rank::Mobility;
 use super::tree::Tree;
 use super::vector::{Rotation, Vec3};
@@ -50,10 +50,10 @@ pub struct Plan {
     pub(super) last_links: Vec<usize>,
     /// By actuator: its freedom, and −1 where the tree counts it backwards.
     pub(super) drivers: Vec<(usize, f64)>,
-    /// Poses along the range, by ascending coordinate; of several actuators that of the assembly alone.
-    pub(super) nodes: Vec<Node>,
-    /// The predictions between each of them and the next.
-    pub(super) pieces: Vec<Piece>,
+    /// The stored pose of the assembly.
+    pub(super) start: Node,
+    /// The poses stored along the range of one actuator.
+    pub(super) predictions: Predictions,
     pub(super) range: Range,
     /// The coordinates at the assembly.
     pub(super) assembly_q: Vec<f64>,
@@ -72,15 +72,18 @@ pub struct Pose<T = f64> {
     pub(super) residuals: Vec<T>,
     /// By row: its wrench on the second body, at that body's point.
     pub(super) row_wrenches: Vec<Wrench<T>>,
-    /// By group: its factors, and the heads of their reflections.
+    /// By group: its factors; by column of them the row exchanged with it, or the factor of its reflection.
     pub(super) factors: Vec<T>,
-    pub(super) heads: Vec<T>,
+    pub(super) pivots: Vec<usize>,
+    pub(super) reflections: Vec<T>,
     pub(super) scratch: Vec<T>,
     pub(super) rates: Vec<T>,
     pub(super) accelerations: Vec<T>,
     /// Whether the states of the bodies are those without accelerations of the freedoms.
     pub(super) has_no_acceleration: bool,
     pub(super) states: Vec<BodyMotion<T>>,
+    /// By body: what the accelerations of the freedoms add to those of its origin and of its rotation.
+    pub(super) added: Vec<[Vec3<T>; 2]>,
 }
 
 impl Plan {
@@ -171,12 +174,14 @@ impl Plan {
             residuals: vec![zero; rows],
             row_wrenches: vec![Wrench::default(); rows],
             factors: vec![zero; group(|g| g.rows.len() * g.unknowns.len())],
-            heads: vec![zero; group(|g| g.unknowns.len())],
+            pivots: vec![0; group(|g| g.unknowns.len())],
+            reflections: vec![zero; group(|g| g.unknowns.len())],
             scratch: vec![zero; self.groups.iter().map(|g| g.rows.len()).max().unwrap_or(0)],
             rates: vec![zero; freedoms],
             accelerations: vec![zero; freedoms],
             has_no_acceleration: false,
             states: vec![BodyMotion::default(); self.tree.internal.len()],
+            added: vec![[Vec3::zero(); 2]; self.tree.internal.len()],
         };
         // The ground is placed once.
         pose.frames[self.ground].origin = self.tree.internal[self.ground].position.cast();

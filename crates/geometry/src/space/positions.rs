@@ -1,13 +1,19 @@
-//! Positions: each group by Newton's method from a stored pose. A group with redundant rows is solved by least squares, and what
+//! Positions: each group from a prediction between stored poses, closed with the predicted inverse of its Jacobian, or by Newton's method. A group with redundant rows is solved by least squares, and what
 //! stays open is looked at: least squares converge where a loop does not close, too.
 
 use super::groups::Group;
 use super::plan::{Plan, Pose};
+use super::prediction::Piece;
 use super::tree::Step;
-use super::vector::{Vec3, vec3};
+use super::vector::vec3;
 use crate::error::PositionError;
-use dwell_numerics::{FactorOutcome, Scalar, qr};
+use crate::positions::is_plain;
+use dwell_numerics::Scalar;
 
+/// Steps with a predicted inverse at most.
+const MAX_PREDICTED_STEPS: usize = 3;
+/// A residual this small, relative to the size, is rounding.
+const ROUNDING: f64 = 1e-15;
 /// Newton's steps at most.
 const MAX_STEPS: usize = 40;
 /// The square of a step, relative to the pivots, below which a further step would be rounding.
@@ -29,39 +35,86 @@ impl Plan {
             return Err(PositionError::NotFinite { q: wrong.value() });
         }
         let Some(first) = q.first() else {
-            self.start_from(&self.nodes[0], 0.0, pose);
-            return self.close(q, pose);
+            self.start_from(&self.start, 0.0, pose);
+            return self.close(q, None, pose);
         };
         if q.len() > 1 {
             return self.continue_to(q, pose);
         }
         let value = self.within_range(first.value())?;
-        let next = self.nodes.partition_point(|n| n.q < value);
-        match self.pieces.get(next.max(1) - 1) {
-            Some(piece) => piece.predict(value, pose),
-            None => {
-                let node = &self.nodes[next.min(self.nodes.len() - 1)];
-                self.start_from(node, value - node.q, pose);
-            }
+        let piece = self.predictions.at(value);
+        match piece {
+            Some(piece) => self.predictions.predict(piece, value, pose),
+            None => self.start_from(&self.start, value - self.start.q, pose),
         }
-        self.close(q, pose)
+        self.close(q, piece.map(|piece| (piece, value)), pose)
     }
 
-    /// Closes all groups in order, from the coordinates in the pose.
+    /// Closes all groups in order, from the coordinates in the pose, which are those of a prediction at a coordinate if that is given.
+    #[inline(always)]
     pub(super) fn close<T: Scalar>(
         &self,
         q: &[T],
+        predicted: Option<(&Piece, f64)>,
         pose: &mut Pose<T>,
     ) -> Result<(), PositionError> {
         for (&(freedom, sign), &q) in self.drivers.iter().zip(q) {
             pose.coordinates[freedom] = q * T::from_f64(sign);
         }
         self.place(&self.first_links, pose);
-        for g in 0..self.groups.len() {
-            self.close_group(g, q.first().map_or(0.0, |q| q.value()), pose)?;
+        let predicted = predicted.filter(|_| is_plain::<T>());
+        for (g, group) in self.groups.iter().enumerate() {
+            let closed = predicted.is_some_and(|at| self.close_predicted(group, at, pose));
+            if !(closed && self.factor_closed(group, pose)) {
+                self.close_group(g, q.first().map_or(0.0, |q| q.value()), pose)?;
+            }
         }
         self.place(&self.last_links, pose);
         Ok(())
+    }
+
+    /// Closes a predicted group by steps with the predicted inverse of its Jacobian: each leaves of the last the part by which that
+    /// is wrong. False where it does not close so.
+    #[inline(always)]
+    fn close_predicted<T: Scalar>(
+        &self,
+        group: &Group,
+        (piece, q): (&Piece, f64),
+        pose: &mut Pose<T>,
+    ) -> bool {
+        let m = group.rows.len();
+        for _ in 0..MAX_PREDICTED_STEPS {
+            self.place(&group.links, pose);
+            self.fill_residuals(group, pose);
+            if self.largest_residual(group, pose) <= ROUNDING {
+                return true;
+            }
+            for (i, row) in group.residuals.iter().enumerate() {
+                pose.scratch[i] = -pose.residuals[*row];
+            }
+            let mut inverse = piece.inverse(group.factors, m * group.unknowns.len(), q);
+            let mut turns = [T::from_f64(0.0); 3];
+            for (j, &freedom) in group.unknowns.iter().enumerate() {
+                let entries = inverse.by_ref().take(m).zip(&pose.scratch);
+                let step = entries.fold(T::from_f64(0.0), |sum, (entry, r)| {
+                    sum + T::from_f64(entry) * *r
+                });
+                pose.coordinates[freedom] += step;
+                // The three turns of a ball follow each other.
+                turns = [turns[1], turns[2], step];
+                if let Some(&(link, _)) = group.balls.iter().find(|(_, first)| first + 2 == j) {
+                    self.turn_ball(link, vec3(turns[0], turns[1], turns[2]), pose);
+                }
+            }
+        }
+        false
+    }
+
+    /// Factors the Jacobian of a closed group; false where it is singular.
+    #[inline(always)]
+    fn factor_closed<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) -> bool {
+        self.fill_rows(group, pose);
+        self.factor(group, pose).pivot_ratio >= SINGULAR
     }
 
     /// The frames of some bodies, with the screws of their freedoms.
@@ -134,68 +187,47 @@ impl Plan {
         })
     }
 
+    /// Residuals of a group's rows alone.
+    #[inline(always)]
+    fn fill_residuals<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) {
+        for (c, rows) in &group.closures {
+            let closure = &self.closures[*c];
+            let [_, _, d] = closure.ends(&pose.frames);
+            for &(_, k) in &group.rows[rows.clone()] {
+                let row = closure.row(closure.kinds[k], &pose.frames, d);
+                pose.residuals[closure.rows.start + k] = row.residual;
+            }
+        }
+    }
+
     /// Residuals and Jacobian of a group's rows.
+    #[inline(always)]
     pub(super) fn fill_rows<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) {
-        let mut last = usize::MAX;
-        let [mut at, mut d] = [Vec3::zero(); 2];
-        for &(c, k) in &group.rows {
-            let closure = &self.closures[c];
-            // The rows of a closure follow each other: its points are the same for all.
-            if c != last {
-                [_, at, d] = closure.ends(&pose.frames);
-                last = c;
+        for (c, rows) in &group.closures {
+            let closure = &self.closures[*c];
+            let rows = &group.rows[rows.clone()];
+            let [_, at, d] = closure.ends(&pose.frames);
+            for &(_, k) in rows {
+                let row = closure.row(closure.kinds[k], &pose.frames, d);
+                let index = closure.rows.start + k;
+                pose.residuals[index] = row.residual;
+                pose.row_wrenches[index] = row.wrench;
             }
-            let row = closure.row(closure.kinds[k], &pose.frames, d);
-            let index = closure.rows.start + k;
-            pose.residuals[index] = row.residual;
-            pose.row_wrenches[index] = row.wrench;
-            let first = closure.entries + k * closure.path.len();
-            for (entry, &(freedom, sign)) in pose.entries[first..].iter_mut().zip(&closure.path) {
-                let kind = self.tree.freedoms[freedom];
-                let power = pose.screws[freedom].power(kind, row.wrench, at);
-                *entry = if sign > 0.0 { power } else { -power };
+            let freedoms = closure.path.len();
+            for (p, &(freedom, sign)) in closure.path.iter().enumerate() {
+                let twist = pose.screws[freedom].twist(self.tree.freedoms[freedom], at, sign);
+                for &(_, k) in rows {
+                    let wrench = &pose.row_wrenches[closure.rows.start + k];
+                    pose.entries[closure.entries + k * freedoms + p] = twist.power(wrench);
+                }
             }
-        }
-    }
-
-    /// Factors a group's Jacobian, scaled.
-    pub(super) fn factor<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) -> FactorOutcome {
-        let (m, n) = (group.rows.len(), group.unknowns.len());
-        let matrix = &mut pose.factors[group.factors..][..m * n];
-        matrix.fill(T::from_f64(0.0));
-        for inner in &group.inner {
-            matrix[inner.at] = pose.entries[inner.entry] * T::from_f64(inner.scale);
-        }
-        qr::factor(matrix, &mut pose.heads[group.heads..][..n], m)
-    }
-
-    /// The solution of a group's equations for the right-hand sides in the scratch memory, by row; it leaves the unknowns there.
-    pub(super) fn solve<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) {
-        let (m, n) = (group.rows.len(), group.unknowns.len());
-        let Pose {
-            scratch,
-            factors,
-            heads,
-            ..
-        } = pose;
-        for (value, scale) in scratch.iter_mut().zip(&group.row_scales) {
-            *value = *value * T::from_f64(*scale);
-        }
-        qr::solve(
-            &factors[group.factors..][..m * n],
-            &heads[group.heads..][..n],
-            m,
-            &mut scratch[..m],
-        );
-        for (value, scale) in scratch.iter_mut().zip(&group.column_scales) {
-            *value = *value * T::from_f64(*scale);
         }
     }
 
     /// One step of Newton's method; its largest component, over the unit of its freedom.
     fn newton_step<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) -> f64 {
-        for (i, &(c, k)) in group.rows.iter().enumerate() {
-            pose.scratch[i] = -pose.residuals[self.closures[c].rows.start + k];
+        for (i, row) in group.residuals.iter().enumerate() {
+            pose.scratch[i] = -pose.residuals[*row];
         }
         self.solve(group, pose);
         let mut largest = 0.0_f64;
@@ -239,13 +271,8 @@ impl Plan {
 
     /// The largest residual of a group, over the size where it is a length.
     pub(super) fn largest_residual<T: Scalar>(&self, group: &Group, pose: &Pose<T>) -> f64 {
-        let rows = group.rows.iter().zip(&group.row_scales);
-        let sizes = rows.map(|(&(c, k), scale)| {
-            pose.residuals[self.closures[c].rows.start + k]
-                .value()
-                .abs()
-                * scale
-        });
+        let rows = group.residuals.iter().zip(&group.row_scales);
+        let sizes = rows.map(|(row, scale)| pose.residuals[*row].value().abs() * scale);
         sizes.fold(0.0, f64::max)
     }
 }

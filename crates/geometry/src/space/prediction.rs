@@ -1,4 +1,5 @@
-//! Predictions between stored poses: polynomials of degree five, which have the values and the first two derivatives of both.
+//! Predictions between stored poses: polynomials of degree five, which have the values and the first two derivatives of both. What they
+//! leave open is closed with the inverses of the Jacobians, interpolated between both.
 //!
 //! ```text
 //! f(s) = Σ cₖ sᵏ,     f, f′, f″ given at s = 0 and s = h                                              (1)
@@ -13,24 +14,101 @@ use super::plan::Pose;
 use super::vector::{Rotation, Vec3, vec3};
 use dwell_numerics::Scalar;
 
+/// The poses stored along the range, as predictions between each and the next.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Predictions {
+    /// The coordinates of the stored poses, ascending.
+    ends: Vec<f64>,
+    /// The predictions between them.
+    pieces: Vec<Piece>,
+    /// By equal part of the range: the piece in which it begins.
+    parts: Vec<usize>,
+    parts_per_unit: f64,
+    /// The freedoms that are predicted as numbers: all but those of actuators and balls.
+    scalars: Vec<usize>,
+}
+
 /// The poses between two stored ones.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Piece {
     from: f64,
     coordinates: Vec<[f64; 6]>,
     balls: Vec<(Rotation, [Vec3; 6])>,
+    /// The inverses of the groups' Jacobians at the first pose, and their slopes.
+    inverses: Vec<[f64; 2]>,
+}
+
+impl Predictions {
+    /// Between stored poses, of these freedoms and of all balls.
+    pub(super) fn new(nodes: &[Node], scalars: Vec<usize>) -> Self {
+        let pairs = nodes.windows(2);
+        let pieces: Vec<Piece> = pairs
+            .map(|pair| Piece::new(&pair[0], &pair[1], &scalars))
+            .collect();
+        let ends: Vec<f64> = nodes.iter().map(|n| n.q).collect();
+        let (first, last) = (ends[0], ends[ends.len() - 1]);
+        let count = pieces.len();
+        let part = |k: usize| {
+            let begin = first + (last - first) * k as f64 / count as f64;
+            ends[1..count].partition_point(|end| *end <= begin)
+        };
+        Self {
+            parts: (0..=count).map(part).collect(),
+            parts_per_unit: count as f64 / (last - first),
+            ends,
+            pieces,
+            scalars,
+        }
+    }
+
+    /// The coordinates of the first and the last stored pose.
+    pub(super) fn range(&self) -> Option<[f64; 2]> {
+        Some([*self.ends.first()?, *self.ends.last()?])
+    }
+
+    /// The prediction at a coordinate; none where there is one stored pose only.
+    #[inline(always)]
+    pub(super) fn at(&self, q: f64) -> Option<&Piece> {
+        let count = self.pieces.len();
+        let first = self.ends.first()?;
+        let part = ((q - first) * self.parts_per_unit) as usize;
+        // Rounding may take a coordinate at the edge of a part for one of the next.
+        let low = *self.parts.get(part.min(count).max(1) - 1)?;
+        let high = *self.parts.get((part + 2).min(count))?;
+        let ends = self.ends.get(low + 1..high + 1)?;
+        self.pieces
+            .get((low + ends.partition_point(|end| *end < q)).min(count.max(1) - 1))
+    }
+
+    /// Sets the coordinates to those of a piece at a coordinate.
+    #[inline(always)]
+    pub(super) fn predict<T: Scalar>(&self, piece: &Piece, q: f64, pose: &mut Pose<T>) {
+        let s = q - piece.from;
+        for (freedom, c) in self.scalars.iter().zip(&piece.coordinates) {
+            pose.coordinates[*freedom] = T::from_f64(c.iter().rev().fold(0.0, |sum, c| sum * s + c));
+        }
+        for (ball, (start, c)) in pose.balls.iter_mut().zip(&piece.balls) {
+            let turn = c.iter().rev().fold(Vec3::ZERO, |sum, c| sum.scaled(s) + *c);
+            *ball = start.turned_by(turn).cast();
+        }
+    }
 }
 
 impl Piece {
     /// Between two stored poses.
-    pub(super) fn new(first: &Node, second: &Node) -> Self {
+    fn new(first: &Node, second: &Node, scalars: &[usize]) -> Self {
         let h = second.q - first.q;
-        let coordinates = first.coordinates.iter().zip(&second.coordinates);
+        let coordinates = scalars.iter().map(|f| {
+            let [a, b] = [first, second].map(|node| node.coordinates[*f]);
+            polynomial(a, b, h)
+        });
         let balls = first.balls.iter().zip(&second.balls);
         let balls = balls.zip(first.turns.iter().zip(&second.turns));
+        let inverses = first.inverses.iter().zip(&second.inverses);
         Self {
             from: first.q,
-            coordinates: coordinates.map(|(a, b)| polynomial(*a, *b, h)).collect(),
+            coordinates: coordinates.collect(),
+            inverses: inverses.map(|(a, b)| [*a, (b - a) / h]).collect(),
             balls: balls
                 .map(|((start, end), (turn, later))| {
                     let turned = end.after(&start.inverse()).tangent();
@@ -44,16 +122,17 @@ impl Piece {
         }
     }
 
-    /// Sets the coordinates to those of the polynomials at a coordinate.
-    pub(super) fn predict<T: Scalar>(&self, q: f64, pose: &mut Pose<T>) {
+    /// The predicted inverse of a group's Jacobian, whose entries begin at a number.
+    #[inline(always)]
+    pub(super) fn inverse(
+        &self,
+        first: usize,
+        count: usize,
+        q: f64,
+    ) -> impl Iterator<Item = f64> + '_ {
         let s = q - self.from;
-        for (coordinate, c) in pose.coordinates.iter_mut().zip(&self.coordinates) {
-            *coordinate = T::from_f64(c.iter().rev().fold(0.0, |sum, c| sum * s + c));
-        }
-        for (ball, (start, c)) in pose.balls.iter_mut().zip(&self.balls) {
-            let turn = c.iter().rev().fold(Vec3::ZERO, |sum, c| sum.scaled(s) + *c);
-            *ball = start.turned_by(turn).cast();
-        }
+        let entries = self.inverses[first..][..count].iter();
+        entries.map(move |[value, slope]| value + slope * s)
     }
 }
 

@@ -2,7 +2,7 @@
 //! redundant constraints leave open.
 
 use super::assemble::RANK_TOLERANCE;
-use super::closure::{Closure, RowKind, path};
+use super::closure::{Closure, RowKind};
 use super::mechanism::{JointKind, Mechanism};
 use super::plan::{Plan, Pose};
 use super::vector::Vec3;
@@ -220,15 +220,10 @@ impl Plan {
                 .map_or(0, |c| c.entries + c.rows.len() * c.path.len());
             let axis = self.tree.internal[body].rotation.apply_inverse(one.axis);
             let bodies = [self.ground, body];
-            self.closures.push(Closure {
-                joint: None,
-                bodies,
-                points: [Vec3::ZERO; 2],
-                kinds: vec![RowKind::NoSpin(axis)],
-                rows: rows..rows + 1,
-                path: path(&self.tree, bodies),
-                entries,
-            });
+            let kinds = vec![RowKind::NoSpin(axis)];
+            let between = (bodies, [Vec3::ZERO; 2]);
+            let closure = Closure::new(&self.tree, None, between, kinds, [rows, entries]);
+            self.closures.push(closure);
         }
         self.schedule_whole();
     }

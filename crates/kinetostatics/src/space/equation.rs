@@ -32,9 +32,9 @@ impl Model {
             workspace.rates[column] = T::from_f64(1.0);
             plan.velocities(&workspace.rates, &mut workspace.pose);
             self.require_unit_acceleration(workspace);
-            plan.balance(&mut workspace.pose, &mut workspace.forces);
+            plan.balance(&workspace.pose, &mut workspace.forces);
             for row in 0..n {
-                mass_matrix[row * n + column] = plan.actuator_action(&workspace.forces, row);
+                [mass_matrix[row * n + column]] = plan.actuator_action(&workspace.forces, row);
             }
         }
         workspace.rates.fill(T::from_f64(0.0));
@@ -44,9 +44,10 @@ impl Model {
         for (kind, magnitude) in loads {
             self.subtract_load(kind, *magnitude, workspace);
         }
-        plan.balance(&mut workspace.pose, &mut workspace.forces);
+        plan.balance(&workspace.pose, &mut workspace.forces);
         for (row, force) in forces.iter_mut().enumerate() {
-            *force = -plan.actuator_action(&workspace.forces, row);
+            let [action] = plan.actuator_action(&workspace.forces, row);
+            *force = -action;
         }
         Ok(())
     }

@@ -87,7 +87,7 @@ impl LoadKind {
         plan: &Plan,
         pose: &Pose<T>,
         masses: &[super::Mass],
-        required: &mut [Wrench<T>],
+        required: &mut [[Wrench<T>; 1]],
     ) {
         let arm = |body: usize, point: Vec3| {
             let local = plan
@@ -107,7 +107,7 @@ impl LoadKind {
             Self::Gravity(direction) => {
                 for (body, mass) in masses.iter().enumerate() {
                     let at = plan.frame(pose, body).rotation.apply(mass.center.cast());
-                    required[body].add_at(
+                    required[body][0].add_at(
                         at,
                         (-direction.scaled(magnitude * mass.mass)).cast(),
                         Vec3::zero(),
@@ -119,23 +119,23 @@ impl LoadKind {
                 point,
                 direction,
             } => {
-                required[body].add_at(arm(body, point), -turned(body, direction), Vec3::zero());
+                required[body][0].add_at(arm(body, point), -turned(body, direction), Vec3::zero());
             }
             Self::Torque {
                 bodies: [a, b],
                 direction,
             } => {
                 let couple = turned(a.0, direction);
-                required[b.0].moment -= couple;
-                required[a.0].moment += couple;
+                required[b.0][0].moment -= couple;
+                required[a.0][0].moment += couple;
             }
             Self::PointToPointForce { bodies, points } => {
                 let [a, b] = [0, 1].map(|k| arm(bodies[k].0, points[k]));
                 let [from, to] = bodies.map(|body| plan.frame(pose, body.0).origin);
                 let d = to + b - (from + a);
                 let along = d.scaled(T::from_f64(magnitude) / d.dot(d).sqrt());
-                required[bodies[0].0].add_at(a, along, Vec3::zero());
-                required[bodies[1].0].add_at(b, -along, Vec3::zero());
+                required[bodies[0].0][0].add_at(a, along, Vec3::zero());
+                required[bodies[1].0][0].add_at(b, -along, Vec3::zero());
             }
         }
     }

@@ -77,19 +77,42 @@ impl Mass {
         frame: &Frame<T>,
         motion: &BodyMotion<T>,
     ) -> Wrench<T> {
-        let arm = frame.rotation.apply(self.center.cast());
+        let (arm, tensor) = (frame.rotation.apply(self.center.cast()), self.tensor(frame));
         let force = motion
             .point_acceleration(arm)
             .scaled(T::from_f64(self.mass));
-        let [x, y, z] = rows(self.inertia).map(Vec3::cast);
-        let tensor = |v: Vec3<T>| {
-            let v = frame.rotation.apply_inverse(v);
-            frame.rotation.apply(vec3(x.dot(v), y.dot(v), z.dot(v)))
-        };
         let w = motion.angular_velocity;
         let couple = tensor(motion.angular_acceleration) + w.cross(tensor(w));
         let mut wrench = Wrench::default();
         wrench.add_at(arm, force, couple);
         wrench
+    }
+
+    /// The same in both unit passes: at unit acceleration from rest, where the accelerations are these velocities, and in this motion.
+    #[inline(always)]
+    pub(super) fn required_in_unit_passes<T: Scalar>(
+        &self,
+        frame: &Frame<T>,
+        motion: &BodyMotion<T>,
+    ) -> [Wrench<T>; 2] {
+        let (arm, tensor) = (frame.rotation.apply(self.center.cast()), self.tensor(frame));
+        let (mass, w) = (T::from_f64(self.mass), motion.angular_velocity);
+        let momentum = tensor(w);
+        let couple = tensor(motion.angular_acceleration) + w.cross(momentum);
+        let mut wrenches = [Wrench::default(); 2];
+        wrenches[0].add_at(arm, motion.point_velocity(arm).scaled(mass), momentum);
+        wrenches[1].add_at(arm, motion.point_acceleration(arm).scaled(mass), couple);
+        wrenches
+    }
+
+    /// The tensor of inertia in the axes of the ground, times a vector.
+    #[inline(always)]
+    fn tensor<T: Scalar>(&self, frame: &Frame<T>) -> impl Fn(Vec3<T>) -> Vec3<T> {
+        let [x, y, z] = rows(self.inertia).map(Vec3::cast);
+        let rotation = frame.rotation;
+        move |v: Vec3<T>| {
+            let v = rotation.apply_inverse(v);
+            rotation.apply(vec3(x.dot(v), y.dot(v), z.dot(v)))
+        }
     }
 }

@@ -75,6 +75,8 @@ pub struct Model {
 pub struct Workspace<T = f64> {
     pub(super) pose: Pose<T>,
     pub(super) forces: Forces<T>,
+    /// Those of both unit passes.
+    pub(super) unit_forces: Forces<T, 2>,
     /// Speeds or accelerations of the actuators.
     pub(super) rates: Vec<T>,
 }
@@ -158,6 +160,7 @@ impl Model {
         Workspace {
             pose: self.plan.pose(),
             forces: self.plan.forces(),
+            unit_forces: self.plan.forces(),
             rates: vec![T::from_f64(0.0); self.plan.actuators()],
         }
     }
@@ -174,10 +177,9 @@ impl Model {
         for stress in self.plan.self_stresses(pose) {
             let largest = stress.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
             self.plan.stress(&stress, pose, forces);
-            for (determined, compiled) in determined.iter_mut().zip(&self.reactions) {
-                let part = self.read(compiled, pose, forces).abs();
-                *determined &= part < 1e-7 * largest;
-            }
+            self.read_all(pose, forces, |k, [part]| {
+                determined[k] &= part.abs() < 1e-7 * largest;
+            });
         }
         Ok(determined)
     }
@@ -213,11 +215,13 @@ impl Model {
     /// The actions and reactions of what is required.
     fn balance<T: Scalar>(&self, workspace: &mut Workspace<T>, result: &mut InverseDynamics<T>) {
         self.plan
-            .balance(&mut workspace.pose, &mut workspace.forces);
+            .balance(&workspace.pose, &mut workspace.forces);
         for (i, tau) in result.tau.iter_mut().enumerate() {
-            *tau = self.plan.actuator_action(&workspace.forces, i);
+            [*tau] = self.plan.actuator_action(&workspace.forces, i);
         }
-        self.read_all(workspace, &mut result.reactions);
+        self.read_all(&workspace.pose, &workspace.forces, |k, [value]| {
+            result.reactions[k] = value;
+        });
     }
 
     /// The potential energy of a unit of a load at the last pose, J; none of one that has no potential.
@@ -228,17 +232,17 @@ impl Model {
     /// The inertia of all bodies as what they require.
     pub(super) fn require_inertia<T: Scalar>(&self, workspace: &mut Workspace<T>) {
         let Workspace { pose, forces, .. } = workspace;
-        forces.required.fill(Wrench::default());
+        forces.required.fill([Wrench::default()]);
         for &b in &self.inertial {
             forces.required[b] =
-                self.masses[b].required(self.plan.frame(pose, b), self.plan.state(pose, b));
+                [self.masses[b].required(self.plan.frame(pose, b), self.plan.state(pose, b))];
         }
     }
 
     /// The inertia of all bodies in unit acceleration from rest, after the velocities at unit speed.
     pub(super) fn require_unit_acceleration<T: Scalar>(&self, workspace: &mut Workspace<T>) {
         let Workspace { pose, forces, .. } = workspace;
-        forces.required.fill(Wrench::default());
+        forces.required.fill([Wrench::default()]);
         for &b in &self.inertial {
             let moving = self.plan.state(pose, b);
             let from_rest = dwell_geometry::space::BodyMotion {
@@ -246,7 +250,7 @@ impl Model {
                 angular_acceleration: moving.angular_velocity,
                 ..Default::default()
             };
-            forces.required[b] = self.masses[b].required(self.plan.frame(pose, b), &from_rest);
+            forces.required[b] = [self.masses[b].required(self.plan.frame(pose, b), &from_rest)];
         }
     }
 
@@ -262,34 +266,46 @@ impl Model {
         load.subtract(magnitude, &self.plan, pose, &self.masses, required);
     }
 
-    /// A requested reaction of the last pass.
-    #[inline]
-    pub(super) fn read<T: Scalar>(
-        &self,
-        (reaction, axes): &(Reaction, Option<(usize, Rotation)>),
-        pose: &Pose<T>,
-        forces: &Forces<T>,
-    ) -> T {
-        let wrench = self.plan.reaction(pose, forces, reaction.joint);
-        let (vector, k) = match reaction.component {
-            Component::Force(_, k) => (wrench.force, k),
-            Component::Moment(_, k) => (wrench.moment, k),
-        };
-        let along = match axes {
-            None => Vec3::AXES[k].cast(),
-            Some((body, axes)) => self
-                .plan
-                .frame(pose, *body)
-                .rotation
-                .apply(axes.columns[k].cast()),
-        };
-        along.dot(vector)
+    /// The inertia of all bodies in both unit passes, after the accelerations at unit speed: at unit acceleration from rest, and at
+    /// unit speed.
+    #[inline(always)]
+    pub(super) fn require_unit_inertia<T: Scalar>(&self, workspace: &mut Workspace<T>) {
+        let (pose, forces) = (&workspace.pose, &mut workspace.unit_forces);
+        for &b in &self.inertial {
+            let (frame, motion) = (self.plan.frame(pose, b), self.plan.state(pose, b));
+            forces.required[b] = self.masses[b].required_in_unit_passes(frame, motion);
+        }
     }
 
-    /// All requested reactions of the last pass.
-    pub(super) fn read_all<T: Scalar>(&self, workspace: &Workspace<T>, out: &mut [T]) {
-        for (value, compiled) in out.iter_mut().zip(&self.reactions) {
-            *value = self.read(compiled, &workspace.pose, &workspace.forces);
+    /// All requested reactions of the last passes: what is done with each, by its number and its value in each pass.
+    #[inline(always)]
+    pub(super) fn read_all<T: Scalar, const N: usize>(
+        &self,
+        pose: &Pose<T>,
+        forces: &Forces<T, N>,
+        mut take: impl FnMut(usize, [T; N]),
+    ) {
+        let mut last = None;
+        let mut wrenches = [Wrench::default(); N];
+        for (index, (reaction, axes)) in self.reactions.iter().enumerate() {
+            // The components of a joint mostly follow each other.
+            if last.replace(reaction.joint) != Some(reaction.joint) {
+                wrenches = self.plan.reaction(pose, forces, reaction.joint);
+            }
+            let (Component::Force(_, k) | Component::Moment(_, k)) = reaction.component;
+            let along = match axes {
+                None => Vec3::AXES[k].cast(),
+                Some((body, axes)) => self
+                    .plan
+                    .frame(pose, *body)
+                    .rotation
+                    .apply(axes.columns[k].cast()),
+            };
+            let part = |wrench: Wrench<T>| match reaction.component {
+                Component::Force(..) => along.dot(wrench.force),
+                Component::Moment(..) => along.dot(wrench.moment),
+            };
+            take(index, wrenches.map(part));
         }
     }
 
@@ -305,7 +321,7 @@ impl Model {
         result: &mut InverseDynamics<T>,
     ) -> PositionResult {
         self.plan.positions(q, &mut workspace.pose)?;
-        workspace.forces.required.fill(Wrench::default());
+        workspace.forces.required.fill([Wrench::default()]);
         self.subtract_load(load, 1.0, workspace);
         self.balance(workspace, result);
         Ok(())

@@ -21,15 +21,14 @@ impl Model {
         let plan = self.plan();
         plan.positions(&[q], &mut workspace.pose)?;
         plan.velocities(&[one], &mut workspace.pose);
-        self.require_unit_acceleration(workspace);
-        plan.balance(&mut workspace.pose, &mut workspace.forces);
-        out.m = plan.actuator_action(&workspace.forces, 0);
-        self.read_all(workspace, &mut out.a);
         plan.accelerations(&[zero], &mut workspace.pose);
-        self.require_inertia(workspace);
-        plan.balance(&mut workspace.pose, &mut workspace.forces);
-        out.half_dm = plan.actuator_action(&workspace.forces, 0);
-        self.read_all(workspace, &mut out.b);
+        self.require_unit_inertia(workspace);
+        let (pose, forces) = (&workspace.pose, &mut workspace.unit_forces);
+        plan.balance(pose, forces);
+        [out.m, out.half_dm] = plan.actuator_action(forces, 0);
+        self.read_all(pose, forces, |k, coefficients| {
+            [out.a[k], out.b[k]] = coefficients;
+        });
         Ok(())
     }
 

@@ -323,7 +323,7 @@ impl FreeMotionProblem<'_> {
             return Some(explain_max_steps(self.loaded_scene, t, max_steps, &limits));
         }
         if let Some(error) = &integrated.motion.failure {
-            return Some(self.explain(error));
+            return Some(self.explain_end(&integrated.motion, error));
         }
         if let Some(inaccuracy) = &integrated.inaccuracy {
             let message = format!("the motion is not resolved: {inaccuracy}");

@@ -339,7 +339,10 @@ impl Columns<'_> {
                 let name = format!("{}.load_{kind}", load.name);
                 self.add(name, unit, Quantity::LoadForce(k), meaning);
             }
-            let meaning = "power of the load on all bodies";
+            let meaning = match scene.drives.iter().any(|drive| drive.name == load.name) {
+                true => "power of the drive on all bodies, behind its rotor",
+                false => "power of the load on all bodies",
+            };
             let name = format!("{}.power", load.name);
             self.add(name, "W", Quantity::LoadPower(k), meaning);
         }

@@ -278,30 +278,35 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         let values = points.iter().filter(|point| !point[1].is_nan());
         let largest = *values.reduce(|a, b| if b[1] > a[1] { b } else { a })?;
         let scale = points.iter().map(|[_, v]| v.abs()).fold(0.0, f64::max);
-        let mut found: Vec<Point> = vec![largest];
+        // Each with its abscissa, where that is known.
+        let mut found: Vec<(Point, Option<f64>)> = vec![(largest, None)];
         let unwraps = self.columns[k].unwraps();
         for (near, bracket) in promising(&points, largest[1], refined) {
+            let columns = [k, self.abscissa];
             let mut value = |u: f64, precision: SamplePrecision| {
-                let [mut value] = self.evaluate(&[k], (u, precision))?[..] else {
+                let [mut value, at] = self.evaluate(&columns, (u, precision))?[..] else {
                     return None;
                 };
                 if unwraps {
                     value += TAU * ((sign * near - value) / TAU).round();
                 }
-                Some(sign * value).filter(|value| value.is_finite())
+                Some((sign * value, at)).filter(|(value, _)| value.is_finite())
             };
-            let top = refine_maximum(&mut |u| value(u, Interpolated), bracket, scale);
-            found.extend(top.and_then(|[u, _]| Some([u, value(u, Exact)?])));
+            let interpolated = &mut |u| Some(value(u, Interpolated)?.0);
+            let top = refine_maximum(interpolated, bracket, scale);
+            found.extend(top.and_then(|[u, _]| {
+                let (value, at) = value(u, Exact)?;
+                Some(([u, value], Some(at)))
+            }));
         }
-        let best = found
-            .iter()
-            .map(|[_, v]| *v)
-            .fold(f64::NEG_INFINITY, f64::max);
-        let is_best = |point: &&Point| point[1] >= best - SAME * scale;
+        let values = found.iter().map(|([_, v], _)| *v);
+        let best = values.fold(f64::NEG_INFINITY, f64::max);
+        let is_best = |(point, _): &&(Point, _)| point[1] >= best - SAME * scale;
         let first = found.iter().filter(is_best);
-        let [u, value] = *first.min_by(|a, b| a[0].total_cmp(&b[0]))?;
-        let [at] = self.evaluate(&[self.abscissa], (u, Exact))?[..] else {
-            return None;
+        let ([u, value], at) = *first.min_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]))?;
+        let at = match at {
+            Some(at) => at,
+            None => *self.evaluate(&[self.abscissa], (u, Exact))?.first()?,
         };
         Some(Extremum {
             value: sign * value,

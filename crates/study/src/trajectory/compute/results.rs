@@ -44,7 +44,7 @@ pub struct TrajectoryResults {
     pub sectioned_links: Vec<SectionedLink>,
     /// The largest residual of the power balance, relative to the sum of its absolute terms.
     pub power_residual: f64,
-    /// The estimated rounding error of actuator forces and reactions, relative to the largest of their unit.
+    /// The estimated rounding error of actuator forces and reactions, or of positions, velocities and accelerations, relative to the largest of their unit.
     pub rounding_error: Option<f64>,
     /// The statically indeterminate reactions, by name: no column has them.
     pub indeterminate: Vec<String>,
@@ -447,8 +447,7 @@ fn compute_in<'a>(
         .iter()
         .map(|chart| PositionEvaluator::new(scene, plan, chart, analysis, &results.columns));
     let mut evaluators = evaluators.collect::<Result<Vec<_>, _>>()?;
-    let mut rounding_error = matches!(analysis, Analysis::Statics | Analysis::Kinetostatics)
-        .then(|| RoundingError::new(scene, model, trajectory.points));
+    let mut rounding_error = RoundingError::new(scene, model, (analysis, trajectory.points));
     let early_stop = trajectory.follow(plan, |k, sample| {
         let evaluator = &mut evaluators[sample.chart];
         let t = trajectory.load_time(sample);

@@ -1,0 +1,90 @@
+//! Factors of the groups' Jacobians: LU with row exchanges where a group is square, Householder's QR where equations are redundant.
+
+use super::groups::Group;
+use super::plan::{Plan, Pose};
+use dwell_numerics::{FactorOutcome, Scalar, lu, qr};
+
+impl Plan {
+    /// Factors a group's Jacobian, scaled.
+    #[inline(always)]
+    pub(super) fn factor<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) -> FactorOutcome {
+        let (m, n) = (group.rows.len(), group.unknowns.len());
+        let matrix = &mut pose.factors[group.factors..][..m * n];
+        matrix.fill(T::from_f64(0.0));
+        for inner in &group.inner {
+            matrix[inner.at] = pose.entries[inner.entry] * T::from_f64(inner.scale);
+        }
+        if group.is_square() {
+            lu::factor(matrix, &mut pose.pivots[group.columns..][..n])
+        } else {
+            qr::factor(matrix, &mut pose.reflections[group.columns..][..n], m)
+        }
+    }
+
+    /// The solution of a group's equations for the right-hand sides in the scratch memory, by row; it leaves the unknowns there.
+    #[inline(always)]
+    pub(super) fn solve<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) {
+        let (m, n) = (group.rows.len(), group.unknowns.len());
+        let Pose {
+            scratch,
+            factors,
+            pivots,
+            reflections,
+            ..
+        } = pose;
+        let scratch = &mut scratch[..m];
+        for (value, scale) in scratch.iter_mut().zip(&group.row_scales) {
+            *value = *value * T::from_f64(*scale);
+        }
+        let factors = &factors[group.factors..][..m * n];
+        if group.is_square() {
+            lu::solve(factors, &pivots[group.columns..][..n], scratch);
+        } else {
+            qr::solve(factors, &reflections[group.columns..][..n], m, scratch);
+        }
+        for (value, scale) in scratch.iter_mut().zip(&group.column_scales) {
+            *value = *value * T::from_f64(*scale);
+        }
+    }
+
+    /// The multipliers of a group's equations, by row, from what its unknowns require in the same memory; where equations are redundant
+    /// the smallest.
+    #[inline(always)]
+    pub(super) fn solve_transposed<T: Scalar>(
+        &self,
+        group: &Group,
+        pose: &Pose<T>,
+        values: &mut [T],
+    ) {
+        let (m, n) = (group.rows.len(), group.unknowns.len());
+        let values = &mut values[..m];
+        for (value, scale) in values.iter_mut().zip(&group.column_scales) {
+            *value = *value * T::from_f64(*scale);
+        }
+        let factors = &pose.factors[group.factors..][..m * n];
+        if group.is_square() {
+            lu::solve_transposed(factors, &pose.pivots[group.columns..][..n], values);
+        } else {
+            let reflections = &pose.reflections[group.columns..][..n];
+            qr::solve_transposed(factors, reflections, m, values);
+        }
+        for (value, scale) in values.iter_mut().zip(&group.row_scales) {
+            *value = *value * T::from_f64(*scale);
+        }
+    }
+
+    /// The inverse of a group's factored Jacobian, unknowns by rows; where equations are redundant that of least squares.
+    pub(super) fn inverse(&self, group: &Group, pose: &mut Pose) -> Vec<f64> {
+        let (m, n) = (group.rows.len(), group.unknowns.len());
+        let mut inverse = vec![0.0; n * m];
+        for row in 0..m {
+            pose.scratch[..m].fill(0.0);
+            pose.scratch[row] = 1.0;
+            self.solve(group, pose);
+            for unknown in 0..n {
+                inverse[unknown * m + row] = pose.scratch[unknown];
+            }
+        }
+        inverse
+    }
+}
