@@ -214,8 +214,7 @@ impl Model {
 
     /// The actions and reactions of what is required.
     fn balance<T: Scalar>(&self, workspace: &mut Workspace<T>, result: &mut InverseDynamics<T>) {
-        self.plan
-            .balance(&workspace.pose, &mut workspace.forces);
+        self.plan.balance(&workspace.pose, &mut workspace.forces);
         for (i, tau) in result.tau.iter_mut().enumerate() {
             [*tau] = self.plan.actuator_action(&workspace.forces, i);
         }

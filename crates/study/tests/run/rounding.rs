@@ -8,8 +8,12 @@ use dwell_study::Analysis;
 #[test]
 fn kinematics_states_its_rounding_error() {
     let stated = |name: &str| {
-        let summary = analyse(&case(name), Analysis::Kinematics, 91).outcome.summary;
-        let line = summary.lines().find(|line| line.contains("estimated rounding error"));
+        let summary = analyse(&case(name), Analysis::Kinematics, 91)
+            .outcome
+            .summary;
+        let line = summary
+            .lines()
+            .find(|line| line.contains("estimated rounding error"));
         let line = line.unwrap_or_else(|| panic!("{summary}"));
         let number = line.split("below ").nth(1).unwrap();
         number.split(' ').next().unwrap().parse::<f64>().unwrap()
