@@ -3,6 +3,7 @@
 use miette::{GraphicalReportHandler, GraphicalTheme};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use std::sync::{Mutex, PoisonError};
 
 pyo3::create_exception!(
     dwell,
@@ -17,8 +18,26 @@ pyo3::create_exception!(
     "What is wrong in a scene. `line` and `column` (from 1) say where, `help` what to try; both may be None."
 );
 
+/// What a Python function of a load raised last; the error of the evaluation that it spoils is raised from it.
+static RAISED: Mutex<Option<PyErr>> = Mutex::new(None);
+
+/// Keeps what a function of a load raised.
+pub(crate) fn keep(error: PyErr) {
+    // A thread that panicked with the lock left a whole value.
+    *RAISED.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+}
+
 /// An error of the library as an exception.
 pub(crate) fn raise(py: Python<'_>, error: &dwell::Error) -> PyErr {
+    let raised = exception(py, error);
+    let cause = RAISED.lock().unwrap_or_else(PoisonError::into_inner).take();
+    if cause.is_some() {
+        raised.set_cause(py, cause);
+    }
+    raised
+}
+
+fn exception(py: Python<'_>, error: &dwell::Error) -> PyErr {
     let Some(scene) = error.scene_error() else {
         return DwellError::new_err(error.to_string());
     };

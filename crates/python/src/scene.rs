@@ -1,6 +1,6 @@
 //! Scenes.
 
-use crate::errors::Raise as _;
+use crate::errors::{Raise as _, keep};
 use crate::mechanism::Mechanism;
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -63,8 +63,11 @@ impl Scene {
                 let tuple = pyo3::types::PyTuple::new(py, signals)?;
                 function.call1(py, tuple)?.extract::<f64>(py)
             })
-            // A function that fails has no value: the evaluation fails there and names the load.
-            .unwrap_or(f64::NAN)
+            // A function that fails has no value: the evaluation fails there, names the load, and is raised from this.
+            .unwrap_or_else(|error| {
+                keep(error);
+                f64::NAN
+            })
         };
         let scene = self.scene.with_function(load, &names, called);
         let scene = scene.or_raise(py)?;
