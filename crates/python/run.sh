@@ -6,11 +6,11 @@ cd "$(dirname "$0")"
 top=$(cd ../.. && pwd)
 env="${1:-$top/target/python}"
 [ -x "$env/bin/python" ] || python3 -m venv "$env"
-"$env/bin/pip" install --quiet --disable-pip-version-check 'maturin>=1.9.4,<2' numpy scipy pandas matplotlib pytest mypy
+"$env/bin/pip" install --quiet --disable-pip-version-check 'maturin>=1.9.4,<2' numpy scipy pandas pandas-stubs matplotlib pytest mypy
 rm -rf "$top/target/wheels"
 "$env/bin/maturin" build --quiet --release --out "$top/target/wheels"
 "$env/bin/pip" install --quiet --disable-pip-version-check --force-reinstall --no-deps "$top"/target/wheels/dwell-*.whl
-"$env/bin/python" -m pytest
-"$env/bin/python" -m mypy --strict python/dwell tests/typed.py
+"$env/bin/python" -m pytest --pyargs dwell tests
+"$env/bin/python" -m mypy --strict python/dwell typed
 "$env/bin/python" -m mypy.stubtest dwell --allowlist tests/stubtest.txt
 "$env/bin/python" benchmark.py

@@ -48,7 +48,7 @@ assert abs(work - 3000 * 0.008) < 0.03 * 24
 # %%
 m = press()
 m.toml('[coordinates]\nrise = { travel = "guide" }')
-m.load("work", force="ram.C", direction=(-1, 0), magnitude="if(rise > 0.352 and rise.velocity > 0, 3000, 0)")
+m.load("work", force="ram.C", direction=(-1, 0), magnitude="if(rise > 0.352, if(rise.velocity > 0, 3000, 0), 0)")
 m.drive("motor", motor="phi", stall_torque=60.0, no_load_speed=7.0)
 m.motion(duration=5.0, initial_velocity={"phi": 2 * np.pi})
 motion = m.assemble().simulate(method="dop853", tolerance=1e-9)

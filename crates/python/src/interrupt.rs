@@ -12,14 +12,15 @@ const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 /// Runs a computation in a thread of its own. On Ctrl-C all running computations of this process end, and KeyboardInterrupt is
 /// raised.
 pub(crate) fn run<T: Send>(py: Python<'_>, compute: impl FnOnce() -> T + Send) -> PyResult<T> {
-    let (sender, receiver) = sync_channel(1);
+    let (sender, mut receiver) = sync_channel(1);
     thread::scope(|scope| {
         let worker = scope.spawn(move || {
             // The receiver lives until this thread has ended.
             let _ = sender.send(compute());
         });
         loop {
-            match py.detach(|| receiver.recv_timeout(BETWEEN_LOOKS)) {
+            let looked_at = &mut receiver;
+            match py.detach(move || looked_at.recv_timeout(BETWEEN_LOOKS)) {
                 Ok(found) => return Ok(found),
                 // It panicked: joining it says so.
                 Err(RecvTimeoutError::Disconnected) => break,

@@ -136,7 +136,7 @@ def test_errors_point_into_the_scene():
     text = 'bodies.ground.points = { A = [0, 0] }\nbodies.bar.points = { A = [0, 0] }\njoints.A = { revolute = ["ground.A", "baar.A"] }\n'
     with pytest.raises(dwell.SceneError) as raised:
         dwell.Scene(text)
-    assert (raised.value.line, raised.value.column) == (3, 39)
+    assert (raised.value.line, raised.value.column) == (3, 38)
     assert "baar" in str(raised.value) and "╭─" in str(raised.value) and "bar" in raised.value.help
     with pytest.raises(dwell.SceneError, match="no file"):
         dwell.Scene.read("nothing.toml")

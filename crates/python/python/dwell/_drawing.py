@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from html import escape
 from typing import TYPE_CHECKING, Any, Sequence
 
@@ -75,7 +74,7 @@ def svg(mechanism: Mechanism, q: float | Sequence[float] | None = None, width: i
         return round(width / 2 + x, 2), round(height / 2 - y, 2)
 
     parts: list[str] = []
-    labels: list[str] = []
+    names: list[tuple[str, str]] = []
     for k, (body, points) in enumerate((b, p) for b, p in bodies.items() if b != "ground" and p):
         corners = [at(p) for p in hull(np.array(list(points.values())))]
         colour = COLOURS[k % len(COLOURS)]
@@ -83,17 +82,22 @@ def svg(mechanism: Mechanism, q: float | Sequence[float] | None = None, width: i
         fill = f' fill="{colour}" fill-opacity="0.15"' if len(corners) > 2 else ' fill="none"'
         if len(corners) == 1:
             (x, y) = corners[0]
-            parts.append(f'<rect x="{x - 12}" y="{y - 8}" width="24" height="16" fill="{colour}" fill-opacity="0.3" stroke="{colour}"/>')
+            parts.append(
+                f'<rect x="{x - 12}" y="{y - 8}" width="24" height="16" fill="{colour}" fill-opacity="0.3" stroke="{colour}"/>'
+            )
         else:
-            parts.append(f'<polygon points="{text}"{fill} stroke="{colour}" stroke-width="3" stroke-linejoin="round"><title>{escape(body)}</title></polygon>')
-        x, y = np.mean(corners, axis=0)
-        labels.append(f'<text x="{x + 8:.1f}" y="{y - 6:.1f}" fill="{colour}">{escape(body)}</text>')
+            parts.append(
+                f'<polygon points="{text}"{fill} stroke="{colour}" stroke-width="3" stroke-linejoin="round">'
+                f"<title>{escape(body)}</title></polygon>"
+            )
+        names.append((body, colour))
     for point, is_ground in pins(bodies):
         x, y = at(point)
         if is_ground:
             hatch = " ".join(f"M{x - 10 + 5 * i},{y + 20} l-5,6" for i in range(5))
             parts.append(f'<path d="M{x},{y} l-9,20 h18 z M{x - 13},{y + 20} h26 {hatch}" fill="none" stroke="{GROUND}"/>')
         parts.append(f'<circle cx="{x}" cy="{y}" r="4.5" fill="white" stroke="#222222" stroke-width="1.5"/>')
+    labels, height = _legend(names, width, height)
     title = escape(mechanism.scene.title)
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{title}" width="{width}" height="{height:.0f}" '
@@ -101,6 +105,19 @@ def svg(mechanism: Mechanism, q: float | Sequence[float] | None = None, width: i
         + "".join(parts + labels)
         + "</svg>"
     )
+
+
+def _legend(names: Sequence[tuple[str, str]], width: float, top: float) -> tuple[list[str], float]:
+    """The names of the bodies in their colours, in rows below the picture, and where it then ends."""
+    x, y = 14.0, top + 4.0
+    texts: list[str] = []
+    for name, colour in names:
+        advance = 7.5 * len(name) + 18.0
+        if x + advance > width and x > 14.0:
+            x, y = 14.0, y + 18.0
+        texts.append(f'<text x="{x:.1f}" y="{y:.1f}" fill="{colour}" font-weight="bold">{escape(name)}</text>')
+        x += advance
+    return texts, y + 12.0
 
 
 def _pyplot() -> Any:
@@ -127,9 +144,10 @@ def plot_mechanism(mechanism: Mechanism, q: float | Sequence[float] | None, axes
             axes.fill(*closed.T, color=colour, alpha=0.15)
     for point, is_ground in pins(bodies):
         if is_ground:
-            axes.plot(*point, marker=6, markersize=16, color=GROUND)
+            axes.plot(*point, marker=6, markersize=16, color=GROUND, clip_on=False)
         axes.plot(*point, marker="o", markersize=6, markerfacecolor="white", markeredgecolor="#222222")
     axes.set_aspect("equal")
+    axes.margins(0.1)
     axes.set_xlabel("x (m)")
     axes.set_ylabel("y (m)")
     axes.set_title(mechanism.scene.title)

@@ -202,13 +202,13 @@ class Mechanism:
         accuracy: float | None = None,
         *,
         method: str | None = None,
-        tolerance: float = 1e-8,
+        tolerance: float = 1e-10,
         sample_interval: float | None = None,
     ) -> Motion:
         """The free motion of the scene under its loads, drives and friction.
 
         accuracy: the cheapest method that reaches it, with an error estimate. Otherwise ``method`` ("bdf", "esdirk34", "tr-bdf2",
-        "tsit45", "dop853") with a relative and absolute tolerance. sample_interval: s; absent, a thousandth of the duration.
+        "tsit45", "dop853") with a relative and absolute tolerance; without either, BDF at 1e-10, as the command. sample_interval: s; absent, a thousandth of the duration.
         """
         return Motion(self._native.simulate(accuracy, method, tolerance, sample_interval))
 
@@ -243,10 +243,24 @@ class Mechanism:
             _complex(found["eigenvalues"]),
         )
 
-    def cycle(self, accuracy: float | None = None, *, method: str | None = None, tolerance: float = 1e-10, fluctuation: float | None = None) -> Cycle:
+    def cycle(
+        self,
+        accuracy: float | None = None,
+        *,
+        method: str | None = None,
+        tolerance: float = 1e-10,
+        fluctuation: float | None = None,
+    ) -> Cycle:
         """The steady cycle of a rotating machine, and the flywheel that keeps its coefficient of fluctuation to ``fluctuation``."""
         found = self._native.cycle(accuracy, method, tolerance, fluctuation)
-        return Cycle(**{**found, "works": dict(found["works"])})
+        return Cycle(
+            period=found["period"],
+            mean_speed=found["mean_speed"],
+            fluctuation=found["fluctuation"],
+            is_stable=found["is_stable"],
+            works=dict(found["works"]),
+            flywheel=found["flywheel"],
+        )
 
     def rhs(self) -> tuple[Callable[[float, Array], Array], Callable[[float, Array], Array], Array]:
         """The free motion as plain functions for an integrator such as ``scipy.integrate.solve_ivp``: f(t, y), its Jacobian, and the

@@ -17,7 +17,7 @@ class Results(Mapping[str, Array]):
     """Columns by name: arrays of float64, a row for each position or instant. ``units`` has the unit of each.
 
     >>> results = Results({"t": np.array([0.0, 1.0])}, {"t": "s"})
-    >>> results["t"].max(), results.units["t"]
+    >>> float(results["t"].max()), results.units["t"]
     (1.0, 's')
     """
 
@@ -150,7 +150,7 @@ def _quintic(time: Array, values: tuple[Array, Array, Array], left: npt.NDArray[
     h = time[right] - time[left]
     step = np.where(h > 0.0, h, 1.0)
     s = (at - time[left]) / step
-    (p0, v0, a0), (p1, v1, a1) = ((v[k] for v in values) for k in (left, right))
+    (p0, v0, a0), (p1, v1, a1) = ([v[k] for v in values] for k in (left, right))
     # In units of the step: p(s) = p0 + v0 s + a0 s²/2 + c3 s³ + c4 s⁴ + c5 s⁵.
     v0, v1, a0, a1 = v0 * step, v1 * step, a0 * step**2, a1 * step**2
     d, e, f = p1 - p0 - v0 - a0 / 2, v1 - v0 - a0, a1 - a0

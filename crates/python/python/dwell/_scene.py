@@ -6,6 +6,8 @@ import os
 import warnings
 from typing import TYPE_CHECKING, Callable, Sequence
 
+import numpy.typing as npt
+
 from . import _native
 from ._mechanism import Mechanism
 
@@ -89,7 +91,7 @@ class Scene:
         """Assembles its mechanism. Raises SceneError where it cannot be assembled or a load does not fit it."""
         return Mechanism(self._native.assemble(), self)
 
-    def reduce(self, q: object, reactions: Sequence[str] | None = None, *, threads: int = 0) -> Coefficients:
+    def reduce(self, q: npt.ArrayLike, reactions: Sequence[str] | None = None, *, threads: int = 0) -> Coefficients:
         """``assemble().reduce(q, reactions)``."""
         return self.assemble().reduce(q, reactions, threads=threads)
 
@@ -97,9 +99,9 @@ class Scene:
         """``assemble().kinetostatics()``."""
         return self.assemble().kinetostatics()
 
-    def simulate(self, accuracy: float | None = None, **options: object) -> Motion:
-        """``assemble().simulate(…)``."""
-        return self.assemble().simulate(accuracy, **options)  # type: ignore[arg-type]
+    def simulate(self, accuracy: float | None = None) -> Motion:
+        """``assemble().simulate(accuracy)``."""
+        return self.assemble().simulate(accuracy)
 
     def __repr__(self) -> str:
         return f"Scene({self.title!r})"
