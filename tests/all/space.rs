@@ -8,6 +8,7 @@ mod random_loops;
 mod reference;
 mod scenes;
 mod tilted;
+mod trajectories;
 
 use dwell_geometry::space::{
     Actuator, ActuatorKind, Assembly, Joint, JointKind, Mechanism, Plan, Side, Vec3,

@@ -8,15 +8,17 @@
 //! End stops limit a coordinate: one that meets its stop rebounds, or rests on it until a force lifts it off (`stop`).
 //!
 //! `mode` names the modes, `relations` collects what a unit of each force does, `held` solves for the forces at given
-//! modes, and `search` finds the modes of surfaces at rest. Their events are in `contact_events`.
+//! modes (with the contacts that are `independent`), and `search` finds the modes of surfaces at rest. Their events are in `contact_events`.
 
 mod held;
+mod independent;
 mod mode;
 mod relations;
 mod search;
 mod stop;
 
-pub(crate) use held::{Unloaded, independent, solve_contacts};
+pub(crate) use held::{Unloaded, solve_contacts};
+pub(crate) use independent::independent;
 pub use mode::{ContactEvent, ContactMode, ContactStep, StopChange};
 pub(crate) use relations::ContactWorkspace;
 pub use stop::{EndStop, YieldingStop};

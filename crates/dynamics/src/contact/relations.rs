@@ -7,6 +7,7 @@
 //! with F the loads that depend on reactions, a the accelerations of the surfaces and q̈⁰ those of the coordinates without
 //! these loads. The terms that are left out are those of prescribed coordinates.
 
+use super::held::HeldContacts;
 use super::mode::sign;
 use super::{Contact, ContactMode};
 use dwell_kinetostatics::{ForceState, InverseDynamics, MachineModel};
@@ -34,6 +35,8 @@ pub(crate) struct ContactWorkspace<T> {
     pub(super) reactions: Vec<T>,
     pub(super) held_reactions: Vec<T>,
     pub(super) held_responses: Vec<InverseDynamics<T>>,
+    /// The contacts that hold, with their equations.
+    pub(super) held: HeldContacts<T>,
     /// Whether no coordinate accelerates.
     pub(crate) nothing_moves: bool,
 }
@@ -61,6 +64,7 @@ impl<T: Scalar> ContactWorkspace<T> {
             reactions: result.reactions.clone(),
             held_reactions: result.reactions.clone(),
             held_responses: vec![result.clone(); loads],
+            held: HeldContacts::default(),
             nothing_moves: false,
         }
     }

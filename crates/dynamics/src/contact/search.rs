@@ -30,7 +30,8 @@ pub(super) fn find_modes<T: Scalar, M: MachineModel>(
     state: &mut ForceState<'_, T, M>,
     workspace: &mut ContactWorkspace<T>,
     unloaded: &Unloaded<'_, T>,
-) -> Result<HeldContacts<T>> {
+    held: &mut HeldContacts<T>,
+) -> Result<()> {
     let at_limit = |mode: &ContactMode| *mode == ContactMode::AtRest { at_limit: true };
     let mut let_go: Vec<usize> = (0..contacts.len())
         .filter(|&i| at_limit(&workspace.modes[i]))
@@ -43,21 +44,18 @@ pub(super) fn find_modes<T: Scalar, M: MachineModel>(
         workspace.modes[i] = ContactMode::Holds;
     }
     for _ in 0..TRIALS * (1 + open.len()) {
-        let held = match solve_at_modes(contacts, state, workspace, unloaded) {
-            Ok(held) => held,
-            Err(error) => {
-                // Surfaces that others slide past can be held by forces without bounds alone.
-                let Some(i) = hardest_to_hold(&open, contacts, workspace) else {
-                    return Err(error);
-                };
-                let forward = workspace.free[i].value() > 0.0;
-                workspace.modes[i] = ContactMode::Slides { forward };
-                set_moving(&open, contacts, workspace);
-                continue;
-            }
-        };
+        if let Err(error) = solve_at_modes(contacts, state, workspace, unloaded, held) {
+            // Surfaces that others slide past can be held by forces without bounds alone.
+            let Some(i) = hardest_to_hold(&open, contacts, workspace) else {
+                return Err(error);
+            };
+            let forward = workspace.free[i].value() > 0.0;
+            workspace.modes[i] = ContactMode::Slides { forward };
+            set_moving(&open, contacts, workspace);
+            continue;
+        }
         if let_go.is_empty() {
-            let_go = beyond_their_limit(&open, &held, contacts, workspace);
+            let_go = beyond_their_limit(&open, held, contacts, workspace);
         }
         if !let_go.is_empty() {
             for i in let_go.drain(..) {
@@ -80,7 +78,7 @@ pub(super) fn find_modes<T: Scalar, M: MachineModel>(
             _ => false,
         });
         let Some(returns) = returns else {
-            return Ok(held);
+            return Ok(());
         };
         workspace.modes[returns] = ContactMode::Holds;
         set_moving(&open, contacts, workspace);
@@ -143,7 +141,8 @@ fn set_moving<T: Scalar, F>(
     contacts: &[Contact<F>],
     workspace: &mut ContactWorkspace<T>,
 ) {
-    let held = HeldContacts::of(contacts, workspace);
+    let mut held = HeldContacts::default();
+    held.find(contacts, workspace);
     for &i in open {
         if let ContactMode::Slides { forward } | ContactMode::AtLimit { forward } =
             workspace.modes[i]

@@ -20,7 +20,7 @@ use std::f64::consts::TAU;
 /// Part of the range that is left out at each limit position, where everything grows.
 const LIMIT_MARGIN: f64 = 1e-3;
 /// Intervals of a revolution, or of the range, from which paths are drawn.
-const DRAWN_INTERVALS: usize = 120;
+const DRAWN_INTERVALS: usize = 240;
 /// Half a stroke without limits, in sizes of the mechanism.
 const DEFAULT_STROKE: f64 = 0.5;
 
