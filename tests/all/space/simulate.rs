@@ -10,7 +10,10 @@ use dwell_study::{
 
 /// A scene of `validation/spatial` with a motion.
 fn scene(name: &str, motion: &str) -> SpaceScene {
-    let path = format!("{}/../validation/spatial/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    let path = format!(
+        "{}/../validation/spatial/{name}.toml",
+        env!("CARGO_MANIFEST_DIR")
+    );
     let text = std::fs::read_to_string(path).expect("a scene") + motion;
     SpaceScene::parse(name, &text).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
@@ -25,7 +28,11 @@ fn by_dop853(rtol: f64, interval: f64) -> MotionSolver {
     })
 }
 
-fn simulated(scene: &SpaceScene, solver: &MotionSolver, times: Option<&[f64]>) -> TrajectoryOutcome {
+fn simulated(
+    scene: &SpaceScene,
+    solver: &MotionSolver,
+    times: Option<&[f64]>,
+) -> TrajectoryOutcome {
     let span = PictureSpan::default();
     let done = simulate_in_space(scene, solver, times, span, &no_progress);
     let done = done.unwrap_or_else(|e| panic!("{}: {e:?}", scene.name));
@@ -46,7 +53,11 @@ fn written(done: &TrajectoryOutcome, ending: &str) -> Table {
         dwell_findings::Column::new(name, unit.trim_end_matches(']'))
     });
     let columns: Vec<_> = columns.collect();
-    let row = |line: &str| line.split(',').map(|v| v.parse().expect("a number")).collect();
+    let row = |line: &str| {
+        line.split(',')
+            .map(|v| v.parse().expect("a number"))
+            .collect()
+    };
     Table {
         columns,
         rows: lines.map(row).collect(),
@@ -85,14 +96,19 @@ fn the_bricard_linkage_moves_as_its_reference() {
             let wanted = vector(&state[point]);
             for (axis, wanted) in [("x", wanted.x), ("y", wanted.y), ("z", wanted.z)] {
                 let found = column(&table, &format!("{body}.{point}.{axis}"))(row);
-                assert!((found - wanted).abs() < 1e-9, "{point}.{axis} at {t} s: {found}");
+                assert!(
+                    (found - wanted).abs() < 1e-9,
+                    "{point}.{axis} at {t} s: {found}"
+                );
                 compared += 1;
             }
         }
     }
     assert!(compared >= 12, "{compared}");
     let drift = column(&table, "energy.balance_error");
-    let largest = (0..table.rows.len()).map(|k| drift(k).abs()).fold(0.0, f64::max);
+    let largest = (0..table.rows.len())
+        .map(|k| drift(k).abs())
+        .fold(0.0, f64::max);
     let kinetic = column(&table, "energy.kinetic");
     let scale = (0..table.rows.len()).map(kinetic).fold(0.0, f64::max);
     assert!(largest < 1e-12 * scale, "{largest:.1e} of {scale}");
@@ -101,10 +117,17 @@ fn the_bricard_linkage_moves_as_its_reference() {
         sample_interval: None,
     };
     let done = simulated(&scene, &solver, None);
-    assert!(done.outcome.summary.contains("quadrature"), "{}", done.outcome.summary);
+    assert!(
+        done.outcome.summary.contains("quadrature"),
+        "{}",
+        done.outcome.summary
+    );
     let period = recorded(&done, "period");
     let wanted = number(&motion["period_s"]);
-    assert!((period / wanted - 1.0).abs() < 1e-12, "{period} for {wanted}");
+    assert!(
+        (period / wanted - 1.0).abs() < 1e-12,
+        "{period} for {wanted}"
+    );
 }
 
 /// θ and x of the spatial slider-crank after 5 s within 1e-9, at the end and among wanted instants; its revolutions are events.
@@ -173,7 +196,9 @@ duration = 1.0
         assert!(off < 1e-7, "{method:?}: {off:.1e} J");
         // The power balance of each row, by the accelerations that are written.
         let residual = column(&table, "power.residual");
-        let largest = (0..table.rows.len()).map(|k| residual(k).abs()).fold(0.0, f64::max);
+        let largest = (0..table.rows.len())
+            .map(|k| residual(k).abs())
+            .fold(0.0, f64::max);
         assert!(largest < 1e-8, "{method:?}: {largest:.1e} W");
     }
 }
