@@ -278,6 +278,7 @@ impl Bodies<'_> {
         required
     }
 
+    // Long because it has one arm for each kind of load.
     fn subtract_load(&self, kind: &LoadKind, f: f64, masses: &[Mass], required: &mut [Wrench]) {
         let turned = |body: usize, direction: Direction| match direction {
             Direction::Ground(u) => u,

@@ -1,6 +1,8 @@
 //! A mechanism in space with its masses and requested reactions, and the passes over it.
 
-use super::load::{CompiledKind, CompiledLoads, LoadKind};
+use super::action::CompiledKind;
+use super::compiled_loads::CompiledLoads;
+use super::load::LoadKind;
 use super::mass::Mass;
 use crate::error::PositionResult;
 use crate::load::SignalWorkspace;

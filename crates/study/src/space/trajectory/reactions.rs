@@ -20,11 +20,11 @@ const COMPONENTS: [Component; 6] = [
 
 /// The reactions of the model of a trajectory, the requested ones first.
 #[derive(Debug, Clone)]
-pub(in crate::space) struct JointReactions {
+pub(crate) struct JointReactions {
     /// The requested ones that the loads determine.
     pub(super) requested: Vec<Reaction>,
     /// The requested ones that redundant constraints leave open.
-    pub(in crate::space) indeterminate: Vec<Reaction>,
+    pub(crate) indeterminate: Vec<Reaction>,
     /// By joint: whether its force and its moment have a magnitude that the loads determine.
     has_magnitude: Vec<[bool; 2]>,
 }
@@ -34,7 +34,7 @@ impl JointReactions {
     ///
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be assembled.
-    pub(in crate::space) fn new(scene: &SpaceScene) -> Result<(Self, Model), StudyError> {
+    pub(crate) fn new(scene: &SpaceScene) -> Result<(Self, Model), StudyError> {
         let joints = &scene.mechanism.joints;
         let whole = (0..joints.len()).flat_map(|j| {
             let reaction = move |component| Reaction {
