@@ -44,7 +44,7 @@ const KIND_FLOOR: f64 = 1e-3;
 /// A coefficient that a period changes by more than this part of its scale is not periodic.
 const PERIODICITY_TOLERANCE: f64 = 1e-9;
 /// Numbers of bins that are tried.
-const BINS: std::ops::RangeInclusive<u32> = 4..=15;
+const BINS: std::ops::RangeInclusive<u32> = 4..=13;
 /// Points of a cell at which its error is measured, the ends included.
 const CHECKS: usize = 3 * TERMS;
 /// Part of the accuracy that the errors at these points may reach.

@@ -26,7 +26,7 @@ pub(super) fn evaluation(export: &Export, name: &str) -> String {
     match machine.domain.revolutions {
         0 => text += "q(~(q >= d.domain(1) & q <= d.domain(2))) = NaN;\n",
         _ => {
-            text += "q(~(abs(q) < 1e6 * d.domain(2))) = NaN;\nq = q - d.domain(2) * floor(q / d.domain(2));\n"
+            text += "q(~(abs(q) < 1e6 * d.domain(2))) = NaN;\nq = q - d.domain(2) * floor(q / d.domain(2));\n";
         }
     }
     _ = writeln!(
