@@ -11,7 +11,7 @@ use dwell_geometry::{ActuatorId, Range};
 use dwell_kinetostatics::{
     Coefficients, DriveKind, Load, LoadKind, Magnitude, Model, Signal, TableDomain,
 };
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{Scene, SceneFile, SceneLocation};
 use std::f64::consts::TAU;
 
 /// Part of a limited range that is left out at each end, where everything grows.
@@ -47,7 +47,8 @@ impl<'a> ExportedScene<'a> {
         let model = determinate_model(scene)?
             .with_loads(unit_loads)
             .map_err(|e| explain_machine(scene, e.into()))?;
-        let domain = domain(scene, &model, interval)?;
+        let plan = model.plan();
+        let domain = domain(scene, plan.range(), plan.is_angle(0), interval)?;
         reject_change_points(scene, domain)?;
         let description = describe(scene, &loaded, &model, domain);
         Ok(Self {
@@ -125,13 +126,16 @@ fn reject_change_points(scene: &Scene, domain: Domain) -> Result<(), StudyError>
     }
 }
 
-/// The interval of the coordinate.
-fn domain(
-    scene: &Scene,
-    model: &Model,
+/// The interval of the coordinate: what is given in the scene's unit, a period, or the range without its ends.
+///
+/// # Errors
+/// [`StudyError::Scene`] for an interval outside the range, and for a coordinate without ends.
+pub(crate) fn domain(
+    scene: &SceneFile,
+    range: Range,
+    is_angle: bool,
     interval: Option<(f64, f64)>,
 ) -> Result<Domain, StudyError> {
-    let (plan, is_angle) = (model.plan(), model.plan().is_angle(0));
     let limited = |from, to| Domain {
         from,
         to,
@@ -140,10 +144,10 @@ fn domain(
     if let Some((from, to)) = interval {
         let [from, to] = [from, to].map(|written| scene.to_si(written, is_angle));
         let inside = |(lower, upper)| lower <= from && to <= upper;
-        if from < to && plan.range().limits().is_none_or(inside) {
+        if from < to && range.limits().is_none_or(inside) {
             return Ok(limited(from, to));
         }
-        let message = match plan.range().limits() {
+        let message = match range.limits() {
             Some((lower, upper)) if from < to => {
                 let [(lower, unit), (upper, _)] =
                     [lower, upper].map(|q| scene.to_scene_unit(q, is_angle));
@@ -161,7 +165,7 @@ fn domain(
             )],
         ));
     }
-    Ok(match (plan.range(), plan.range().period()) {
+    Ok(match (range, range.period()) {
         (_, Some(period)) => Domain {
             from: 0.0,
             to: period,

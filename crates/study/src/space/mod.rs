@@ -2,11 +2,13 @@
 
 mod check;
 mod explain;
+mod export;
 mod prepared;
 mod trajectory;
 mod views;
 
 pub use check::check_in_space;
+pub use export::export_in_space;
 pub use prepared::PreparedSpaceScene;
 pub use trajectory::analyse_in_space;
 
