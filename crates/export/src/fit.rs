@@ -23,6 +23,12 @@ pub enum FitError<E> {
         /// Which.
         function: Function,
     },
+    /// A number is beyond single precision.
+    #[error("{name} is too large for single precision")]
+    TooLarge {
+        /// What it is of.
+        name: String,
+    },
     /// No number of cells reaches the accuracy.
     #[error("no cells of accuracy {accuracy:e}: {name} bends too much near {q}")]
     NotReached {

@@ -91,18 +91,7 @@ fn main() {
             println!("no C compiler: nothing is compared");
             return;
         }
-        let mut least = [f64::INFINITY; 3];
-        for _ in 0..ROUNDS {
-            least[0] = least[0].min(time_of(&table));
-            let output = Command::new(folder.join("program")).output().unwrap();
-            let text = String::from_utf8(output.stdout).unwrap();
-            let times: Vec<f64> = text
-                .split_whitespace()
-                .map(|n| n.parse().unwrap())
-                .collect();
-            least[1] = least[1].min(times[0]);
-            least[2] = least[2].min(times[1]);
-        }
+        let least = times(&table, &folder);
         std::fs::remove_dir_all(&folder).unwrap();
         let [rust, c, step] = least;
         println!(
@@ -111,6 +100,23 @@ fn main() {
             step / c
         );
     }
+}
+
+/// The least times of a call in Rust, a call in C and a step, ns.
+fn times(table: &TabulatedModel, folder: &Path) -> [f64; 3] {
+    let mut least = [f64::INFINITY; 3];
+    for _ in 0..ROUNDS {
+        least[0] = least[0].min(time_of(table));
+        let output = Command::new(folder.join("program")).output().unwrap();
+        let text = String::from_utf8(output.stdout).unwrap();
+        let times: Vec<f64> = text
+            .split_whitespace()
+            .map(|n| n.parse().unwrap())
+            .collect();
+        least[1] = least[1].min(times[0]);
+        least[2] = least[2].min(times[1]);
+    }
+    least
 }
 
 /// One call of the table's coefficients, ns.

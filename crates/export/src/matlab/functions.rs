@@ -54,6 +54,16 @@ pub(super) fn evaluation(export: &Export, name: &str) -> String {
             next_column += 1;
         }
     }
+    other_parts(export, &mut text);
+    text += "end\n\n";
+    text += PLACE;
+    text += &POLYNOMIAL.replace("TERMS", &TERMS.to_string());
+    text
+}
+
+/// Reactions and positions.
+fn other_parts(export: &Export, text: &mut String) {
+    let machine = &export.machine;
     for (kind, part) in [
         (PartKind::Reactions, "reactions"),
         (PartKind::Positions, "positions"),
@@ -77,13 +87,9 @@ pub(super) fn evaluation(export: &Export, name: &str) -> String {
                     2 * reactions + 1
                 );
             }
-            PartKind::Motion | PartKind::Positions => text += "out.xy = values;\n",
+            PartKind::Motion | PartKind::Positions => *text += "out.xy = values;\n",
         }
     }
-    text += "end\n\n";
-    text += PLACE;
-    text += &POLYNOMIAL.replace("TERMS", &TERMS.to_string());
-    text
 }
 
 const PLACE: &str = "\

@@ -66,6 +66,12 @@ pub(crate) fn explain_fit<E: Display>(
             "what depends on the number of revolutions needs an interval: give --from and --until",
             [place(function)],
         ),
+        FitError::TooLarge { name } => scene_error(
+            scene,
+            format!("no export: {name} is too large for single precision"),
+            "leave --float out",
+            [(SceneLocation::Whole, "of this scene")],
+        ),
         FitError::NotReached { name, q, .. } => {
             let (at, unit) = scene.to_scene_unit(*q, machine.is_angle);
             let accuracy = asked.request.accuracy;
