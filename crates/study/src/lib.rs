@@ -88,6 +88,7 @@ pub use {
     reduce::output::reduce,
     space::{
         PreparedSpaceScene, analyse_in_space, check_in_space, export_in_space, reduce_in_space,
+        simulate_in_space,
     },
     sweep::output::{ParameterSweep, RowStore, sweep},
     symbolic::output::{FormulaFormat, symbolic},

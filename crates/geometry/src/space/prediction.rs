@@ -85,7 +85,8 @@ impl Predictions {
     pub(super) fn predict<T: Scalar>(&self, piece: &Piece, q: f64, pose: &mut Pose<T>) {
         let s = q - piece.from;
         for (freedom, c) in self.scalars.iter().zip(&piece.coordinates) {
-            pose.coordinates[*freedom] = T::from_f64(c.iter().rev().fold(0.0, |sum, c| sum * s + c));
+            pose.coordinates[*freedom] =
+                T::from_f64(c.iter().rev().fold(0.0, |sum, c| sum * s + c));
         }
         for (ball, (start, c)) in pose.balls.iter_mut().zip(&piece.balls) {
             let turn = c.iter().rev().fold(Vec3::ZERO, |sum, c| sum.scaled(s) + *c);

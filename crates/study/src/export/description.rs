@@ -199,7 +199,11 @@ fn describe(scene: &Scene, loaded: &Scene, model: &Model, domain: Domain) -> Mac
     let mut left_out = left_out(scene, model);
     let loads = loaded.loads.iter().zip(kinds).map(|(load, drive)| {
         let (effect, unit) = match drive {
-            Some(drive) => drive_effect(load, drive, &mut left_out),
+            Some(drive) => {
+                let is_couple = matches!(load.kind, LoadKind::Torque { .. });
+                let force = if is_couple { "N m" } else { "N" };
+                drive_effect((&load.name, force), drive, &mut left_out)
+            }
             None => load_effect(load),
         };
         LoadDescription {
@@ -305,16 +309,6 @@ fn reference_sizes(scene: &Scene, loaded: &Scene, model: &Model, domain: Domain)
 
 /// How a load acts, and the unit of its magnitude.
 fn load_effect(load: &Load) -> (LoadEffect, &'static str) {
-    let constant = match load.magnitude {
-        Magnitude::Constant(value) => Some(value),
-        Magnitude::Law(..)
-        | Magnitude::Expression(..)
-        | Magnitude::Function(..)
-        | Magnitude::Friction(_)
-        | Magnitude::Separating(_)
-        | Magnitude::External(_) => None,
-    };
-    let initial = value_at_start(&load.magnitude);
     let unit = match load.kind {
         LoadKind::Gravity { .. } => "m/s2",
         LoadKind::Force { .. }
@@ -331,34 +325,38 @@ fn load_effect(load: &Load) -> (LoadEffect, &'static str) {
         load.kind,
         LoadKind::Damper { .. } | LoadKind::SlideDamper(_) | LoadKind::RotationalDamper { .. }
     );
-    let effect = match (constant, is_damper) {
-        (Some(damping), true) => LoadEffect::Damper { damping },
-        (None, true) => LoadEffect::VariableDamper { initial },
-        (Some(magnitude), false) if load.is_conservative() => {
-            LoadEffect::Conservative { magnitude }
-        }
-        (Some(magnitude), false) => LoadEffect::Constant { magnitude },
-        (None, false) => LoadEffect::Input { initial },
-    };
+    let effect = magnitude_effect(&load.magnitude, is_damper, load.is_conservative());
     (effect, unit)
 }
 
-/// How a drive acts, and the unit of its input.
-fn drive_effect(
-    load: &Load,
-    drive: &DriveKind,
+/// How a magnitude acts: as a parameter if it is a constant, else as an input.
+pub(crate) fn magnitude_effect<C>(
+    magnitude: &Magnitude<C>,
+    is_damper: bool,
+    is_conservative: bool,
+) -> LoadEffect {
+    let initial = value_at_start(magnitude);
+    match (magnitude, is_damper) {
+        (Magnitude::Constant(damping), true) => LoadEffect::Damper { damping: *damping },
+        (Magnitude::Constant(magnitude), false) if is_conservative => LoadEffect::Conservative {
+            magnitude: *magnitude,
+        },
+        (Magnitude::Constant(magnitude), false) => LoadEffect::Constant {
+            magnitude: *magnitude,
+        },
+        (_, true) => LoadEffect::VariableDamper { initial },
+        (_, false) => LoadEffect::Input { initial },
+    }
+}
+
+/// How a drive acts on a coordinate with this unit of force, and the unit of its input.
+pub(crate) fn drive_effect<C>(
+    (name, force): (&str, &'static str),
+    drive: &DriveKind<C>,
     left_out: &mut Vec<String>,
 ) -> (LoadEffect, &'static str) {
-    let force = match load.kind {
-        LoadKind::Torque { .. } => "N m",
-        _ => "N",
-    };
     let initial = value_at_start(drive.input());
     match drive {
-        DriveKind::AppliedForce(Magnitude::Constant(magnitude)) => {
-            let magnitude = *magnitude;
-            (LoadEffect::Input { initial: magnitude }, force)
-        }
         DriveKind::AppliedForce(_) => (LoadEffect::Input { initial }, force),
         DriveKind::Motor(motor) => {
             let motor = Motor {
@@ -373,8 +371,7 @@ fn drive_effect(
         }
         DriveKind::SpeedController(_) => {
             left_out.push(format!(
-                "the speed controller {}: what it applies is an input",
-                load.name
+                "the speed controller {name}: what it applies is an input"
             ));
             (LoadEffect::Input { initial: 0.0 }, force)
         }
@@ -382,7 +379,7 @@ fn drive_effect(
 }
 
 /// The value of a magnitude at t = 0, where it depends on nothing else; else zero.
-fn value_at_start(magnitude: &Magnitude) -> f64 {
+fn value_at_start<C>(magnitude: &Magnitude<C>) -> f64 {
     match magnitude {
         Magnitude::Constant(value) => *value,
         Magnitude::Law(Signal::Time, law) => {

@@ -3,14 +3,14 @@
 use super::explain::explain_position;
 use super::prepared::PreparedSpaceScene;
 use crate::explain::StudyError;
-use crate::export::description::domain;
+use crate::export::description::{domain, drive_effect, magnitude_effect};
 use crate::export::output::{ExportTarget, export_machine};
 use crate::export::{ExportRequest, explain_fit};
 use crate::output::Outcome;
 use crate::reduce::compute::{ReducedScene as _, Reduction};
 use dwell_export::{
-    Domain, Export, FitError, Function, FunctionSampler, LoadDescription, LoadEffect,
-    MachineDescription, PartKind, ReferenceSizes,
+    Domain, Export, FitError, Function, FunctionSampler, LoadDescription, MachineDescription,
+    PartKind, ReferenceSizes,
 };
 use dwell_geometry::PositionError;
 use dwell_kinetostatics::space::{LoadKind, Workspace};
@@ -47,23 +47,47 @@ fn fitted(scene: &SpaceScene, asked: &ExportRequest) -> Result<Export, StudyErro
     })
 }
 
+/// The shapes of the loads, then of the drives.
+fn load_kinds(scene: &SpaceScene) -> Vec<LoadKind> {
+    let drives = scene.drives.iter();
+    let drives = drives.map(|drive| LoadKind::along(drive.coordinate));
+    let loads = scene.loads.iter().map(|load| load.kind);
+    loads.chain(drives).collect()
+}
+
+/// The unit of a load's magnitude, and whether it resists with a speed.
+fn load_unit(kind: &LoadKind) -> (&'static str, bool) {
+    match kind {
+        LoadKind::Gravity(_) => ("m/s2", false),
+        LoadKind::Torque { .. } | LoadKind::JointTorque(_) => ("N m", false),
+        LoadKind::Force { .. } | LoadKind::PointToPointForce { .. } | LoadKind::SlideForce(_) => {
+            ("N", false)
+        }
+        LoadKind::Spring { .. } => ("N/m", false),
+        LoadKind::TorsionSpring { .. } => ("N m/rad", false),
+        LoadKind::Damper { .. } | LoadKind::SlideDamper(_) => ("N s/m", true),
+        LoadKind::RotationalDamper(_) => ("N m s/rad", true),
+    }
+}
+
 fn describe(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> MachineDescription {
     let scene = prepared.scene;
+    let mut left_out = Vec::new();
     let loads = scene.loads.iter().map(|load| {
-        let magnitude = load.magnitude;
+        let (unit, is_damper) = load_unit(&load.kind);
         LoadDescription {
             name: load.name.clone(),
-            effect: match load.kind.is_conservative() {
-                true => LoadEffect::Conservative { magnitude },
-                false => LoadEffect::Constant { magnitude },
-            },
-            unit: match load.kind {
-                LoadKind::Gravity(_) => "m/s2",
-                LoadKind::Torque { .. } => "N m",
-                LoadKind::Force { .. } | LoadKind::PointToPointForce { .. } => "N",
-            },
+            effect: magnitude_effect(&load.magnitude, is_damper, load.kind.is_conservative()),
+            unit,
         }
     });
+    let mut loads: Vec<LoadDescription> = loads.collect();
+    for drive in &scene.drives {
+        let (force, _) = load_unit(&LoadKind::along(drive.coordinate));
+        let (effect, unit) = drive_effect((&drive.name, force), &drive.kind, &mut left_out);
+        let name = drive.name.clone();
+        loads.push(LoadDescription { name, effect, unit });
+    }
     let names: Vec<String> = prepared
         .indeterminate
         .iter()
@@ -88,12 +112,12 @@ fn describe(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> MachineDescrip
         coordinate: prepared.coordinate_name().to_owned(),
         is_angle: prepared.is_angle(),
         domain,
-        initial: [q, 0.0],
-        loads: loads.collect(),
+        initial: [q, q_dot],
+        loads,
         reactions: prepared.reaction_units(),
         points: Vec::new(),
         sizes: sizes(prepared, domain),
-        left_out: left_out.into_iter().collect(),
+        left_out,
     }
 }
 
@@ -110,10 +134,19 @@ fn sizes(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> ReferenceSizes {
         let usable = value.is_finite() && value > 0.0;
         if usable { value } else { 1.0 }
     };
-    let unit_loads = scene.loads.iter().map(|load| match load.kind {
+    let kinds = load_kinds(scene);
+    let unit_loads = kinds.iter().map(|kind| match kind {
         LoadKind::Gravity(_) => positive(mass),
-        LoadKind::Torque { .. } => positive(1.0 / length),
-        LoadKind::Force { .. } | LoadKind::PointToPointForce { .. } => 1.0,
+        LoadKind::Torque { .. }
+        | LoadKind::JointTorque(_)
+        | LoadKind::TorsionSpring { .. }
+        | LoadKind::RotationalDamper(_) => positive(1.0 / length),
+        LoadKind::Force { .. }
+        | LoadKind::PointToPointForce { .. }
+        | LoadKind::SlideForce(_)
+        | LoadKind::Damper { .. }
+        | LoadKind::SlideDamper(_) => 1.0,
+        LoadKind::Spring { .. } => positive(length),
     });
     ReferenceSizes {
         inertia: positive(inertia),
@@ -125,6 +158,7 @@ fn sizes(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> ReferenceSizes {
 /// The exact functions of a machine in space.
 struct SpaceSampler<'a> {
     prepared: &'a PreparedSpaceScene<'a>,
+    loads: Vec<LoadKind>,
     workspace: Workspace<f64>,
     coefficients: Coefficients,
     response: InverseDynamics<f64>,
@@ -141,6 +175,7 @@ impl<'a> SpaceSampler<'a> {
             response: model.result_buffer(),
             curves: PartKind::ALL.map(|kind| machine.curves(kind)),
             columns: PartKind::ALL.map(|kind| machine.columns(kind)),
+            loads: load_kinds(prepared.scene),
             prepared,
         }
     }
@@ -148,7 +183,7 @@ impl<'a> SpaceSampler<'a> {
     /// The response to one unit of a load.
     fn respond(&mut self, load: usize, q: f64) -> Result<Option<f64>, PositionError> {
         let model = self.prepared.model.model();
-        let kind = &self.prepared.scene.loads[load].kind;
+        let kind = &self.loads[load];
         model.unit_load_response(&[q], kind, &mut self.workspace, &mut self.response)?;
         Ok(model.potential_energy(kind, &self.workspace))
     }
