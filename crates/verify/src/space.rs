@@ -14,9 +14,10 @@
 
 mod rows;
 
-pub use rows::closure_error;
+pub use rows::{closure_error, tooth_slip};
 
 use crate::error::{DenseError, Result};
+use dwell_geometry::JointId;
 use dwell_geometry::space::{ActuatorKind, BodyMotion, Joint, Mechanism, Placement, Vec3, Wrench};
 use dwell_kinetostatics::space::{Direction, LoadKind, Mass};
 use faer::Mat;
@@ -215,17 +216,22 @@ impl Bodies<'_> {
     fn all_rows(&self) -> (Vec<Row>, Vec<std::ops::Range<usize>>) {
         let mut rows = Vec::new();
         let mut of_joint = Vec::new();
-        for joint in &self.mechanism.joints {
+        for (j, joint) in self.mechanism.joints.iter().enumerate() {
             let start = rows.len();
-            rows.extend(self.rows(joint));
+            // A driven distance holds nothing by itself.
+            let driven = ActuatorKind::Length(JointId(j));
+            if self.mechanism.actuators.iter().all(|a| a.kind != driven) {
+                rows.extend(self.rows(joint));
+            }
             of_joint.push(start..rows.len());
         }
         for actuator in &self.mechanism.actuators {
             let joint = &self.mechanism.joints[actuator.kind.joint().0];
-            let u = self.arm(joint.bodies[0].0, joint.sides[0].axis);
+            let u = self.arm(joint.side_body(0).0, joint.sides[0].axis);
             rows.push(match actuator.kind {
                 ActuatorKind::Angle(_) => self.angle(joint, u),
                 ActuatorKind::Travel(_) => self.in_plane(joint, u),
+                ActuatorKind::Length(_) => self.distance(joint),
             });
         }
         (rows, of_joint)
@@ -343,7 +349,8 @@ impl Bodies<'_> {
                 wrench.force += system.on_second[i].force.scaled(multipliers[i]);
                 wrench.moment += system.on_second[i].moment.scaled(multipliers[i]);
             }
-            let arm = self.arm(joint.bodies[1].0, joint.sides[1].point);
+            let at = self.point(joint.side_body(1).0, joint.sides[1].point);
+            let arm = at - self.placements[joint.bodies[1].0].position;
             wrench.moment -= arm.cross(wrench.force);
             wrench
         };

@@ -6,7 +6,7 @@ use crate::error::PositionResult;
 use crate::pass::InverseDynamics;
 use dwell_geometry::space::{Assembly, Forces, Mechanism, Plan, Pose, Rotation, Vec3, Wrench};
 use dwell_geometry::{AssemblyError, BodyId, JointId};
-use dwell_numerics::Scalar;
+use dwell_numerics::{Scalar, map_array};
 use thiserror::Error;
 
 /// Axes in which a component is given.
@@ -118,7 +118,7 @@ impl Model {
             let joint = mechanism.joints.get(reaction.joint.0).filter(|_| k < 3);
             let joint = joint.ok_or(ModelError::Reaction(*reaction))?;
             let of_joint = (axes == Axes::Joint).then(|| {
-                let (body, side) = (joint.bodies[0].0, &joint.sides[0]);
+                let (body, side) = (joint.side_body(0).0, &joint.sides[0]);
                 let in_body = Rotation::of_axes(side.axis, side.normal);
                 (body, frame(body).rotation.inverse().after(&in_body))
             });
@@ -305,7 +305,7 @@ impl Model {
                 Component::Force(..) => along.dot(wrench.force),
                 Component::Moment(..) => along.dot(wrench.moment),
             };
-            take(index, wrenches.map(part));
+            take(index, map_array(wrenches, part));
         }
     }
 
