@@ -14,7 +14,7 @@
 
 mod rows;
 
-pub use rows::{closure_error, tooth_slip};
+pub use rows::{closure_error, mesh_error};
 
 use crate::error::{DenseError, Result};
 use dwell_geometry::JointId;

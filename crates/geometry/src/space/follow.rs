@@ -25,8 +25,8 @@ pub(super) struct Node {
 }
 
 /// Steps of one revolution, or of the size of the mechanism: what a prediction of degree five misses between two of them is
-/// little more than rounding.
-const STEPS: f64 = 512.0;
+/// rounding.
+const STEPS: f64 = 1024.0;
 /// A step is halved where the prediction misses by more, rad or parts of the size.
 const MISS: f64 = 2e-3;
 /// A step this small, relative to the first, ends the range.

@@ -18,10 +18,10 @@ pub(super) struct Lowered {
     split: Vec<JointId>,
 }
 
-/// By joint: whether it is on the way between a wheel of a gear pair and its carrier.
+/// By joint: whether it is on the chain between a wheel of a gear pair and its carrier.
 ///
 /// # Errors
-/// [`StructureError::Gear`] where there is no such way.
+/// [`StructureError::Gear`] where there is no such chain.
 fn bearings(mechanism: &Mechanism) -> Result<Vec<bool>, StructureError> {
     let mut found = vec![false; mechanism.joints.len()];
     for (j, joint) in mechanism.joints.iter().enumerate() {
@@ -29,19 +29,19 @@ fn bearings(mechanism: &Mechanism) -> Result<Vec<bool>, StructureError> {
             continue;
         };
         for wheel in joint.bodies {
-            let way = way_between(mechanism, carrier, wheel);
-            let way = way.ok_or(StructureError::Gear {
+            let chain = chain_between(mechanism, carrier, wheel);
+            let chain = chain.ok_or(StructureError::Gear {
                 joint: JointId(j),
                 reason: "no joints with one axis connect a wheel with the carrier",
             })?;
-            way.iter().for_each(|j| found[j.0] = true);
+            chain.iter().for_each(|j| found[j.0] = true);
         }
     }
     Ok(found)
 }
 
 /// The fewest joints with one axis that connect two bodies.
-fn way_between(mechanism: &Mechanism, from: BodyId, to: BodyId) -> Option<Vec<JointId>> {
+fn chain_between(mechanism: &Mechanism, from: BodyId, to: BodyId) -> Option<Vec<JointId>> {
     let has_one_axis = |kind| match kind {
         JointKind::Weld | JointKind::Revolute | JointKind::Prismatic => true,
         JointKind::Cylindrical | JointKind::Helical { .. } => true,
@@ -66,13 +66,13 @@ fn way_between(mechanism: &Mechanism, from: BodyId, to: BodyId) -> Option<Vec<Jo
             }
         }
     }
-    let (mut way, mut body) = (Vec::new(), to);
+    let (mut chain, mut body) = (Vec::new(), to);
     while body != from {
         let (joint, nearer) = by[body.0]?;
-        way.push(joint);
+        chain.push(joint);
         body = nearer;
     }
-    Some(way)
+    Some(chain)
 }
 
 /// By joint: whether it is in the tree, by Kruskal's rule with the freedoms as weights.

@@ -78,7 +78,7 @@ pub enum JointKind {
         /// Its length, m; without meaning where an actuator drives it.
         length: f64,
     },
-    /// The teeth of two wheels, or of a rack and a wheel, that bear on each other at a pitch point of a third body, the carrier: there
+    /// The teeth of two wheels, or of a rack and a wheel, that touch at a pitch point of a third body, the carrier: there
     /// the wheels have the same velocity along the normal n of the teeth,
     ///
     /// ```text

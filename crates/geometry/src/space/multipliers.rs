@@ -41,6 +41,9 @@ impl Plan {
     #[inline(always)]
     pub fn balance<T: Scalar, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
         self.carry_down(pose, forces);
+        for (_, freedom) in &self.tree.driven_lengths {
+            forces.balance[*freedom] = [T::from_f64(0.0); N];
+        }
         for link in &self.tree.links {
             let wrenches = &forces.transmitted[link.body];
             let at = pose.frames[link.body].origin;

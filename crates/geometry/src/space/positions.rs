@@ -12,8 +12,8 @@ use dwell_numerics::Scalar;
 
 /// Steps with a predicted inverse at most.
 const MAX_PREDICTED_STEPS: usize = 3;
-/// A residual this small, relative to the size, is rounding.
-const ROUNDING: f64 = 1e-15;
+/// A residual this small, relative to the size, is rounding: that of the points along a loop, which no step makes smaller.
+const ROUNDING: f64 = 2e-15;
 /// One step with a predicted inverse leaves rounding of so large a residual: where the inverse is wrong by a part of a thousand.
 const ONE_STEP: f64 = 1e-13;
 /// Newton's steps at most.
@@ -95,10 +95,10 @@ impl Plan {
             for (i, row) in group.residuals.iter().enumerate() {
                 pose.scratch[i] = -pose.residuals[*row];
             }
-            let mut inverse = self.predictions.inverse(at, group.factors);
             let mut turns = [T::from_f64(0.0); 3];
             for (j, &freedom) in group.unknowns.iter().enumerate() {
-                let entries = inverse.by_ref().take(m).zip(&pose.scratch);
+                let row = self.predictions.inverse(at, group.factors + j * m);
+                let entries = row.zip(&pose.scratch[..m]);
                 let step = entries.fold(T::from_f64(0.0), |sum, (entry, r)| {
                     sum + T::from_f64(entry) * *r
                 });

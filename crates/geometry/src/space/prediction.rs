@@ -114,7 +114,7 @@ impl Predictions {
         }
     }
 
-    /// The predicted inverse of a group's Jacobian, whose entries begin at a number.
+    /// The predicted inverses of the groups' Jacobians, from an entry on.
     #[inline(always)]
     pub(super) fn inverse(&self, at: PiecePoint, first: usize) -> impl Iterator<Item = f64> + '_ {
         let part = at.ahead / (self.ends[at.index + 1] - self.ends[at.index]);

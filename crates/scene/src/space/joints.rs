@@ -155,7 +155,7 @@ fn gear(
     let help = "add `pitch-point = \"ground.P\"`: the point of the carrier where the teeth meet";
     let pitch = fields.require("pitch-point", help);
     let help =
-        "add `normal = [0, 1, 0]`: the direction in which the teeth bear on each other there";
+        "add `normal = [0, 1, 0]`: the direction along which the teeth push each other there";
     let normal = fields.require("normal", help);
     let normal = normal.and_then(|n| direction(n.value, fields.name_of(n)));
     fields.place("normal", SceneLocation::Axis(id));

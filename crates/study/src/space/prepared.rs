@@ -258,5 +258,5 @@ impl ReducedScene for PreparedSpaceScene<'_> {
 /// Whether the first coordinate is an angle.
 pub(super) fn is_angle(scene: &SpaceScene) -> bool {
     let kind = scene.mechanism.actuators.first().map(|a| a.kind);
-    !matches!(kind, Some(ActuatorKind::Travel(_)))
+    !matches!(kind, Some(ActuatorKind::Travel(_) | ActuatorKind::Length(_)))
 }

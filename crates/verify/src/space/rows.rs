@@ -247,9 +247,9 @@ pub fn closure_error(joint: &Joint, placements: &[Placement]) -> f64 {
     found.iter().fold(0.0, |all, part| all.max(part.abs()))
 }
 
-/// How far the teeth of a gear pair slip from one pose to another, m: what they travel on the second wheel less on the first, each
+/// How far the teeth of a gear pair are off after moving from one pose to another, m: what they travel on the second wheel less on the first, each
 /// relative to the carrier by the screw that leads from one pose to the other (its angle below half a revolution). None of other joints.
-pub fn tooth_slip(joint: &Joint, poses: [&[Placement]; 2]) -> Option<f64> {
+pub fn mesh_error(joint: &Joint, poses: [&[Placement]; 2]) -> Option<f64> {
     let JointKind::Gear { carrier } = joint.kind else {
         return None;
     };
