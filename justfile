@@ -85,6 +85,12 @@ peers:
 octave:
     python3 validation/foreign/run.py
 
+# Exported FMUs by FMPy and the standard's schemas, in a scratch environment: validated, simulated by both kinds, saved and restored
+[group('care')]
+export:
+    cargo build --release --workspace --bins
+    python3 validation/fmu/run.py
+
 # Ten million designs in Parquet files by a run that is killed twice, read back by Polars, DuckDB and pandas as docs/sweep.md shows. Installs these into a scratch environment
 [group('care')]
 designs points="10000000":
@@ -96,15 +102,29 @@ designs points="10000000":
 reference *cases:
     python3 validation/reference/run.py {{ cases }}
 
-# What takes too long for each change: 1e5 revolutions, 1000 pulses, 200 random machines, new random draws in every property, 100 000 mutated scenes, ten million designs, peers, the reference values, the dependencies' advisories
+# What takes too long for each change, as a whole in a night: its parts are the four recipes below
 [group('care')]
-nightly: validate-slow mutations computing
+nightly: nightly-validation nightly-tests && nightly-others
+    seed=$(date +%j); for part in 0 1 2 3 4; do just nightly-fuzz $part $seed || exit 1; done
+
+# Of `nightly`: 1e5 revolutions, 1000 pulses, 200 random machines, all deliberate faults, and the computing half by itself
+[group('care')]
+nightly-validation: validate-slow mutations computing
+
+# Of `nightly`: 2000 new random draws in every property
+[group('care')]
+nightly-tests:
     PROPTEST_CASES=2000 cargo test --release --workspace
-    just fuzz 100000 "$(date +%j)"
-    just peers deny
-    just octave
-    just designs
-    just reference
+
+# Of `nightly`: one of five parts (0 to 4) of 100 000 mutated scenes, of the day's seed or another
+[group('care')]
+nightly-fuzz part="0" seed=`date +%j`:
+    cargo build --release --workspace --bins
+    python3 tests/fuzz/run.py 20000 {{ seed }} --first $(({{ part }} * 20000))
+
+# Of `nightly`: ten million designs, other programs, the reference values, the dependencies' advisories. Installs what these need
+[group('care')]
+nightly-others: peers deny octave designs reference
 
 # What the build server runs
 [group('care')]

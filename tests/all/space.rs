@@ -2,11 +2,13 @@
 //! must be refused.
 
 mod hooke_joint;
+mod loads;
 mod motions;
 mod random_loops;
 mod reference;
 mod scenes;
 mod tilted;
+mod trajectories;
 
 use dwell_geometry::space::{
     Actuator, ActuatorKind, Assembly, Joint, JointKind, Mechanism, Plan, Side, Vec3,

@@ -1,13 +1,14 @@
 //! The commands that take a scene in space.
 
-use crate::options::Command;
+use crate::options::{Command, TrajectoryArgs};
 use dwell_scene::SpaceScene;
-use dwell_study::{StudyError, TrajectoryOutcome};
+use dwell_study::{Analysis, PictureSpan, Progress, StudyError, TrajectoryOutcome};
 
 /// Runs a study of a scene in space.
 pub(crate) fn run_study(
     command: &Command,
     scene: &SpaceScene,
+    progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
     let outcome = match command {
         Command::Check { .. } => dwell_study::check_in_space(scene)?,
@@ -17,10 +18,39 @@ pub(crate) fn run_study(
             points,
             ..
         } => dwell_study::reduce_in_space(scene, points.map(|n| n as usize))?,
+        Command::Kinematics(arguments) => {
+            return run_trajectory(arguments, scene, Analysis::Kinematics, progress);
+        }
+        Command::Statics(arguments) => {
+            return run_trajectory(arguments, scene, Analysis::Statics, progress);
+        }
+        Command::Kinetostatics(arguments) => {
+            return run_trajectory(arguments, scene, Analysis::Kinetostatics, progress);
+        }
+        Command::Simulate { .. } => {
+            let (solver, times, span) = crate::simulation::simulation(command)?;
+            let times = times.as_deref();
+            return dwell_study::simulate_in_space(scene, &solver, times, span, progress);
+        }
         _ => return Err(scene.planar_only().into()),
     };
     Ok(TrajectoryOutcome {
         outcome,
         early_stop: None,
     })
+}
+
+/// Analyses a scene along its trajectory.
+fn run_trajectory(
+    arguments: &TrajectoryArgs,
+    scene: &SpaceScene,
+    analysis: Analysis,
+    progress: Progress<'_>,
+) -> Result<TrajectoryOutcome, StudyError> {
+    let points = arguments.points.map(|n| n as usize);
+    let span = PictureSpan {
+        from: arguments.from,
+        to: arguments.to,
+    };
+    dwell_study::analyse_in_space(scene, analysis, points, span, progress)
 }

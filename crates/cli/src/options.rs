@@ -3,9 +3,10 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use dwell_dynamics::Method;
+use dwell_export::FmiVersion;
 use dwell_report::TableFormat;
 use dwell_study::{
-    FormulaFormat, Language, OperatingPoint, PictureFormat, Pictures, RowStore,
+    ExportTarget, FormulaFormat, Language, OperatingPoint, PictureFormat, Pictures, RowStore,
     SampleInterpolation, Shard,
 };
 use std::path::{Path, PathBuf};
@@ -158,6 +159,9 @@ pub(crate) enum Command {
         #[arg(long, value_name = "NAME")]
         reaction: Option<String>,
     },
+    /// The reduced model as code for controllers and simulations: coefficients, motion, reactions and a fixed step, with
+    /// measured errors and a self-test
+    Export(ExportArgs),
     /// Positions, velocities and accelerations along the prescribed motion, the coordinate sweep or the range
     Kinematics(TrajectoryArgs),
     /// Actuator forces and reactions under the loads, at rest in each position
@@ -253,6 +257,7 @@ impl Command {
             | Self::Symbolic { scene, .. }
             | Self::Calibrate { scene, .. }
             | Self::Sweep { scene, .. } => Some(scene),
+            Self::Export(arguments) => Some(&arguments.scene),
             Self::Kinematics(arguments)
             | Self::Statics(arguments)
             | Self::Kinetostatics(arguments) => Some(&arguments.scene),
@@ -283,6 +288,27 @@ pub(crate) struct TrajectoryArgs {
     /// Where they end
     #[arg(long, value_parser = parse_finite, value_name = "ABSCISSA", allow_hyphen_values = true)]
     pub(crate) to: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportArgs {
+    /// The scene file, or `-` for standard input
+    pub(crate) scene: PathBuf,
+    /// The target
+    #[arg(long, value_parser = choice(EXPORT_TARGETS), value_name = "TARGET")]
+    pub(crate) to: ExportTarget,
+    /// Accuracy of every function, relative to its largest value
+    #[arg(long, default_value = "1e-9", value_parser = parse_table_accuracy, value_name = "ACCURACY", allow_hyphen_values = true)]
+    pub(crate) accuracy: f64,
+    /// Numbers of four bytes; an accuracy below 1e-6 buys nothing then
+    #[arg(long)]
+    pub(crate) float: bool,
+    /// Lower end of the coordinate, in the scene's unit (default: a full period, or the range without 2 % at each end)
+    #[arg(long, requires = "to_coordinate", value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
+    pub(crate) from: Option<f64>,
+    /// Upper end of the coordinate
+    #[arg(long = "until", id = "to_coordinate", requires = "from", value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
+    pub(crate) until: Option<f64>,
 }
 
 /// The values of an option: name, value, help.
@@ -379,6 +405,49 @@ const FORMATS: Choices<FormulaFormat> = &[
         "python",
         FormulaFormat::Code(Language::Python),
         "A function in Python",
+    ),
+];
+
+const EXPORT_TARGETS: Choices<ExportTarget> = &[
+    (
+        "c",
+        ExportTarget::C,
+        "C99: a header and a source that need no library",
+    ),
+    (
+        "rust",
+        ExportTarget::Rust,
+        "A crate without the standard library, allocation or unsafe code",
+    ),
+    (
+        "fmu",
+        ExportTarget::Fmu(FmiVersion::Three),
+        "An FMU of FMI 3.0, for model exchange and co-simulation",
+    ),
+    (
+        "fmu2",
+        ExportTarget::Fmu(FmiVersion::Two),
+        "The same of FMI 2.0",
+    ),
+    (
+        "matlab",
+        ExportTarget::Matlab,
+        "A MAT-file, and functions for MATLAB and Octave",
+    ),
+    (
+        "npz",
+        ExportTarget::Rows(TableFormat::Npz),
+        "The rows of `dwell reduce` as a NumPy archive",
+    ),
+    (
+        "csv",
+        ExportTarget::Rows(TableFormat::Csv),
+        "The same as text",
+    ),
+    (
+        "json",
+        ExportTarget::Json,
+        "The same as a list of name, unit and values of each column",
     ),
 ];
 

@@ -3,25 +3,24 @@
 //! diffsol's own `solve` has no limit of steps and does not check for finite states, and its explicit methods accept
 //! a step whose error is NaN (`f64::max` discards it). So every step is taken here, and
 //! after each one the state, the number of steps and the errors of evaluations are checked. An evaluation
-//! that fails stores its error in a cell and NaN in the derivative: the integrator then shortens
-//! its step or fails, and the caller gets the error of that evaluation.
+//! that fails stores its error in a cell and NaN in the derivative, or a huge number where NaN is accepted: the integrator then
+//! shortens its step or fails, and the caller gets the error of that evaluation.
+
+mod step_loop;
 
 use crate::contact_events::ContactMonitor;
 use crate::dop853;
 use crate::error::{DynamicsError, Result};
 use crate::integration_parts::{Parts, check_interval};
 use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, StepObserver, Termination};
-use crate::options::{Method, Options, Statistics};
+use crate::options::{Method, Options};
 use crate::shared_system::SharedSystem;
 use crate::sliding_system::SlidingSystem;
 use crate::switch_monitor::{Crossing, SwitchMonitor};
 use crate::time_pieces::TimePieces;
-use diffsol::error::OdeSolverError;
-use diffsol::{
-    DiffsolError, NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod,
-    OdeSolverStopReason, VectorCommon,
-};
+use diffsol::{DiffsolError, NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverState, Tableau};
 use std::cell::{Cell, RefCell};
+use step_loop::{StepLoop, solver_error};
 
 /// For few states nalgebra is 2.3 times as fast as faer, with the same steps.
 type Matrix = NalgebraMat<f64>;
@@ -30,8 +29,9 @@ type Solver = NalgebraLU<f64>;
 /// Smallest step, s, at a rate of 1 per s or less; at a higher one, in proportion shorter.
 const MIN_STEP: f64 = 1e-17;
 
-/// diffsol takes two times for one that differ by less than this part of time and step.
-const INTEGRATOR_ROUNDING: f64 = 100.0 * f64::EPSILON;
+/// The rates that an explicit method of diffsol is given where an evaluation fails: it takes the error of a step that is not a
+/// number for none, and accepts it. One with these rates it refuses, and tries a shorter one.
+const REFUSED_RATE: f64 = 1e150;
 
 /// Integrates a system from `start` until `end` (s), or without an end until the observer stops it. The
 /// observer is called after every step. Where a function of time or of the state switches, one integration ends and
@@ -158,8 +158,9 @@ fn integrate_held(
         let Some(event) = event.filter(|_| !is_ended) else {
             break;
         };
-        if matches!(event, HeldEvent::Switch(_)) {
-            // Behind a switch of a load the rates may be those of another time scale.
+        if matches!(event, HeldEvent::Switch(_)) || event.state().t <= from.t {
+            // Behind a switch of a load the rates may be those of another time scale; and with the step that has led beyond
+            // an event at its very start it would be met again.
             step.set(None);
         }
         let passed = pass_event(&shared, &mut monitor, contacts.as_mut(), event);
@@ -179,6 +180,7 @@ fn integrate_held(
     if let Some(whole) = &mut parts.whole {
         // With the modes and speeds behind the last event.
         whole.state.clone_from(&parts.from);
+        whole.statistics.event_evaluations += shared.event_evaluations();
     }
     parts.whole.ok_or(DynamicsError::DurationTooShort)
 }
@@ -261,6 +263,8 @@ fn integrate_smooth(
     let system = RefCell::new(system);
     let failure: RefCell<Option<DynamicsError>> = RefCell::new(None);
     let (evaluations, jacobians) = (Cell::new(0), Cell::new(0));
+    // The search for a first step passes over what is not a number.
+    let refused = Cell::new(f64::NAN);
     // diffsol requests the Jacobian column by column at one state.
     let last = RefCell::new((vec![f64::NAN; n + 1], vec![0.0; n * n]));
     let solver = |e: DiffsolError| solver_error(&e, start.t);
@@ -276,7 +280,7 @@ fn integrate_smooth(
                     // The first error since the last good step is the cause; what a NaN then
                     // leads to is not.
                     failure.borrow_mut().get_or_insert(e);
-                    out.fill(f64::NAN);
+                    out.fill(refused.get());
                 }
             },
             |x, _p, t, v, jv| {
@@ -310,175 +314,35 @@ fn integrate_smooth(
         failure: &failure,
         pieces,
     };
+    // A method of one step goes on with the step before the event; that of many begins with the first order.
+    let state_of = |tableau: Tableau<f64>| {
+        let mut state = problem.rk_state(&tableau)?;
+        if let Some(step) = first_step {
+            *state.as_mut().h = step.min(end.map_or(f64::INFINITY, |end| end - start.t));
+        }
+        Ok::<_, DiffsolError>(state)
+    };
     let mut termination = match options.method {
         Method::Bdf => step_loop.run(&mut problem.bdf::<Solver>().map_err(solver)?, observer),
         Method::Esdirk34 => {
-            step_loop.run(&mut problem.esdirk34::<Solver>().map_err(solver)?, observer)
+            let state = state_of(Tableau::esdirk34()).map_err(solver)?;
+            let by = problem.esdirk34_solver::<Solver>(state);
+            step_loop.run(&mut by.map_err(solver)?, observer)
         }
         Method::TrBdf2 => {
-            step_loop.run(&mut problem.tr_bdf2::<Solver>().map_err(solver)?, observer)
+            let state = state_of(Tableau::tr_bdf2()).map_err(solver)?;
+            let by = problem.tr_bdf2_solver::<Solver>(state);
+            step_loop.run(&mut by.map_err(solver)?, observer)
         }
         // The eighth order is done above.
         Method::Tsit45 | Method::Dop853 => {
-            step_loop.run(&mut problem.tsit45().map_err(solver)?, observer)
+            let state = state_of(Tableau::tsit45()).map_err(solver)?;
+            let mut by = problem.tsit45_solver(state).map_err(solver)?;
+            refused.set(REFUSED_RATE);
+            step_loop.run(&mut by, observer)
         }
     };
     termination.statistics.evaluations = evaluations.get();
     termination.statistics.jacobians = jacobians.get();
     Ok(termination)
-}
-
-/// An error of the integrator itself, at the time it had reached.
-fn solver_error(error: &DiffsolError, t: f64) -> DynamicsError {
-    use OdeSolverError::{StepSizeTooSmall, StopTimeAtCurrentTime, TooManyErrorTestFailures};
-    match error {
-        DiffsolError::OdeSolverError(StepSizeTooSmall { .. } | TooManyErrorTestFailures { .. }) => {
-            DynamicsError::StepTooSmall { t }
-        }
-        DiffsolError::OdeSolverError(StopTimeAtCurrentTime) => DynamicsError::DurationTooShort,
-        other => DynamicsError::Solver {
-            t,
-            reason: other.to_string(),
-        },
-    }
-}
-
-struct StepLoop<'g, 'f> {
-    start: &'g OdeState,
-    end: Option<f64>,
-    options: &'g Options,
-    failure: &'g RefCell<Option<DynamicsError>>,
-    pieces: Option<&'g mut TimePieces<'f>>,
-}
-
-impl StepLoop<'_, '_> {
-    fn run<'a, E, S>(&mut self, solver: &mut S, observer: StepObserver<'_>) -> Termination
-    where
-        E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
-        S: OdeSolverMethod<'a, E>,
-    {
-        let mut state = self.start.clone();
-        let error = self.take_steps(solver, &mut state, observer).err();
-        let solver_statistics = solver.get_statistics();
-        let statistics = Statistics {
-            steps: solver_statistics.number_of_steps,
-            rejected_steps: solver_statistics.number_of_error_test_failures,
-            factorisations: solver_statistics.number_of_linear_solver_setups,
-            ..Statistics::default()
-        };
-        Termination {
-            state,
-            error,
-            statistics,
-        }
-    }
-
-    // Long because every step is checked for all that can go wrong in it.
-    fn take_steps<'a, E, S>(
-        &mut self,
-        solver: &mut S,
-        at: &mut OdeState,
-        observer: StepObserver<'_>,
-    ) -> Result<()>
-    where
-        E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
-        S: OdeSolverMethod<'a, E>,
-    {
-        // The error of the last failed evaluation, else the integrator's own.
-        let failure = self.failure;
-        let cause = |t: f64, e: DiffsolError| {
-            let kept = failure.borrow_mut().take();
-            kept.unwrap_or_else(|| solver_error(&e, t))
-        };
-        let mut scratch = solver.state().y.clone();
-        let mut now = at.clone();
-        if self.set_stop_time(solver, at.t, &cause)? {
-            return Err(DynamicsError::DurationTooShort);
-        }
-        for _ in 0..self.options.max_steps {
-            let reason = solver.step().map_err(|e| cause(at.t, e))?;
-            let state = solver.state();
-            now.t = state.t;
-            now.y.copy_from_slice(state.y.inner().as_slice());
-            if !(now.t.is_finite() && state.h.is_finite() && now.y.iter().all(|y| y.is_finite())) {
-                let kept = self.failure.borrow_mut().take();
-                return Err(kept.unwrap_or(DynamicsError::NotFinite { t: at.t }));
-            }
-            // A trial point that step control recovered from is no failure.
-            self.failure.borrow_mut().take();
-            // It cannot step to an end that is within its rounding of time: it is there.
-            let rounding = INTEGRATOR_ROUNDING * (now.t.abs() + state.h.abs());
-            let reached = state.t;
-            if let Some(end) = self.end.filter(|end| (end - now.t).abs() < rounding) {
-                now.t = end;
-            }
-            let mut dense = |t: f64, out: &mut [f64]| -> Result<()> {
-                let inside = solver.interpolate_inplace(t.min(reached), &mut scratch);
-                inside.map_err(|e| solver_error(&e, t))?;
-                out.copy_from_slice(scratch.inner().as_slice());
-                Ok(())
-            };
-            let control = observer(at, &now, &mut dense)?;
-            at.t = now.t;
-            at.y.copy_from_slice(&now.y);
-            let is_at_stop = matches!(reason, OdeSolverStopReason::TstopReached);
-            // It stops within a rounding of where it is to stop.
-            let rounding = f64::from(u8::from(is_at_stop)) * 8.0 * f64::EPSILON * at.t.abs();
-            let is_end = self.end.is_some_and(|end| at.t >= end - rounding);
-            if control == StepControl::Stop || is_end {
-                return Ok(());
-            }
-            let is_limited = self.options.max_step.is_some() || self.pieces.is_some();
-            if (is_at_stop || is_limited) && self.set_stop_time(solver, at.t, &cause)? {
-                return Ok(());
-            }
-        }
-        Err(DynamicsError::MaxStepsReached {
-            t: at.t,
-            max_steps: self.options.max_steps,
-        })
-    }
-
-    /// The time at which a step that begins at `t` must end at the latest, if there is one.
-    fn stop_time(&mut self, t: f64) -> Result<Option<f64>> {
-        let step = self.options.max_step.map_or(f64::INFINITY, |step| t + step);
-        let feature = match &mut self.pieces {
-            Some(pieces) => pieces.latest_end(t)?,
-            None => f64::INFINITY,
-        };
-        let stop = self.end.unwrap_or(f64::INFINITY).min(step).min(feature);
-        Ok(stop.is_finite().then_some(stop))
-    }
-
-    /// Sets the time at which a step that begins at `t` must end at the latest; whether the end itself is there already
-    /// in the integrator's rounding.
-    fn set_stop_time<'a, E, S>(
-        &mut self,
-        solver: &mut S,
-        t: f64,
-        cause: &dyn Fn(f64, DiffsolError) -> DynamicsError,
-    ) -> Result<bool>
-    where
-        E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
-        S: OdeSolverMethod<'a, E>,
-    {
-        let Some(mut stop) = self.stop_time(t)? else {
-            return Ok(false);
-        };
-        let end = self.end.unwrap_or(f64::INFINITY);
-        loop {
-            match solver.set_stop_time(stop) {
-                Ok(()) => return Ok(false),
-                Err(DiffsolError::OdeSolverError(OdeSolverError::StopTimeAtCurrentTime)) => {
-                    if stop >= end {
-                        return Ok(true);
-                    }
-                    // What is narrower than its rounding of time ends a step behind it.
-                    let rounding = INTEGRATOR_ROUNDING * (t.abs() + solver.state().h.abs());
-                    stop = (stop + rounding).min(end);
-                }
-                Err(error) => return Err(cause(t, error)),
-            }
-        }
-    }
 }

@@ -163,6 +163,14 @@ impl<W> DualWorkspace<W> {
         &mut self.inner
     }
 
+    /// A state as dual numbers whose derivatives are its rates, and what the right-hand side needs.
+    pub(crate) fn along(&mut self, y: &[f64], rates: &[f64]) -> (&[Dual], &mut W) {
+        for (dual, (&v, &d)) in self.y.iter_mut().zip(y.iter().zip(rates)) {
+            *dual = Dual { v, d };
+        }
+        (&self.y, &mut self.inner)
+    }
+
     /// The first columns of a Jacobian, row by row into `out`.
     pub(crate) fn jacobian(
         &mut self,

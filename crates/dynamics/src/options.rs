@@ -107,6 +107,8 @@ pub struct Statistics {
     pub stiff_steps: usize,
     /// Evaluations of the equation of motion.
     pub evaluations: usize,
+    /// Further ones for the events of contacts and of switches: to notice them, to locate them, and to go on behind them.
+    pub event_evaluations: usize,
     /// Evaluations of its Jacobian.
     pub jacobians: usize,
     /// Factorisations.
@@ -122,6 +124,7 @@ impl Statistics {
             rejected_steps: self.rejected_steps + other.rejected_steps,
             stiff_steps: self.stiff_steps + other.stiff_steps,
             evaluations: self.evaluations + other.evaluations,
+            event_evaluations: self.event_evaluations + other.event_evaluations,
             jacobians: self.jacobians + other.jacobians,
             factorisations: self.factorisations + other.factorisations,
         }

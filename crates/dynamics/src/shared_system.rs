@@ -5,13 +5,14 @@ use crate::error::Result;
 use crate::ode::{OdeState, OdeSystem};
 use crate::sliding::Sliding;
 use dwell_laws::SwitchKind;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell, RefMut};
 
 /// A system that is integrated and, between its steps, looked at.
 pub(crate) struct SharedSystem<'s> {
     kinds: Vec<SwitchKind>,
     size: usize,
     inner: RefCell<&'s mut dyn OdeSystem>,
+    event_evaluations: Cell<usize>,
 }
 
 impl<'s> SharedSystem<'s> {
@@ -20,6 +21,7 @@ impl<'s> SharedSystem<'s> {
             kinds: system.switch_kinds().to_vec(),
             size: system.size(),
             inner: RefCell::new(system),
+            event_evaluations: Cell::new(0),
         }
     }
 
@@ -31,6 +33,17 @@ impl<'s> SharedSystem<'s> {
     /// Number of its switches.
     pub(crate) fn switches(&self) -> usize {
         self.kinds.len()
+    }
+
+    /// How often it was evaluated for the monitors of events.
+    pub(crate) fn event_evaluations(&self) -> usize {
+        self.event_evaluations.get()
+    }
+
+    /// The system, for one more evaluation of this kind.
+    fn inner_for_event(&self) -> RefMut<'_, &'s mut dyn OdeSystem> {
+        self.event_evaluations.set(self.event_evaluations.get() + 1);
+        self.inner.borrow_mut()
     }
 
     /// At which values they switch.
@@ -61,7 +74,7 @@ impl OdeSystem for &SharedSystem<'_> {
     }
 
     fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
-        self.inner.borrow_mut().switch_values(t, y, out)
+        self.inner_for_event().switch_values(t, y, out)
     }
 
     fn switch_rates(
@@ -71,7 +84,7 @@ impl OdeSystem for &SharedSystem<'_> {
         rates: &[f64],
         out: &mut [[f64; 2]],
     ) -> Result<bool> {
-        self.inner.borrow_mut().switch_rates(t, y, rates, out)
+        self.inner_for_event().switch_rates(t, y, rates, out)
     }
 
     fn record_sliding(&mut self, at: &OdeState, switch: usize, sliding: Option<&Sliding>) {
@@ -91,11 +104,11 @@ impl OdeSystem for &SharedSystem<'_> {
     }
 
     fn contact_margins(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<bool> {
-        self.inner.borrow_mut().contact_margins(t, y, out)
+        self.inner_for_event().contact_margins(t, y, out)
     }
 
     fn pass_contacts(&mut self, t: f64, y: &mut [f64], step: &ContactStep<'_>) -> Result<()> {
-        self.inner.borrow_mut().pass_contacts(t, y, step)
+        self.inner_for_event().pass_contacts(t, y, step)
     }
 
     fn error_weight(&self, state: usize) -> f64 {

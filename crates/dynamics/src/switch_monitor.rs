@@ -256,6 +256,9 @@ impl SwitchMonitor {
         now: &OdeState,
         dense: DenseOutput<'_>,
     ) -> Result<Option<Crossing>> {
+        if self.switches.is_empty() {
+            return Ok(None);
+        }
         self.step = now.t - before.t;
         system.switch_values(before.t, &before.y, &mut self.values)?;
         for (switch, &value) in self.switches.iter_mut().zip(&self.values) {

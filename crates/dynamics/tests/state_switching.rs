@@ -5,7 +5,8 @@
 mod parts;
 
 use dwell_dynamics::{
-    Machine, Method, OdeState, Options, Solution, TabulatedMachine, solve, solve_system,
+    ContactEvent, Machine, Method, OdeState, Options, Solution, TabulatedMachine, solve,
+    solve_system,
 };
 use dwell_kinetostatics::{Drive, DriveKind, Magnitude, Signal, SpeedController, TableDomain};
 use dwell_laws::{Expression, Interpolation, Law, Spline};
@@ -205,6 +206,47 @@ fn a_table_meets_the_same_switches() {
     let found = end_state(&solution.expect("a start"));
     for (found, exact) in found.into_iter().zip(exact) {
         assert!((found - exact).abs() < 1e-8, "{found} {exact}");
+    }
+}
+
+/// The table of a machine slides along a switch as the machine does: a brake holds the wheel until a growing couple exceeds
+/// it.
+#[test]
+fn a_table_slides_along_the_same_switch() {
+    let machine = wheel(couple("-3*sign(v) + if(t < 1.5, 0, 2*t - 1)"), &[]);
+    let table = TabulatedMachine::new(&machine, 1e-10, TableDomain::Between(-1.0, 5.0));
+    let table = table.expect("a table");
+    let start = OdeState {
+        t: 0.0,
+        y: machine.initial_state(&[0.0], &[2.0]),
+    };
+    for method in Method::ALL {
+        let options = Options::new(method, 1e-10);
+        let exact = run(&machine, 2.0, 2.5, &options);
+        let mut ode = table.ode(0.0, &start.y, 0.0).expect("a start");
+        let outputs = dwell_dynamics::ObservedMachine::new(&machine, machine.model());
+        let solution = solve_system(&mut ode, outputs, &start, Some(2.5), &options, &[]);
+        let mut solution = solution.expect("a start").completed().expect("a motion");
+        solution.add_contact_events(ode.take_contact_events());
+        let times =
+            |of: &Solution| -> Vec<f64> { of.contact_events.iter().map(ContactEvent::t).collect() };
+        let (found, expected) = (times(&solution), times(&exact));
+        assert_eq!(
+            found.len(),
+            expected.len(),
+            "{method:?} {found:?} {expected:?}"
+        );
+        // It stops where the brake has used up its kinetic energy, and goes on where the couple is that of the brake.
+        assert!(found.len() >= 2, "{method:?} {found:?}");
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!(
+                (found - expected).abs() < 1e-8,
+                "{method:?} {found} {expected}"
+            );
+        }
+        for (found, exact) in end_state(&solution).into_iter().zip(end_state(&exact)) {
+            assert!((found - exact).abs() < 1e-8, "{method:?} {found} {exact}");
+        }
     }
 }
 

@@ -269,6 +269,7 @@ mod tests {
                     Shape::GroundPin { at: [0.0, 0.0] },
                     Shape::pin([c, s], Paint::Ink, 0.0),
                 ],
+                ..Drawing::default()
             }
         };
         Animation {

@@ -53,10 +53,17 @@ pub(crate) fn insets(drawings: &[Drawing], cell: &Rect) -> Insets {
     let frame = fitted(bounds(drawings), cell.inset(guess));
     let x_ticks = axes::horizontal_ticks(&frame.x, frame.plot.width());
     let y_ticks = axes::vertical_ticks(&frame.y, frame.plot.height());
-    let needed = |drawing: &Drawing| Insets {
-        left: axes::side_room(&drawing.y, &y_ticks, frame.plot.height()),
-        bottom: axes::bottom_room(Some(&drawing.x), &x_ticks, cell),
-        ..guess
+    let needed = |drawing: &Drawing| match drawing.without_axes {
+        true => Insets {
+            left: 0.0,
+            bottom: 0.0,
+            ..guess
+        },
+        false => Insets {
+            left: axes::side_room(&drawing.y, &y_ticks, frame.plot.height()),
+            bottom: axes::bottom_room(Some(&drawing.x), &x_ticks, cell),
+            ..guess
+        },
     };
     let all = drawings.iter().map(needed).reduce(Insets::max);
     all.unwrap_or(guess)
@@ -92,7 +99,9 @@ impl DrawingLayout {
         let frame = &self.frame;
         let x = axes::horizontal_ticks(&frame.x, frame.plot.width());
         let y = axes::vertical_ticks(&frame.y, frame.plot.height());
-        axes::grid_lines(canvas, frame, &x, &y);
+        if !drawing.without_axes {
+            axes::grid_lines(canvas, frame, &x, &y);
+        }
         canvas.note(LayoutRecord::begin_plot);
         for shape in &drawing.shapes {
             canvas.note(|record| record.begin_curve(shape.name()));
@@ -101,14 +110,16 @@ impl DrawingLayout {
         canvas.note(|record| record.begin_curve(None));
         let legend = self.legend.as_ref().map(|legend| legend.area);
         drawn_words::draw(canvas, frame, &drawing.shapes, legend);
-        axes::horizontal_axis(canvas, frame, cell, Some(&drawing.x), &x);
-        let style = axes::VerticalAxisStyle {
-            ticks: &y,
-            color: INK,
-            right: false,
-            heights: self.heights,
-        };
-        axes::vertical_axis(canvas, frame, cell, &drawing.y, &style);
+        if !drawing.without_axes {
+            axes::horizontal_axis(canvas, frame, cell, Some(&drawing.x), &x);
+            let style = axes::VerticalAxisStyle {
+                ticks: &y,
+                color: INK,
+                right: false,
+                heights: self.heights,
+            };
+            axes::vertical_axis(canvas, frame, cell, &drawing.y, &style);
+        }
         axes::title(canvas, &drawing.title, &frame.plot, cell);
         if let Some(legend) = &self.legend {
             legend.draw(canvas);

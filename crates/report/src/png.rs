@@ -239,6 +239,7 @@ mod tests {
                 x,
                 y,
                 shapes,
+                ..Drawing::default()
             }
             .into()
         })

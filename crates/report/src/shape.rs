@@ -13,6 +13,8 @@ pub struct Drawing {
     pub y: Axis,
     /// The shapes, the first at the back.
     pub shapes: Vec<Shape>,
+    /// Without axes, ticks and grid lines: a view in which lengths along a side mean nothing.
+    pub without_axes: bool,
 }
 
 /// How a line is drawn.

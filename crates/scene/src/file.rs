@@ -82,4 +82,15 @@ impl SceneFile {
         }
         0..0
     }
+
+    /// A length, m, or an angle, rad, as the file would write it: in the scene's unit, and that unit.
+    pub fn to_scene_unit(&self, si: f64, is_angle: bool) -> (f64, &str) {
+        let unit = self.units.coordinate_unit(is_angle);
+        (unit.to_scene_unit(si), &unit.name)
+    }
+
+    /// A length or an angle in the scene's unit, as one of SI: m or rad.
+    pub fn to_si(&self, written: f64, is_angle: bool) -> f64 {
+        self.units.coordinate_unit(is_angle).to_si(written)
+    }
 }

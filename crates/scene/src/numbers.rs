@@ -46,17 +46,6 @@ impl Scene {
         }
     }
 
-    /// A length, m, or an angle, rad, as the file would write it: in the scene's unit, and that unit.
-    pub fn to_scene_unit(&self, si: f64, is_angle: bool) -> (f64, &str) {
-        let unit = self.units.coordinate_unit(is_angle);
-        (unit.to_scene_unit(si), &unit.name)
-    }
-
-    /// A length or an angle in the scene's unit, as one of SI: m or rad.
-    pub fn to_si(&self, written: f64, is_angle: bool) -> f64 {
-        self.units.coordinate_unit(is_angle).to_si(written)
-    }
-
     /// The same scene with the number at `path` replaced by `value`, in the scene's own unit.
     ///
     /// The number is replaced in the text and the text read again: whatever follows from the

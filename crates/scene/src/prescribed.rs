@@ -1,6 +1,6 @@
 //! Prescribed motions and coordinate sweeps.
 
-use crate::coordinates::ParsedActuator;
+use crate::coordinates::NamedActuator;
 use crate::diagnostics::Span;
 use crate::keys::{TableSchema, table};
 use crate::law::{LawDomain, interpolation, law};
@@ -19,7 +19,7 @@ const DEFAULT_POINTS: usize = 361;
 /// Reports a section of motion in a scene without actuators.
 pub(crate) fn require_actuators(
     fields: &TableReader<'_>,
-    actuators: &[ParsedActuator<'_>],
+    actuators: &[NamedActuator<'_>],
 ) -> Option<()> {
     if actuators.is_empty() {
         let message = format!("there is a {} but no actuator", fields.what);
@@ -31,7 +31,7 @@ pub(crate) fn require_actuators(
 }
 
 /// The actuator that an entry is named by.
-pub(crate) fn actuator_named(entry: &Entry<'_>, actuators: &[ParsedActuator<'_>]) -> Option<usize> {
+pub(crate) fn actuator_named(entry: &Entry<'_>, actuators: &[NamedActuator<'_>]) -> Option<usize> {
     let found = actuators.iter().position(|a| a.name == entry.name);
     found.or_else(|| {
         let names = actuators.iter().map(|a| a.name);
@@ -46,7 +46,7 @@ pub(crate) fn actuator_named(entry: &Entry<'_>, actuators: &[ParsedActuator<'_>]
 fn entries_by_actuator<'f, 'a>(
     fields: &'f TableReader<'a>,
     table: &'static TableSchema,
-    actuators: &[ParsedActuator<'_>],
+    actuators: &[NamedActuator<'_>],
 ) -> Option<Vec<Option<&'f Entry<'a>>>> {
     let section = &fields.what;
     require_actuators(fields, actuators)?;
@@ -74,7 +74,7 @@ fn entries_by_actuator<'f, 'a>(
 /// `[prescribed]`; `start` holds each actuator's coordinate at assembly, SI.
 pub(crate) fn prescribed_motion(
     fields: &TableReader<'_>,
-    actuators: &[ParsedActuator<'_>],
+    actuators: &[NamedActuator<'_>],
     start: &[f64],
 ) -> Option<PrescribedMotion> {
     let help = "add `duration = 2.0`: how long the motion lasts, in s";
@@ -115,7 +115,7 @@ pub(crate) fn prescribed_motion(
 pub(crate) fn law_of(
     entry: &Entry<'_>,
     section: &str,
-    actuator: &ParsedActuator<'_>,
+    actuator: &NamedActuator<'_>,
     (start, end): (f64, f64),
 ) -> Option<Law> {
     let fields = TableReader::open(entry, format!("`{}` in {section}", shorten(entry.name)))?;
@@ -152,7 +152,7 @@ fn points(fields: &TableReader<'_>) -> Option<usize> {
 /// `[coordinate-sweep]`; `start` holds each actuator's coordinate at assembly, SI.
 pub(crate) fn coordinate_sweep(
     fields: &TableReader<'_>,
-    actuators: &[ParsedActuator<'_>],
+    actuators: &[NamedActuator<'_>],
     start: &[f64],
 ) -> Option<CoordinateSweep> {
     let before = fields.log().count();
@@ -212,7 +212,7 @@ enum SweepCoordinate {
     Swept([f64; 2]),
 }
 
-fn sweep_coordinate(entry: &Entry<'_>, actuator: &ParsedActuator<'_>) -> Option<SweepCoordinate> {
+fn sweep_coordinate(entry: &Entry<'_>, actuator: &NamedActuator<'_>) -> Option<SweepCoordinate> {
     let what = format!("`{}` in [coordinate-sweep]", shorten(entry.name));
     let read = |value: Value<'_>| actuator.coordinate_value(value, &what);
     let value = entry.value;

@@ -65,9 +65,7 @@ impl ContactMonitor {
     /// # Errors
     /// [`DynamicsError`] where no mode is found, or the state cannot be evaluated.
     pub(crate) fn settle(&mut self, system: &mut dyn OdeSystem, at: &mut OdeState) -> Result<()> {
-        for margin in &mut self.margins {
-            margin.is_inside = false;
-        }
+        self.begin_anew();
         let is_open = system.contact_margins(at.t, &at.y, &mut self.values)?;
         // A margin that is not a number is none.
         let touched: Vec<bool> = self.values.iter().map(|margin| *margin < -BEYOND).collect();
@@ -75,6 +73,14 @@ impl ContactMonitor {
             return Ok(());
         }
         self.change_modes(system, at, &touched)
+    }
+
+    /// Nothing is known of the margins with other modes, or behind other pieces.
+    fn begin_anew(&mut self) {
+        for margin in &mut self.margins {
+            margin.is_inside = false;
+            margin.points = [(f64::NAN, f64::NAN); 2];
+        }
     }
 
     /// The first event in a step that ends at `now`.
@@ -88,7 +94,18 @@ impl ContactMonitor {
         now: &OdeState,
         dense: DenseOutput<'_>,
     ) -> Result<Option<(OdeState, Vec<bool>)>> {
-        system.contact_margins(before.t, &before.y, &mut self.values)?;
+        // Most steps begin where the last one has ended, whose margins are known.
+        let is_known = |margin: &Margin| margin.points[0].0 == before.t;
+        match self.margins.iter().all(is_known) {
+            true => {
+                for (value, margin) in self.values.iter_mut().zip(&self.margins) {
+                    *value = margin.points[0].1;
+                }
+            }
+            false => {
+                system.contact_margins(before.t, &before.y, &mut self.values)?;
+            }
+        }
         for (margin, &value) in self.margins.iter_mut().zip(&self.values) {
             margin.points = [(before.t, value), (f64::NAN, f64::NAN)];
             margin.largest = value.abs();
@@ -227,9 +244,7 @@ impl ContactMonitor {
             span: self.span,
             repeated: self.last.1 > REPEATED,
         };
-        for margin in &mut self.margins {
-            margin.is_inside = false;
-        }
+        self.begin_anew();
         system.pass_contacts(at.t, &mut at.y, &step)
     }
 }

@@ -1,9 +1,11 @@
 //! A machine's table as a system to be integrated, with its exact Jacobian: dual numbers through the pieces.
 
 use super::{LoadEffect, TabulatedCoordinate, TabulatedMachine, TabulatedSignal};
+use crate::contact::ContactEvent;
 use crate::error::{DynamicsError, Result, positive_inertia};
 use crate::machine_ode::with_later_works;
-use crate::ode::{DualWorkspace, OdeSystem};
+use crate::ode::{DualWorkspace, OdeState, OdeSystem};
+use crate::sliding::Sliding;
 use crate::state_switches::{HeldSource, SourceState};
 use dwell_kinetostatics::KinetostaticsError;
 use dwell_laws::{Features, SwitchKind};
@@ -21,6 +23,14 @@ pub struct TabulatedMachineOde<'t> {
     energy_scale: f64,
     /// By switching load: its held pieces.
     held: Vec<HeldSource>,
+    contact_events: Vec<ContactEvent>,
+}
+
+impl TabulatedMachineOde<'_> {
+    /// Where the motion so far began to slide along a switch of a load, and where it left it; they are taken.
+    pub fn take_contact_events(&mut self) -> Vec<ContactEvent> {
+        std::mem::take(&mut self.contact_events)
+    }
 }
 
 /// Working memory in one kind of number.
@@ -87,6 +97,7 @@ impl TabulatedMachine {
             dual_workspace: DualWorkspace::new(TableWorkspace::new(self), self.state_count()),
             energy_scale: with_later_works(energy_scale, largest_work),
             held: Vec::new(),
+            contact_events: Vec::new(),
         })
     }
 
@@ -231,6 +242,54 @@ impl OdeSystem for TabulatedMachineOde<'_> {
         };
         machine.state_switches.values(&self.held, source_state, out);
         Ok(())
+    }
+
+    fn switch_rates(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        rates: &[f64],
+        out: &mut [[f64; 2]],
+    ) -> Result<bool> {
+        let Self {
+            machine,
+            dual_workspace,
+            ..
+        } = self;
+        // Along the rates every signal is a dual number, whose derivative is its rate.
+        let (along, workspace) = dual_workspace.along(y, rates);
+        let columns = &mut workspace.columns;
+        machine.columns.eval(along[0], columns, &mut [])?;
+        let source_state = |k: usize, signals: &mut Vec<[f64; 2]>| {
+            let load = &machine.tabulated_loads[k];
+            signals.extend(load.signals.iter().map(|signal| match signal {
+                TabulatedSignal::Time => [t, 1.0],
+                TabulatedSignal::Value(_) | TabulatedSignal::Speed(_) => {
+                    let Dual { v, d } = signal.eval(t, along, columns);
+                    [v, d]
+                }
+            }));
+            let (drive, speed) = (load.drive(), columns[k] * along[1]);
+            let state = drive
+                .and_then(|drive| drive.state)
+                .map(|place| along[2 + place]);
+            let source = SourceState {
+                magnitude: &load.magnitude,
+                drive: drive.map(|drive| (drive, speed.v, state.map(|state| state.v))),
+            };
+            (source, [speed.d, state.map_or(0.0, |state| state.d)])
+        };
+        machine.state_switches.rates(&self.held, source_state, out);
+        Ok(true)
+    }
+
+    fn record_sliding(&mut self, at: &OdeState, switch: usize, sliding: Option<&Sliding>) {
+        self.contact_events.push(ContactEvent::Switch {
+            t: at.t,
+            y: at.y.clone(),
+            load: self.switch_source(switch),
+            sliding: sliding.cloned(),
+        });
     }
 
     fn hold_pieces(&mut self, pieces: &[Option<f64>]) {

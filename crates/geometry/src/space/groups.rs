@@ -99,7 +99,10 @@ impl Plan {
         unknowns.sort_unstable();
         let n = unknowns.len();
         let mut group = Group {
-            residuals: rows.iter().map(|&(c, k)| self.closures[c].rows.start + k).collect(),
+            residuals: rows
+                .iter()
+                .map(|&(c, k)| self.closures[c].rows.start + k)
+                .collect(),
             row_scales: rows.iter().map(|r| self.row_scale(*r)).collect(),
             column_scales: unknowns.iter().map(|f| self.unit(*f)).collect(),
             ..Group::default()

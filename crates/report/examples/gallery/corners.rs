@@ -54,6 +54,7 @@ pub(crate) fn corners() -> Figure {
             .named("bar"),
             Shape::GroundPin { at: [0.0, 0.0] },
         ],
+        ..Drawing::default()
     };
     let flat = Drawing {
         title: "Flat".to_owned(),
@@ -66,6 +67,7 @@ pub(crate) fn corners() -> Figure {
             ),
             Shape::pin([5.0, 0.0], Paint::Ink, 0.0),
         ],
+        ..Drawing::default()
     };
     Figure {
         name: "corners".to_owned(),

@@ -87,6 +87,7 @@ pub(crate) fn path() -> Figure {
         x: Axis::new("x", "m"),
         y: Axis::new("y", "m"),
         shapes,
+        ..Drawing::default()
     };
     Figure {
         name: "path".to_owned(),

@@ -101,6 +101,7 @@ pub(crate) fn linkage() -> Figure {
         x: Axis::new("x", "m"),
         y: Axis::new("y", "m"),
         shapes,
+        ..Drawing::default()
     };
     let slide = Drawing {
         title: "Slider–crank with loads".to_owned(),
@@ -142,6 +143,7 @@ pub(crate) fn linkage() -> Figure {
             Shape::text([60.0, 80.0], "B", TextPlacement::Above),
             Shape::text([0.0, 0.0], "A", TextPlacement::AboveLeft),
         ],
+        ..Drawing::default()
     };
     Figure {
         name: "linkage".to_owned(),
@@ -192,6 +194,7 @@ pub(crate) fn animation() -> Animation {
             x: Axis::new("x", "m"),
             y: Axis::new("y", "m"),
             shapes,
+            ..Drawing::default()
         }
     };
     Animation {

@@ -3,9 +3,9 @@
 use super::bodies::Space;
 use super::joints::{Joints, ParsedJoint};
 use crate::bodies::Bodies;
+use crate::coordinates::{NamedActuator, ParsedActuator as AnyActuator, check_coordinate_name};
 use crate::diagnostics::Span;
 use crate::keys::table;
-use crate::names::check;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
@@ -14,22 +14,7 @@ use dwell_geometry::{ActuatorId, JointId};
 use toml::de::DeValue;
 
 /// An actuator as read; nothing in it if it was wrong.
-#[derive(Debug)]
-pub(super) struct ParsedActuator<'a> {
-    pub(super) name: &'a str,
-    pub(super) actuator: Option<Actuator>,
-}
-
-impl ParsedActuator<'_> {
-    /// Whether its coordinate is an angle; one that could not be read counts as one.
-    pub(super) fn is_angle(&self) -> bool {
-        let kind = self.actuator.as_ref().map(|a| a.kind);
-        !matches!(
-            kind,
-            Some(ActuatorKind::Travel(_) | ActuatorKind::Length(_))
-        )
-    }
-}
+pub(super) type ParsedActuator<'a> = AnyActuator<'a, Actuator>;
 
 pub(super) fn actuators<'a>(
     fields: &TableReader<'a>,
@@ -38,7 +23,7 @@ pub(super) fn actuators<'a>(
 ) -> Vec<ParsedActuator<'a>> {
     let mut found: Vec<ParsedActuator<'a>> = Vec::new();
     for (k, entry) in fields.entries.iter().enumerate() {
-        check("an actuator", entry);
+        check_coordinate_name(entry, "an actuator");
         entry
             .log()
             .place(SceneLocation::Actuator(ActuatorId(k)), &entry.key);
@@ -53,9 +38,13 @@ pub(super) fn actuators<'a>(
                 "rename one: both are keys of [assembly]",
             );
         }
+        let actuator = read_actuator(entry, joints);
+        let kind = actuator.as_ref().map(|a| a.kind);
+        let is_length = |kind| matches!(kind, ActuatorKind::Travel(_) | ActuatorKind::Length(_));
+        let is_angle = !kind.is_some_and(is_length);
         found.push(ParsedActuator {
-            name: entry.name,
-            actuator: read_actuator(entry, joints),
+            named: NamedActuator::new(entry, is_angle, false),
+            actuator,
         });
     }
     found
@@ -77,20 +66,30 @@ fn read_actuator(entry: &Entry<'_>, joints: &Joints<'_>) -> Option<Actuator> {
             .value
             .reject(message, "expected the name of a joint", help);
     }
-    let name = coordinate.value.string(fields.name_of(coordinate))?;
-    let at = coordinate.value.span();
-    let joint = joints.find(name, &at)?;
-    let id = JointId(joint);
-    let kind = match coordinate.name {
-        "travel" => ActuatorKind::Travel(id),
-        "length" => ActuatorKind::Length(id),
-        _ => ActuatorKind::Angle(id),
+    let kind: fn(JointId) -> ActuatorKind = match coordinate.name {
+        "travel" => ActuatorKind::Travel,
+        "length" => ActuatorKind::Length,
+        _ => ActuatorKind::Angle,
     };
-    require_freedom(kind, &joints.list[joint], &at)?;
+    let id = joint_with_freedom(kind, coordinate, &fields, joints)?;
     Some(Actuator {
         name: entry.name.to_owned(),
-        kind,
+        kind: kind(id),
     })
+}
+
+/// The joint that an entry names, with an angle that has a zero, a travel or a length.
+pub(super) fn joint_with_freedom(
+    kind: fn(JointId) -> ActuatorKind,
+    entry: &Entry<'_>,
+    fields: &TableReader<'_>,
+    joints: &Joints<'_>,
+) -> Option<JointId> {
+    let name = entry.value.string(fields.name_of(entry))?;
+    let at = entry.value.span();
+    let joint = joints.find(name, &at)?;
+    require_freedom(kind(JointId(joint)), &joints.list[joint], &at)?;
+    Some(JointId(joint))
 }
 
 /// Reports a joint that has no such coordinate, or whose angle has no zero.

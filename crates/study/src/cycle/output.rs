@@ -69,11 +69,12 @@ pub fn cycle(
     })
 }
 
-/// A speed in rad/s and revolutions per minute, to the digits that its relative error leaves.
-fn speed_text(value: f64, relative_error: f64) -> String {
-    let [radians, minute] = [(value, 9), (value * 30.0 / PI, 9)]
-        .map(|(value, count)| digits_within(value, relative_error * value.abs(), count));
-    format!("{radians} rad/s ({minute} 1/min)")
+/// A speed in the scene's unit and in revolutions per minute, to the digits that its relative error leaves.
+fn speed_text(scene: &Scene, value: f64, relative_error: f64) -> String {
+    let (in_unit, unit) = scene.to_scene_unit(value, true);
+    let [in_unit, minute] = [in_unit, value * 30.0 / PI]
+        .map(|value| digits_within(value, relative_error * value.abs(), 9));
+    format!("{in_unit} {unit}/s ({minute} 1/min)")
 }
 
 pub(crate) fn summary(results: &CycleResults<'_>) -> String {
@@ -82,13 +83,13 @@ pub(crate) fn summary(results: &CycleResults<'_>) -> String {
     let revolutions = count((cycle.cycle_angle / TAU).round() as usize, "revolution");
     let (title, name) = (&prepared.scene.title, prepared.coordinate_name(coordinate));
     let period = digits_within(cycle.period, errors.speed * cycle.period, 9);
-    let mean = speed_text(cycle.mean_speed, errors.speed);
+    let mean = speed_text(prepared.scene, cycle.mean_speed, errors.speed);
     let mut text = format!(
         "{title}: steady cycle of {name}, {revolutions} in {period} s\n  mean speed {mean}\n"
     );
     if errors.varies(cycle) {
-        let [slowest, fastest] =
-            [cycle.slowest, cycle.fastest].map(|[_, speed]| speed_text(speed, errors.speed));
+        let [slowest, fastest] = [cycle.slowest, cycle.fastest]
+            .map(|[_, speed]| speed_text(prepared.scene, speed, errors.speed));
         let position =
             |q: f64, error: f64| prepared.describe_coordinate_within(coordinate, q, error);
         let slowest_at = position(cycle.slowest[0], errors.positions[0]);
@@ -217,7 +218,7 @@ pub(crate) fn flywheel_text(prepared: &SceneMachine<'_>, sized: &SizedFlywheel) 
     let inertia = digits_within(flywheel.inertia, sized.inertia_error, 9);
     let cycle = &flywheel.cycle;
     let [mean, slowest, fastest] = [cycle.mean_speed, cycle.slowest[1], cycle.fastest[1]]
-        .map(|speed| speed_text(speed, errors.speed));
+        .map(|speed| speed_text(prepared.scene, speed, errors.speed));
     format!(
         "  for a coefficient of fluctuation of {target}: flywheel of {inertia} kg m² on {name}\n  with it: mean speed \
          {mean}, from {slowest} to {fastest}\n"

@@ -19,5 +19,6 @@ pub(crate) use labels::{
 pub use motion::explain_motion;
 pub(crate) use motion::{StepLimits, explain_max_steps};
 pub use position::explain_position;
+pub(crate) use position::explain_position_in;
 pub(crate) use position::{describe_coordinate, describe_ends, describe_limit, quoted_coordinate};
 pub use study_error::{StudyError, SweepError};

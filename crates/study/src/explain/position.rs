@@ -61,10 +61,20 @@ pub(crate) fn describe_ends(from: f64, to: f64, is_angle: bool) -> String {
     }
 }
 
-/// Explains a position that cannot be computed. One arm for each error, so longer than a screen.
+/// Explains a position that cannot be computed.
 pub fn explain_position(scene: &Scene, plan: &Plan, error: &PositionError) -> StudyError {
+    explain_position_in(&quoted_coordinate(scene), scene, plan, error)
+}
+
+/// The same in a coordinate of another name than the actuator's: that of the plan. One arm for each error, so longer than a
+/// screen.
+pub(crate) fn explain_position_in(
+    phi: &str,
+    scene: &Scene,
+    plan: &Plan,
+    error: &PositionError,
+) -> StudyError {
     const RANGE_ENDS: &str = "this is outside the range; `dwell check` shows the range";
-    let phi = quoted_coordinate(scene);
     let unit = coordinate_unit(plan.is_angle(0));
     let at = format!("{phi} = {} {unit}", number(error.coordinate()));
     let group = error.group();

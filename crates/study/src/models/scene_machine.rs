@@ -124,17 +124,20 @@ impl<'a> SceneMachine<'a> {
         value: f64,
         error: f64,
     ) -> String {
-        let (name, text) = (
-            self.coordinate_name(actuator),
-            digits_within(value, error, 9),
-        );
-        match self.is_angle(actuator) {
-            true => {
+        let is_angle = self.is_angle(actuator);
+        let name = self.coordinate_name(actuator);
+        let in_scene_unit = |value: f64| self.scene.to_scene_unit(value, is_angle);
+        let (in_unit, unit) = in_scene_unit(value);
+        let text = digits_within(in_unit, in_scene_unit(error).0, 9);
+        let other = match (is_angle, unit) {
+            (true, "rad") => {
                 let degrees = digits_within(value.to_degrees(), error.to_degrees(), 9);
-                format!("{name} = {text} rad ({degrees}°)")
+                format!(" ({degrees}°)")
             }
-            false => format!("{name} = {text} m"),
-        }
+            (true, _) => format!(" ({} rad)", digits_within(value, error, 9)),
+            (false, _) => String::new(),
+        };
+        format!("{name} = {text} {unit}{other}")
     }
 
     /// Names and units of the states: coordinates, speeds, states of drives.

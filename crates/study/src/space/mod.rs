@@ -2,13 +2,18 @@
 
 mod check;
 mod explain;
+mod motion;
 mod prepared;
+mod trajectory;
+mod views;
 
 pub use check::check_in_space;
+pub use motion::simulate_in_space;
 pub use prepared::PreparedSpaceScene;
+pub use trajectory::analyse_in_space;
 
 use crate::explain::StudyError;
-use crate::output::Outcome;
+use crate::output::{Outcome, Picture};
 use crate::reduce::compute::Reduction;
 use crate::reduce::reduction_outcome;
 use dwell_scene::SpaceScene;
@@ -18,5 +23,13 @@ use dwell_scene::SpaceScene;
 /// # Errors
 /// [`StudyError`] when the mechanism cannot be assembled or has not one degree of freedom, or a position cannot be evaluated.
 pub fn reduce_in_space(scene: &SpaceScene, points: Option<usize>) -> Result<Outcome, StudyError> {
-    reduction_outcome(&Reduction::new(PreparedSpaceScene::new(scene)?, points)?)
+    let reduction = Reduction::new(PreparedSpaceScene::new(scene)?, points)?;
+    let mut outcome = reduction_outcome(&reduction)?;
+    let positions = reduction.prepared.drawn_positions()?;
+    let name = |rest: &str| format!("{}-mechanism.{rest}", scene.name);
+    let figure = Picture::figure(scene, name("png"), true, positions.figure());
+    let animation = Picture::animation(scene, name("gif"), positions.animation());
+    outcome.pictures.insert(0, figure);
+    outcome.pictures.push(animation);
+    Ok(outcome)
 }

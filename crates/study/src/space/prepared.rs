@@ -1,21 +1,26 @@
 //! A scene in space with the exact reduced model of what it requests.
 
-use super::explain::{explain_model, explain_position};
+use super::explain::{explain_loads, explain_model, explain_position, with_loads};
+use super::views::SpacePositions;
 use crate::explain::{StudyError, scene_error};
-use crate::number_format::count;
+use crate::number_format::{count, digits};
 use crate::output::{indeterminate_note, symbol};
 use crate::ranges::equally_spaced;
 use crate::reduce::compute::{InertiaAt, ReducedLoad, ReducedScene, UnitLoadCurves};
-use dwell_geometry::space::ActuatorKind;
+use dwell_geometry::space::{ActuatorKind, Placement, Plan};
 use dwell_geometry::{ActuatorId, PositionError, Range};
 use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};
-use dwell_kinetostatics::{Coefficients, ExactModel, ReducedModel as _, reduction_rounding_errors};
+use dwell_kinetostatics::{
+    Coefficients, ExactModel, MachineModel as _, ReducedModel as _, reduction_rounding_errors,
+};
 use dwell_scene::{SceneFile, SceneLocation, SpaceScene};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Part of the range that is left out at each limit position, where everything grows.
 const LIMIT_MARGIN: f64 = 1e-3;
+/// Intervals of a revolution, or of the range, from which paths are drawn.
+const DRAWN_INTERVALS: usize = 240;
 /// Half a stroke without limits, in sizes of the mechanism.
 const DEFAULT_STROKE: f64 = 0.5;
 
@@ -54,6 +59,43 @@ impl<'a> PreparedSpaceScene<'a> {
             scene,
             model,
             indeterminate,
+        })
+    }
+
+    /// The mechanism over its range, for pictures: at the start, and in positions that follow each other.
+    pub(super) fn drawn_positions(&self) -> Result<SpacePositions<'a>, StudyError> {
+        let plan = self.model.model().plan();
+        let mut pose = plan.pose();
+        let bodies = 0..self.scene.mechanism.bodies.len();
+        let mut placements = |q: f64| {
+            plan.positions(&[q], &mut pose)
+                .map_err(|e| self.explain(&e))?;
+            let all = bodies.clone().map(|b| plan.placement(&pose, b));
+            Ok::<Vec<Placement>, StudyError>(all.collect())
+        };
+        let turns = match self.range() {
+            Range::Revolutions(count) => count as usize,
+            _ => 1,
+        };
+        let q = self.positions(DRAWN_INTERVALS * turns);
+        let describe = |q: f64| match self.is_angle() {
+            true => format!(
+                "{} = {:.1}°",
+                symbol(self.coordinate_name()),
+                q.to_degrees()
+            ),
+            false => format!("{} = {} m", symbol(self.coordinate_name()), digits(q, 4)),
+        };
+        let describe = |q: f64| describe(q).replace('-', "−");
+        let all = q.iter().map(|&q| Ok((placements(q)?, describe(q))));
+        let all = all.collect::<Result<Vec<_>, StudyError>>()?;
+        let start = self.scene.assembly.q[0];
+        Ok(SpacePositions {
+            scene: self.scene,
+            drawn: placements(start)?,
+            drawn_at: describe(start),
+            provenance: format!("the mechanism at {}", count(all.len(), "position")),
+            all,
         })
     }
 
@@ -106,8 +148,16 @@ fn elsewhere(scene: &SpaceScene, model: &Model) -> Vec<f64> {
 fn load_units(kind: LoadKind) -> [&'static str; 3] {
     match kind {
         LoadKind::Gravity(_) => ["kg m", "kg", "kg m"],
-        LoadKind::Torque { .. } => ["", "1/m", ""],
-        LoadKind::Force { .. } | LoadKind::PointToPointForce { .. } => ["m", "", "m"],
+        LoadKind::Torque { .. } | LoadKind::JointTorque(_) | LoadKind::RotationalDamper(_) => {
+            ["", "1/m", ""]
+        }
+        LoadKind::TorsionSpring { .. } => ["rad", "rad/m", "rad"],
+        LoadKind::Force { .. }
+        | LoadKind::PointToPointForce { .. }
+        | LoadKind::Damper { .. }
+        | LoadKind::SlideForce(_)
+        | LoadKind::SlideDamper(_) => ["m", "", "m"],
+        LoadKind::Spring { .. } => ["m2", "m", "m2"],
     }
 }
 
@@ -148,29 +198,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
     }
 
     fn positions(&self, intervals: usize) -> Vec<f64> {
-        let start = self.scene.assembly.q[0];
-        let within = |from: f64, to: f64| {
-            let margin = LIMIT_MARGIN * (to - from);
-            [from + margin, to - margin]
-        };
-        let limits = match self.range() {
-            Range::Limited(from, to) => within(from, to),
-            Range::Full => [0.0, TAU],
-            Range::Revolutions(count) => [0.0, TAU * f64::from(count)],
-            Range::Stroke(from, to) | Range::Unresolved(from, to) => {
-                let half = if self.is_angle() {
-                    TAU
-                } else {
-                    DEFAULT_STROKE * self.size()
-                };
-                [from.max(start - half), to.min(start + half)]
-            }
-            Range::Unbounded if self.is_angle() => [start, start + TAU],
-            Range::Unbounded => {
-                let half = DEFAULT_STROKE * self.size();
-                [start - half, start + half]
-            }
-        };
+        let (limits, ..) = range_limits(self.scene, self.model.model().plan());
         equally_spaced(limits, intervals)
     }
 
@@ -209,7 +237,8 @@ impl ReducedScene for PreparedSpaceScene<'_> {
             return Ok(None);
         }
         let model = self.model.model();
-        let (mut workspace, mut response) = (model.workspace(), model.result_buffer());
+        let loaded = with_loads(self.scene, model.clone())?;
+        let (mut workspace, mut response) = (loaded.workspace(), loaded.result_buffer());
         let mut curves = UnitLoadCurves {
             loads: loads
                 .iter()
@@ -221,17 +250,18 @@ impl ReducedScene for PreparedSpaceScene<'_> {
                 .collect(),
             rows: Vec::with_capacity(q.len()),
             potential: Vec::with_capacity(q.len()),
-            conservative: loads.iter().any(|load| load.kind.is_conservative()),
+            conservative: (0..loads.len()).any(|k| loaded.is_conservative(k)),
             is_angle: self.is_angle(),
         };
         for &q in q {
             let (mut row, mut potential) = (Vec::with_capacity(loads.len()), 0.0);
-            for load in loads {
-                model
-                    .unit_load_response(&[q], &load.kind, &mut workspace, &mut response)
-                    .map_err(|e| self.explain(&e))?;
-                let unit = model.potential_energy(&load.kind, &workspace);
-                potential += load.magnitude * unit.unwrap_or_default();
+            let mut state = loaded
+                .kinematic_state(&[q], &[0.0], &mut workspace)
+                .map_err(|e| self.explain(&e))?;
+            for load in 0..loads.len() {
+                let responded = state.unit_load_response(load, &mut response);
+                responded.map_err(|e| explain_loads(self.scene, loaded.plan(), &e))?;
+                potential += state.potential_energy(load).unwrap_or_default();
                 let mut values = vec![-response.tau[0]];
                 values.extend(&response.reactions);
                 row.push(values);
@@ -252,6 +282,30 @@ impl ReducedScene for PreparedSpaceScene<'_> {
     fn notes(&self) -> String {
         let names = self.indeterminate.iter();
         indeterminate_note(names.map(|&r| self.scene.reaction_name(r)))
+    }
+}
+
+/// The part of the range of the only actuator that is shown, whether its ends are next to limit positions, and what it is.
+pub(super) fn range_limits(scene: &SpaceScene, plan: &Plan) -> ([f64; 2], [bool; 2], &'static str) {
+    let (start, is_angle) = (scene.assembly.q[0], is_angle(scene));
+    let half_stroke = DEFAULT_STROKE * plan.size();
+    match plan.range() {
+        Range::Limited(from, to) => {
+            let margin = LIMIT_MARGIN * (to - from);
+            ([from + margin, to - margin], [true; 2], "the range")
+        }
+        Range::Full => ([0.0, TAU], [false; 2], "one revolution"),
+        Range::Revolutions(count) => ([0.0, TAU * f64::from(count)], [false; 2], "the period"),
+        Range::Stroke(from, to) | Range::Unresolved(from, to) => {
+            let half = if is_angle { TAU } else { half_stroke };
+            let ends = [from.max(start - half), to.min(start + half)];
+            (ends, [false; 2], "the range")
+        }
+        Range::Unbounded if is_angle => ([start, start + TAU], [false; 2], "one revolution"),
+        Range::Unbounded => {
+            let ends = [start - half_stroke, start + half_stroke];
+            (ends, [false; 2], "a stroke")
+        }
     }
 }
 

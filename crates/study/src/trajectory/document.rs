@@ -12,7 +12,7 @@ use crate::trajectory::highlights::Movement;
 use dwell_findings::{Column, Record, RecordedExtrema};
 use dwell_kinetostatics::{Distribution, Section};
 use dwell_report::{Block, Document as Page, Figure};
-use dwell_scene::Scene;
+use dwell_scene::{Scene, SceneFile};
 
 /// Extrema of one unit that the summary lists.
 const MAX_LISTED: usize = 3;
@@ -30,7 +30,11 @@ const LARGEST_OF_ROWS: &str =
 
 /// The results of a trajectory analysis as text.
 pub(crate) struct Document<'a> {
-    scene: &'a Scene,
+    scene: &'a SceneFile,
+    /// What a designer asks first of a movement, in the plane.
+    movement: Option<Movement<'a>>,
+    /// The bodies that are not modelled.
+    unmodelled: Vec<String>,
     results: &'a TrajectoryResults,
     trajectory: &'a Trajectory<'a>,
     selected: Vec<usize>,
@@ -43,7 +47,27 @@ pub(crate) struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
+    /// Of a scene in the plane.
     pub(crate) fn new(scene: &'a Scene, computed: &'a ComputedTrajectory<'a>) -> Self {
+        let results = &computed.results;
+        let movement = Movement {
+            scene,
+            results,
+            abscissa: results.abscissa(&computed.trajectory),
+        };
+        Self {
+            movement: Some(movement),
+            unmodelled: results.unmodelled_bodies(scene),
+            ..Self::of_file(&scene.file, scene.mechanism.size(), computed)
+        }
+    }
+
+    /// Of any scene, with a mechanism of this size, m.
+    pub(crate) fn of_file(
+        scene: &'a SceneFile,
+        size: f64,
+        computed: &'a ComputedTrajectory<'a>,
+    ) -> Self {
         let (trajectory, results) = (&computed.trajectory, &computed.results);
         let columns = &results.columns;
         let selected = results.written.clone();
@@ -54,10 +78,12 @@ impl<'a> Document<'a> {
         let listed: Vec<usize> = selected.iter().copied().filter(is_result).collect();
         Self {
             scene,
+            movement: None,
+            unmodelled: Vec::new(),
             results,
             trajectory,
             selected,
-            extrema: sorted_extrema(results, &listed, abscissa, scene.mechanism.size()),
+            extrema: sorted_extrema(results, &listed, abscissa, size),
             abscissa: (name, unit),
             at: format!("at {name} [{unit}]"),
             abscissa_column: abscissa,
@@ -156,12 +182,8 @@ impl<'a> Document<'a> {
     pub(crate) fn summary(&self, record: &mut Record) -> String {
         let mut text = format!("{}\n", self.first_line());
         if self.trajectory.analysis == Analysis::Kinematics {
-            let movement = Movement {
-                scene: self.scene,
-                results: self.results,
-                abscissa: self.results.abscissa(self.trajectory),
-            };
-            text += &movement.describe(record);
+            let movement = self.movement.as_ref();
+            text += &movement.map_or_else(String::new, |movement| movement.describe(record));
         }
         text += &self.largest_values(record);
         let (abscissa, _) = self.abscissa;
@@ -305,7 +327,7 @@ impl<'a> Document<'a> {
             Analysis::Kinematics => String::new(),
             _ => indeterminate_note(self.results.indeterminate.iter().cloned()),
         };
-        let unmodelled = match self.results.unmodelled_bodies(self.scene) {
+        let unmodelled = match &self.unmodelled {
             none if none.is_empty() => String::new(),
             bodies => format!(
                 "  not modelled, because they affect no inertia, load or requested result: {}\n",

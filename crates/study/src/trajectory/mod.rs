@@ -5,7 +5,7 @@
 mod column_extrema;
 pub mod compute;
 #[cfg(feature = "output")]
-mod document;
+pub(crate) mod document;
 #[cfg(feature = "output")]
 pub(crate) mod figures;
 #[cfg(feature = "output")]

@@ -6,8 +6,8 @@ use crate::explain::StudyError;
 use crate::output::{DistinctNames, Outcome, Picture};
 use crate::progress::Progress;
 use crate::trajectory::compute::{Analysis, ComputedTrajectory, RowStorage, compute_trajectory_in};
-use dwell_report::{Figure, Files, TableExport as _, TableFormat};
-use dwell_scene::Scene;
+use dwell_report::{Animation, Figure, Files, TableExport as _, TableFormat};
+use dwell_scene::{Scene, SceneFile};
 
 /// The outcome of an analysis along a trajectory.
 #[derive(Debug)]
@@ -58,6 +58,37 @@ pub(crate) fn report(
     computed: &ComputedTrajectory<'_>,
     span: PictureSpan,
 ) -> Result<Outcome, StudyError> {
+    let results = &computed.results;
+    let analysis = computed.trajectory.analysis.name();
+    let name = |rest: &str| format!("{}-{analysis}{rest}", scene.name);
+    let mut files = Files::new();
+    let mut link_names = DistinctNames::default();
+    for link in &results.sectioned_links {
+        let of = link.file_name(scene.mechanism.body_name(link.request.body));
+        let of = link_names.add(of);
+        let file = |rest: &str| name(&format!("-internal-forces-{of}{rest}.csv"));
+        files.add(file(""), link.table().csv()?);
+        files.add(file(".envelope"), link.envelope_table().csv()?);
+    }
+    let (figures, left_out) = figures::trajectory_figures(scene, computed, span)?;
+    let animation = figures::animation(scene, computed)?;
+    let document = document::Document::new(scene, computed);
+    let mut outcome = outcome_of(&scene.file, computed, &document, (figures, animation))?;
+    outcome.files.extend("", files);
+    outcome.summary += &left_out.map_or_else(String::new, |note| format!("  {note}\n"));
+    Ok(outcome)
+}
+
+/// The tables of a trajectory in the plane or in space, its figures with its animation, its page and its numbers.
+///
+/// # Errors
+/// [`StudyError::Report`] where a table cannot be written.
+pub(crate) fn outcome_of(
+    scene: &SceneFile,
+    computed: &ComputedTrajectory<'_>,
+    document: &document::Document<'_>,
+    (mut figures, animation): (Vec<Figure>, Animation),
+) -> Result<Outcome, StudyError> {
     let (trajectory, results) = (&computed.trajectory, &computed.results);
     let analysis = trajectory.analysis.name();
     let name = |rest: &str| format!("{}-{analysis}{rest}", scene.name);
@@ -68,17 +99,7 @@ pub(crate) fn report(
         }
         None => files.add_table(&name(""), &computed.table, &TableFormat::ALL)?,
     }
-    let document = document::Document::new(scene, computed);
     files.add(name("-extrema.csv"), document.extrema_csv());
-    let mut link_names = DistinctNames::default();
-    for link in &results.sectioned_links {
-        let of = link.file_name(scene.mechanism.body_name(link.request.body));
-        let of = link_names.add(of);
-        let file = |rest: &str| name(&format!("-internal-forces-{of}{rest}.csv"));
-        files.add(file(""), link.table().csv()?);
-        files.add(file(".envelope"), link.envelope_table().csv()?);
-    }
-    let (mut figures, left_out) = figures::trajectory_figures(scene, computed, span)?;
     let mut figure_names = DistinctNames::default();
     for figure in &mut figures {
         figure.name = figure_names.add(std::mem::take(&mut figure.name));
@@ -90,12 +111,10 @@ pub(crate) fn report(
         Picture::figure(scene, file(&figure), is_main, figure)
     };
     let mut pictures: Vec<Picture> = figures.into_iter().map(picture).collect();
-    let animation = figures::animation(scene, computed)?;
     pictures.push(Picture::animation(scene, name("-mechanism.gif"), animation));
     let mut record = document.record();
-    let note = left_out.map(|note| format!("  {note}\n"));
     Ok(Outcome {
-        summary: document.summary(&mut record) + &note.unwrap_or_default(),
+        summary: document.summary(&mut record),
         record,
         files,
         pictures,
@@ -108,7 +127,7 @@ pub(crate) fn report(
 /// which a scene requests one by one.
 fn is_main(analysis: Analysis, figure: &str) -> bool {
     let own: &[&str] = match analysis {
-        Analysis::Kinematics => &["angles", "travels"],
+        Analysis::Kinematics => &["angles", "travels", "rotations"],
         Analysis::Statics | Analysis::Kinetostatics => &["actuator-forces", "reactions"],
         Analysis::FreeMotion => &["coordinates", "energies", "reactions"],
     };

@@ -119,8 +119,12 @@ impl Run {
             laws: vec![Law::Polynomial(law)],
         };
         let plan = model.plan();
-        let trajectory =
-            Trajectory::prescribed((&motion, spacing), plan, Analysis::Kinetostatics, points);
+        let trajectory = Trajectory::prescribed(
+            (&motion, spacing),
+            plan.range().period(),
+            Analysis::Kinetostatics,
+            points,
+        );
         let along = (trajectory, None);
         let computed = compute_along(&scene, &model, along, String::new(), progress)?;
         match computed.early_stop {

@@ -328,6 +328,40 @@ fn a_flywheel_evens_an_uneven_load() {
     assert!(sum.abs() < 1e-7, "{sum}");
 }
 
+/// Speeds and positions are printed in the unit of the scene.
+#[test]
+fn a_cycle_speaks_in_the_scene_s_units() {
+    let uneven = MOTOR.replace("magnitude = -1.5", "magnitude = \"-1.5 - sin(phi)\"");
+    let printed = |scene: &str| {
+        let scene = self::scene(scene);
+        cycle(&scene, &SolverSettings::default(), None)
+            .unwrap()
+            .summary
+    };
+    let plain = printed(&uneven);
+    let degrees = printed(&uneven.replace(
+        "[bodies.ground]",
+        "[units]\nangle = \"deg\"\n[bodies.ground]",
+    ));
+    let slowest = |text: &str, before: &str| -> f64 {
+        let line = text.lines().find(|line| line.contains("slowest ")).unwrap();
+        let number = line.split(before).nth(1).unwrap().trim_start();
+        number.split(' ').next().unwrap().parse().unwrap()
+    };
+    for before in ["slowest ", "phi = "] {
+        let [radians, degrees] = [&plain, &degrees].map(|text| slowest(text, before));
+        assert_near(degrees, radians.to_degrees(), 1e-6 * degrees.abs());
+    }
+    assert!(
+        degrees.contains(" deg/s (") && degrees.contains(" rad)"),
+        "{degrees}"
+    );
+    assert!(
+        plain.contains(" rad/s (") && plain.contains("°)"),
+        "{plain}"
+    );
+}
+
 #[test]
 fn what_has_no_cycle_or_equilibrium_says_where() {
     let refused = |text: &str| {

@@ -14,6 +14,7 @@ mod motion;
 mod pruning;
 mod quadrature;
 mod requests;
+mod rounding;
 mod table;
 mod time_loads;
 mod variables;

@@ -24,6 +24,8 @@ struct Run {
     events: Vec<ContactEvent>,
     machine: Machine,
     evaluations: usize,
+    /// Those of the monitors of events.
+    event_evaluations: usize,
 }
 
 /// Integrates a scene until its end by a method, to a tolerance.
@@ -55,6 +57,7 @@ fn integrate(text: &str, method: Method, rtol: f64) -> (Run, Option<DynamicsErro
         steps: solutions().flat_map(|s| s.steps.clone()).collect(),
         events: solutions().flat_map(|s| s.contact_events.clone()).collect(),
         evaluations: solutions().map(|s| s.statistics.evaluations).sum(),
+        event_evaluations: solutions().map(|s| s.statistics.event_evaluations).sum(),
         machine: problem.machine,
     };
     (run, motion.failure)

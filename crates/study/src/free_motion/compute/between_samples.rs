@@ -1,7 +1,8 @@
 //! A computed motion between its samples: at its steps, and at any time within a step.
 //!
 //! Within a step the motion is integrated once more from its beginning. A search for extrema asks for many times of the
-//! same step: it takes them from polynomials through that integration's dense output, which is one of at most degree 7.
+//! same step, and many columns have one in it: that integration is kept, as polynomials of at most degree 7 through its dense
+//! output. An exact state within it is integrated from the last of its own steps.
 
 use crate::free_motion::compute::tables::sliding_at;
 use crate::free_motion::compute::{FreeMotionProblem, PlaceInMotion, SegmentedMotion};
@@ -11,16 +12,16 @@ use dwell_dynamics::{
     StepObserver, integrate,
 };
 use dwell_geometry::body_states::CoordinateFunction;
+use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::collections::{BTreeMap, VecDeque};
 use std::f64::consts::{PI, TAU};
 
 /// Highest number of steps that are evaluated like samples.
 const MAX_STEPS: usize = 50_000;
-/// Points of a polynomial through a dense output, and how many steps have theirs in memory: an extremum is enclosed by
-/// two steps.
+/// Points of a polynomial through a dense output.
 const NODES: usize = 8;
-const MAX_STORED: usize = 3;
+/// Numbers that the polynomials of all steps may have, 32 MB; then they are forgotten.
+const MAX_STORED: usize = 1 << 22;
 /// Method, tolerance and highest number of steps from the beginning of a step to a time within it; the second where a
 /// stiff motion needs too many of the first.
 const METHODS: [(Method, f64, usize); 2] =
@@ -56,7 +57,8 @@ impl FreeMotionProblem<'_> {
             problem: self,
             motion,
             machines: BTreeMap::new(),
-            interpolated: VecDeque::new(),
+            interpolated: BTreeMap::new(),
+            stored: 0,
         }
     }
 }
@@ -66,8 +68,10 @@ pub(crate) struct MotionSampler<'m> {
     problem: &'m FreeMotionProblem<'m>,
     motion: &'m SegmentedMotion,
     machines: BTreeMap<usize, (MachineOde<'m>, MachineWorkspace)>,
-    /// The last steps that were interpolated in, each with its segment and number.
-    interpolated: VecDeque<((usize, usize), Vec<Polynomials>)>,
+    /// The steps that were interpolated in, by segment and number.
+    interpolated: BTreeMap<(usize, usize), Vec<Polynomials>>,
+    /// How many numbers their polynomials have.
+    stored: usize,
 }
 
 impl<'m> MotionSampler<'m> {
@@ -75,7 +79,11 @@ impl<'m> MotionSampler<'m> {
     /// None where that is not possible.
     pub(crate) fn sample_at(&mut self, t: f64) -> Option<TrajectorySample> {
         let place = self.motion.place_of(t)?;
-        let before = &place.steps()[place.step];
+        let known = self.interpolated.get(&(place.segment, place.step));
+        let parts = known.map_or(&[][..], Vec::as_slice).iter();
+        let part = parts.rev().find(|part| part.start.t <= t);
+        let nearest = part.map(|part| part.start.clone());
+        let before = nearest.as_ref().unwrap_or(&place.steps()[place.step]);
         let point = match (before.t == t, &self.motion.orbit) {
             (true, _) => before.clone(),
             (false, Some(orbit)) => OdeState::from(orbit.state_at(t)),
@@ -101,15 +109,19 @@ impl<'m> MotionSampler<'m> {
             return self.sample_at(t);
         };
         let key = (place.segment, place.step);
-        if self.interpolated.iter().all(|(known, _)| *known != key) {
+        if !self.interpolated.contains_key(&key) {
             let ode = &mut self.machine_of(&place)?.0;
             let mut by_each = METHODS.iter();
             let polynomials =
                 by_each.find_map(|options| polynomials_of(ode, before, after.t, options))?;
-            self.interpolated.truncate(MAX_STORED - 1);
-            self.interpolated.push_front((key, polynomials));
+            if self.stored > MAX_STORED {
+                self.interpolated.clear();
+                self.stored = 0;
+            }
+            self.stored += polynomials.len() * (NODES + 1) * before.y.len();
+            self.interpolated.insert(key, polynomials);
         }
-        let (_, polynomials) = self.interpolated.iter().find(|(known, _)| *known == key)?;
+        let polynomials = self.interpolated.get(&key)?;
         let polynomials = polynomials.iter().find(|part| t <= part.end)?;
         let y = polynomials.at(t);
         self.sample_of(&place, &OdeState { t, y })
@@ -188,7 +200,8 @@ fn state_after(
 
 /// A motion within a part of a step: a polynomial of each state through values at Chebyshev points.
 struct Polynomials {
-    /// The end of the part, s.
+    /// The state at its beginning, and its end, s.
+    start: OdeState,
     end: f64,
     /// The points, s, each with the states there.
     nodes: Vec<(f64, Vec<f64>)>,
@@ -210,6 +223,7 @@ fn polynomials_of(
             dense(t, &mut y).map(|()| (t, y))
         };
         parts.push(Polynomials {
+            start: before.clone(),
             end: now.t,
             nodes: (0..NODES).map(&mut node).collect::<Result<_, _>>()?,
         });

@@ -1,13 +1,16 @@
 //! The initial value problem of a scene's free motion, and its integration.
 
 use crate::branch_note::branch_note;
-use crate::explain::{StudyError, explain_machine, explain_model, explain_motion, scene_error};
+use crate::explain::{
+    StudyError, explain_machine, explain_model, explain_motion, explain_position_in, scene_error,
+};
 use crate::free_motion::compute::SegmentedMotion;
 use crate::models::{build_machine, loaded_model};
 use crate::number_format::digits;
 use crate::trajectory::compute::check_variables;
 use dwell_dynamics::atlas::{
-    Atlas, AtlasError, ChartChange, ChartChangeReason, ContinuedMotion, MachineDescription,
+    Atlas, AtlasError, ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory,
+    MachineDescription,
 };
 use dwell_dynamics::{
     DynamicsError, Event, EventKind, Machine, OdeState, Options, Orbit, ReducedState, Solution,
@@ -67,6 +70,23 @@ impl<'a> FreeMotionProblem<'a> {
     /// An error of its motion in the names of the scene.
     pub fn explain(&self, error: &DynamicsError) -> StudyError {
         explain_motion(self.loaded_scene, self.output_model.plan(), error)
+    }
+
+    /// The error that ended a motion, in the coordinate in which it was followed last.
+    pub(crate) fn explain_end(
+        &self,
+        motion: &SegmentedMotion,
+        error: &DynamicsError,
+    ) -> StudyError {
+        let last = motion.segments.last().filter(|(chart, _)| *chart > 0);
+        let chart = last.and_then(|(chart, _)| motion.charts.get(*chart));
+        match (chart, error) {
+            (Some(chart), DynamicsError::Position(position)) => {
+                let (scene, plan) = (self.loaded_scene, chart.machine.model().plan());
+                explain_position_in(&chart.name, scene, plan, position)
+            }
+            _ => self.explain(error),
+        }
     }
 
     /// Ends a motion before its first sample that the mechanism cannot take, be it by rounding: an implicit method may
@@ -129,7 +149,11 @@ impl<'a> FreeMotionProblem<'a> {
         if let Some(last) = continued.segments.last_mut() {
             last.solution.sample_end();
         }
-        let history = atlas.coordinate_history(&continued, atlas.actuator_coordinate());
+        // In the first chart the actuator's coordinate is the first state.
+        let history = match continued.segments.iter().all(|segment| segment.chart == 0) {
+            true => Ok(CoordinateHistory::default()),
+            false => atlas.coordinate_history(&continued, atlas.actuator_coordinate()),
+        };
         let statistics = continued.statistics();
         let chart_changes = self.describe_changes(&atlas, &continued);
         let segments = continued.segments.into_iter();

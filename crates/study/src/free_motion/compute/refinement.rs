@@ -78,7 +78,8 @@ impl FreeMotionProblem<'_> {
         let outputs = ObservedMachine::new(&self.machine, &self.output_model);
         let events = self.events();
         let solution = solve_system(&mut ode, outputs, &start, Some(duration), options, &events);
-        let solution = solution.map_err(|e| self.explain(&e))?;
+        let mut solution = solution.map_err(|e| self.explain(&e))?;
+        solution.add_contact_events(ode.take_contact_events());
         let is_complete = solution.error.is_none();
         Ok(is_complete.then(|| SegmentedMotion::single_segment(solution)))
     }

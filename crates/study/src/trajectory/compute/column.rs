@@ -2,6 +2,7 @@
 
 use crate::trajectory::compute::{Analysis, Dyad};
 use dwell_geometry::body_states::CoordinateFunction;
+use dwell_geometry::space::Vec3;
 use dwell_geometry::{BodyId, JointId, Reaction, Vec2};
 use dwell_scene::Scene;
 
@@ -27,6 +28,10 @@ pub(crate) enum Quantity {
     Pole(BodyId, usize, usize),
     /// x, y, then their speeds, then their accelerations.
     PointCoordinate(BodyId, Vec2, usize),
+    /// Of a point in space: x, y, z, then the components of its velocity, then those of its acceleration.
+    PointInSpace(BodyId, Vec3, usize),
+    /// Of a body in space: the components of its rotation as a vector, of its angular velocity, of its angular acceleration.
+    RotationInSpace(BodyId, usize),
     TransmissionAngle(Dyad),
     Reaction(usize),
     /// The k-th reaction of the i-th varying inertia of the scene.
@@ -35,7 +40,9 @@ pub(crate) enum Quantity {
     BodyFrameForce(JointId, BodyId, usize),
     ForceMagnitude(JointId),
     ForceDirection(JointId),
-    /// Force x, y and moment on the frame.
+    /// Of a joint in space.
+    MomentMagnitude(JointId),
+    /// Force x, y and moment on the frame; in space three components of each.
     ShakingForce(usize),
     /// Of the power balance: actuators, loads, rate of the kinetic energy, residual; and the kinetic energy.
     Power(usize),
@@ -72,13 +79,16 @@ impl Quantity {
             | Self::VelocityRatio(body)
             | Self::MechanicalAdvantage(body, _)
             | Self::Pole(body, ..)
-            | Self::PointCoordinate(body, ..) => vec![body],
+            | Self::PointCoordinate(body, ..)
+            | Self::PointInSpace(body, ..)
+            | Self::RotationInSpace(body, _) => vec![body],
             Self::KnownReaction(i, _) => vec![scene.varying_inertias[i].body],
             Self::TransmissionAngle(dyad) => dyad.bodies().to_vec(),
             Self::Reaction(k) => joint(reactions[k].joint),
-            Self::BodyFrameForce(j, ..) | Self::ForceMagnitude(j) | Self::ForceDirection(j) => {
-                joint(j)
-            }
+            Self::BodyFrameForce(j, ..)
+            | Self::ForceMagnitude(j)
+            | Self::ForceDirection(j)
+            | Self::MomentMagnitude(j) => joint(j),
             // What the actuators and the loads act on is placed anyway, or does not move them.
             Self::Time
             | Self::ActuatorCoordinate(..)
@@ -142,6 +152,7 @@ impl Column {
             | Quantity::Measured(_, order)
             | Quantity::BodyAngle(_, order) => order == 0 || moves,
             Quantity::PointCoordinate(_, _, k) => k < 2 || moves,
+            Quantity::PointInSpace(_, _, k) | Quantity::RotationInSpace(_, k) => k < 3 || moves,
             Quantity::VelocityRatio(_)
             | Quantity::MechanicalAdvantage(..)
             | Quantity::TransmissionAngle(_) => analysis != Analysis::FreeMotion,
@@ -152,6 +163,7 @@ impl Column {
             | Quantity::BodyFrameForce(..)
             | Quantity::ForceMagnitude(_)
             | Quantity::ForceDirection(_)
+            | Quantity::MomentMagnitude(_)
             | Quantity::ShakingForce(_)
             | Quantity::LoadForce(_) => forces,
             Quantity::KnownReaction(..) | Quantity::Power(_) | Quantity::LoadPower(_) => {

@@ -23,6 +23,19 @@ const BODY_ANGLE: [(&str, &str); 3] = [
     ("angular_acceleration", "angular acceleration"),
 ];
 
+/// Of the power balance, by the number of its [`Quantity`]: names, units and meanings.
+pub(crate) const POWER_COLUMNS: [(&str, &str, &str); 5] = [
+    ("power.actuators", "W", "power of the actuators"),
+    ("power.loads", "W", "power of the loads"),
+    ("power.kinetic", "W", "rate of the kinetic energy"),
+    (
+        "power.residual",
+        "W",
+        "actuators + loads − dE/dt: rounding error",
+    ),
+    ("energy.kinetic_bodies", "J", "kinetic energy of the bodies"),
+];
+
 /// The units of a coordinate, its velocity and its acceleration.
 fn units(is_angle: bool) -> [&'static str; 3] {
     if is_angle { ANGLE } else { LENGTH }
@@ -326,7 +339,10 @@ impl Columns<'_> {
                 let name = format!("{}.load_{kind}", load.name);
                 self.add(name, unit, Quantity::LoadForce(k), meaning);
             }
-            let meaning = "power of the load on all bodies";
+            let meaning = match scene.drives.iter().any(|drive| drive.name == load.name) {
+                true => "power of the drive on all bodies, behind its rotor",
+                false => "power of the load on all bodies",
+            };
             let name = format!("{}.power", load.name);
             self.add(name, "W", Quantity::LoadPower(k), meaning);
         }
@@ -346,18 +362,7 @@ impl Columns<'_> {
         for (k, (name, unit)) in components.into_iter().enumerate() {
             self.add(name, unit, Quantity::ShakingForce(k), &*meaning);
         }
-        let powers = [
-            ("power.actuators", "power of the actuators"),
-            ("power.loads", "power of the loads"),
-            ("power.kinetic", "rate of the kinetic energy"),
-            (
-                "power.residual",
-                "actuators + loads − dE/dt: rounding error",
-            ),
-            ("energy.kinetic_bodies", "kinetic energy of the bodies"),
-        ];
-        for (k, (name, meaning)) in powers.into_iter().enumerate() {
-            let unit = if k < 4 { "W" } else { "J" };
+        for (k, (name, unit, meaning)) in POWER_COLUMNS.into_iter().enumerate() {
             self.add(name, unit, Quantity::Power(k), meaning);
         }
     }

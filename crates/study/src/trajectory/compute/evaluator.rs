@@ -3,7 +3,8 @@
 use crate::bodies::BodyPose;
 use crate::explain::{StudyError, explain_model};
 use crate::trajectory::compute::{
-    Analysis, Column, Quantity, SpeedScale, StopCause, TrajectoryMonitor, TrajectorySample,
+    Analysis, Column, Quantity, RowEvaluator, SpeedScale, StopCause, TrajectoryMonitor,
+    TrajectorySample,
 };
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{BodyId, Motion, Plan, Pose, Vec2};
@@ -186,8 +187,56 @@ impl<'a> PositionEvaluator<'a> {
         })
     }
 
-    /// Evaluates the position of a sample, with the loads at time `t`.
-    pub(crate) fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
+    /// The k-th reaction within the mechanism that the i-th body of varying inertia stands for.
+    fn known_reaction(&self, i: usize, k: usize) -> f64 {
+        let varying = &self.scene.varying_inertias[i];
+        let body = self.forces.body_states.body(varying.body);
+        let angle = body.rotation.angle();
+        varying.reactions[k].value(angle, body.angular_velocity, body.angular_acceleration)
+    }
+
+    /// The force of a load along its direction or line, or its moment on its second body.
+    fn load_force(&self, k: usize) -> f64 {
+        let states = &self.forces.body_states;
+        let on = |body: BodyId| {
+            let mut wrenches = self.position.wrenches.iter();
+            wrenches.find(|w| w.source == ForceSource::Load(k) && w.body == body)
+        };
+        match self.scene.loads[k].kind {
+            LoadKind::Gravity { .. }
+            | LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SeparatingForce(_) => self.position.magnitudes[k],
+            LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } => {
+                let line = states.separation(bodies, points).direction;
+                let force_and_line = on(bodies[1]).zip(line);
+                force_and_line.map_or(0.0, |(wrench, line)| wrench.force.dot(line))
+            }
+            LoadKind::TorsionSpring { bodies, .. } | LoadKind::RotationalDamper { bodies } => {
+                on(bodies[1]).map_or(0.0, |wrench| wrench.couple)
+            }
+            LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
+                let [first, second] = guide.bodies;
+                let axis = guide.axis.rotate(states.body(first).rotation);
+                on(second).map_or(0.0, |wrench| wrench.force.dot(axis))
+            }
+        }
+    }
+
+    pub(crate) fn body_poses(&self) -> Vec<BodyPose> {
+        let states = &self.forces.body_states;
+        let bodies = (0..self.scene.mechanism.bodies.len()).map(BodyId);
+        let body_pose = |b| {
+            let origin = states.point(b, Vec2::ZERO).position;
+            (origin, states.body(b).rotation)
+        };
+        bodies.map(body_pose).collect()
+    }
+}
+
+impl RowEvaluator for PositionEvaluator<'_> {
+    fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
         if let Some((whole_plan, pose)) = &mut self.whole_mechanism {
             whole_plan.positions(&sample.q, pose)?;
         }
@@ -209,9 +258,8 @@ impl<'a> PositionEvaluator<'a> {
         Ok(())
     }
 
-    /// The value of a column at the position that was evaluated last.
     // One arm for each quantity.
-    pub(crate) fn value(&self, quantity: Quantity, sample: &TrajectorySample) -> f64 {
+    fn value(&self, quantity: Quantity, sample: &TrajectorySample) -> f64 {
         let (forces, states) = (&self.forces.results, &self.forces.body_states);
         let (unit_speed, balance) = (&self.unit_speed_states, &self.position.power_balance);
         let joint_forces = &self.position.joint_forces;
@@ -270,11 +318,14 @@ impl<'a> PositionEvaluator<'a> {
             Quantity::LoadForce(k) => self.load_force(k),
             Quantity::LoadPower(k) => self.position.load_powers[k],
             Quantity::Extra(k) => sample.extra_values[k],
+            // The columns of a mechanism in the plane are none of these.
+            Quantity::PointInSpace(..)
+            | Quantity::RotationInSpace(..)
+            | Quantity::MomentMagnitude(_) => f64::NAN,
         }
     }
 
-    /// The rate of an angle that is unwrapped along the trajectory, rad/s.
-    pub(crate) fn angular_velocity(&self, angle: Quantity) -> f64 {
+    fn angular_velocity(&self, angle: Quantity) -> f64 {
         match angle {
             Quantity::Measured(measured @ CoordinateFunction::Angle(_), _) => {
                 self.forces.body_states.coordinate(measured)[1]
@@ -282,52 +333,5 @@ impl<'a> PositionEvaluator<'a> {
             Quantity::BodyAngle(body, _) => self.forces.body_states.body(body).angular_velocity,
             _ => 0.0,
         }
-    }
-
-    /// The k-th reaction within the mechanism that the i-th body of varying inertia stands for.
-    fn known_reaction(&self, i: usize, k: usize) -> f64 {
-        let varying = &self.scene.varying_inertias[i];
-        let body = self.forces.body_states.body(varying.body);
-        let angle = body.rotation.angle();
-        varying.reactions[k].value(angle, body.angular_velocity, body.angular_acceleration)
-    }
-
-    /// The force of a load along its direction or line, or its moment on its second body.
-    fn load_force(&self, k: usize) -> f64 {
-        let states = &self.forces.body_states;
-        let on = |body: BodyId| {
-            let mut wrenches = self.position.wrenches.iter();
-            wrenches.find(|w| w.source == ForceSource::Load(k) && w.body == body)
-        };
-        match self.scene.loads[k].kind {
-            LoadKind::Gravity { .. }
-            | LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::SeparatingForce(_) => self.position.magnitudes[k],
-            LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } => {
-                let line = states.separation(bodies, points).direction;
-                let force_and_line = on(bodies[1]).zip(line);
-                force_and_line.map_or(0.0, |(wrench, line)| wrench.force.dot(line))
-            }
-            LoadKind::TorsionSpring { bodies, .. } | LoadKind::RotationalDamper { bodies } => {
-                on(bodies[1]).map_or(0.0, |wrench| wrench.couple)
-            }
-            LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
-                let [first, second] = guide.bodies;
-                let axis = guide.axis.rotate(states.body(first).rotation);
-                on(second).map_or(0.0, |wrench| wrench.force.dot(axis))
-            }
-        }
-    }
-
-    pub(crate) fn body_poses(&self) -> Vec<BodyPose> {
-        let states = &self.forces.body_states;
-        let bodies = (0..self.scene.mechanism.bodies.len()).map(BodyId);
-        let body_pose = |b| {
-            let origin = states.point(b, Vec2::ZERO).position;
-            (origin, states.body(b).rotation)
-        };
-        bodies.map(body_pose).collect()
     }
 }

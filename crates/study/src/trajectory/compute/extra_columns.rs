@@ -2,7 +2,7 @@
 
 use crate::models::{drive_states, motor_columns, source_name};
 use crate::trajectory::compute::{BALANCE, Column, KINETIC, POTENTIAL, Quantity};
-use dwell_dynamics::Machine;
+use dwell_dynamics::{Machine, NonconservativeSource};
 use dwell_scene::Scene;
 
 /// The columns of [`TrajectorySample::extra_values`](crate::trajectory::compute::TrajectorySample), in their order; the
@@ -19,7 +19,15 @@ pub(crate) fn extra_columns(loaded_scene: &Scene, machine: &Machine) -> Vec<Colu
     let sources = machine.nonconservative_sources().iter();
     all.extend(sources.map(|&source| {
         let name = source_name(loaded_scene, source);
-        (format!("{name}.work"), "J", "work since t = 0")
+        let meaning = match source {
+            NonconservativeSource::Drive(_) => {
+                "work since t = 0, before the rotor: what the rotor stores does not reach the bodies"
+            }
+            NonconservativeSource::Load(_)
+            | NonconservativeSource::Prescribed(_)
+            | NonconservativeSource::Stop(_) => "work since t = 0",
+        };
+        (format!("{name}.work"), "J", meaning)
     }));
     all.push((BALANCE.to_owned(), "J", balance));
     all.extend(drive_states(loaded_scene));

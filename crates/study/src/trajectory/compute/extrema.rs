@@ -5,7 +5,7 @@
 //! parabolas and golden sections, each of whose points is evaluated like a row.
 
 use crate::trajectory::compute::{
-    BALANCE, Column, PositionEvaluator, Quantity, Trajectory, TrajectorySample,
+    BALANCE, Column, Quantity, RowEvaluator, Trajectory, TrajectorySample,
 };
 use SamplePrecision::{Exact, Interpolated};
 use rayon::prelude::*;
@@ -104,17 +104,17 @@ impl<'s> BetweenRows<'s> {
 }
 
 /// What is searched.
-pub(crate) struct ExtremaSearch<'a, 'e> {
+pub(crate) struct ExtremaSearch<'a, E> {
     pub(crate) trajectory: &'a Trajectory<'a>,
     pub(crate) columns: &'a [Column],
     /// The index of the abscissa's column.
     pub(crate) abscissa: usize,
     /// All values of a column.
     pub(crate) values: &'a (dyn Fn(usize) -> io::Result<Vec<f64>> + Sync),
-    pub(crate) evaluators: &'a [PositionEvaluator<'e>],
+    pub(crate) evaluators: &'a [E],
 }
 
-impl ExtremaSearch<'_, '_> {
+impl<E: RowEvaluator> ExtremaSearch<'_, E> {
     /// The extrema in the rows.
     pub(crate) fn in_rows(&self) -> io::Result<Extrema> {
         let at = (self.values)(self.abscissa)?;
@@ -247,15 +247,15 @@ impl<'b> KnownPoints<'b> {
 }
 
 /// The search for extrema of one column after another.
-struct ColumnSearch<'a, 'e, 's> {
+struct ColumnSearch<'a, 's, E> {
     trajectory: &'a Trajectory<'a>,
     columns: &'a [Column],
     abscissa: usize,
-    evaluators: Vec<PositionEvaluator<'e>>,
+    evaluators: Vec<E>,
     sample: Sampler<'s>,
 }
 
-impl ColumnSearch<'_, '_, '_> {
+impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
     /// Some columns at a position.
     fn evaluate(
         &mut self,
@@ -278,30 +278,35 @@ impl ColumnSearch<'_, '_, '_> {
         let values = points.iter().filter(|point| !point[1].is_nan());
         let largest = *values.reduce(|a, b| if b[1] > a[1] { b } else { a })?;
         let scale = points.iter().map(|[_, v]| v.abs()).fold(0.0, f64::max);
-        let mut found: Vec<Point> = vec![largest];
+        // Each with its abscissa, where that is known.
+        let mut found: Vec<(Point, Option<f64>)> = vec![(largest, None)];
         let unwraps = self.columns[k].unwraps();
         for (near, bracket) in promising(&points, largest[1], refined) {
+            let columns = [k, self.abscissa];
             let mut value = |u: f64, precision: SamplePrecision| {
-                let [mut value] = self.evaluate(&[k], (u, precision))?[..] else {
+                let [mut value, at] = self.evaluate(&columns, (u, precision))?[..] else {
                     return None;
                 };
                 if unwraps {
                     value += TAU * ((sign * near - value) / TAU).round();
                 }
-                Some(sign * value).filter(|value| value.is_finite())
+                Some((sign * value, at)).filter(|(value, _)| value.is_finite())
             };
-            let top = refine_maximum(&mut |u| value(u, Interpolated), bracket, scale);
-            found.extend(top.and_then(|[u, _]| Some([u, value(u, Exact)?])));
+            let interpolated = &mut |u| Some(value(u, Interpolated)?.0);
+            let top = refine_maximum(interpolated, bracket, scale);
+            found.extend(top.and_then(|[u, _]| {
+                let (value, at) = value(u, Exact)?;
+                Some(([u, value], Some(at)))
+            }));
         }
-        let best = found
-            .iter()
-            .map(|[_, v]| *v)
-            .fold(f64::NEG_INFINITY, f64::max);
-        let is_best = |point: &&Point| point[1] >= best - SAME * scale;
+        let values = found.iter().map(|([_, v], _)| *v);
+        let best = values.fold(f64::NEG_INFINITY, f64::max);
+        let is_best = |(point, _): &&(Point, _)| point[1] >= best - SAME * scale;
         let first = found.iter().filter(is_best);
-        let [u, value] = *first.min_by(|a, b| a[0].total_cmp(&b[0]))?;
-        let [at] = self.evaluate(&[self.abscissa], (u, Exact))?[..] else {
-            return None;
+        let ([u, value], at) = *first.min_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]))?;
+        let at = match at {
+            Some(at) => at,
+            None => *self.evaluate(&[self.abscissa], (u, Exact))?.first()?,
         };
         Some(Extremum {
             value: sign * value,
@@ -313,7 +318,7 @@ impl ColumnSearch<'_, '_, '_> {
 /// Some of all columns at a position.
 fn evaluate(
     trajectory: &Trajectory<'_>,
-    evaluators: &mut [PositionEvaluator<'_>],
+    evaluators: &mut [impl RowEvaluator],
     (all, columns): (&[Column], &[usize]),
     sample: &TrajectorySample,
 ) -> Option<Vec<f64>> {
@@ -326,14 +331,14 @@ fn evaluate(
 }
 
 /// Whether a column has its extrema between rows: not the error of the integration, and nothing that is infinite in
-/// some positions.
+/// some positions or counts revolutions from row to row.
 fn is_continuous(column: &Column) -> bool {
-    use Quantity::{MechanicalAdvantage, Pole, Power, Time};
+    use Quantity::{MechanicalAdvantage, Pole, Power, RotationInSpace, Time};
     let quantity = column.quantity;
     column.name != BALANCE
         && !matches!(
             quantity,
-            Time | Power(3) | MechanicalAdvantage(..) | Pole(..)
+            Time | Power(3) | MechanicalAdvantage(..) | Pole(..) | RotationInSpace(_, 0..3)
         )
 }
 

@@ -8,6 +8,7 @@ mod early_stop;
 mod evaluator;
 mod extra_columns;
 mod extrema;
+mod followed_scene;
 mod long_rows;
 mod mechanical_advantage;
 mod monitor;
@@ -15,6 +16,7 @@ mod peak_forces;
 mod requested_columns;
 mod results;
 mod rounding_error;
+mod row_evaluator;
 mod sectioned_link;
 mod selection;
 mod trajectory;
@@ -23,7 +25,7 @@ mod unit_scales;
 
 pub use analysis::Analysis;
 pub(crate) use column::{Column, Quantity, is_prefix_of};
-pub(crate) use columns::all_columns;
+pub(crate) use columns::{POWER_COLUMNS, all_columns};
 pub(crate) use dyads::{Dyad, dyads};
 pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
@@ -35,6 +37,7 @@ pub(crate) use extrema::{
 };
 #[cfg(feature = "output")]
 pub(crate) use extrema::{Extremum, is_searched_in_rows};
+pub(crate) use followed_scene::FollowedScene;
 pub(crate) use long_rows::{LongRows, RowStorage, not_stored};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryMonitor, table_of};
@@ -45,14 +48,15 @@ pub(crate) use results::compute_trajectory_in;
 pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
 pub(crate) use results::{MotionBetweenRows, compute_along};
 pub(crate) use rounding_error::RoundingError;
+pub(crate) use row_evaluator::RowEvaluator;
 pub use sectioned_link::SectionedLink;
 pub(crate) use selection::{
     check_variables, prune_model, reject_unknown_variables, requested_bodies,
 };
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
-    BALANCE, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, Spacing, TrajectorySample,
-    default_limits,
+    BALANCE, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, Spacing, SweepLimits,
+    TrajectorySample, default_limits,
 };
 pub(crate) use unit_references::UnitReferences;
 pub(crate) use unit_scales::{UnitScales, force_scales};

@@ -2,7 +2,9 @@
 //! needs of thousands of scenes.
 
 use crate::explain::StudyError;
-use crate::trajectory::compute::{Analysis, ForceEvaluator, Point, Trajectory, highest_between};
+use crate::trajectory::compute::{
+    Analysis, FollowedScene, ForceEvaluator, Point, Trajectory, highest_between,
+};
 use dwell_kinetostatics::{InverseDynamics, Model};
 use dwell_scene::Scene;
 
@@ -30,8 +32,9 @@ pub(crate) fn peak_forces(
     wanted: &WantedForces,
 ) -> Result<InverseDynamics<f64>, StudyError> {
     let plan = model.plan();
-    let trajectory = Trajectory::new(scene, plan, analysis, None)?;
-    trajectory.check_laws(scene)?;
+    let followed = FollowedScene::in_plane(scene, plan);
+    let trajectory = Trajectory::new(&followed, analysis, None)?;
+    trajectory.check_laws(&followed)?;
     let mut evaluator = ForceEvaluator::new(scene, model, analysis);
     // Only couplings have functions that may jump.
     let has_couplings = !scene.mechanism.couplings.is_empty();

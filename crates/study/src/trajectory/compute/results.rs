@@ -7,10 +7,10 @@ use crate::explain::StudyError;
 use crate::models::loaded_model;
 use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
-    Analysis, BetweenRows, Column, Extrema, ExtremaSearch, LongRows, POSITIONS_PER_STEP,
-    PositionEvaluator, Quantity, RequestedColumns, RoundingError, RowStorage, Sampler,
-    SectionedLink, Trajectory, TrajectorySample, UnitReferences, all_columns, check_variables,
-    is_requested, not_stored, prune_model,
+    Analysis, BetweenRows, Column, Extrema, ExtremaSearch, FollowedScene, LongRows,
+    POSITIONS_PER_STEP, PositionEvaluator, Quantity, RequestedColumns, RoundingError, RowEvaluator,
+    RowStorage, Sampler, SectionedLink, Trajectory, TrajectorySample, UnitReferences, all_columns,
+    check_variables, is_requested, not_stored, prune_model,
 };
 use dwell_findings::{self as findings, Table};
 use dwell_geometry::Plan;
@@ -44,7 +44,7 @@ pub struct TrajectoryResults {
     pub sectioned_links: Vec<SectionedLink>,
     /// The largest residual of the power balance, relative to the sum of its absolute terms.
     pub power_residual: f64,
-    /// The estimated rounding error of actuator forces and reactions, relative to the largest of their unit.
+    /// The estimated rounding error of actuator forces and reactions, or of positions, velocities and accelerations, relative to the largest of their unit.
     pub rounding_error: Option<f64>,
     /// The statically indeterminate reactions, by name: no column has them.
     pub indeterminate: Vec<String>,
@@ -73,21 +73,38 @@ impl TrajectoryResults {
         let reactions = model.reactions().iter().enumerate();
         let indeterminate = reactions.filter(|&(k, _)| !model.plan().is_determinate(k));
         let names = indeterminate.map(|(_, r)| scene.mechanism.reaction_name(*r));
+        let written = written.collect();
+        Self {
+            sectioned_links: links.collect(),
+            indeterminate: names.collect(),
+            modelled: model.plan().placed_bodies(),
+            ..Self::of_columns(all, columns, written, requested.is_limited())
+        }
+    }
+
+    /// Without rows: `columns` are those of `all` columns of an analysis that are kept, and `written` those of them in the
+    /// tables, which are less than everything if `is_limited`.
+    pub(crate) fn of_columns(
+        all: Vec<Column>,
+        columns: Vec<Column>,
+        written: Vec<usize>,
+        is_limited: bool,
+    ) -> Self {
         Self {
             last_angles: vec![None; columns.len()],
-            written: written.collect(),
-            is_limited: requested.is_limited(),
+            written,
+            is_limited,
             references: UnitReferences::new(all, &columns),
             columns,
             rows: Vec::new(),
             long_rows: None,
             power_terms: Vec::new(),
             body_poses: Vec::new(),
-            sectioned_links: links.collect(),
+            sectioned_links: Vec::new(),
             power_residual: 0.0,
             rounding_error: None,
-            indeterminate: names.collect(),
-            modelled: model.plan().placed_bodies(),
+            indeterminate: Vec::new(),
+            modelled: Vec::new(),
             is_rounding: Vec::new(),
             extrema: Extrema::default(),
             errors: Vec::new(),
@@ -95,7 +112,7 @@ impl TrajectoryResults {
     }
 
     /// The requested columns as a table.
-    fn table(&self) -> Table {
+    pub(crate) fn table(&self) -> Table {
         let columns = self.written.iter().map(|&k| &self.columns[k]);
         let columns = columns.map(|c| findings::Column::new(&c.name, c.unit));
         let row = |row: &Vec<f64>| self.written.iter().map(|&k| row[k]).collect();
@@ -109,7 +126,11 @@ impl TrajectoryResults {
     }
 
     /// Prepares the memory for the rows of so many positions.
-    fn keep_rows_in(&mut self, storage: RowStorage, points: usize) -> Result<(), StudyError> {
+    pub(crate) fn keep_rows_in(
+        &mut self,
+        storage: RowStorage,
+        points: usize,
+    ) -> Result<(), StudyError> {
         if storage == RowStorage::Bounded {
             self.long_rows = LongRows::new(&self.columns, points)?;
         }
@@ -117,7 +138,7 @@ impl TrajectoryResults {
     }
 
     /// Ends the rows: the last one is always in memory.
-    fn finish_rows(&mut self) -> Result<(), StudyError> {
+    pub(crate) fn finish_rows(&mut self) -> Result<(), StudyError> {
         if let Some(long) = &mut self.long_rows
             && let Some((row, poses)) = long.finish()?
         {
@@ -157,6 +178,24 @@ impl TrajectoryResults {
         evaluator: &PositionEvaluator<'_>,
         sample: &TrajectorySample,
     ) {
+        let position = &evaluator.position;
+        let links = self.sectioned_links.iter_mut().zip(&position.link_forces);
+        for (link, forces) in links {
+            link.add_position(k, forces.as_ref());
+        }
+        let balance = &position.power_balance;
+        let power_terms = [balance.residual().abs(), balance.scale];
+        self.add_row(evaluator, sample, (evaluator.body_poses(), power_terms));
+    }
+
+    /// Adds the row of the position that was evaluated last, with the poses of the bodies, and the residual and the scale of
+    /// the power balance.
+    pub(crate) fn add_row(
+        &mut self,
+        evaluator: &impl RowEvaluator,
+        sample: &TrajectorySample,
+        (poses, power_terms): (Vec<BodyPose>, [f64; 2]),
+    ) {
         let value = |(column, last): (&Column, &mut Option<[f64; 3]>)| {
             let value = evaluator.value(column.quantity, sample);
             if !column.unwraps() {
@@ -169,7 +208,6 @@ impl TrajectoryResults {
         let row: Vec<f64> = columns.map(value).collect();
         self.references
             .add_row(&row, &|quantity| evaluator.value(quantity, sample));
-        let poses = evaluator.body_poses();
         let kept = match &mut self.long_rows {
             Some(long) => long.add(row, poses),
             None => Some((row, poses)),
@@ -178,14 +216,7 @@ impl TrajectoryResults {
             self.rows.push(row);
             self.body_poses.push(poses);
         }
-        let position = &evaluator.position;
-        let links = self.sectioned_links.iter_mut().zip(&position.link_forces);
-        for (link, forces) in links {
-            link.add_position(k, forces.as_ref());
-        }
-        let balance = &position.power_balance;
-        self.power_terms
-            .push([balance.residual().abs(), balance.scale]);
+        self.power_terms.push(power_terms);
     }
 }
 
@@ -252,15 +283,15 @@ impl TrajectoryResults {
         self.column_index(quantity).unwrap_or(0)
     }
 
-    /// Finds the extrema of the columns in the tables that are not zero but for rounding.
-    fn find_extrema(
+    /// Finds the extrema of the columns in the tables that are not zero but for rounding, in a mechanism of this size (m).
+    pub(crate) fn find_extrema(
         &mut self,
-        scene: &Scene,
+        size: f64,
         trajectory: &Trajectory<'_>,
-        evaluators: &[PositionEvaluator<'_>],
+        evaluators: &[impl RowEvaluator],
         motion: Option<MotionBetweenRows<'_>>,
     ) -> Result<(), StudyError> {
-        self.find_rounding(scene.mechanism.size());
+        self.find_rounding(size);
         let written = self.written.iter().copied();
         let wanted: Vec<usize> = written.filter(|&k| !self.is_rounding[k]).collect();
         let search = ExtremaSearch {
@@ -366,7 +397,8 @@ pub(crate) fn compute_trajectory_in<'a>(
 ) -> Result<ComputedTrajectory<'a>, StudyError> {
     let model = loaded_model(scene)?;
     let notes = check_variables(scene, &model)? + &branch_note(scene, model.plan());
-    let trajectory = Trajectory::new(scene, model.plan(), analysis, points)?;
+    let followed = FollowedScene::in_plane(scene, model.plan());
+    let trajectory = Trajectory::new(&followed, analysis, points)?;
     compute_in(storage, scene, &model, (trajectory, None), notes, progress)
 }
 
@@ -404,7 +436,7 @@ fn compute_in<'a>(
     let (plan, analysis): (&Plan, Analysis) = (full_model.plan(), trajectory.analysis);
     let model = &prune_model(scene, full_model);
     let columns = computed_columns(scene, model, &trajectory);
-    trajectory.check_laws(scene)?;
+    trajectory.check_laws(&FollowedScene::in_plane(scene, plan))?;
     let charts = match trajectory.charts() {
         [] => std::slice::from_ref(model),
         charts => charts,
@@ -415,8 +447,7 @@ fn compute_in<'a>(
         .iter()
         .map(|chart| PositionEvaluator::new(scene, plan, chart, analysis, &results.columns));
     let mut evaluators = evaluators.collect::<Result<Vec<_>, _>>()?;
-    let mut rounding_error = matches!(analysis, Analysis::Statics | Analysis::Kinetostatics)
-        .then(|| RoundingError::new(scene, model, trajectory.points));
+    let mut rounding_error = RoundingError::new(scene, model, (analysis, trajectory.points));
     let early_stop = trajectory.follow(plan, |k, sample| {
         let evaluator = &mut evaluators[sample.chart];
         let t = trajectory.load_time(sample);
@@ -441,7 +472,8 @@ fn compute_in<'a>(
         return Err(error);
     }
     results.finish_rows()?;
-    results.find_extrema(scene, &trajectory, &evaluators, between)?;
+    let size = scene.mechanism.size();
+    results.find_extrema(size, &trajectory, &evaluators, between)?;
     results.rounding_error = rounding_error.map(|error| error.max_relative());
     Ok(ComputedTrajectory {
         table: results.table(),

@@ -1,9 +1,10 @@
 //! The coordinates that an analysis follows: a prescribed motion, a free motion, or a sweep.
 
-use crate::explain::{StudyError, actuator_labels, scene_error};
+use crate::explain::{StudyError, scene_error};
 use crate::number_format::{count, digits};
 use crate::trajectory::compute::{
-    Analysis, CONTINUITY_HELP, Column, EarlyStop, StopCause, jump_location, unreachable_error,
+    Analysis, CONTINUITY_HELP, Column, EarlyStop, FollowedScene, StopCause, jump_location,
+    unreachable_error,
 };
 use dwell_geometry::{ActuatorId, Plan, Range};
 use dwell_kinetostatics::Model;
@@ -110,18 +111,17 @@ impl<'a> Trajectory<'a> {
     /// # Errors
     /// [`StudyError::Scene`] if the scene does not define the actuator coordinates.
     pub(crate) fn new(
-        scene: &'a Scene,
-        plan: &Plan,
+        scene: &FollowedScene<'a>,
         analysis: Analysis,
         points: Option<usize>,
     ) -> Result<Self, StudyError> {
-        let Some(prescribed) = &scene.prescribed else {
-            return Self::swept(scene, plan, analysis, points);
+        let Some(prescribed) = scene.prescribed else {
+            return Self::swept(scene, analysis, points);
         };
         let points = points.unwrap_or(prescribed.points);
         Ok(Self::prescribed(
             (prescribed, Spacing::EqualTimes),
-            plan,
+            scene.period,
             analysis,
             points,
         ))
@@ -130,46 +130,45 @@ impl<'a> Trajectory<'a> {
     /// A prescribed motion.
     pub(crate) fn prescribed(
         (motion, spacing): (&'a PrescribedMotion, Spacing),
-        plan: &Plan,
+        period: Option<f64>,
         analysis: Analysis,
         points: usize,
     ) -> Self {
         let duration = digits(motion.duration, 6);
         let description = format!("the prescribed motion of {duration} s");
         let kind = TrajectoryKind::Prescribed(motion, spacing);
-        Self::at_positions(kind, plan, analysis, points, description)
+        Self::at_positions(kind, period, analysis, points, description)
     }
 
     /// The sweep of a scene; or else over the range of its only actuator.
     fn swept(
-        scene: &Scene,
-        plan: &Plan,
+        scene: &FollowedScene<'_>,
         analysis: Analysis,
         points: Option<usize>,
     ) -> Result<Self, StudyError> {
-        let sweep = match &scene.sweep {
+        let sweep = match scene.sweep {
             Some(sweep) => sweep.clone(),
-            None if plan.actuators() != 1 || analysis == Analysis::Kinetostatics => {
-                return Err(no_trajectory_error(scene, analysis));
+            None if scene.coordinates.len() != 1 || analysis == Analysis::Kinetostatics => {
+                return Err(scene.no_trajectory(analysis));
             }
             None => CoordinateSweep {
                 actuator: ActuatorId(0),
                 range: None,
-                fixed_coordinates: plan.assembly_coordinates().to_vec(),
+                fixed_coordinates: scene.start.clone(),
                 points: DEFAULT_POINTS,
                 speed: 1.0,
             },
         };
         let actuator = sweep.actuator.0;
         let start = sweep.fixed_coordinates[actuator];
-        let ([from, to], ends_at_limit_position, what) = match sweep.range {
-            Some(range) => (range, [false; 2], "the sweep"),
-            None if plan.actuators() == 1 => default_limits(scene, plan),
-            None if plan.is_angle(actuator) => one_revolution(start),
-            None => return Err(open_sweep_error(scene, actuator)),
+        let (name, is_angle) = scene.coordinates[actuator];
+        let ([from, to], ends_at_limit_position, what) = match (sweep.range, scene.default_limits) {
+            (Some(range), _) => (range, [false; 2], "the sweep"),
+            (None, Some(limits)) => limits,
+            (None, None) if is_angle => one_revolution(start),
+            (None, None) => return Err(scene.open_sweep(actuator)),
         };
-        let name = &scene.mechanism.actuators[actuator].name;
-        let in_scene_unit = |q| scene.to_scene_unit(q, plan.is_angle(actuator));
+        let in_scene_unit = |q| scene.file.to_scene_unit(q, is_angle);
         let [(first, unit), (last, _)] = [from, to].map(in_scene_unit);
         let [first, last] = [first, last].map(|q| digits(q, 6));
         let description = format!("{what} of {name} from {first} to {last} {unit}");
@@ -177,21 +176,21 @@ impl<'a> Trajectory<'a> {
         let kind = TrajectoryKind::Swept(sweep, [from, to]);
         Ok(Self {
             ends_at_limit_position,
-            ..Self::at_positions(kind, plan, analysis, points, description)
+            ..Self::at_positions(kind, scene.period, analysis, points, description)
         })
     }
 
     /// A computed free motion that ended at `end` (s).
-    pub(crate) fn of_free_motion(plan: &Plan, motion: FreeTrajectory, end: f64) -> Self {
+    pub(crate) fn of_free_motion(period: Option<f64>, motion: FreeTrajectory, end: f64) -> Self {
         let (points, duration) = (motion.samples.len(), digits(end, 6));
         let description = format!("a free motion of {duration} s");
         let kind = TrajectoryKind::Free(motion);
-        Self::at_positions(kind, plan, Analysis::FreeMotion, points, description)
+        Self::at_positions(kind, period, Analysis::FreeMotion, points, description)
     }
 
     fn at_positions(
         kind: TrajectoryKind<'a>,
-        plan: &Plan,
+        period: Option<f64>,
         analysis: Analysis,
         points: usize,
         description: String,
@@ -204,7 +203,7 @@ impl<'a> Trajectory<'a> {
             description,
             method_text: format!("the mechanism at {}", count(points, "position")),
             ends_at_limit_position: [false; 2],
-            period: plan.range().period(),
+            period,
         }
     }
 
@@ -293,20 +292,20 @@ impl<'a> Trajectory<'a> {
 
     /// Rejects a law that has no finite value, speed or acceleration at a position, exceeds the largest
     /// angle that keeps its digits, or is discontinuous between two positions.
-    pub(crate) fn check_laws(&self, scene: &Scene) -> Result<(), StudyError> {
+    pub(crate) fn check_laws(&self, scene: &FollowedScene<'_>) -> Result<(), StudyError> {
         let TrajectoryKind::Prescribed(prescribed, spacing) = &self.kind else {
             return Ok(());
         };
-        let actuators = &scene.mechanism.actuators;
         let mut previous: Option<f64> = None;
         for k in 0..self.points {
             let t = spacing.fraction_of_time(self.fraction_at(k)) * prescribed.duration;
             let time = || format!("t = {} s", digits(t, 6));
-            for (a, (actuator, law)) in actuators.iter().zip(&prescribed.laws).enumerate() {
+            let laws = scene.coordinates.iter().zip(&prescribed.laws);
+            for (a, (&(name, is_angle), law)) in laws.enumerate() {
                 let reject = |what: String, help: &str, label: String| {
-                    let message = format!("the law of `{}` {what}", actuator.name);
+                    let message = format!("the law of `{name}` {what}");
                     let place = (SceneLocation::PrescribedLaw(ActuatorId(a)), label);
-                    Err(scene_error(scene, message, help, [place]))
+                    Err(scene_error(scene.file, message, help, [place]))
                 };
                 let at = law.eval(t);
                 let names = ["value", "speed", "acceleration"];
@@ -318,7 +317,7 @@ impl<'a> Trajectory<'a> {
                         what,
                     );
                 }
-                if actuator.coordinate().is_angle() && at[0].abs() > MAX_ANGLE {
+                if is_angle && at[0].abs() > MAX_ANGLE {
                     return reject(
                         format!("is more than {MAX_ANGLE:e} rad at {}", time()),
                         "so large an angle has lost its last digits: end the motion earlier, or check the numbers",
@@ -414,38 +413,6 @@ pub(crate) fn default_limits(scene: &Scene, plan: &Plan) -> SweepLimits {
             "a stroke",
         ),
     }
-}
-
-/// The error of a scene that prescribes no actuator coordinates.
-fn no_trajectory_error(scene: &Scene, analysis: Analysis) -> StudyError {
-    let actuators = &scene.mechanism.actuators;
-    let message = match analysis {
-        Analysis::Kinetostatics => {
-            "the scene prescribes no motion, so there are no accelerations".to_owned()
-        }
-        _ => {
-            let given = count(actuators.len(), "actuator");
-            format!("the scene has {given} and no coordinates for them")
-        }
-    };
-    let example = actuators.first().map_or("phi", |a| a.name.as_str());
-    let help = format!(
-        "add [prescribed] with a `duration` and a law for each, as in `{example} = {{ speed = 1.0 }}`; or \
-         [coordinate-sweep] with a range for one of them, as in `{example} = [0.0, 1.0]`"
-    );
-    let labels = actuator_labels(scene, "no coordinate is given");
-    scene_error(scene, message, help, labels)
-}
-
-/// The error of a swept length that has no limits, in a mechanism with several actuators.
-fn open_sweep_error(scene: &Scene, actuator: usize) -> StudyError {
-    let name = &scene.mechanism.actuators[actuator].name;
-    scene_error(
-        scene,
-        format!("[coordinate-sweep] gives no range for `{name}`"),
-        format!("add `{name} = [from, to]`: the range is computed for a single actuator only"),
-        [(SceneLocation::CoordinateSweep, "no range")],
-    )
 }
 
 /// Names of the energies' columns.

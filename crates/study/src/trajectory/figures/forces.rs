@@ -1,33 +1,14 @@
-//! Actuator forces, reactions, power and internal forces.
+//! Reactions and internal forces.
 
 use crate::models::lists_reactions;
-use crate::output::{add_note, chart, figure, reaction_figure_count, symbol};
-use crate::trajectory::compute::{Analysis, Column, Quantity, SectionedLink};
+use crate::output::{add_note, chart, figure, reaction_figure_count};
+use crate::trajectory::compute::{Quantity, SectionedLink};
 use crate::trajectory::figures::{FigureContext, MAX_CURVES};
 use dwell_geometry::JointId;
 use dwell_kinetostatics::Section;
 use dwell_report::{Axis, Figure, Paint, Panel, Series, Stroke};
 
 impl FigureContext<'_> {
-    pub(crate) fn actuator_forces(&self) -> Option<Figure> {
-        let is_force = |c: &Column| matches!(c.quantity, Quantity::ActuatorForce(_));
-        let kinds = [
-            ("N m", "Actuator moments", "couple"),
-            ("N", "Actuator forces", "force"),
-        ];
-        let chart = |(unit, title, label)| {
-            let indices = self.columns_where(|c| is_force(c) && c.unit == unit);
-            let mut curves = self.labelled(&indices, ".actuator_force");
-            curves.iter_mut().for_each(|(name, _)| *name = symbol(name));
-            curves.retain(|(_, k)| !self.is_zero(*k));
-            Some(self.chart_of_some(title, label, &curves)?.into())
-        };
-        let panels: Vec<Panel> = kinds.into_iter().filter_map(chart).collect();
-        let text = "Required actuator forces: the force or moment of the first body on the second.";
-        (!panels.is_empty())
-            .then(|| self.figure("actuator-forces", "Actuator forces", text, panels))
-    }
-
     /// Joint forces by their magnitudes, or their only component; then the moments. With a note if not all are
     /// drawn.
     pub(crate) fn reactions(&self) -> (Vec<Figure>, Option<String>) {
@@ -80,55 +61,6 @@ impl FigureContext<'_> {
         let mut figures: Vec<Figure> = pages.map(page).collect();
         add_note(&mut figures, note.as_deref());
         (figures, note)
-    }
-
-    pub(crate) fn shaking_force(&self) -> Option<Figure> {
-        let indices = self.columns_where(|c| matches!(c.quantity, Quantity::ShakingForce(_)));
-        let &[fx, fy, m] = indices.as_slice() else {
-            return None;
-        };
-        if indices.iter().all(|&k| self.is_zero(k)) {
-            return None;
-        }
-        let force = [("x".to_owned(), fx), ("y".to_owned(), fy)];
-        let kinds = [
-            ("force", &force[..]),
-            ("moment", &[("moment".to_owned(), m)]),
-        ];
-        let drawn = kinds
-            .into_iter()
-            .filter(|(_, curves)| self.is_any_nonzero(curves));
-        let charts: Vec<_> = drawn
-            .map(|(label, curves)| self.chart("", label, curves))
-            .collect();
-        let text =
-            "Resultant of joint, actuator and load forces on the frame; moment about its origin.";
-        let title = match self.analysis {
-            Analysis::Kinetostatics | Analysis::FreeMotion => "Shaking force and moment",
-            _ => "Force and moment on the frame",
-        };
-        let panels = vec![charts.into()];
-        Some(self.figure("shaking-force", title, text, panels))
-    }
-
-    pub(crate) fn power(&self) -> Option<Figure> {
-        let is_power = |c: &Column| matches!(c.quantity, Quantity::Power(_)) && c.unit == "W";
-        let curves = self.labelled(&self.columns_where(is_power), "").into_iter();
-        let curves: Vec<(String, usize)> = curves
-            .filter_map(|(name, k)| Some((name.strip_prefix("power.")?.to_owned(), k)))
-            .filter(|(name, _)| name != "residual")
-            .collect();
-        if curves.iter().all(|(_, k)| self.is_zero(*k)) {
-            return None;
-        }
-        let mut chart = self.chart("", "power", &curves);
-        // Without loads the other two curves coincide.
-        if let Some(kinetic) = chart.series.last_mut() {
-            kinetic.stroke = Stroke::Dashed;
-        }
-        let text =
-            "Power of the actuators and of the loads; their sum is the rate of the kinetic energy.";
-        Some(self.figure("power-balance", "Power balance", text, vec![chart.into()]))
     }
 
     /// Axial force, shear force and bending moment at the largest bending moment, with their envelopes.

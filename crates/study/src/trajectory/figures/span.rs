@@ -2,7 +2,7 @@
 
 use crate::explain::{StudyError, scene_error};
 use crate::number_format::digits;
-use dwell_scene::Scene;
+use dwell_scene::SceneFile;
 use std::ops::Range;
 
 /// From where to where curves are drawn: times in s, or the swept coordinate in the scene's unit. Files keep all rows.
@@ -28,7 +28,7 @@ impl DrawnRows {
     /// # Errors
     /// [`StudyError::Scene`] where the span is reversed, empty, no number, or outside the trajectory.
     pub(super) fn new(
-        scene: &Scene,
+        scene: &SceneFile,
         span: PictureSpan,
         values: &[f64],
         unit: &str,
@@ -88,6 +88,7 @@ impl DrawnRows {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use dwell_scene::Scene;
 
     fn scene() -> Scene {
         let text = "[bodies.ground]\npoints = { A = [0, 0] }\n[bodies.crank]\npoints = { A = [0, 0] }\n\

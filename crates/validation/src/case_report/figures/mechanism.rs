@@ -62,6 +62,7 @@ pub(super) fn drawing(shapes: Vec<Shape>) -> Panel {
         x: Axis::new("x", "m"),
         y: Axis::new("y", "m"),
         shapes,
+        ..Drawing::default()
     })
 }
 

@@ -87,6 +87,7 @@ fn compare_summary(
     let headings = heading_differences(&file, &motion.reading, "simulate");
     compared.merge("written-motion-headings", headings);
     compared.merge("written-motion-extrema", of.extrema);
+    compared.merge("written-motion-places", of.places);
     compared.merge("written-motion-sentences", of.printed);
     let summary = run.json("-simulate.json")?;
     compared.merge(

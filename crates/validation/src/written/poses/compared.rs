@@ -9,12 +9,13 @@ use std::collections::BTreeMap;
 type Spec = (&'static str, Check, &'static str, f64);
 
 #[rustfmt::skip]
-const SPECS: [Spec; 58] = [
+const SPECS: [Spec; 61] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
     ("written-slopes", Check::WrittenRates, "m and V of `reduce` with the integrals of ½m′ and w between rows", 1e-7),
     ("written-law-rates", Check::WrittenRates, "changes between rows of drawn laws with the integrals of their rates", 1e-6),
     ("written-extrema", Check::WrittenRates, "extrema of the summary with the rows around them", 1e-6),
+    ("written-places", Check::WrittenRates, "slopes at the places of the summary's extrema by the rows around them, over one row", 1e-6),
     ("written-equilibrium", Check::WrittenForces, "Newton's and Euler's equations of every body with the written forces", 2e-14),
     ("written-coefficients", Check::WrittenForces, "a, b and c of `reduce` in the equations of every body", 1e-13),
     ("written-sections", Check::WrittenForces, "internal forces of links with equilibrium of the part beyond each cut", 2e-14),
@@ -28,7 +29,8 @@ const SPECS: [Spec; 58] = [
     ("written-runs", Check::WrittenTwice, "m, ½m′, a and b of `reduce` with two runs of kinetostatics, and with the columns that are requested", 4e-11),
     ("written-files", Check::WrittenTwice, "CSV with NPZ, extrema and peaks of the summary with the rows", 1e-12),
     ("written-table", Check::WrittenTwice, "the table of `reduce` with its rows, beyond the errors that it states", 1e-13),
-    ("written-code", Check::WrittenTwice, "code of `symbolic` in Python and C, run line by line, with the rows of `reduce`", 1e-11),
+    ("written-code", Check::WrittenTwice, "code of `symbolic` in Rust, Python and C, run line by line, with the rows of `reduce`", 1e-11),
+    ("written-formulas", Check::WrittenTwice, "formulas of `symbolic` in LaTeX, with the printed constants of 12 digits, computed line by line, with the rows of `reduce`", 1e-9),
     ("written-sweep", Check::WrittenTwice, "extrema of m in rows of `sweep` with `reduce` of each changed scene", 1e-13),
     ("written-sweep-draws", Check::WrittenLaws, "varied numbers of `sweep` with a second generator of random numbers and the grid", 1e-14),
     ("written-sweep-distribution", Check::WrittenTotals, "random numbers of `sweep` with their distribution function (Kolmogorov and Smirnov)", 1.0),
@@ -49,6 +51,7 @@ const SPECS: [Spec; 58] = [
     ("written-motion-energy", Check::WrittenEnergy, "kinetic energy between rows of `simulate` with the power of the forces of the scene's text, and currents with their circuits", 3e-8),
     ("written-motion-files", Check::WrittenTwice, "CSV of `simulate` with NPZ, extrema of the summary with the rows", 1e-11),
     ("written-motion-extrema", Check::WrittenRates, "extrema of the summary of `simulate` with the rows around them", 1e-6),
+    ("written-motion-places", Check::WrittenRates, "slopes at the places of extrema of `simulate` by the rows around them, over one row", 1e-6),
     ("written-motion-summary", Check::WrittenTotals, "energies and events of the summary of `simulate` with rows and events", 5e-6),
     ("written-motion-sentences", Check::WrittenSentences, "numbers that `simulate` prints with the summary, to their digits", 1e-12),
     ("written-eigenvalues", Check::WrittenForces, "eigenvalues of `linearise` in the characteristic polynomial of the written A, and their sum with its trace", 1e-13),

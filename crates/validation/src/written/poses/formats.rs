@@ -15,6 +15,8 @@ pub(crate) struct Formats {
     pub(crate) files: Differences,
     /// Extrema of the summary against interpolated rows.
     pub(crate) extrema: Differences,
+    /// Slopes of interpolated rows at the places of extrema, over one row.
+    pub(crate) places: Differences,
     /// Printed numbers.
     pub(crate) printed: Differences,
 }
@@ -78,6 +80,7 @@ const MAX_ERROR: f64 = 1e-3;
 
 /// Extrema of the motion, also between rows: against a polynomial through the six nearest rows, less its own error by
 /// that through four.
+// Long because each end of each column is judged in three ways.
 fn add_extrema(found: &mut Formats, summary: &Value, rows: &Rows, command: &str, corners: &[f64]) {
     let abscissa = summary["extrema_over"]["name"].as_str().unwrap_or("t");
     let (Some(x), Some(extrema)) = (rows.columns.get(abscissa), summary["extrema"].as_array())
@@ -123,15 +126,37 @@ fn add_extrema(found: &mut Formats, summary: &Value, rows: &Rows, command: &str,
             let is_smooth = ![".magnitude", ".direction", ".friction.", ".efficiency"]
                 .iter()
                 .any(|part| quantity.contains(part));
-            if let Some([near, wide]) = interpolated(x, values, at, corners).filter(|_| is_smooth) {
-                let error = ERROR_FACTOR * (near - wide).abs();
-                let difference = ((value - wide).abs() - error).max(0.0);
-                if error < MAX_ERROR * scale {
-                    found.extrema.add(difference, scale, "", place);
-                }
+            let around = interpolated(x, values, at, corners).filter(|_| is_smooth);
+            let Some([near, wide]) = around else {
+                continue;
+            };
+            let error = ERROR_FACTOR * (near.value - wide.value).abs();
+            let difference = ((value - wide.value).abs() - error).max(0.0);
+            if error < MAX_ERROR * scale {
+                found.extrema.add(difference, scale, "", place);
+            }
+            let error = ERROR_FACTOR * (near.slope - wide.slope).abs();
+            let is_inside = x.first().is_some_and(|first| *first < at)
+                && x.last().is_some_and(|last| at < *last);
+            if is_inside && !is_zero && error < MAX_ERROR * scale && !is_of_rows(quantity) {
+                let slope = (wide.slope.abs() - error).max(0.0);
+                found.places.add(slope, scale, "", place);
             }
         }
     }
+}
+
+/// Whether the extrema of a column are those of its rows: errors, and what is infinite in some positions.
+fn is_of_rows(quantity: &str) -> bool {
+    ["mechanical_advantage", "pole", "balance", "residual"]
+        .iter()
+        .any(|part| quantity.contains(part))
+}
+
+/// A polynomial through rows: its value, and its slope times the distance of two rows.
+struct Through {
+    value: f64,
+    slope: f64,
 }
 
 /// By unit: the largest extremum. What is zero but for rounding is compared by others of its unit.
@@ -147,7 +172,9 @@ fn scales(extrema: &[Value]) -> BTreeMap<&str, f64> {
 }
 
 /// Lagrange's polynomials through the four and six rows around a place; none where rows are missing, or not smooth.
-fn interpolated(x: &[f64], y: &[f64], at: f64, corners: &[f64]) -> Option<[f64; 2]> {
+fn interpolated(x: &[f64], y: &[f64], at: f64, corners: &[f64]) -> Option<[Through; 2]> {
+    /// The part of a row in which a difference is a slope.
+    const PART: f64 = 1e-3;
     let next = x.partition_point(|x| *x <= at);
     // Behind a corner of a law the curve is another; a direction jumps by a revolution.
     let nearby = [
@@ -171,14 +198,22 @@ fn interpolated(x: &[f64], y: &[f64], at: f64, corners: &[f64]) -> Option<[f64; 
             .saturating_sub(half)
             .min(x.len().checked_sub(2 * half)?);
         let rows = from..from + 2 * half;
-        let term = |i: usize| {
-            let factors = rows
-                .clone()
-                .filter(|j| *j != i)
-                .map(|j| (at - x[j]) / (x[i] - x[j]));
-            y[i] * factors.product::<f64>()
+        let distance = (x[from + 2 * half - 1] - x[from]) / (2 * half - 1) as f64;
+        let value = |at: f64| {
+            let term = |i: usize| {
+                let factors = rows
+                    .clone()
+                    .filter(|j| *j != i)
+                    .map(|j| (at - x[j]) / (x[i] - x[j]));
+                y[i] * factors.product::<f64>()
+            };
+            rows.clone().map(term).sum::<f64>()
         };
-        Some(rows.clone().map(term).sum::<f64>())
+        let step = PART * distance;
+        Some(Through {
+            value: value(at),
+            slope: (value(at + step) - value(at - step)) / (2.0 * PART),
+        })
     };
     Some([through(2)?, through(3)?])
 }

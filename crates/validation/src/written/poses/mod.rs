@@ -26,6 +26,7 @@ pub(super) mod law;
 pub(super) mod motion;
 mod other_units;
 pub(super) mod positions;
+mod printed_formulas;
 pub(super) mod program;
 pub(super) mod rates;
 mod read_files;

@@ -172,6 +172,7 @@ fn add_formats(
     let of = formats(run, command, command, &corners(reading))?;
     compared.merge("written-files", of.files);
     compared.merge("written-extrema", of.extrema);
+    compared.merge("written-places", of.places);
     compared.merge("written-sentences", of.printed);
     let file = run.text(&format!("-{command}.csv"))?;
     let headings = heading_differences(&file, reading, command);

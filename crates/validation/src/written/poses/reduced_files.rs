@@ -2,11 +2,13 @@
 
 use super::closure::closure;
 use super::compared::Compared;
+use super::difference::Differences;
 use super::drawn_laws::drawn_motions;
 use super::equilibrium::equilibrium;
 use super::generated_code::code_differences;
 use super::headings::heading_differences;
 use super::positions::corners;
+use super::printed_formulas::formula_differences;
 use super::program::{Program, Run};
 use super::rates::rates;
 use super::reading::Reading;
@@ -129,7 +131,10 @@ fn printed_extrema(rows: &Rows, summary: &serde_json::Value) -> [(&'static str, 
 /// The accuracy that tables are asked for.
 const TABLE_ACCURACY: &str = "1e-7";
 
-/// The reduced model once more: as a table, and as code in two languages.
+/// Differences of a text of `symbolic` from the rows of `reduce`, in a coordinate, with a reaction.
+type Judge = fn(&str, &Rows, &str, &str) -> Differences;
+
+/// The reduced model once more: as a table, as code in three languages, and as formulas.
 fn compare_copies(
     compared: &mut Compared,
     program: &Program,
@@ -164,15 +169,21 @@ fn compare_copies(
     let Some(reaction) = reaction.map(|joint| format!("{}.x", joint.name)) else {
         return Ok(());
     };
-    for (format, end) in [("python", "-symbolic.py"), ("c", "-symbolic.c")] {
+    for (format, end) in [
+        ("python", "-symbolic.py"),
+        ("c", "-symbolic.c"),
+        ("rust", "-symbolic.rs"),
+        ("latex", "-symbolic.md"),
+    ] {
         let arguments = ["symbolic", "--format", format, "--reaction", &reaction];
         match program.run("code", scene, &arguments) {
             Ok(run) => {
-                let code = run.text(end)?;
-                compared.merge(
-                    "written-code",
-                    code_differences(&code, rows, coordinate, &reaction),
-                );
+                let text = run.text(end)?;
+                let (key, differences): (_, Judge) = match format {
+                    "latex" => ("written-formulas", formula_differences),
+                    _ => ("written-code", code_differences),
+                };
+                compared.merge(key, differences(&text, rows, coordinate, &reaction));
             }
             // Not every mechanism has a closed form; then the command says so.
             Err(e) if e.to_string().contains("closed form") => {}

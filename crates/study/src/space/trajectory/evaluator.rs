@@ -1,0 +1,184 @@
+//! Evaluates one position of a trajectory in space after another.
+
+use super::reactions::JointReactions;
+use super::totals::Totals;
+use crate::trajectory::compute::{Analysis, Quantity, RowEvaluator, StopCause, TrajectorySample};
+use dwell_geometry::space::{BodyMotion, Placement, Pose, Vec3};
+use dwell_kinetostatics::InverseDynamics;
+use dwell_kinetostatics::space::{Model, Workspace};
+use dwell_scene::SpaceScene;
+use std::f64::consts::TAU;
+
+/// Evaluates all quantities at one position after another.
+#[derive(Clone)]
+pub(in crate::space) struct SpaceEvaluator<'a> {
+    scene: &'a SpaceScene,
+    model: &'a Model,
+    reactions: &'a JointReactions,
+    analysis: Analysis,
+    pose: Pose,
+    pub(super) placements: Vec<Placement>,
+    motions: Vec<BodyMotion>,
+    /// By body: its rotation as a vector, followed from one position to the next, rad.
+    rotations: Vec<Vec3>,
+    workspace: Workspace<f64>,
+    results: InverseDynamics<f64>,
+    totals: Totals,
+}
+
+impl<'a> SpaceEvaluator<'a> {
+    pub(in crate::space) fn new(
+        scene: &'a SpaceScene,
+        (model, reactions): (&'a Model, &'a JointReactions),
+        analysis: Analysis,
+    ) -> Self {
+        let bodies = scene.mechanism.bodies.len();
+        Self {
+            scene,
+            model,
+            reactions,
+            analysis,
+            pose: model.plan().pose(),
+            placements: vec![Placement::default(); bodies],
+            motions: vec![BodyMotion::default(); bodies],
+            rotations: vec![Vec3::ZERO; bodies],
+            workspace: model.workspace(),
+            results: model.result_buffer(),
+            totals: Totals::new(scene),
+        }
+    }
+
+    /// The residual of the power balance, and the sum of its absolute terms, W.
+    pub(super) fn power_terms(&self) -> [f64; 2] {
+        [self.totals.power[3].abs(), self.totals.power_scale]
+    }
+
+    /// Actuator forces, reactions and what they come to.
+    fn evaluate_forces(
+        &mut self,
+        (t, [q, q_dot, q_ddot]): (f64, [&[f64]; 3]),
+        given: &[(usize, f64)],
+    ) -> Result<(), StopCause> {
+        let at = (t, [q, q_dot, q_ddot]);
+        let (workspace, results) = (&mut self.workspace, &mut self.results);
+        self.totals
+            .evaluate_loads(self.model, at, given, workspace, results)?;
+        let bodies = (&self.placements[..], &self.motions[..]);
+        self.totals
+            .compute(self.scene, bodies, (&self.results.tau, q_dot));
+        Ok(())
+    }
+}
+
+impl RowEvaluator for SpaceEvaluator<'_> {
+    fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
+        let rest = vec![0.0; sample.q.len()];
+        let at = match self.analysis {
+            Analysis::Statics => [&sample.q, &rest, &rest],
+            Analysis::Kinematics | Analysis::Kinetostatics | Analysis::FreeMotion => {
+                [&sample.q, &sample.q_dot, &sample.q_ddot]
+            }
+        };
+        let (plan, [q, q_dot, q_ddot]) = (self.model.plan(), at.map(Vec::as_slice));
+        plan.positions(q, &mut self.pose)?;
+        plan.velocities(q_dot, &mut self.pose);
+        plan.accelerations(q_ddot, &mut self.pose);
+        for b in 0..self.placements.len() {
+            let placement = plan.placement(&self.pose, b);
+            self.placements[b] = placement;
+            self.motions[b] = plan.body_motion(&self.pose, b);
+            self.rotations[b] = followed(placement.rotation.vector(), self.rotations[b]);
+        }
+        match self.analysis {
+            Analysis::Kinematics => Ok(()),
+            Analysis::Statics | Analysis::Kinetostatics | Analysis::FreeMotion => {
+                self.evaluate_forces((t, [q, q_dot, q_ddot]), &sample.drive_magnitudes)
+            }
+        }
+    }
+
+    // One arm for each quantity.
+    fn value(&self, quantity: Quantity, sample: &TrajectorySample) -> f64 {
+        let component = |v: Vec3, axis: usize| [v.x, v.y, v.z][axis];
+        match quantity {
+            Quantity::Time => sample.t,
+            Quantity::ActuatorCoordinate(i, order) => {
+                [&sample.q, &sample.q_dot, &sample.q_ddot][order][i]
+            }
+            Quantity::ActuatorForce(i) => self.results.tau[i],
+            Quantity::PointInSpace(body, at, k) => {
+                let (placement, motion) = (&self.placements[body.0], &self.motions[body.0]);
+                let arm = placement.rotation.apply(at);
+                let vectors = [
+                    placement.position + arm,
+                    motion.point_velocity(arm),
+                    motion.point_acceleration(arm),
+                ];
+                component(vectors[k / 3], k % 3)
+            }
+            Quantity::RotationInSpace(body, k) => {
+                let motion = &self.motions[body.0];
+                let vectors = [
+                    self.rotations[body.0],
+                    motion.angular_velocity,
+                    motion.angular_acceleration,
+                ];
+                component(vectors[k / 3], k % 3)
+            }
+            Quantity::Reaction(k) => self.results.reactions[k],
+            Quantity::ForceMagnitude(joint) => {
+                self.reactions.wrench(joint, &self.results.reactions)[0].norm()
+            }
+            Quantity::MomentMagnitude(joint) => {
+                self.reactions.wrench(joint, &self.results.reactions)[1].norm()
+            }
+            Quantity::ShakingForce(k) => self.totals.shaking[k],
+            Quantity::Power(k) => self.totals.power[k],
+            Quantity::LoadPower(k) => self.totals.load_powers[k],
+            Quantity::Extra(k) => sample.extra_values[k],
+            // The columns of a mechanism in space are none of these.
+            Quantity::Measured(..)
+            | Quantity::BodyAngle(..)
+            | Quantity::VelocityRatio(_)
+            | Quantity::MechanicalAdvantage(..)
+            | Quantity::Pole(..)
+            | Quantity::PointCoordinate(..)
+            | Quantity::TransmissionAngle(_)
+            | Quantity::KnownReaction(..)
+            | Quantity::BodyFrameForce(..)
+            | Quantity::ForceDirection(_)
+            | Quantity::LoadForce(_) => f64::NAN,
+        }
+    }
+
+    fn angular_velocity(&self, _: Quantity) -> f64 {
+        0.0
+    }
+}
+
+/// A rotation as a vector with the revolutions that bring it nearest to another.
+fn followed(vector: Vec3, last: Vec3) -> Vec3 {
+    let Some(axis) = vector.unit().or_else(|| last.unit()) else {
+        return vector;
+    };
+    let revolutions = ((last.dot(axis) - vector.norm()) / TAU).round();
+    vector + axis.scaled(TAU * revolutions)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_geometry::space::{Rotation, vec3};
+
+    #[test]
+    fn rotations_go_on_beyond_half_a_turn() {
+        let axis = vec3(0.6, 0.0, -0.8);
+        let mut last = Vec3::ZERO;
+        for k in 0..200 {
+            let angle = 0.1 * f64::from(k);
+            last = followed(Rotation::of_vector(axis.scaled(angle)).vector(), last);
+            let off = (last - axis.scaled(angle)).norm();
+            assert!(off < 1e-7, "{angle}: {off:.1e}");
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! The reactions that a trajectory needs: those that the scene requests, and all components of all joints for their magnitudes.
+
+use crate::explain::StudyError;
+use crate::space::explain::with_loads;
+use crate::space::prepared::{compile, sort_reactions};
+use dwell_geometry::JointId;
+use dwell_geometry::space::{JointKind, Vec3, vec3};
+use dwell_kinetostatics::space::{Axes, Component, Model, Reaction};
+use dwell_scene::SpaceScene;
+
+/// The components of a joint's force and moment in the axes of the ground.
+const COMPONENTS: [Component; 6] = [
+    Component::Force(Axes::Ground, 0),
+    Component::Force(Axes::Ground, 1),
+    Component::Force(Axes::Ground, 2),
+    Component::Moment(Axes::Ground, 0),
+    Component::Moment(Axes::Ground, 1),
+    Component::Moment(Axes::Ground, 2),
+];
+
+/// The reactions of the model of a trajectory, the requested ones first.
+#[derive(Debug, Clone)]
+pub(in crate::space) struct JointReactions {
+    /// The requested ones that the loads determine.
+    pub(super) requested: Vec<Reaction>,
+    /// The requested ones that redundant constraints leave open.
+    pub(in crate::space) indeterminate: Vec<Reaction>,
+    /// By joint: whether its force and its moment have a magnitude that the loads determine.
+    has_magnitude: Vec<[bool; 2]>,
+}
+
+impl JointReactions {
+    /// With the model that computes them.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] when the mechanism cannot be assembled.
+    pub(in crate::space) fn new(scene: &SpaceScene) -> Result<(Self, Model), StudyError> {
+        let joints = &scene.mechanism.joints;
+        let whole = (0..joints.len()).flat_map(|j| {
+            let reaction = move |component| Reaction {
+                joint: JointId(j),
+                component,
+            };
+            COMPONENTS.map(reaction)
+        });
+        let whole: Vec<Reaction> = whole.collect();
+        let model = compile(scene, &[&scene.reactions[..], &whole].concat())?;
+        let [_, open] = sort_reactions(scene, &model)?;
+        let (indeterminate, requested): (Vec<_>, Vec<_>) =
+            scene.reactions.iter().partition(|&r| open.contains(r));
+        let has_magnitude = joints.iter().enumerate().map(|(j, joint)| {
+            let of_joint = &whole[6 * j..6 * j + 6];
+            let is_determined = |some: &[Reaction]| !some.iter().any(|r| open.contains(r));
+            let has_moment = !matches!(
+                joint.kind,
+                JointKind::Spherical | JointKind::Distance { .. } | JointKind::Gear { .. }
+            );
+            let (force, moment) = of_joint.split_at(3);
+            [is_determined(force), has_moment && is_determined(moment)]
+        });
+        let reactions = Self {
+            requested,
+            indeterminate,
+            has_magnitude: has_magnitude.collect(),
+        };
+        let model = compile(scene, &[&reactions.requested[..], &whole].concat())?;
+        Ok((reactions, with_loads(scene, model)?))
+    }
+
+    /// Whether the force and the moment of a joint have a magnitude that the loads determine.
+    pub(super) fn has_magnitude(&self, joint: JointId) -> [bool; 2] {
+        self.has_magnitude[joint.0]
+    }
+
+    /// Whether all components of a joint's force, and of its moment, in the axes of the ground are requested.
+    pub(super) fn lists_whole(&self, joint: JointId) -> [bool; 2] {
+        let is_listed = |component: &Component| {
+            let mut requested = self.requested.iter();
+            requested.any(|r| r.joint == joint && r.component == *component)
+        };
+        [0..3, 3..6].map(|part| COMPONENTS[part].iter().all(is_listed))
+    }
+
+    /// Force and moment of a joint, among the reactions of the model.
+    pub(super) fn wrench(&self, joint: JointId, reactions: &[f64]) -> [Vec3; 2] {
+        let first = self.requested.len() + 6 * joint.0;
+        [first, first + 3].map(|k| vec3(reactions[k], reactions[k + 1], reactions[k + 2]))
+    }
+}

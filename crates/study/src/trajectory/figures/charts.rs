@@ -1,0 +1,304 @@
+//! Charts of the columns of a trajectory over its abscissa.
+
+use super::span::{DrawnRows, PictureSpan};
+use crate::explain::StudyError;
+use crate::number_format::digits;
+use crate::output::{chart, coordinate_axis, figure, symbol};
+use crate::ranges::extent;
+use crate::trajectory::compute::{
+    Analysis, Column, ComputedTrajectory, Quantity, TrajectoryResults,
+};
+use dwell_report::{Axis, Chart, Figure, Panel, Scale, Series, Stroke};
+use dwell_scene::SceneFile;
+
+/// Ratio of a curve's whole extent to that of its inner part above which it may leave its chart next to a
+/// limit position.
+const DIVERGENCE_RATIO: f64 = 3.0;
+
+/// What the charts of a trajectory share, in the plane or in space.
+pub(crate) struct ChartContext<'a> {
+    pub(super) scene: &'a SceneFile,
+    pub(super) results: &'a TrajectoryResults,
+    pub(super) analysis: Analysis,
+    /// The method that computed the positions.
+    pub(super) method_text: String,
+    pub(super) x: Axis,
+    /// The index of the abscissa's column.
+    pub(super) abscissa: usize,
+    pub(super) abscissa_values: Vec<f64>,
+    /// The part of the rows that curves show.
+    pub(super) drawn: DrawnRows,
+    /// Whether the trajectory starts and ends next to a limit position.
+    pub(super) limits: [bool; 2],
+}
+
+impl<'a> ChartContext<'a> {
+    /// Of a scene in the plane or in space; `swept` is the name of the swept coordinate, and whether it is an angle.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where the span of the curves is not within the trajectory.
+    pub(crate) fn new(
+        scene: &'a SceneFile,
+        swept: Option<(&str, bool)>,
+        computed: &'a ComputedTrajectory<'_>,
+        span: PictureSpan,
+    ) -> Result<Self, StudyError> {
+        let (trajectory, results) = (&computed.trajectory, &computed.results);
+        let abscissa = results.abscissa(trajectory);
+        let values = results.rows.iter().map(|row| row[abscissa]);
+        let (mut x, abscissa_values) = match swept {
+            None => (Axis::new("time", "s"), values.collect()),
+            Some((name, is_angle)) => {
+                let drawn = values.map(|q| if is_angle { q.to_degrees() } else { q });
+                (coordinate_axis(&symbol(name), is_angle), drawn.collect())
+            }
+        };
+        // The span is in the scene's unit, and the axis in degrees or m.
+        let swept = swept.map(|(_, is_angle)| is_angle);
+        let abscissae = results.rows.iter().map(|row| row[abscissa]);
+        let given: Vec<f64> = match swept {
+            None => abscissae.collect(),
+            Some(is_angle) => abscissae
+                .map(|q| scene.to_scene_unit(q, is_angle).0)
+                .collect(),
+        };
+        let unit = swept.map_or("s", |is_angle| scene.to_scene_unit(0.0, is_angle).1);
+        let rows = DrawnRows::new(scene, span, &given, unit)?;
+        let on_axis = |end: f64| match swept {
+            None => end,
+            Some(true) => scene.to_si(end, true).to_degrees(),
+            Some(false) => scene.to_si(end, false),
+        };
+        x.range = rows.ends.map(|ends| ends.map(on_axis));
+        let [start, end] = trajectory.ends_at_limit_position;
+        Ok(Self {
+            scene,
+            results,
+            analysis: trajectory.analysis,
+            method_text: trajectory.method_text.clone(),
+            x,
+            abscissa,
+            abscissa_values,
+            drawn: rows,
+            limits: [start, end || computed.early_stop.is_some()],
+        })
+    }
+
+    /// The abscissa of the `k`th position that is drawn: `time = 0.25 s`, `φ = −12.5°`.
+    pub(crate) fn describe_position(&self, k: usize) -> String {
+        self.describe(self.abscissa_values.get(k).copied().unwrap_or(0.0))
+    }
+
+    /// The abscissa of the `row`th position, drawn or not.
+    pub(crate) fn describe_row(&self, row: usize) -> String {
+        let at = self.results.value_at(row, self.abscissa);
+        self.describe(match self.x.scale {
+            Scale::Degrees => at.to_degrees(),
+            _ => at,
+        })
+    }
+
+    /// A drawn value of the abscissa: `time = 0.25 s`, `φ = −12.5°`.
+    pub(crate) fn describe(&self, at: f64) -> String {
+        let label = &self.x.label;
+        let text = match self.x.scale {
+            Scale::Degrees => format!("{label} = {at:.1}°"),
+            _ => format!("{label} = {} {}", digits(at, 4), self.x.unit),
+        };
+        text.replace('-', "−")
+    }
+
+    /// A figure whose curves may grow without bound towards a limit position.
+    pub(crate) fn figure(
+        &self,
+        name: impl Into<String>,
+        title: impl Into<String>,
+        text: &str,
+        panels: Vec<Panel>,
+    ) -> Figure {
+        let limit_note = match self.limits {
+            [false, false] => "",
+            _ => " Towards a limit position quantities may grow without bound.",
+        };
+        let span_note = self.span_note();
+        let text = format!("{text}{limit_note}{span_note}");
+        figure(self.scene, name, title, &text, panels, &self.method_text)
+    }
+
+    /// Which part of the trajectory the curves show, if not all of it.
+    pub(crate) fn span_note(&self) -> String {
+        let Some([from, to]) = self.x.range else {
+            return String::new();
+        };
+        let unit = match self.x.scale {
+            Scale::Degrees => "°".to_owned(),
+            _ => format!(" {}", self.x.unit),
+        };
+        let [from, to] = [from, to].map(|v| digits(v, 6).replace('-', "−"));
+        let label = &self.x.label;
+        format!(" Shown: {label} from {from} to {to}{unit}; the files hold all rows.")
+    }
+
+    /// The rows that curves show.
+    pub(crate) fn drawn_rows(&self) -> impl Iterator<Item = &Vec<f64>> {
+        self.results.rows[self.drawn.rows.clone()].iter()
+    }
+
+    /// A curve over the trajectory; angles in degrees.
+    pub(crate) fn curve(&self, name: &str, k: usize) -> Series {
+        let degrees = self.results.columns[k].unit == "rad";
+        let value = |row: &Vec<f64>| if degrees { row[k].to_degrees() } else { row[k] };
+        let values = self.drawn_rows().map(value);
+        let points = self.abscissa_values[self.drawn.rows.clone()]
+            .iter()
+            .zip(values);
+        Series::line(name, points.map(|(x, y)| [*x, y]).collect())
+    }
+
+    /// A chart of some columns of one unit, each with its name in the legend.
+    pub(crate) fn chart(&self, title: &str, label: &str, curves: &[(String, usize)]) -> Chart {
+        let line = |(i, (name, k)): (usize, &(String, usize))| {
+            let name = if curves.len() > 1 { name.as_str() } else { "" };
+            match self.curve(name, *k) {
+                // From the seventh on colours alone would not do.
+                curve if i >= 6 => curve.stroke(Stroke::Dashed),
+                curve => curve,
+            }
+        };
+        let series: Vec<Series> = curves.iter().enumerate().map(line).collect();
+        let unit = curves.first().map(|(_, k)| self.results.columns[*k].unit);
+        let mut y = match unit.unwrap_or_default() {
+            "rad" => Axis::degrees(label),
+            unit => Axis::new(label, unit.replace("s2", "s²")),
+        };
+        y.range = self.value_range(&series);
+        let title = match curves {
+            [(name, _)] if !title.is_empty() => format!("{title}: {name}"),
+            _ => title.to_owned(),
+        };
+        chart(title, self.x.clone(), y, series)
+    }
+
+    /// A chart of some columns, if any of them is more than rounding.
+    pub(crate) fn chart_of_some(
+        &self,
+        title: &str,
+        label: &str,
+        curves: &[(String, usize)],
+    ) -> Option<Chart> {
+        self.is_any_nonzero(curves)
+            .then(|| self.chart(title, label, curves))
+    }
+
+    /// The vertical range to show if curves grow without bound towards a limit position.
+    pub(crate) fn value_range(&self, curves: &[Series]) -> Option<[f64; 2]> {
+        let all = extent(curves.iter().flat_map(|c| &c.points).map(|[_, v]| *v));
+        let inner = curves.iter().flat_map(|c| {
+            let n = c.points.len();
+            let [from, to] = self.limits.map(|limit| if limit { n / 20 } else { 0 });
+            &c.points[from..n - to]
+        });
+        let inner = extent(inner.map(|[_, v]| *v));
+        let [whole, part] = [all, inner].map(|[low, high]| high - low);
+        let margin = 0.08 * part;
+        (part > 0.0 && whole > DIVERGENCE_RATIO * part)
+            .then(|| [inner[0] - margin, inner[1] + margin])
+    }
+
+    /// The indices of the columns that satisfy a condition.
+    pub(crate) fn columns_where(&self, holds: impl Fn(&Column) -> bool) -> Vec<usize> {
+        let columns = self.results.columns.iter().enumerate();
+        columns.filter(|(_, c)| holds(c)).map(|(k, _)| k).collect()
+    }
+
+    /// Whether a column is zero at every position, but for rounding.
+    pub(crate) fn is_zero(&self, k: usize) -> bool {
+        self.results.is_rounding[k]
+    }
+
+    /// Whether any of some curves is more than rounding.
+    pub(crate) fn is_any_nonzero(&self, curves: &[(String, usize)]) -> bool {
+        curves.iter().any(|(_, k)| !self.is_zero(*k))
+    }
+
+    /// The columns of these indices, named without a suffix.
+    pub(crate) fn labelled(&self, indices: &[usize], suffix: &str) -> Vec<(String, usize)> {
+        let name = |&k: &usize| {
+            let full = &self.results.columns[k].name;
+            (full.strip_suffix(suffix).unwrap_or(full).to_owned(), k)
+        };
+        indices.iter().map(name).collect()
+    }
+
+    pub(crate) fn actuator_forces(&self) -> Option<Figure> {
+        let is_force = |c: &Column| matches!(c.quantity, Quantity::ActuatorForce(_));
+        let kinds = [
+            ("N m", "Actuator moments", "couple"),
+            ("N", "Actuator forces", "force"),
+        ];
+        let chart = |(unit, title, label)| {
+            let indices = self.columns_where(|c| is_force(c) && c.unit == unit);
+            let mut curves = self.labelled(&indices, ".actuator_force");
+            curves.iter_mut().for_each(|(name, _)| *name = symbol(name));
+            curves.retain(|(_, k)| !self.is_zero(*k));
+            Some(self.chart_of_some(title, label, &curves)?.into())
+        };
+        let panels: Vec<Panel> = kinds.into_iter().filter_map(chart).collect();
+        let text = "Required actuator forces: the force or moment of the first body on the second.";
+        (!panels.is_empty())
+            .then(|| self.figure("actuator-forces", "Actuator forces", text, panels))
+    }
+
+    pub(crate) fn shaking_force(&self) -> Option<Figure> {
+        let indices = self.columns_where(|c| matches!(c.quantity, Quantity::ShakingForce(_)));
+        let named = |names: &[&str], of: &[usize]| -> Vec<(String, usize)> {
+            names
+                .iter()
+                .map(|n| (*n).to_owned())
+                .zip(of.iter().copied())
+                .collect()
+        };
+        let axes = ["x", "y", "z"];
+        let kinds = match indices[..] {
+            [fx, fy, m] => [named(&axes, &[fx, fy]), named(&["moment"], &[m])],
+            [ref force @ .., _, _, _] if force.len() == 3 => {
+                [named(&axes, force), named(&axes, &indices[3..])]
+            }
+            _ => return None,
+        };
+        let charts = ["force", "moment"].into_iter().zip(&kinds);
+        let charts = charts.filter_map(|(label, curves)| self.chart_of_some("", label, curves));
+        let charts: Vec<_> = charts.collect();
+        if charts.is_empty() {
+            return None;
+        }
+        let text =
+            "Resultant of joint, actuator and load forces on the frame; moment about its origin.";
+        let title = match self.analysis {
+            Analysis::Kinetostatics | Analysis::FreeMotion => "Shaking force and moment",
+            _ => "Force and moment on the frame",
+        };
+        let panels = vec![charts.into()];
+        Some(self.figure("shaking-force", title, text, panels))
+    }
+
+    pub(crate) fn power(&self) -> Option<Figure> {
+        let is_power = |c: &Column| matches!(c.quantity, Quantity::Power(_)) && c.unit == "W";
+        let curves = self.labelled(&self.columns_where(is_power), "").into_iter();
+        let curves: Vec<(String, usize)> = curves
+            .filter_map(|(name, k)| Some((name.strip_prefix("power.")?.to_owned(), k)))
+            .filter(|(name, _)| name != "residual")
+            .collect();
+        if curves.iter().all(|(_, k)| self.is_zero(*k)) {
+            return None;
+        }
+        let mut chart = self.chart("", "power", &curves);
+        // Without loads the other two curves coincide.
+        if let Some(kinetic) = chart.series.last_mut() {
+            kinetic.stroke = Stroke::Dashed;
+        }
+        let text =
+            "Power of the actuators and of the loads; their sum is the rate of the kinetic energy.";
+        Some(self.figure("power-balance", "Power balance", text, vec![chart.into()]))
+    }
+}
