@@ -17,7 +17,6 @@ mod rows;
 pub use rows::{closure_error, mesh_error};
 
 use crate::error::{DenseError, Result};
-use dwell_geometry::JointId;
 use dwell_geometry::space::{ActuatorKind, BodyMotion, Joint, Mechanism, Placement, Vec3, Wrench};
 use dwell_geometry::{BodyId, JointId};
 use dwell_kinetostatics::space::{Direction, LoadKind, Mass};

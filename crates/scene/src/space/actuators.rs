@@ -71,15 +71,29 @@ fn read_actuator(entry: &Entry<'_>, joints: &Joints<'_>) -> Option<Actuator> {
         "length" => ActuatorKind::Length,
         _ => ActuatorKind::Angle,
     };
-    let id = joint_with_freedom(kind, coordinate, &fields, joints)?;
+    let id = joint_with(kind, coordinate, &fields, joints)?;
     Some(Actuator {
         name: entry.name.to_owned(),
         kind: kind(id),
     })
 }
 
-/// The joint that an entry names, with an angle that has a zero, a travel or a length.
+/// The joint that an entry names, with an angle that has a zero, or with a travel.
 pub(super) fn joint_with_freedom(
+    is_angle: bool,
+    entry: &Entry<'_>,
+    fields: &TableReader<'_>,
+    joints: &Joints<'_>,
+) -> Option<JointId> {
+    let kind = match is_angle {
+        true => ActuatorKind::Angle,
+        false => ActuatorKind::Travel,
+    };
+    joint_with(kind, entry, fields, joints)
+}
+
+/// The joint that an entry names, with a coordinate of that kind.
+fn joint_with(
     kind: fn(JointId) -> ActuatorKind,
     entry: &Entry<'_>,
     fields: &TableReader<'_>,

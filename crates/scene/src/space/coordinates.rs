@@ -8,7 +8,7 @@ use crate::coordinates::ParsedCoordinates;
 use crate::keys::table;
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
-use dwell_geometry::space::{ActuatorKind, Coordinate};
+use dwell_geometry::space::Coordinate;
 
 /// All the coordinates that have a name.
 pub(super) fn coordinates<'a>(
@@ -41,8 +41,8 @@ fn read_coordinate(
     let lacks = ("measures nothing", "which angle, travel or length?");
     let chosen = fields.alternative(table("coordinate-in-space"), lacks, help)?;
     match chosen.name {
-        "angle" => joint_with_freedom(ActuatorKind::Angle, chosen, &fields, joints).map(Coordinate::Angle),
-        "travel" => joint_with_freedom(ActuatorKind::Travel, chosen, &fields, joints).map(Coordinate::Travel),
+        "angle" => joint_with_freedom(true, chosen, &fields, joints).map(Coordinate::Angle),
+        "travel" => joint_with_freedom(false, chosen, &fields, joints).map(Coordinate::Travel),
         _ => {
             let what = fields.name_of(chosen);
             let [a, b] = bodies.find_two_points(chosen.value, TWO_POINTS, what)?;
