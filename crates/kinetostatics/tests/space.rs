@@ -230,7 +230,12 @@ fn a_cylinder_turns_an_arm() {
 
 #[test]
 fn an_evaluation_in_space_allocates_nothing() {
-    for name in ["rssr", "bricard-a04", "bevel-differential-held", "screw-jack"] {
+    for name in [
+        "rssr",
+        "bricard-a04",
+        "bevel-differential-held",
+        "screw-jack",
+    ] {
         let scene = scene(name);
         let model = Model::new(
             &scene.mechanism,

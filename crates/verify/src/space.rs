@@ -11,6 +11,8 @@
 //! ```text
 //! e·d = 0,    u·d = 0,    u·w = 0,    (d·d − L²)/2L = 0,    u·d − h θ = 0                                   (2)
 //! ```
+//!
+//! and, of gear pairs, velocities of the wheels at the pitch point.
 
 mod rows;
 

@@ -6,10 +6,10 @@
 mod assembled;
 
 use assembled::{Assembled, DrivenBy, Random};
-use dwell_geometry::{AssemblyError, JointId};
 use dwell_geometry::space::{
     ActuatorKind, Assembly, Joint, JointKind, Mechanism, Placement, Plan, vec3,
 };
+use dwell_geometry::{AssemblyError, JointId};
 use dwell_kinetostatics::InverseDynamics;
 use dwell_kinetostatics::space::{LoadKind, Model, ModelError};
 use dwell_verify::space::{DenseSpace, closure_error, mesh_error};
@@ -239,7 +239,10 @@ fn random_loops_are_solved_or_refused_rightly() {
                     .iter()
                     .map(|j| format!("{:?}", j.kind))
                     .collect();
-                others.push(format!("{number} {driven_by:?}: {why}: {}", kinds.join(" ")));
+                others.push(format!(
+                    "{number} {driven_by:?}: {why}: {}",
+                    kinds.join(" ")
+                ));
             }
         }
     }

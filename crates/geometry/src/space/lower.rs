@@ -130,7 +130,13 @@ impl Lowered {
             let has_coordinate = match kind {
                 JointKind::Distance { .. } | JointKind::Gear { .. } => false,
                 JointKind::Helical { .. } => true,
-                _ => mechanism.is_driven(JointId(*j)),
+                JointKind::Weld
+                | JointKind::Revolute
+                | JointKind::Prismatic
+                | JointKind::Cylindrical
+                | JointKind::Universal
+                | JointKind::Spherical
+                | JointKind::Planar => mechanism.is_driven(JointId(*j)),
             };
             has_coordinate && !lowered.in_tree[*j]
         };
@@ -143,7 +149,12 @@ impl Lowered {
         }
         let mut with = mechanism.clone();
         for joint in &lowered.split {
-            let Joint { name, bodies, sides, .. } = mechanism.joints[joint.0].clone();
+            let Joint {
+                name,
+                bodies,
+                sides,
+                ..
+            } = mechanism.joints[joint.0].clone();
             let moved = BodyId(with.bodies.len());
             with.bodies.push(Body::named(name.clone()));
             with.joints[joint.0].bodies[1] = moved;

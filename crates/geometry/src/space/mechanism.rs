@@ -29,7 +29,8 @@ pub struct Joint {
     pub sides: [Side; 2],
 }
 
-/// A joint on one of its bodies: its point (m) and two directions at right angles, unit vectors, in the frame of the body.
+/// A joint on one of its bodies: its point (m) and two directions at right angles, unit vectors, in the frame of the body; of a gear
+/// pair in that of the carrier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Side {
     /// The joint's point.
@@ -109,10 +110,10 @@ impl JointKind {
 impl Joint {
     /// The body in whose frame a side is given.
     pub fn side_body(&self, side: usize) -> BodyId {
-        match self.kind {
-            JointKind::Gear { carrier } => carrier,
-            _ => self.bodies[side],
+        if let JointKind::Gear { carrier } = self.kind {
+            return carrier;
         }
+        self.bodies[side]
     }
 
     /// A joint between two bodies, by their numbers. Directions become unit vectors, and the normal the part of it at right
@@ -286,48 +287,54 @@ impl Mechanism {
         self.actuators.iter().any(|a| a.kind.joint() == joint)
     }
 
+    /// What is inconsistent in the description of a joint.
+    fn joint_fault(&self, j: usize, joint: &Joint) -> Option<&'static str> {
+        if joint.bodies.iter().any(|b| b.0 >= self.bodies.len()) {
+            return Some("a joint refers to a body that does not exist");
+        }
+        if joint.bodies[0] == joint.bodies[1] {
+            return Some("a joint connects a body with itself");
+        }
+        if let JointKind::Gear { carrier } = joint.kind
+            && (carrier.0 >= self.bodies.len() || joint.bodies.contains(&carrier))
+        {
+            return Some("the carrier of a gear pair is not a third body");
+        }
+        let finite = |s: &Side| s.point.is_finite() && s.axis.is_finite() && s.normal.is_finite();
+        let number = match joint.kind {
+            JointKind::Helical { pitch } => pitch.is_finite(),
+            JointKind::Distance { length } => {
+                self.is_driven(JointId(j)) || length.is_finite() && length > 0.0
+            }
+            _ => true,
+        };
+        let square = |s: &Side| {
+            let off = [
+                s.axis.norm() - 1.0,
+                s.normal.norm() - 1.0,
+                s.axis.dot(s.normal),
+            ];
+            off.iter().all(|o| o.abs() < 1e-9)
+        };
+        if !joint.sides.iter().all(square) {
+            return Some("a joint's axis and normal are not unit vectors at right angles");
+        }
+        if !(joint.sides.iter().all(finite) && number) {
+            return Some(
+                "a joint has a number that is not finite, or a length that is not positive",
+            );
+        }
+        None
+    }
+
     /// What is inconsistent in the description, if anything.
     pub(super) fn fault(&self) -> Option<&'static str> {
         if self.ground >= self.bodies.len() {
             return Some("there is no ground");
         }
-        for (j, joint) in self.joints.iter().enumerate() {
-            if joint.bodies.iter().any(|b| b.0 >= self.bodies.len()) {
-                return Some("a joint refers to a body that does not exist");
-            }
-            if joint.bodies[0] == joint.bodies[1] {
-                return Some("a joint connects a body with itself");
-            }
-            if let JointKind::Gear { carrier } = joint.kind
-                && (carrier.0 >= self.bodies.len() || joint.bodies.contains(&carrier))
-            {
-                return Some("the carrier of a gear pair is not a third body");
-            }
-            let finite =
-                |s: &Side| s.point.is_finite() && s.axis.is_finite() && s.normal.is_finite();
-            let number = match joint.kind {
-                JointKind::Helical { pitch } => pitch.is_finite(),
-                JointKind::Distance { length } => {
-                    self.is_driven(JointId(j)) || length.is_finite() && length > 0.0
-                }
-                _ => true,
-            };
-            let square = |s: &Side| {
-                let off = [
-                    s.axis.norm() - 1.0,
-                    s.normal.norm() - 1.0,
-                    s.axis.dot(s.normal),
-                ];
-                off.iter().all(|o| o.abs() < 1e-9)
-            };
-            if !joint.sides.iter().all(square) {
-                return Some("a joint's axis and normal are not unit vectors at right angles");
-            }
-            if !(joint.sides.iter().all(finite) && number) {
-                return Some(
-                    "a joint has a number that is not finite, or a length that is not positive",
-                );
-            }
+        let mut joints = self.joints.iter().enumerate();
+        if let Some(fault) = joints.find_map(|(j, joint)| self.joint_fault(j, joint)) {
+            return Some(fault);
         }
         let drives = |a: &Actuator| {
             let joint = self.joints.get(a.kind.joint().0);

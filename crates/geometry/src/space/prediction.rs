@@ -141,7 +141,11 @@ fn add_piece(first: &Node, second: &Node, scalars: &[usize], numbers: &mut Vec<f
         let turned = end.after(&start.inverse()).tangent();
         let [rate, change] = derivatives(turned, second.turns[k]);
         let [before, before_change] = first.turns[k];
-        let coefficients = turns([Vec3::ZERO, before, before_change], [turned, rate, change], h);
+        let coefficients = turns(
+            [Vec3::ZERO, before, before_change],
+            [turned, rate, change],
+            h,
+        );
         for v in start.columns.iter().chain(&coefficients) {
             numbers.extend([v.x, v.y, v.z]);
         }

@@ -52,8 +52,7 @@ pub(super) fn actuators<'a>(
 
 fn read_actuator(entry: &Entry<'_>, joints: &Joints<'_>) -> Option<Actuator> {
     let fields = TableReader::open(entry, format!("actuator `{}`", shorten(entry.name)))?;
-    let help =
-        "write it as `{ angle = \"A\" }`, `{ travel = \"slide\" }` or `{ length = \"link\" }`, with the name of a joint";
+    let help = "write it as `{ angle = \"A\" }`, `{ travel = \"slide\" }` or `{ length = \"link\" }`, with the name of a joint";
     fields.reject_unknown_keys(table("actuator-in-space"));
     let lacks = ("drives nothing", "no `angle`, `travel` or `length`");
     let coordinate = fields.alternative(table("actuator-in-space"), lacks, help)?;
@@ -150,7 +149,8 @@ pub(super) fn require_lengths(joints: &Joints<'_>, actuators: &[ParsedActuator<'
     for (j, parsed) in joints.list.iter().enumerate() {
         let kind = parsed.joint.as_ref().map(|joint| joint.kind);
         let driven = ActuatorKind::Length(JointId(j));
-        let is_driven = |a: &ParsedActuator<'_>| a.actuator.as_ref().is_none_or(|a| a.kind == driven);
+        let is_driven =
+            |a: &ParsedActuator<'_>| a.actuator.as_ref().is_none_or(|a| a.kind == driven);
         if kind == Some(JointKind::Distance { length: 0.0 }) && !actuators.iter().any(is_driven) {
             let message = format!("joint `{}` has no length", shorten(parsed.name));
             let help = "add `length = 200`: the distance the two points keep; or drive it: `[actuators]` with `{ length = \"…\" }`";

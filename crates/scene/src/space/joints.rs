@@ -168,7 +168,9 @@ fn gear(
     let wheels = bodies.require_different(ends, message, "a gear pair has two wheels")?;
     let (carrier, index) = point?;
     for (k, wheel) in [&a, &b].into_iter().enumerate() {
-        fields.log().place(SceneLocation::JointPoint(id, k), &wheel.1);
+        fields
+            .log()
+            .place(SceneLocation::JointPoint(id, k), &wheel.1);
         if wheel.0 == carrier {
             let message = format!(
                 "the pitch point of {} is a point of one of its wheels",

@@ -64,9 +64,7 @@ pub(super) fn in_ground_axes(joint: &Joint, ground: usize) -> Vec<Component> {
     let is_along = |k: usize| own_axis.is_some_and(|u| Vec3::AXES[k].cross(u).norm() == 0.0);
     let is_gear = matches!(joint.kind, JointKind::Gear { .. });
     let is_never_zero = |component: &Component| match *component {
-        Component::Force(_, k) if is_gear => {
-            own_axis.is_none_or(|u| Vec3::AXES[k].dot(u) != 0.0)
-        }
+        Component::Force(_, k) if is_gear => own_axis.is_none_or(|u| Vec3::AXES[k].dot(u) != 0.0),
         Component::Force(_, k) if is_along(k) => {
             exists(joint.kind, Component::Force(Axes::Joint, 2)) || !has_axis(joint.kind)
         }

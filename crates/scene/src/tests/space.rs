@@ -173,10 +173,18 @@ fn gear_pairs_and_driven_lengths_are_read() {
     let given = rod.replace(" }", ", length = 1 }");
     let length = "actuators.q = { length = \"rod\" }";
     says(&given, length, "driven and given");
-    says(&given, "actuators.q = { length = \"A\" }", "has no length to be driven");
+    says(
+        &given,
+        "actuators.q = { length = \"A\" }",
+        "has no length to be driven",
+    );
     let own = teeth.replace("ground.P", "arm.A");
     says(&own, angle, "is a point of one of its wheels");
-    says(&teeth.replace(", normal = [0, 2, 0]", ""), angle, "`normal`");
+    says(
+        &teeth.replace(", normal = [0, 2, 0]", ""),
+        angle,
+        "`normal`",
+    );
 }
 
 /// The bodies that the examples of keys name.

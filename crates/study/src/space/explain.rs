@@ -179,7 +179,10 @@ fn explain_structure(scene: &SpaceScene, error: &StructureError) -> StudyError {
             let help = "both wheels need bearings whose axes keep their places in the carrier, the body of the pitch point; and \
                         the normal of the teeth must have an arm about each axis";
             let mut places = joint_labels(&[*joint], "this gear pair");
-            places.push((SceneLocation::Axis(*joint), "the normal of its teeth".to_owned()));
+            places.push((
+                SceneLocation::Axis(*joint),
+                "the normal of its teeth".to_owned(),
+            ));
             scene_error(scene, message, help, places)
         }
         StructureError::Malformed { reason } => scene_error(

@@ -231,7 +231,7 @@ impl Assembled {
             _ => (axis, turned),
         };
         if self.mechanism.joints.is_empty() {
-            self.first = [angle, along];
+            self.first = [angle, if slides { along } else { 0.0 }];
         }
         let sides = [
             self.side(bodies[0], point, [axis, normal]),
@@ -300,7 +300,12 @@ impl Assembled {
         };
         let joints = &mut self.mechanism.joints;
         let sides = [bearing, on_wheel];
-        joints.push(Joint::new("bearing", [0, wheel], JointKind::Revolute, sides));
+        joints.push(Joint::new(
+            "bearing",
+            [0, wheel],
+            JointKind::Revolute,
+            sides,
+        ));
         let kind = JointKind::Gear { carrier: BodyId(0) };
         joints.push(Joint::new("teeth", [wheel, 1], kind, [teeth; 2]));
         self.mechanism.actuators = vec![Actuator::angle("q", self.mechanism.joints.len() - 2)];
@@ -321,4 +326,3 @@ impl Assembled {
         joints.flat_map(components).collect()
     }
 }
-

@@ -183,7 +183,10 @@ impl<'a> SpaceDrawing<'a> {
         for (j, other) in joints.iter().enumerate().filter(|(j, _)| *j != joint) {
             for (k, l) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let is_near = (own.sides[k].point - other.sides[l].point).norm() < self.same;
-                if own.side_body(k) == other.side_body(l) && is_near && !self.is_ground(own.bodies[k]) {
+                if own.side_body(k) == other.side_body(l)
+                    && is_near
+                    && !self.is_ground(own.bodies[k])
+                {
                     meeting.push((j, k, l));
                 }
             }

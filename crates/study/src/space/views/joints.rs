@@ -2,8 +2,8 @@
 
 use super::drawing::{ARM, BEFORE, Scenery};
 use super::solids::{Axes, ball, block, cylinder, thread};
-use dwell_geometry::space::{ActuatorKind, Joint, JointKind, Vec3};
 use dwell_geometry::JointId;
+use dwell_geometry::space::{ActuatorKind, Joint, JointKind, Vec3};
 use dwell_report::{Paint, Pen, Shape};
 use std::f64::consts::{PI, TAU};
 
@@ -335,9 +335,8 @@ impl<'a> Scenery<'a> {
                 let [dx, dy] = [0, 1].map(|k| ends[1][k] - ends[0][k]);
                 let long = dx.hypot(dy).max(f64::MIN_POSITIVE);
                 let aside = [-dy, dx].map(|d| 1.2 * unit * d / long);
-                let point = |s: f64| {
-                    [0, 1].map(|k| ends[0][k] + s * (ends[1][k] - ends[0][k]) + aside[k])
-                };
+                let point =
+                    |s: f64| [0, 1].map(|k| ends[0][k] + s * (ends[1][k] - ends[0][k]) + aside[k]);
                 let arrow = Shape::Arrow {
                     from: point(0.3),
                     to: point(0.7),
