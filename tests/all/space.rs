@@ -7,7 +7,6 @@ mod random_loops;
 mod reference;
 mod scenes;
 mod tilted;
-mod trajectories;
 
 use dwell_geometry::space::{
     Actuator, ActuatorKind, Assembly, Joint, JointKind, Mechanism, Plan, Side, Vec3,

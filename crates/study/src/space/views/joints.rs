@@ -2,8 +2,8 @@
 
 use super::drawing::{ARM, BEFORE, Scenery};
 use super::solids::{Axes, ball, block, cylinder, thread};
-use dwell_geometry::space::{ActuatorKind, Joint, JointKind, Vec3};
 use dwell_geometry::JointId;
+use dwell_geometry::space::{ActuatorKind, Joint, JointKind, Vec3};
 use dwell_report::{Paint, Pen, Shape};
 use std::f64::consts::{PI, TAU};
 

@@ -2,6 +2,7 @@
 
 use super::closure::closure;
 use super::compared::Compared;
+use super::difference::Differences;
 use super::drawn_laws::drawn_motions;
 use super::equilibrium::equilibrium;
 use super::generated_code::code_differences;
