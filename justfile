@@ -85,6 +85,12 @@ peers:
 octave:
     python3 validation/foreign/run.py
 
+# Exported FMUs by FMPy and the standard's schemas, in a scratch environment: validated, simulated by both kinds, saved and restored
+[group('care')]
+export:
+    cargo build --release --workspace --bins
+    python3 validation/fmu/run.py
+
 # Ten million designs in Parquet files by a run that is killed twice, read back by Polars, DuckDB and pandas as docs/sweep.md shows. Installs these into a scratch environment
 [group('care')]
 designs points="10000000":

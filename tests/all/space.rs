@@ -2,6 +2,7 @@
 //! must be refused.
 
 mod hooke_joint;
+mod loads;
 mod motions;
 mod random_loops;
 mod reference;

@@ -429,6 +429,26 @@ const EXPORT_TARGETS: Choices<ExportTarget> = &[
         ExportTarget::Fmu(FmiVersion::Two),
         "The same of FMI 2.0",
     ),
+    (
+        "matlab",
+        ExportTarget::Matlab,
+        "A MAT-file, and functions for MATLAB and Octave",
+    ),
+    (
+        "npz",
+        ExportTarget::Rows(TableFormat::Npz),
+        "The rows of `dwell reduce` as a NumPy archive",
+    ),
+    (
+        "csv",
+        ExportTarget::Rows(TableFormat::Csv),
+        "The same as text",
+    ),
+    (
+        "json",
+        ExportTarget::Json,
+        "The same as a list of name, unit and values of each column",
+    ),
 ];
 
 const TABLE_FORMATS: Choices<TableFormat> = &[

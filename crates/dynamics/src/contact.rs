@@ -8,26 +8,28 @@
 //! End stops limit a coordinate: one that meets its stop rebounds, or rests on it until a force lifts it off (`stop`).
 //!
 //! `mode` names the modes, `relations` collects what a unit of each force does, `held` solves for the forces at given
-//! modes, and `search` finds the modes of surfaces at rest. Their events are in `contact_events`.
+//! modes (with the contacts that are `independent`), and `search` finds the modes of surfaces at rest. Their events are in `contact_events`.
 
 mod held;
+mod independent;
 mod mode;
 mod relations;
 mod search;
 mod stop;
 
-pub(crate) use held::{Unloaded, independent, solve_contacts};
+pub(crate) use held::{Unloaded, solve_contacts};
+pub(crate) use independent::independent;
 pub use mode::{ContactEvent, ContactMode, ContactStep, StopChange};
 pub(crate) use relations::ContactWorkspace;
 pub use stop::{EndStop, YieldingStop};
 pub(crate) use stop::{Stop, one_sided};
 
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_kinetostatics::Model;
+use dwell_kinetostatics::MachineModel;
 
 /// A friction that holds at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Contact {
+pub(crate) struct Contact<F = CoordinateFunction> {
     /// Its index among the loads of the model that depend on reactions.
     pub(crate) dependent: usize,
     /// Its index among all loads.
@@ -37,12 +39,12 @@ pub(crate) struct Contact {
     /// Of surfaces at rest.
     pub(crate) static_coefficient: f64,
     /// The coordinate whose speed is that of the surfaces.
-    pub(crate) coordinate: CoordinateFunction,
+    pub(crate) coordinate: F,
 }
 
-impl Contact {
+impl<F> Contact<F> {
     /// Those of a model.
-    pub(crate) fn of_model(model: &Model) -> Vec<Self> {
+    pub(crate) fn of_model<M: MachineModel<CoordinateFunction = F>>(model: &M) -> Vec<Self> {
         let each = model.frictions().enumerate();
         let sticking = each.filter_map(|(dependent, load)| {
             let (friction, coordinate) = model.sticking_friction(dependent)?;

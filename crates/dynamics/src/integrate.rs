@@ -158,8 +158,9 @@ fn integrate_held(
         let Some(event) = event.filter(|_| !is_ended) else {
             break;
         };
-        if matches!(event, HeldEvent::Switch(_)) {
-            // Behind a switch of a load the rates may be those of another time scale.
+        if matches!(event, HeldEvent::Switch(_)) || event.state().t <= from.t {
+            // Behind a switch of a load the rates may be those of another time scale; and with the step that has led beyond
+            // an event at its very start it would be met again.
             step.set(None);
         }
         let passed = pass_event(&shared, &mut monitor, contacts.as_mut(), event);

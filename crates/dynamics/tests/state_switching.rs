@@ -213,7 +213,7 @@ fn a_table_meets_the_same_switches() {
 /// it.
 #[test]
 fn a_table_slides_along_the_same_switch() {
-    let machine = wheel(couple("-3*sign(v) + if(t < 1.5, 0, 2*t)"), &[]);
+    let machine = wheel(couple("-3*sign(v) + if(t < 1.5, 0, 2*t - 1)"), &[]);
     let table = TabulatedMachine::new(&machine, 1e-10, TableDomain::Between(-1.0, 5.0));
     let table = table.expect("a table");
     let start = OdeState {

@@ -32,15 +32,35 @@ pub(crate) fn describe(export: &Export) -> Vec<String> {
             ),
         },
     ];
+    lines.extend(accuracy(export));
+    let [from, speed] = measured.motion.from;
+    lines.push(match measured.step_error {
+        Some([q, q_dot]) => format!(
+            "step: after 1 s of steps of {STATED_STEP:e} s from q = {from}, q' = {speed} with the inputs of the scene, q is off by {q:.1e} {unit} and q' by {q_dot:.1e} {unit}/s (in exact numbers; it falls with the fourth power of the step)"
+        ),
+        None => format!("step: no error is stated, since the motion from q = {from}, q' = {speed} ends before 1 s"),
+    });
+    lines.extend(
+        machine
+            .left_out
+            .iter()
+            .map(|words| format!("left out: {words}")),
+    );
+    lines
+}
+
+/// What was asked for, and the largest errors.
+fn accuracy(export: &Export) -> [String; 2] {
+    let (machine, measured) = (&export.machine, &export.measured);
     let errors = measured.errors;
-    let asked = export.request.accuracy;
+    let accuracy = export.request.accuracy;
     let kind = match export.request.precision {
         Precision::Double => "double precision",
         Precision::Float => "single precision, its rounding included",
     };
-    lines.push(format!(
-        "accuracy: asked for {asked:e}; largest errors measured at 4096 positions in {kind}, relative to the largest value of each function:"
-    ));
+    let asked = format!(
+        "accuracy: asked for {accuracy:e}; largest errors measured at 4096 positions in {kind}, relative to the largest value of each function:"
+    );
     let mut all = vec![("m", errors.m), ("half_dm", errors.half_dm)];
     if !machine.loads.is_empty() {
         all.push(("w", errors.loads));
@@ -58,19 +78,5 @@ pub(crate) fn describe(export: &Export) -> Vec<String> {
         .iter()
         .map(|(of, error)| format!("{of} {error:.1e}"))
         .collect();
-    lines.push(format!("  {}", all.join(", ")));
-    let [from, speed] = measured.motion.from;
-    lines.push(match measured.step_error {
-        Some([q, q_dot]) => format!(
-            "step: after 1 s of steps of {STATED_STEP:e} s from q = {from}, q' = {speed} with the inputs of the scene, q is off by {q:.1e} {unit} and q' by {q_dot:.1e} {unit}/s (in exact numbers; it falls with the fourth power of the step)"
-        ),
-        None => format!("step: no error is stated, since the motion from q = {from}, q' = {speed} ends before 1 s"),
-    });
-    lines.extend(
-        machine
-            .left_out
-            .iter()
-            .map(|words| format!("left out: {words}")),
-    );
-    lines
+    [asked, format!("  {}", all.join(", "))]
 }

@@ -4,8 +4,8 @@
 mod motion;
 mod pieces;
 
-pub(crate) use motion::has_rotor;
 pub use motion::{Evaluator, MotionTerms, ReactionTerms, State};
+pub(crate) use motion::{has_rotor, scene_value};
 
 /// Why exported code has no value. Its outputs are zero then, and a state stays as it was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]

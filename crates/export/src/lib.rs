@@ -9,6 +9,7 @@ mod fit;
 mod fmu;
 mod identifiers;
 mod machine;
+mod matlab;
 mod measure;
 mod part;
 mod real;
@@ -25,6 +26,7 @@ pub use machine::{
     Domain, Function, FunctionSampler, LoadDescription, LoadEffect, MachineDescription, Motor,
     PartKind, ReferenceSizes,
 };
+pub use matlab::matlab_files;
 pub use measure::{Errors, Measured, STATED_STEP, SelfTestMotion, SelfTestRow, measure};
 pub use part::{Column, Part, Precision};
 pub use real::Real;

@@ -86,7 +86,9 @@ pub use {
     linearise::output::linearise,
     output::{CommandResult, Outcome, PictureFormat, Pictures, add_summary},
     reduce::output::reduce,
-    space::{PreparedSpaceScene, analyse_in_space, check_in_space, reduce_in_space},
+    space::{
+        PreparedSpaceScene, analyse_in_space, check_in_space, reduce_in_space, simulate_in_space,
+    },
     sweep::output::{ParameterSweep, RowStore, sweep},
     symbolic::output::{FormulaFormat, symbolic},
     trajectory::figures::PictureSpan,

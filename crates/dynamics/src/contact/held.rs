@@ -13,14 +13,13 @@
 //! where one coordinate is held, and shares in proportion to the speeds they would have where several are. So they reach
 //! their limits together. The motion does not depend on it while they hold.
 
+use super::independent::IndependentSet;
 use super::mode::sign;
 use super::{Contact, ContactMode, ContactWorkspace};
 use crate::error::Result;
-use dwell_kinetostatics::{ForceState, FrictionState, InverseDynamics};
+use dwell_kinetostatics::{ForceState, FrictionState, InverseDynamics, MachineModel};
 use dwell_numerics::{Scalar, lu};
 
-/// A contact whose row is that of others to this part of it, squared, is not independent of them.
-const INDEPENDENT: f64 = 1e-11;
 /// Rounds in which the weights and the forces are made to agree, the change with which they do, and rounds after which
 /// only half of each change is made.
 const MAX_ROUNDS: usize = 80;
@@ -36,14 +35,26 @@ pub(crate) struct Unloaded<'r, T> {
     pub(crate) responses: &'r [InverseDynamics<T>],
 }
 
-/// Contacts that hold, with the independent ones among them.
+/// Contacts that hold, with the independent ones among them, and the working memory of their equations.
+#[derive(Debug, Clone, Default)]
 pub(super) struct HeldContacts<T> {
     /// The contacts that hold, by their indices.
     held: Vec<usize>,
     /// The independent ones.
     basis: Vec<usize>,
     /// By contact that holds: its row as a sum of theirs, t.
-    coefficients: Vec<Vec<T>>,
+    coefficients: Vec<T>,
+    independent: IndependentSet,
+    /// By contact that holds: w/√D, and the same at the next round.
+    weights: Vec<T>,
+    next_weights: Vec<T>,
+    /// The equations (1) at some weights, none of which is too small.
+    equations: HoldingEquations<T>,
+    /// The loads that depend on reactions and do not hold.
+    others: Vec<usize>,
+    /// By contact that holds: its force without them; by each of them: what a unit of it adds.
+    own: Vec<T>,
+    by_other: Vec<T>,
 }
 
 /// Finds the modes that are open, and solves for all forces: they become the magnitudes of their loads.
@@ -51,9 +62,9 @@ pub(super) struct HeldContacts<T> {
 /// # Errors
 /// [`KinetostaticsError::SelfLocking`](dwell_kinetostatics::KinetostaticsError::SelfLocking) where surfaces that slide have
 /// no unique force, [`DynamicsError::NoContactMode`](crate::DynamicsError::NoContactMode) where no mode agrees with the forces.
-pub(crate) fn solve_contacts<T: Scalar>(
-    contacts: &[Contact],
-    state: &mut ForceState<'_, T>,
+pub(crate) fn solve_contacts<T: Scalar, M: MachineModel>(
+    contacts: &[Contact<M::CoordinateFunction>],
+    state: &mut ForceState<'_, T, M>,
     workspace: &mut ContactWorkspace<T>,
     unloaded: &Unloaded<'_, T>,
     accelerations: (&[T], &[Vec<T>]),
@@ -71,23 +82,26 @@ pub(crate) fn solve_contacts<T: Scalar>(
         }
     }
     let is_open = |mode: &ContactMode| matches!(mode, ContactMode::AtRest { .. });
-    let held = match workspace.modes.iter().any(is_open) {
-        true => super::search::find_modes(contacts, state, workspace, unloaded)?,
-        false => solve_at_modes(contacts, state, workspace, unloaded)?,
+    let mut held = std::mem::take(&mut workspace.held);
+    let solved = match workspace.modes.iter().any(is_open) {
+        true => super::search::find_modes(contacts, state, workspace, unloaded, &mut held),
+        false => solve_at_modes(contacts, state, workspace, unloaded, &mut held),
     };
     // Nothing that could accelerate is free of them.
     let at_rest = |&i: &usize| workspace.convective[i].value() == 0.0;
     workspace.nothing_moves = held.basis.len() == freedoms && held.basis.iter().all(at_rest);
-    Ok(())
+    workspace.held = held;
+    solved
 }
 
 /// Solves for the forces at the modes of the workspace.
-pub(super) fn solve_at_modes<T: Scalar>(
-    contacts: &[Contact],
-    state: &mut ForceState<'_, T>,
+pub(super) fn solve_at_modes<T: Scalar, M: MachineModel>(
+    contacts: &[Contact<M::CoordinateFunction>],
+    state: &mut ForceState<'_, T, M>,
     workspace: &mut ContactWorkspace<T>,
     unloaded: &Unloaded<'_, T>,
-) -> Result<HeldContacts<T>> {
+    held: &mut HeldContacts<T>,
+) -> Result<()> {
     let loads = workspace.forces.len();
     let known = |j: usize| {
         let i = contacts.iter().position(|contact| contact.dependent == j);
@@ -107,14 +121,14 @@ pub(super) fn solve_at_modes<T: Scalar>(
         }
     };
     state.set_friction_states((0..loads).map(known));
-    let held = HeldContacts::of(contacts, workspace);
+    held.find(contacts, workspace);
     workspace.shares.fill(0.0);
     if held.held.is_empty() {
         state.solve_friction(unloaded.reactions, unloaded.responses)?;
         read_forces(state, workspace);
-        return Ok(held);
+        return Ok(());
     }
-    hold(contacts, state, workspace, unloaded, &held)?;
+    hold(contacts, state, workspace, unloaded, held)?;
     for &i in &held.held {
         let contact = &contacts[i];
         let force = workspace.forces[contact.dependent].value().abs();
@@ -123,11 +137,14 @@ pub(super) fn solve_at_modes<T: Scalar>(
         // Where nothing presses, nothing is held but what needs no force.
         workspace.shares[i] = if force == 0.0 { 0.0 } else { force / limit };
     }
-    Ok(held)
+    Ok(())
 }
 
 /// The magnitudes of the loads that depend on reactions, as their forces.
-fn read_forces<T: Scalar>(state: &ForceState<'_, T>, workspace: &mut ContactWorkspace<T>) {
+fn read_forces<T: Scalar, M: MachineModel>(
+    state: &ForceState<'_, T, M>,
+    workspace: &mut ContactWorkspace<T>,
+) {
     for (force, load) in workspace.forces.iter_mut().zip(state.frictions()) {
         *force = state.magnitudes()[load];
     }
@@ -135,57 +152,52 @@ fn read_forces<T: Scalar>(state: &ForceState<'_, T>, workspace: &mut ContactWork
 
 /// Solves for the forces of contacts that hold, with those of all others.
 // Long because it is one loop: the weights of those that hold depend on the reactions under all forces.
-fn hold<T: Scalar>(
-    contacts: &[Contact],
-    state: &mut ForceState<'_, T>,
+fn hold<T: Scalar, M: MachineModel>(
+    contacts: &[Contact<M::CoordinateFunction>],
+    state: &mut ForceState<'_, T, M>,
     workspace: &mut ContactWorkspace<T>,
     unloaded: &Unloaded<'_, T>,
-    held: &HeldContacts<T>,
+    of: &mut HeldContacts<T>,
 ) -> Result<()> {
-    let zero = T::from_f64(0.0);
     let count = workspace.forces.len();
-    let is_held = |j: &usize| held.held.iter().any(|&i| contacts[i].dependent == *j);
-    let others: Vec<usize> = (0..count).filter(|j| !is_held(j)).collect();
-    let mut weights: Vec<T> = held.weights(
-        contacts,
-        |contact| T::from_f64(contact.static_coefficient.max(f64::MIN_POSITIVE)),
-        workspace,
-    );
+    let HeldContacts { held, others, .. } = &mut *of;
+    let is_held = |j: &usize| held.iter().any(|&i| contacts[i].dependent == *j);
+    others.clear();
+    others.extend((0..count).filter(|j| !is_held(j)));
+    let limit = |contact: &Contact<M::CoordinateFunction>| contact.static_coefficient.max(f64::MIN_POSITIVE);
+    of.set_next_weights(contacts, |contact| T::from_f64(limit(contact)), workspace);
+    std::mem::swap(&mut of.weights, &mut of.next_weights);
     let mut last = f64::INFINITY;
     for round in 0..MAX_ROUNDS {
-        let system = HoldingSystem::new(contacts, workspace, held, &weights);
-        // What the others see: the mechanism with the contacts that hold.
-        let at_zero: Vec<T> = held.basis.iter().map(|&i| workspace.free[i]).collect();
-        let own = system.forces(at_zero);
-        let mut by_other: Vec<Vec<T>> = Vec::with_capacity(others.len());
-        for &j in &others {
-            let column = held.basis.iter().map(|&i| workspace.compliance[i][j]);
-            by_other.push(system.forces(column.collect()));
-        }
+        of.solve_for_others(contacts, workspace);
         workspace.held_reactions.copy_from_slice(unloaded.reactions);
         let add = |reactions: &mut [T], forces: &[T]| {
-            for (&i, force) in held.held.iter().zip(forces) {
+            for (&i, force) in of.held.iter().zip(forces) {
                 let response = &unloaded.responses[contacts[i].dependent].reactions;
                 for (sum, one) in reactions.iter_mut().zip(response) {
                     *sum += *one * *force;
                 }
             }
         };
-        add(&mut workspace.held_reactions, &own);
-        workspace.forces.fill(zero);
-        if !others.is_empty() {
-            for (&j, forces) in others.iter().zip(&by_other) {
+        add(&mut workspace.held_reactions, &of.own);
+        workspace.forces.fill(T::from_f64(0.0));
+        if !of.others.is_empty() {
+            let each = of.by_other.chunks_exact(of.held.len());
+            for (&j, forces) in of.others.iter().zip(each) {
                 let response = &mut workspace.held_responses[j];
-                response.clone_from(&unloaded.responses[j]);
+                response.tau.copy_from_slice(&unloaded.responses[j].tau);
+                let reactions = &unloaded.responses[j].reactions;
+                response.reactions.copy_from_slice(reactions);
                 add(&mut response.reactions, forces);
             }
             state.solve_friction(&workspace.held_reactions, &workspace.held_responses)?;
             read_forces(state, workspace);
         }
-        for (h, &i) in held.held.iter().enumerate() {
-            let from_others = others.iter().zip(&by_other);
+        for (h, &i) in of.held.iter().enumerate() {
+            let each = of.by_other.chunks_exact(of.held.len());
+            let from_others = of.others.iter().zip(each);
             workspace.forces[contacts[i].dependent] = from_others
-                .fold(own[h], |sum, (&j, forces)| {
+                .fold(of.own[h], |sum, (&j, forces)| {
                     sum + forces[h] * workspace.forces[j]
                 });
         }
@@ -195,74 +207,61 @@ fn hold<T: Scalar>(
                 *sum += *one * *force;
             }
         }
-        if held.basis.len() == held.held.len() {
+        if of.basis.len() == of.held.len() {
             break;
         }
-        let pressed = held.weights(
-            contacts,
-            |contact| {
-                let press = state.contact_force(contact.dependent, &workspace.reactions);
-                press * T::from_f64(contact.static_coefficient)
-            },
-            workspace,
-        );
-        let mut change = 0.0_f64;
-        let largest = pressed.iter().fold(0.0, |max, w| w.value().max(max));
-        for (weight, next) in weights.iter_mut().zip(pressed) {
-            let step = next - *weight;
-            change = change.max(step.value().abs() / largest);
-            let part = if round < DAMPED { 1.0 } else { 0.5 };
-            *weight += step * T::from_f64(part);
-        }
+        let press = |contact: &Contact<M::CoordinateFunction>| {
+            let press = state.contact_force(contact.dependent, &workspace.reactions);
+            press * T::from_f64(contact.static_coefficient)
+        };
+        of.set_next_weights(contacts, press, workspace);
+        let change = of.approach_next_weights(if round < DAMPED { 1.0 } else { 0.5 });
         if change <= AGREED || (change < 1e-12 && change >= last) || !change.is_finite() {
             break;
         }
         last = change;
     }
-    let forces = held
-        .held
-        .iter()
-        .map(|&i| (contacts[i].load, workspace.forces[contacts[i].dependent]));
-    Ok(state.set_magnitudes(forces)?)
+    let force = |&i: &usize| (contacts[i].load, workspace.forces[contacts[i].dependent]);
+    Ok(state.set_magnitudes(of.held.iter().map(force))?)
 }
 
 impl<T: Scalar> HeldContacts<T> {
-    /// Those whose mode is to hold.
-    pub(super) fn of(contacts: &[Contact], workspace: &ContactWorkspace<T>) -> Self {
+    /// Finds those whose mode is to hold, and the independent ones among them.
+    pub(super) fn find<F>(&mut self, contacts: &[Contact<F>], workspace: &ContactWorkspace<T>) {
         let modes = workspace.modes.iter().enumerate();
-        let held: Vec<usize> = modes
-            .filter(|(_, mode)| **mode == ContactMode::Holds)
-            .map(|(i, _)| i)
-            .collect();
+        self.held.clear();
+        let holds = modes.filter(|(_, mode)| **mode == ContactMode::Holds);
+        self.held.extend(holds.map(|(i, _)| i));
         let of_two = |i: usize, j: usize| workspace.compliance[i][contacts[j].dependent];
-        let basis = independent(&held, |i, j| of_two(i, j).value());
-        let r = basis.len();
-        let mut matrix: Vec<T> = Vec::with_capacity(r * r);
-        for &i in &basis {
+        let found = self
+            .independent
+            .find(&self.held, |i, j| of_two(i, j).value());
+        self.basis.clear();
+        self.basis.extend(found);
+        let (basis, HoldingEquations { matrix, pivots, .. }) = (&self.basis, &mut self.equations);
+        matrix.clear();
+        for &i in basis {
             matrix.extend(basis.iter().map(|&k| of_two(i, k)));
         }
-        let mut pivots = vec![0; r];
-        lu::factor(&mut matrix, &mut pivots);
-        let row = |&j: &usize| {
-            let mut row: Vec<T> = basis.iter().map(|&i| of_two(i, j)).collect();
-            lu::solve(&matrix, &pivots, &mut row);
-            row
-        };
-        let coefficients = held.iter().map(row).collect();
-        Self {
-            coefficients,
-            held,
-            basis,
+        pivots.clear();
+        pivots.resize(basis.len(), 0);
+        lu::factor(matrix, pivots);
+        self.coefficients.clear();
+        for &j in &self.held {
+            let first = self.coefficients.len();
+            self.coefficients
+                .extend(basis.iter().map(|&i| of_two(i, j)));
+            lu::solve(matrix, pivots, &mut self.coefficients[first..]);
         }
     }
 
-    /// By contact that holds: a weight over √D.
-    fn weights(
-        &self,
-        contacts: &[Contact],
-        of: impl Fn(&Contact) -> T,
+    /// Sets the next weight over √D of each contact that holds.
+    fn set_next_weights<F>(
+        &mut self,
+        contacts: &[Contact<F>],
+        of: impl Fn(&Contact<F>) -> T,
         workspace: &ContactWorkspace<T>,
-    ) -> Vec<T> {
+    ) {
         let weight = |&i: &usize| {
             let own = workspace.compliance[i][contacts[i].dependent].value();
             match own > 0.0 {
@@ -270,14 +269,51 @@ impl<T: Scalar> HeldContacts<T> {
                 false => T::from_f64(0.0),
             }
         };
-        self.held.iter().map(weight).collect()
+        self.next_weights.clear();
+        self.next_weights.extend(self.held.iter().map(weight));
+    }
+
+    /// Goes a part of the way to the next weights; the largest change, as a part of the largest weight.
+    fn approach_next_weights(&mut self, part: f64) -> f64 {
+        let values = self.next_weights.iter().map(|w| w.value());
+        let largest = values.fold(0.0, f64::max);
+        let mut change = 0.0_f64;
+        for (weight, next) in self.weights.iter_mut().zip(&self.next_weights) {
+            let step = *next - *weight;
+            change = change.max(step.value().abs() / largest);
+            *weight += step * T::from_f64(part);
+        }
+        change
+    }
+
+    /// The forces of those that hold, without the others and by a unit of each of them.
+    fn solve_for_others<F>(&mut self, contacts: &[Contact<F>], workspace: &ContactWorkspace<T>) {
+        let Self {
+            held,
+            basis,
+            coefficients,
+            weights,
+            equations,
+            others,
+            own,
+            by_other,
+            ..
+        } = self;
+        let of = (&held[..], &basis[..], &coefficients[..]);
+        equations.compose(contacts, workspace, of, weights);
+        own.clear();
+        by_other.clear();
+        equations.add_forces(of, |i| workspace.free[i], own);
+        for &j in others.iter() {
+            equations.add_forces(of, |i| workspace.compliance[i][j], by_other);
+        }
     }
 
     /// Whether a contact is held by those that hold, whatever its own force is.
-    pub(super) fn hold_still(
+    pub(super) fn hold_still<F>(
         &self,
         i: usize,
-        contacts: &[Contact],
+        contacts: &[Contact<F>],
         workspace: &ContactWorkspace<T>,
     ) -> bool {
         let mut with: Vec<usize> = self.basis.clone();
@@ -286,95 +322,65 @@ impl<T: Scalar> HeldContacts<T> {
         }
         let of_two = |i: usize, j: usize| workspace.compliance[i][contacts[j].dependent].value();
         let own = of_two(i, i);
-        independent(&with, of_two).len() <= self.basis.len() && own > 0.0
+        super::independent(&with, of_two).len() <= self.basis.len() && own > 0.0
     }
-}
-
-/// A largest independent set of contacts, by the Cholesky factorisation of D with the largest pivots first.
-pub(crate) fn independent(of: &[usize], compliance: impl Fn(usize, usize) -> f64) -> Vec<usize> {
-    let n = of.len();
-    let scale: Vec<f64> = of.iter().map(|&i| compliance(i, i).sqrt()).collect();
-    let mut columns: Vec<Vec<f64>> = Vec::new();
-    let mut chosen: Vec<usize> = Vec::new();
-    let mut left: Vec<f64> = scale
-        .iter()
-        .map(|s| f64::from(u8::from(*s > 0.0 && s.is_finite())))
-        .collect();
-    while chosen.len() < n {
-        let best = (0..n).filter(|k| !chosen.contains(k));
-        let Some(best) = best.max_by(|a, b| left[*a].total_cmp(&left[*b])) else {
-            break;
-        };
-        if left[best] <= INDEPENDENT {
-            break;
-        }
-        let root = left[best].sqrt();
-        let column: Vec<f64> = (0..n)
-            .map(|k| {
-                if scale[k] <= 0.0 {
-                    return 0.0;
-                }
-                let entry = compliance(of[k], of[best]) / (scale[k] * scale[best]);
-                let known = columns.iter().map(|c: &Vec<f64>| c[k] * c[best]);
-                (entry - known.sum::<f64>()) / root
-            })
-            .collect();
-        for (left, entry) in left.iter_mut().zip(&column) {
-            *left -= entry * entry;
-        }
-        columns.push(column);
-        chosen.push(best);
-    }
-    chosen.into_iter().map(|k| of[k]).collect()
 }
 
 /// The linear equations (1) at some weights.
-struct HoldingSystem<'h, T> {
-    held: &'h HeldContacts<T>,
+#[derive(Debug, Clone, Default)]
+struct HoldingEquations<T> {
     weights: Vec<T>,
     matrix: Vec<T>,
     pivots: Vec<usize>,
+    right_hand_side: Vec<T>,
 }
 
-impl<'h, T: Scalar> HoldingSystem<'h, T> {
-    fn new(
-        contacts: &[Contact],
+/// The contacts that hold, the independent ones, and the rows of the first as sums of those of the others.
+type HeldRows<'h, T> = (&'h [usize], &'h [usize], &'h [T]);
+
+impl<T: Scalar> HoldingEquations<T> {
+    /// Composes and factors them; where they are singular, no weight is far below the largest.
+    fn compose<F>(
+        &mut self,
+        contacts: &[Contact<F>],
         workspace: &ContactWorkspace<T>,
-        held: &'h HeldContacts<T>,
+        of: HeldRows<'_, T>,
         weights: &[T],
-    ) -> Self {
-        let r = held.basis.len();
-        let mut system = Self {
-            held,
-            weights: weights.to_vec(),
-            matrix: vec![T::from_f64(0.0); r * r],
-            pivots: vec![0; r],
-        };
-        if !system.factor(contacts, workspace) {
-            let largest = weights.iter().fold(0.0, |max, w| w.value().max(max));
-            let least = if largest > 0.0 {
-                SMALL_WEIGHT * largest
-            } else {
-                1.0
-            };
-            for weight in &mut system.weights {
-                if weight.value() < least {
-                    *weight = T::from_f64(least);
-                }
-            }
-            system.factor(contacts, workspace);
+    ) {
+        self.weights.clear();
+        self.weights.extend_from_slice(weights);
+        if self.factor(contacts, workspace, of) {
+            return;
         }
-        system
+        let largest = weights.iter().fold(0.0, |max, w| w.value().max(max));
+        let least = match largest > 0.0 {
+            true => SMALL_WEIGHT * largest,
+            false => 1.0,
+        };
+        for weight in &mut self.weights {
+            if weight.value() < least {
+                *weight = T::from_f64(least);
+            }
+        }
+        self.factor(contacts, workspace, of);
     }
 
     /// Composes and factors the matrix; whether it is regular.
-    fn factor(&mut self, contacts: &[Contact], workspace: &ContactWorkspace<T>) -> bool {
-        let r = self.held.basis.len();
-        self.matrix.fill(T::from_f64(0.0));
-        for (h, &j) in self.held.held.iter().enumerate() {
-            for (row, &i) in self.held.basis.iter().enumerate() {
+    fn factor<F>(
+        &mut self,
+        contacts: &[Contact<F>],
+        workspace: &ContactWorkspace<T>,
+        (held, basis, coefficients): HeldRows<'_, T>,
+    ) -> bool {
+        let r = basis.len();
+        self.matrix.clear();
+        self.matrix.resize(r * r, T::from_f64(0.0));
+        self.pivots.clear();
+        self.pivots.resize(r, 0);
+        for (h, &j) in held.iter().enumerate() {
+            for (row, &i) in basis.iter().enumerate() {
                 let entry = workspace.compliance[i][contacts[j].dependent] * self.weights[h];
-                for (k, t) in self.held.coefficients[h].iter().enumerate() {
+                for (k, t) in coefficients[h * r..(h + 1) * r].iter().enumerate() {
                     self.matrix[row * r + k] += entry * *t;
                 }
             }
@@ -383,15 +389,22 @@ impl<'h, T: Scalar> HoldingSystem<'h, T> {
         r == 0 || (factored.determinant_sign != 0.0 && factored.pivot_ratio > f64::EPSILON)
     }
 
-    /// By contact that holds: the force that takes these accelerations off.
-    fn forces(&self, mut accelerations: Vec<T>) -> Vec<T> {
-        lu::solve(&self.matrix, &self.pivots, &mut accelerations);
-        let each = self.held.coefficients.iter().zip(&self.weights);
-        let force = |(row, weight): (&Vec<T>, &T)| {
-            let terms = row.iter().zip(&accelerations);
+    /// Adds to a list, by contact that holds, the force that takes these accelerations off.
+    fn add_forces(
+        &mut self,
+        (held, basis, coefficients): HeldRows<'_, T>,
+        acceleration: impl Fn(usize) -> T,
+        to: &mut Vec<T>,
+    ) {
+        let r = basis.len();
+        let solution = &mut self.right_hand_side;
+        solution.clear();
+        solution.extend(basis.iter().map(|&i| acceleration(i)));
+        lu::solve(&self.matrix, &self.pivots, solution);
+        for (h, weight) in self.weights[..held.len()].iter().enumerate() {
+            let terms = coefficients[h * r..(h + 1) * r].iter().zip(&*solution);
             let sum = terms.fold(T::from_f64(0.0), |sum, (t, eta)| sum + *t * *eta);
-            -(*weight * sum)
-        };
-        each.map(force).collect()
+            to.push(-(*weight * sum));
+        }
     }
 }

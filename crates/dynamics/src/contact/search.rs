@@ -8,7 +8,7 @@ use super::held::{HeldContacts, Unloaded, solve_at_modes};
 use super::mode::sign;
 use super::{Contact, ContactMode, ContactWorkspace};
 use crate::error::{DynamicsError, Result};
-use dwell_kinetostatics::ForceState;
+use dwell_kinetostatics::{ForceState, MachineModel};
 use dwell_numerics::Scalar;
 
 /// Trials, and those more for each contact, after which no mode is found.
@@ -25,12 +25,13 @@ const ACCELERATION_TOLERANCE: f64 = 1e-9;
 /// # Errors
 /// Those of [`solve_at_modes`]; [`DynamicsError::NoContactMode`] where none agree with the forces.
 // Long because it is one loop: each trial decides the next.
-pub(super) fn find_modes<T: Scalar>(
-    contacts: &[Contact],
-    state: &mut ForceState<'_, T>,
+pub(super) fn find_modes<T: Scalar, M: MachineModel>(
+    contacts: &[Contact<M::CoordinateFunction>],
+    state: &mut ForceState<'_, T, M>,
     workspace: &mut ContactWorkspace<T>,
     unloaded: &Unloaded<'_, T>,
-) -> Result<HeldContacts<T>> {
+    held: &mut HeldContacts<T>,
+) -> Result<()> {
     let at_limit = |mode: &ContactMode| *mode == ContactMode::AtRest { at_limit: true };
     let mut let_go: Vec<usize> = (0..contacts.len())
         .filter(|&i| at_limit(&workspace.modes[i]))
@@ -43,21 +44,18 @@ pub(super) fn find_modes<T: Scalar>(
         workspace.modes[i] = ContactMode::Holds;
     }
     for _ in 0..TRIALS * (1 + open.len()) {
-        let held = match solve_at_modes(contacts, state, workspace, unloaded) {
-            Ok(held) => held,
-            Err(error) => {
-                // Surfaces that others slide past can be held by forces without bounds alone.
-                let Some(i) = hardest_to_hold(&open, contacts, workspace) else {
-                    return Err(error);
-                };
-                let forward = workspace.free[i].value() > 0.0;
-                workspace.modes[i] = ContactMode::Slides { forward };
-                set_moving(&open, contacts, workspace);
-                continue;
-            }
-        };
+        if let Err(error) = solve_at_modes(contacts, state, workspace, unloaded, held) {
+            // Surfaces that others slide past can be held by forces without bounds alone.
+            let Some(i) = hardest_to_hold(&open, contacts, workspace) else {
+                return Err(error);
+            };
+            let forward = workspace.free[i].value() > 0.0;
+            workspace.modes[i] = ContactMode::Slides { forward };
+            set_moving(&open, contacts, workspace);
+            continue;
+        }
         if let_go.is_empty() {
-            let_go = beyond_their_limit(&open, &held, contacts, workspace);
+            let_go = beyond_their_limit(&open, held, contacts, workspace);
         }
         if !let_go.is_empty() {
             for i in let_go.drain(..) {
@@ -80,7 +78,7 @@ pub(super) fn find_modes<T: Scalar>(
             _ => false,
         });
         let Some(returns) = returns else {
-            return Ok(held);
+            return Ok(());
         };
         workspace.modes[returns] = ContactMode::Holds;
         set_moving(&open, contacts, workspace);
@@ -91,10 +89,10 @@ pub(super) fn find_modes<T: Scalar>(
 
 /// The contacts that are farthest beyond their limits, or move although they are to hold; those that share a load let go
 /// together.
-fn beyond_their_limit<T: Scalar>(
+fn beyond_their_limit<T: Scalar, F>(
     open: &[usize],
     held: &HeldContacts<T>,
-    contacts: &[Contact],
+    contacts: &[Contact<F>],
     workspace: &ContactWorkspace<T>,
 ) -> Vec<usize> {
     let holds = open
@@ -121,9 +119,9 @@ fn beyond_their_limit<T: Scalar>(
 }
 
 /// Of the contacts that are to hold, the one that takes the largest force for it; none if none does.
-fn hardest_to_hold<T: Scalar>(
+fn hardest_to_hold<T: Scalar, F>(
     open: &[usize],
-    contacts: &[Contact],
+    contacts: &[Contact<F>],
     workspace: &ContactWorkspace<T>,
 ) -> Option<usize> {
     let holds = open
@@ -138,12 +136,13 @@ fn hardest_to_hold<T: Scalar>(
 }
 
 /// Distinguishes contacts that slide from those that are at their limit while others hold them.
-fn set_moving<T: Scalar>(
+fn set_moving<T: Scalar, F>(
     open: &[usize],
-    contacts: &[Contact],
+    contacts: &[Contact<F>],
     workspace: &mut ContactWorkspace<T>,
 ) {
-    let held = HeldContacts::of(contacts, workspace);
+    let mut held = HeldContacts::default();
+    held.find(contacts, workspace);
     for &i in open {
         if let ContactMode::Slides { forward } | ContactMode::AtLimit { forward } =
             workspace.modes[i]

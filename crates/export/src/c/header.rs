@@ -75,9 +75,6 @@ impl CWriter<'_> {
 
     fn types(&self, text: &mut String) {
         let machine = &self.export.machine;
-        let member = |text: &mut String, name: &str, meaning: &str| {
-            _ = writeln!(text, "    @p@_real {name}; /* {} */", comment(meaning));
-        };
         *text += "/* Constants of the machine that may be changed. */\ntypedef struct {\n";
         for (name, _, meaning) in self.parameters() {
             member(text, &name, &meaning);
@@ -108,6 +105,12 @@ impl CWriter<'_> {
             2 + currents.len()
         );
         *text += "    int32_t periods; /* whole periods subtracted from q */\n} @p@_state;\n\n";
+        self.term_types(text);
+    }
+
+    /// The coefficients at a coordinate.
+    fn term_types(&self, text: &mut String) {
+        let machine = &self.export.machine;
         let [m, half_dm] = match machine.is_angle {
             true => ["kg m2", "kg m2/rad"],
             false => ["kg", "kg/m"],
@@ -186,4 +189,9 @@ impl CWriter<'_> {
         *text += "/* One step of h seconds by the classical Runge-Kutta method of fourth order. */\n@p@_status @p@_step(const @p@_parameters *parameters, const @p@_inputs *inputs, @p@_real h, @p@_state *state);\n\n";
         *text += "#ifdef @U@_SELF_TEST\n/* 0, or the number of the first check that failed. */\nint @p@_self_test(void);\n#endif\n\n";
     }
+}
+
+/// A member of a structure.
+fn member(text: &mut String, name: &str, meaning: &str) {
+    _ = writeln!(text, "    @p@_real {name}; /* {} */", comment(meaning));
 }

@@ -38,6 +38,25 @@ impl CWriter<'_> {
         if self.has_points() {
             *text += "    @p@_real xy[2 * @U@_POINT_COUNT];\n";
         }
+        self.rows_check(text);
+        let outside = match machine.domain.revolutions {
+            0 => 2.0 * machine.domain.to.abs().max(machine.domain.from.abs()) + 1.0,
+            _ => 1e30,
+        };
+        _ = write!(
+            text,
+            "        for (k = 0; k < n; k++) {{\n            if (differs(found[k], expected[k], tolerance[k])) {{\n                return 10 + k;\n            }}\n        }}\n    }}\n    if (@p@_motion_terms_at({}, &terms) != @U@_OUT_OF_RANGE) {{\n        return 3;\n    }}\n    @p@_scene(&parameters, &inputs, &state);\n    parameters.added_inertia = {};\n    if (@p@_acceleration(&parameters, &inputs, &state, &q_ddot) != @U@_NO_INERTIA) {{\n        return 4;\n    }}\n",
+            self.number(outside),
+            self.number(-1e30)
+        );
+        self.motion_check(text);
+        *text += "    return 0;\n}\n\nint main(void)\n{\n    return @p@_self_test();\n}\n#endif\n";
+    }
+
+    /// The values at the rows' coordinates.
+    fn rows_check(&self, text: &mut String) {
+        let measured = &self.export.measured;
+        let (rows, values) = (measured.rows.len(), measured.tolerances.len());
         _ = write!(
             text,
             "    for (row = 0; row < {rows}; row++) {{\n        const @p@_real *expected = exact[row] + 1;\n        @p@_real found[{values}];\n        int n = 0;\n"
@@ -74,16 +93,11 @@ impl CWriter<'_> {
                 "        for (k = 0; k < 2 * @U@_POINT_COUNT; k++) {{\n            found[n++] = xy[k];\n        }}\n"
             );
         }
-        let outside = match machine.domain.revolutions {
-            0 => 2.0 * machine.domain.to.abs().max(machine.domain.from.abs()) + 1.0,
-            _ => 1e30,
-        };
-        _ = write!(
-            text,
-            "        for (k = 0; k < n; k++) {{\n            if (differs(found[k], expected[k], tolerance[k])) {{\n                return 10 + k;\n            }}\n        }}\n    }}\n    if (@p@_motion_terms_at({}, &terms) != @U@_OUT_OF_RANGE) {{\n        return 3;\n    }}\n    @p@_scene(&parameters, &inputs, &state);\n    parameters.added_inertia = {};\n    if (@p@_acceleration(&parameters, &inputs, &state, &q_ddot) != @U@_NO_INERTIA) {{\n        return 4;\n    }}\n",
-            self.number(outside),
-            self.number(-1e30)
-        );
+    }
+
+    /// The motion.
+    fn motion_check(&self, text: &mut String) {
+        let measured = &self.export.measured;
         let motion = &measured.motion;
         if let Some([end, tolerance]) = motion.end {
             let [from, speed] = motion.from.map(|n| self.number(n));
@@ -96,6 +110,5 @@ impl CWriter<'_> {
                 self.number(motion.step)
             );
         }
-        *text += "    return 0;\n}\n\nint main(void)\n{\n    return @p@_self_test();\n}\n#endif\n";
     }
 }

@@ -36,178 +36,130 @@ pub(super) struct Variable {
     pub(super) code: String,
 }
 
-/// All variables of an export.
-pub(super) fn variables(export: &Export) -> Vec<Variable> {
-    let writer = Writer::new(export);
-    let machine = &export.machine;
-    let mut all = Vec::new();
-    let mut add = |name: String, role, unit: &str, start, meaning: &str, code: String| {
-        all.push(Variable {
-            name,
+/// Variables in their order.
+#[derive(Default)]
+struct List(Vec<Variable>);
+
+impl List {
+    fn add(&mut self, name: &str, role: Role, unit: &str, meaning: &str, code: String) {
+        self.0.push(Variable {
+            name: name.to_owned(),
             role,
             unit: unit.to_owned(),
-            start,
+            start: 0.0,
             meaning: meaning.to_owned(),
             code,
         });
-    };
-    let q = machine.coordinate.as_str();
+    }
+
+    /// The value at the start of the last one.
+    fn starts_at(&mut self, start: f64) {
+        if let Some(last) = self.0.last_mut() {
+            last.start = start;
+        }
+    }
+}
+
+/// All variables of an export.
+pub(super) fn variables(export: &Export) -> Vec<Variable> {
+    let writer = Writer::new(export);
+    let mut list = List::default();
+    list.add("time", Role::Time, "s", "time", "m->time".to_owned());
+    states(&writer, &mut list);
+    outputs(&writer, &mut list);
+    constants(&writer, &mut list);
+    if export.machine.domain.revolutions > 0 {
+        let unit = if export.machine.is_angle { "rad" } else { "m" };
+        for (k, end) in ["upper", "lower"].iter().enumerate() {
+            let (name, code) = (format!("next_period.{end}"), format!("indicators[{k}]"));
+            let meaning = "distance from the end of the period";
+            list.add(&name, Role::Indicator, unit, meaning, code);
+        }
+        let meaning = "whole periods of the coordinate";
+        list.add("periods", Role::Periods, "", meaning, String::new());
+    }
+    list.0
+}
+
+/// States, each with its derivative behind it.
+fn states(writer: &Writer<'_>, list: &mut List) {
+    let machine = &writer.export.machine;
     let unit = if machine.is_angle { "rad" } else { "m" };
     let (rate, second) = (format!("{unit}/s"), format!("{unit}/s2"));
     let [start, speed] = machine.initial;
-    add(
-        "time".to_owned(),
-        Role::Time,
-        "s",
-        0.0,
-        "time",
-        "m->time".to_owned(),
-    );
-    add(
-        q.to_owned(),
-        Role::State(0),
-        unit,
-        start,
-        "coordinate",
-        "m->state.q".to_owned(),
-    );
-    add(
-        format!("der({q})"),
-        Role::Rate(0),
-        &rate,
-        0.0,
-        "its rate",
-        "rates[0]".to_owned(),
-    );
+    let q = machine.coordinate.as_str();
+    let code = |text: &str| text.to_owned();
+    list.add(q, Role::State(0), unit, "coordinate", code("m->state.q"));
+    list.starts_at(start);
+    let name = format!("der({q})");
+    list.add(&name, Role::Rate(0), &rate, "its rate", code("rates[0]"));
     let name = format!("{q}.velocity");
-    add(
-        name.clone(),
+    list.add(
+        &name,
         Role::State(1),
         &rate,
-        speed,
         "speed",
-        "m->state.q_dot".to_owned(),
+        code("m->state.q_dot"),
     );
-    let acceleration = format!("der({name})");
-    add(
-        acceleration,
+    list.starts_at(speed);
+    let name = format!("der({name})");
+    list.add(
+        &name,
         Role::Rate(1),
         &second,
-        0.0,
         "acceleration",
-        "rates[1]".to_owned(),
+        code("rates[1]"),
     );
     for (load, place) in writer.currents() {
         let name = format!("{}.current", machine.loads[load].name);
-        let code = format!("m->state.current_{}", writer.names.loads[load]);
-        add(name.clone(), Role::State(place), "A", 0.0, "current", code);
-        let code = format!("rates[{place}]");
-        add(
-            format!("der({name})"),
-            Role::Rate(place),
-            "A/s",
-            0.0,
-            "its rate",
-            code,
-        );
+        let member = format!("m->state.current_{}", writer.names.loads[load]);
+        list.add(&name, Role::State(place), "A", "current", member);
+        let (name, rate) = (format!("der({name})"), format!("rates[{place}]"));
+        list.add(&name, Role::Rate(place), "A/s", "its rate", rate);
     }
-    for (k, (name, meaning)) in [
-        ("energy.kinetic", "kinetic energy"),
-        ("energy.potential", "potential energy"),
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        add(
-            name.to_owned(),
-            Role::Output,
-            "J",
-            0.0,
-            meaning,
-            format!("energies[{k}]"),
-        );
+}
+
+/// What follows from states, parameters and inputs.
+fn outputs(writer: &Writer<'_>, list: &mut List) {
+    let machine = &writer.export.machine;
+    for (k, kind) in ["kinetic", "potential"].iter().enumerate() {
+        let (name, meaning) = (format!("energy.{kind}"), format!("{kind} energy"));
+        list.add(&name, Role::Output, "J", &meaning, format!("energies[{k}]"));
     }
     for (k, (name, unit)) in machine.reactions.iter().enumerate() {
         let unit = if *unit == "N" { "N" } else { "N.m" };
-        let code = format!("reactions[{k}]");
-        add(
-            name.clone(),
-            Role::Output,
-            unit,
-            0.0,
-            "action of the joint's first body on its second",
-            code,
-        );
+        let meaning = "action of the joint's first body on its second";
+        list.add(name, Role::Output, unit, meaning, format!("reactions[{k}]"));
     }
-    for (k, name) in machine.points.iter().enumerate() {
+    for (k, point) in machine.points.iter().enumerate() {
         for (axis, letter) in ["x", "y"].iter().enumerate() {
-            let code = format!("xy[{}]", 2 * k + axis);
-            add(
-                format!("{name}.{letter}"),
-                Role::Output,
-                "m",
-                0.0,
-                "position",
-                code,
-            );
+            let (name, code) = (format!("{point}.{letter}"), format!("xy[{}]", 2 * k + axis));
+            list.add(&name, Role::Output, "m", "position", code);
         }
     }
+}
+
+/// Parameters and inputs.
+fn constants(writer: &Writer<'_>, list: &mut List) {
     for (name, value, meaning) in writer.parameters() {
         let (unit, meaning) = meaning.split_once(": ").unwrap_or(("1", &meaning));
-        let code = format!("m->parameters.{name}");
-        add(
+        let (path, code) = (
             format!("parameters.{name}"),
-            Role::Parameter,
-            &fmi_unit(unit),
-            value,
-            meaning,
-            code,
+            format!("m->parameters.{name}"),
         );
+        list.add(&path, Role::Parameter, &fmi_unit(unit), meaning, code);
+        list.starts_at(value);
     }
     let meaning = "largest step of the co-simulation's integrator";
-    add(
-        "parameters.max_step".to_owned(),
-        Role::Parameter,
-        "s",
-        1e-3,
-        meaning,
-        "m->max_step".to_owned(),
-    );
+    let code = "m->max_step".to_owned();
+    list.add("parameters.max_step", Role::Parameter, "s", meaning, code);
+    list.starts_at(1e-3);
     for (_, name, value, meaning) in writer.inputs() {
         let (unit, meaning) = meaning.split_once(": ").unwrap_or(("1", &meaning));
-        let code = format!("m->inputs.{name}");
-        add(
-            format!("inputs.{name}"),
-            Role::Input,
-            &fmi_unit(unit),
-            value,
-            meaning,
-            code,
-        );
+        let (path, code) = (format!("inputs.{name}"), format!("m->inputs.{name}"));
+        list.add(&path, Role::Input, &fmi_unit(unit), meaning, code);
+        list.starts_at(value);
     }
-    if machine.domain.revolutions > 0 {
-        for (k, name) in ["upper", "lower"].iter().enumerate() {
-            let name = format!("next_period.{name}");
-            let code = format!("indicators[{k}]");
-            add(
-                name,
-                Role::Indicator,
-                unit,
-                0.0,
-                "distance from the end of the period",
-                code,
-            );
-        }
-        add(
-            "periods".to_owned(),
-            Role::Periods,
-            "",
-            0.0,
-            "whole periods of the coordinate",
-            String::new(),
-        );
-    }
-    all
 }
 
 /// A unit in the spelling of FMI: products with points.

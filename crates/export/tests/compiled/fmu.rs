@@ -43,17 +43,6 @@ fn the_libraries_have_every_function() {
                     let found = text.lines().filter(|line| line.contains(symbol)).count();
                     assert_eq!(found, functions, "{text}");
                 }
-                if let Ok(to) = std::env::var("DUMP") {
-                    run(
-                        &scratch.0,
-                        "cp",
-                        &[
-                            "-r",
-                            ".",
-                            &format!("{to}/{symbol}{}", machine.loads.len()).replace(' ', ""),
-                        ],
-                    );
-                }
             }
         }
     }

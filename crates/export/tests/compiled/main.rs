@@ -7,5 +7,6 @@ mod energy;
 mod fmu;
 mod hostile;
 mod machine;
+mod matlab;
 mod rust;
 mod toolchain;

@@ -56,6 +56,30 @@ pub(crate) fn c_compilers() -> Vec<&'static str> {
     found
 }
 
+/// Undefined behaviour and wrong addresses end a program.
+pub(crate) const SANITIZE: [&str; 2] =
+    ["-fsanitize=undefined,address", "-fno-sanitize-recover=all"];
+
+/// The compilers whose libraries for sanitizers are installed, too.
+pub(crate) fn sanitizing_compilers() -> Vec<&'static str> {
+    let scratch = Scratch::new();
+    scratch.write(&[(
+        "empty.c".to_owned(),
+        "int main(void) { return 0; }\n".to_owned(),
+    )]);
+    let links = |compiler: &&str| {
+        let mut command = Command::new(compiler);
+        let command = command.args(SANITIZE).args(["empty.c", "-o", "empty"]);
+        let output = command.current_dir(&scratch.0).output();
+        let there = output.is_ok_and(|output| output.status.success());
+        if !there {
+            eprintln!("skipped: {compiler} has no sanitizers here");
+        }
+        there
+    };
+    c_compilers().into_iter().filter(links).collect()
+}
+
 /// Runs a command in a folder; its output, or a panic with what it said.
 pub(crate) fn run(folder: &Path, program: &str, arguments: &[&str]) -> String {
     let mut command = Command::new(program);

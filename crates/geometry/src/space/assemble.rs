@@ -54,6 +54,8 @@ impl Plan {
             predictions: Predictions::default(),
             range: Range::Unbounded,
             assembly_q: Vec::new(),
+            closure_angles: Vec::new(),
+            freedom_gains: Vec::new(),
             mobility: Mobility::default(),
         };
         plan.schedule_whole();

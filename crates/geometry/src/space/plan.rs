@@ -1,6 +1,7 @@
 //! The compiled mechanism, and the memory of one thread in which it is evaluated.
 
 use super::closure::Closure;
+use super::coordinate::StoredAngles;
 use super::follow::Node;
 use super::frames::{BodyMotion, Frame, Screw};
 use super::groups::Group;
@@ -58,6 +59,10 @@ pub struct Plan {
     /// The coordinates at the assembly.
     pub(super) assembly_q: Vec<f64>,
     pub(super) mobility: Mobility,
+    /// The angles along the range of joints that close loops.
+    pub(super) closure_angles: Vec<StoredAngles>,
+    /// By freedom: what it gains in a period of the only coordinate.
+    pub(super) freedom_gains: Vec<f64>,
 }
 
 /// A pose with its velocities, for one thread.
@@ -86,7 +91,41 @@ pub struct Pose<T = f64> {
     pub(super) added: Vec<[Vec3<T>; 2]>,
 }
 
+/// The velocities and accelerations of a pose, for one thread.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PoseMotion<T = f64> {
+    rates: Vec<T>,
+    accelerations: Vec<T>,
+    has_no_acceleration: bool,
+    states: Vec<BodyMotion<T>>,
+}
+
+impl<T> Pose<T> {
+    /// Exchanges the velocities and accelerations for others: for a virtual motion of the same pose, and back.
+    #[inline]
+    pub fn swap_motion(&mut self, other: &mut PoseMotion<T>) {
+        std::mem::swap(&mut self.rates, &mut other.rates);
+        std::mem::swap(&mut self.accelerations, &mut other.accelerations);
+        std::mem::swap(&mut self.states, &mut other.states);
+        std::mem::swap(
+            &mut self.has_no_acceleration,
+            &mut other.has_no_acceleration,
+        );
+    }
+}
+
 impl Plan {
+    /// Memory for the velocities and accelerations of another motion of a pose.
+    pub fn pose_motion<T: Scalar>(&self) -> PoseMotion<T> {
+        let zeros = vec![T::from_f64(0.0); self.tree.freedoms.len()];
+        PoseMotion {
+            rates: zeros.clone(),
+            accelerations: zeros,
+            has_no_acceleration: false,
+            states: vec![BodyMotion::default(); self.tree.internal.len()],
+        }
+    }
+
     /// Assembles a mechanism and compiles it.
     ///
     /// # Errors
@@ -104,6 +143,7 @@ impl Plan {
         };
         plan.follow_range(&assembly.q, start, kind)
             .map_err(singular)?;
+        plan.count_revolutions(mechanism);
         Ok(plan)
     }
 

@@ -3,10 +3,9 @@
 use super::bodies::Space;
 use super::joints::{Joints, ParsedJoint};
 use crate::bodies::Bodies;
-use crate::coordinates::NamedActuator;
+use crate::coordinates::{NamedActuator, ParsedActuator as AnyActuator, check_coordinate_name};
 use crate::diagnostics::Span;
 use crate::keys::table;
-use crate::names::check;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
@@ -15,34 +14,7 @@ use dwell_geometry::{ActuatorId, JointId};
 use toml::de::DeValue;
 
 /// An actuator as read; nothing in it if it was wrong.
-#[derive(Debug)]
-pub(super) struct ParsedActuator<'a> {
-    pub(super) name: &'a str,
-    key: Span,
-    pub(super) actuator: Option<Actuator>,
-}
-
-impl ParsedActuator<'_> {
-    /// Whether its coordinate is an angle; one that could not be read counts as one.
-    pub(super) fn is_angle(&self) -> bool {
-        let kind = self.actuator.as_ref().map(|a| a.kind);
-        !matches!(kind, Some(ActuatorKind::Travel(_)))
-    }
-}
-
-impl NamedActuator for ParsedActuator<'_> {
-    fn name(&self) -> &str {
-        self.name
-    }
-
-    fn key(&self) -> &Span {
-        &self.key
-    }
-
-    fn is_angle(&self) -> bool {
-        self.is_angle()
-    }
-}
+pub(super) type ParsedActuator<'a> = AnyActuator<'a, Actuator>;
 
 pub(super) fn actuators<'a>(
     fields: &TableReader<'a>,
@@ -51,7 +23,7 @@ pub(super) fn actuators<'a>(
 ) -> Vec<ParsedActuator<'a>> {
     let mut found: Vec<ParsedActuator<'a>> = Vec::new();
     for (k, entry) in fields.entries.iter().enumerate() {
-        check("an actuator", entry);
+        check_coordinate_name(entry, "an actuator");
         entry
             .log()
             .place(SceneLocation::Actuator(ActuatorId(k)), &entry.key);
@@ -66,10 +38,12 @@ pub(super) fn actuators<'a>(
                 "rename one: both are keys of [assembly]",
             );
         }
+        let actuator = read_actuator(entry, joints);
+        let kind = actuator.as_ref().map(|a| a.kind);
+        let is_angle = !matches!(kind, Some(ActuatorKind::Travel(_)));
         found.push(ParsedActuator {
-            name: entry.name,
-            key: entry.key.clone(),
-            actuator: read_actuator(entry, joints),
+            named: NamedActuator::new(entry, is_angle, false),
+            actuator,
         });
     }
     found
@@ -91,12 +65,8 @@ fn read_actuator(entry: &Entry<'_>, joints: &Joints<'_>) -> Option<Actuator> {
             .value
             .reject(message, "expected the name of a joint", help);
     }
-    let name = coordinate.value.string(fields.name_of(coordinate))?;
-    let at = coordinate.value.span();
-    let joint = joints.find(name, &at)?;
     let is_angle = coordinate.name == "angle";
-    require_freedom(is_angle, &joints.list[joint], &at)?;
-    let id = JointId(joint);
+    let id = joint_with_freedom(is_angle, coordinate, &fields, joints)?;
     let kind = match is_angle {
         true => ActuatorKind::Angle(id),
         false => ActuatorKind::Travel(id),
@@ -105,6 +75,20 @@ fn read_actuator(entry: &Entry<'_>, joints: &Joints<'_>) -> Option<Actuator> {
         name: entry.name.to_owned(),
         kind,
     })
+}
+
+/// The joint that an entry names, with an angle that has a zero, or with a travel.
+pub(super) fn joint_with_freedom(
+    is_angle: bool,
+    entry: &Entry<'_>,
+    fields: &TableReader<'_>,
+    joints: &Joints<'_>,
+) -> Option<JointId> {
+    let name = entry.value.string(fields.name_of(entry))?;
+    let at = entry.value.span();
+    let joint = joints.find(name, &at)?;
+    require_freedom(is_angle, &joints.list[joint], &at)?;
+    Some(JointId(joint))
 }
 
 /// Reports a joint that has no such coordinate, or whose angle has no zero.

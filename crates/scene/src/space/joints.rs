@@ -30,7 +30,7 @@ pub(super) struct ParsedJoint<'a> {
 #[derive(Debug)]
 pub(super) struct Joints<'a> {
     pub(super) list: Vec<ParsedJoint<'a>>,
-    log: &'a Diagnostics,
+    pub(super) log: &'a Diagnostics,
 }
 
 impl<'a> Joints<'a> {

@@ -6,7 +6,7 @@ use crate::keys::table;
 use crate::requests::{joint_and_component, strings};
 use crate::spans::SceneLocation;
 use crate::table_reader::TableReader;
-use crate::wording::shorten;
+use crate::wording::{list, shorten};
 use dwell_geometry::JointId;
 use dwell_geometry::space::{Joint, JointKind, Vec3};
 use dwell_kinetostatics::space::{Axes, Component, Reaction};
@@ -110,6 +110,40 @@ pub(super) fn reactions(
         }
     }
     Some(found)
+}
+
+/// The one component of one joint that a text names.
+pub(super) fn one_reaction(
+    text: &str,
+    at: &Span,
+    fields: &TableReader<'_>,
+    joints: &Joints<'_>,
+    ground: usize,
+) -> Option<Reaction> {
+    let (name, component) = joint_and_component(text);
+    let j = joints.find(name, at)?;
+    // A joint that could not be read has been reported already.
+    let joint = joints.list[j].joint.as_ref()?;
+    let components = match component {
+        Some(component) => one(joint.kind, component, name, (fields.log(), at)),
+        None => in_ground_axes(joint, ground),
+    };
+    match components[..] {
+        [] => None,
+        [component] => Some(Reaction {
+            joint: JointId(j),
+            component,
+        }),
+        _ => {
+            let names = components.iter().map(|&c| component_name(c));
+            let names = list(names).unwrap_or_default();
+            let message = format!("{} names {} reactions", fields.what, components.len());
+            let help = format!("name one component of `{}`: {names}", shorten(name));
+            fields
+                .log()
+                .reject(message, &[(at, "which of them?")], help)
+        }
+    }
 }
 
 /// The component of that name.

@@ -5,8 +5,12 @@ use crate::export::fmu_archive::fmu_archive;
 use crate::export::{ExportRequest, compute_export};
 use crate::number_format::count;
 use crate::output::Outcome;
-use dwell_export::{Export, FmiVersion, Identifiers, PartKind, Precision, c_files, rust_files};
-use dwell_findings::Record;
+use crate::reduce::compute::compute_reduction;
+use dwell_export::{
+    Export, FmiVersion, Identifiers, PartKind, Precision, c_files, matlab_files, rust_files,
+};
+use dwell_findings::{Column, Record};
+use dwell_report::{Number, TableFormat, json};
 use dwell_scene::{Scene, SceneLocation};
 
 /// The target of an export.
@@ -18,6 +22,12 @@ pub enum ExportTarget {
     Rust,
     /// An FMU.
     Fmu(FmiVersion),
+    /// The cells as a file of MATLAB, and functions that evaluate and integrate.
+    Matlab,
+    /// The rows of `dwell reduce` in a format of tables.
+    Rows(TableFormat),
+    /// The same as a JSON list of name, unit and values of every column.
+    Json,
 }
 
 /// Exports the reduced model of a scene's machine.
@@ -36,6 +46,11 @@ pub fn export(
             "leave --float out",
             [(SceneLocation::Whole, "of this scene")],
         ));
+    }
+    match target {
+        ExportTarget::Rows(format) => return rows(scene, Some(format)),
+        ExportTarget::Json => return rows(scene, None),
+        ExportTarget::C | ExportTarget::Rust | ExportTarget::Fmu(_) | ExportTarget::Matlab => {}
     }
     let export = compute_export(scene, asked)?;
     let mut outcome = Outcome {
@@ -58,6 +73,13 @@ pub fn export(
                 add(path, text.into_bytes());
             }
         }
+        // Their rows are written already.
+        ExportTarget::Rows(_) | ExportTarget::Json => {}
+        ExportTarget::Matlab => {
+            for (path, bytes) in matlab_files(&export) {
+                add(path, bytes);
+            }
+        }
         ExportTarget::Fmu(version) => {
             let (bytes, sentence) = fmu_archive(scene, &export, version)?;
             add(
@@ -70,22 +92,41 @@ pub fn export(
     Ok(outcome)
 }
 
+/// The rows of the reduced model, evaluated exactly.
+fn rows(scene: &Scene, format: Option<TableFormat>) -> Result<Outcome, StudyError> {
+    let table = compute_reduction(scene, None)?.table();
+    let mut outcome = Outcome::default();
+    let stem = format!("{}-reduced", scene.name);
+    match format {
+        Some(format) => outcome.files.add_table(&stem, &table, &[format])?,
+        None => {
+            let column = |(k, column): (usize, &Column)| {
+                let values = table.rows.iter().map(|row| Number(row[k]));
+                (column.name.clone(), column.unit.clone(), values.collect())
+            };
+            let columns = table.columns.iter().enumerate();
+            let columns: Vec<(String, String, Vec<Number>)> = columns.map(column).collect();
+            outcome.files.add(format!("{stem}.json"), json(&columns)?);
+        }
+    }
+    let count = table.rows.len();
+    outcome.record.add_count("positions", count);
+    outcome.summary = format!(
+        "{}: {count} positions of {}, evaluated exactly\n",
+        scene.title, scene.mechanism.actuators[0].name
+    );
+    Ok(outcome)
+}
+
 fn summary(scene: &Scene, export: &Export) -> String {
     let (machine, measured) = (&export.machine, &export.measured);
     let numbers = match export.request.precision {
         Precision::Double => "double",
         Precision::Float => "single",
     };
-    let cells = PartKind::ALL.map(|kind| {
-        let part = &export.parts[kind as usize];
-        if part.index.is_empty() {
-            0
-        } else {
-            part.cell_count()
-        }
-    });
+    let counts = PartKind::ALL.map(|kind| cells(export, kind));
     let names = ["of motion", "of reactions", "of positions"];
-    let cells = cells.into_iter().zip(names).filter(|(n, _)| *n > 0);
+    let cells = counts.into_iter().zip(names).filter(|(n, _)| *n > 0);
     let cells: Vec<String> = cells
         .map(|(n, of)| format!("{} {of}", count(n, "cell")))
         .collect();
@@ -119,9 +160,29 @@ fn record(export: &Export) -> Record {
     record.add("error.half_dm", "", measured.errors.half_dm);
     record.add("error.reactions", "", measured.errors.reactions);
     record.add_count("constants.bytes", export.constant_bytes());
+    for (kind, name) in PartKind::ALL
+        .into_iter()
+        .zip(["motion", "reactions", "positions"])
+    {
+        record.add_count(format!("cells.{name}"), cells(export, kind));
+    }
+    if let Some([q, q_dot]) = measured.step_error {
+        let unit = if export.machine.is_angle { "rad" } else { "m" };
+        record.add("step_error.q", unit, q);
+        record.add("step_error.q_dot", &format!("{unit}/s"), q_dot);
+    }
     let [motion, all, step] = measured.operations;
     for (name, operations) in [("motion", motion), ("reactions", all), ("step", step)] {
         record.add_count(format!("operations.{name}"), operations as usize);
     }
     record
+}
+
+/// Cells of a part; none where all its functions are constants.
+fn cells(export: &Export, kind: PartKind) -> usize {
+    let part = &export.parts[kind as usize];
+    match part.index.is_empty() {
+        true => 0,
+        false => part.cell_count(),
+    }
 }

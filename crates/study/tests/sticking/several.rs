@@ -6,7 +6,7 @@ use dwell_dynamics::{ContactEvent, ContactMode, Method};
 const G: f64 = 9.81;
 
 /// A slider-crank with friction in all pins and its guide, under a couple on the crank.
-fn slider_crank(couple: &str, motion: &str) -> String {
+pub(crate) fn slider_crank(couple: &str, motion: &str) -> String {
     format!(
         r#"
 [bodies.ground]
