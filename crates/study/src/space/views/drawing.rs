@@ -1,7 +1,7 @@
 //! A mechanism in one position, as it is seen from one side: bodies as bars and plates, joints by the symbols of spatial kinematics.
 
 use super::projection::{Picture, View};
-use super::solids::{center_of_mass, hull};
+use super::solids::{center_of_mass, circle, hull};
 use dwell_geometry::BodyId;
 use dwell_geometry::space::{Joint, JointKind, Placement, Vec3};
 use dwell_report::{Paint, Pen, Shape, TextPlacement};
@@ -150,6 +150,10 @@ impl<'a> SpaceDrawing<'a> {
                 continue;
             }
             for (other, k, l) in self.meeting(i) {
+                // A slide is drawn where its block is.
+                if !is_hinge && k == self.guide_side(joint) {
+                    continue;
+                }
                 let (own, of_other) = (&joint.sides[k], &joints[other].sides[l]);
                 let stays = match joints[other].kind {
                     // Of a slide and a hinge the slide is moved.
@@ -173,6 +177,18 @@ impl<'a> SpaceDrawing<'a> {
             }
         }
         shifts
+    }
+
+    /// Which body of a sliding joint has the guide: the first, unless only the second is the ground.
+    pub(super) fn guide_side(&self, joint: &Joint) -> usize {
+        usize::from(self.is_ground(joint.bodies[1]))
+    }
+
+    /// Whether a body is drawn as the block of a slide.
+    fn is_block(&self, body: BodyId) -> bool {
+        let joints = self.scene.mechanism.joints.iter();
+        let mut slides = joints.filter(|joint| matches!(joint.kind, JointKind::Prismatic));
+        slides.any(|joint| joint.bodies[1 - self.guide_side(joint)] == body)
     }
 
     /// The joints at the point of a joint, with the number of the common moving body in the one and the other.
@@ -358,7 +374,12 @@ impl<'a> Scenery<'a> {
         let points: Vec<Vec3> = local.iter().map(|p| self.at(body, *p)).collect();
         let bar = (color, BAR);
         match points[..] {
-            [] | [_] => {}
+            [] => {}
+            [point] => {
+                if !self.drawing.is_block(body) {
+                    self.ring(body, point);
+                }
+            }
             [a, b] => self.bar([a, b], bar, Some(name)),
             _ => {
                 if let Some([a, b]) = line_of(&points, self.drawing.same) {
@@ -383,6 +404,18 @@ impl<'a> Scenery<'a> {
                 }
             }
         }
+    }
+
+    /// A body of one point: a ring about it.
+    fn ring(&mut self, body: BodyId, at: Vec3) {
+        let view = self.picture.view;
+        let outline = circle(view.place(at), 0.9 * self.drawing.unit);
+        let line = Shape::line(outline, Pen::new(self.drawing.color(body), 4.0));
+        let line = match self.name(body) {
+            Some(name) => line.named(name),
+            None => line,
+        };
+        self.picture.add(view.nearness(at), vec![line]);
     }
 
     /// The mark of a centre of mass, with a line to the body where it is beside it.

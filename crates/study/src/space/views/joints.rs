@@ -128,7 +128,7 @@ impl<'a> Scenery<'a> {
     fn slide(&mut self, j: usize) {
         let joint = &self.drawing.scene.mechanism.joints[j];
         let (unit, view) = (self.drawing.unit, self.picture.view);
-        let on = self.guide_side(joint);
+        let on = self.drawing.guide_side(joint);
         let block_body = joint.bodies[1 - on];
         let (at, axes) = (self.anchor(j, 1 - on), self.axes(joint, on));
         let size = BLOCK.map(|s| s * unit);
@@ -152,15 +152,10 @@ impl<'a> Scenery<'a> {
         self.ground_line(middle, normal, 0.5 * length, view.nearness(at));
     }
 
-    /// Which body of a sliding joint has the guide: the first, unless only the second is the ground.
-    fn guide_side(&self, joint: &Joint) -> usize {
-        usize::from(self.drawing.is_ground(joint.bodies[1]))
-    }
-
     /// The ends of the guide of a sliding joint.
     fn guide_ends(&self, j: usize) -> [Vec3; 2] {
         let joint = &self.drawing.scene.mechanism.joints[j];
-        let (on, unit) = (self.guide_side(joint), self.drawing.unit);
+        let (on, unit) = (self.drawing.guide_side(joint), self.drawing.unit);
         let (start, axis) = (self.anchor(j, on), self.axes(joint, on).axis);
         let [low, high] = self.drawing.travels[j];
         let [low, high] = if on == 0 { [low, high] } else { [-high, -low] };
@@ -170,7 +165,7 @@ impl<'a> Scenery<'a> {
     /// The straight rod of one body on which the other one slides.
     fn guide(&mut self, j: usize) {
         let joint = &self.drawing.scene.mechanism.joints[j];
-        let on = self.guide_side(joint);
+        let on = self.drawing.guide_side(joint);
         let (body, axis) = (joint.bodies[on], self.axes(joint, on).axis);
         let ends = self.guide_ends(j);
         self.bar(ends, (self.drawing.color(body), ROD), None);
@@ -185,7 +180,7 @@ impl<'a> Scenery<'a> {
     fn grounded_sleeve(&mut self, j: usize) {
         let joint = &self.drawing.scene.mechanism.joints[j];
         let (unit, view) = (self.drawing.unit, self.picture.view);
-        let on = self.guide_side(joint);
+        let on = self.drawing.guide_side(joint);
         let (at, rod, axes) = (
             self.anchor(j, on),
             self.anchor(j, 1 - on),
