@@ -74,6 +74,7 @@ bench:
     cargo bench -p dwell-kinetostatics --bench reduced --bench batches --bench table --bench kinds --bench variants
     cargo bench -p dwell-dynamics --bench motion
     cargo bench -p dwell-cli --bench wait
+    cargo bench -p dwell-study --bench export
 
 # Beside Exudyn, Pinocchio and MuJoCo: installs them into a scratch environment; reports/peers.md and .png
 [group('care')]
@@ -84,6 +85,12 @@ peers:
 [group('care')]
 octave:
     python3 validation/foreign/run.py
+
+# Exported FMUs by FMPy and the standard's schemas, in a scratch environment: validated, simulated by both kinds, saved and restored
+[group('care')]
+export:
+    cargo build --release --workspace --bins
+    python3 validation/fmu/run.py
 
 # Ten million designs in Parquet files by a run that is killed twice, read back by Polars, DuckDB and pandas as docs/sweep.md shows. Installs these into a scratch environment
 [group('care')]

@@ -2,10 +2,12 @@
 //! must be refused.
 
 mod hooke_joint;
+mod loads;
 mod motions;
 mod random_loops;
 mod reference;
 mod scenes;
+mod simulate;
 mod tilted;
 
 use dwell_geometry::space::{

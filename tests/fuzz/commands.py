@@ -5,7 +5,7 @@ METHODS = ["bdf", "esdirk34", "tr-bdf2", "tsit45", "dop853"]
 # How often each command is drawn. work-precision and validate take seconds, for they time and check.
 WEIGHTS = {
     "check": 22, "simulate": 16, "kinematics": 3, "statics": 3, "kinetostatics": 3, "reduce": 9, "equilibria": 13, "linearise": 12,
-    "cycle": 5, "symbolic": 6, "calibrate": 5, "sweep": 5, "work-precision": 0.2, "schema": 0.1,
+    "cycle": 5, "symbolic": 6, "export": 6, "calibrate": 5, "sweep": 5, "work-precision": 0.2, "schema": 0.1,
 }
 NONSENSE = ["", "0", "-1", "nan", "inf", "1e-30", "1e30", "1e400", "abc", "99999999999999999999", "-0", "1,5", "\u00e9", "--", "2/0"]
 
@@ -60,6 +60,15 @@ def arguments_of(rng, name, text, folder):
             option("--format", "latex", "rust", "c", "python")
         if sometimes(0.3):
             option("--reaction", "A.x", "B.y")
+    elif name == "export":
+        option("--to", "c", "rust", "fmu", "fmu2", "matlab", "csv", "npz", "json")
+        if sometimes():
+            option("--accuracy", "1e-4", "1e-6", "1e-11")
+        if sometimes(0.3):
+            arguments.append("--float")
+        if sometimes(0.2):
+            option("--from", "0", "0.1", "-1")
+            option("--until", "1", "0.3", "5")
     elif name == "calibrate":
         option("--parameter", *parameters(text))
         option("--period", *["0.1", "1", "2.5", "5", "7", "10"])

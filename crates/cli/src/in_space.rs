@@ -18,6 +18,7 @@ pub(crate) fn run_study(
             points,
             ..
         } => dwell_study::reduce_in_space(scene, points.map(|n| n as usize))?,
+        Command::Export(arguments) => crate::export::run_in_space(arguments, scene)?,
         Command::Kinematics(arguments) => {
             return run_trajectory(arguments, scene, Analysis::Kinematics, progress);
         }
@@ -26,6 +27,11 @@ pub(crate) fn run_study(
         }
         Command::Kinetostatics(arguments) => {
             return run_trajectory(arguments, scene, Analysis::Kinetostatics, progress);
+        }
+        Command::Simulate { .. } => {
+            let (solver, times, span) = crate::simulation::simulation(command)?;
+            let times = times.as_deref();
+            return dwell_study::simulate_in_space(scene, &solver, times, span, progress);
         }
         _ => return Err(scene.planar_only().into()),
     };

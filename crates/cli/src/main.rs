@@ -4,6 +4,7 @@
 //! written).
 
 mod cases;
+mod export;
 mod exported_runs;
 mod former;
 mod in_space;
@@ -12,6 +13,7 @@ mod instants;
 mod interface;
 mod long_runs;
 mod options;
+mod simulation;
 mod times;
 mod validate;
 
@@ -29,6 +31,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use long_runs::LongRunLines;
 use miette::{Report, miette};
 use options::{Command, Options, STANDARD_INPUT, STANDARD_INPUT_NAME, TrajectoryArgs};
+use simulation::simulation;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -234,36 +237,8 @@ fn run_study(
             });
             dwell_study::reduce(scene, points, tabulation)?
         }
-        Command::Simulate {
-            method,
-            rtol,
-            atol,
-            max_step,
-            accuracy,
-            sample_interval,
-            times,
-            from,
-            to,
-            ..
-        } => {
-            let solver = match *accuracy {
-                Some(accuracy) => MotionSolver::Accuracy {
-                    accuracy,
-                    sample_interval: *sample_interval,
-                },
-                None => MotionSolver::Settings(SolverSettings {
-                    method: *method,
-                    rtol: *rtol,
-                    atol: atol.unwrap_or(*rtol),
-                    max_step: *max_step,
-                    sample_interval: *sample_interval,
-                }),
-            };
-            let times = times.as_deref().map(instants::read).transpose()?;
-            let span = PictureSpan {
-                from: *from,
-                to: *to,
-            };
+        Command::Simulate { .. } => {
+            let (solver, times, span) = simulation(command)?;
             return dwell_study::simulate_within(scene, &solver, times.as_deref(), span, &progress);
         }
         Command::Cycle {
@@ -290,6 +265,7 @@ fn run_study(
         Command::Symbolic {
             format, reaction, ..
         } => dwell_study::symbolic(scene, *format, reaction.as_deref())?,
+        Command::Export(arguments) => export::run(arguments, scene)?,
         Command::Kinematics(arguments) => {
             return run_trajectory(arguments, scene, Analysis::Kinematics, bar);
         }

@@ -1,5 +1,6 @@
 //! The command-line options: the names of fields are the names of options.
 
+use crate::export::ExportArgs;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use dwell_dynamics::Method;
@@ -158,6 +159,9 @@ pub(crate) enum Command {
         #[arg(long, value_name = "NAME")]
         reaction: Option<String>,
     },
+    /// The reduced model as code for controllers and simulations: coefficients, motion, reactions and a fixed step, with
+    /// measured errors and a self-test
+    Export(ExportArgs),
     /// Positions, velocities and accelerations along the prescribed motion, the coordinate sweep or the range
     Kinematics(TrajectoryArgs),
     /// Actuator forces and reactions under the loads, at rest in each position
@@ -253,6 +257,7 @@ impl Command {
             | Self::Symbolic { scene, .. }
             | Self::Calibrate { scene, .. }
             | Self::Sweep { scene, .. } => Some(scene),
+            Self::Export(arguments) => Some(&arguments.scene),
             Self::Kinematics(arguments)
             | Self::Statics(arguments)
             | Self::Kinetostatics(arguments) => Some(&arguments.scene),
@@ -286,7 +291,7 @@ pub(crate) struct TrajectoryArgs {
 }
 
 /// The values of an option: name, value, help.
-type Choices<T> = &'static [(&'static str, T, &'static str)];
+pub(crate) type Choices<T> = &'static [(&'static str, T, &'static str)];
 
 const METHODS: Choices<Method> = &[
     (
@@ -396,7 +401,9 @@ const ROW_STORES: Choices<RowStore> = &[
 const FORMER_VALUES: [(&str, &str); 1] = [("initial", "start")];
 
 /// The parser of an option that has one of these values.
-fn choice<T: Copy + Send + Sync>(choices: Choices<T>) -> impl TypedValueParser<Value = T> {
+pub(crate) fn choice<T: Copy + Send + Sync>(
+    choices: Choices<T>,
+) -> impl TypedValueParser<Value = T> {
     let value = |&(name, _, help): &(&'static str, T, &'static str)| {
         let former = FORMER_VALUES
             .iter()
@@ -439,7 +446,7 @@ fn parse_count(text: &str) -> Result<u64, String> {
         .map_err(|_| "expected a whole number, 0 or more".to_owned())
 }
 
-fn parse_finite(text: &str) -> Result<f64, String> {
+pub(crate) fn parse_finite(text: &str) -> Result<f64, String> {
     parse_checked(text, f64::is_finite, "not a finite number")
 }
 
@@ -471,7 +478,7 @@ fn parse_accuracy(text: &str) -> Result<f64, String> {
 }
 
 /// The accuracy of a table: double precision allows 1e-14, and above 1e-2 a table is useless.
-fn parse_table_accuracy(text: &str) -> Result<f64, String> {
+pub(crate) fn parse_table_accuracy(text: &str) -> Result<f64, String> {
     let message = "the accuracy of a table must be between 1e-14 and 1e-2";
     parse_checked(text, |v| (1e-14..=1e-2).contains(&v), message)
 }

@@ -94,7 +94,7 @@ pub struct ChangePointFit {
 
 /// The part of the coordinate on which a machine uses a fit.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct FitWindow {
+pub struct FitWindow {
     pub(crate) fit: Arc<ChangePointFit>,
     /// Index of the crossing it belongs to, and whether the machine is that of the branch above.
     pub(crate) crossing: usize,
@@ -107,7 +107,7 @@ pub(crate) struct FitWindow {
 
 impl FitWindow {
     /// The distance of a coordinate from the change point, if it is within the window.
-    pub(crate) fn offset_within(&self, q: f64) -> Option<f64> {
+    pub fn offset_within(&self, q: f64) -> Option<f64> {
         let x = q - self.fit.center;
         let periods = |period: f64| period * (x / period).round();
         let x = x - self.period.map_or(0.0, periods);

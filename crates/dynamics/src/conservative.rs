@@ -2,10 +2,10 @@
 //! its coordinate.
 
 use crate::error::{DynamicsError, Result, positive_inertia};
-use crate::machine::Machine;
+use crate::machine::{Machine, MovingModel};
 use crate::repetition::{PERIODICITY_TOLERANCE, repetition_angle};
 use dwell_geometry::{PositionError, Range};
-use dwell_kinetostatics::{InverseDynamics, Model, ReducedModel, Workspace};
+use dwell_kinetostatics::{InverseDynamics, KinematicState, ReducedModel};
 use std::f64::consts::TAU;
 
 /// Phases, as parts of a revolution, at which the mechanism is compared with itself some revolutions on.
@@ -87,16 +87,16 @@ impl<R: ReducedModel> ConservativeSystem for UnloadedSystem<'_, R> {
 }
 
 /// A machine of one freedom whose loads all have a potential.
-pub(crate) struct LoadedSystem {
-    model: Model,
+pub(crate) struct LoadedSystem<M: MovingModel> {
+    model: M,
     flywheel: f64,
-    workspace: Workspace<f64>,
+    workspace: M::Workspace<f64>,
     inverse_dynamics: InverseDynamics<f64>,
 }
 
-impl LoadedSystem {
-    pub(crate) fn new(machine: &Machine) -> Result<Self> {
-        if machine.model().plan().actuators() != 1 || machine.free() != [0] {
+impl<M: MovingModel> LoadedSystem<M> {
+    pub(crate) fn new(machine: &Machine<M>) -> Result<Self> {
+        if machine.model().actuators() != 1 || machine.free() != [0] {
             return Err(DynamicsError::NotConservative {
                 what: "it has not one coordinate, which is free",
             });
@@ -108,7 +108,7 @@ impl LoadedSystem {
         }
         let model = machine.model().without_reactions();
         Ok(Self {
-            workspace: model.workspace(),
+            workspace: model.pass_workspace(),
             inverse_dynamics: model.result_buffer(),
             flywheel: machine.flywheel(0),
             model,
@@ -116,7 +116,7 @@ impl LoadedSystem {
     }
 }
 
-impl ConservativeSystem for LoadedSystem {
+impl<M: MovingModel> ConservativeSystem for LoadedSystem<M> {
     fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms> {
         let Self {
             model,
@@ -124,7 +124,7 @@ impl ConservativeSystem for LoadedSystem {
             inverse_dynamics: result,
             ..
         } = self;
-        let state = model.kinematic_state(&[q], &[0.0], workspace)?;
+        let state = KinematicState::new(model, [&[q], &[0.0]], workspace)?;
         let state = state.apply_loads(0.0)?;
         let loads = 0..model.loads().len();
         let potential = loads.filter_map(|load| state.potential_energy(load)).sum();
@@ -139,11 +139,11 @@ impl ConservativeSystem for LoadedSystem {
     }
 
     fn range(&self) -> Range {
-        self.model.plan().range()
+        self.model.range()
     }
 
     fn is_angle(&self) -> bool {
-        self.model.plan().is_angle(0)
+        self.model.is_angle(0)
     }
 }
 

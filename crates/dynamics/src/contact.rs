@@ -25,11 +25,11 @@ pub use stop::{EndStop, YieldingStop};
 pub(crate) use stop::{Stop, one_sided};
 
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_kinetostatics::Model;
+use dwell_kinetostatics::MachineModel;
 
 /// A friction that holds at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Contact {
+pub(crate) struct Contact<F = CoordinateFunction> {
     /// Its index among the loads of the model that depend on reactions.
     pub(crate) dependent: usize,
     /// Its index among all loads.
@@ -39,12 +39,12 @@ pub(crate) struct Contact {
     /// Of surfaces at rest.
     pub(crate) static_coefficient: f64,
     /// The coordinate whose speed is that of the surfaces.
-    pub(crate) coordinate: CoordinateFunction,
+    pub(crate) coordinate: F,
 }
 
-impl Contact {
+impl<F> Contact<F> {
     /// Those of a model.
-    pub(crate) fn of_model(model: &Model) -> Vec<Self> {
+    pub(crate) fn of_model<M: MachineModel<CoordinateFunction = F>>(model: &M) -> Vec<Self> {
         let each = model.frictions().enumerate();
         let sticking = each.filter_map(|(dependent, load)| {
             let (friction, coordinate) = model.sticking_friction(dependent)?;

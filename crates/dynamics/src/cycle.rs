@@ -19,7 +19,7 @@ pub use initial_transient::initial_transient;
 use crate::eigenvalues::eigenvalues;
 use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
-use crate::machine::Machine;
+use crate::machine::{Machine, MovingModel};
 use crate::machine_ode::MachineOde;
 use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, root_subintervals, state_at};
 use crate::options::Options;
@@ -90,7 +90,11 @@ impl Cycle {
 /// # Errors
 /// [`DynamicsError::NoCycle`], [`DynamicsError::ComesToRest`] where the guess does not complete a cycle, and as of
 /// [`Machine::evaluate`] and [`integrate`].
-pub fn steady_cycle(machine: &Machine, guess: &[f64], options: &Options) -> Result<Cycle> {
+pub fn steady_cycle<M: MovingModel>(
+    machine: &Machine<M>,
+    guess: &[f64],
+    options: &Options,
+) -> Result<Cycle> {
     machine.require_smooth(NO_CYCLE)?;
     let problem = CycleProblem::new(machine, guess, options)?;
     let mut z: Vec<f64> = guess[1..machine.work_offset()].to_vec();
@@ -185,8 +189,8 @@ struct ReturnMap {
 }
 
 /// A rotating machine whose steady cycle is sought.
-struct CycleProblem<'m> {
-    machine: &'m Machine,
+struct CycleProblem<'m, M: MovingModel> {
+    machine: &'m Machine<M>,
     options: Options,
     /// Where a cycle begins, rad.
     start_angle: f64,
@@ -196,13 +200,13 @@ struct CycleProblem<'m> {
     cycle_angle: f64,
 }
 
-impl<'m> CycleProblem<'m> {
-    fn new(machine: &'m Machine, guess: &[f64], options: &Options) -> Result<Self> {
+impl<'m, M: MovingModel> CycleProblem<'m, M> {
+    fn new(machine: &'m Machine<M>, guess: &[f64], options: &Options) -> Result<Self> {
         let none = |what| Err(DynamicsError::NoCycle { what });
         let [free] = *machine.free() else {
             return none("there is not just one free coordinate");
         };
-        if !machine.model().plan().is_angle(free) {
+        if !machine.model().is_angle(free) {
             return none("the free coordinate is a length, which makes no revolutions");
         }
         if machine.depends_on_time() {
@@ -399,7 +403,7 @@ impl<'m> CycleProblem<'m> {
 }
 
 /// The angle after which the machine moves as before, rad; none if that never happens.
-fn cycle_angle(machine: &Machine, y: &[f64]) -> Result<Option<f64>> {
+fn cycle_angle<M: MovingModel>(machine: &Machine<M>, y: &[f64]) -> Result<Option<f64>> {
     let mut ode = MachineOde::new(machine, 0.0, y)?;
     let rates = |q: f64| -> Result<Vec<f64>> {
         let mut there = y.to_vec();

@@ -1,9 +1,7 @@
 //! Drives in the equation of motion: their checked and compiled form, and their evaluation by the equations
 //! of [`dwell_kinetostatics::drive`].
 
-use dwell_geometry::Mechanism;
-use dwell_geometry::body_states::CoordinateFunction;
-use dwell_kinetostatics::{Drive, DriveKind, Magnitude};
+use dwell_kinetostatics::{Drive, DriveKind, MachineModel, Magnitude, Model};
 use dwell_laws::SwitchKind;
 use dwell_numerics::Scalar;
 
@@ -19,16 +17,16 @@ pub struct DriveError {
 
 /// A drive ready to be evaluated.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct CompiledDrive {
+pub(crate) struct CompiledDrive<M: MachineModel = Model> {
     /// Its load in the model.
     pub(crate) load: usize,
-    pub(crate) measured: CoordinateFunction,
+    pub(crate) measured: M::CoordinateFunction,
     /// Its state (current in A, or integral in rad or m), by its place among the drives' states.
     pub(crate) state: Option<usize>,
     /// N² J, kg m² or kg.
     pub(crate) reflected_inertia: f64,
     /// Its input: a force, a voltage or a reference speed.
-    pub(crate) input: Magnitude,
+    pub(crate) input: Magnitude<M::Coordinate>,
     law: DriveLaw,
 }
 
@@ -44,32 +42,31 @@ enum DriveLaw {
     SpeedController([f64; 3]),
 }
 
-impl CompiledDrive {
+impl<M: MachineModel> CompiledDrive<M> {
     /// Checks and compiles drives.
     ///
     /// # Errors
     /// The first [`DriveError`].
     pub(crate) fn compile_all(
-        mechanism: &Mechanism,
-        drives: &[Drive],
+        model: &M,
+        drives: &[Drive<M::Coordinate>],
         first_load: usize,
     ) -> Result<Vec<Self>, DriveError> {
         let mut states = 0;
         let compiled = drives.iter().enumerate().map(|(i, drive)| {
             let wrong = |what| DriveError { drive: i, what };
-            Self::new(mechanism, drive, first_load + i, &mut states).map_err(wrong)
+            Self::new(model, drive, first_load + i, &mut states).map_err(wrong)
         });
         compiled.collect()
     }
 
     fn new(
-        mechanism: &Mechanism,
-        drive: &Drive,
+        model: &M,
+        drive: &Drive<M::Coordinate>,
         load: usize,
         states: &mut usize,
     ) -> Result<Self, &'static str> {
-        let measured = CoordinateFunction::find(mechanism, drive.coordinate);
-        let measured = measured.ok_or(Drive::UNKNOWN_COORDINATE)?;
+        let measured = model.coordinate_function(drive.coordinate)?;
         let mut state = |wanted: bool| {
             let index = *states;
             *states += usize::from(wanted);

@@ -3,14 +3,14 @@
 
 use crate::cycle::{Cycle, steady_cycle};
 use crate::error::{DynamicsError, Result};
-use crate::machine::Machine;
+use crate::machine::{Machine, MovingModel};
 use crate::options::Options;
 
 /// Trials for the inertia, and how near the fluctuation must come.
 const MAX_TRIALS: usize = 40;
 const FLUCTUATION_TOLERANCE: f64 = 1e-9;
 
-impl Machine {
+impl<M: MovingModel> Machine<M> {
     /// The same machine with a flywheel (kg m² or kg) along a free coordinate, in place of any it had there.
     #[must_use]
     pub fn with_flywheel(mut self, free: usize, inertia: f64) -> Self {
@@ -37,8 +37,8 @@ pub struct Flywheel {
 ///
 /// # Errors
 /// As [`steady_cycle`].
-pub fn size_flywheel(
-    machine: &Machine,
+pub fn size_flywheel<M: MovingModel>(
+    machine: &Machine<M>,
     guess: &[f64],
     wanted: f64,
     options: &Options,

@@ -56,6 +56,7 @@ pub mod error;
 pub mod flywheel;
 pub mod integrate;
 mod integration_parts;
+pub mod interruption;
 mod libration;
 pub mod machine;
 pub mod machine_ode;
@@ -70,7 +71,6 @@ mod shared_system;
 mod sliding;
 mod sliding_system;
 pub mod solve;
-pub mod space;
 pub mod state_space;
 mod state_switches;
 mod switch_monitor;
@@ -82,7 +82,7 @@ pub use atlas::{
     Atlas, AtlasError, Chart, ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory,
     MachineDescription, Segment,
 };
-pub use change_point_fit::{ChangePointFit, ChangePointFitError};
+pub use change_point_fit::{ChangePointFit, ChangePointFitError, FitWindow};
 pub use contact::{ContactEvent, ContactMode, EndStop, StopChange, YieldingStop};
 pub use cycle::{Cycle, initial_transient, steady_cycle};
 pub use drive::DriveError;
@@ -94,8 +94,8 @@ pub use error::DynamicsError;
 pub use flywheel::{Flywheel, size_flywheel};
 pub use integrate::integrate;
 pub use machine::{
-    CoordinateMode, Machine, MachineError, MachineState, MachineWorkspace, NonconservativeSource,
-    SlidingForces, loads_with_drives,
+    CoordinateMode, Machine, MachineError, MachineState, MachineWorkspace, MovingModel,
+    NonconservativeSource, SlidingForces, loads_with_drives,
 };
 pub use machine_ode::MachineOde;
 pub use motion_class::{MotionClass, motion_class};
@@ -110,6 +110,5 @@ pub use solve::{
     Event, EventKind, EventOccurrence, Observed, ObservedMachine, ObservedValue, Solution, solve,
     solve_orbit, solve_system,
 };
-pub use space::{SpaceMachine, SpaceOde};
 pub use state_space::{StateSpace, eigenvalues_about, is_equilibrium, linearise};
 pub use tabulated::{TabulatedMachine, TabulatedMachineOde, TabulationError};

@@ -22,20 +22,22 @@ mod sliding;
 mod state;
 mod workspace;
 
-use crate::change_point_fit::FitWindow;
 use crate::contact::{Contact, ContactMode, Stop, Unloaded, solve_contacts};
 use crate::drive::{CompiledDrive, DriveError};
 use crate::error::{DynamicsError, Result};
 use crate::state_switches::StateSwitches;
 use dwell_geometry::Mechanism;
-use dwell_kinetostatics::{Drive, ForceState, Load, LoadError, LoadKind, Magnitude, Model, Signal};
+use dwell_kinetostatics::{
+    Drive, ForceState, KinematicState, Load, LoadError, Magnitude, Model, ModelLoad, Signal,
+};
 use dwell_laws::{Features, Law};
 use dwell_numerics::{Scalar, lu};
+pub use on_fit::MovingModel;
+pub use on_fit::NoFit;
 pub use sliding::SlidingForces;
 pub use state::MachineState;
 use std::sync::Arc;
-use workspace::EquationWorkspace;
-pub use workspace::MachineWorkspace;
+pub use workspace::{EquationWorkspace, MachineWorkspace};
 
 /// How a coordinate moves.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,13 +61,13 @@ pub enum NonconservativeSource {
     Stop(usize),
 }
 
-/// A machine: constant, shared between threads.
+/// A machine, in the plane or in space: constant, shared between threads.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Machine {
-    pub(crate) model: Model,
+pub struct Machine<M: MovingModel = Model> {
+    pub(crate) model: M,
     modes: Vec<CoordinateMode>,
     free: Vec<usize>,
-    pub(crate) drives: Vec<CompiledDrive>,
+    pub(crate) drives: Vec<CompiledDrive<M>>,
     /// Where loads, drives and prescribed motions switch and vary in time.
     pub(crate) time_features: Arc<Features>,
     /// Where loads and drives switch as coordinates and speeds move.
@@ -74,9 +76,9 @@ pub struct Machine {
     drive_state_count: usize,
     nonconservative_sources: Vec<NonconservativeSource>,
     /// Where it crosses change points.
-    pub(crate) fit_windows: Vec<FitWindow>,
+    pub(crate) fit_windows: Vec<M::FitWindow>,
     /// Frictions that hold at rest.
-    pub(crate) contacts: Vec<Contact>,
+    pub(crate) contacts: Vec<Contact<M::CoordinateFunction>>,
     /// The sides of the end stops.
     pub(crate) stops: Vec<Stop>,
     /// By free coordinate: inertia along it beside that of the bodies and rotors, kg m² or kg.
@@ -103,26 +105,30 @@ pub enum MachineError {
     CoordinateModes,
 }
 
-impl Machine {
+impl<M: MovingModel> Machine<M> {
     /// A machine of a model (with the reactions that its frictions need) under loads and drives, with one mode for
     /// each actuator. The drives become the model's last loads.
     ///
     /// # Errors
     /// [`MachineError`] where they do not fit.
     pub fn new(
-        model: Model,
-        loads: &[Load],
+        model: M,
+        loads: &[ModelLoad<M>],
         modes: Vec<CoordinateMode>,
-        drives: &[Drive],
+        drives: &[Drive<M::Coordinate>],
     ) -> Result<Self, MachineError> {
-        if modes.len() != model.plan().actuators() {
+        if modes.len() != model.actuators() {
             return Err(MachineError::CoordinateModes);
         }
         let is_free = |i: &usize| modes[*i] == CoordinateMode::Free;
         let free: Vec<usize> = (0..modes.len()).filter(is_free).collect();
-        let all = loads_with_drives(model.mechanism(), loads, drives)?;
+        let mut all = loads.to_vec();
+        for (i, drive) in drives.iter().enumerate() {
+            let wrong = |what| DriveError { drive: i, what };
+            all.push(model.drive_load(drive).map_err(wrong)?);
+        }
         let model = model.with_loads(all)?;
-        let drives = CompiledDrive::compile_all(model.mechanism(), drives, loads.len())?;
+        let drives = CompiledDrive::compile_all(&model, drives, loads.len())?;
         let nonconservative = (0..loads.len()).filter(|&l| !model.is_conservative(l));
         let mut sources: Vec<NonconservativeSource> =
             nonconservative.map(NonconservativeSource::Load).collect();
@@ -150,7 +156,7 @@ impl Machine {
     }
 
     /// The model that moves.
-    pub fn model(&self) -> &Model {
+    pub fn model(&self) -> &M {
         &self.model
     }
 
@@ -182,7 +188,6 @@ impl Machine {
     /// (s), in sum: J. Of magnitudes that depend on the motion only what is a function of time counts; dampers do
     /// not.
     pub fn largest_work(&self, from: f64, to: f64) -> f64 {
-        let size = self.model.mechanism().size();
         let drives = self.drives.iter().map(|drive| {
             // A voltage or a wanted speed is no force, but of the order of what it makes.
             let kind = self.model.loads()[drive.load].kind;
@@ -201,21 +206,7 @@ impl Machine {
                 | Magnitude::Separating(_)
                 | Magnitude::External(_) => 0.0,
             };
-            let lever = match kind {
-                LoadKind::Gravity { .. } => {
-                    size * self.model.masses().iter().map(|m| m.mass).sum::<f64>()
-                }
-                LoadKind::Force { .. }
-                | LoadKind::PointToPointForce { .. }
-                | LoadKind::SlideForce(_) => size,
-                LoadKind::Torque { .. } | LoadKind::TorsionSpring { .. } => 1.0,
-                LoadKind::Spring { .. } => size * size,
-                LoadKind::Damper { .. }
-                | LoadKind::RotationalDamper { .. }
-                | LoadKind::SlideDamper(_)
-                | LoadKind::SeparatingForce(_) => 0.0,
-            };
-            largest * lever
+            largest * self.model.work_lever(&kind)
         });
         works.sum()
     }
@@ -255,8 +246,8 @@ impl Machine {
         &'a self,
         t: f64,
         y: &[T],
-        workspace: &'a mut MachineWorkspace<T>,
-    ) -> Result<MachineState<'a, T>> {
+        workspace: &'a mut MachineWorkspace<T, M>,
+    ) -> Result<MachineState<'a, T, M>> {
         let MachineWorkspace {
             inner,
             input_offsets: offsets,
@@ -273,11 +264,10 @@ impl Machine {
         }
         self.set_actuator_motion(t, y, equation);
         let forces = if let Some(fit) = self.fit_at(equation.q.first()) {
-            self.evaluate_on_fit(fit, t, drive_states, offsets, inner, equation)?
+            M::evaluate_on_fit(self, fit, (t, drive_states), (offsets, inner), equation)?
         } else {
-            let state = self
-                .model
-                .kinematic_state(&equation.q, &equation.q_dot, inner)?;
+            let at = [&equation.q[..], &equation.q_dot[..]];
+            let state = KinematicState::new(&self.model, at, inner)?;
             let mut state = state.apply_loads(t)?;
             self.evaluate_drives(t, drive_states, offsets, &mut state, equation)?;
             let result = &mut equation.inverse_dynamics;
@@ -285,7 +275,8 @@ impl Machine {
             self.compose_equation(&mut state, equation)?;
             self.solve_accelerations(&mut state, equation)?;
             if self.has_rotors() {
-                self.read_drive_accelerations(state.bodies_at(&equation.q_ddot), equation);
+                state.accelerate(&equation.q_ddot);
+                self.read_drive_accelerations(&state, equation);
                 self.set_net_drive_forces(&mut state, equation)?;
             }
             state
@@ -301,7 +292,7 @@ impl Machine {
     /// The mass matrix and the forces of (1), with rotors and flywheels.
     fn compose_equation<T: Scalar>(
         &self,
-        state: &mut ForceState<'_, T>,
+        state: &mut ForceState<'_, T, M>,
         equation: &mut EquationWorkspace<T>,
     ) -> Result<()> {
         let n = self.free.len();
@@ -350,7 +341,7 @@ impl Machine {
     // Long because all that the friction depends on is collected in one pass.
     fn solve_accelerations<T: Scalar>(
         &self,
-        state: &mut ForceState<'_, T>,
+        state: &mut ForceState<'_, T, M>,
         equation: &mut EquationWorkspace<T>,
     ) -> Result<()> {
         let EquationWorkspace {
@@ -450,12 +441,16 @@ impl Machine {
 
 /// The functions of time among loads, inputs of drives and prescribed motions, numbered in this order; the drives are
 /// the last of the loads. What a program's own function does in time is unknown.
-fn time_features(model: &Model, drives: &[CompiledDrive], modes: &[CoordinateMode]) -> Features {
+fn time_features<M: MovingModel>(
+    model: &M,
+    drives: &[CompiledDrive<M>],
+    modes: &[CoordinateMode],
+) -> Features {
     let mut features = Features::default();
-    let mut add = |source: usize, magnitude: &Magnitude| match magnitude {
+    let mut add = |source: usize, magnitude: &Magnitude<M::Coordinate>| match magnitude {
         Magnitude::Law(Signal::Time, law) => features.add_law(source, law),
         Magnitude::Expression(expression, signals) => {
-            if let Some(time) = signals.iter().position(|s| *s == Signal::Time) {
+            if let Some(time) = signals.iter().position(|s| matches!(s, Signal::Time)) {
                 features.add_expression(source, expression, time);
             }
         }

@@ -3,31 +3,33 @@
 use crate::contact::{ContactEvent, ContactMode, ContactStep};
 use crate::contact_events::pass;
 use crate::error::Result;
-use crate::machine::{Machine, MachineState, MachineWorkspace};
+use crate::interruption;
+use crate::machine::{Machine, MachineState, MachineWorkspace, MovingModel};
 use crate::ode::{DualWorkspace, OdeState, OdeSystem};
 use crate::sliding::Sliding;
 use crate::state_switches::{HeldSource, signal_value};
+use dwell_kinetostatics::Model;
 use dwell_laws::{Features, SwitchKind};
 use dwell_numerics::Dual;
 use std::sync::Arc;
 
 /// A machine with the working memory to integrate it, for one thread.
 #[derive(Debug)]
-pub struct MachineOde<'m> {
-    machine: &'m Machine,
-    workspace: MachineWorkspace<f64>,
-    dual_workspace: DualWorkspace<MachineWorkspace<Dual>>,
+pub struct MachineOde<'m, M: MovingModel = Model> {
+    machine: &'m Machine<M>,
+    workspace: MachineWorkspace<f64, M>,
+    dual_workspace: DualWorkspace<MachineWorkspace<Dual, M>>,
     error_weights: Vec<f64>,
     held: Vec<HeldSource>,
     contact_events: Vec<ContactEvent>,
 }
 
-impl<'m> MachineOde<'m> {
+impl<'m, M: MovingModel> MachineOde<'m, M> {
     /// A machine at its initial state, whose energies are the scale of the works.
     ///
     /// # Errors
     /// [`DynamicsError`](crate::DynamicsError) where the start cannot be evaluated.
-    pub fn new(machine: &'m Machine, t: f64, y: &[f64]) -> Result<Self> {
+    pub fn new(machine: &'m Machine<M>, t: f64, y: &[f64]) -> Result<Self> {
         let mut ode = Self::unscaled(machine);
         let scale = machine.evaluate(t, y, &mut ode.workspace)?.energy_scale();
         ode.error_weights[machine.work_offset()..].fill(scale);
@@ -39,7 +41,7 @@ impl<'m> MachineOde<'m> {
     ///
     /// # Errors
     /// As [`MachineOde::new`].
-    pub fn until(machine: &'m Machine, t: f64, y: &[f64], end: Option<f64>) -> Result<Self> {
+    pub fn until(machine: &'m Machine<M>, t: f64, y: &[f64], end: Option<f64>) -> Result<Self> {
         let mut ode = Self::new(machine, t, y)?;
         let work = machine.largest_work(t, end.unwrap_or(t));
         for weight in &mut ode.error_weights[machine.work_offset()..] {
@@ -49,7 +51,7 @@ impl<'m> MachineOde<'m> {
     }
 
     /// A machine whose works have no scale, where none is integrated.
-    pub(crate) fn unscaled(machine: &'m Machine) -> Self {
+    pub(crate) fn unscaled(machine: &'m Machine<M>) -> Self {
         Self {
             machine,
             workspace: machine.workspace(),
@@ -66,7 +68,7 @@ impl<'m> MachineOde<'m> {
     }
 
     /// The machine.
-    pub fn machine(&self) -> &'m Machine {
+    pub fn machine(&self) -> &'m Machine<M> {
         self.machine
     }
 }
@@ -84,7 +86,7 @@ pub(crate) fn with_later_works(scale: f64, largest_work: f64) -> f64 {
     }
 }
 
-impl MachineState<'_> {
+impl<M: MovingModel> MachineState<'_, f64, M> {
     /// The scale of works, J: the kinetic energy and the work of actuators and drives over one unit of their
     /// coordinates.
     fn energy_scale(&self) -> f64 {
@@ -96,12 +98,13 @@ impl MachineState<'_> {
     }
 }
 
-impl OdeSystem for MachineOde<'_> {
+impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
     fn size(&self) -> usize {
         self.machine.state_count()
     }
 
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
+        interruption::check()?;
         let state = self.machine.evaluate(t, y, &mut self.workspace)?;
         state.derivative(out);
         Ok(())
@@ -111,7 +114,7 @@ impl OdeSystem for MachineOde<'_> {
         let machine = self.machine;
         let columns = machine.drive_states().end;
         // Nothing depends on the works, and nothing smoothly on the modes of contacts.
-        let rhs = |y: &[Dual], workspace: &mut MachineWorkspace<Dual>, out: &mut [Dual]| {
+        let rhs = |y: &[Dual], workspace: &mut MachineWorkspace<Dual, M>, out: &mut [Dual]| {
             machine.evaluate(t, y, workspace)?.derivative(out);
             Ok(())
         };

@@ -11,7 +11,7 @@
 
 use crate::conservative::{ConservativeSystem, EnergyTerms, LoadedSystem, limits};
 use crate::error::{DynamicsError, Result};
-use crate::machine::Machine;
+use crate::machine::{Machine, MovingModel};
 use crate::ode::ReducedState;
 use dwell_numerics::root;
 use std::f64::consts::TAU;
@@ -70,7 +70,10 @@ pub enum MotionClass {
 ///
 /// # Errors
 /// [`DynamicsError::NotConservative`], or the error of an evaluation.
-pub fn motion_class(machine: &Machine, start: ReducedState) -> Result<MotionClass> {
+pub fn motion_class<M: MovingModel>(
+    machine: &Machine<M>,
+    start: ReducedState,
+) -> Result<MotionClass> {
     Ok(EnergyScan::new(&mut LoadedSystem::new(machine)?, start)?.1)
 }
 

@@ -19,13 +19,13 @@ use crate::close_branches::is_too_close;
 use crate::conservative::{ConservativeSystem, LoadedSystem, UnloadedSystem};
 use crate::error::{DynamicsError, Result};
 use crate::libration::{SampledLibration, nearest_phase, phase_of, turning_points};
-use crate::machine::Machine;
+use crate::machine::{Machine, MovingModel};
 use crate::motion_class::{EnergyScan, MotionClass};
 use crate::ode::{OdeState, ReducedState};
 use crate::rotation::SampledRotation;
 use crate::time_density::{ResolvedMotion, TimeDensity};
 use dwell_geometry::NearBranch;
-use dwell_kinetostatics::ReducedModel;
+use dwell_kinetostatics::{Model, ReducedModel};
 use dwell_numerics::fourier::MIN_POINTS;
 use std::f64::consts::TAU;
 
@@ -98,13 +98,8 @@ impl Orbit {
     /// # Errors
     /// As [`Orbit::new`]; [`DynamicsError::NotConservative`], [`DynamicsError::AsymptoticMotion`],
     /// [`DynamicsError::Undecided`].
-    pub fn loaded(machine: &Machine, start: ReducedState) -> Result<Self> {
+    pub fn loaded<M: MovingModel>(machine: &Machine<M>, start: ReducedState) -> Result<Self> {
         Self::of_system(&mut LoadedSystem::new(machine)?, start, 0.0)
-    }
-
-    /// The motion of a conservative system.
-    pub(crate) fn of(system: &mut dyn ConservativeSystem, start: ReducedState) -> Result<Self> {
-        Self::of_system(system, start, 0.0)
     }
 
     fn of_system(
@@ -255,17 +250,17 @@ impl Orbit {
 }
 
 /// The orbits of one motion by more and more points, for the error of one is its difference from the next.
-pub struct OrbitSequence {
-    system: LoadedSystem,
+pub struct OrbitSequence<M: MovingModel = Model> {
+    system: LoadedSystem<M>,
     samples: SampledOrbit,
 }
 
-impl OrbitSequence {
+impl<M: MovingModel> OrbitSequence<M> {
     /// Of a machine, as [`Orbit::loaded`].
     ///
     /// # Errors
     /// As [`Orbit::loaded`].
-    pub fn loaded(machine: &Machine, start: ReducedState) -> Result<Self> {
+    pub fn loaded(machine: &Machine<M>, start: ReducedState) -> Result<Self> {
         let mut system = LoadedSystem::new(machine)?;
         let samples = SampledOrbit::new(&mut system, start, MIN_SEQUENCE_POINTS)?;
         Ok(Self { system, samples })

@@ -14,12 +14,11 @@ mod tracker;
 use crate::contact::ContactEvent;
 use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
-use crate::machine::Machine;
+use crate::machine::{Machine, MovingModel};
 use crate::machine_ode::MachineOde;
 use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, state_at};
 use crate::options::{Options, Statistics};
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_kinetostatics::Model;
 pub(crate) use event::TouchTolerance;
 pub use event::{Event, EventKind, EventOccurrence};
 use event::{FoundEvent, MAX_OCCURRENCES, too_many_events};
@@ -105,13 +104,13 @@ impl Solution {
 /// # Errors
 /// [`DynamicsError`] where not even the start can be evaluated, or an option cannot be used. An error that
 /// ends the motion later is in [`Solution::error`].
-pub fn solve(
-    machine: &Machine,
-    output_model: &Model,
+pub fn solve<M: MovingModel>(
+    machine: &Machine<M>,
+    output_model: &M,
     start: &OdeState,
     end: f64,
     options: &Options,
-    events: &[Event],
+    events: &[Event<M::CoordinateFunction>],
 ) -> Result<Solution> {
     machine.check_start(&start.y)?;
     let mut ode = MachineOde::until(machine, start.t, &start.y, Some(end))?;

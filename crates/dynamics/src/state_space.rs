@@ -11,7 +11,7 @@
 
 use crate::eigenvalues::{eigenvalues, eigenvalues_with_errors};
 use crate::error::Result;
-use crate::machine::{Machine, MachineState, MachineWorkspace};
+use crate::machine::{Machine, MachineState, MachineWorkspace, MovingModel};
 use dwell_numerics::{DoubleDouble, Dual, Scalar};
 
 /// A linearised motion. Matrices are lists of rows.
@@ -35,15 +35,19 @@ pub struct StateSpace {
 ///
 /// # Errors
 /// As [`Machine::evaluate`].
-pub fn linearise(machine: &Machine, t: f64, y: &[f64]) -> Result<StateSpace> {
+pub fn linearise<M: MovingModel>(machine: &Machine<M>, t: f64, y: &[f64]) -> Result<StateSpace> {
     machine.require_smooth("its force at rest is no smooth function of the state")?;
     linearise_where_it_holds(machine, t, y)
 }
 
 /// The same, where friction that holds keeps everything at rest.
-pub(crate) fn linearise_where_it_holds(machine: &Machine, t: f64, y: &[f64]) -> Result<StateSpace> {
+pub(crate) fn linearise_where_it_holds<M: MovingModel>(
+    machine: &Machine<M>,
+    t: f64,
+    y: &[f64],
+) -> Result<StateSpace> {
     let (states, inputs) = (machine.drive_states().end, machine.drives());
-    let mut workspace: MachineWorkspace<Dual> = machine.workspace();
+    let mut workspace: MachineWorkspace<Dual, M> = machine.workspace();
     let mut at: Vec<Dual> = y.iter().map(|&y| Dual::from_f64(y)).collect();
     let mut rates = vec![Dual::from_f64(0.0); machine.state_count()];
     let mut state_space = StateSpace {
@@ -100,13 +104,18 @@ const ROUNDINGS: f64 = 8.0;
 ///
 /// # Errors
 /// As [`Machine::evaluate`].
-pub fn is_equilibrium(machine: &Machine, t: f64, y: &[f64], linear: &StateSpace) -> Result<bool> {
+pub fn is_equilibrium<M: MovingModel>(
+    machine: &Machine<M>,
+    t: f64,
+    y: &[f64],
+    linear: &StateSpace,
+) -> Result<bool> {
     let coordinates = machine.free().len();
     let size = |j: usize| match j < coordinates {
         true => y[j].abs().max(1.0),
         false => y[j].abs(),
     };
-    let mut workspace: MachineWorkspace<DoubleDouble> = machine.workspace();
+    let mut workspace: MachineWorkspace<DoubleDouble, M> = machine.workspace();
     let at: Vec<DoubleDouble> = y.iter().map(|&y| DoubleDouble::from_f64(y)).collect();
     let mut finer = vec![DoubleDouble::from_f64(0.0); machine.state_count()];
     machine
@@ -124,7 +133,7 @@ pub fn is_equilibrium(machine: &Machine, t: f64, y: &[f64], linear: &StateSpace)
 }
 
 /// z of a state.
-fn outputs(machine: &Machine, state: &MachineState<'_, Dual>) -> Vec<Dual> {
+fn outputs<M: MovingModel>(machine: &Machine<M>, state: &MachineState<'_, Dual, M>) -> Vec<Dual> {
     let free = machine.free();
     let coordinates = free.iter().map(|&i| state.q()[i]);
     let velocities = free.iter().map(|&i| state.q_dot()[i]);
@@ -161,8 +170,8 @@ const SIDES: [[f64; 2]; 4] = [[1.0, 1.0], [-1.0, -1.0], [1.0, -1.0], [-1.0, 1.0]
 ///
 /// # Errors
 /// [`DynamicsError::NoEigenvalues`](crate::DynamicsError::NoEigenvalues).
-pub fn eigenvalues_about(
-    machine: &Machine,
+pub fn eigenvalues_about<M: MovingModel>(
+    machine: &Machine<M>,
     t: f64,
     y: &[f64],
     state_errors: &[f64],

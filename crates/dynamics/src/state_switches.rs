@@ -4,7 +4,7 @@
 //! pieces ([`Switches`]). So are the limits of a speed controller.
 
 use crate::drive::{CompiledDrive, HeldDrive};
-use dwell_kinetostatics::{Magnitude, Signal};
+use dwell_kinetostatics::{MachineModel, Magnitude, Model, Signal};
 use dwell_laws::{HeldPieces, SwitchKind, Switches};
 
 /// The switches of all loads and drives of a machine.
@@ -32,16 +32,23 @@ pub(crate) struct HeldSource {
 }
 
 /// A load or drive at one state of motion.
-pub(crate) struct SourceState<'a> {
-    pub(crate) magnitude: &'a Magnitude,
+pub(crate) struct SourceState<'a, M: MachineModel = Model> {
+    pub(crate) magnitude: &'a Magnitude<M::Coordinate>,
     /// A drive with its speed and its state.
-    pub(crate) drive: Option<(&'a CompiledDrive, f64, Option<f64>)>,
+    pub(crate) drive: Option<(&'a CompiledDrive<M>, f64, Option<f64>)>,
 }
+
+/// The index of a load, its magnitude, and the drive whose input that is.
+pub(crate) type SwitchingSource<'a, M> = (
+    usize,
+    &'a Magnitude<<M as MachineModel>::Coordinate>,
+    Option<&'a CompiledDrive<M>>,
+);
 
 impl StateSwitches {
     /// Of magnitudes with the index of each load, and the drives whose inputs they are.
-    pub(crate) fn of<'a>(
-        sources: impl IntoIterator<Item = (usize, &'a Magnitude, Option<&'a CompiledDrive>)>,
+    pub(crate) fn of<'a, M: MachineModel>(
+        sources: impl IntoIterator<Item = SwitchingSource<'a, M>>,
     ) -> Self {
         let mut all = Self::default();
         for (index, magnitude, drive) in sources {
@@ -104,10 +111,10 @@ impl StateSwitches {
 
     /// The value of each function on the pieces that are held; `state_of` gives a load or drive by its index, with the
     /// values of its signals.
-    pub(crate) fn values<'a>(
+    pub(crate) fn values<'a, M: MachineModel + 'a>(
         &self,
         held: &[HeldSource],
-        mut state_of: impl FnMut(usize, &mut Vec<f64>) -> SourceState<'a>,
+        mut state_of: impl FnMut(usize, &mut Vec<f64>) -> SourceState<'a, M>,
         mut out: &mut [f64],
     ) {
         let free = HeldSource::default();
@@ -132,10 +139,10 @@ impl StateSwitches {
 impl StateSwitches {
     /// The value and the rate of each function on the pieces that are held; `state_of` gives a load or drive by its index,
     /// with the values and rates of its signals, and of its drive the rates of its speed and its state.
-    pub(crate) fn rates<'a>(
+    pub(crate) fn rates<'a, M: MachineModel + 'a>(
         &self,
         held: &[HeldSource],
-        mut state_of: impl FnMut(usize, &mut Vec<[f64; 2]>) -> (SourceState<'a>, [f64; 2]),
+        mut state_of: impl FnMut(usize, &mut Vec<[f64; 2]>) -> (SourceState<'a, M>, [f64; 2]),
         mut out: &mut [[f64; 2]],
     ) {
         let free = HeldSource::default();

@@ -38,10 +38,13 @@
 
 mod assemble;
 mod closure;
+mod coordinate;
 mod factors;
 mod follow;
 mod frames;
+mod gears;
 mod groups;
+mod lower;
 mod mechanism;
 mod motion;
 mod multipliers;
@@ -53,12 +56,13 @@ mod tree;
 mod vector;
 mod wrench;
 
+pub use coordinate::{Coordinate, CoordinateFunction, Counting};
 pub use frames::{BodyMotion, Frame};
 pub use mechanism::{
     Actuator, ActuatorKind, Assembly, Joint, JointKind, Mechanism, Placement, Side,
 };
 pub use multipliers::Forces;
-pub use plan::{GroupDescription, Plan, Pose};
+pub use plan::{GroupDescription, Plan, Pose, PoseMotion};
 pub use rank::{IdleBody, Mobility};
 pub use vector::{Rotation, Vec3, vec3};
 pub use wrench::Wrench;

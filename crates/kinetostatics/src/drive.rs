@@ -18,13 +18,13 @@ use dwell_geometry::{Coordinate, Mechanism};
 
 /// What drives a coordinate s: an actuator's or any other.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Drive {
+pub struct Drive<C = Coordinate> {
     /// The name used in tables.
     pub name: String,
     /// The coordinate s.
-    pub coordinate: Coordinate,
+    pub coordinate: C,
     /// The kind of drive, with its data.
-    pub kind: DriveKind,
+    pub kind: DriveKind<C>,
 }
 
 impl Drive {
@@ -47,18 +47,18 @@ impl Drive {
 
 /// The kind of a drive.
 #[derive(Debug, Clone, PartialEq)]
-pub enum DriveKind {
+pub enum DriveKind<C = Coordinate> {
     /// A given couple or force on the coordinate, N·m or N.
-    AppliedForce(Magnitude),
+    AppliedForce(Magnitude<C>),
     /// A direct-current motor behind a gear.
-    Motor(Motor),
+    Motor(Motor<C>),
     /// A proportional-integral controller of the coordinate's speed.
-    SpeedController(SpeedController),
+    SpeedController(SpeedController<C>),
 }
 
-impl DriveKind {
+impl<C> DriveKind<C> {
     /// Its input: the force, the voltage or the reference speed.
-    pub fn input(&self) -> &Magnitude {
+    pub fn input(&self) -> &Magnitude<C> {
         match self {
             Self::AppliedForce(magnitude) => magnitude,
             Self::Motor(motor) => &motor.voltage,
@@ -69,9 +69,9 @@ impl DriveKind {
 
 /// A direct-current motor behind a gear, eq. (1).
 #[derive(Debug, Clone, PartialEq)]
-pub struct Motor {
+pub struct Motor<C = Coordinate> {
     /// Voltage u, V.
-    pub voltage: Magnitude,
+    pub voltage: Magnitude<C>,
     /// Torque constant k, N·m/A = V·s/rad.
     pub torque_constant: f64,
     /// Resistance R, Ω.
@@ -86,9 +86,9 @@ pub struct Motor {
 
 /// A proportional-integral speed controller, eq. (2).
 #[derive(Debug, Clone, PartialEq)]
-pub struct SpeedController {
+pub struct SpeedController<C = Coordinate> {
     /// The reference speed w, rad/s or m/s.
-    pub reference_speed: Magnitude,
+    pub reference_speed: Magnitude<C>,
     /// P, N·m·s/rad or N·s/m.
     pub proportional_gain: f64,
     /// I, N·m/rad or N/m.

@@ -51,7 +51,10 @@ pub use load::{
     Signal,
 };
 pub use mass::Mass;
-pub use model::{EvaluatedState, ForceState, KinematicState, LoadedState, Model, Workspace};
+pub use model::{
+    EvaluatedState, ForceState, KinematicState, LoadedState, MachineModel, Model, ModelLoad,
+    Workspace,
+};
 pub use pass::InverseDynamics;
 pub use reduced::{
     Batch, Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel, ReducibleModel,

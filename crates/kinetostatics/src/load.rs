@@ -14,6 +14,7 @@ pub use compiled::LoadState;
 pub use friction::{Friction, FrictionContact};
 pub use function::{MAX_FUNCTION_SIGNALS, MagnitudeFunction};
 pub use separating::{Mesh, PitchLines, PressureAngle};
+pub(crate) use signal::{SignalWorkspace, compile_signals_by};
 pub use wrench::{AppliedWrench, ForceSource};
 pub(crate) use wrench::{find_couple_points, on_two_bodies};
 
@@ -21,15 +22,15 @@ use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, Coordinate, Mechanism, Vec2};
 use dwell_laws::{Expression, Law};
 
-/// A named load.
+/// A named load: of a mechanism in the plane, or with other shapes and coordinates in [space](crate::space).
 #[derive(Debug, Clone, PartialEq)]
-pub struct Load {
+pub struct Load<K = LoadKind, C = Coordinate> {
     /// The name a table uses.
     pub name: String,
     /// Its shape.
-    pub kind: LoadKind,
+    pub kind: K,
     /// Its magnitude.
-    pub magnitude: Magnitude,
+    pub magnitude: Magnitude<C>,
 }
 
 /// The shape of a load, and what its magnitude F means.
@@ -167,24 +168,24 @@ impl Guide {
     }
 }
 
-/// The magnitude of a load.
+/// The magnitude of a load. `C` is how a coordinate is described.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Magnitude {
+pub enum Magnitude<C = Coordinate> {
     /// A constant.
     Constant(f64),
     /// A law of one signal.
-    Law(Signal, Law),
+    Law(Signal<C>, Law),
     /// An expression of several signals, one for each variable it was parsed with, in their order.
-    Expression(Expression, Vec<Signal>),
+    Expression(Expression, Vec<Signal<C>>),
     /// A function of the program that uses the library, of these signals in their order.
-    Function(MagnitudeFunction, Vec<Signal>),
+    Function(MagnitudeFunction, Vec<Signal<C>>),
     /// Coulomb friction, from the joint's own reactions.
     Friction(Friction),
     /// The separating force of teeth, from the tooth force of their joint.
     Separating(PressureAngle),
     /// The value given by [`LoadedState::set_magnitude`](crate::LoadedState::set_magnitude), zero until then: of a drive,
     /// which is evaluated outside the model from these signals.
-    External(Vec<Signal>),
+    External(Vec<Signal<C>>),
 }
 
 impl LoadKind {
@@ -235,9 +236,11 @@ impl Magnitude {
         };
         self.signals().iter().filter_map(pair)
     }
+}
 
+impl<C> Magnitude<C> {
     /// The signals it depends on.
-    pub fn signals(&self) -> &[Signal] {
+    pub fn signals(&self) -> &[Signal<C>] {
         match self {
             Self::Constant(_) | Self::Friction(_) | Self::Separating(_) => &[],
             Self::Law(signal, _) => std::slice::from_ref(signal),

@@ -1,9 +1,11 @@
 //! A mechanism with masses and loads, ready to be evaluated.
 
 mod evaluated_state;
+mod in_plane;
 mod kinematic_state;
 mod kinetostatics;
 mod loaded_state;
+mod machine_model;
 mod revolutions;
 pub mod stages;
 mod varying_bodies;
@@ -12,6 +14,7 @@ mod workspace;
 pub use evaluated_state::EvaluatedState;
 pub use kinematic_state::KinematicState;
 pub use loaded_state::{ForceState, LoadedState, StateWithLoads};
+pub use machine_model::{MachineModel, ModelLoad};
 pub use workspace::Workspace;
 
 use crate::error::ModelError;

@@ -33,12 +33,15 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod equation;
+mod action;
+mod compiled_loads;
 mod load;
+mod machine;
 mod mass;
 mod model;
 mod reduced;
 
-pub use load::{Direction, LoadKind};
+pub use dwell_geometry::space::{Coordinate, CoordinateFunction};
+pub use load::{Direction, Load, LoadKind};
 pub use mass::Mass;
 pub use model::{Axes, Component, Model, ModelError, Reaction, Workspace};

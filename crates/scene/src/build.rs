@@ -2,10 +2,11 @@
 
 use crate::assembly::ParsedAssembly;
 use crate::bodies::Bodies;
-use crate::coordinates::{ParsedCoordinate, ParsedCoordinates, actuators};
+use crate::coordinates::{NamedActuator, ParsedCoordinate, ParsedCoordinates, actuators, is_same};
 use crate::diagnostics::Diagnostics;
-use crate::drives::reject_drives_of_prescribed;
+use crate::drives::{DriveReader, reject_drives_of_prescribed};
 use crate::error::{SceneError, Source};
+use crate::events::EventReader;
 use crate::file::SceneFile;
 use crate::former_keys::rename_former_keys;
 use crate::friction::add_friction;
@@ -97,6 +98,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
         joints = joints.read(&f, &bodies);
     }
     let actuators = section("actuators").map_or_else(Vec::new, |f| actuators(&f, &bodies, &joints));
+    let by_name: Vec<NamedActuator<'_>> = actuators.iter().map(|a| a.named.clone()).collect();
     let named_section = section("coordinates");
     let named = ParsedCoordinates::read(&actuators, named_section.as_ref(), &bodies, &joints);
     joints.read_couplings(&named);
@@ -111,7 +113,6 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     let names = Names {
         bodies: &bodies,
         joints: &joints,
-        coordinates: &named,
         magnitudes: Magnitudes::new(&named),
     };
     let assembly_section = section("assembly");
@@ -119,31 +120,41 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     let motion_section = section("motion");
     let can_start_at_rest = is_filled(fields, "loads") || is_filled(fields, "drives");
     let motion = motion_section.as_ref();
-    let mut motion = motion.map(|f| ParsedMotion::read(f, &actuators, can_start_at_rest));
+    let mut motion = motion.map(|f| ParsedMotion::read(f, &by_name, can_start_at_rest));
     let initial = motion.as_ref().map_or(&[][..], |m| &m.initial_coordinates);
     let at = assembly_section.as_ref().map(|f| &f.span);
     let start = assembly.coordinates_or(initial, (&bodies, &joints), &actuators, at);
+    let mut events = Vec::new();
     if let (Some(motion), Some(f)) = (&mut motion, &motion_section) {
-        motion.read_laws(&actuators, &start);
-        let events = f.get("events");
-        let events = events.and_then(|e| TableReader::open(e, "events of [motion]"));
-        motion.events = events.map_or_else(Vec::new, |f| names.events(&f));
+        motion.read_laws(&by_name, &start);
+        let section = f.get("events");
+        let section = section.and_then(|e| TableReader::open(e, "events of [motion]"));
+        let reader = EventReader {
+            coordinates: &named,
+            reaction: &|text, at, fields| names.one_reaction(text, at, fields),
+        };
+        events = section.map_or_else(Vec::new, |f| reader.events(&f));
     }
     let prescribed = section("prescribed");
-    let prescribed = prescribed.and_then(|f| prescribed_motion(&f, &actuators, &start));
+    let prescribed = prescribed.and_then(|f| prescribed_motion(&f, &by_name, &start));
     let sweep = section("coordinate-sweep");
-    let sweep = sweep.and_then(|f| coordinate_sweep(&f, &actuators, &start));
+    let sweep = sweep.and_then(|f| coordinate_sweep(&f, &by_name, &start));
     let mut loads = section("loads").map_or_else(Vec::new, |f| names.loads(&f));
     if let Some(f) = section("friction") {
         add_friction(&f, &joints, &mut loads);
     }
     add_separating_forces(&joints, &mut loads);
-    let drives = section("drives").map_or_else(Vec::new, |f| names.drives(&f, loads.len()));
+    let reader = DriveReader {
+        coordinates: &named,
+        magnitudes: &names.magnitudes,
+    };
+    let drives = section("drives").map_or_else(Vec::new, |f| reader.drives(&f, loads.len()));
     if let Some(motion) = &motion {
-        reject_drives_of_prescribed(&drives, motion, &actuators);
+        let coordinates = named.list[..named.actuators].iter().map(|c| c.coordinate);
+        reject_drives_of_prescribed(&drives, motion, by_name.iter().zip(coordinates), is_same);
     }
     let stops = section("stops");
-    let stops = stops.map_or_else(Vec::new, |f| stops_of(&f, &actuators, motion.as_ref()));
+    let stops = stops.map_or_else(Vec::new, |f| stops_of(&f, &by_name, motion.as_ref()));
     let requests_section = section("requests");
     let requested = requests_section.as_ref();
     let requested = requested.map(|f| requests(f, &bodies, &joints));
@@ -192,7 +203,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
         varying_inertias,
         points: bodies.list.iter().map(|b| points(&b.points)).collect(),
         coordinates: coordinates.filter_map(coordinate).collect(),
-        motion: motion.and_then(|m| m.into_spec(&start)),
+        motion: motion.and_then(|m| m.into_spec(&start, events)),
         mechanism,
         assembly: Assembly {
             coordinates: start,
@@ -212,7 +223,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
 }
 
 /// Whether there is something in a section; what is wrong with it is reported where it is read.
-fn is_filled(fields: &TableReader<'_>, key: &str) -> bool {
+pub(crate) fn is_filled(fields: &TableReader<'_>, key: &str) -> bool {
     let value = fields.get(key).map(|e| e.value.get());
     matches!(value, Some(DeValue::Table(table)) if !table.is_empty())
 }

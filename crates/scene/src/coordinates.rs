@@ -2,6 +2,7 @@
 
 use crate::bodies::{Bodies, TWO_POINTS};
 use crate::diagnostics::{Diagnostics, Span};
+use crate::dimensions::Dimensions;
 use crate::joints::Joints;
 use crate::keys::table;
 use crate::names::check;
@@ -15,51 +16,36 @@ use std::collections::HashMap;
 use std::fmt::Display;
 use toml::de::DeValue;
 
-/// An actuator as read; nothing in it if it was wrong.
-#[derive(Debug)]
-pub(crate) struct ParsedActuator<'a> {
-    pub(crate) name: &'a str,
-    pub(crate) key: Span,
-    pub(crate) actuator: Option<Actuator>,
+/// A coordinate of a mechanism, in the plane or in space.
+pub(crate) trait AnyCoordinate: Copy {
+    /// Whether it is an angle.
+    fn is_angle(self) -> bool;
 }
 
-/// An actuator as sections of motion name it, in the plane or in space.
-pub(crate) trait NamedActuator {
-    /// Its name.
-    fn name(&self) -> &str;
-
-    /// Where it is declared.
-    fn key(&self) -> &Span;
-
-    /// Whether its coordinate is an angle; one that could not be read counts as one.
-    fn is_angle(&self) -> bool;
-
-    /// A value of its coordinate, SI.
-    fn coordinate_value(&self, value: Value<'_>, what: &str) -> Option<f64> {
-        value.coordinate(self.is_angle(), what)
-    }
-
-    /// The unit of its coordinate.
-    fn unit<'u>(&self, units: &'u Units) -> &'u Unit {
-        units.coordinate_unit(self.is_angle())
-    }
-}
-
-impl NamedActuator for ParsedActuator<'_> {
-    fn name(&self) -> &str {
-        self.name
-    }
-
-    fn key(&self) -> &Span {
-        &self.key
-    }
-
-    fn is_angle(&self) -> bool {
+impl AnyCoordinate for Coordinate {
+    fn is_angle(self) -> bool {
         self.is_angle()
     }
+}
 
-    fn coordinate_value(&self, value: Value<'_>, what: &str) -> Option<f64> {
-        self.coordinate_value(value, what)
+impl AnyCoordinate for dwell_geometry::space::Coordinate {
+    fn is_angle(self) -> bool {
+        self.is_angle()
+    }
+}
+
+/// An actuator as read, in the plane or in space; nothing in it if it was wrong.
+#[derive(Debug)]
+pub(crate) struct ParsedActuator<'a, A = Actuator> {
+    pub(crate) actuator: Option<A>,
+    pub(crate) named: NamedActuator<'a>,
+}
+
+impl<'a, A> std::ops::Deref for ParsedActuator<'a, A> {
+    type Target = NamedActuator<'a>;
+
+    fn deref(&self) -> &NamedActuator<'a> {
+        &self.named
     }
 }
 
@@ -67,16 +53,36 @@ impl ParsedActuator<'_> {
     fn coordinate(&self) -> Option<Coordinate> {
         self.actuator.as_ref().map(Actuator::coordinate)
     }
+}
+
+/// What the motion of an actuator needs to know of it.
+#[derive(Debug, Clone)]
+pub(crate) struct NamedActuator<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) key: Span,
+    is_angle: bool,
+    is_distance: bool,
+}
+
+impl<'a> NamedActuator<'a> {
+    /// Of an entry; `is_angle` where its coordinate is an angle or could not be read.
+    pub(crate) fn new(entry: &Entry<'a>, is_angle: bool, is_distance: bool) -> Self {
+        Self {
+            name: entry.name,
+            key: entry.key.clone(),
+            is_angle,
+            is_distance,
+        }
+    }
 
     /// Whether its coordinate is an angle; one that could not be read counts as one.
     pub(crate) fn is_angle(&self) -> bool {
-        self.coordinate().is_none_or(Coordinate::is_angle)
+        self.is_angle
     }
 
     /// Whether it drives the distance of two points, which is never zero.
     pub(crate) fn is_distance(&self) -> bool {
-        let kind = self.actuator.as_ref().map(|a| a.kind);
-        matches!(kind, Some(ActuatorKind::Length(_)))
+        self.is_distance
     }
 
     /// A value of its coordinate, SI.
@@ -97,16 +103,16 @@ impl ParsedActuator<'_> {
 
 /// A named coordinate as read; nothing in it if it was wrong.
 #[derive(Debug, Clone)]
-pub(crate) struct ParsedCoordinate<'a> {
+pub(crate) struct ParsedCoordinate<'a, C = Coordinate> {
     pub(crate) name: &'a str,
     pub(crate) key: Span,
-    pub(crate) coordinate: Option<Coordinate>,
+    pub(crate) coordinate: Option<C>,
 }
 
 /// All the coordinates that have a name: the actuators', then those of `[coordinates]`.
 #[derive(Debug)]
-pub(crate) struct ParsedCoordinates<'a> {
-    pub(crate) list: Vec<ParsedCoordinate<'a>>,
+pub(crate) struct ParsedCoordinates<'a, C = Coordinate> {
+    pub(crate) list: Vec<ParsedCoordinate<'a, C>>,
     /// How many of them are actuators.
     pub(crate) actuators: usize,
     by_name: HashMap<&'a str, usize>,
@@ -114,20 +120,39 @@ pub(crate) struct ParsedCoordinates<'a> {
 }
 
 impl<'a> ParsedCoordinates<'a> {
+    /// Those of a scene in the plane.
     pub(crate) fn read(
         actuators: &[ParsedActuator<'a>],
         fields: Option<&TableReader<'a>>,
         bodies: &Bodies<'_>,
         joints: &Joints<'a>,
     ) -> Self {
+        let named = actuators.iter().map(|a| (&a.named, a.coordinate()));
+        let read = |entry: &Entry<'a>| read_coordinate(entry, bodies, joints);
+        Self::read_by(named, fields, bodies, (joints.log, &read))
+    }
+}
+
+impl<'a, C: AnyCoordinate> ParsedCoordinates<'a, C> {
+    /// Those of actuators, and of a section whose entries `read` reads.
+    pub(crate) fn read_by<'n, D: Dimensions>(
+        actuators: impl ExactSizeIterator<Item = (&'n NamedActuator<'a>, Option<C>)>,
+        fields: Option<&TableReader<'a>>,
+        bodies: &Bodies<'_, D>,
+        (log, read): (&'a Diagnostics, &dyn Fn(&Entry<'a>) -> Option<C>),
+    ) -> Self
+    where
+        'a: 'n,
+    {
+        let count = actuators.len();
         let mut all = Self {
             list: Vec::new(),
-            actuators: actuators.len(),
+            actuators: count,
             by_name: HashMap::new(),
-            log: joints.log,
+            log,
         };
-        for a in actuators {
-            all.push(a.name, &a.key, a.coordinate());
+        for (actuator, coordinate) in actuators {
+            all.push(actuator.name, &actuator.key, coordinate);
         }
         for entry in fields.iter().flat_map(|f| &f.entries) {
             check_coordinate_name(entry, "a coordinate");
@@ -139,15 +164,15 @@ impl<'a> ParsedCoordinates<'a> {
                 let other = (&all.list[*k].key, "an actuator");
                 report_ambiguous_name(entry, other, "a coordinate", "an expression");
             }
-            let location = SceneLocation::Coordinate(all.list.len() - actuators.len());
+            let location = SceneLocation::Coordinate(all.list.len() - count);
             all.log.place(location, &entry.key);
-            let coordinate = read_coordinate(entry, bodies, joints);
+            let coordinate = read(entry);
             all.push(entry.name, &entry.key, coordinate);
         }
         all
     }
 
-    fn push(&mut self, name: &'a str, key: &Span, coordinate: Option<Coordinate>) {
+    fn push(&mut self, name: &'a str, key: &Span, coordinate: Option<C>) {
         self.by_name.insert(name, self.list.len());
         let key = key.clone();
         self.list.push(ParsedCoordinate {
@@ -158,7 +183,7 @@ impl<'a> ParsedCoordinates<'a> {
     }
 
     /// The coordinate of that name; one that could not be read has been reported already.
-    pub(crate) fn find(&self, name: &str, at: &Span) -> Option<Coordinate> {
+    pub(crate) fn find(&self, name: &str, at: &Span) -> Option<C> {
         if let Some(&k) = self.by_name.get(name) {
             return self.list[k].coordinate;
         }
@@ -170,11 +195,7 @@ impl<'a> ParsedCoordinates<'a> {
     }
 
     /// The coordinate that the value of an entry of `fields` names.
-    pub(crate) fn named_by(
-        &self,
-        entry: &Entry<'_>,
-        fields: &TableReader<'_>,
-    ) -> Option<Coordinate> {
+    pub(crate) fn named_by(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<C> {
         let name = entry.value.string(fields.name_of(entry))?;
         self.find(name, &entry.value.span())
     }
@@ -197,7 +218,7 @@ pub(crate) fn is_same(a: Coordinate, b: Coordinate) -> bool {
 }
 
 /// A name as [`check`] allows it; `t` is the time in every expression.
-fn check_coordinate_name(entry: &Entry<'_>, kind: &str) {
+pub(crate) fn check_coordinate_name(entry: &Entry<'_>, kind: &str) {
     check(kind, entry);
     if entry.name == "t" {
         let message = format!("`t` cannot be the name of {kind}");
@@ -207,7 +228,7 @@ fn check_coordinate_name(entry: &Entry<'_>, kind: &str) {
 }
 
 /// `other` is where the name stands first, and of what kind it is there.
-fn report_ambiguous_name(
+pub(crate) fn report_ambiguous_name(
     entry: &Entry<'_>,
     (key, other): (&Span, &str),
     kind: &str,
@@ -238,10 +259,13 @@ pub(crate) fn actuators<'a>(
         }
         let location = SceneLocation::Actuator(ActuatorId(list.len()));
         entry.log().place(location, &entry.key);
+        let actuator = read_actuator(entry, bodies, joints);
+        let kind = actuator.as_ref().map(|a| a.kind);
+        let is_angle = matches!(kind, None | Some(ActuatorKind::Angle));
+        let is_distance = matches!(kind, Some(ActuatorKind::Length(_)));
         let parsed = ParsedActuator {
-            name: entry.name,
-            key: entry.key.clone(),
-            actuator: read_actuator(entry, bodies, joints),
+            named: NamedActuator::new(entry, is_angle, is_distance),
+            actuator,
         };
         let same = |other: &&ParsedActuator<'_>| {
             let both = other.coordinate().zip(parsed.coordinate());

@@ -1,10 +1,10 @@
 //! The drives of a free motion.
 
-use crate::coordinates::{ParsedActuator, is_same};
+use crate::coordinates::{AnyCoordinate, NamedActuator, ParsedCoordinates};
 use crate::diagnostics::Span;
 use crate::keys;
 use crate::kind::{kind, reject_unread_kind};
-use crate::magnitude::{Magnitudes, Names};
+use crate::magnitude::Magnitudes;
 use crate::motion::ParsedMotion;
 use crate::names::check;
 use crate::spans::SceneLocation;
@@ -12,13 +12,18 @@ use crate::table_reader::{Entry, TableReader};
 use crate::units::{SI, Unit};
 use crate::value::{NumberRule, SignRule};
 use crate::wording::{list, shorten};
-use dwell_geometry::{Actuator, Coordinate};
 use dwell_kinetostatics::{Drive, DriveKind, Magnitude, Motor, SpeedController};
 
-impl Names<'_> {
+/// Reads drives: what they can act on, and on what they can depend.
+pub(crate) struct DriveReader<'r, C> {
+    pub(crate) coordinates: &'r ParsedCoordinates<'r, C>,
+    pub(crate) magnitudes: &'r Magnitudes<C>,
+}
+
+impl<C: AnyCoordinate> DriveReader<'_, C> {
     /// Every drive of the section that was read well, with where its coordinate is named. The drives follow the `loads`, as in a
     /// model that has them as its last loads.
-    pub(crate) fn drives(&self, fields: &TableReader<'_>, loads: usize) -> Vec<(Drive, Span)> {
+    pub(crate) fn drives(&self, fields: &TableReader<'_>, loads: usize) -> Vec<(Drive<C>, Span)> {
         let one = |(k, entry): (usize, &Entry<'_>)| {
             check("a drive", entry);
             entry.log().place(SceneLocation::Drive(k), &entry.key);
@@ -29,7 +34,7 @@ impl Names<'_> {
         fields.entries.iter().enumerate().filter_map(one).collect()
     }
 
-    fn drive(&self, entry: &Entry<'_>, magnitude: SceneLocation) -> Option<(Drive, Span)> {
+    fn drive(&self, entry: &Entry<'_>, magnitude: SceneLocation) -> Option<(Drive<C>, Span)> {
         let fields = &TableReader::open(entry, format!("drive `{}`", shorten(entry.name)))?;
         let (kind, kind_entry) = kind(fields, "drive")?;
         let coordinate = self.coordinates.named_by(kind_entry, fields);
@@ -37,10 +42,10 @@ impl Names<'_> {
             fields.place(key, magnitude);
         }
         let table = DriveTable {
-            magnitudes: &self.magnitudes,
+            magnitudes: self.magnitudes,
             fields,
             // Units of what could not be read do not matter: there is an error already.
-            is_angle: coordinate.is_none_or(Coordinate::is_angle),
+            is_angle: coordinate.is_none_or(C::is_angle),
         };
         let kind = match kind {
             "applied-force" => table.applied_force(),
@@ -58,21 +63,21 @@ impl Names<'_> {
 }
 
 /// One drive while it is read.
-struct DriveTable<'p> {
-    magnitudes: &'p Magnitudes,
+struct DriveTable<'p, C> {
+    magnitudes: &'p Magnitudes<C>,
     fields: &'p TableReader<'p>,
     is_angle: bool,
 }
 
-impl DriveTable<'_> {
-    fn applied_force(&self) -> Option<DriveKind> {
+impl<C: AnyCoordinate> DriveTable<'_, C> {
+    fn applied_force(&self) -> Option<DriveKind<C>> {
         let unit = if self.is_angle { "N m" } else { "N" };
         let help = format!("add for instance `magnitude = 2.0`, in {unit}");
         self.magnitude("magnitude", &SI, &help)
             .map(DriveKind::AppliedForce)
     }
 
-    fn motor(&self) -> Option<DriveKind> {
+    fn motor(&self) -> Option<DriveKind<C>> {
         let (fields, units) = (self.fields, self.fields.units());
         let ratio = NumberRule {
             unit: &SI,
@@ -129,7 +134,7 @@ impl DriveTable<'_> {
     }
 
     /// Voltage; torque constant, resistance and inductance.
-    fn circuit(&self) -> Option<(Magnitude, [f64; 3])> {
+    fn circuit(&self) -> Option<(Magnitude<C>, [f64; 3])> {
         let positive = NumberRule::new(&SI, SignRule::Positive);
         let voltage = self.magnitude("voltage", &SI, "add for instance `voltage = 12`, in V");
         let help =
@@ -143,7 +148,7 @@ impl DriveTable<'_> {
     }
 
     /// The circuit at 1 V whose torque falls along the same line.
-    fn torque_speed_line(&self) -> Option<(Magnitude, [f64; 3])> {
+    fn torque_speed_line(&self) -> Option<(Magnitude<C>, [f64; 3])> {
         let (fields, angle) = (self.fields, &self.fields.units().angle);
         let rule = |unit| NumberRule::new(unit, SignRule::Positive);
         let help =
@@ -165,7 +170,7 @@ impl DriveTable<'_> {
         Some((Magnitude::Constant(1.0), numbers))
     }
 
-    fn speed_controller(&self) -> Option<DriveKind> {
+    fn speed_controller(&self) -> Option<DriveKind<C>> {
         let fields = self.fields;
         let unit = fields.units().coordinate_unit(self.is_angle);
         let [damping, force] = match self.is_angle {
@@ -190,7 +195,7 @@ impl DriveTable<'_> {
         }))
     }
 
-    fn magnitude(&self, key: &str, unit: &Unit, help: &str) -> Option<Magnitude> {
+    fn magnitude(&self, key: &str, unit: &Unit, help: &str) -> Option<Magnitude<C>> {
         let entry = self.fields.require(key, help)?;
         let rule = NumberRule::new(unit, SignRule::Any);
         self.magnitudes.read(entry, self.fields, &rule)
@@ -198,17 +203,17 @@ impl DriveTable<'_> {
 }
 
 /// Reports drives that act on a prescribed actuator.
-pub(crate) fn reject_drives_of_prescribed(
-    drives: &[(Drive, Span)],
+pub(crate) fn reject_drives_of_prescribed<'a, C: AnyCoordinate>(
+    drives: &[(Drive<C>, Span)],
     motion: &ParsedMotion<'_>,
-    actuators: &[ParsedActuator<'_>],
+    actuators: impl Iterator<Item = (&'a NamedActuator<'a>, Option<C>)>,
+    is_same: fn(C, C) -> bool,
 ) {
-    for (a, law) in actuators.iter().zip(&motion.prescribed) {
-        let (Some(law), Some(prescribed)) = (law, a.actuator.as_ref().map(Actuator::coordinate))
-        else {
+    for ((a, coordinate), law) in actuators.zip(&motion.prescribed) {
+        let (Some(law), Some(prescribed)) = (law, coordinate) else {
             continue;
         };
-        let acts_on_it = |(drive, _): &&(Drive, Span)| is_same(drive.coordinate, prescribed);
+        let acts_on_it = |(drive, _): &&(Drive<C>, Span)| is_same(drive.coordinate, prescribed);
         for (drive, at) in drives.iter().filter(acts_on_it) {
             let (drive, name) = (shorten(&drive.name), shorten(a.name));
             let message = format!("drive `{drive}` acts on `{name}`, which is prescribed");

@@ -1,5 +1,6 @@
 //! The events of a free motion.
 
+use crate::coordinates::{AnyCoordinate, ParsedCoordinates};
 use crate::diagnostics::Span;
 use crate::kind::{kind, reject_unread_kind};
 use crate::magnitude::Names;
@@ -11,11 +12,20 @@ use crate::table_reader::{Entry, TableReader};
 use crate::units::SI;
 use crate::value::{NumberRule, SignRule};
 use crate::wording::{list, shorten};
-use dwell_geometry::{Coordinate, JointId, Reaction};
+use dwell_geometry::{JointId, Reaction};
 
-impl Names<'_> {
+/// The reaction that a text names, at a place in a table.
+type ReadReaction<'r, R> = &'r dyn Fn(&str, &Span, &TableReader<'_>) -> Option<R>;
+
+/// Reads events: of which coordinates, and of which reactions.
+pub(crate) struct EventReader<'r, C, R> {
+    pub(crate) coordinates: &'r ParsedCoordinates<'r, C>,
+    pub(crate) reaction: ReadReaction<'r, R>,
+}
+
+impl<C: AnyCoordinate, R> EventReader<'_, C, R> {
     /// Every event of `[motion.events]`.
-    pub(crate) fn events(&self, fields: &TableReader<'_>) -> Vec<NamedEvent> {
+    pub(crate) fn events(&self, fields: &TableReader<'_>) -> Vec<NamedEvent<C, R>> {
         let one = |(k, entry): (usize, &Entry<'_>)| {
             check("an event", entry);
             entry.log().place(SceneLocation::Event(k), &entry.key);
@@ -24,7 +34,7 @@ impl Names<'_> {
         fields.entries.iter().enumerate().filter_map(one).collect()
     }
 
-    fn event(&self, entry: &Entry<'_>) -> Option<NamedEvent> {
+    fn event(&self, entry: &Entry<'_>) -> Option<NamedEvent<C, R>> {
         let fields = TableReader::open(entry, format!("event `{}`", shorten(entry.name)))?;
         let (kind, kind_entry) = kind(&fields, "event")?;
         let terminal = fields.boolean("stop");
@@ -44,16 +54,27 @@ impl Names<'_> {
         })
     }
 
-    fn reaction_event(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<EventTrigger> {
+    fn reaction_event(
+        &self,
+        entry: &Entry<'_>,
+        fields: &TableReader<'_>,
+    ) -> Option<EventTrigger<C, R>> {
         let text = entry.value.string(fields.name_of(entry));
         let rule = NumberRule::new(&SI, SignRule::Any);
         let value = fields.number_or(0.0, "value", &rule);
-        let reaction = self.one_reaction(text?, &entry.value.span(), fields)?;
+        let reaction = (self.reaction)(text?, &entry.value.span(), fields)?;
         Some(EventTrigger::Reaction(reaction, value?))
     }
+}
 
+impl Names<'_> {
     /// The one component of one joint that `text` names.
-    fn one_reaction(&self, text: &str, at: &Span, fields: &TableReader<'_>) -> Option<Reaction> {
+    pub(crate) fn one_reaction(
+        &self,
+        text: &str,
+        at: &Span,
+        fields: &TableReader<'_>,
+    ) -> Option<Reaction> {
         let (name, component) = joint_and_component(text);
         let mut all = Vec::new();
         for k in self.joints.find(name, at)? {
@@ -82,7 +103,10 @@ impl Names<'_> {
     }
 }
 
-fn reaches(reached: Option<Coordinate>, fields: &TableReader<'_>) -> Option<EventTrigger> {
+fn reaches<C: AnyCoordinate, R>(
+    reached: Option<C>,
+    fields: &TableReader<'_>,
+) -> Option<EventTrigger<C, R>> {
     let help = "add for instance `value = 0.0`, the value at which it occurs";
     let value = fields.require("value", help);
     let (reached, value) = (reached?, value?);
@@ -92,11 +116,11 @@ fn reaches(reached: Option<Coordinate>, fields: &TableReader<'_>) -> Option<Even
     Some(EventTrigger::Reaches(reached, value))
 }
 
-fn revolution(
-    angle: Coordinate,
+fn revolution<C: AnyCoordinate, R>(
+    angle: C,
     entry: &Entry<'_>,
     fields: &TableReader<'_>,
-) -> Option<EventTrigger> {
+) -> Option<EventTrigger<C, R>> {
     if angle.is_angle() {
         return Some(EventTrigger::Revolution(angle));
     }

@@ -1,7 +1,7 @@
 //! Magnitudes of loads and drives: a number, an expression, or a table.
 
 use crate::bodies::Bodies;
-use crate::coordinates::ParsedCoordinates;
+use crate::coordinates::{AnyCoordinate, ParsedCoordinates};
 use crate::expression::expression;
 use crate::joints::Joints;
 use crate::keys;
@@ -19,18 +19,17 @@ use toml::de::DeValue;
 pub(crate) struct Names<'r> {
     pub(crate) bodies: &'r Bodies<'r>,
     pub(crate) joints: &'r Joints<'r>,
-    pub(crate) coordinates: &'r ParsedCoordinates<'r>,
     pub(crate) magnitudes: Magnitudes,
 }
 
 /// Reads magnitudes.
-pub(crate) struct Magnitudes {
+pub(crate) struct Magnitudes<C = Coordinate> {
     /// The signals an expression can name: name, former name that is still read, and signal; none if its coordinate was wrong.
-    signals: Vec<(String, Option<String>, Option<Signal>)>,
+    signals: Vec<(String, Option<String>, Option<Signal<C>>)>,
 }
 
-impl Magnitudes {
-    pub(crate) fn new(named: &ParsedCoordinates<'_>) -> Self {
+impl<C: AnyCoordinate> Magnitudes<C> {
+    pub(crate) fn new(named: &ParsedCoordinates<'_, C>) -> Self {
         let mut signals = vec![("t".to_owned(), None, Some(Signal::Time))];
         for c in &named.list {
             signals.push((c.name.to_owned(), None, c.coordinate.map(Signal::Value)));
@@ -52,7 +51,7 @@ impl Magnitudes {
         entry: &Entry<'_>,
         fields: &TableReader<'_>,
         rule: &NumberRule<'_>,
-    ) -> Option<Magnitude> {
+    ) -> Option<Magnitude<C>> {
         let what = fields.name_of(entry);
         match entry.value.get() {
             DeValue::String(_) => self.expression(entry.value, &what),
@@ -67,7 +66,7 @@ impl Magnitudes {
         }
     }
 
-    fn expression(&self, value: Value<'_>, what: &str) -> Option<Magnitude> {
+    fn expression(&self, value: Value<'_>, what: &str) -> Option<Magnitude<C>> {
         let text = value.string(what)?;
         let names: Vec<_> = self.names().collect();
         let former = self.signals.iter().filter_map(|(_, f, _)| f.as_deref());
@@ -86,7 +85,7 @@ impl Magnitudes {
     }
 
     /// The signal of that name, which `value` uses, if there is one.
-    fn signal(&self, name: &str, value: Value<'_>) -> Option<Option<Signal>> {
+    fn signal(&self, name: &str, value: Value<'_>) -> Option<Option<Signal<C>>> {
         let named = |former: &Option<String>| former.as_deref() == Some(name);
         let mut signals = self.signals.iter();
         let (current, former, signal) = signals.find(|(n, f, _)| n == name || named(f))?;
@@ -96,7 +95,7 @@ impl Magnitudes {
         Some(*signal)
     }
 
-    fn table(&self, entry: &Entry<'_>, what: &str, rule: &NumberRule<'_>) -> Option<Magnitude> {
+    fn table(&self, entry: &Entry<'_>, what: &str, rule: &NumberRule<'_>) -> Option<Magnitude<C>> {
         let fields = TableReader::open(entry, what)?;
         fields.reject_unknown_keys(keys::table("magnitude"));
         let help = "write it as `{ table = [[0, 1], [1, 2]], of = \"phi\" }`";
@@ -108,9 +107,7 @@ impl Magnitudes {
         let (table, signal) = (table?.value, signal?);
         let unit = match signal {
             Signal::Time => &SI,
-            Signal::Value(c) | Signal::Velocity(c) => {
-                fields.units().coordinate_unit(Coordinate::is_angle(c))
-            }
+            Signal::Value(c) | Signal::Velocity(c) => fields.units().coordinate_unit(c.is_angle()),
         };
         let name = format!("the table of {what}");
         let rows = table.rows([unit, rule.unit], &name)?;
@@ -123,7 +120,7 @@ impl Magnitudes {
         Some(Magnitude::Law(signal, Law::Spline(law)))
     }
 
-    fn of(&self, value: Value<'_>, what: &str) -> Option<Signal> {
+    fn of(&self, value: Value<'_>, what: &str) -> Option<Signal<C>> {
         let name = value.string(format_args!("`of` in {what}"))?;
         if let Some(signal) = self.signal(name, value) {
             return signal;

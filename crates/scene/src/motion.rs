@@ -1,6 +1,6 @@
 //! The free motion, and the calibration of one number to a period.
 
-use crate::coordinates::ParsedActuator;
+use crate::coordinates::NamedActuator;
 use crate::keys::table;
 use crate::number_paths::{SceneNumber, no_number};
 use crate::prescribed::{actuator_named, law_of, positive, require_actuators};
@@ -23,14 +23,13 @@ pub(crate) struct ParsedMotion<'a> {
     pub(crate) prescribed: Vec<Option<Entry<'a>>>,
     /// The laws of these, which [`Self::read_laws`] reads.
     pub(crate) laws: Vec<Option<Law>>,
-    pub(crate) events: Vec<NamedEvent>,
 }
 
 impl<'a> ParsedMotion<'a> {
     /// `can_start_at_rest`: loads or drives can move the mechanism.
     pub(crate) fn read(
         fields: &TableReader<'a>,
-        actuators: &[ParsedActuator<'_>],
+        actuators: &[NamedActuator<'_>],
         can_start_at_rest: bool,
     ) -> Self {
         fields.reject_unknown_keys(table("motion"));
@@ -40,7 +39,6 @@ impl<'a> ParsedMotion<'a> {
             duration: duration(fields),
             prescribed: vec![None; actuators.len()],
             laws: vec![None; actuators.len()],
-            events: Vec::new(),
         };
         if require_actuators(fields, actuators).is_none() {
             return parsed;
@@ -77,7 +75,7 @@ impl<'a> ParsedMotion<'a> {
     fn find_prescribed(
         &mut self,
         fields: &TableReader<'a>,
-        actuators: &[ParsedActuator<'_>],
+        actuators: &[NamedActuator<'_>],
     ) -> bool {
         let count = fields.log().count();
         let laws = fields.get("prescribed");
@@ -93,7 +91,7 @@ impl<'a> ParsedMotion<'a> {
     }
 
     /// At least one actuator has to be free, and exactly one where the duration is in periods.
-    fn count_free(&self, fields: &TableReader<'_>, actuators: &[ParsedActuator<'_>]) {
+    fn count_free(&self, fields: &TableReader<'_>, actuators: &[NamedActuator<'_>]) {
         let free = (0..actuators.len()).filter(|&k| self.prescribed[k].is_none());
         let free: Vec<_> = free.map(|k| actuators[k].name).collect();
         let names = list(free.iter().copied());
@@ -115,7 +113,7 @@ impl<'a> ParsedMotion<'a> {
     /// Reads the laws of the prescribed actuators, which start at `assembly_coordinates` (SI, by actuator).
     pub(crate) fn read_laws(
         &mut self,
-        actuators: &[ParsedActuator<'_>],
+        actuators: &[NamedActuator<'_>],
         assembly_coordinates: &[f64],
     ) {
         let end = match self.duration {
@@ -132,7 +130,11 @@ impl<'a> ParsedMotion<'a> {
     }
 
     /// The free motion, whose coordinates are at `start` where it does not say otherwise.
-    pub(crate) fn into_spec(self, start: &[f64]) -> Option<FreeMotionSpec> {
+    pub(crate) fn into_spec<C, R>(
+        self,
+        start: &[f64],
+        events: Vec<NamedEvent<C, R>>,
+    ) -> Option<FreeMotionSpec<C, R>> {
         let (mut initial_coordinates, mut initial_velocities) = (Vec::new(), Vec::new());
         for (k, &at) in start.iter().enumerate() {
             let prescribed = self.laws[k].as_ref().map(|law| law.eval(0.0));
@@ -147,7 +149,7 @@ impl<'a> ParsedMotion<'a> {
             initial_velocities,
             laws: self.laws,
             duration: self.duration?,
-            events: self.events,
+            events,
         })
     }
 }
@@ -155,7 +157,7 @@ impl<'a> ParsedMotion<'a> {
 /// Reports missing initial velocities of a motion without loads, drives and motion laws.
 fn report_missing_velocities(
     fields: &TableReader<'_>,
-    actuators: &[ParsedActuator<'_>],
+    actuators: &[NamedActuator<'_>],
     initial_velocities: &[Option<f64>],
 ) {
     let missing = (0..actuators.len()).filter(|&k| initial_velocities[k].is_none());
@@ -179,7 +181,7 @@ fn report_missing_velocities(
 struct PerActuator<'p, 'a> {
     key: &'static str,
     location: fn(ActuatorId) -> SceneLocation,
-    actuators: &'p [ParsedActuator<'p>],
+    actuators: &'p [NamedActuator<'p>],
     prescribed: &'p [Option<Entry<'a>>],
 }
 

@@ -19,7 +19,7 @@ const DEFAULT_POINTS: usize = 361;
 /// Reports a section of motion in a scene without actuators.
 pub(crate) fn require_actuators(
     fields: &TableReader<'_>,
-    actuators: &[impl NamedActuator],
+    actuators: &[NamedActuator<'_>],
 ) -> Option<()> {
     if actuators.is_empty() {
         let message = format!("there is a {} but no actuator", fields.what);
@@ -31,10 +31,10 @@ pub(crate) fn require_actuators(
 }
 
 /// The actuator that an entry is named by.
-pub(crate) fn actuator_named(entry: &Entry<'_>, actuators: &[impl NamedActuator]) -> Option<usize> {
-    let found = actuators.iter().position(|a| a.name() == entry.name);
+pub(crate) fn actuator_named(entry: &Entry<'_>, actuators: &[NamedActuator<'_>]) -> Option<usize> {
+    let found = actuators.iter().position(|a| a.name == entry.name);
     found.or_else(|| {
-        let names = actuators.iter().map(|a| a.name());
+        let names = actuators.iter().map(|a| a.name);
         let help = entry.log().choices(entry.name, "actuators", names);
         let message = format!("there is no actuator `{}`", shorten(entry.name));
         entry.reject(message, "unknown actuator", help)
@@ -46,25 +46,23 @@ pub(crate) fn actuator_named(entry: &Entry<'_>, actuators: &[impl NamedActuator]
 fn entries_by_actuator<'f, 'a>(
     fields: &'f TableReader<'a>,
     table: &'static TableSchema,
-    actuators: &[impl NamedActuator],
+    actuators: &[NamedActuator<'_>],
 ) -> Option<Vec<Option<&'f Entry<'a>>>> {
     let section = &fields.what;
     require_actuators(fields, actuators)?;
-    if let Some(a) = actuators.iter().find(|a| table.contains_key(a.name())) {
-        let name = shorten(a.name());
+    if let Some(a) = actuators.iter().find(|a| table.contains_key(a.name)) {
+        let name = shorten(a.name);
         let message = format!("actuator `{name}` has the name of a key of {section}");
         let help = format!("rename it: in {section} the name would be ambiguous");
-        return fields
-            .log()
-            .reject(message, &[(a.key(), "this name")], help);
+        return fields.log().reject(message, &[(&a.key, "this name")], help);
     }
     let mut entries = vec![None; actuators.len()];
     for entry in fields.unknown_entries(table) {
-        if let Some(k) = actuators.iter().position(|a| a.name() == entry.name) {
+        if let Some(k) = actuators.iter().position(|a| a.name == entry.name) {
             entries[k] = Some(entry);
             continue;
         }
-        let names = actuators.iter().map(|a| a.name()).chain(table.names());
+        let names = actuators.iter().map(|a| a.name).chain(table.names());
         let (name, kind) = (shorten(entry.name), format!("keys of {section}"));
         let help = fields.log().choices(entry.name, &kind, names);
         let message = format!("`{name}` in {section} is neither an actuator nor a key of it");
@@ -76,7 +74,7 @@ fn entries_by_actuator<'f, 'a>(
 /// `[prescribed]`; `start` holds each actuator's coordinate at assembly, SI.
 pub(crate) fn prescribed_motion(
     fields: &TableReader<'_>,
-    actuators: &[impl NamedActuator],
+    actuators: &[NamedActuator<'_>],
     start: &[f64],
 ) -> Option<PrescribedMotion> {
     let help = "add `duration = 2.0`: how long the motion lasts, in s";
@@ -85,7 +83,7 @@ pub(crate) fn prescribed_motion(
     let points = points(fields);
     let entries = entries_by_actuator(fields, table("prescribed"), actuators)?;
     let missing = actuators.iter().zip(&entries).filter(|(_, e)| e.is_none());
-    let missing: Vec<_> = missing.map(|(a, _)| a.name()).collect();
+    let missing: Vec<_> = missing.map(|(a, _)| a.name).collect();
     if let Some(names) = list(missing.iter().copied()) {
         let message = format!("[prescribed] has no law of {names}");
         let help = format!(
@@ -117,7 +115,7 @@ pub(crate) fn prescribed_motion(
 pub(crate) fn law_of(
     entry: &Entry<'_>,
     section: &str,
-    actuator: &impl NamedActuator,
+    actuator: &NamedActuator<'_>,
     (start, end): (f64, f64),
 ) -> Option<Law> {
     let fields = TableReader::open(entry, format!("`{}` in {section}", shorten(entry.name)))?;
@@ -154,7 +152,7 @@ fn points(fields: &TableReader<'_>) -> Option<usize> {
 /// `[coordinate-sweep]`; `start` holds each actuator's coordinate at assembly, SI.
 pub(crate) fn coordinate_sweep(
     fields: &TableReader<'_>,
-    actuators: &[impl NamedActuator],
+    actuators: &[NamedActuator<'_>],
     start: &[f64],
 ) -> Option<CoordinateSweep> {
     let before = fields.log().count();
@@ -191,7 +189,7 @@ pub(crate) fn coordinate_sweep(
     if swept.is_none() && fields.log().count() == before {
         let message = "[coordinate-sweep] does not name the swept actuator";
         let labels = [(&fields.span, "several actuators are possible")];
-        let first = actuators[0].name();
+        let first = actuators[0].name;
         let help = format!("give one of them an interval: `{first} = [0.0, 1.0]`");
         fields.log().report(message, &labels, help);
     }
@@ -214,7 +212,7 @@ enum SweepCoordinate {
     Swept([f64; 2]),
 }
 
-fn sweep_coordinate(entry: &Entry<'_>, actuator: &impl NamedActuator) -> Option<SweepCoordinate> {
+fn sweep_coordinate(entry: &Entry<'_>, actuator: &NamedActuator<'_>) -> Option<SweepCoordinate> {
     let what = format!("`{}` in [coordinate-sweep]", shorten(entry.name));
     let read = |value: Value<'_>| actuator.coordinate_value(value, &what);
     let value = entry.value;

@@ -147,11 +147,11 @@ pub struct SectionRequest {
 
 /// A coordinate with a name.
 #[derive(Debug, Clone, PartialEq)]
-pub struct NamedCoordinate {
+pub struct NamedCoordinate<C = Coordinate> {
     /// The name: no other coordinate's, no actuator's, no body's.
     pub name: String,
     /// What is measured.
-    pub coordinate: Coordinate,
+    pub coordinate: C,
 }
 
 /// A prescribed motion from t = 0.
@@ -182,7 +182,7 @@ pub struct CoordinateSweep {
 
 /// A free motion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FreeMotionSpec {
+pub struct FreeMotionSpec<C = Coordinate, R = Reaction> {
     /// Coordinate of each actuator at the start, rad or m; of a prescribed one, that of its law.
     pub initial_coordinates: Vec<f64>,
     /// Speed of each actuator at the start, rad/s or m/s; of a prescribed one, that of its law.
@@ -192,31 +192,31 @@ pub struct FreeMotionSpec {
     /// How long it lasts.
     pub duration: MotionDuration,
     /// The events that are located.
-    pub events: Vec<NamedEvent>,
+    pub events: Vec<NamedEvent<C, R>>,
 }
 
 /// An event of a free motion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct NamedEvent {
+pub struct NamedEvent<C = Coordinate, R = Reaction> {
     /// The name.
     pub name: String,
     /// What makes it.
-    pub trigger: EventTrigger,
+    pub trigger: EventTrigger<C, R>,
     /// Whether the motion ends with it.
     pub terminal: bool,
 }
 
 /// What makes an event.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum EventTrigger {
+pub enum EventTrigger<C = Coordinate, R = Reaction> {
     /// A coordinate passes a value, rad or m.
-    Reaches(Coordinate, f64),
+    Reaches(C, f64),
     /// The speed of a coordinate changes its sign.
-    Reversal(Coordinate),
+    Reversal(C),
     /// A reaction passes a value, N or N·m.
-    Reaction(Reaction, f64),
+    Reaction(R, f64),
     /// A coordinate completes a whole revolution from where it started.
-    Revolution(Coordinate),
+    Revolution(C),
 }
 
 /// How long a motion lasts. Above zero.

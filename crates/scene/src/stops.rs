@@ -1,6 +1,6 @@
 //! End stops: limits of free coordinates.
 
-use crate::coordinates::ParsedActuator;
+use crate::coordinates::NamedActuator;
 use crate::keys::table;
 use crate::motion::ParsedMotion;
 use crate::names::check;
@@ -15,7 +15,7 @@ use dwell_geometry::ActuatorId;
 /// The end stops of the section.
 pub(crate) fn stops(
     fields: &TableReader<'_>,
-    actuators: &[ParsedActuator<'_>],
+    actuators: &[NamedActuator<'_>],
     motion: Option<&ParsedMotion<'_>>,
 ) -> Vec<NamedStop> {
     let one = |(k, entry): (usize, &Entry<'_>)| {
@@ -28,7 +28,7 @@ pub(crate) fn stops(
 
 fn stop(
     entry: &Entry<'_>,
-    actuators: &[ParsedActuator<'_>],
+    actuators: &[NamedActuator<'_>],
     motion: Option<&ParsedMotion<'_>>,
 ) -> Option<NamedStop> {
     let fields = TableReader::open(entry, format!("end stop `{}`", shorten(entry.name)))?;

@@ -44,6 +44,7 @@ mod check;
 mod contents;
 pub mod cycle;
 pub mod equilibria;
+mod export;
 pub mod exported_runs;
 pub mod free_motion;
 pub mod linearise;
@@ -62,6 +63,7 @@ pub use cycle::compute::{CycleSearch, CycleStability, compute_cycle};
 pub use dwell_symbolic::Language;
 pub use equilibria::compute::compute_equilibria;
 pub use explain::{StudyError, SweepError};
+pub use export::{ExportRequest, compute_export};
 pub use exported_runs::{ColumnNames, ExportedTable, SampleInterpolation};
 pub use free_motion::compute::{MotionSolver, compute_free_motion};
 pub use linearise::compute::{OperatingPoint, compute_linearisation};
@@ -78,12 +80,16 @@ pub use {
     check::check,
     cycle::output::cycle,
     equilibria::output::equilibria,
+    export::output::{ExportTarget, export},
     exported_runs::reduce_runs,
     free_motion::output::{simulate, simulate_to_accuracy, simulate_with, simulate_within},
     linearise::output::linearise,
     output::{CommandResult, Outcome, PictureFormat, Pictures, add_summary},
     reduce::output::reduce,
-    space::{PreparedSpaceScene, analyse_in_space, check_in_space, reduce_in_space},
+    space::{
+        PreparedSpaceScene, analyse_in_space, check_in_space, export_in_space, reduce_in_space,
+        simulate_in_space,
+    },
     sweep::output::{ParameterSweep, RowStore, sweep},
     symbolic::output::{FormulaFormat, symbolic},
     trajectory::figures::PictureSpan,

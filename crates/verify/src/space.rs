@@ -11,13 +11,16 @@
 //! ```text
 //! e·d = 0,    u·d = 0,    u·w = 0,    (d·d − L²)/2L = 0,    u·d − h θ = 0                                   (2)
 //! ```
+//!
+//! and, of gear pairs, velocities of the wheels at the pitch point.
 
 mod rows;
 
-pub use rows::closure_error;
+pub use rows::{closure_error, mesh_error};
 
 use crate::error::{DenseError, Result};
 use dwell_geometry::space::{ActuatorKind, BodyMotion, Joint, Mechanism, Placement, Vec3, Wrench};
+use dwell_geometry::{BodyId, JointId};
 use dwell_kinetostatics::space::{Direction, LoadKind, Mass};
 use faer::Mat;
 use faer::linalg::solvers::Svd;
@@ -215,17 +218,22 @@ impl Bodies<'_> {
     fn all_rows(&self) -> (Vec<Row>, Vec<std::ops::Range<usize>>) {
         let mut rows = Vec::new();
         let mut of_joint = Vec::new();
-        for joint in &self.mechanism.joints {
+        for (j, joint) in self.mechanism.joints.iter().enumerate() {
             let start = rows.len();
-            rows.extend(self.rows(joint));
+            // A driven distance holds nothing by itself.
+            let driven = ActuatorKind::Length(JointId(j));
+            if self.mechanism.actuators.iter().all(|a| a.kind != driven) {
+                rows.extend(self.rows(joint));
+            }
             of_joint.push(start..rows.len());
         }
         for actuator in &self.mechanism.actuators {
             let joint = &self.mechanism.joints[actuator.kind.joint().0];
-            let u = self.arm(joint.bodies[0].0, joint.sides[0].axis);
+            let u = self.arm(joint.side_body(0).0, joint.sides[0].axis);
             rows.push(match actuator.kind {
                 ActuatorKind::Angle(_) => self.angle(joint, u),
                 ActuatorKind::Travel(_) => self.in_plane(joint, u),
+                ActuatorKind::Length(_) => self.distance(joint),
             });
         }
         (rows, of_joint)
@@ -277,6 +285,7 @@ impl Bodies<'_> {
         required
     }
 
+    // Long because it has one arm for each kind of load.
     fn subtract_load(&self, kind: &LoadKind, f: f64, masses: &[Mass], required: &mut [Wrench]) {
         let turned = |body: usize, direction: Direction| match direction {
             Direction::Ground(u) => u,
@@ -314,7 +323,89 @@ impl Bodies<'_> {
                 required[a.0].add_at(self.arm(a.0, points[0]), push, Vec3::ZERO);
                 required[b.0].add_at(self.arm(b.0, points[1]), -push, Vec3::ZERO);
             }
+            LoadKind::Spring {
+                bodies,
+                points,
+                free_length,
+            } => {
+                let d = self.point(bodies[1].0, points[1]) - self.point(bodies[0].0, points[0]);
+                let tension = f * (d.norm() - free_length);
+                self.pull_together(bodies, points, d.scaled(tension / d.norm()), required);
+            }
+            LoadKind::Damper { bodies, points } => {
+                let d = self.point(bodies[1].0, points[1]) - self.point(bodies[0].0, points[0]);
+                let [from, to] = [0, 1].map(|k| self.point_velocity(bodies[k].0, points[k]));
+                let tension = f * d.dot(to - from) / d.norm();
+                self.pull_together(bodies, points, d.scaled(tension / d.norm()), required);
+            }
+            LoadKind::JointTorque(joint) => self.turn(joint, f, required),
+            LoadKind::TorsionSpring { joint, free_angle } => {
+                let of = &self.mechanism.joints[joint.0];
+                let side = |k: usize, v: Vec3| self.arm(of.bodies[k].0, v);
+                let [n, m] = [0, 1].map(|k| side(k, of.sides[k].normal));
+                let sin = side(0, of.sides[0].axis).dot(n.cross(m));
+                // Without whole revolutions.
+                self.turn(joint, -f * (sin.atan2(n.dot(m)) - free_angle), required);
+            }
+            LoadKind::RotationalDamper(joint) => {
+                let of = &self.mechanism.joints[joint.0];
+                let [w, v] = of.bodies.map(|b| self.motions[b.0].angular_velocity);
+                let rate = self.arm(of.bodies[0].0, of.sides[0].axis).dot(v - w);
+                self.turn(joint, -f * rate, required);
+            }
+            LoadKind::SlideForce(joint) => self.slide(joint, f, required),
+            LoadKind::SlideDamper(joint) => {
+                let of = &self.mechanism.joints[joint.0];
+                let [a, b] = of.bodies;
+                let u = self.arm(a.0, of.sides[0].axis);
+                let q = self.point(b.0, of.sides[1].point);
+                // The rate along the axis, seen from the first body.
+                let of_first = self.motions[a.0].velocity
+                    + (self.motions[a.0].angular_velocity).cross(q - self.point(a.0, Vec3::ZERO));
+                let seen = self.point_velocity(b.0, of.sides[1].point) - of_first;
+                self.slide(joint, -f * u.dot(seen), required);
+            }
         }
+    }
+
+    /// The velocity of a point of a body.
+    fn point_velocity(&self, body: usize, point: Vec3) -> Vec3 {
+        let motion = &self.motions[body];
+        motion.velocity + motion.angular_velocity.cross(self.arm(body, point))
+    }
+
+    /// Takes off a tension, along the vector from the first point to the second.
+    fn pull_together(
+        &self,
+        bodies: [BodyId; 2],
+        points: [Vec3; 2],
+        tension: Vec3,
+        required: &mut [Wrench],
+    ) {
+        for (k, force) in [-tension, tension].into_iter().enumerate() {
+            let body = bodies[k].0;
+            required[body].add_at(self.arm(body, points[k]), force, Vec3::ZERO);
+        }
+    }
+
+    /// Takes off a couple on a joint's second body about the axis, and its reaction on the first.
+    fn turn(&self, joint: JointId, couple: f64, required: &mut [Wrench]) {
+        let joint = &self.mechanism.joints[joint.0];
+        let [a, b] = joint.bodies;
+        let couple = self.arm(a.0, joint.sides[0].axis).scaled(couple);
+        required[a.0].moment += couple;
+        required[b.0].moment -= couple;
+    }
+
+    /// Takes off a force on a joint's second body along the axis at that body's point, and its reaction on the first there.
+    fn slide(&self, joint: JointId, force: f64, required: &mut [Wrench]) {
+        let joint = &self.mechanism.joints[joint.0];
+        let [a, b] = joint.bodies;
+        let force = self.arm(a.0, joint.sides[0].axis).scaled(force);
+        let at = self.point(b.0, joint.sides[1].point);
+        let from = |body: usize| at - self.point(body, Vec3::ZERO);
+        required[a.0].add_at(from(a.0), force, Vec3::ZERO);
+        required[b.0].add_at(from(b.0), -force, Vec3::ZERO);
     }
 
     /// The reactions of multipliers, and which components no self-stress changes.
@@ -343,7 +434,8 @@ impl Bodies<'_> {
                 wrench.force += system.on_second[i].force.scaled(multipliers[i]);
                 wrench.moment += system.on_second[i].moment.scaled(multipliers[i]);
             }
-            let arm = self.arm(joint.bodies[1].0, joint.sides[1].point);
+            let at = self.point(joint.side_body(1).0, joint.sides[1].point);
+            let arm = at - self.placements[joint.bodies[1].0].position;
             wrench.moment -= arm.cross(wrench.force);
             wrench
         };

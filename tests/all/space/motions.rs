@@ -3,22 +3,35 @@
 use super::ONE_COORDINATE;
 use super::reference::{Reference, number, vector};
 use dwell_dynamics::{
-    Method, OdeState, OdeSystem, Options, ReducedState, SpaceMachine, SpaceOde, StepControl,
-    integrate,
+    CoordinateMode, Machine, MachineOde, Method, OdeState, OdeSystem, Options, Orbit, ReducedState,
+    StepControl, integrate,
 };
 use dwell_geometry::space::Vec3;
-use dwell_kinetostatics::space::{LoadKind, Model};
+use dwell_kinetostatics::Magnitude;
+use dwell_kinetostatics::space::{Load, LoadKind, Model};
 use serde_json::Value;
 
-fn machine(reference: &Reference, model: &Model, loads: &Value) -> SpaceMachine {
+fn machine(reference: &Reference, model: &Model, loads: &Value) -> Machine<Model> {
     let gravity = reference.gravity().filter(|_| loads != "none");
-    let loads = gravity.map(|g| (LoadKind::Gravity(g), 1.0));
-    SpaceMachine::new(model, loads.into_iter().collect())
+    let load = |g| Load {
+        name: "gravity".to_owned(),
+        kind: LoadKind::Gravity(g),
+        magnitude: Magnitude::Constant(1.0),
+    };
+    let loads: Vec<Load> = gravity.map(load).into_iter().collect();
+    let modes = vec![CoordinateMode::Free; model.plan().actuators()];
+    Machine::new(model.without_reactions(), &loads, modes, &[]).expect("a machine")
+}
+
+fn energy(machine: &Machine<Model>, y: &[f64]) -> [f64; 2] {
+    let mut workspace = machine.workspace();
+    let state = machine.evaluate(0.0, y, &mut workspace).expect("a pose");
+    state.energy()
 }
 
 /// The states at these times, by the method of Dormand and Prince of order 8.
-fn integrated(machine: &SpaceMachine, start: &[f64], times: &[f64]) -> Vec<Vec<f64>> {
-    let mut ode = SpaceOde::new(machine);
+fn integrated(machine: &Machine<Model>, start: &[f64], times: &[f64]) -> Vec<Vec<f64>> {
+    let mut ode = MachineOde::new(machine, 0.0, start).expect("a start");
     let mut state = OdeState {
         t: 0.0,
         y: start.to_vec(),
@@ -50,13 +63,12 @@ fn motions_of_one_coordinate_agree_with_the_references() {
             // Without the key: at rest at zero.
             let given = |key: &str| motion.get(key).map_or(0.0, number);
             let start = [given("q0"), given("qdot0")];
-            let orbit = machine
-                .orbit(ReducedState {
-                    t: 0.0,
-                    q: start[0],
-                    q_dot: start[1],
-                })
-                .unwrap_or_else(|e| panic!("{name}: {e}"));
+            let from = ReducedState {
+                t: 0.0,
+                q: start[0],
+                q_dot: start[1],
+            };
+            let orbit = Orbit::loaded(&machine, from).unwrap_or_else(|e| panic!("{name}: {e}"));
             let period = number(&motion["period_s"]);
             largest[0] = largest[0].max((orbit.period / period - 1.0).abs());
             let states = motion["states"].as_array().expect("states");
@@ -74,7 +86,7 @@ fn motions_of_one_coordinate_agree_with_the_references() {
                 }
             }
             let energies = [&start[..], &integrated[integrated.len() - 1]];
-            let [first, last] = energies.map(|y| machine.energy(y).expect("a pose"));
+            let [first, last] = energies.map(|y| energy(&machine, y));
             let scale = last[0].abs() + last[1].abs();
             let drift = (first[0] + first[1] - last[0] - last[1]).abs() / scale;
             println!("{name}: energy {drift:.0e}");
@@ -96,7 +108,7 @@ fn motions_of_one_coordinate_agree_with_the_references() {
 /// How far the points of a reference's state are from those at a coordinate, m.
 fn points_differ(
     reference: &Reference,
-    machine: &SpaceMachine,
+    machine: &Machine<Model>,
     q: f64,
     (state, motion): (&Value, &Value),
 ) -> f64 {
@@ -163,7 +175,7 @@ fn the_jacobian_is_that_of_the_equation_of_motion() {
     let reference = Reference::read("bricard-a04");
     let (model, _) = reference.model();
     let machine = machine(&reference, &model, &Value::Null);
-    let mut ode = SpaceOde::new(&machine);
+    let mut ode = MachineOde::new(&machine, 0.0, &[0.8, 1.7]).expect("a start");
     let (y, h) = ([0.8, 1.7], 1e-4);
     let (mut jacobian, mut rates) = ([0.0; 4], [[0.0; 2]; 4]);
     ode.jacobian(0.0, &y, &mut jacobian).expect("a pose");

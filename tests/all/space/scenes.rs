@@ -2,6 +2,7 @@
 
 use super::ONE_COORDINATE;
 use super::reference::{Reference, number};
+use dwell_kinetostatics::Magnitude;
 use dwell_scene::SpaceScene;
 use dwell_study::PreparedSpaceScene;
 use dwell_study::reduce::compute::ReducedScene;
@@ -25,7 +26,13 @@ fn scenes_agree_with_the_references() {
         let loads = prepared.unit_loads(&q).expect("poses");
         let columns = loads.map_or_else(Vec::new, |loads| loads.columns(&prepared));
         // In the references a unit of gravity is the whole of it.
-        let gravity = scene.loads.first().map_or(0.0, |load| load.magnitude);
+        let gravity = scene
+            .loads
+            .first()
+            .map_or(0.0, |load| match load.magnitude {
+                Magnitude::Constant(value) => value,
+                ref other => panic!("{other:?}"),
+            });
         let column = |name: &str| columns.iter().find(|(c, _)| c.name == name).map(|(_, v)| v);
         let largest = |part: &str| {
             let all = samples

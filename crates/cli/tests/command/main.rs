@@ -11,6 +11,7 @@ mod messages;
 mod near_branches;
 mod output;
 mod pictures;
+mod real_time;
 mod results;
 mod rows;
 mod space;

@@ -17,7 +17,7 @@ use super::independent::IndependentSet;
 use super::mode::sign;
 use super::{Contact, ContactMode, ContactWorkspace};
 use crate::error::Result;
-use dwell_kinetostatics::{ForceState, FrictionState, InverseDynamics};
+use dwell_kinetostatics::{ForceState, FrictionState, InverseDynamics, MachineModel};
 use dwell_numerics::{Scalar, lu};
 
 /// Rounds in which the weights and the forces are made to agree, the change with which they do, and rounds after which
@@ -62,9 +62,9 @@ pub(super) struct HeldContacts<T> {
 /// # Errors
 /// [`KinetostaticsError::SelfLocking`](dwell_kinetostatics::KinetostaticsError::SelfLocking) where surfaces that slide have
 /// no unique force, [`DynamicsError::NoContactMode`](crate::DynamicsError::NoContactMode) where no mode agrees with the forces.
-pub(crate) fn solve_contacts<T: Scalar>(
-    contacts: &[Contact],
-    state: &mut ForceState<'_, T>,
+pub(crate) fn solve_contacts<T: Scalar, M: MachineModel>(
+    contacts: &[Contact<M::CoordinateFunction>],
+    state: &mut ForceState<'_, T, M>,
     workspace: &mut ContactWorkspace<T>,
     unloaded: &Unloaded<'_, T>,
     accelerations: (&[T], &[Vec<T>]),
@@ -95,9 +95,9 @@ pub(crate) fn solve_contacts<T: Scalar>(
 }
 
 /// Solves for the forces at the modes of the workspace.
-pub(super) fn solve_at_modes<T: Scalar>(
-    contacts: &[Contact],
-    state: &mut ForceState<'_, T>,
+pub(super) fn solve_at_modes<T: Scalar, M: MachineModel>(
+    contacts: &[Contact<M::CoordinateFunction>],
+    state: &mut ForceState<'_, T, M>,
     workspace: &mut ContactWorkspace<T>,
     unloaded: &Unloaded<'_, T>,
     held: &mut HeldContacts<T>,
@@ -141,7 +141,10 @@ pub(super) fn solve_at_modes<T: Scalar>(
 }
 
 /// The magnitudes of the loads that depend on reactions, as their forces.
-fn read_forces<T: Scalar>(state: &ForceState<'_, T>, workspace: &mut ContactWorkspace<T>) {
+fn read_forces<T: Scalar, M: MachineModel>(
+    state: &ForceState<'_, T, M>,
+    workspace: &mut ContactWorkspace<T>,
+) {
     for (force, load) in workspace.forces.iter_mut().zip(state.frictions()) {
         *force = state.magnitudes()[load];
     }
@@ -149,9 +152,9 @@ fn read_forces<T: Scalar>(state: &ForceState<'_, T>, workspace: &mut ContactWork
 
 /// Solves for the forces of contacts that hold, with those of all others.
 // Long because it is one loop: the weights of those that hold depend on the reactions under all forces.
-fn hold<T: Scalar>(
-    contacts: &[Contact],
-    state: &mut ForceState<'_, T>,
+fn hold<T: Scalar, M: MachineModel>(
+    contacts: &[Contact<M::CoordinateFunction>],
+    state: &mut ForceState<'_, T, M>,
     workspace: &mut ContactWorkspace<T>,
     unloaded: &Unloaded<'_, T>,
     of: &mut HeldContacts<T>,
@@ -161,7 +164,9 @@ fn hold<T: Scalar>(
     let is_held = |j: &usize| held.iter().any(|&i| contacts[i].dependent == *j);
     others.clear();
     others.extend((0..count).filter(|j| !is_held(j)));
-    let limit = |contact: &Contact| contact.static_coefficient.max(f64::MIN_POSITIVE);
+    let limit = |contact: &Contact<M::CoordinateFunction>| {
+        contact.static_coefficient.max(f64::MIN_POSITIVE)
+    };
     of.set_next_weights(contacts, |contact| T::from_f64(limit(contact)), workspace);
     std::mem::swap(&mut of.weights, &mut of.next_weights);
     let mut last = f64::INFINITY;
@@ -207,7 +212,7 @@ fn hold<T: Scalar>(
         if of.basis.len() == of.held.len() {
             break;
         }
-        let press = |contact: &Contact| {
+        let press = |contact: &Contact<M::CoordinateFunction>| {
             let press = state.contact_force(contact.dependent, &workspace.reactions);
             press * T::from_f64(contact.static_coefficient)
         };
@@ -224,7 +229,7 @@ fn hold<T: Scalar>(
 
 impl<T: Scalar> HeldContacts<T> {
     /// Finds those whose mode is to hold, and the independent ones among them.
-    pub(super) fn find(&mut self, contacts: &[Contact], workspace: &ContactWorkspace<T>) {
+    pub(super) fn find<F>(&mut self, contacts: &[Contact<F>], workspace: &ContactWorkspace<T>) {
         let modes = workspace.modes.iter().enumerate();
         self.held.clear();
         let holds = modes.filter(|(_, mode)| **mode == ContactMode::Holds);
@@ -253,10 +258,10 @@ impl<T: Scalar> HeldContacts<T> {
     }
 
     /// Sets the next weight over √D of each contact that holds.
-    fn set_next_weights(
+    fn set_next_weights<F>(
         &mut self,
-        contacts: &[Contact],
-        of: impl Fn(&Contact) -> T,
+        contacts: &[Contact<F>],
+        of: impl Fn(&Contact<F>) -> T,
         workspace: &ContactWorkspace<T>,
     ) {
         let weight = |&i: &usize| {
@@ -284,7 +289,7 @@ impl<T: Scalar> HeldContacts<T> {
     }
 
     /// The forces of those that hold, without the others and by a unit of each of them.
-    fn solve_for_others(&mut self, contacts: &[Contact], workspace: &ContactWorkspace<T>) {
+    fn solve_for_others<F>(&mut self, contacts: &[Contact<F>], workspace: &ContactWorkspace<T>) {
         let Self {
             held,
             basis,
@@ -307,10 +312,10 @@ impl<T: Scalar> HeldContacts<T> {
     }
 
     /// Whether a contact is held by those that hold, whatever its own force is.
-    pub(super) fn hold_still(
+    pub(super) fn hold_still<F>(
         &self,
         i: usize,
-        contacts: &[Contact],
+        contacts: &[Contact<F>],
         workspace: &ContactWorkspace<T>,
     ) -> bool {
         let mut with: Vec<usize> = self.basis.clone();
@@ -337,9 +342,9 @@ type HeldRows<'h, T> = (&'h [usize], &'h [usize], &'h [T]);
 
 impl<T: Scalar> HoldingEquations<T> {
     /// Composes and factors them; where they are singular, no weight is far below the largest.
-    fn compose(
+    fn compose<F>(
         &mut self,
-        contacts: &[Contact],
+        contacts: &[Contact<F>],
         workspace: &ContactWorkspace<T>,
         of: HeldRows<'_, T>,
         weights: &[T],
@@ -363,9 +368,9 @@ impl<T: Scalar> HoldingEquations<T> {
     }
 
     /// Composes and factors the matrix; whether it is regular.
-    fn factor(
+    fn factor<F>(
         &mut self,
-        contacts: &[Contact],
+        contacts: &[Contact<F>],
         workspace: &ContactWorkspace<T>,
         (held, basis, coefficients): HeldRows<'_, T>,
     ) -> bool {

@@ -10,7 +10,7 @@
 use super::held::HeldContacts;
 use super::mode::sign;
 use super::{Contact, ContactMode};
-use dwell_kinetostatics::{ForceState, InverseDynamics};
+use dwell_kinetostatics::{ForceState, InverseDynamics, MachineModel};
 use dwell_numerics::Scalar;
 
 /// Working memory for the contacts of a machine.
@@ -43,8 +43,8 @@ pub(crate) struct ContactWorkspace<T> {
 
 impl<T: Scalar> ContactWorkspace<T> {
     /// For these contacts, so many free coordinates and loads, and results of this size.
-    pub(crate) fn new(
-        contacts: &[Contact],
+    pub(crate) fn new<F>(
+        contacts: &[Contact<F>],
         free: usize,
         loads: usize,
         result: &InverseDynamics<T>,
@@ -71,20 +71,20 @@ impl<T: Scalar> ContactWorkspace<T> {
 
     /// Collects them at a state, whose bodies have the accelerations of prescribed coordinates alone; `accelerations` are
     /// q̈⁰, and by load what a unit of it adds.
-    pub(super) fn collect(
+    pub(super) fn collect<M: MachineModel>(
         &mut self,
-        contacts: &[Contact],
-        state: &mut ForceState<'_, T>,
+        contacts: &[Contact<M::CoordinateFunction>],
+        state: &mut ForceState<'_, T, M>,
         (frictionless, by_load): (&[T], &[Vec<T>]),
     ) {
-        let bodies = state.bodies();
+        state.update_bodies();
         for (i, contact) in contacts.iter().enumerate() {
             let row = &self.rows[contact.dependent];
             let along = |q_ddot: &[T]| {
                 let terms = row.iter().zip(q_ddot);
                 terms.fold(T::from_f64(0.0), |sum, (w, q)| sum + *w * *q)
             };
-            let [_, speed, convective] = bodies.coordinate(contact.coordinate);
+            let [_, speed, convective] = state.coordinate_motion(contact.coordinate);
             self.speeds[i] = speed.value();
             self.convective[i] = convective;
             self.free[i] = convective + along(frictionless);

@@ -8,7 +8,7 @@ use super::held::{HeldContacts, Unloaded, solve_at_modes};
 use super::mode::sign;
 use super::{Contact, ContactMode, ContactWorkspace};
 use crate::error::{DynamicsError, Result};
-use dwell_kinetostatics::ForceState;
+use dwell_kinetostatics::{ForceState, MachineModel};
 use dwell_numerics::Scalar;
 
 /// Trials, and those more for each contact, after which no mode is found.
@@ -25,9 +25,9 @@ const ACCELERATION_TOLERANCE: f64 = 1e-9;
 /// # Errors
 /// Those of [`solve_at_modes`]; [`DynamicsError::NoContactMode`] where none agree with the forces.
 // Long because it is one loop: each trial decides the next.
-pub(super) fn find_modes<T: Scalar>(
-    contacts: &[Contact],
-    state: &mut ForceState<'_, T>,
+pub(super) fn find_modes<T: Scalar, M: MachineModel>(
+    contacts: &[Contact<M::CoordinateFunction>],
+    state: &mut ForceState<'_, T, M>,
     workspace: &mut ContactWorkspace<T>,
     unloaded: &Unloaded<'_, T>,
     held: &mut HeldContacts<T>,
@@ -89,10 +89,10 @@ pub(super) fn find_modes<T: Scalar>(
 
 /// The contacts that are farthest beyond their limits, or move although they are to hold; those that share a load let go
 /// together.
-fn beyond_their_limit<T: Scalar>(
+fn beyond_their_limit<T: Scalar, F>(
     open: &[usize],
     held: &HeldContacts<T>,
-    contacts: &[Contact],
+    contacts: &[Contact<F>],
     workspace: &ContactWorkspace<T>,
 ) -> Vec<usize> {
     let holds = open
@@ -119,9 +119,9 @@ fn beyond_their_limit<T: Scalar>(
 }
 
 /// Of the contacts that are to hold, the one that takes the largest force for it; none if none does.
-fn hardest_to_hold<T: Scalar>(
+fn hardest_to_hold<T: Scalar, F>(
     open: &[usize],
-    contacts: &[Contact],
+    contacts: &[Contact<F>],
     workspace: &ContactWorkspace<T>,
 ) -> Option<usize> {
     let holds = open
@@ -136,9 +136,9 @@ fn hardest_to_hold<T: Scalar>(
 }
 
 /// Distinguishes contacts that slide from those that are at their limit while others hold them.
-fn set_moving<T: Scalar>(
+fn set_moving<T: Scalar, F>(
     open: &[usize],
-    contacts: &[Contact],
+    contacts: &[Contact<F>],
     workspace: &mut ContactWorkspace<T>,
 ) {
     let mut held = HeldContacts::default();

@@ -9,7 +9,7 @@
 
 use crate::contact::{ContactEvent, ContactMode, ContactStep, Stop, StopChange};
 use crate::error::{DynamicsError, Result};
-use crate::machine::{Machine, MachineWorkspace};
+use crate::machine::{Machine, MachineWorkspace, MovingModel};
 
 /// Rebounds that last less in sum than this part of the motion are the last: the force changes in them by no more than
 /// such a part of itself, so that their sum is that of a geometric series to its square.
@@ -23,9 +23,9 @@ const MAX_IMPACTS: usize = 1000;
 /// # Errors
 /// [`DynamicsError`] where the state cannot be evaluated, or impacts follow each other without end.
 // Long because it is one event: what is touched decides what is struck.
-pub(super) fn pass_stops(
-    machine: &Machine,
-    workspace: &mut MachineWorkspace<f64>,
+pub(super) fn pass_stops<M: MovingModel>(
+    machine: &Machine<M>,
+    workspace: &mut MachineWorkspace<f64, M>,
     (t, y): (f64, &mut [f64]),
     step: &ContactStep<'_>,
     events: &mut Vec<ContactEvent>,
@@ -86,9 +86,9 @@ pub(super) fn pass_stops(
 }
 
 /// What comes to rest on its stop stays there while the force pushes.
-fn rest(
-    machine: &Machine,
-    workspace: &mut MachineWorkspace<f64>,
+fn rest<M: MovingModel>(
+    machine: &Machine<M>,
+    workspace: &mut MachineWorkspace<f64, M>,
     (t, y): (f64, &mut [f64]),
     (step, touched): (&ContactStep<'_>, &[bool]),
     events: &mut Vec<ContactEvent>,
@@ -132,9 +132,9 @@ fn stop_event(stop: usize, (t, y): (f64, &[f64]), change: StopChange) -> Contact
 }
 
 /// One impact, by (1), with its works.
-fn strike(
-    machine: &Machine,
-    workspace: &mut MachineWorkspace<f64>,
+fn strike<M: MovingModel>(
+    machine: &Machine<M>,
+    workspace: &mut MachineWorkspace<f64, M>,
     (t, y): (f64, &mut [f64]),
     stop: &Stop,
     restitution: f64,

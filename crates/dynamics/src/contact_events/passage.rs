@@ -2,7 +2,7 @@
 
 use crate::contact::{Contact, ContactEvent, ContactMode, ContactStep, independent};
 use crate::error::Result;
-use crate::machine::{Machine, MachineWorkspace};
+use crate::machine::{Machine, MachineWorkspace, MovingModel};
 use dwell_numerics::lu;
 
 /// Surfaces are at rest below this part of the largest speed that they had in the last step.
@@ -16,9 +16,9 @@ const AT_LIMIT: f64 = 1e-9;
 /// # Errors
 /// [`DynamicsError`](crate::DynamicsError) where no mode is found, or the state cannot be evaluated.
 // Long because it is one event: what is at rest, the modes, the speeds and the report follow from each other.
-pub(crate) fn pass(
-    machine: &Machine,
-    workspace: &mut MachineWorkspace<f64>,
+pub(crate) fn pass<M: MovingModel>(
+    machine: &Machine<M>,
+    workspace: &mut MachineWorkspace<f64, M>,
     (t, y): (f64, &mut [f64]),
     step: &ContactStep<'_>,
 ) -> Result<Vec<ContactEvent>> {
@@ -68,22 +68,23 @@ pub(crate) fn pass(
     let entry: Vec<ContactMode> = entry.into_iter().map(ContactMode::of_code).collect();
     let each = machine.contacts.iter().zip(entry.iter().zip(after));
     let changed = each.filter(|(_, (from, to))| !from.is_open() && from != to);
-    let event =
-        |(contact, (from, to)): (&Contact, (&ContactMode, &ContactMode))| ContactEvent::Friction {
+    let event = |(contact, (from, to)): (&Contact<_>, (&ContactMode, &ContactMode))| {
+        ContactEvent::Friction {
             t,
             y: y.to_vec(),
             load: contact.load,
             from: *from,
             to: *to,
-        };
+        }
+    };
     events.extend(changed.map(event));
     Ok(events)
 }
 
 /// Leaves the modes open of surfaces that an impact has given a speed, or taken one from.
-fn decide_by_speeds(
-    machine: &Machine,
-    workspace: &mut MachineWorkspace<f64>,
+fn decide_by_speeds<M: MovingModel>(
+    machine: &Machine<M>,
+    workspace: &mut MachineWorkspace<f64, M>,
     (t, y): (f64, &mut [f64]),
 ) -> Result<()> {
     /// Speeds below this part of the largest are rounding.
@@ -105,9 +106,9 @@ fn decide_by_speeds(
 }
 
 /// Takes off the speeds that surfaces that hold have within rounding, with the least change of momentum.
-fn stop_surfaces(
-    machine: &Machine,
-    workspace: &MachineWorkspace<f64>,
+fn stop_surfaces<M: MovingModel>(
+    machine: &Machine<M>,
+    workspace: &MachineWorkspace<f64, M>,
     y: &mut [f64],
     held: &[usize],
 ) {

@@ -3,7 +3,7 @@
 use super::NO_CYCLE;
 use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
-use crate::machine::Machine;
+use crate::machine::{Machine, MovingModel};
 use crate::machine_ode::MachineOde;
 use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, state_at};
 use crate::options::Options;
@@ -22,8 +22,8 @@ const REST_STEPS: usize = 1000;
 /// # Errors
 /// [`DynamicsError::ComesToRest`]; as of [`Machine::evaluate`] and [`integrate`], among them that the steps allowed are
 /// used up, where the machine never completes the revolutions.
-pub fn initial_transient(
-    machine: &Machine,
+pub fn initial_transient<M: MovingModel>(
+    machine: &Machine<M>,
     start: &[f64],
     revolutions: u32,
     options: &Options,
@@ -64,8 +64,8 @@ pub fn initial_transient(
 }
 
 /// Recognises a machine that has come to rest, where an integrator's steps grow without bound.
-struct RestMonitor<'m> {
-    ode: MachineOde<'m>,
+struct RestMonitor<'m, M: MovingModel> {
+    ode: MachineOde<'m, M>,
     rates: Vec<f64>,
     /// Coordinate, speed and states of the drives.
     states: usize,
@@ -76,8 +76,8 @@ struct RestMonitor<'m> {
     still_steps: usize,
 }
 
-impl<'m> RestMonitor<'m> {
-    fn new(machine: &'m Machine, start: &[f64]) -> Result<Self> {
+impl<'m, M: MovingModel> RestMonitor<'m, M> {
+    fn new(machine: &'m Machine<M>, start: &[f64]) -> Result<Self> {
         Ok(Self {
             ode: MachineOde::new(machine, 0.0, start)?,
             rates: vec![0.0; start.len()],

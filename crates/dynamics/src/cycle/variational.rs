@@ -3,13 +3,14 @@
 
 use super::CycleProblem;
 use crate::error::{DynamicsError, Result};
+use crate::machine::MovingModel;
 use crate::machine_ode::MachineOde;
 use crate::ode::OdeSystem;
 
 /// Among the states time takes the place of the coordinate; the columns of S follow them.
-pub(super) struct VariationalSystem<'t, 'm> {
-    problem: &'t CycleProblem<'m>,
-    ode: MachineOde<'m>,
+pub(super) struct VariationalSystem<'t, 'm, M: MovingModel> {
+    problem: &'t CycleProblem<'m, M>,
+    ode: MachineOde<'m, M>,
     /// Number of columns of S that are integrated.
     sensitivity_columns: usize,
     /// |q̇| of the last evaluation.
@@ -19,9 +20,9 @@ pub(super) struct VariationalSystem<'t, 'm> {
     jacobian: Vec<f64>,
 }
 
-impl<'t, 'm> VariationalSystem<'t, 'm> {
+impl<'t, 'm, M: MovingModel> VariationalSystem<'t, 'm, M> {
     pub(super) fn new(
-        problem: &'t CycleProblem<'m>,
+        problem: &'t CycleProblem<'m, M>,
         x: &[f64],
         sensitivity_columns: usize,
     ) -> Result<Self> {
@@ -76,7 +77,7 @@ impl<'t, 'm> VariationalSystem<'t, 'm> {
     }
 }
 
-impl OdeSystem for VariationalSystem<'_, '_> {
+impl<M: MovingModel> OdeSystem for VariationalSystem<'_, '_, M> {
     fn size(&self) -> usize {
         self.rhs.len() + self.sensitivity_columns * self.problem.unknowns()
     }

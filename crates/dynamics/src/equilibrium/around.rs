@@ -3,6 +3,7 @@
 use super::at_rest::AtRest;
 use super::{Equilibrium, NeutralDirection, Stability};
 use crate::error::Result;
+use crate::machine::MovingModel;
 use crate::state_space::{eigenvalues_about, linearise_where_it_holds};
 
 /// Below this part of the largest singular value the Jacobian says nothing of its direction, which is looked at over a
@@ -20,7 +21,7 @@ const SLIDE_STEPS: usize = 64;
 const MAX_SLIDE: f64 = 0.3;
 const MIN_SLIDE: f64 = 1e-12;
 
-impl AtRest<'_> {
+impl<M: MovingModel> AtRest<'_, M> {
     /// The equilibrium at the present state, which is one.
     pub(super) fn equilibrium(&mut self) -> Result<Equilibrium> {
         let factored = self.factor_here()?;

@@ -5,7 +5,7 @@
 //! are scaled to the size of the mechanism, so that directions along which nothing changes do no harm.
 
 use crate::error::{DynamicsError, Result};
-use crate::machine::{Machine, MachineWorkspace};
+use crate::machine::{Machine, MachineWorkspace, MovingModel};
 use crate::machine_ode::MachineOde;
 use crate::ode::OdeSystem;
 use dwell_numerics::{DoubleDouble, Scalar, lu};
@@ -36,10 +36,10 @@ const SMALL: f64 = 1e-4;
 const NO_COMPONENT: f64 = 1e-6;
 
 /// A machine at rest, with the working memory to find its equilibria.
-pub(super) struct AtRest<'m> {
-    pub(super) machine: &'m Machine,
-    ode: MachineOde<'m>,
-    workspace: MachineWorkspace,
+pub(super) struct AtRest<'m, M: MovingModel> {
+    pub(super) machine: &'m Machine<M>,
+    ode: MachineOde<'m, M>,
+    workspace: MachineWorkspace<f64, M>,
     pub(super) y: Vec<f64>,
     rates: Vec<f64>,
     jacobian: Vec<f64>,
@@ -136,16 +136,16 @@ impl Factored {
     }
 }
 
-impl<'m> AtRest<'m> {
-    pub(super) fn new(machine: &'m Machine) -> Result<Self> {
+impl<'m, M: MovingModel> AtRest<'m, M> {
+    pub(super) fn new(machine: &'m Machine<M>) -> Result<Self> {
         machine.require_intervals()?;
         if machine.depends_on_time() {
             return none("a load, drive or prescribed motion changes with time");
         }
         let n = machine.state_count();
-        let plan = machine.model().plan();
-        let size = machine.model().mechanism().size();
-        let arm = |&i: &usize| if plan.is_angle(i) { 1.0 } else { size };
+        let model = machine.model();
+        let size = model.size();
+        let arm = |&i: &usize| if model.is_angle(i) { 1.0 } else { size };
         Ok(Self {
             machine,
             ode: MachineOde::unscaled(machine),
@@ -308,7 +308,7 @@ impl<'m> AtRest<'m> {
     /// double-double numbers shows what closing the loops adds.
     pub(super) fn rounding(&mut self) -> Result<Vec<f64>> {
         let mut rounding = self.rounding_of_rates(FORCE_ROUNDING, COORDINATE_ROUNDING)?;
-        let mut workspace: MachineWorkspace<DoubleDouble> = self.machine.workspace();
+        let mut workspace: MachineWorkspace<DoubleDouble, M> = self.machine.workspace();
         let at: Vec<DoubleDouble> = self.y.iter().map(|&y| DoubleDouble::from_f64(y)).collect();
         let mut finer = vec![DoubleDouble::from_f64(0.0); at.len()];
         let state = self.machine.evaluate(0.0, &at, &mut workspace)?;

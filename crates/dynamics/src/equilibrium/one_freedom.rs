@@ -8,7 +8,7 @@
 use super::at_rest::{AtRest, none};
 use super::{Equilibrium, NeutralDirection, Stability};
 use crate::error::Result;
-use crate::machine::Machine;
+use crate::machine::{Machine, MovingModel};
 use dwell_numerics::root;
 use std::f64::consts::TAU;
 
@@ -53,13 +53,16 @@ enum Zero {
 /// # Errors
 /// [`DynamicsError::NoEquilibrium`](crate::DynamicsError::NoEquilibrium) where a drive never settles; and what stands in
 /// the way of an evaluation.
-pub fn equilibria(machine: &Machine, [from, to]: [f64; 2]) -> Result<Vec<Equilibrium>> {
+pub fn equilibria<M: MovingModel>(
+    machine: &Machine<M>,
+    [from, to]: [f64; 2],
+) -> Result<Vec<Equilibrium>> {
     let mut search = Search::new(machine, [from, to])?;
     let mut zeros = search.zeros()?;
     let revolutions = (to - from) / TAU;
     let is_end = |zero: Option<&Zero>, end: f64| matches!(zero, Some(Zero::At(q)) if *q == end);
     let at_both_ends = zeros.len() > 1 && is_end(zeros.first(), from) && is_end(zeros.last(), to);
-    let periodic = machine.model().plan().range().period().is_some();
+    let periodic = machine.model().range().period().is_some();
     if at_both_ends && revolutions == revolutions.round() && periodic {
         zeros.pop();
     }
@@ -88,7 +91,10 @@ pub fn equilibria(machine: &Machine, [from, to]: [f64; 2]) -> Result<Vec<Equilib
 ///
 /// # Errors
 /// As of [`equilibria`].
-pub fn static_force_and_potential(machine: &Machine, coordinates: &[f64]) -> Result<Vec<[f64; 2]>> {
+pub fn static_force_and_potential<M: MovingModel>(
+    machine: &Machine<M>,
+    coordinates: &[f64],
+) -> Result<Vec<[f64; 2]>> {
     let mut at_rest = of_one_freedom(machine)?;
     let mut workspace = machine.workspace();
     let mut found = Vec::with_capacity(coordinates.len());
@@ -102,7 +108,7 @@ pub fn static_force_and_potential(machine: &Machine, coordinates: &[f64]) -> Res
     Ok(found)
 }
 
-fn of_one_freedom(machine: &Machine) -> Result<AtRest<'_>> {
+fn of_one_freedom<M: MovingModel>(machine: &Machine<M>) -> Result<AtRest<'_, M>> {
     let at_rest = AtRest::new(machine)?;
     match machine.free().len() {
         1 => Ok(at_rest),
@@ -111,15 +117,15 @@ fn of_one_freedom(machine: &Machine) -> Result<AtRest<'_>> {
 }
 
 /// The search over an interval.
-struct Search<'m> {
-    at_rest: AtRest<'m>,
+struct Search<'m, M: MovingModel> {
+    at_rest: AtRest<'m, M>,
     samples: Vec<Sample>,
     /// Whether friction holds at rest.
     sticks: bool,
 }
 
-impl<'m> Search<'m> {
-    fn new(machine: &'m Machine, [from, to]: [f64; 2]) -> Result<Self> {
+impl<'m, M: MovingModel> Search<'m, M> {
+    fn new(machine: &'m Machine<M>, [from, to]: [f64; 2]) -> Result<Self> {
         let mut at_rest = of_one_freedom(machine)?;
         let position = |k: usize| from + (to - from) * k as f64 / PARTS as f64;
         for k in 0..=PARTS {

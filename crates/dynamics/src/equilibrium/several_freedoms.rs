@@ -6,7 +6,7 @@
 use super::Equilibrium;
 use super::at_rest::{AtRest, none};
 use crate::error::{DynamicsError, Result};
-use crate::machine::Machine;
+use crate::machine::{Machine, MovingModel};
 use std::f64::consts::TAU;
 
 /// Two equilibria are the same whose coordinates differ by less, rad or m, beside their errors.
@@ -19,8 +19,8 @@ const SAME: f64 = 1e-6;
 /// # Errors
 /// [`DynamicsError::Unbalanced`] or [`DynamicsError::NoEquilibrium`] where there is none; and what stands in the way of
 /// the evaluation of every start.
-pub fn equilibria_from_starts(
-    machine: &Machine,
+pub fn equilibria_from_starts<M: MovingModel>(
+    machine: &Machine<M>,
     first: &[f64],
     ranges: &[[f64; 2]],
     starts: usize,
@@ -68,8 +68,8 @@ pub fn equilibria_from_starts(
 }
 
 /// Why there is no equilibrium: a force that never changes its direction, or else an evaluation that failed.
-fn cause(
-    machine: &Machine,
+fn cause<M: MovingModel>(
+    machine: &Machine<M>,
     forces: &[Option<[f64; 2]>],
     failure: Option<DynamicsError>,
 ) -> DynamicsError {
@@ -97,14 +97,14 @@ fn fractions(n: usize, k: usize) -> impl Iterator<Item = f64> {
     (1..=n).map(move |j| (0.5 + k as f64 * root.powi(-(j as i32))).fract())
 }
 
-struct Search<'m, 'a> {
-    at_rest: AtRest<'m>,
+struct Search<'m, 'a, M: MovingModel> {
+    at_rest: AtRest<'m, M>,
     first: &'a [f64],
     ranges: &'a [[f64; 2]],
     found: Vec<Equilibrium>,
 }
 
-impl Search<'_, '_> {
+impl<M: MovingModel> Search<'_, '_, M> {
     /// The static forces along the free coordinates at a start.
     fn forces_at(&mut self, start: &[f64]) -> Result<Vec<f64>> {
         self.at_rest.begin_at(start);
@@ -134,7 +134,7 @@ impl Search<'_, '_> {
     /// Turns angles by whole revolutions into their ranges; whether the state is then within them, and balanced.
     fn move_into_ranges(&mut self) -> Result<bool> {
         let before = self.at_rest.y.clone();
-        let plan = self.at_rest.machine.model().plan();
+        let model = self.at_rest.machine.model();
         for (k, (&i, &[from, to])) in self
             .at_rest
             .machine
@@ -144,7 +144,7 @@ impl Search<'_, '_> {
             .enumerate()
         {
             let q = &mut self.at_rest.y[k];
-            if plan.is_angle(i) {
+            if model.is_angle(i) {
                 *q -= TAU * ((*q - from) / TAU).floor();
             }
             if !(from..=to).contains(q) {
@@ -170,7 +170,7 @@ impl Search<'_, '_> {
 ///
 /// # Errors
 /// [`DynamicsError::NoEquilibrium`] where it finds none; and what stands in the way of an evaluation.
-pub fn equilibrium_near(machine: &Machine, y: &[f64]) -> Result<Equilibrium> {
+pub fn equilibrium_near<M: MovingModel>(machine: &Machine<M>, y: &[f64]) -> Result<Equilibrium> {
     let mut at_rest = AtRest::new(machine)?;
     if machine.free().is_empty() {
         return none("no coordinate is free");

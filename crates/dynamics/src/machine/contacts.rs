@@ -1,13 +1,13 @@
 //! The contacts of a machine: frictions that hold at rest, and end stops, with their place among the states.
 
 use super::workspace::EquationWorkspace;
-use super::{Machine, MachineError, NonconservativeSource};
+use super::{Machine, MachineError, MovingModel, NonconservativeSource};
 use crate::contact::{ContactMode, EndStop, one_sided};
 use crate::error::{DynamicsError, Result};
 use dwell_numerics::Scalar;
 use std::ops::Range;
 
-impl Machine {
+impl<M: MovingModel> Machine<M> {
     /// The same with end stops.
     ///
     /// # Errors

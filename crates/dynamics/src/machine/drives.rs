@@ -1,30 +1,32 @@
 //! Drives and their rotors in the equation of motion.
 
 use super::workspace::EquationWorkspace;
-use super::{Machine, MachineState, MachineWorkspace};
+use super::{Machine, MachineState, MachineWorkspace, MovingModel};
 use crate::drive::CompiledDrive;
 use crate::error::Result;
 use crate::state_switches::{HeldSource, SourceState, StateSwitches};
-use dwell_geometry::body_states::BodyStates;
-use dwell_kinetostatics::{ForceState, KinetostaticsError, LoadedState, Model, Signal};
+use dwell_kinetostatics::{ForceState, KinematicState, KinetostaticsError, LoadedState, Signal};
 use dwell_numerics::Scalar;
 
 /// The switches of all loads and drives.
-pub(super) fn state_switches(model: &Model, drives: &[CompiledDrive]) -> StateSwitches {
+pub(super) fn state_switches<M: MovingModel>(
+    model: &M,
+    drives: &[CompiledDrive<M>],
+) -> StateSwitches {
     let loads = model.loads().iter().enumerate();
     let loads = loads.map(|(l, load)| (l, &load.magnitude, None));
     let drives = drives.iter();
     StateSwitches::of(loads.chain(drives.map(|d| (d.load, &d.input, Some(d)))))
 }
 
-impl Machine {
+impl<M: MovingModel> Machine<M> {
     /// A load, or the drive that acts by it, at a state.
     pub(crate) fn source_state(
         &self,
         load: usize,
-        state: &MachineState<'_>,
+        state: &MachineState<'_, f64, M>,
         y: &[f64],
-    ) -> SourceState<'_> {
+    ) -> SourceState<'_, M> {
         let drive = self.drives.iter().find(|drive| drive.load == load);
         let magnitude = match drive {
             Some(drive) => &drive.input,
@@ -44,13 +46,14 @@ impl Machine {
         &self,
         (t, y): (f64, &[f64]),
         rates: &[f64],
-        workspace: &mut MachineWorkspace<f64>,
+        workspace: &mut MachineWorkspace<f64, M>,
         held: &[HeldSource],
         out: &mut [[f64; 2]],
     ) -> Result<()> {
         let mut state = self.evaluate(t, y, workspace)?;
         let of_drives = 2 * self.free.len();
-        let moving = |state: &mut MachineState<'_>, of| state.bodies().coordinate(of);
+        let moving =
+            |state: &mut MachineState<'_, f64, M>, of| state.coordinate_with_acceleration(of);
         let source_state = |load: usize, signals: &mut Vec<[f64; 2]>| {
             for signal in self.model.compiled_signals(load) {
                 signals.push(match *signal {
@@ -82,12 +85,9 @@ impl Machine {
         &self,
         load: usize,
         held: &HeldSource,
-        workspace: &mut MachineWorkspace<T>,
+        workspace: &mut MachineWorkspace<T, M>,
     ) {
-        workspace
-            .inner
-            .held_pieces(load)
-            .clone_from(&held.magnitude);
+        M::held_pieces(&mut workspace.inner, load).clone_from(&held.magnitude);
         if let Some(d) = self.drives.iter().position(|drive| drive.load == load) {
             workspace.equation.held_drives[d] = held.drive;
         }
@@ -108,7 +108,7 @@ impl Machine {
         t: f64,
         drive_states: &[T],
         input_offsets: &[T],
-        state: &mut LoadedState<'_, T>,
+        state: &mut LoadedState<'_, T, M>,
         equation: &mut EquationWorkspace<T>,
     ) -> Result<()> {
         for (d, drive) in self.drives.iter().enumerate() {
@@ -129,21 +129,22 @@ impl Machine {
     /// Reads the accelerations of the drives' coordinates.
     pub(super) fn read_drive_accelerations<T: Scalar>(
         &self,
-        bodies: &BodyStates<T>,
+        state: &KinematicState<'_, T, M>,
         equation: &mut EquationWorkspace<T>,
     ) {
         for (drive, acceleration) in self.drives.iter().zip(&mut equation.drive_accelerations) {
-            [_, _, *acceleration] = bodies.coordinate(drive.measured);
+            [_, _, *acceleration] = state.coordinate_motion(drive.measured);
         }
     }
 
     /// Adds the rotors: N² J times the unit-load responses of their drives and s̈ = S q̈ + bias acceleration.
     pub(super) fn add_rotor_inertia<T: Scalar>(
         &self,
-        state: &mut ForceState<'_, T>,
+        state: &mut ForceState<'_, T, M>,
         equation: &mut EquationWorkspace<T>,
     ) -> Result<()> {
-        self.read_drive_accelerations(state.bodies(), equation);
+        state.update_bodies();
+        self.read_drive_accelerations(state, equation);
         for (drive, &bias) in self.drives.iter().zip(&equation.drive_accelerations) {
             if drive.reflected_inertia <= 0.0 {
                 continue;
@@ -164,7 +165,7 @@ impl Machine {
     /// The drives' forces without those that accelerate their rotors, at `drive_accelerations`.
     pub(super) fn set_net_drive_forces<T: Scalar>(
         &self,
-        state: &mut ForceState<'_, T>,
+        state: &mut ForceState<'_, T, M>,
         equation: &EquationWorkspace<T>,
     ) -> Result<(), KinetostaticsError> {
         let drives = self.drives.iter().zip(&equation.drive_forces);

@@ -1,11 +1,11 @@
 //! What an impact on an end stop does to a machine: speeds and works.
 
-use super::{Machine, MachineWorkspace, NonconservativeSource};
+use super::{Machine, MachineWorkspace, MovingModel, NonconservativeSource};
 use crate::contact::Stop;
 use crate::error::{DynamicsError, Result};
 use dwell_numerics::lu;
 
-impl MachineWorkspace<f64> {
+impl<M: MovingModel> MachineWorkspace<f64, M> {
     /// The changes of the free coordinates' speeds by a unit of impulse along one of them, at the last state.
     pub(crate) fn unit_impulse(&self, free: usize) -> Vec<f64> {
         let equation = &self.equation;
@@ -35,7 +35,7 @@ impl MachineWorkspace<f64> {
     }
 }
 
-impl Machine {
+impl<M: MovingModel> Machine<M> {
     /// Refuses a state beyond an end stop, by more than a rounding.
     pub(crate) fn check_start(&self, y: &[f64]) -> Result<()> {
         let beyond = |stop: &&Stop| {
@@ -54,7 +54,7 @@ impl Machine {
     /// actuators whose motion is prescribed. `changes` are those of the free speeds.
     pub(crate) fn add_impact_works(
         &self,
-        workspace: &MachineWorkspace<f64>,
+        workspace: &MachineWorkspace<f64, M>,
         (y, changes): (&mut [f64], &[f64]),
         (stop, impulse): (&Stop, f64),
     ) {

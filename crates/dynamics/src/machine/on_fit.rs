@@ -2,29 +2,134 @@
 
 use super::workspace::EquationWorkspace;
 use super::{Machine, MachineState};
-use crate::change_point_fit::{ChangePointFit, FitWorkspace, set_motion};
+use crate::change_point_fit::{FitWindow, FitWorkspace, set_motion};
 use crate::error::{Result, positive_inertia};
 use dwell_geometry::{Motion, Pose};
 use dwell_kinetostatics::{
-    EvaluatedState, ForceState, InverseDynamics, Magnitude, Model, Workspace,
+    EvaluatedState, ForceState, InverseDynamics, MachineModel, Magnitude, Model, Workspace, space,
 };
 use dwell_numerics::Scalar;
 use dwell_numerics::polynomial_fit::{PolynomialFit, chebyshev_nodes};
+use std::fmt::Debug;
 
 /// Nodes on each side of the window, and highest degree, of the fit of the reactions.
 const REACTION_NODES: usize = 8;
 const REACTION_DEGREE: usize = 8;
 
-impl Machine {
+/// A model that moves: with what takes its place where a motion crosses a change point, if it can.
+///
+/// A machine in space is made as one in the plane:
+///
+/// ```
+/// use dwell_dynamics::{CoordinateMode, Machine, Orbit, ReducedState};
+/// use dwell_geometry::Body;
+/// use dwell_geometry::space::{Actuator, Assembly, Joint, JointKind, Mechanism, Side, vec3};
+/// use dwell_kinetostatics::Magnitude;
+/// use dwell_kinetostatics::space::{Load, LoadKind, Mass, Model};
+/// use std::f64::consts::{PI, TAU};
+///
+/// // Mach's pendulum: 1 kg at 1 m from an axis that is inclined by 60°, so that it swings as under g cos 60°.
+/// let (sin, cos) = (PI / 3.0).sin_cos();
+/// let lowest = vec3(sin, 0.0, -cos);
+/// let side = Side { axis: vec3(cos, 0.0, sin), normal: lowest, ..Side::default() };
+/// let mechanism = Mechanism {
+///     bodies: ["ground", "pendulum"].map(Body::named).into(),
+///     ground: 0,
+///     joints: vec![Joint::new("A", [0, 1], JointKind::Revolute, [side; 2])],
+///     actuators: vec![Actuator::angle("q", 0)],
+/// };
+/// let masses = [Mass::default(), Mass { mass: 1.0, center: lowest, inertia: [0.0; 6] }];
+/// let model = Model::new(&mechanism, &masses, &Assembly::at(&[0.0]), &[])?;
+/// let weight = Load {
+///     name: "weight".into(),
+///     kind: LoadKind::Gravity(vec3(0.0, 0.0, -1.0)),
+///     magnitude: Magnitude::Constant(9.81),
+/// };
+/// let machine = Machine::new(model, &[weight], vec![CoordinateMode::Free], &[])?;
+///
+/// let orbit = Orbit::loaded(&machine, ReducedState { t: 0.0, q: 0.01, q_dot: 0.0 })?;
+/// // T = 2π √(l / g cos α) (1 + q₀²/16 + …)
+/// let period = TAU / (9.81 * cos).sqrt() * (1.0 + 0.01 * 0.01 / 16.0);
+/// assert!((orbit.period / period - 1.0).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub trait MovingModel: MachineModel {
+    /// The part of the coordinate on which a fit takes the place of the model.
+    type FitWindow: Debug + Clone + PartialEq + Send + Sync;
+
+    /// The distance of a coordinate from the change point of a window, if it is within.
+    fn offset_within(window: &Self::FitWindow, q: f64) -> Option<f64>;
+
+    /// As [`Machine::evaluate`] within the window of a fit, at a distance from the change point; the memory is that of
+    /// [`MachineWorkspace`](super::MachineWorkspace).
+    ///
+    /// # Errors
+    /// As of [`Machine::evaluate`].
+    #[doc(hidden)]
+    fn evaluate_on_fit<'a, T: Scalar>(
+        machine: &'a Machine<Self>,
+        fit: (&Self::FitWindow, f64),
+        at: (f64, &[T]),
+        memory: (&[T], &'a mut Self::Workspace<T>),
+        equation: &mut EquationWorkspace<T>,
+    ) -> Result<ForceState<'a, T, Self>>;
+
+    /// As [`MachineState::outputs`] within the window.
+    ///
+    /// # Errors
+    /// As of [`MachineState::outputs`].
+    #[doc(hidden)]
+    fn outputs_on_fit<'o>(
+        state: &MachineState<'_, f64, Self>,
+        fit: (&Self::FitWindow, f64),
+        output_model: &'o Self,
+        workspace: &'o mut Self::Workspace<f64>,
+        result: &'o mut InverseDynamics<f64>,
+    ) -> Result<EvaluatedState<'o, f64, Self>>;
+}
+
+/// A model in space crosses no change point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoFit {}
+
+impl MovingModel for space::Model {
+    type FitWindow = NoFit;
+
+    fn offset_within(window: &NoFit, _: f64) -> Option<f64> {
+        match *window {}
+    }
+
+    fn evaluate_on_fit<'a, T: Scalar>(
+        _: &'a Machine<Self>,
+        (window, _): (&NoFit, f64),
+        _: (f64, &[T]),
+        _: (&[T], &'a mut Self::Workspace<T>),
+        _: &mut EquationWorkspace<T>,
+    ) -> Result<ForceState<'a, T, Self>> {
+        match *window {}
+    }
+
+    fn outputs_on_fit<'o>(
+        _: &MachineState<'_, f64, Self>,
+        (window, _): (&NoFit, f64),
+        _: &'o Self,
+        _: &'o mut Self::Workspace<f64>,
+        _: &'o mut InverseDynamics<f64>,
+    ) -> Result<EvaluatedState<'o, f64, Self>> {
+        match *window {}
+    }
+}
+
+impl<M: MovingModel> Machine<M> {
     /// The change-point fit within whose window a coordinate is, and its distance from the change point.
     #[inline]
-    pub(crate) fn fit_at<T: Scalar>(&self, q: Option<&T>) -> Option<(&ChangePointFit, f64)> {
+    pub(crate) fn fit_at<T: Scalar>(&self, q: Option<&T>) -> Option<(&M::FitWindow, f64)> {
         if self.fit_windows.is_empty() {
             return None;
         }
         let q = q?.value();
         let mut windows = self.fit_windows.iter();
-        windows.find_map(|window| Some((window.fit.as_ref(), window.offset_within(q)?)))
+        windows.find_map(|window| Some((window, M::offset_within(window, q)?)))
     }
 
     /// Whether a state is within the window of a change-point fit. There [`Machine::evaluate`] yields the states of
@@ -32,19 +137,27 @@ impl Machine {
     pub fn is_in_fit_window(&self, y: &[f64]) -> bool {
         self.fit_at(y.first()).is_some()
     }
+}
+
+impl MovingModel for Model {
+    type FitWindow = FitWindow;
+
+    #[inline]
+    fn offset_within(window: &FitWindow, q: f64) -> Option<f64> {
+        window.offset_within(q)
+    }
 
     /// As [`Machine::evaluate`] within the window of a fit.
-    pub(super) fn evaluate_on_fit<'a, T: Scalar>(
-        &'a self,
-        (fit, x): (&ChangePointFit, f64),
-        t: f64,
-        drive_states: &[T],
-        input_offsets: &[T],
-        inner: &'a mut Workspace<T>,
+    fn evaluate_on_fit<'a, T: Scalar>(
+        machine: &'a Machine,
+        (window, x): (&FitWindow, f64),
+        (t, drive_states): (f64, &[T]),
+        (input_offsets, inner): (&[T], &'a mut Workspace<T>),
         equation: &mut EquationWorkspace<T>,
     ) -> Result<ForceState<'a, T>> {
-        let plan = self.model.plan();
-        let new = || Box::new(FitWorkspace::new(&self.model));
+        let (fit, model) = (window.fit.as_ref(), &machine.model);
+        let plan = model.plan();
+        let new = || Box::new(FitWorkspace::new(model));
         let mut workspace = equation.fit_workspace.take().unwrap_or_else(new);
         let (q, q_dot) = (equation.q[0], equation.q_dot[0]);
         let x = q - T::from_f64(q.value() - x);
@@ -63,15 +176,13 @@ impl Machine {
             unit_states.fill(plan, pose, unit_motion);
             set_motion(values, [q_dot, zero], motion);
         };
-        let state = self
-            .model
-            .given_kinematic_state(&equation.q_dot, inner, set);
+        let state = model.given_kinematic_state(&equation.q_dot, inner, set);
         let mut state = state.apply_loads(t)?;
-        self.evaluate_drives(t, drive_states, input_offsets, &mut state, equation)?;
+        machine.evaluate_drives(t, drive_states, input_offsets, &mut state, equation)?;
         let mut state = state.wrenches()?;
         let unit_states = &workspace.unit_states;
-        let [mut m, mut half_dm] = self.model.inertia_sums(unit_states);
-        for drive in &self.drives {
+        let [mut m, mut half_dm] = model.inertia_sums(unit_states);
+        for drive in &machine.drives {
             let [_, first, second] = unit_states.coordinate(drive.measured);
             m += T::from_f64(drive.reflected_inertia) * first * first;
             half_dm += T::from_f64(drive.reflected_inertia) * first * second;
@@ -84,26 +195,33 @@ impl Machine {
         let q_ddot = (force - half_dm * q_dot * q_dot) / m;
         equation.q_ddot[0] = q_ddot;
         let set = |motion: &mut Motion<T>| set_motion(&workspace.values, [q_dot, q_ddot], motion);
-        self.read_drive_accelerations(state.bodies_with(set), equation);
-        self.set_net_drive_forces(&mut state, equation)?;
+        state.bodies_with(set);
+        machine.read_drive_accelerations(&state, equation);
+        machine.set_net_drive_forces(&mut state, equation)?;
         equation.fit_workspace = Some(workspace);
         Ok(state)
     }
-}
 
-impl MachineState<'_> {
-    /// As [`MachineState::outputs`] within the window. A reaction that is not determined at the change point is
-    /// not a number.
-    pub(super) fn outputs_on_fit<'o>(
-        &self,
-        (fit, x): (&ChangePointFit, f64),
+    /// A reaction that is not determined at the change point is not a number.
+    fn outputs_on_fit<'o>(
+        machine_state: &MachineState<'_>,
+        (window, x): (&FitWindow, f64),
         output_model: &'o Model,
         workspace: &'o mut Workspace<f64>,
         result: &'o mut InverseDynamics<f64>,
     ) -> Result<EvaluatedState<'o>> {
-        let (q_dot, q_ddot) = (&self.equation.q_dot, &self.equation.q_ddot);
+        let fit = window.fit.as_ref();
+        let (q_dot, q_ddot) = (
+            &machine_state.equation.q_dot,
+            &machine_state.equation.q_ddot,
+        );
         result.tau.fill(0.0);
-        let q = self.equation.q.first().copied().unwrap_or(fit.center);
+        let q = machine_state
+            .equation
+            .q
+            .first()
+            .copied()
+            .unwrap_or(fit.center);
         let center = q - x;
         // Reactions are known worse than poses, and needed in the window alone.
         let fit_radius = fit.fit_radius.min(3.0 * fit.half_width);
@@ -112,10 +230,10 @@ impl MachineState<'_> {
             let (mut inner, mut branch_result) = (model.workspace(), model.result_buffer());
             for d in chebyshev_nodes(fit.half_width, fit_radius, REACTION_NODES) {
                 let state = model.kinematic_state(&[center + direction * d], q_dot, &mut inner)?;
-                let mut state = state.apply_loads(self.t)?;
+                let mut state = state.apply_loads(machine_state.t)?;
                 for (load, one) in model.loads().iter().enumerate() {
                     if matches!(one.magnitude, Magnitude::External(_)) {
-                        state.set_magnitude(load, self.magnitudes()[load]);
+                        state.set_magnitude(load, machine_state.magnitudes()[load]);
                     }
                 }
                 state.evaluate(q_ddot, &mut branch_result)?;
@@ -137,9 +255,9 @@ impl MachineState<'_> {
         }
         // The bodies and loads are as the machine has them.
         let set = |pose: &mut Pose<f64>, motion: &mut Motion<f64>| {
-            pose.clone_from(self.pose());
-            motion.clone_from(self.forces.motion());
+            pose.clone_from(machine_state.pose());
+            motion.clone_from(machine_state.forces.motion());
         };
-        Ok(output_model.given_state(q_dot, self.magnitudes(), workspace, result, set)?)
+        Ok(output_model.given_state(q_dot, machine_state.magnitudes(), workspace, result, set)?)
     }
 }

@@ -1,6 +1,6 @@
 //! The forces of a machine whose motion slides along the switch of a load: those of both sides, by the part of each.
 
-use super::{Machine, MachineWorkspace};
+use super::{Machine, MachineWorkspace, MovingModel};
 use crate::error::Result;
 use crate::ode::OdeState;
 use crate::sliding::{SideRates, Sliding};
@@ -14,7 +14,7 @@ pub struct SlidingForces {
     pub magnitudes: Vec<f64>,
 }
 
-impl Machine {
+impl<M: MovingModel> Machine<M> {
     /// The accelerations and the magnitudes of loads that keep a motion on its switch, at a state.
     ///
     /// # Errors
@@ -23,7 +23,7 @@ impl Machine {
         &self,
         sliding: &Sliding,
         at: &OdeState,
-        workspace: &mut MachineWorkspace<f64>,
+        workspace: &mut MachineWorkspace<f64, M>,
     ) -> Result<SlidingForces> {
         let mut held = Vec::new();
         let mut sides = Vec::with_capacity(2);

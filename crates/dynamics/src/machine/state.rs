@@ -1,33 +1,31 @@
 //! A machine at one time and state, evaluated.
 
 use super::workspace::EquationWorkspace;
-use super::{Machine, NonconservativeSource};
+use super::{Machine, MovingModel, NonconservativeSource};
 use crate::error::Result;
 use dwell_geometry::body_states::BodyStates;
-use dwell_kinetostatics::{
-    EvaluatedState, ForceState, InverseDynamics, KinematicState, Model, Workspace,
-};
+use dwell_kinetostatics::{EvaluatedState, ForceState, InverseDynamics, KinematicState, Model};
 use dwell_numerics::Scalar;
 use std::ops::Deref;
 
 /// A machine at one time and state: the motion of all actuators, the drives' forces, the equation of motion solved.
 #[derive(Debug)]
-pub struct MachineState<'a, T = f64> {
-    pub(super) machine: &'a Machine,
+pub struct MachineState<'a, T: Scalar = f64, M: MovingModel = Model> {
+    pub(super) machine: &'a Machine<M>,
     pub(super) t: f64,
-    pub(super) forces: ForceState<'a, T>,
+    pub(super) forces: ForceState<'a, T, M>,
     pub(super) equation: &'a mut EquationWorkspace<T>,
 }
 
-impl<'a, T> Deref for MachineState<'a, T> {
-    type Target = KinematicState<'a, T>;
+impl<'a, T: Scalar, M: MovingModel> Deref for MachineState<'a, T, M> {
+    type Target = KinematicState<'a, T, M>;
 
     fn deref(&self) -> &Self::Target {
         &self.forces
     }
 }
 
-impl<T: Scalar> MachineState<'_, T> {
+impl<T: Scalar, M: MovingModel> MachineState<'_, T, M> {
     /// By actuator: its coordinate, rad or m.
     pub fn q(&self) -> &[T] {
         &self.equation.q
@@ -59,13 +57,19 @@ impl<T: Scalar> MachineState<'_, T> {
         &self.equation.inverse_dynamics
     }
 
-    /// The states of the bodies.
-    pub fn bodies(&mut self) -> &BodyStates<T> {
+    /// A coordinate with its rate and its acceleration, rad or m, per s and s².
+    pub fn coordinate_with_acceleration(&mut self, of: M::CoordinateFunction) -> [T; 3] {
+        self.accelerate_bodies();
+        self.forces.coordinate_motion(of)
+    }
+
+    /// The accelerations of the bodies become those of the motion.
+    fn accelerate_bodies(&mut self) {
         if self.machine.fit_at(self.equation.q.first()).is_some() {
             // With the accelerations of the fit.
-            self.forces.bodies()
+            self.forces.update_bodies();
         } else {
-            self.forces.bodies_at(&self.equation.q_ddot)
+            self.forces.accelerate(&self.equation.q_ddot);
         }
     }
 
@@ -103,7 +107,15 @@ impl<T: Scalar> MachineState<'_, T> {
     }
 }
 
-impl MachineState<'_> {
+impl<T: Scalar> MachineState<'_, T> {
+    /// The states of the bodies.
+    pub fn bodies(&mut self) -> &BodyStates<T> {
+        self.accelerate_bodies();
+        self.forces.bodies_as_they_are()
+    }
+}
+
+impl<M: MovingModel> MachineState<'_, f64, M> {
     /// The kinetic energy, with that of rotors and flywheels, and the potential of the conservative loads, J.
     pub fn energy(&self) -> [f64; 2] {
         let machine = self.machine;
@@ -141,15 +153,16 @@ impl MachineState<'_> {
     /// [`DynamicsError`](crate::DynamicsError) as of [`Machine::evaluate`].
     pub fn outputs<'o>(
         &self,
-        output_model: &'o Model,
-        workspace: &'o mut Workspace<f64>,
+        output_model: &'o M,
+        workspace: &'o mut M::Workspace<f64>,
         result: &'o mut InverseDynamics<f64>,
-    ) -> Result<EvaluatedState<'o>> {
+    ) -> Result<EvaluatedState<'o, f64, M>> {
         if let Some(fit) = self.machine.fit_at(self.equation.q.first()) {
-            return self.outputs_on_fit(fit, output_model, workspace, result);
+            return M::outputs_on_fit(self, fit, output_model, workspace, result);
         }
         let equation = &*self.equation;
-        let state = output_model.kinematic_state(&equation.q, &equation.q_dot, workspace)?;
+        let at = [&equation.q[..], &equation.q_dot[..]];
+        let state = KinematicState::new(output_model, at, workspace)?;
         let mut state = state.apply_loads(self.t)?;
         let drives = self.machine.drives.iter().map(|drive| drive.load);
         for load in drives.chain(self.machine.contact_loads()) {

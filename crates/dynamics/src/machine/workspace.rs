@@ -1,21 +1,21 @@
 //! The working memory of a machine.
 
-use super::Machine;
+use super::{Machine, MovingModel};
 use crate::change_point_fit::FitWorkspace;
 use crate::contact::ContactWorkspace;
 use crate::drive::HeldDrive;
-use dwell_kinetostatics::{InverseDynamics, Workspace};
+use dwell_kinetostatics::{InverseDynamics, Model};
 use dwell_numerics::Scalar;
 
-impl Machine {
+impl<M: MovingModel> Machine<M> {
     /// Working memory for one thread.
-    pub fn workspace<T: Scalar>(&self) -> MachineWorkspace<T> {
+    pub fn workspace<T: Scalar>(&self) -> MachineWorkspace<T, M> {
         let n = self.free.len();
         let zeros = |count| vec![T::from_f64(0.0); count];
         let (actuators, drives) = (self.modes.len(), self.drives.len());
         let frictions = self.model.frictions().len();
         MachineWorkspace {
-            inner: self.model.workspace(),
+            inner: self.model.pass_workspace(),
             input_offsets: zeros(drives),
             equation: EquationWorkspace {
                 q: zeros(actuators),
@@ -49,8 +49,8 @@ impl Machine {
 
 /// Working memory of a machine for one thread.
 #[derive(Debug, Clone)]
-pub struct MachineWorkspace<T = f64> {
-    pub(super) inner: Workspace<T>,
+pub struct MachineWorkspace<T: Scalar = f64, M: MovingModel = Model> {
+    pub(super) inner: M::Workspace<T>,
     /// By drive: an offset of its input (force, voltage or reference speed), by which linearisation differentiates;
     /// zero at first.
     pub input_offsets: Vec<T>,
@@ -59,7 +59,7 @@ pub struct MachineWorkspace<T = f64> {
 
 /// The equation of motion at one state.
 #[derive(Debug, Clone)]
-pub(super) struct EquationWorkspace<T> {
+pub struct EquationWorkspace<T> {
     /// By actuator: coordinate, speed and acceleration, rad or m, per s, per s².
     pub(super) q: Vec<T>,
     pub(super) q_dot: Vec<T>,
@@ -87,7 +87,7 @@ pub(super) struct EquationWorkspace<T> {
     pub(super) stop_forces: Vec<T>,
 }
 
-impl<T> MachineWorkspace<T> {
+impl<T: Scalar, M: MovingModel> MachineWorkspace<T, M> {
     /// The contacts at the last state.
     pub(crate) fn contacts(&self) -> &ContactWorkspace<T> {
         &self.equation.contacts

@@ -1,11 +1,9 @@
 //! The quantities of a moving system that events are functions of.
 
 use crate::error::Result;
-use crate::machine::{Machine, MachineWorkspace};
+use crate::machine::{Machine, MachineWorkspace, MovingModel};
 use crate::ode::OdeState;
-use dwell_geometry::BodyId;
-use dwell_geometry::body_states::CoordinateFunction;
-use dwell_kinetostatics::{InverseDynamics, Model, Workspace};
+use dwell_kinetostatics::{InverseDynamics, Model};
 
 /// A moving system whose coordinates and reactions can be evaluated at any state.
 pub trait Observed {
@@ -42,46 +40,42 @@ pub struct ObservedValue {
 
 /// A machine, with the model of it whose reactions events can be about.
 #[derive(Debug)]
-pub struct ObservedMachine<'m> {
-    machine: &'m Machine,
-    output_model: &'m Model,
-    workspace: MachineWorkspace<f64>,
-    output_workspace: Workspace<f64>,
+pub struct ObservedMachine<'m, M: MovingModel = Model> {
+    machine: &'m Machine<M>,
+    output_model: &'m M,
+    workspace: MachineWorkspace<f64, M>,
+    output_workspace: M::Workspace<f64>,
     inverse_dynamics: InverseDynamics<f64>,
 }
 
-impl<'m> ObservedMachine<'m> {
+impl<'m, M: MovingModel> ObservedMachine<'m, M> {
     /// A machine with its output model: the same mechanism with the same loads (those of the drives last) and
     /// the reactions that events name.
-    pub fn new(machine: &'m Machine, output_model: &'m Model) -> Self {
+    pub fn new(machine: &'m Machine<M>, output_model: &'m M) -> Self {
         Self {
             machine,
             output_model,
             workspace: machine.workspace(),
-            output_workspace: output_model.workspace(),
+            output_workspace: output_model.pass_workspace(),
             inverse_dynamics: output_model.result_buffer(),
         }
     }
 }
 
-impl Observed for ObservedMachine<'_> {
-    type Coordinate = CoordinateFunction;
+impl<M: MovingModel> Observed for ObservedMachine<'_, M> {
+    type Coordinate = M::CoordinateFunction;
 
     fn coordinate(
         &mut self,
-        coordinate: CoordinateFunction,
+        coordinate: M::CoordinateFunction,
         at: &OdeState,
     ) -> Result<ObservedValue> {
         let state = self.machine.evaluate(at.t, &at.y, &mut self.workspace)?;
         let [value, rate] = state.coordinate(coordinate);
-        let counted = |b: BodyId| state.counts_revolutions(b);
         Ok(ObservedValue {
             value,
             rate,
-            revolutions_counted: match coordinate {
-                CoordinateFunction::Angle(bodies) => Some(bodies.into_iter().all(counted)),
-                _ => None,
-            },
+            revolutions_counted: state.counts_revolutions_of(coordinate),
         })
     }
 
@@ -93,9 +87,8 @@ impl Observed for ObservedMachine<'_> {
     }
 
     fn angle_between(&self, from: &OdeState, to: &OdeState) -> f64 {
-        let plan = self.machine.model().plan();
         let free = self.machine.free().iter().enumerate();
-        let angles = free.filter(|(_, coordinate)| plan.is_angle(**coordinate));
+        let angles = free.filter(|(_, actuator)| self.machine.model().is_angle(**actuator));
         let changes = angles.map(|(k, _)| (to.y[k] - from.y[k]).abs());
         changes.fold(0.0, f64::max)
     }

@@ -8,7 +8,7 @@
 use super::event::{
     Event, EventKind, EventOccurrence, FoundEvent, MAX_OCCURRENCES, TouchTolerance, too_many_events,
 };
-use super::observed::ObservedMachine;
+use super::observed::Observed;
 use super::orbit_solution::point;
 use super::stop_at_terminal;
 use super::tracker::EventTracker;
@@ -16,7 +16,6 @@ use crate::error::{DynamicsError, Result};
 use crate::ode::OdeState;
 use crate::options::Options;
 use crate::orbit::Orbit;
-use dwell_geometry::body_states::CoordinateFunction;
 use std::f64::consts::TAU;
 use std::num::NonZeroUsize;
 
@@ -37,12 +36,12 @@ pub(super) struct OrbitEvents {
 
 impl OrbitEvents {
     /// The events until `end` (s), or until the first that ends the motion.
-    pub(super) fn find(
+    pub(super) fn find<O: Observed>(
         orbit: &Orbit,
-        observed: ObservedMachine<'_>,
+        observed: O,
         end: f64,
         options: &Options,
-        events: &[Event],
+        events: &[Event<O::Coordinate>],
     ) -> Result<Self> {
         let mut search = Search::new(orbit, observed, end, options, events)?;
         if events.is_empty() {
@@ -77,30 +76,30 @@ struct Repetition {
 }
 
 /// The search for events, part by part.
-struct Search<'s> {
+struct Search<'s, O: Observed> {
     orbit: &'s Orbit,
-    observed: ObservedMachine<'s>,
-    events: &'s [Event],
+    observed: O,
+    events: &'s [Event<O::Coordinate>],
     tolerance: TouchTolerance,
     start: f64,
     end: f64,
     /// How much later than the end an event is still at the end, s.
     end_tolerance: f64,
     parts: Vec<f64>,
-    trackers: Vec<EventTracker<CoordinateFunction>>,
+    trackers: Vec<EventTracker<O::Coordinate>>,
     before: OdeState,
     /// By part, from the start on: the function of each event at its end.
     values: Vec<Vec<f64>>,
     found: Vec<FoundEvent>,
 }
 
-impl<'s> Search<'s> {
+impl<'s, O: Observed> Search<'s, O> {
     fn new(
         orbit: &'s Orbit,
-        mut observed: ObservedMachine<'s>,
+        mut observed: O,
         end: f64,
         options: &Options,
-        events: &'s [Event],
+        events: &'s [Event<O::Coordinate>],
     ) -> Result<Self> {
         let tolerance = TouchTolerance {
             absolute: options.atol,

@@ -1,7 +1,7 @@
 //! The solution along an orbit of a machine, which is known at every time: no integration.
 
 use super::orbit_events::OrbitEvents;
-use super::{Event, ObservedMachine, Solution};
+use super::{Event, Observed, Solution};
 use crate::error::Result;
 use crate::ode::OdeState;
 use crate::options::{Options, Statistics};
@@ -17,12 +17,12 @@ const PARTS: usize = 64;
 /// # Errors
 /// [`DynamicsError`](crate::DynamicsError) where the start cannot be evaluated, or an option cannot be used. That there
 /// are more events than can be kept is in [`Solution::error`], and the solution ends there.
-pub fn solve_orbit(
+pub fn solve_orbit<O: Observed>(
     orbit: &Orbit,
-    observed: ObservedMachine<'_>,
+    observed: O,
     end: f64,
     options: &Options,
-    events: &[Event],
+    events: &[Event<O::Coordinate>],
 ) -> Result<Solution> {
     options.check()?;
     // As given: a speed of zero is no rounding of one.

@@ -1,16 +1,18 @@
 //! The compiled mechanism, and the memory of one thread in which it is evaluated.
 
 use super::closure::Closure;
+use super::coordinate::StoredAngles;
 use super::follow::Node;
 use super::frames::{BodyMotion, Frame, Screw};
 use super::groups::Group;
+use super::lower::Lowered;
 use super::mechanism::{Assembly, Mechanism, Placement};
 use super::prediction::Predictions;
 use super::rank::Mobility;
-use super::tree::Tree;
+use super::tree::{Driver, Tree};
 use super::vector::{Rotation, Vec3};
 use super::wrench::Wrench;
-use crate::error::AssemblyError;
+use crate::error::{AssemblyError, StructureError};
 use crate::mechanism::JointId;
 use crate::plan::range::Range;
 use dwell_numerics::Scalar;
@@ -48,8 +50,8 @@ pub struct Plan {
     /// Links that depend on the driven freedoms alone; then those that no group places.
     pub(super) first_links: Vec<usize>,
     pub(super) last_links: Vec<usize>,
-    /// By actuator: its freedom, and −1 where the tree counts it backwards.
-    pub(super) drivers: Vec<(usize, f64)>,
+    /// By actuator.
+    pub(super) drivers: Vec<Driver>,
     /// The stored pose of the assembly.
     pub(super) start: Node,
     /// The poses stored along the range of one actuator.
@@ -58,6 +60,10 @@ pub struct Plan {
     /// The coordinates at the assembly.
     pub(super) assembly_q: Vec<f64>,
     pub(super) mobility: Mobility,
+    /// The angles along the range of joints that close loops.
+    pub(super) closure_angles: Vec<StoredAngles>,
+    /// By freedom: what it gains in a period of the only coordinate.
+    pub(super) freedom_gains: Vec<f64>,
 }
 
 /// A pose with its velocities, for one thread.
@@ -86,13 +92,57 @@ pub struct Pose<T = f64> {
     pub(super) added: Vec<[Vec3<T>; 2]>,
 }
 
+/// The velocities and accelerations of a pose, for one thread.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PoseMotion<T = f64> {
+    rates: Vec<T>,
+    accelerations: Vec<T>,
+    has_no_acceleration: bool,
+    states: Vec<BodyMotion<T>>,
+}
+
+impl<T> Pose<T> {
+    /// Exchanges the velocities and accelerations for others: for a virtual motion of the same pose, and back.
+    #[inline]
+    pub fn swap_motion(&mut self, other: &mut PoseMotion<T>) {
+        std::mem::swap(&mut self.rates, &mut other.rates);
+        std::mem::swap(&mut self.accelerations, &mut other.accelerations);
+        std::mem::swap(&mut self.states, &mut other.states);
+        std::mem::swap(
+            &mut self.has_no_acceleration,
+            &mut other.has_no_acceleration,
+        );
+    }
+}
+
 impl Plan {
+    /// Memory for the velocities and accelerations of another motion of a pose.
+    pub fn pose_motion<T: Scalar>(&self) -> PoseMotion<T> {
+        let zeros = vec![T::from_f64(0.0); self.tree.freedoms.len()];
+        PoseMotion {
+            rates: zeros.clone(),
+            accelerations: zeros,
+            has_no_acceleration: false,
+            states: vec![BodyMotion::default(); self.tree.internal.len()],
+        }
+    }
+
     /// Assembles a mechanism and compiles it.
     ///
     /// # Errors
     /// [`AssemblyError`] where it cannot be assembled, its freedoms are not those of its actuators, or its loops contradict each other.
     pub fn compile(mechanism: &Mechanism, assembly: &Assembly) -> Result<Self, AssemblyError> {
-        let mut plan = Self::whole(mechanism)?;
+        if let Some(reason) = mechanism.fault() {
+            return Err(StructureError::Malformed { reason }.into());
+        }
+        let lowered = Lowered::new(mechanism)?;
+        Self::compile_lowered(&lowered, assembly).map_err(|error| lowered.described(error))
+    }
+
+    fn compile_lowered(lowered: &Lowered, assembly: &Assembly) -> Result<Self, AssemblyError> {
+        let (mechanism, assembly) = (&lowered.mechanism, &lowered.assembly(assembly));
+        let mut plan = Self::whole(mechanism, &lowered.in_tree)?;
+        plan.measure_gears()?;
         let start = plan.assemble(mechanism, assembly)?;
         let start = plan.find_groups(mechanism, start)?;
         let kind = mechanism.actuators.first().map(|a| a.kind);
@@ -104,6 +154,7 @@ impl Plan {
         };
         plan.follow_range(&assembly.q, start, kind)
             .map_err(singular)?;
+        plan.count_revolutions(mechanism);
         Ok(plan)
     }
 
@@ -114,8 +165,7 @@ impl Plan {
 
     /// Whether an actuator drives an angle; otherwise it drives a travel.
     pub fn is_angle(&self, actuator: usize) -> bool {
-        let (freedom, _) = self.drivers[actuator];
-        !matches!(self.tree.freedoms[freedom].parts(), (0.0, _))
+        !self.drivers[actuator].is_force
     }
 
     /// The range of the coordinate.

@@ -17,19 +17,37 @@ impl CompiledLoads {
         magnitude: &Magnitude,
         t: f64,
         states: &BodyStates<T>,
-        SignalWorkspace {
+        workspace: &mut SignalWorkspace<T>,
+    ) -> Result<T> {
+        let signals = &self.compiled_signals[load];
+        workspace.eval((load, magnitude), signals, t, |measured| {
+            let [value, rate, _] = states.coordinate(measured);
+            [value, rate]
+        })
+    }
+}
+
+impl<T: Scalar> SignalWorkspace<T> {
+    /// A magnitude of the signals of a load at time `t` (s); `coordinate` gives value and rate of a coordinate.
+    #[inline]
+    pub(crate) fn eval<C, F: Copy>(
+        &mut self,
+        (load, magnitude): (usize, &Magnitude<C>),
+        signals: &[Signal<F>],
+        t: f64,
+        coordinate: impl Fn(F) -> [T; 2],
+    ) -> Result<T> {
+        let Self {
             numbers,
             values,
             held,
-        }: &mut SignalWorkspace<T>,
-    ) -> Result<T> {
-        let signals = &self.compiled_signals[load];
+        } = self;
         let slots = numbers.iter_mut().zip(values.iter_mut()).zip(signals);
         for ((number, value), signal) in slots {
             *number = match *signal {
                 Signal::Time => T::from_f64(t),
-                Signal::Value(measured) => states.coordinate(measured)[0],
-                Signal::Velocity(measured) => states.coordinate(measured)[1],
+                Signal::Value(measured) => coordinate(measured)[0],
+                Signal::Velocity(measured) => coordinate(measured)[1],
             };
             *value = number.value();
         }
@@ -43,7 +61,7 @@ impl CompiledLoads {
     }
 }
 
-impl Magnitude {
+impl<C> Magnitude<C> {
     /// The magnitude where its [signals](Self::signals) are `numbers`, with plain `values`, on the pieces that are
     /// held. Friction, separating forces and external magnitudes are zero.
     #[inline]
@@ -136,7 +154,7 @@ impl Magnitude {
         match self {
             Self::Law(Signal::Value(_) | Signal::Velocity(_), law) => Switches::of_law(law),
             Self::Expression(expression, signals) => {
-                let time = signals.iter().position(|s| *s == Signal::Time);
+                let time = signals.iter().position(|s| matches!(s, Signal::Time));
                 Switches::of_expression(expression, time)
             }
             Self::Constant(_)
@@ -166,13 +184,31 @@ impl<T: Scalar> SignalWorkspace<T> {
             held: Vec::new(),
         }
     }
+
+    /// The pieces on which the magnitude of a load is held.
+    pub(crate) fn held_pieces(&mut self, load: usize) -> &mut HeldPieces {
+        if self.held.len() <= load {
+            self.held.resize(load + 1, HeldPieces::NONE);
+        }
+        &mut self.held[load]
+    }
 }
 
-/// The signals of a magnitude.
+/// The signals of a magnitude of a mechanism in the plane.
 pub(crate) fn compile_signals(
     mechanism: &Mechanism,
     magnitude: &Magnitude,
 ) -> Result<Vec<CompiledSignal>, &'static str> {
+    let unknown = "its magnitude depends on a coordinate that the mechanism does not have";
+    let find = |coordinate| CoordinateFunction::find(mechanism, coordinate).ok_or(unknown);
+    compile_signals_by(magnitude, find)
+}
+
+/// The signals of a magnitude, whose coordinates `find` compiles.
+pub(crate) fn compile_signals_by<C: Copy, F>(
+    magnitude: &Magnitude<C>,
+    find: impl Fn(C) -> Result<F, &'static str>,
+) -> Result<Vec<Signal<F>>, &'static str> {
     let signals = magnitude.signals();
     if let Magnitude::Expression(expression, _) = magnitude
         && expression.variables().len() > signals.len()
@@ -182,12 +218,10 @@ pub(crate) fn compile_signals(
     if matches!(magnitude, Magnitude::Function(..)) && signals.len() > MAX_FUNCTION_SIGNALS {
         return Err("its function depends on more than 16 signals");
     }
-    let unknown = "its magnitude depends on a coordinate that the mechanism does not have";
-    let find = |coordinate| CoordinateFunction::find(mechanism, coordinate).ok_or(unknown);
-    let compile = |signal: &Signal| match *signal {
-        Signal::Time => Ok(CompiledSignal::Time),
-        Signal::Value(coordinate) => find(coordinate).map(CompiledSignal::Value),
-        Signal::Velocity(coordinate) => find(coordinate).map(CompiledSignal::Velocity),
+    let compile = |signal: &Signal<C>| match *signal {
+        Signal::Time => Ok(Signal::Time),
+        Signal::Value(coordinate) => find(coordinate).map(Signal::Value),
+        Signal::Velocity(coordinate) => find(coordinate).map(Signal::Velocity),
     };
     signals.iter().map(compile).collect()
 }

@@ -1,6 +1,6 @@
 //! Everything at one state.
 
-use super::{KinematicState, Model, Workspace};
+use super::{KinematicState, MachineModel, Model, Workspace};
 use crate::error::Result;
 use crate::load::{ForceSource, LoadState};
 
@@ -12,14 +12,14 @@ use std::ops::Deref;
 
 /// Everything is known: the accelerations of the bodies, all loads with friction, actuator forces and reactions.
 #[derive(Debug)]
-pub struct EvaluatedState<'a, T = f64> {
-    pub(super) state: KinematicState<'a, T>,
+pub struct EvaluatedState<'a, T: Scalar = f64, M: MachineModel = Model> {
+    pub(super) state: KinematicState<'a, T, M>,
     pub(super) result: &'a InverseDynamics<T>,
 }
 
 /// To read only: other accelerations would not fit the forces.
-impl<'a, T> Deref for EvaluatedState<'a, T> {
-    type Target = KinematicState<'a, T>;
+impl<'a, T: Scalar, M: MachineModel> Deref for EvaluatedState<'a, T, M> {
+    type Target = KinematicState<'a, T, M>;
 
     fn deref(&self) -> &Self::Target {
         &self.state
@@ -40,25 +40,42 @@ impl Model {
         result: &'a InverseDynamics<T>,
         set: impl FnOnce(&mut Pose<T>, &mut Motion<T>),
     ) -> Result<EvaluatedState<'a, T>> {
-        let mut state = self.given_kinematic_state(q_dot, workspace, set);
+        let state = self.given_kinematic_state(q_dot, workspace, set);
         let loads = &mut state.workspace.loads;
         loads.magnitude.copy_from_slice(magnitudes);
-        state.update_wrenches()?;
+        self.update_wrenches(state.workspace)?;
         Ok(EvaluatedState { state, result })
     }
 }
 
-impl<'a, T: Scalar> EvaluatedState<'a, T> {
+impl<'a, T: Scalar, M: MachineModel> EvaluatedState<'a, T, M> {
     /// The positions and velocities alone, for what else is to be evaluated there.
-    pub fn into_kinematic_state(self) -> KinematicState<'a, T> {
+    pub fn into_kinematic_state(self) -> KinematicState<'a, T, M> {
         self.state
     }
 
     /// The model.
-    pub fn model(&self) -> &Model {
+    pub fn model(&self) -> &M {
         self.model
     }
 
+    /// The power of a load, W.
+    pub fn load_power(&self, load: usize) -> T {
+        self.state.model.load_power(load, self.state.workspace)
+    }
+
+    /// The magnitudes of the loads, in the units of their kinds.
+    pub fn magnitudes(&self) -> &[T] {
+        M::magnitudes(self.state.workspace)
+    }
+
+    /// The actuator forces and reactions.
+    pub fn inverse_dynamics(&self) -> &'a InverseDynamics<T> {
+        self.result
+    }
+}
+
+impl<T: Scalar> EvaluatedState<'_, T> {
     /// The states of the bodies.
     pub fn bodies(&self) -> &BodyStates<T> {
         &self.workspace.states
@@ -67,11 +84,6 @@ impl<'a, T: Scalar> EvaluatedState<'a, T> {
     /// The loads: their magnitudes and wrenches.
     pub fn loads(&self) -> &LoadState<T> {
         &self.workspace.loads
-    }
-
-    /// The actuator forces and reactions.
-    pub fn inverse_dynamics(&self) -> &'a InverseDynamics<T> {
-        self.result
     }
 }
 

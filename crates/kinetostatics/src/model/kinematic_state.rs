@@ -1,12 +1,10 @@
 //! Positions and velocities.
 
 use super::loaded_state::StateWithLoads;
-use super::{LoadedState, Model, Workspace};
+use super::{LoadedState, MachineModel, Model, Workspace};
 use crate::error::Result;
-use crate::friction::FrictionState;
-
-use crate::pass::{AtRest, GivenMotion, InverseDynamics, UnitAcceleration};
-use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
+use crate::pass::{GivenMotion, InverseDynamics};
+use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{BodyId, Motion, Pose, PositionError};
 use dwell_numerics::Scalar;
 
@@ -24,9 +22,9 @@ use dwell_numerics::Scalar;
 /// C are the Christoffel terms: c(q, q̇) = Σ Cᵢⱼ q̇ᵢ q̇ⱼ over i ≤ j. All passes share the pose, its factors and the states
 /// of the bodies.
 #[derive(Debug)]
-pub struct KinematicState<'a, T = f64> {
-    pub(crate) model: &'a Model,
-    pub(crate) workspace: &'a mut Workspace<T>,
+pub struct KinematicState<'a, T: Scalar = f64, M: MachineModel = Model> {
+    pub(crate) model: &'a M,
+    pub(crate) workspace: &'a mut M::Workspace<T>,
 }
 
 impl Model {
@@ -41,14 +39,7 @@ impl Model {
         q_dot: &[T],
         workspace: &'a mut Workspace<T>,
     ) -> Result<KinematicState<'a, T>, PositionError> {
-        let plan = self.plan();
-        plan.positions(q, &mut workspace.pose)?;
-        plan.velocities(&workspace.pose, q_dot, &mut workspace.motion);
-        let states = &mut workspace.states;
-        states.fill_velocities(plan, &workspace.pose, &workspace.motion);
-        workspace.q_dot.copy_from_slice(q_dot);
-        let model = self;
-        Ok(KinematicState { model, workspace })
+        KinematicState::new(self, [q, q_dot], workspace)
     }
 
     /// Positions and velocities that `set` stores as pose and motion, where they come from elsewhere than
@@ -69,41 +60,37 @@ impl Model {
     }
 }
 
-impl<'a, T: Scalar> KinematicState<'a, T> {
-    /// The states of the bodies from pose and motion.
+impl<'a, T: Scalar, M: MachineModel> KinematicState<'a, T, M> {
+    /// Positions and velocities of a model at coordinates (rad or m) and their velocities.
+    ///
+    /// # Errors
+    /// [`PositionError`] when there is no pose at `q`.
     #[inline]
-    pub(super) fn fill_bodies(&mut self) {
-        let workspace = &mut *self.workspace;
-        let states = &mut workspace.states;
-        states.fill(self.model.plan(), &workspace.pose, &workspace.motion);
-    }
-
-    /// Their accelerations from those of the motion.
-    #[inline]
-    pub(super) fn fill_accelerations(&mut self) {
-        let workspace = &mut *self.workspace;
-        let states = &mut workspace.states;
-        states.fill_accelerations(self.model.plan(), &workspace.pose, &workspace.motion);
-    }
-
-    /// The wrenches of the loads from their magnitudes.
-    #[inline]
-    pub(super) fn update_wrenches(&mut self) -> Result<()> {
-        let Workspace { states, loads, .. } = &mut *self.workspace;
-        self.model.loads.update_wrenches(states, loads)
-    }
-
-    /// The pose.
-    pub fn pose(&self) -> &Pose<T> {
-        &self.workspace.pose
+    pub fn new(
+        model: &'a M,
+        [q, q_dot]: [&[T]; 2],
+        workspace: &'a mut M::Workspace<T>,
+    ) -> Result<Self, PositionError> {
+        model.update_kinematics(q, q_dot, workspace)?;
+        Ok(KinematicState { model, workspace })
     }
 
     /// The value and the velocity of a coordinate of the mechanism, rad or m, per s.
     #[inline]
-    pub fn coordinate(&self, coordinate: CoordinateFunction) -> [T; 2] {
-        let states = &self.workspace.states;
-        let [value, velocity, _] = states.coordinate(coordinate);
+    pub fn coordinate(&self, coordinate: M::CoordinateFunction) -> [T; 2] {
+        let [value, velocity, _] = self.coordinate_motion(coordinate);
         [value, velocity]
+    }
+
+    /// The same with its acceleration, where those of the bodies are known.
+    #[inline]
+    pub fn coordinate_motion(&self, coordinate: M::CoordinateFunction) -> [T; 3] {
+        self.model.coordinate_motion(coordinate, self.workspace)
+    }
+
+    /// Of an angle: whether its whole revolutions are counted.
+    pub fn counts_revolutions_of(&self, coordinate: M::CoordinateFunction) -> Option<bool> {
+        self.model.counts_revolutions(coordinate, self.workspace)
     }
 
     /// The loads that depend on reactions, as [`Model::frictions`].
@@ -114,21 +101,13 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     /// Of one of these loads: the force g (N·m or N) that its factor multiplies, at reactions of the model. Of a friction
     /// that factor is the coefficient of friction.
     pub fn contact_force(&self, index: usize, reactions: &[T]) -> T {
-        self.model.dependent_loads[index].contact_force(reactions)
+        self.model.contact_force(index, reactions)
     }
 
-    /// Whether the whole revolutions of a body are counted.
-    pub fn counts_revolutions(&self, body: BodyId) -> bool {
-        let states = &self.workspace.states;
-        states.body(body).angle.is_some()
-    }
-
-    /// The states of the bodies with the accelerations that follow from those of the coordinates, rad/s² or m/s².
-    pub fn bodies_at(&mut self, q_ddot: &[T]) -> &BodyStates<T> {
-        let Workspace { pose, motion, .. } = &mut *self.workspace;
-        self.model.plan().accelerations(pose, q_ddot, motion);
-        self.fill_accelerations();
-        &self.workspace.states
+    /// The accelerations of the bodies become those that follow from accelerations of the coordinates, rad/s² or m/s².
+    #[inline]
+    pub fn accelerate(&mut self, q_ddot: &[T]) {
+        self.model.update_accelerations(q_ddot, self.workspace);
     }
 
     /// The magnitudes of the loads at time `t` (s).
@@ -136,30 +115,15 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     /// # Errors
     /// [`KinetostaticsError::MagnitudeNotFinite`](crate::KinetostaticsError::MagnitudeNotFinite) where a load has no finite magnitude.
     #[inline]
-    pub fn apply_loads(self, t: f64) -> Result<LoadedState<'a, T>> {
-        let workspace = &mut *self.workspace;
-        workspace
-            .friction_workspace
-            .known
-            .fill(FrictionState::BySpeed);
-        let Workspace { states, loads, .. } = workspace;
-        self.model.loads.update_magnitudes(t, states, loads)?;
+    pub fn apply_loads(self, t: f64) -> Result<LoadedState<'a, T, M>> {
+        self.model.update_magnitudes(t, self.workspace)?;
         Ok(StateWithLoads(self))
     }
 
     /// Column i of the mass matrix, and a_k,i: q̈ᵢ = 1 (per s²) and nothing else.
     #[inline]
     pub fn mass_matrix_column(&mut self, i: usize, result: &mut InverseDynamics<T>) {
-        let (model, workspace) = (&self.model.pass_model, &mut *self.workspace);
-        workspace.set_unit_velocities(&model.plan, &[i]);
-        let Workspace { pose, pass, .. } = workspace;
-        pass.evaluate(
-            model,
-            pose,
-            UnitAcceleration(&workspace.virtual_motion),
-            None,
-        );
-        result.read_from(model, pose, pass);
+        self.model.mass_matrix_column(i, self.workspace, result);
     }
 
     /// The response to one load alone of magnitude 1, at rest: τ = −w and the reactions c. Of a damper,
@@ -173,13 +137,47 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
         load: usize,
         result: &mut InverseDynamics<T>,
     ) -> Result<()> {
-        let (model, workspace) = (&self.model.pass_model, &mut *self.workspace);
-        let (loads, single) = (&self.model.loads, &mut workspace.single_load);
-        loads.unit_wrenches(load, &workspace.states, single)?;
-        let Workspace { pose, pass, .. } = workspace;
-        pass.evaluate_loaded(model, pose, AtRest, single);
-        result.read_from(model, pose, pass);
-        Ok(())
+        self.model.load_response(load, self.workspace, result)
+    }
+}
+
+impl<M: MachineModel> KinematicState<'_, f64, M> {
+    /// Kinetic energy ½ Σ m v² + ω·Iω, J.
+    pub fn kinetic_energy(&self) -> f64 {
+        self.model.kinetic_energy(self.workspace)
+    }
+
+    /// The potential energy of a load, J; none if it is not [conservative](crate::Load::is_conservative). That of gravity
+    /// and of forces is zero at the ground's origin.
+    pub fn potential_energy(&self, load: usize) -> Option<f64> {
+        self.model.potential_energy(load, self.workspace)
+    }
+}
+
+impl<T: Scalar> KinematicState<'_, T> {
+    /// The states of the bodies from pose and motion.
+    #[inline]
+    pub(super) fn fill_bodies(&mut self) {
+        let workspace = &mut *self.workspace;
+        let states = &mut workspace.states;
+        states.fill(self.model.plan(), &workspace.pose, &workspace.motion);
+    }
+
+    /// The pose.
+    pub fn pose(&self) -> &Pose<T> {
+        &self.workspace.pose
+    }
+
+    /// Whether the whole revolutions of a body are counted.
+    pub fn counts_revolutions(&self, body: BodyId) -> bool {
+        let states = &self.workspace.states;
+        states.body(body).angle.is_some()
+    }
+
+    /// The states of the bodies with the accelerations that follow from those of the coordinates, rad/s² or m/s².
+    pub fn bodies_at(&mut self, q_ddot: &[T]) -> &BodyStates<T> {
+        self.accelerate(q_ddot);
+        &self.workspace.states
     }
 
     /// The Christoffel terms of the velocities i and j, for q̇ᵢ q̇ⱼ = 1 per s²: with i = j, the pass at
@@ -205,22 +203,5 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
             at(&[k], &mut single);
             result.add_scaled(&single, T::from_f64(-1.0));
         }
-    }
-}
-
-impl KinematicState<'_> {
-    /// Kinetic energy ½ Σ m v² + I ω², J.
-    pub fn kinetic_energy(&self) -> f64 {
-        let terms = self.model.inertia_terms(&self.workspace.states);
-        terms
-            .map(|[of_mass, of_inertia, ..]| 0.5 * (of_mass + of_inertia))
-            .sum()
-    }
-
-    /// The potential energy of a load, J; none if it is not [conservative](crate::Load::is_conservative). That of gravity
-    /// and of forces is zero at the ground's origin.
-    pub fn potential_energy(&self, load: usize) -> Option<f64> {
-        let states = &self.workspace.states;
-        self.model.loads.potential_energy(load, states)
     }
 }

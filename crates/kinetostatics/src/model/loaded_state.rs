@@ -1,10 +1,10 @@
 //! The loads, and inverse dynamics under them.
 
-use super::{EvaluatedState, KinematicState, Workspace};
+use super::{EvaluatedState, KinematicState, MachineModel, Model};
 use crate::error::Result;
-use crate::friction::{self, DependentLoad, FrictionState};
-use crate::load::{AppliedWrench, ForceSource, Magnitude};
-use crate::pass::{GivenMotion, InverseDynamics};
+use crate::friction::FrictionState;
+use crate::load::{AppliedWrench, Magnitude};
+use crate::pass::InverseDynamics;
 use dwell_geometry::Motion;
 use dwell_geometry::body_states::BodyStates;
 use dwell_numerics::Scalar;
@@ -12,17 +12,21 @@ use std::ops::{Deref, DerefMut};
 
 /// A state whose loads are known: their magnitudes alone, or their wrenches, too.
 #[derive(Debug)]
-pub struct StateWithLoads<'a, T, const WRENCHES: bool>(pub(super) KinematicState<'a, T>);
+pub struct StateWithLoads<'a, T: Scalar, const WRENCHES: bool, M: MachineModel = Model>(
+    pub(super) KinematicState<'a, T, M>,
+);
 
 /// The magnitudes of the loads are known; friction and separating forces are still zero, and so are external
 /// magnitudes until they are set.
-pub type LoadedState<'a, T = f64> = StateWithLoads<'a, T, false>;
+pub type LoadedState<'a, T = f64, M = Model> = StateWithLoads<'a, T, false, M>;
 
 /// The wrenches of the loads are known, and the accelerations of the mechanism where inverse dynamics led here.
-pub type ForceState<'a, T = f64> = StateWithLoads<'a, T, true>;
+pub type ForceState<'a, T = f64, M = Model> = StateWithLoads<'a, T, true, M>;
 
-impl<'a, T, const WRENCHES: bool> Deref for StateWithLoads<'a, T, WRENCHES> {
-    type Target = KinematicState<'a, T>;
+impl<'a, T: Scalar, const WRENCHES: bool, M: MachineModel> Deref
+    for StateWithLoads<'a, T, WRENCHES, M>
+{
+    type Target = KinematicState<'a, T, M>;
 
     #[inline]
     fn deref(&self) -> &Self::Target {
@@ -30,29 +34,25 @@ impl<'a, T, const WRENCHES: bool> Deref for StateWithLoads<'a, T, WRENCHES> {
     }
 }
 
-impl<T, const WRENCHES: bool> DerefMut for StateWithLoads<'_, T, WRENCHES> {
+impl<T: Scalar, const WRENCHES: bool, M: MachineModel> DerefMut
+    for StateWithLoads<'_, T, WRENCHES, M>
+{
     #[inline]
     fn deref_mut(&mut self) -> &mut Self::Target {
         &mut self.0
     }
 }
 
-impl<T> KinematicState<'_, T> {
-    /// The loads that depend on reactions, and what is known of each.
-    fn dependent_loads(&mut self) -> impl Iterator<Item = (&DependentLoad, &mut FrictionState<T>)> {
-        let known = &mut self.workspace.friction_workspace.known;
-        self.model.dependent_loads.iter().zip(known)
-    }
-}
-
-impl<'a, T: Scalar> LoadedState<'a, T> {
+impl<'a, T: Scalar, M: MachineModel> LoadedState<'a, T, M> {
     /// Sets the magnitude of a load of [`Magnitude::External`], in the unit of its kind; of a friction, the force that
     /// its surfaces have in a motion that was solved for.
     #[inline]
     pub fn set_magnitude(&mut self, load: usize, magnitude: T) {
-        self.0.workspace.loads.magnitude[load] = magnitude;
-        for (dependent, known) in self.0.dependent_loads() {
-            if dependent.load == load {
+        let KinematicState { model, workspace } = &mut self.0;
+        M::magnitudes_mut(workspace)[load] = magnitude;
+        let known = M::friction_states(workspace);
+        for (dependent, known) in model.frictions().zip(known) {
+            if dependent == load {
                 *known = FrictionState::Force(magnitude);
             }
         }
@@ -63,19 +63,22 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
     /// # Errors
     /// [`KinetostaticsError::MagnitudeNotFinite`](crate::KinetostaticsError::MagnitudeNotFinite) where it has no finite value.
     #[inline]
-    pub fn eval_magnitude(&mut self, load: usize, magnitude: &Magnitude, t: f64) -> Result<T> {
-        let Workspace { states, loads, .. } = &mut *self.0.workspace;
-        let workspace = &mut loads.signal_workspace;
-        let compiled = &self.0.model.loads;
-        compiled.eval_magnitude(load, magnitude, t, states, workspace)
+    pub fn eval_magnitude(
+        &mut self,
+        load: usize,
+        magnitude: &Magnitude<M::Coordinate>,
+        t: f64,
+    ) -> Result<T> {
+        let KinematicState { model, workspace } = &mut self.0;
+        model.eval_magnitude((load, magnitude), t, workspace)
     }
 
     /// The wrenches of the loads, without inverse dynamics.
     ///
     /// # Errors
     /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where the two points of a load coincide.
-    pub fn wrenches(mut self) -> Result<ForceState<'a, T>> {
-        self.0.update_wrenches()?;
+    pub fn wrenches(self) -> Result<ForceState<'a, T, M>> {
+        self.0.model.update_wrenches(self.0.workspace)?;
         Ok(StateWithLoads(self.0))
     }
 
@@ -86,18 +89,14 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
     /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where the two points of a load coincide.
     #[inline]
     pub fn inverse_dynamics(
-        mut self,
+        self,
         q_ddot: &[T],
         result: &mut InverseDynamics<T>,
-    ) -> Result<ForceState<'a, T>> {
-        self.0.update_wrenches()?;
-        let (model, workspace) = (&self.0.model.pass_model, &mut *self.0.workspace);
-        let Workspace { pose, motion, .. } = workspace;
-        model.plan.accelerations(pose, q_ddot, motion);
-        let pass = &mut workspace.pass;
-        pass.evaluate_loaded(model, pose, GivenMotion(motion), &mut workspace.loads);
-        result.read_from(model, pose, pass);
-        Ok(StateWithLoads(self.0))
+    ) -> Result<ForceState<'a, T, M>> {
+        let KinematicState { model, workspace } = self.0;
+        model.update_wrenches(workspace)?;
+        model.loaded_dynamics(q_ddot, workspace, result);
+        Ok(StateWithLoads(KinematicState { model, workspace }))
     }
 
     /// The actuator forces and reactions of inertia and all loads with these accelerations (rad/s² or m/s²), with
@@ -109,26 +108,21 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
         self,
         q_ddot: &[T],
         result: &'a mut InverseDynamics<T>,
-    ) -> Result<EvaluatedState<'a, T>> {
-        let mut state = self.inverse_dynamics(q_ddot, result)?;
-        state.0.fill_accelerations();
-        if !state.model.dependent_loads.is_empty() {
-            let mut responses = std::mem::take(&mut state.0.workspace.friction_responses);
-            let solved = state.solve_prescribed_friction(&mut responses, &result.reactions);
-            state.0.workspace.friction_responses = responses;
-            solved?;
-            state = LoadedState::inverse_dynamics(StateWithLoads(state.0), q_ddot, result)?;
-        }
-        let state = state.0;
+    ) -> Result<EvaluatedState<'a, T, M>> {
+        let state = self.inverse_dynamics(q_ddot, result)?.0;
+        let KinematicState { model, workspace } = state;
+        model.update_bodies(workspace);
+        model.solve_prescribed_friction(q_ddot, workspace, result)?;
+        let state = KinematicState { model, workspace };
         Ok(EvaluatedState { state, result })
     }
 }
 
-impl<T: Scalar> ForceState<'_, T> {
+impl<T: Scalar, M: MachineModel> ForceState<'_, T, M> {
     /// The magnitudes of the loads, in the units of their kinds.
     #[inline]
     pub fn magnitudes(&self) -> &[T] {
-        &self.0.workspace.loads.magnitude
+        M::magnitudes(self.0.workspace)
     }
 
     /// Sets magnitudes of loads of [`Magnitude::External`], and the wrenches anew.
@@ -137,52 +131,30 @@ impl<T: Scalar> ForceState<'_, T> {
     /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where the two points of a load coincide.
     #[inline]
     pub fn set_magnitudes(&mut self, magnitudes: impl Iterator<Item = (usize, T)>) -> Result<()> {
-        let loads = &mut self.0.workspace.loads;
+        let KinematicState { model, workspace } = &mut self.0;
+        let of_loads = M::magnitudes_mut(workspace);
         for (load, magnitude) in magnitudes {
-            loads.magnitude[load] = magnitude;
+            of_loads[load] = magnitude;
         }
-        self.0.update_wrenches()
+        model.update_wrenches(workspace)
     }
 
     /// The power of a load, W.
     #[inline]
     pub fn load_power(&self, load: usize) -> T {
-        let Workspace { states, loads, .. } = &*self.0.workspace;
-        let mut sum = T::from_f64(0.0);
-        let source = ForceSource::Load(load);
-        for wrench in loads.wrenches.iter().filter(|w| w.source == source) {
-            sum += wrench.power(states);
-        }
-        sum
+        self.0.model.load_power(load, self.0.workspace)
     }
 
-    /// The wrenches of the loads on the bodies.
-    pub fn wrenches(&self) -> &[AppliedWrench<T>] {
-        &self.0.workspace.loads.wrenches
-    }
-
-    /// The motion of frames and slides.
-    pub fn motion(&self) -> &Motion<T> {
-        &self.0.workspace.motion
-    }
-
-    /// The states of the bodies with the accelerations of the inverse dynamics.
-    pub fn bodies(&mut self) -> &BodyStates<T> {
-        self.0.fill_accelerations();
-        &self.0.workspace.states
-    }
-
-    /// The states of the bodies with the motion that `set` stores, accelerations included.
-    pub fn bodies_with(&mut self, set: impl FnOnce(&mut Motion<T>)) -> &BodyStates<T> {
-        set(&mut self.0.workspace.motion);
-        self.0.fill_bodies();
-        &self.0.workspace.states
+    /// The accelerations of the bodies become those of the inverse dynamics.
+    #[inline]
+    pub fn update_bodies(&mut self) {
+        self.0.model.update_bodies(self.0.workspace);
     }
 
     /// What is known of the loads that depend on reactions, in the order of [`Model::frictions`](crate::Model::frictions),
     /// until the next state of motion.
     pub fn set_friction_states(&mut self, states: impl Iterator<Item = FrictionState<T>>) {
-        for ((_, known), state) in self.0.dependent_loads().zip(states) {
+        for (known, state) in M::friction_states(self.0.workspace).iter_mut().zip(states) {
             *known = state;
         }
     }
@@ -200,25 +172,36 @@ impl<T: Scalar> ForceState<'_, T> {
         responses: &[InverseDynamics<T>],
     ) -> Result<()> {
         let KinematicState { model, workspace } = &mut self.0;
-        let dependent_loads = &model.dependent_loads;
-        let solution = &mut workspace.friction_workspace;
-        let states = &workspace.states;
-        friction::solve(dependent_loads, states, frictionless, responses, solution)?;
-        for (dependent, force) in dependent_loads.iter().zip(&solution.force) {
-            workspace.loads.magnitude[dependent.load] = *force;
-        }
-        self.0.update_wrenches()
+        model.solve_friction(frictionless, responses, workspace)
+    }
+}
+
+impl<T: Scalar> ForceState<'_, T> {
+    /// The wrenches of the loads on the bodies.
+    pub fn wrenches(&self) -> &[AppliedWrench<T>] {
+        &self.0.workspace.loads.wrenches
     }
 
-    /// Solves for the frictions and separating forces of a prescribed motion, from the reactions without them.
-    fn solve_prescribed_friction(
-        &mut self,
-        responses: &mut [InverseDynamics<T>],
-        frictionless: &[T],
-    ) -> Result<()> {
-        for (load, response) in self.model.frictions().zip(&mut *responses) {
-            self.unit_load_response(load, response)?;
-        }
-        self.solve_friction(frictionless, responses)
+    /// The motion of frames and slides.
+    pub fn motion(&self) -> &Motion<T> {
+        &self.0.workspace.motion
+    }
+
+    /// The states of the bodies with the accelerations of the inverse dynamics.
+    pub fn bodies(&mut self) -> &BodyStates<T> {
+        self.update_bodies();
+        &self.0.workspace.states
+    }
+
+    /// The states of the bodies with the accelerations that were last computed.
+    pub fn bodies_as_they_are(&self) -> &BodyStates<T> {
+        &self.0.workspace.states
+    }
+
+    /// The states of the bodies with the motion that `set` stores, accelerations included.
+    pub fn bodies_with(&mut self, set: impl FnOnce(&mut Motion<T>)) -> &BodyStates<T> {
+        set(&mut self.0.workspace.motion);
+        self.0.fill_bodies();
+        &self.0.workspace.states
     }
 }

@@ -60,11 +60,7 @@ impl<T: Scalar> Workspace<T> {
     /// The pieces on which the magnitude of a load is held, wherever its signals are, until others are set; none at
     /// first.
     pub fn held_pieces(&mut self, load: usize) -> &mut HeldPieces {
-        let held = &mut self.loads.signal_workspace.held;
-        if held.len() <= load {
-            held.resize(load + 1, HeldPieces::NONE);
-        }
-        &mut held[load]
+        self.loads.signal_workspace.held_pieces(load)
     }
 
     /// The virtual motion at the pose, at unit velocity of these coordinates.

@@ -1,8 +1,11 @@
 //! Loads in space: shapes, each times a magnitude.
 
-use dwell_geometry::BodyId;
-use dwell_geometry::space::{Plan, Pose, Vec3, Wrench};
-use dwell_numerics::Scalar;
+use crate::load::Load as AnyLoad;
+use dwell_geometry::space::{Coordinate, Mechanism, Vec3};
+use dwell_geometry::{BodyId, JointId};
+
+/// A load of a mechanism in space: a shape times a magnitude.
+pub type Load = AnyLoad<LoadKind, Coordinate>;
 
 /// A direction in the axes of the ground or of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,12 +16,12 @@ pub enum Direction {
     Body(Vec3),
 }
 
-/// How a load acts; its magnitude multiplies what is described here.
+/// The shape of a load, and what its magnitude F means.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LoadKind {
-    /// On every mass, along this direction of the ground, N/kg.
+    /// On every mass, along this direction of the ground: F in N/kg.
     Gravity(Vec3),
-    /// A force at a point (m in the body's frame), N.
+    /// A force F, N, at a point (m in the body's frame).
     Force {
         /// The body.
         body: BodyId,
@@ -27,116 +30,104 @@ pub enum LoadKind {
         /// The direction.
         direction: Direction,
     },
-    /// A torque on the second body, the opposite on the first, about a direction of the first or the ground, N·m.
+    /// A torque F, N·m, on the second body, the opposite on the first, about a direction of the first or the ground.
     Torque {
         /// The bodies.
         bodies: [BodyId; 2],
         /// The direction.
         direction: Direction,
     },
-    /// A force that pushes two points (m in the frames of the bodies) apart, N.
+    /// A force F, N, that pushes two points (m in the frames of the bodies) apart.
     PointToPointForce {
         /// The bodies.
         bodies: [BodyId; 2],
         /// Their points.
         points: [Vec3; 2],
     },
+    /// A spring between two points: F is its stiffness, N/m; it pulls with F (length − free).
+    Spring {
+        /// The bodies.
+        bodies: [BodyId; 2],
+        /// Their points.
+        points: [Vec3; 2],
+        /// Free length, m.
+        free_length: f64,
+    },
+    /// A damper between two points: F is its constant, N·s/m; it resists with F × d(length)/dt.
+    Damper {
+        /// The bodies.
+        bodies: [BodyId; 2],
+        /// Their points.
+        points: [Vec3; 2],
+    },
+    /// A couple F, N·m, of a joint's first body on its second about the joint's axis.
+    JointTorque(JointId),
+    /// A torsional spring about a joint's axis: F is its stiffness, N·m/rad; couple −F (angle − free) on the second body.
+    TorsionSpring {
+        /// The joint.
+        joint: JointId,
+        /// Free angle, rad, with its whole revolutions.
+        free_angle: f64,
+    },
+    /// A damper about a joint's axis: F is its constant, N·m·s/rad; couple −F × rate of the angle on the second body.
+    RotationalDamper(JointId),
+    /// A force F, N, of a joint's first body on its second along the joint's axis, at the second body's point.
+    SlideForce(JointId),
+    /// Viscous friction along a joint's axis: F is its constant, N·s/m; it resists with F × rate of the travel.
+    SlideDamper(JointId),
 }
 
 impl LoadKind {
-    /// The potential energy of a unit of the load at a pose, J; none of one that has no potential.
-    pub(super) fn potential(
-        &self,
-        plan: &Plan,
-        pose: &Pose,
-        masses: &[super::Mass],
-    ) -> Option<f64> {
+    /// The bodies it acts on, by number; none of gravity, which acts on all that have mass.
+    pub fn bodies(&self, mechanism: &Mechanism) -> Vec<BodyId> {
         match *self {
-            Self::Gravity(direction) => {
-                let weights = masses.iter().enumerate().map(|(body, mass)| {
-                    let center = plan.frame(pose, body).point(mass.center);
-                    -mass.mass * center.dot(direction)
-                });
-                Some(weights.sum())
+            Self::Gravity(_) => Vec::new(),
+            Self::Force { body, .. } => vec![body],
+            Self::Torque { bodies, .. }
+            | Self::PointToPointForce { bodies, .. }
+            | Self::Spring { bodies, .. }
+            | Self::Damper { bodies, .. } => bodies.to_vec(),
+            Self::JointTorque(joint)
+            | Self::TorsionSpring { joint, .. }
+            | Self::RotationalDamper(joint)
+            | Self::SlideForce(joint)
+            | Self::SlideDamper(joint) => {
+                let joint = mechanism.joints.get(joint.0);
+                joint.map_or_else(Vec::new, |joint| joint.bodies.to_vec())
             }
-            Self::Force {
-                body: BodyId(body),
-                point,
-                direction: Direction::Ground(direction),
-            } => Some(-plan.point(pose, body, point).dot(direction)),
-            Self::Force { .. } | Self::Torque { .. } | Self::PointToPointForce { .. } => None,
         }
     }
 
-    /// Whether it has a potential.
+    /// Whether it has a potential where its magnitude is constant: gravity, springs and forces of constant direction.
     pub fn is_conservative(&self) -> bool {
-        matches!(
-            self,
+        match self {
             Self::Gravity(_)
-                | Self::Force {
-                    direction: Direction::Ground(_),
-                    ..
-                }
-        )
+            | Self::Spring { .. }
+            | Self::TorsionSpring { .. }
+            | Self::Force {
+                direction: Direction::Ground(_),
+                ..
+            } => true,
+            Self::Force {
+                direction: Direction::Body(_),
+                ..
+            }
+            | Self::Torque { .. }
+            | Self::PointToPointForce { .. }
+            | Self::Damper { .. }
+            | Self::JointTorque(_)
+            | Self::RotationalDamper(_)
+            | Self::SlideForce(_)
+            | Self::SlideDamper(_) => false,
+        }
     }
 
-    /// Takes the load, with its magnitude, off what the bodies require.
-    pub(super) fn subtract<T: Scalar>(
-        &self,
-        magnitude: f64,
-        plan: &Plan,
-        pose: &Pose<T>,
-        masses: &[super::Mass],
-        required: &mut [[Wrench<T>; 1]],
-    ) {
-        let arm = |body: usize, point: Vec3| {
-            let local = plan
-                .evaluation_frame(body)
-                .rotation
-                .apply_inverse(point - plan.evaluation_frame(body).position);
-            plan.frame(pose, body).rotation.apply(local.cast())
-        };
-        let turned = |body: usize, direction: Direction| match direction {
-            Direction::Ground(u) => u.scaled(magnitude).cast(),
-            Direction::Body(u) => {
-                let from_origin = u.scaled(magnitude) + plan.evaluation_frame(body).position;
-                arm(body, from_origin)
-            }
-        };
-        match *self {
-            Self::Gravity(direction) => {
-                for (body, mass) in masses.iter().enumerate() {
-                    let at = plan.frame(pose, body).rotation.apply(mass.center.cast());
-                    required[body][0].add_at(
-                        at,
-                        (-direction.scaled(magnitude * mass.mass)).cast(),
-                        Vec3::zero(),
-                    );
-                }
-            }
-            Self::Force {
-                body: BodyId(body),
-                point,
-                direction,
-            } => {
-                required[body][0].add_at(arm(body, point), -turned(body, direction), Vec3::zero());
-            }
-            Self::Torque {
-                bodies: [a, b],
-                direction,
-            } => {
-                let couple = turned(a.0, direction);
-                required[b.0][0].moment -= couple;
-                required[a.0][0].moment += couple;
-            }
-            Self::PointToPointForce { bodies, points } => {
-                let [a, b] = [0, 1].map(|k| arm(bodies[k].0, points[k]));
-                let [from, to] = bodies.map(|body| plan.frame(pose, body.0).origin);
-                let d = to + b - (from + a);
-                let along = d.scaled(T::from_f64(magnitude) / d.dot(d).sqrt());
-                required[bodies[0].0][0].add_at(a, along, Vec3::zero());
-                required[bodies[1].0][0].add_at(b, -along, Vec3::zero());
-            }
+    /// A couple or force along a coordinate, positive in the direction in which the coordinate grows.
+    pub fn along(coordinate: Coordinate) -> Self {
+        match coordinate {
+            Coordinate::Angle(joint) => Self::JointTorque(joint),
+            Coordinate::Travel(joint) => Self::SlideForce(joint),
+            Coordinate::Distance { bodies, points } => Self::PointToPointForce { bodies, points },
         }
     }
 }

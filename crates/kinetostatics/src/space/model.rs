@@ -1,12 +1,18 @@
 //! A mechanism in space with its masses and requested reactions, and the passes over it.
 
+use super::action::CompiledKind;
+use super::compiled_loads::CompiledLoads;
 use super::load::LoadKind;
 use super::mass::Mass;
 use crate::error::PositionResult;
+use crate::load::SignalWorkspace;
 use crate::pass::InverseDynamics;
-use dwell_geometry::space::{Assembly, Forces, Mechanism, Plan, Pose, Rotation, Vec3, Wrench};
+use dwell_geometry::space::{
+    Assembly, Forces, Mechanism, Plan, Pose, PoseMotion, Rotation, Vec3, Wrench,
+};
 use dwell_geometry::{AssemblyError, BodyId, JointId};
-use dwell_numerics::Scalar;
+use dwell_numerics::{Scalar, map_array};
+use std::sync::Arc;
 use thiserror::Error;
 
 /// Axes in which a component is given.
@@ -62,12 +68,14 @@ pub enum ModelError {
 /// A mechanism in space with its masses: constant, shared between threads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
+    mechanism: Arc<Mechanism>,
     plan: Plan,
     /// In the evaluation frames; the ground has none.
     masses: Vec<Mass>,
     /// The bodies that have mass or inertia.
     inertial: Vec<usize>,
     reactions: Vec<(Reaction, Option<(usize, Rotation)>)>,
+    pub(super) loads: CompiledLoads,
 }
 
 /// The memory of one thread.
@@ -79,6 +87,13 @@ pub struct Workspace<T = f64> {
     pub(super) unit_forces: Forces<T, 2>,
     /// Speeds or accelerations of the actuators.
     pub(super) rates: Vec<T>,
+    /// A motion at unit velocity of one coordinate.
+    pub(super) virtual_motion: PoseMotion<T>,
+    /// By load: its magnitude.
+    pub(super) magnitudes: Vec<T>,
+    /// By body: the wrenches of all loads, about the origin of its evaluation frame.
+    pub(super) load_wrenches: Vec<Wrench<T>>,
+    pub(super) signals: SignalWorkspace<T>,
 }
 
 impl Model {
@@ -118,7 +133,7 @@ impl Model {
             let joint = mechanism.joints.get(reaction.joint.0).filter(|_| k < 3);
             let joint = joint.ok_or(ModelError::Reaction(*reaction))?;
             let of_joint = (axes == Axes::Joint).then(|| {
-                let (body, side) = (joint.bodies[0].0, &joint.sides[0]);
+                let (body, side) = (joint.side_body(0).0, &joint.sides[0]);
                 let in_body = Rotation::of_axes(side.axis, side.normal);
                 (body, frame(body).rotation.inverse().after(&in_body))
             });
@@ -129,11 +144,28 @@ impl Model {
             .map(compile)
             .collect::<Result<_, ModelError>>()?;
         Ok(Self {
+            mechanism: Arc::new(mechanism.clone()),
             plan,
             masses: internal,
             inertial,
             reactions,
+            loads: CompiledLoads::default(),
         })
+    }
+
+    /// The mechanism it was compiled from.
+    pub fn mechanism(&self) -> &Mechanism {
+        &self.mechanism
+    }
+
+    /// By body: its mass in the evaluation frame.
+    pub(super) fn inner_masses(&self) -> &[Mass] {
+        &self.masses
+    }
+
+    /// The bodies that have mass or inertia.
+    pub(super) fn inertial(&self) -> &[usize] {
+        &self.inertial
     }
 
     /// The compiled mechanism.
@@ -162,6 +194,10 @@ impl Model {
             forces: self.plan.forces(),
             unit_forces: self.plan.forces(),
             rates: vec![T::from_f64(0.0); self.plan.actuators()],
+            virtual_motion: self.plan.pose_motion(),
+            magnitudes: vec![T::from_f64(0.0); self.loads.kinds.len()],
+            load_wrenches: vec![Wrench::default(); self.masses.len()],
+            signals: SignalWorkspace::new(self.loads.most_signals()),
         }
     }
 
@@ -213,7 +249,11 @@ impl Model {
     }
 
     /// The actions and reactions of what is required.
-    fn balance<T: Scalar>(&self, workspace: &mut Workspace<T>, result: &mut InverseDynamics<T>) {
+    pub(super) fn balance<T: Scalar>(
+        &self,
+        workspace: &mut Workspace<T>,
+        result: &mut InverseDynamics<T>,
+    ) {
         self.plan.balance(&workspace.pose, &mut workspace.forces);
         for (i, tau) in result.tau.iter_mut().enumerate() {
             [*tau] = self.plan.actuator_action(&workspace.forces, i);
@@ -225,7 +265,8 @@ impl Model {
 
     /// The potential energy of a unit of a load at the last pose, J; none of one that has no potential.
     pub fn potential_energy(&self, load: &LoadKind, workspace: &Workspace) -> Option<f64> {
-        load.potential(&self.plan, &workspace.pose, &self.masses)
+        let kind = CompiledKind::new(load, &self.mechanism, &self.plan).ok()?;
+        kind.potential(&self.plan, &workspace.pose, &self.masses)
     }
 
     /// The inertia of all bodies as what they require.
@@ -253,16 +294,23 @@ impl Model {
         }
     }
 
-    /// Takes a load off what the bodies require.
-    pub(super) fn subtract_load<T: Scalar>(
+    /// The response to a unit of a load, at rest; none where it has no direction.
+    pub(super) fn respond<T: Scalar>(
         &self,
-        load: &LoadKind,
-        magnitude: f64,
+        kind: &CompiledKind,
         workspace: &mut Workspace<T>,
-    ) {
-        let Workspace { pose, forces, .. } = workspace;
+        result: &mut InverseDynamics<T>,
+    ) -> Option<()> {
+        let (unit, magnitude) = kind.unit();
+        let Workspace { pose, forces, .. } = &mut *workspace;
         let required = &mut forces.required;
-        load.subtract(magnitude, &self.plan, pose, &self.masses, required);
+        required.fill([Wrench::default()]);
+        let at = (&self.plan, &*pose);
+        unit.act(T::from_f64(magnitude), at, &self.masses, |action| {
+            required[action.body][0].add_at(action.arm, -action.force, -action.couple);
+        })?;
+        self.balance(workspace, result);
+        Some(())
     }
 
     /// The inertia of all bodies in both unit passes, after the accelerations at unit speed: at unit acceleration from rest, and at
@@ -304,11 +352,12 @@ impl Model {
                 Component::Force(..) => along.dot(wrench.force),
                 Component::Moment(..) => along.dot(wrench.moment),
             };
-            take(index, wrenches.map(part));
+            take(index, map_array(wrenches, part));
         }
     }
 
-    /// The response to a load of magnitude 1 at `q` (rad or m), at rest: τ = −w and the reactions c.
+    /// The response to a load of magnitude 1 at `q` (rad or m), at rest: τ = −w and the reactions c; of a damper, to a unit of its
+    /// resistance. No numbers where the load has no direction or does not fit the mechanism.
     ///
     /// # Errors
     /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
@@ -320,9 +369,12 @@ impl Model {
         result: &mut InverseDynamics<T>,
     ) -> PositionResult {
         self.plan.positions(q, &mut workspace.pose)?;
-        workspace.forces.required.fill([Wrench::default()]);
-        self.subtract_load(load, 1.0, workspace);
-        self.balance(workspace, result);
+        let kind = CompiledKind::new(load, &self.mechanism, &self.plan).ok();
+        let responded = kind.and_then(|kind| self.respond(&kind, workspace, result));
+        if responded.is_none() {
+            result.tau.fill(T::from_f64(f64::NAN));
+            result.reactions.fill(T::from_f64(f64::NAN));
+        }
         Ok(())
     }
 }

@@ -1,18 +1,26 @@
 //! The sections of a scene in space, read in an order in which each finds what it refers to.
 
-use super::actuators::{ParsedActuator, actuators};
+use super::actuators::{ParsedActuator, actuators, require_lengths};
 use super::assembly::assembly;
 use super::bodies::Space;
+use super::coordinates::coordinates;
 use super::joints::Joints;
-use super::loads::loads;
-use super::requests::{in_ground_axes, reactions};
+use super::loads::LoadReader;
+use super::requests::{in_ground_axes, one_reaction, reactions};
 use super::scene::SpaceScene;
 use crate::bodies::Bodies;
+use crate::build::is_filled;
+use crate::coordinates::{NamedActuator, ParsedCoordinate};
 use crate::diagnostics::Diagnostics;
+use crate::drives::{DriveReader, reject_drives_of_prescribed};
 use crate::error::{SceneError, Source};
+use crate::events::EventReader;
 use crate::file::SceneFile;
 use crate::keys::table;
+use crate::magnitude::Magnitudes;
+use crate::motion::ParsedMotion;
 use crate::prescribed::{coordinate_sweep, prescribed_motion};
+use crate::scene::NamedCoordinate;
 use crate::sections::{
     needed_section, one_line, printable, report_unjoined_bodies, section, text_of, title,
 };
@@ -56,6 +64,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
         ("prescribed", SceneLocation::Prescribed),
         ("coordinate-sweep", SceneLocation::CoordinateSweep),
         ("requests", SceneLocation::Requests),
+        ("motion", SceneLocation::Motion),
     ] {
         fields.place(key, location);
     }
@@ -65,12 +74,56 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
     let bodies: Bodies<'_, Space> = Bodies::read(&needed_section(fields, "bodies")?);
     let joints = Joints::read(needed_section(fields, "joints").as_ref(), &bodies, log);
     let actuators = section("actuators").map_or_else(Vec::new, |f| actuators(&f, &bodies, &joints));
-    let assembly = assembly(section("assembly").as_ref(), &bodies, &actuators);
-    let start = assembly.q.as_slice();
-    let prescribed = section("prescribed").and_then(|f| prescribed_motion(&f, &actuators, start));
-    let sweep = section("coordinate-sweep").and_then(|f| coordinate_sweep(&f, &actuators, start));
-    let loads = section("loads").map_or_else(Vec::new, |f| loads(&f, &bodies));
+    require_lengths(&joints, &actuators);
+    let by_name: Vec<NamedActuator<'_>> = actuators.iter().map(|a| a.named.clone()).collect();
+    let named_section = section("coordinates");
+    let named = coordinates(&actuators, named_section.as_ref(), &bodies, &joints);
+    let magnitudes = Magnitudes::new(&named);
+    let assembly_section = section("assembly");
+    let mut assembly = assembly(assembly_section.as_ref(), &bodies, &actuators);
     let ground = bodies.ground.unwrap_or_default();
+    let can_start_at_rest = is_filled(fields, "loads") || is_filled(fields, "drives");
+    let motion_section = section("motion");
+    let mut motion =
+        (motion_section.as_ref()).map(|f| ParsedMotion::read(f, &by_name, can_start_at_rest));
+    let initial = motion.as_ref().map_or(&[][..], |m| &m.initial_coordinates);
+    let start = starting_coordinates(
+        &mut assembly.q,
+        initial,
+        &by_name,
+        assembly_section.as_ref(),
+    );
+    let mut events = Vec::new();
+    if let (Some(motion), Some(f)) = (&mut motion, &motion_section) {
+        motion.read_laws(&by_name, &start);
+        let section = f.get("events");
+        let section = section.and_then(|e| TableReader::open(e, "events of [motion]"));
+        let reader = EventReader {
+            coordinates: &named,
+            reaction: &|text, at, fields| one_reaction(text, at, fields, &joints, ground),
+        };
+        events = section.map_or_else(Vec::new, |f| reader.events(&f));
+    }
+    let prescribed = section("prescribed");
+    let prescribed = prescribed.and_then(|f| prescribed_motion(&f, &by_name, &start));
+    let sweep = section("coordinate-sweep");
+    let sweep = sweep.and_then(|f| coordinate_sweep(&f, &by_name, &start));
+    let reader = LoadReader {
+        bodies: &bodies,
+        joints: &joints,
+        magnitudes: &magnitudes,
+    };
+    let loads = section("loads").map_or_else(Vec::new, |f| reader.loads(&f));
+    let reader = DriveReader {
+        coordinates: &named,
+        magnitudes: &magnitudes,
+    };
+    let drives = section("drives").map_or_else(Vec::new, |f| reader.drives(&f, loads.len()));
+    if let Some(motion) = &motion {
+        let coordinates = named.list[..named.actuators].iter().map(|c| c.coordinate);
+        let actuators = by_name.iter().zip(coordinates);
+        reject_drives_of_prescribed(&drives, motion, actuators, |a, b| a == b);
+    }
     let listed = section("requests").and_then(|f| reactions(&f, &joints, ground));
     let joined = || joints.list.iter().filter_map(|j| j.joint.as_ref());
     // A joint that could not be read may be the one that holds a body.
@@ -89,6 +142,12 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
         };
         in_ground_axes(joint, ground).into_iter().map(reaction)
     });
+    let coordinate = |c: &ParsedCoordinate<'_, _>| {
+        let name = c.name.to_owned();
+        let coordinate = c.coordinate?;
+        Some(NamedCoordinate { name, coordinate })
+    };
+    let coordinates = named.list[named.actuators..].iter().filter_map(coordinate);
     let points = bodies.list.iter().map(|b| {
         let points = b.points.iter();
         points
@@ -109,9 +168,12 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
                 .collect(),
             joints,
         },
-        assembly,
+        coordinates: coordinates.collect(),
         prescribed,
         sweep,
+        motion: motion.and_then(|m| m.into_spec(&start, events)),
+        drives: drives.into_iter().map(|(drive, _)| drive).collect(),
+        assembly,
         loads,
         file: SceneFile::new(
             (name, source),
@@ -120,6 +182,24 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
             log,
         ),
     })
+}
+
+/// The coordinates where a motion starts: those of `[assembly]`, or of `[motion]` for an actuator that is not there. Then the mechanism
+/// is assembled there, too.
+fn starting_coordinates(
+    assembly: &mut [f64],
+    initial: &[Option<f64>],
+    actuators: &[NamedActuator<'_>],
+    fields: Option<&TableReader<'_>>,
+) -> Vec<f64> {
+    for ((at, initial), actuator) in assembly.iter_mut().zip(initial).zip(actuators) {
+        let mut given = fields.iter().flat_map(|f| &f.entries);
+        let is_given = given.any(|entry| entry.name == actuator.name);
+        if let (false, Some(initial)) = (is_given, initial) {
+            *at = *initial;
+        }
+    }
+    assembly.to_vec()
 }
 
 /// Sections of scenes in the plane that those in space do not have yet are named as such.

@@ -1,11 +1,13 @@
 //! The loads.
 
+use super::actuators::joint_with_freedom;
 use super::bodies::Space;
-use super::scene::NamedLoad;
+use super::joints::Joints;
 use super::values::{direction, numbers};
 use crate::bodies::{Bodies, TWO_POINTS};
 use crate::keys::kinds;
 use crate::kind::{kind_among, reject_unread_kind};
+use crate::magnitude::Magnitudes;
 use crate::names::check;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
@@ -13,58 +15,133 @@ use crate::units::SI;
 use crate::value::{NumberRule, SignRule};
 use crate::wording::shorten;
 use dwell_geometry::BodyId;
-use dwell_geometry::space::Vec3;
-use dwell_kinetostatics::space::{Direction, LoadKind};
+use dwell_geometry::space::{Coordinate, Vec3};
+use dwell_kinetostatics::Magnitude;
+use dwell_kinetostatics::space::{Direction, Load, LoadKind};
 use toml::de::DeValue;
 
-pub(super) fn loads(fields: &TableReader<'_>, bodies: &Bodies<'_, Space>) -> Vec<NamedLoad> {
-    let mut found = Vec::new();
-    for entry in &fields.entries {
-        check("a load", entry);
-        if let Some((kind, magnitude)) = read_load(entry, bodies) {
-            entry
-                .log()
-                .place(SceneLocation::Load(found.len()), &entry.key);
-            found.push(NamedLoad {
+/// Reads loads.
+pub(super) struct LoadReader<'r> {
+    pub(super) bodies: &'r Bodies<'r, Space>,
+    pub(super) joints: &'r Joints<'r>,
+    pub(super) magnitudes: &'r Magnitudes<Coordinate>,
+}
+
+impl LoadReader<'_> {
+    /// Every load of the section that was read well.
+    pub(super) fn loads(&self, fields: &TableReader<'_>) -> Vec<Load> {
+        let one = |(k, entry): (usize, &Entry<'_>)| {
+            check("a load", entry);
+            entry.log().place(SceneLocation::Load(k), &entry.key);
+            let fields = TableReader::open(entry, format!("load `{}`", shorten(entry.name)))?;
+            let (kind, magnitude) = self.kind_and_magnitude(&fields, k)?;
+            Some(Load {
                 name: entry.name.to_owned(),
                 kind,
                 magnitude,
-            });
-        }
-    }
-    found
-}
-
-/// How a unit of a load acts, and its magnitude.
-fn read_load(entry: &Entry<'_>, bodies: &Bodies<'_, Space>) -> Option<(LoadKind, f64)> {
-    let fields = &TableReader::open(entry, format!("load `{}`", shorten(entry.name)))?;
-    let (kind, entry) = kind_among(fields, "load", &kinds("loads-in-space"))?;
-    if kind == "gravity" {
-        let gravity = numbers(entry.value, &fields.name_of(entry))?;
-        // Without gravity there is no direction, and no weight either.
-        let along = gravity.unit().unwrap_or(Vec3::ZERO);
-        return Some((LoadKind::Gravity(along), gravity.norm()));
-    }
-    let help = "add `magnitude = 10`";
-    let magnitude = fields.number("magnitude", help, &NumberRule::new(&SI, SignRule::Any));
-    let kind = match kind {
-        "force" => force(entry, fields, bodies),
-        "torque" => torque(entry, fields, bodies),
-        "point-to-point-force" => {
-            let what = fields.name_of(entry);
-            let points = bodies.find_two_points(entry.value, TWO_POINTS, what)?;
-            let message =
-                |name: &str| format!("{} acts between two points of body `{name}`", fields.what);
-            let ends = [0, 1].map(|k| (points[k].0, &points[k].2));
-            let bodies_of = bodies.require_different(ends, message, "name points of two bodies")?;
-            Some(LoadKind::PointToPointForce {
-                bodies: bodies_of,
-                points: [0, 1].map(|k| bodies.at(&points[k])),
             })
+        };
+        fields.entries.iter().enumerate().filter_map(one).collect()
+    }
+
+    /// The k-th load without its name.
+    fn kind_and_magnitude(
+        &self,
+        fields: &TableReader<'_>,
+        k: usize,
+    ) -> Option<(LoadKind, Magnitude<Coordinate>)> {
+        let (kind, entry) = kind_among(fields, "load", &kinds("loads-in-space"))?;
+        let location = SceneLocation::Magnitude(k);
+        if kind == "gravity" {
+            fields.place(kind, location);
+            let gravity = numbers(entry.value, &fields.name_of(entry))?;
+            // Without gravity there is no direction, and no weight either.
+            let along = gravity.unit().unwrap_or(Vec3::ZERO);
+            let magnitude = Magnitude::Constant(gravity.norm());
+            return Some((LoadKind::Gravity(along), magnitude));
         }
-        _ => reject_unread_kind(entry),
-    };
-    Some((kind?, magnitude?))
+        let stiffness = "a negative stiffness would push away from the free position";
+        let damping = "negative damping would accelerate the motion";
+        let (size, unit, sign, why) = match kind {
+            "force" | "point-to-point-force" | "slide-force" => {
+                ("magnitude", "N", SignRule::Any, "")
+            }
+            "torque" | "joint-torque" => ("magnitude", "N m", SignRule::Any, ""),
+            "spring" => ("stiffness", "N/m", SignRule::NotNegative, stiffness),
+            "torsion-spring" => ("stiffness", "N m/rad", SignRule::NotNegative, stiffness),
+            "damper" | "slide-damper" => ("damping", "N s/m", SignRule::NotNegative, damping),
+            "rotational-damper" => ("damping", "N m s/rad", SignRule::NotNegative, damping),
+            _ => return reject_unread_kind(entry),
+        };
+        let kind = self.load_kind(kind, entry, fields);
+        let magnitude = fields.require(size, &format!("add for instance `{size} = 10`, in {unit}"));
+        fields.place(size, location);
+        let rule = NumberRule::new(&SI, sign).because(why);
+        let magnitude = magnitude.and_then(|e| self.magnitudes.read(e, fields, &rule));
+        kind.zip(magnitude)
+    }
+
+    fn load_kind(
+        &self,
+        kind: &str,
+        entry: &Entry<'_>,
+        fields: &TableReader<'_>,
+    ) -> Option<LoadKind> {
+        let joint = |is_angle| joint_with_freedom(is_angle, entry, fields, self.joints);
+        match kind {
+            "force" => force(entry, fields, self.bodies),
+            "torque" => torque(entry, fields, self.bodies),
+            "joint-torque" => joint(true).map(LoadKind::JointTorque),
+            "point-to-point-force" => {
+                let (bodies, points) = self.two_points(entry, fields)?;
+                Some(LoadKind::PointToPointForce { bodies, points })
+            }
+            "spring" => {
+                let both = self.two_points(entry, fields);
+                let rule = NumberRule::new(&fields.units().length, SignRule::NotNegative);
+                let help = "add `free-length = 0.1`, its length without force";
+                let free_length = fields.number("free-length", help, &rule);
+                let ((bodies, points), free_length) = (both?, free_length?);
+                Some(LoadKind::Spring {
+                    bodies,
+                    points,
+                    free_length,
+                })
+            }
+            "damper" => {
+                let (bodies, points) = self.two_points(entry, fields)?;
+                Some(LoadKind::Damper { bodies, points })
+            }
+            "torsion-spring" => {
+                let joint = joint(true);
+                let help = "add `free-angle = 0.0`, the angle at which its torque is zero";
+                let free = fields.require("free-angle", help);
+                let free_angle = free.and_then(|e| e.value.angle(fields.name_of(e)));
+                let (joint, free_angle) = (joint?, free_angle?);
+                Some(LoadKind::TorsionSpring { joint, free_angle })
+            }
+            "rotational-damper" => joint(true).map(LoadKind::RotationalDamper),
+            "slide-force" => joint(false).map(LoadKind::SlideForce),
+            "slide-damper" => joint(false).map(LoadKind::SlideDamper),
+            _ => reject_unread_kind(entry),
+        }
+    }
+
+    /// Points of two different bodies.
+    fn two_points(
+        &self,
+        entry: &Entry<'_>,
+        fields: &TableReader<'_>,
+    ) -> Option<([BodyId; 2], [Vec3; 2])> {
+        let what = fields.name_of(entry);
+        let [a, b] = self.bodies.find_two_points(entry.value, TWO_POINTS, what)?;
+        let points = [self.bodies.at(&a), self.bodies.at(&b)];
+        let message =
+            |name: &str| format!("{} acts between two points of body `{name}`", fields.what);
+        let ends = [(a.0, &a.2), (b.0, &b.2)];
+        let bodies = (self.bodies).require_different(ends, message, "name points of two bodies")?;
+        Some((bodies, points))
+    }
 }
 
 fn force(

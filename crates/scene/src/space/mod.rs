@@ -5,6 +5,7 @@ mod any_scene;
 mod assembly;
 mod bodies;
 mod build;
+mod coordinates;
 mod joints;
 mod loads;
 mod points;
@@ -14,4 +15,4 @@ mod values;
 
 pub use any_scene::AnyScene;
 pub(crate) use points::{planar_only, three_numbers};
-pub use scene::{NamedLoad, SpaceScene};
+pub use scene::SpaceScene;

@@ -6,7 +6,7 @@ use crate::keys::table;
 use crate::requests::{joint_and_component, strings};
 use crate::spans::SceneLocation;
 use crate::table_reader::TableReader;
-use crate::wording::shorten;
+use crate::wording::{list, shorten};
 use dwell_geometry::JointId;
 use dwell_geometry::space::{Joint, JointKind, Vec3};
 use dwell_kinetostatics::space::{Axes, Component, Reaction};
@@ -40,6 +40,10 @@ fn exists(kind: JointKind, component: Component) -> bool {
         (kind, Component::Force(Axes::Joint, _)) if !has_axis(kind) => false,
         (JointKind::Revolute | JointKind::Universal, Component::Moment(Axes::Joint, 2)) => false,
         (JointKind::Prismatic, Component::Force(Axes::Joint, 2)) => false,
+        // A force along the normal of the teeth, at the pitch point.
+        (JointKind::Gear { .. }, Component::Moment(..) | Component::Force(Axes::Joint, 0 | 1)) => {
+            false
+        }
         (
             JointKind::Cylindrical,
             Component::Force(Axes::Joint, 2) | Component::Moment(Axes::Joint, 2),
@@ -54,11 +58,13 @@ fn exists(kind: JointKind, component: Component) -> bool {
 
 /// The components of a joint in the axes of the ground, but those that are always zero.
 pub(super) fn in_ground_axes(joint: &Joint, ground: usize) -> Vec<Component> {
-    let own_axis = joint.bodies.iter().position(|b| b.0 == ground);
+    let own_axis = (0..2).find(|k| joint.side_body(*k).0 == ground);
     let own_axis = own_axis.map(|k| joint.sides[k].axis);
     // Where the joint's axis is one of the ground's, the component along it is the axial one.
     let is_along = |k: usize| own_axis.is_some_and(|u| Vec3::AXES[k].cross(u).norm() == 0.0);
+    let is_gear = matches!(joint.kind, JointKind::Gear { .. });
     let is_never_zero = |component: &Component| match *component {
+        Component::Force(_, k) if is_gear => own_axis.is_none_or(|u| Vec3::AXES[k].dot(u) != 0.0),
         Component::Force(_, k) if is_along(k) => {
             exists(joint.kind, Component::Force(Axes::Joint, 2)) || !has_axis(joint.kind)
         }
@@ -110,6 +116,40 @@ pub(super) fn reactions(
         }
     }
     Some(found)
+}
+
+/// The one component of one joint that a text names.
+pub(super) fn one_reaction(
+    text: &str,
+    at: &Span,
+    fields: &TableReader<'_>,
+    joints: &Joints<'_>,
+    ground: usize,
+) -> Option<Reaction> {
+    let (name, component) = joint_and_component(text);
+    let j = joints.find(name, at)?;
+    // A joint that could not be read has been reported already.
+    let joint = joints.list[j].joint.as_ref()?;
+    let components = match component {
+        Some(component) => one(joint.kind, component, name, (fields.log(), at)),
+        None => in_ground_axes(joint, ground),
+    };
+    match components[..] {
+        [] => None,
+        [component] => Some(Reaction {
+            joint: JointId(j),
+            component,
+        }),
+        _ => {
+            let names = components.iter().map(|&c| component_name(c));
+            let names = list(names).unwrap_or_default();
+            let message = format!("{} names {} reactions", fields.what, components.len());
+            let help = format!("name one component of `{}`: {names}", shorten(name));
+            fields
+                .log()
+                .reject(message, &[(at, "which of them?")], help)
+        }
+    }
 }
 
 /// The component of that name.

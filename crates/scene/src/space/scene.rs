@@ -1,9 +1,10 @@
 //! A scene in space as plain data.
 
 use crate::file::SceneFile;
-use crate::scene::{CoordinateSweep, PrescribedMotion};
-use dwell_geometry::space::{Assembly, Mechanism, Vec3};
-use dwell_kinetostatics::space::{LoadKind, Mass, Reaction};
+use crate::scene::{CoordinateSweep, FreeMotionSpec, NamedCoordinate, PrescribedMotion};
+use dwell_geometry::space::{Assembly, Coordinate, Mechanism, Vec3};
+use dwell_kinetostatics::Drive;
+use dwell_kinetostatics::space::{Load, Mass, Reaction};
 use std::ops::Deref;
 
 /// A scene of a mechanism in space. SI throughout; the bodies, joints and actuators are in the order of the file.
@@ -19,27 +20,22 @@ pub struct SpaceScene {
     pub points: Vec<Vec<(String, Vec3)>>,
     /// Where the mechanism is assembled.
     pub assembly: Assembly,
-    /// The loads.
-    pub loads: Vec<NamedLoad>,
-    /// The prescribed motion of `[prescribed]`.
+    /// The named coordinates of `[coordinates]`. Every actuator's is one besides.
+    pub coordinates: Vec<NamedCoordinate<Coordinate>>,
+    /// The prescribed motion.
     pub prescribed: Option<PrescribedMotion>,
-    /// The sweep of `[coordinate-sweep]`.
+    /// The positions of kinematics, statics and kinetostatics without a prescribed motion.
     pub sweep: Option<CoordinateSweep>,
+    /// The loads.
+    pub loads: Vec<Load>,
+    /// What drives it in a free motion.
+    pub drives: Vec<Drive<Coordinate>>,
+    /// The free motion.
+    pub motion: Option<FreeMotionSpec<Coordinate, Reaction>>,
     /// The requested reactions.
     pub reactions: Vec<Reaction>,
     /// Whether the file lists the reactions; otherwise all in the axes of the ground are requested.
     pub lists_reactions: bool,
-}
-
-/// A load of a scene in space.
-#[derive(Debug, Clone, PartialEq)]
-pub struct NamedLoad {
-    /// Its name.
-    pub name: String,
-    /// How a unit of it acts.
-    pub kind: LoadKind,
-    /// Its magnitude: N, N·m, or m/s².
-    pub magnitude: f64,
 }
 
 impl Deref for SpaceScene {
@@ -51,6 +47,17 @@ impl Deref for SpaceScene {
 }
 
 impl SpaceScene {
+    /// Every coordinate that has a name, those of the actuators first.
+    pub fn all_coordinates(&self) -> impl Iterator<Item = (&str, Coordinate)> + Clone {
+        let actuators = self.mechanism.actuators.iter();
+        let actuators = actuators.map(|a| {
+            let joint = &self.mechanism.joints[a.kind.joint().0];
+            (a.name.as_str(), a.kind.coordinate(joint))
+        });
+        let named = self.coordinates.iter();
+        actuators.chain(named.map(|c| (c.name.as_str(), c.coordinate)))
+    }
+
     /// The name of a reaction: `joint.component`.
     pub fn reaction_name(&self, reaction: Reaction) -> String {
         let joint = &self.mechanism.joints[reaction.joint.0].name;

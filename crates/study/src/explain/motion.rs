@@ -11,7 +11,7 @@ use crate::number_format::{coordinate_unit, digits, force_unit, number};
 use dwell_dynamics::DynamicsError;
 use dwell_geometry::{ActuatorId, BodyId, Plan};
 use dwell_kinetostatics::KinetostaticsError;
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{Scene, SceneFile, SceneLocation};
 use std::f64::consts::TAU;
 
 /// Explains a motion that failed.
@@ -62,7 +62,7 @@ pub(crate) struct StepLimits {
 /// Explains a motion that takes too many steps: it is the longest step allowed that makes them many where they are on
 /// average at least half as long, else the tolerance.
 pub(crate) fn explain_max_steps(
-    scene: &Scene,
+    scene: &SceneFile,
     t: f64,
     max_steps: usize,
     limits: &StepLimits,
@@ -103,6 +103,12 @@ fn describe(
     let speed = SceneLocation::InitialVelocity(ActuatorId(0));
     let start = initial_state_location(scene);
     match error {
+        DynamicsError::Interrupted => (
+            "the computation was interrupted".to_owned(),
+            "",
+            SceneLocation::Whole,
+            "",
+        ),
         DynamicsError::AtRest => (
             "the free motion starts at rest, and no force moves the mechanism".to_owned(),
             "give a `speed` in [motion]",

@@ -7,18 +7,26 @@ use dwell_scene::Scene;
 
 /// Name, unit and meaning of each state of the drives.
 pub(crate) fn drive_states(scene: &Scene) -> Vec<(String, &'static str, &'static str)> {
-    let state = |drive: &dwell_kinetostatics::Drive| match &drive.kind {
+    states_of_drives(&scene.drives, |coordinate| coordinate.is_angle())
+}
+
+/// The same of drives in the plane or in space.
+pub(crate) fn states_of_drives<C: Copy>(
+    drives: &[Drive<C>],
+    is_angle: impl Fn(C) -> bool,
+) -> Vec<(String, &'static str, &'static str)> {
+    let state = |drive: &Drive<C>| match &drive.kind {
         DriveKind::Motor(motor) if motor.inductance > 0.0 => {
             Some((format!("{}.current", drive.name), "A", ""))
         }
         DriveKind::SpeedController(controller) if controller.integral_gain > 0.0 => {
-            let unit = coordinate_unit(drive.coordinate.is_angle());
+            let unit = coordinate_unit(is_angle(drive.coordinate));
             let meaning = "integral of the controller error";
             Some((format!("{}.integral", drive.name), unit, meaning))
         }
         DriveKind::Motor(_) | DriveKind::SpeedController(_) | DriveKind::AppliedForce(_) => None,
     };
-    scene.drives.iter().filter_map(state).collect()
+    drives.iter().filter_map(state).collect()
 }
 
 /// The motor of a drive that is one; none of a motor whose current makes no torque.

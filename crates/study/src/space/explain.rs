@@ -6,7 +6,8 @@ use crate::explain::{
 use crate::number_format::{coordinate_unit, count, digits, number};
 use dwell_geometry::space::Plan;
 use dwell_geometry::{ActuatorId, AssemblyError, BodyId, JointId, PositionError, StructureError};
-use dwell_kinetostatics::space::ModelError;
+use dwell_kinetostatics::space::{Model, ModelError};
+use dwell_kinetostatics::{KinetostaticsError, LoadError, MachineModel as _};
 use dwell_scene::{SceneLocation, SpaceScene};
 
 /// Names of bodies in a sentence; more are only counted.
@@ -172,6 +173,18 @@ fn explain_structure(scene: &SpaceScene, error: &StructureError) -> StudyError {
             let help = "each degree of freedom needs one actuator: remove an actuator, or replace a joint by one with more freedoms";
             scene_error(scene, message, help, driven("drives it"))
         }
+        StructureError::Gear { joint, reason } => {
+            let name = &scene.mechanism.joints[joint.0].name;
+            let message = format!("the teeth of gear pair `{name}` cannot mesh: {reason}");
+            let help = "both wheels need bearings whose axes keep their places in the carrier, the body of the pitch point; and \
+                        the normal of the teeth must have an arm about each axis";
+            let mut places = joint_labels(&[*joint], "this gear pair");
+            places.push((
+                SceneLocation::Axis(*joint),
+                "the normal of its teeth".to_owned(),
+            ));
+            scene_error(scene, message, help, places)
+        }
         StructureError::Malformed { reason } => scene_error(
             scene,
             (*reason).to_owned(),
@@ -226,4 +239,75 @@ pub(super) fn explain_position(
         "its coordinate",
     );
     scene_error(scene, message, help, places)
+}
+
+/// The same model under the loads of the scene, the drives' last.
+pub(super) fn with_loads(scene: &SpaceScene, model: Model) -> Result<Model, StudyError> {
+    let mut loads = scene.loads.clone();
+    for drive in &scene.drives {
+        let load = loads.len();
+        let wrong = |what| explain_load_error(scene, &LoadError { load, what });
+        loads.push(model.drive_load(drive).map_err(wrong)?);
+    }
+    let loaded = model.with_loads(loads);
+    loaded.map_err(|error| explain_load_error(scene, &error))
+}
+
+/// Explains a load, or a drive behind the loads, that does not fit the mechanism.
+pub(super) fn explain_load_error(scene: &SpaceScene, error: &LoadError) -> StudyError {
+    let message = format!(
+        "`{}` cannot act on the mechanism: {}",
+        name_of_load(scene, error.load),
+        error.what
+    );
+    let help = "let it act at another joint, or leave it out";
+    scene_error(
+        scene,
+        message,
+        help,
+        [(SceneLocation::Load(error.load), "this one")],
+    )
+}
+
+/// The name of a load, or of a drive behind them.
+pub(super) fn name_of_load(scene: &SpaceScene, load: usize) -> &str {
+    let loads = scene.loads.iter().map(|load| load.name.as_str());
+    let mut names = loads.chain(scene.drives.iter().map(|drive| drive.name.as_str()));
+    names.nth(load).unwrap_or_default()
+}
+
+/// Explains loads that cannot be evaluated at a state.
+pub(super) fn explain_loads(
+    scene: &SpaceScene,
+    plan: &Plan,
+    error: &KinetostaticsError,
+) -> StudyError {
+    let (message, help, at, label) = match *error {
+        KinetostaticsError::Position(position) => return explain_position(scene, plan, &position),
+        KinetostaticsError::NoDirection { load } => (
+            format!(
+                "`{}` has no direction: its two points coincide there",
+                name_of_load(scene, load)
+            ),
+            "keep its points apart, or give a spring the free length 0",
+            SceneLocation::Load(load),
+            "between these points",
+        ),
+        KinetostaticsError::MagnitudeNotFinite { load } => (
+            format!(
+                "the magnitude of `{}` is not a finite number there",
+                name_of_load(scene, load)
+            ),
+            "extend its table, or change its expression where it has no value",
+            SceneLocation::Magnitude(load),
+            "no finite value",
+        ),
+        KinetostaticsError::SelfLocking { load } => (
+            error.to_string(),
+            "reduce the coefficient of friction",
+            SceneLocation::Load(load),
+            "jams",
+        ),
+    };
+    scene_error(scene, message, help, [(at, label)])
 }

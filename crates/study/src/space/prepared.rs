@@ -1,6 +1,6 @@
 //! A scene in space with the exact reduced model of what it requests.
 
-use super::explain::{explain_model, explain_position};
+use super::explain::{explain_loads, explain_model, explain_position, with_loads};
 use super::views::SpacePositions;
 use crate::explain::{StudyError, scene_error};
 use crate::number_format::{count, digits};
@@ -10,7 +10,9 @@ use crate::reduce::compute::{InertiaAt, ReducedLoad, ReducedScene, UnitLoadCurve
 use dwell_geometry::space::{ActuatorKind, Placement, Plan};
 use dwell_geometry::{ActuatorId, PositionError, Range};
 use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};
-use dwell_kinetostatics::{Coefficients, ExactModel, ReducedModel as _, reduction_rounding_errors};
+use dwell_kinetostatics::{
+    Coefficients, ExactModel, MachineModel as _, ReducedModel as _, reduction_rounding_errors,
+};
 use dwell_scene::{SceneFile, SceneLocation, SpaceScene};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -18,7 +20,7 @@ use std::f64::consts::TAU;
 /// Part of the range that is left out at each limit position, where everything grows.
 const LIMIT_MARGIN: f64 = 1e-3;
 /// Intervals of a revolution, or of the range, from which paths are drawn.
-const DRAWN_INTERVALS: usize = 120;
+const DRAWN_INTERVALS: usize = 240;
 /// Half a stroke without limits, in sizes of the mechanism.
 const DEFAULT_STROKE: f64 = 0.5;
 
@@ -146,8 +148,16 @@ fn elsewhere(scene: &SpaceScene, model: &Model) -> Vec<f64> {
 fn load_units(kind: LoadKind) -> [&'static str; 3] {
     match kind {
         LoadKind::Gravity(_) => ["kg m", "kg", "kg m"],
-        LoadKind::Torque { .. } => ["", "1/m", ""],
-        LoadKind::Force { .. } | LoadKind::PointToPointForce { .. } => ["m", "", "m"],
+        LoadKind::Torque { .. } | LoadKind::JointTorque(_) | LoadKind::RotationalDamper(_) => {
+            ["", "1/m", ""]
+        }
+        LoadKind::TorsionSpring { .. } => ["rad", "rad/m", "rad"],
+        LoadKind::Force { .. }
+        | LoadKind::PointToPointForce { .. }
+        | LoadKind::Damper { .. }
+        | LoadKind::SlideForce(_)
+        | LoadKind::SlideDamper(_) => ["m", "", "m"],
+        LoadKind::Spring { .. } => ["m2", "m", "m2"],
     }
 }
 
@@ -227,7 +237,8 @@ impl ReducedScene for PreparedSpaceScene<'_> {
             return Ok(None);
         }
         let model = self.model.model();
-        let (mut workspace, mut response) = (model.workspace(), model.result_buffer());
+        let loaded = with_loads(self.scene, model.clone())?;
+        let (mut workspace, mut response) = (loaded.workspace(), loaded.result_buffer());
         let mut curves = UnitLoadCurves {
             loads: loads
                 .iter()
@@ -239,17 +250,18 @@ impl ReducedScene for PreparedSpaceScene<'_> {
                 .collect(),
             rows: Vec::with_capacity(q.len()),
             potential: Vec::with_capacity(q.len()),
-            conservative: loads.iter().any(|load| load.kind.is_conservative()),
+            conservative: (0..loads.len()).any(|k| loaded.is_conservative(k)),
             is_angle: self.is_angle(),
         };
         for &q in q {
             let (mut row, mut potential) = (Vec::with_capacity(loads.len()), 0.0);
-            for load in loads {
-                model
-                    .unit_load_response(&[q], &load.kind, &mut workspace, &mut response)
-                    .map_err(|e| self.explain(&e))?;
-                let unit = model.potential_energy(&load.kind, &workspace);
-                potential += load.magnitude * unit.unwrap_or_default();
+            let mut state = loaded
+                .kinematic_state(&[q], &[0.0], &mut workspace)
+                .map_err(|e| self.explain(&e))?;
+            for load in 0..loads.len() {
+                let responded = state.unit_load_response(load, &mut response);
+                responded.map_err(|e| explain_loads(self.scene, loaded.plan(), &e))?;
+                potential += state.potential_energy(load).unwrap_or_default();
                 let mut values = vec![-response.tau[0]];
                 values.extend(&response.reactions);
                 row.push(values);
@@ -300,5 +312,8 @@ pub(super) fn range_limits(scene: &SpaceScene, plan: &Plan) -> ([f64; 2], [bool;
 /// Whether the first coordinate is an angle.
 pub(super) fn is_angle(scene: &SpaceScene) -> bool {
     let kind = scene.mechanism.actuators.first().map(|a| a.kind);
-    !matches!(kind, Some(ActuatorKind::Travel(_)))
+    !matches!(
+        kind,
+        Some(ActuatorKind::Travel(_) | ActuatorKind::Length(_))
+    )
 }

@@ -16,7 +16,7 @@ use dwell_findings::{Record, Table};
 use dwell_scene::{Scene, SceneError, SceneLocation};
 
 /// Number of samples if no sample interval is given.
-const DEFAULT_SAMPLES: f64 = 1000.0;
+pub(crate) const DEFAULT_SAMPLES: f64 = 1000.0;
 /// Maximum number of samples of a motion.
 const MAX_SAMPLES: f64 = 100_000.0;
 
@@ -147,7 +147,7 @@ impl FreeMotionProblem<'_> {
 }
 
 /// Refuses a sample interval beyond the duration (s), or of more than the highest number of samples.
-fn check_sample_interval(interval: f64, duration: f64) -> Result<f64, StudyError> {
+pub(crate) fn check_sample_interval(interval: f64, duration: f64) -> Result<f64, StudyError> {
     // What is printed with six digits can be given.
     const PRINTED: f64 = 1e-6;
     let shortest = duration / MAX_SAMPLES;
@@ -172,7 +172,7 @@ fn check_sample_interval(interval: f64, duration: f64) -> Result<f64, StudyError
 }
 
 /// Refuses wanted times (s) that are not ascending, or outside a motion of this duration (s).
-fn check_times(times: &[f64], duration: f64) -> Result<(), StudyError> {
+pub(crate) fn check_times(times: &[f64], duration: f64) -> Result<(), StudyError> {
     let pairs = times.iter().zip(times.iter().skip(1));
     let mut unordered = pairs.filter(|(before, after)| after <= before);
     let is_outside = |t: &&f64| **t < 0.0 || **t > duration;
@@ -196,7 +196,7 @@ fn check_times(times: &[f64], duration: f64) -> Result<(), StudyError> {
 
 impl StepLimits {
     /// What limits the steps of an integration.
-    fn of(solver: &MotionSolver) -> Self {
+    pub(crate) fn of(solver: &MotionSolver) -> Self {
         match solver {
             MotionSolver::Settings(settings) => Self {
                 max_step: settings.max_step,

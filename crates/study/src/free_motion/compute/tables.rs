@@ -30,7 +30,8 @@ impl FreeMotionProblem<'_> {
             prescribed: self.spec.laws.iter().map(Option::is_some).collect(),
             charts: charts.map(|c| c.output_model.clone()).collect(),
         };
-        let mut trajectory = Trajectory::of_free_motion(self.output_model.plan(), motion, end);
+        let mut trajectory =
+            Trajectory::of_free_motion(self.output_model.plan().range().period(), motion, end);
         method_text.clone_into(&mut trajectory.method_text);
         Ok(trajectory)
     }
@@ -230,7 +231,7 @@ impl FreeMotionProblem<'_> {
 }
 
 /// The switch along which a motion slides at a time, s.
-pub(super) fn sliding_at(solution: &Solution, t: f64) -> Option<&Sliding> {
+pub(crate) fn sliding_at(solution: &Solution, t: f64) -> Option<&Sliding> {
     let switches = solution.contact_events.iter().rev();
     let last = switches.filter(|event| event.t() <= t);
     last.filter_map(|event| match event {

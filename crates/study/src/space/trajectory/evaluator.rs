@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 
 /// Evaluates all quantities at one position after another.
 #[derive(Clone)]
-pub(super) struct SpaceEvaluator<'a> {
+pub(crate) struct SpaceEvaluator<'a> {
     scene: &'a SpaceScene,
     model: &'a Model,
     reactions: &'a JointReactions,
@@ -23,12 +23,11 @@ pub(super) struct SpaceEvaluator<'a> {
     rotations: Vec<Vec3>,
     workspace: Workspace<f64>,
     results: InverseDynamics<f64>,
-    unit_results: InverseDynamics<f64>,
     totals: Totals,
 }
 
 impl<'a> SpaceEvaluator<'a> {
-    pub(super) fn new(
+    pub(crate) fn new(
         scene: &'a SpaceScene,
         (model, reactions): (&'a Model, &'a JointReactions),
         analysis: Analysis,
@@ -45,7 +44,6 @@ impl<'a> SpaceEvaluator<'a> {
             rotations: vec![Vec3::ZERO; bodies],
             workspace: model.workspace(),
             results: model.result_buffer(),
-            unit_results: model.result_buffer(),
             totals: Totals::new(scene),
         }
     }
@@ -56,14 +54,16 @@ impl<'a> SpaceEvaluator<'a> {
     }
 
     /// Actuator forces, reactions and what they come to.
-    fn evaluate_forces(&mut self, [q, q_dot, q_ddot]: [&[f64]; 3]) -> Result<(), StopCause> {
-        let results = (&mut self.results, &mut self.unit_results);
-        let of_scene = (self.scene, self.model);
-        let at = [q, q_dot, q_ddot];
+    fn evaluate_forces(
+        &mut self,
+        (t, [q, q_dot, q_ddot]): (f64, [&[f64]; 3]),
+        given: &[(usize, f64)],
+    ) -> Result<(), StopCause> {
+        let at = (t, [q, q_dot, q_ddot]);
+        let (workspace, results) = (&mut self.workspace, &mut self.results);
         self.totals
-            .evaluate_loads(of_scene, at, &mut self.workspace, results)?;
+            .evaluate_loads(self.model, at, given, workspace, results)?;
         let bodies = (&self.placements[..], &self.motions[..]);
-        self.totals.compute_load_powers(self.scene, bodies);
         self.totals
             .compute(self.scene, bodies, (&self.results.tau, q_dot));
         Ok(())
@@ -71,7 +71,7 @@ impl<'a> SpaceEvaluator<'a> {
 }
 
 impl RowEvaluator for SpaceEvaluator<'_> {
-    fn evaluate(&mut self, sample: &TrajectorySample, _: f64) -> Result<(), StopCause> {
+    fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
         let rest = vec![0.0; sample.q.len()];
         let at = match self.analysis {
             Analysis::Statics => [&sample.q, &rest, &rest],
@@ -92,7 +92,7 @@ impl RowEvaluator for SpaceEvaluator<'_> {
         match self.analysis {
             Analysis::Kinematics => Ok(()),
             Analysis::Statics | Analysis::Kinetostatics | Analysis::FreeMotion => {
-                self.evaluate_forces([q, q_dot, q_ddot])
+                self.evaluate_forces((t, [q, q_dot, q_ddot]), &sample.drive_magnitudes)
             }
         }
     }

@@ -15,7 +15,7 @@ const SAME: f64 = 1e-9;
 ///
 /// # Errors
 /// [`StudyError::Scene`] where the span of the curves is not within the trajectory.
-pub(super) fn figures(
+pub(crate) fn figures(
     scene: &SpaceScene,
     swept: Option<(&str, bool)>,
     computed: &ComputedTrajectory<'_>,
@@ -27,7 +27,9 @@ pub(super) fn figures(
         charts,
         computed,
     };
-    let mut figures = of.rotations();
+    let mut figures: Vec<Figure> = of.charts.coordinates().into_iter().collect();
+    figures.extend(of.charts.energies());
+    figures.extend(of.rotations());
     figures.extend(of.points());
     figures.extend(of.charts.actuator_forces());
     figures.extend(of.reactions());
@@ -168,7 +170,7 @@ impl SpaceFigures<'_> {
 }
 
 /// Whether a column is in the tables of a scene that lists reactions.
-pub(super) fn is_listed(quantity: Quantity, reactions: &JointReactions) -> bool {
+pub(crate) fn is_listed(quantity: Quantity, reactions: &JointReactions) -> bool {
     match quantity {
         Quantity::Time
         | Quantity::ActuatorCoordinate(..)

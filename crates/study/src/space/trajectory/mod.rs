@@ -7,10 +7,11 @@ mod path;
 mod reactions;
 mod totals;
 
-use self::columns::all_columns;
-use self::evaluator::SpaceEvaluator;
-use self::reactions::JointReactions;
-use super::explain::explain_position;
+pub(super) use self::columns::all_columns;
+pub(super) use self::evaluator::SpaceEvaluator;
+pub(super) use self::figures::{figures, is_listed};
+pub(super) use self::reactions::JointReactions;
+use super::explain::{explain_loads, explain_position};
 use super::views::SpacePositions;
 use crate::explain::{StudyError, scene_error};
 use crate::number_format::digits;
@@ -50,7 +51,7 @@ pub fn analyse_in_space(
     let is_limited = scene.lists_reactions && analysis != Analysis::Kinematics;
     let all = all_columns(scene, &reactions, (analysis, trajectory.is_timed()));
     let mut columns = all.clone();
-    columns.retain(|c| !is_limited || figures::is_listed(c.quantity, &reactions));
+    columns.retain(|c| !is_limited || is_listed(c.quantity, &reactions));
     let written = (0..columns.len()).collect();
     let mut results = TrajectoryResults::of_columns(all, columns, written, is_limited);
     results.keep_rows_in(RowStorage::Bounded, trajectory.points)?;
@@ -80,7 +81,7 @@ pub fn analyse_in_space(
     let swept = actuator.map(|a| (a.name.as_str(), matches!(a.kind, ActuatorKind::Angle(_))));
     let positions = drawn_positions(scene, &computed, evaluator, swept);
     let mut figures = vec![positions.figure()];
-    figures.extend(figures::figures(scene, swept, &computed, span)?);
+    figures.extend(self::figures(scene, swept, &computed, span)?);
     let document = Document::of_file(&scene.file, size, &computed);
     let pictures = (figures, positions.animation());
     let outcome = outcome_of(&scene.file, &computed, &document, pictures)?;
@@ -91,7 +92,7 @@ pub fn analyse_in_space(
 }
 
 /// Evaluates one row after another; why it ends early, if it does.
-fn add_rows(
+pub(super) fn add_rows(
     trajectory: &Trajectory<'_>,
     evaluator: &mut SpaceEvaluator<'_>,
     results: &mut TrajectoryResults,
@@ -114,13 +115,12 @@ fn add_rows(
 }
 
 /// The error where a trajectory cannot go on.
-fn explain_stop(scene: &SpaceScene, plan: &Plan, cause: StopCause) -> StudyError {
+pub(super) fn explain_stop(scene: &SpaceScene, plan: &Plan, cause: StopCause) -> StudyError {
     match cause {
         StopCause::NoSolution(KinetostaticsError::Position(error)) => {
             explain_position(scene, plan, &error)
         }
-        // Loads of a scene in space have no tables, and its joints no couplings.
-        StopCause::NoSolution(error) => scene_error::<String>(scene, error.to_string(), "", []),
+        StopCause::NoSolution(error) => explain_loads(scene, plan, &error),
         StopCause::OffTable { .. } | StopCause::Discontinuity { .. } => {
             scene_error::<String>(scene, "the trajectory cannot go on", "", [])
         }
@@ -128,7 +128,7 @@ fn explain_stop(scene: &SpaceScene, plan: &Plan, cause: StopCause) -> StudyError
 }
 
 /// The mechanism along the part of a trajectory that was reached.
-fn drawn_positions<'a>(
+pub(super) fn drawn_positions<'a>(
     scene: &'a SpaceScene,
     computed: &ComputedTrajectory<'_>,
     mut evaluator: SpaceEvaluator<'_>,

@@ -1,6 +1,7 @@
 //! The reactions that a trajectory needs: those that the scene requests, and all components of all joints for their magnitudes.
 
 use crate::explain::StudyError;
+use crate::space::explain::with_loads;
 use crate::space::prepared::{compile, sort_reactions};
 use dwell_geometry::JointId;
 use dwell_geometry::space::{JointKind, Vec3, vec3};
@@ -19,11 +20,11 @@ const COMPONENTS: [Component; 6] = [
 
 /// The reactions of the model of a trajectory, the requested ones first.
 #[derive(Debug, Clone)]
-pub(super) struct JointReactions {
+pub(crate) struct JointReactions {
     /// The requested ones that the loads determine.
     pub(super) requested: Vec<Reaction>,
     /// The requested ones that redundant constraints leave open.
-    pub(super) indeterminate: Vec<Reaction>,
+    pub(crate) indeterminate: Vec<Reaction>,
     /// By joint: whether its force and its moment have a magnitude that the loads determine.
     has_magnitude: Vec<[bool; 2]>,
 }
@@ -33,7 +34,7 @@ impl JointReactions {
     ///
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be assembled.
-    pub(super) fn new(scene: &SpaceScene) -> Result<(Self, Model), StudyError> {
+    pub(crate) fn new(scene: &SpaceScene) -> Result<(Self, Model), StudyError> {
         let joints = &scene.mechanism.joints;
         let whole = (0..joints.len()).flat_map(|j| {
             let reaction = move |component| Reaction {
@@ -52,7 +53,7 @@ impl JointReactions {
             let is_determined = |some: &[Reaction]| !some.iter().any(|r| open.contains(r));
             let has_moment = !matches!(
                 joint.kind,
-                JointKind::Spherical | JointKind::Distance { .. }
+                JointKind::Spherical | JointKind::Distance { .. } | JointKind::Gear { .. }
             );
             let (force, moment) = of_joint.split_at(3);
             [is_determined(force), has_moment && is_determined(moment)]
@@ -63,7 +64,7 @@ impl JointReactions {
             has_magnitude: has_magnitude.collect(),
         };
         let model = compile(scene, &[&reactions.requested[..], &whole].concat())?;
-        Ok((reactions, model))
+        Ok((reactions, with_loads(scene, model)?))
     }
 
     /// Whether the force and the moment of a joint have a magnitude that the loads determine.

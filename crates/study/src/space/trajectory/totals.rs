@@ -35,8 +35,8 @@ impl Totals {
             shaking: [0.0; 6],
             power: [0.0; 5],
             power_scale: 0.0,
-            magnitudes: vec![0.0; scene.loads.len()],
-            load_powers: vec![0.0; scene.loads.len()],
+            magnitudes: vec![0.0; scene.loads.len() + scene.drives.len()],
+            load_powers: vec![0.0; scene.loads.len() + scene.drives.len()],
         }
     }
 
@@ -86,72 +86,27 @@ impl Totals {
 }
 
 impl Totals {
-    /// Actuator forces and reactions under inertia and loads at time `t`, at coordinates, speeds and accelerations.
+    /// Actuator forces and reactions under inertia and loads at time `t`, at coordinates, speeds and accelerations; `given` are the
+    /// magnitudes of drives in a motion that was solved for.
     pub(super) fn evaluate_loads(
         &mut self,
-        (scene, model): (&SpaceScene, &Model),
-        [q, q_dot, q_ddot]: [&[f64]; 3],
+        model: &Model,
+        (t, [q, q_dot, q_ddot]): (f64, [&[f64]; 3]),
+        given: &[(usize, f64)],
         workspace: &mut Workspace<f64>,
-        (results, unit): (&mut InverseDynamics<f64>, &mut InverseDynamics<f64>),
+        results: &mut InverseDynamics<f64>,
     ) -> Result<(), StopCause> {
-        model.inverse_dynamics(q, q_dot, q_ddot, workspace, results)?;
-        for (load, magnitude) in scene.loads.iter().zip(&mut self.magnitudes) {
-            *magnitude = load.magnitude;
-            model.unit_load_response(q, &load.kind, workspace, unit)?;
-            let add = |all: &mut [f64], unit: &[f64]| {
-                let both = all.iter_mut().zip(unit);
-                both.for_each(|(sum, part)| *sum += load.magnitude * part);
-            };
-            add(&mut results.tau, &unit.tau);
-            add(&mut results.reactions, &unit.reactions);
+        let state = model.kinematic_state(q, q_dot, workspace)?;
+        let mut state = state.apply_loads(t)?;
+        for &(load, magnitude) in given {
+            state.set_magnitude(load, magnitude);
+        }
+        let state = state.evaluate(q_ddot, results)?;
+        self.magnitudes.copy_from_slice(state.magnitudes());
+        for (load, power) in self.load_powers.iter_mut().enumerate() {
+            *power = state.load_power(load);
         }
         Ok(())
-    }
-
-    /// The powers of the loads by their forces and the velocities where they act.
-    pub(super) fn compute_load_powers(
-        &mut self,
-        scene: &SpaceScene,
-        (placements, motions): (&[Placement], &[BodyMotion]),
-    ) {
-        let point = |body: usize, at: Vec3| {
-            let arm = placements[body].rotation.apply(at);
-            [
-                placements[body].position + arm,
-                motions[body].point_velocity(arm),
-            ]
-        };
-        for (k, load) in scene.loads.iter().enumerate() {
-            let unit = match load.kind {
-                LoadKind::Gravity(direction) => {
-                    let bodies = scene.masses.iter().enumerate();
-                    let power =
-                        bodies.map(|(b, mass)| mass.mass * point(b, mass.center)[1].dot(direction));
-                    power.sum()
-                }
-                LoadKind::Force {
-                    body,
-                    point: at,
-                    direction,
-                } => {
-                    let [_, velocity] = point(body.0, at);
-                    turned(direction, &placements[body.0]).dot(velocity)
-                }
-                LoadKind::Torque {
-                    bodies: [one, two],
-                    direction,
-                } => {
-                    let [a, b] = [one, two].map(|b| motions[b.0].angular_velocity);
-                    turned(direction, &placements[one.0]).dot(b - a)
-                }
-                LoadKind::PointToPointForce { bodies, points } => {
-                    let [a, b] = [0, 1].map(|k| point(bodies[k].0, points[k]));
-                    let line = (b[0] - a[0]).unit().unwrap_or(Vec3::ZERO);
-                    line.dot(b[1] - a[1])
-                }
-            };
-            self.load_powers[k] = self.magnitudes[k] * unit;
-        }
     }
 
     /// The weight of a unit of mass in all gravities, N/kg.
@@ -161,7 +116,14 @@ impl Totals {
             LoadKind::Gravity(direction) => sum + direction.scaled(magnitude),
             LoadKind::Force { .. }
             | LoadKind::Torque { .. }
-            | LoadKind::PointToPointForce { .. } => sum,
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::Spring { .. }
+            | LoadKind::Damper { .. }
+            | LoadKind::JointTorque(_)
+            | LoadKind::TorsionSpring { .. }
+            | LoadKind::RotationalDamper(_)
+            | LoadKind::SlideForce(_)
+            | LoadKind::SlideDamper(_) => sum,
         })
     }
 }
@@ -186,6 +148,16 @@ fn outer_force(kind: &LoadKind, placements: &[Placement]) -> Option<[Vec3; 2]> {
             let at = placement.position + placement.rotation.apply(point);
             Some([at, turned(direction, placement)])
         }
-        LoadKind::Gravity(_) | LoadKind::Torque { .. } | LoadKind::PointToPointForce { .. } => None,
+        // Between two bodies: the ground feels its own part.
+        LoadKind::Gravity(_)
+        | LoadKind::Torque { .. }
+        | LoadKind::PointToPointForce { .. }
+        | LoadKind::Spring { .. }
+        | LoadKind::Damper { .. }
+        | LoadKind::JointTorque(_)
+        | LoadKind::TorsionSpring { .. }
+        | LoadKind::RotationalDamper(_)
+        | LoadKind::SlideForce(_)
+        | LoadKind::SlideDamper(_) => None,
     }
 }

@@ -1,9 +1,9 @@
 //! The symbols of joints in space.
 
-use super::drawing::{BEFORE, Scenery};
+use super::drawing::{ARM, BEFORE, Scenery};
 use super::solids::{Axes, ball, block, cylinder, thread};
+use dwell_geometry::JointId;
 use dwell_geometry::space::{ActuatorKind, Joint, JointKind, Vec3};
-use dwell_geometry::{BodyId, JointId};
 use dwell_report::{Paint, Pen, Shape};
 use std::f64::consts::{PI, TAU};
 
@@ -20,6 +20,8 @@ const ROD: f64 = 3.5;
 
 impl<'a> Scenery<'a> {
     /// The symbol of a joint, with the ground's hatching.
+    //
+    // Long: a few lines for each kind of joint.
     pub(super) fn joint(&mut self, j: usize) {
         let joint = &self.drawing.scene.mechanism.joints[j];
         let (unit, view) = (self.drawing.unit, self.picture.view);
@@ -40,6 +42,9 @@ impl<'a> Scenery<'a> {
                 self.picture.add(near, ball(&view, at, BALL_RADIUS * unit));
                 self.ground_mark(joint, at, None);
             }
+            JointKind::Cylindrical if joint.bodies.iter().any(|b| self.drawing.is_ground(*b)) => {
+                self.grounded_sleeve(j);
+            }
             JointKind::Cylindrical => {
                 self.guide(j);
                 let sleeve = [HINGE_RADIUS * unit, SLEEVE * unit];
@@ -55,15 +60,7 @@ impl<'a> Scenery<'a> {
                 shapes.push(thread(&view, at, &axes, sleeve, pitch >= 0.0));
                 self.picture.add(near, shapes);
             }
-            JointKind::Prismatic => {
-                self.guide(j);
-                let size = BLOCK.map(|s| s * unit);
-                let name = self.name(two);
-                self.picture.add(
-                    near,
-                    block(&view, at, &axes, size, self.drawing.color(two), name),
-                );
-            }
+            JointKind::Prismatic => self.slide(j),
             JointKind::Universal => self.universal(j, at),
             JointKind::Planar => {
                 let foot = axes.axis.scaled(-0.3 * unit);
@@ -103,19 +100,20 @@ impl<'a> Scenery<'a> {
                 self.picture.add(near, ball(&view, at, 0.4 * unit));
                 self.ground_mark(joint, at, None);
             }
+            // The normal of the teeth, through the pitch point.
+            JointKind::Gear { .. } => {
+                let ends = [-0.9, 0.9].map(|s| view.place(at + axes.axis.scaled(s * unit)));
+                let normal = Shape::line(ends.to_vec(), Pen::new(Paint::Ink, 2.5));
+                self.picture.add(near, vec![normal]);
+                self.picture.add(near, ball(&view, at, 0.3 * unit));
+            }
         }
     }
 
     /// The axes of a joint on one of its bodies, in those of the ground.
     fn axes(&self, joint: &Joint, k: usize) -> Axes {
-        let (body, side) = (joint.bodies[k], &joint.sides[k]);
+        let (body, side) = (joint.side_body(k), &joint.sides[k]);
         Axes::new(self.turned(body, side.axis), self.turned(body, side.normal))
-    }
-
-    /// The name of a body for the legend; the ground has none.
-    fn name(&self, body: BodyId) -> Option<&'a str> {
-        let drawing = self.drawing;
-        (!drawing.is_ground(body)).then(|| drawing.scene.mechanism.bodies[body.0].name.as_str())
     }
 
     /// The axis of a hinge beyond its ends.
@@ -126,21 +124,81 @@ impl<'a> Scenery<'a> {
         self.picture.add(view.nearness(at), vec![line]);
     }
 
-    /// The straight guide on the first body, along which the second one slides.
+    /// A block on its guide: a hatched line of the ground, or a rod of the other body.
+    fn slide(&mut self, j: usize) {
+        let joint = &self.drawing.scene.mechanism.joints[j];
+        let (unit, view) = (self.drawing.unit, self.picture.view);
+        let on = self.drawing.guide_side(joint);
+        let block_body = joint.bodies[1 - on];
+        let (at, axes) = (self.anchor(j, 1 - on), self.axes(joint, on));
+        let size = BLOCK.map(|s| s * unit);
+        let near = view.nearness(at) + BEFORE * unit;
+        let (color, name) = (self.drawing.color(block_body), self.name(block_body));
+        self.picture
+            .add(near, block(&view, at, &axes, size, color, name));
+        if !self.drawing.is_ground(joint.bodies[on]) {
+            return self.guide(j);
+        }
+        if view.length(axes.axis) < 0.4 {
+            return self.hatching(at, None, -view.up());
+        }
+        let [from, to] = self.guide_ends(j).map(|end| view.place(end));
+        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let mut normal = [(to[1] - from[1]) / length, (from[0] - to[0]) / length];
+        if normal[1] > 0.0 {
+            normal = normal.map(|n| -n);
+        }
+        let middle = [0, 1].map(|k| 0.5 * (from[k] + to[k]) + 1.1 * BLOCK[0] * unit * normal[k]);
+        self.ground_line(middle, normal, 0.5 * length, view.nearness(at));
+    }
+
+    /// The ends of the guide of a sliding joint.
+    fn guide_ends(&self, j: usize) -> [Vec3; 2] {
+        let joint = &self.drawing.scene.mechanism.joints[j];
+        let (on, unit) = (self.drawing.guide_side(joint), self.drawing.unit);
+        let (start, axis) = (self.anchor(j, on), self.axes(joint, on).axis);
+        let [low, high] = self.drawing.travels[j];
+        let [low, high] = if on == 0 { [low, high] } else { [-high, -low] };
+        [low - GUIDE_MARGIN * unit, high + GUIDE_MARGIN * unit].map(|s| start + axis.scaled(s))
+    }
+
+    /// The straight rod of one body on which the other one slides.
     fn guide(&mut self, j: usize) {
         let joint = &self.drawing.scene.mechanism.joints[j];
-        let unit = self.drawing.unit;
-        let one = joint.bodies[0];
-        let (start, axis) = (self.anchor(j, 0), self.axes(joint, 0).axis);
-        let [low, high] = self.drawing.travels[j];
-        let ends =
-            [low - GUIDE_MARGIN * unit, high + GUIDE_MARGIN * unit].map(|s| start + axis.scaled(s));
-        self.bar(ends, (self.drawing.color(one), ROD), None);
-        if self.drawing.is_ground(one) {
+        let on = self.drawing.guide_side(joint);
+        let (body, axis) = (joint.bodies[on], self.axes(joint, on).axis);
+        let ends = self.guide_ends(j);
+        self.bar(ends, (self.drawing.color(body), ROD), None);
+        if self.drawing.is_ground(body) {
             for (end, sign) in ends.into_iter().zip([-1.0, 1.0]) {
                 self.wall(end, axis.scaled(sign));
             }
         }
+    }
+
+    /// A sleeve on the ground, through which a rod of the other body goes.
+    fn grounded_sleeve(&mut self, j: usize) {
+        let joint = &self.drawing.scene.mechanism.joints[j];
+        let (unit, view) = (self.drawing.unit, self.picture.view);
+        let on = self.drawing.guide_side(joint);
+        let (at, rod, axes) = (
+            self.anchor(j, on),
+            self.anchor(j, 1 - on),
+            self.axes(joint, on),
+        );
+        let sleeve = [HINGE_RADIUS * unit, SLEEVE * unit];
+        let near = view.nearness(at) + BEFORE * unit;
+        self.picture
+            .add(near, cylinder(&view, at, &axes, sleeve, Paint::Grey));
+        self.ground_mark(joint, at, Some(axes.axis));
+        let apart = axes.axis.dot(rod - at);
+        let ends = [
+            apart.min(0.0) - GUIDE_MARGIN * unit,
+            apart.max(0.0) + GUIDE_MARGIN * unit,
+        ];
+        let body = joint.bodies[1 - on];
+        let ends = ends.map(|s| at + axes.axis.scaled(s));
+        self.bar(ends, (self.drawing.color(body), ROD), None);
     }
 
     /// A hatched wall across the end of a guide; from its end below it.
@@ -194,19 +252,10 @@ impl<'a> Scenery<'a> {
     fn universal(&mut self, j: usize, at: Vec3) {
         let joint = &self.drawing.scene.mechanism.joints[j];
         let (unit, view) = (self.drawing.unit, self.picture.view);
-        let arm = 1.15 * unit;
+        let arm = ARM * unit;
         for k in 0..2 {
             let (body, axis) = (joint.bodies[k], self.axes(joint, k).axis);
-            let toward = match self.drawing.is_ground(body) {
-                true => at - self.middle(joint.bodies[1 - k]),
-                false => self.middle(body) - at,
-            };
-            let flat = toward - axis.scaled(axis.dot(toward));
-            let other = self.axes(joint, 1 - k).axis;
-            let stem = flat
-                .unit()
-                .filter(|_| flat.norm() > self.drawing.unit * 0.2);
-            let stem = stem.or_else(|| axis.cross(other).unit()).unwrap_or(other);
+            let stem = self.turned(body, self.drawing.stem(j, k));
             self.fork(
                 [at, axis.scaled(arm), stem.scaled(arm)],
                 self.drawing.color(body),
@@ -224,7 +273,7 @@ impl<'a> Scenery<'a> {
                 self.picture.add(near, ball(&view, half, 0.24 * unit));
             }
             if self.drawing.is_ground(body) {
-                self.hatching(at + stem.scaled(arm), None, toward);
+                self.hatching(at + stem.scaled(arm), None, stem);
             }
         }
         self.picture.add(
@@ -255,7 +304,7 @@ impl<'a> Scenery<'a> {
         let joint = &self.drawing.scene.mechanism.joints[j];
         let (unit, view) = (self.drawing.unit, self.picture.view);
         let (at, axes) = (self.anchor(j, 1), self.axes(joint, 0));
-        let pen = Pen::new(Paint::Palette(1), 2.5);
+        let pen = Pen::new(Paint::Ink, 2.5);
         let near = view.nearness(at) + 2.0 * BEFORE * unit;
         match kind {
             ActuatorKind::Angle(_) => {
@@ -274,6 +323,22 @@ impl<'a> Scenery<'a> {
                     name: None,
                 };
                 self.picture.add(near, vec![Shape::line(arc, pen), arrow]);
+            }
+            // Beside the rod, from one of its ends towards the other.
+            ActuatorKind::Length(_) => {
+                let ends = [self.anchor(j, 0), at].map(|end| view.place(end));
+                let [dx, dy] = [0, 1].map(|k| ends[1][k] - ends[0][k]);
+                let long = dx.hypot(dy).max(f64::MIN_POSITIVE);
+                let aside = [-dy, dx].map(|d| 1.2 * unit * d / long);
+                let point =
+                    |s: f64| [0, 1].map(|k| ends[0][k] + s * (ends[1][k] - ends[0][k]) + aside[k]);
+                let arrow = Shape::Arrow {
+                    from: point(0.3),
+                    to: point(0.7),
+                    pen,
+                    name: None,
+                };
+                self.picture.add(near, vec![arrow]);
             }
             ActuatorKind::Travel(_) => {
                 let offset = axes.normal.scaled(1.5 * unit);

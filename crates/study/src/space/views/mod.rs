@@ -9,7 +9,7 @@ mod paths;
 mod projection;
 mod solids;
 
-use self::drawing::SpaceDrawing;
+use self::drawing::{Detail, SpaceDrawing};
 use self::paths::{paths, points_of};
 use self::projection::View;
 use crate::output::figure;
@@ -24,16 +24,15 @@ const HEIGHT: f64 = 0.9;
 const AZIMUTHS: [f64; 8] = [-62.0, -52.0, -42.0, -32.0, -22.0, 28.0, 38.0, 52.0];
 const ELEVATIONS: [f64; 2] = [24.0, 33.0];
 /// Length of the ground's axes in widths of the picture.
-const AXES: f64 = 0.09;
+const AXES: f64 = 0.1;
 /// Frames of the animation at most, the time of each, and its width.
 const MAX_FRAMES: usize = 60;
 const DELAY_MS: u32 = 60;
 const WIDTH_PX: u32 = 640;
 
 const CAPTION: &str = "Top view (x–y) above the front view (x–z), beside it the side view from the right (y–z), and an axonometric view, all \
-                       to one scale. Cylinders are hinges, sleeves slide and turn, balls are spherical joints, forks with a cross universal \
-                       joints; hatching is the ground, an arrow the driven joint, a quartered disc a centre of mass. Light lines are paths of \
-                       points.";
+                       to one scale. Cylinders are hinges, long ones sleeves on rods, blocks slides, balls spherical joints, forks with a cross universal joints; \
+                       hatching is the ground, an arrow the driven joint, a quartered disc a centre of mass. Light lines are paths of points.";
 
 /// A mechanism in positions that follow each other.
 pub(crate) struct SpacePositions<'a> {
@@ -147,7 +146,12 @@ impl<'a> Views<'a> {
 
     /// One of the three views.
     fn panel(&self, view: View, title: &str, [x, y]: [&str; 2]) -> Panel {
-        let shapes = self.shapes(view, &self.positions.drawn, true);
+        // The axonometric view has the legend.
+        let detail = Detail {
+            named: false,
+            with_words: true,
+        };
+        let shapes = self.shapes(view, &self.positions.drawn, detail);
         let [horizontal, vertical] = self.ranges(view);
         Panel::from(Drawing {
             title: title.to_owned(),
@@ -162,9 +166,13 @@ impl<'a> Views<'a> {
     fn axonometric_panel(&self, placements: &[Placement], with_words: bool) -> Drawing {
         let view = self.axonometric;
         let [[x0, x1], [y0, y1]] = self.ranges(view);
-        let y0 = y0 - 0.5 * AXES * self.width;
+        let y0 = y0 - 1.2 * AXES * self.width;
         let mut shapes = self.legend();
-        shapes.extend(self.shapes(view, placements, with_words));
+        let detail = Detail {
+            named: true,
+            with_words,
+        };
+        shapes.extend(self.shapes(view, placements, detail));
         let corner = [x0 + AXES * self.width, y0];
         for (name, axis) in ["x", "y", "z"].into_iter().zip(Vec3::AXES) {
             let [u, v] = view.place(axis.scaled(AXES * self.width));
@@ -205,9 +213,9 @@ impl<'a> Views<'a> {
         moving.map(entry).collect()
     }
 
-    fn shapes(&self, view: View, placements: &[Placement], with_words: bool) -> Vec<Shape> {
+    fn shapes(&self, view: View, placements: &[Placement], detail: Detail) -> Vec<Shape> {
         let mut shapes = paths(&self.positions.all, &self.drawing, view);
-        shapes.extend(self.drawing.seen(view, placements, with_words));
+        shapes.extend(self.drawing.seen(view, placements, detail));
         shapes
     }
 

@@ -181,17 +181,11 @@ impl<'a> Trajectory<'a> {
     }
 
     /// A computed free motion that ended at `end` (s).
-    pub(crate) fn of_free_motion(plan: &Plan, motion: FreeTrajectory, end: f64) -> Self {
+    pub(crate) fn of_free_motion(period: Option<f64>, motion: FreeTrajectory, end: f64) -> Self {
         let (points, duration) = (motion.samples.len(), digits(end, 6));
         let description = format!("a free motion of {duration} s");
         let kind = TrajectoryKind::Free(motion);
-        Self::at_positions(
-            kind,
-            plan.range().period(),
-            Analysis::FreeMotion,
-            points,
-            description,
-        )
+        Self::at_positions(kind, period, Analysis::FreeMotion, points, description)
     }
 
     fn at_positions(

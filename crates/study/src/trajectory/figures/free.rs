@@ -2,53 +2,34 @@
 
 use crate::output::{chart, coordinate_axis, symbol};
 use crate::trajectory::compute::{Analysis, BALANCE, Column, KINETIC, POTENTIAL, Quantity};
-use crate::trajectory::figures::{FigureContext, MAX_CURVES};
+use crate::trajectory::figures::{ChartContext, FigureContext, MAX_CURVES};
 use dwell_report::{Axis, Figure, Panel, Series};
 
-impl FigureContext<'_> {
+impl ChartContext<'_> {
     /// Every coordinate and its speed over time.
     pub(crate) fn coordinates(&self) -> Option<Figure> {
         if self.analysis != Analysis::FreeMotion {
             return None;
         }
         let mut panels: Vec<Panel> = Vec::new();
-        for (i, actuator) in self.scene.mechanism.actuators.iter().enumerate().take(3) {
-            let name = symbol(&actuator.name);
-            for (order, label) in [(0, name.clone()), (1, format!("d{name}/dt"))] {
+        for i in 0..3 {
+            let column = |order| {
                 let quantity = Quantity::ActuatorCoordinate(i, order);
-                let column = self.results.column_index(quantity);
-                let curve = column.map(|k| [(label.clone(), k)]);
+                self.results.column_index(quantity)
+            };
+            let Some(any) = column(0).or_else(|| column(1)) else {
+                continue;
+            };
+            let name = &self.results.columns[any].name;
+            let name = symbol(name.strip_suffix(".velocity").unwrap_or(name));
+            let curves = [(0, name.clone()), (1, format!("d{name}/dt"))];
+            for (order, label) in curves {
+                let curve = column(order).map(|k| [(label.clone(), k)]);
                 panels.extend(curve.map(|curve| self.chart("", &label, &curve).into()));
             }
         }
         let title = "Coordinates and their speeds";
         (!panels.is_empty()).then(|| self.figure("coordinates", title, "Over time.", panels))
-    }
-
-    /// Currents of motors, electrical and mechanical power of drives, and efficiencies.
-    pub(crate) fn drives(&self) -> Option<Figure> {
-        let is_drive = |name: &str| self.scene.drives.iter().any(|drive| drive.name == name);
-        let of_drives = |ending: &str| {
-            let columns = self.columns_where(|c| c.name.strip_suffix(ending).is_some_and(is_drive));
-            let mut curves = self.labelled(&columns, ending);
-            curves.retain(|(_, k)| !self.is_zero(*k));
-            curves
-        };
-        let mut powers = of_drives(".power");
-        let electrical = of_drives(".electrical_power").into_iter();
-        powers.extend(electrical.map(|(name, k)| (format!("{name}, electrical"), k)));
-        let mut panels: Vec<Panel> = Vec::new();
-        for (title, label, curves) in [
-            ("Currents", "current", of_drives(".current")),
-            ("Power", "power", powers),
-            ("Efficiency", "efficiency", of_drives(".efficiency")),
-        ] {
-            let charts = curves.chunks(MAX_CURVES);
-            panels.extend(charts.map(|some| self.chart(title, label, some).into()));
-        }
-        let text = "Power: what drives deliver to the mechanism, and what motors take from the supply. Efficiency: delivered power \
-                    over its sum with the loss in the resistance, 0 where a motor brakes.";
-        (!panels.is_empty()).then(|| self.figure("drives", "Drives", text, panels))
     }
 
     /// Kinetic and potential energy, work of nonconservative loads, and the error of the balance.
@@ -80,6 +61,34 @@ impl FigureContext<'_> {
         };
         let panels = charts.into_iter().map(Panel::from).collect();
         Some(self.figure("energies", "Energies", text, panels))
+    }
+}
+
+impl FigureContext<'_> {
+    /// Currents of motors, electrical and mechanical power of drives, and efficiencies.
+    pub(crate) fn drives(&self) -> Option<Figure> {
+        let is_drive = |name: &str| self.scene.drives.iter().any(|drive| drive.name == name);
+        let of_drives = |ending: &str| {
+            let columns = self.columns_where(|c| c.name.strip_suffix(ending).is_some_and(is_drive));
+            let mut curves = self.labelled(&columns, ending);
+            curves.retain(|(_, k)| !self.is_zero(*k));
+            curves
+        };
+        let mut powers = of_drives(".power");
+        let electrical = of_drives(".electrical_power").into_iter();
+        powers.extend(electrical.map(|(name, k)| (format!("{name}, electrical"), k)));
+        let mut panels: Vec<Panel> = Vec::new();
+        for (title, label, curves) in [
+            ("Currents", "current", of_drives(".current")),
+            ("Power", "power", powers),
+            ("Efficiency", "efficiency", of_drives(".efficiency")),
+        ] {
+            let charts = curves.chunks(MAX_CURVES);
+            panels.extend(charts.map(|some| self.chart(title, label, some).into()));
+        }
+        let text = "Power: what drives deliver to the mechanism, and what motors take from the supply. Efficiency: delivered power \
+                    over its sum with the loss in the resistance, 0 where a motor brakes.";
+        (!panels.is_empty()).then(|| self.figure("drives", "Drives", text, panels))
     }
 
     /// Speed over coordinate.

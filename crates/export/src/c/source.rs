@@ -1,0 +1,286 @@
+//! The source: constants, coefficients, and what follows from them.
+
+use super::{CWriter, tables};
+use crate::evaluator::has_rotor;
+use crate::machine::PartKind;
+use crate::part::{CURVE, Column, HEAD, Wrapping};
+use std::fmt::Write as _;
+
+const POLYNOMIAL: &str = "\
+static @p@_real polynomial(const @p@_real *c, const place *at)
+{
+    const @p@_real x = at->x, x2 = at->x2, x4 = at->x4;
+    return ((c[0] + c[1] * x) + (c[2] + c[3] * x) * x2) + ((c[4] + c[5] * x) + (c[6] + c[7] * x) * x2) * x4;
+}
+
+";
+
+const SCENE_END: &str = "\
+static int is_finite(@p@_real x)
+{
+    return x - x >= ZERO;
+}
+
+";
+
+impl CWriter<'_> {
+    pub(super) fn source(&self) -> String {
+        let mut text = format!(
+            "#include \"@p@.h\"\n\n#ifdef __FAST_MATH__\n#error \"-ffast-math drops the sums that carry their rounding\"\n#endif\n\n#define ZERO {}\n\ntypedef struct {{\n    const @p@_real *n;\n    @p@_real x, x2, x4;\n}} place;\n\n",
+            self.number(0.0)
+        );
+        self.wrap(&mut text);
+        text += POLYNOMIAL;
+        self.integral(&mut text);
+        text += SCENE_END;
+        for kind in PartKind::ALL {
+            self.tables(kind, &mut text);
+        }
+        self.motion_terms(&mut text);
+        if self.has_reactions() {
+            self.reaction_terms(&mut text);
+        }
+        if self.has_points() {
+            self.positions(&mut text);
+        }
+        self.scene(&mut text);
+        self.forces(&mut text);
+        self.results(&mut text);
+        self.rates(&mut text);
+        self.step(&mut text);
+        self.self_test(&mut text);
+        text
+    }
+
+    /// Brings q into the domain.
+    pub(super) fn wrap(&self, text: &mut String) {
+        let domain = self.export.machine.domain;
+        let (from, to) = (self.number(domain.from), self.number(domain.to));
+        let outside = "return *q - *q >= ZERO ? @U@_OUT_OF_RANGE : @U@_NOT_FINITE;";
+        _ = match Wrapping::new(domain, self.export.request.precision) {
+            None => write!(
+                text,
+                "static @p@_status wrap(@p@_real *q)\n{{\n    if (!(*q >= {from} && *q <= {to})) {{\n        {outside}\n    }}\n    return @U@_OK;\n}}\n\n"
+            ),
+            Some(w) => {
+                let [per_period, coarse, fine, limit] =
+                    [w.per_period, w.coarse, w.fine, w.limit].map(|n| self.number(n));
+                write!(
+                    text,
+                    "/* The period in two parts: products of the first with counts of periods are exact. */\n#define PERIOD_COARSE {coarse}\n#define PERIOD_FINE {fine}\n#define PERIOD {to}\n\nstatic @p@_status wrap(@p@_real *q)\n{{\n    @p@_real periods;\n    if (!(*q >= -{limit} && *q <= {limit})) {{\n        {outside}\n    }}\n    periods = (@p@_real)(int32_t)(*q * {per_period});\n    *q = (*q - periods * PERIOD_COARSE) - periods * PERIOD_FINE;\n    if (*q < ZERO) {{\n        *q += PERIOD;\n    }}\n    return @U@_OK;\n}}\n\n"
+                )
+            }
+        };
+    }
+
+    pub(super) fn integral(&self, text: &mut String) {
+        let part = |j: usize| format!("c[{j}] * {}", self.number(1.0 / (j + 1) as f64));
+        let [b, c, d, e, f, g, h] = [1, 2, 3, 4, 5, 6, 7].map(part);
+        _ = write!(
+            text,
+            "/* The integral of the same from the middle. */\nstatic @p@_real integral(const @p@_real *c, const place *at)\n{{\n    const @p@_real x = at->x, x2 = at->x2, x4 = at->x4;\n    return x * (((c[0] + {b} * x) + ({c} + {d} * x) * x2) + (({e} + {f} * x) + ({g} + {h} * x) * x2) * x4);\n}}\n\n"
+        );
+        if self.tabulated_rotors() {
+            let times = |j: usize| format!("c[{j}] * {}", self.number(j as f64));
+            let [b, c, d, e, f, g] = [2, 3, 4, 5, 6, 7].map(times);
+            _ = write!(
+                text,
+                "/* Its derivative. */\nstatic @p@_real slope(const @p@_real *c, const place *at)\n{{\n    const @p@_real x = at->x, x2 = at->x2, x4 = at->x4;\n    return at->n[1] * (((c[1] + {b} * x) + ({c} + {d} * x) * x2) + (({e} + {f} * x) + {g} * x2) * x4);\n}}\n\n"
+            );
+        }
+    }
+
+    /// Whether the w of a motor with a rotor is in cells, so that its derivative is needed.
+    fn tabulated_rotors(&self) -> bool {
+        let machine = &self.export.machine;
+        let mut columns = self.part(PartKind::Motion).columns.iter();
+        columns.any(|(of, column)| {
+            let rotor = |k: usize| machine.loads.get(k).is_some_and(|l| has_rotor(&l.effect));
+            matches!((of, column), (crate::machine::Function::W(k), Column::Tabulated(_)) if rotor(*k))
+        })
+    }
+
+    /// Each member of the terms of motion, at a place.
+    pub(super) fn motion_terms(&self, text: &mut String) {
+        let machine = &self.export.machine;
+        *text += "static void motion_at(@p@_real q, @p@_motion_terms *terms)\n{\n    const place at = place_in_motion(q);\n";
+        let curve = |k: usize| HEAD + CURVE * k;
+        let value = |k: usize| {
+            let first = curve(k);
+            format!(
+                "at.n[{first}] + at.n[2] * integral(at.n + {}, &at)",
+                first + 1
+            )
+        };
+        let half_slope = |k: usize| format!("polynomial(at.n + {}, &at)", curve(k) + 1);
+        _ = writeln!(
+            text,
+            "    terms->m = {};\n    terms->half_dm = {};",
+            value(0),
+            half_slope(0)
+        );
+        let (mut next_curve, mut next_column) = (1, 0);
+        for (k, load) in machine.loads.iter().enumerate() {
+            let (mut v, mut dw) = (None, None);
+            let w = if load.effect.is_conservative() {
+                let curve = next_curve;
+                next_curve += 1;
+                v = Some(value(curve));
+                format!("{} * {}", self.number(-2.0), half_slope(curve))
+            } else {
+                let column = self.part(PartKind::Motion).columns.get(next_column);
+                next_column += 1;
+                match column {
+                    Some((_, Column::Tabulated(j))) => {
+                        let offset = self.offset(PartKind::Motion, *j);
+                        if has_rotor(&load.effect) {
+                            dw = Some(format!("slope(at.n + {offset}, &at)"));
+                        }
+                        format!("polynomial(at.n + {offset}, &at)")
+                    }
+                    Some((_, Column::Constant(value))) => self.number(*value),
+                    None => self.number(0.0),
+                }
+            };
+            _ = writeln!(text, "    terms->w[{k}] = {w};");
+            if self.has_potentials() {
+                let v = v.unwrap_or_else(|| "ZERO".to_owned());
+                _ = writeln!(text, "    terms->v[{k}] = {v};");
+            }
+            if self.has_rotors() {
+                let dw = dw.unwrap_or_else(|| "ZERO".to_owned());
+                _ = writeln!(text, "    terms->dw[{k}] = {dw};");
+            }
+        }
+        *text += "}\n\n";
+        *text += "@p@_status @p@_motion_terms_at(@p@_real q, @p@_motion_terms *terms)\n{\n    const @p@_status status = wrap(&q);\n    if (status == @U@_OK) {\n        motion_at(q, terms);\n    } else {\n";
+        self.clear_motion("terms", "        ", text);
+        *text += "    }\n    return status;\n}\n\n";
+    }
+
+    fn clear_motion(&self, terms: &str, indent: &str, text: &mut String) {
+        _ = writeln!(
+            text,
+            "{indent}{terms}->m = ZERO;\n{indent}{terms}->half_dm = ZERO;"
+        );
+        let arrays = [
+            ("w", self.has_loads()),
+            ("v", self.has_potentials()),
+            ("dw", self.has_rotors()),
+        ];
+        let arrays = arrays.into_iter().filter(|(_, there)| *there);
+        let arrays: Vec<&str> = arrays.map(|(array, _)| array).collect();
+        if !arrays.is_empty() {
+            _ = writeln!(
+                text,
+                "{indent}{{\n{indent}    int k;\n{indent}    for (k = 0; k < @U@_LOAD_COUNT; k++) {{"
+            );
+            for array in arrays {
+                _ = writeln!(text, "{indent}        {terms}->{array}[k] = ZERO;");
+            }
+            _ = writeln!(text, "{indent}    }}\n{indent}}}");
+        }
+    }
+
+    pub(super) fn reaction_terms(&self, text: &mut String) {
+        let machine = &self.export.machine;
+        let (n, loads) = (machine.reactions.len(), machine.loads.len());
+        let array = |array: &'static str, count: usize| {
+            (0..count).map(move |k| (format!("terms->{array}"), k))
+        };
+        let targets = array("a", n)
+            .chain(array("b", n))
+            .chain(array("c", n * loads));
+        let targets: Vec<_> = targets.collect();
+        *text += "static void reactions_at(@p@_real q, @p@_reaction_terms *terms)\n{\n";
+        self.columns_body(PartKind::Reactions, &targets, text);
+        *text += "}\n\n@p@_status @p@_reaction_terms_at(@p@_real q, @p@_reaction_terms *terms)\n{\n    const @p@_status status = wrap(&q);\n    if (status == @U@_OK) {\n        reactions_at(q, terms);\n    } else {\n";
+        self.clear_reactions("terms", text);
+        *text += "    }\n    return status;\n}\n\n";
+        *text += "@p@_status @p@_coefficients(@p@_real q, @p@_motion_terms *motion, @p@_reaction_terms *reactions)\n{\n    const @p@_status status = wrap(&q);\n    if (status == @U@_OK) {\n        motion_at(q, motion);\n        reactions_at(q, reactions);\n    } else {\n";
+        self.clear_motion("motion", "        ", text);
+        self.clear_reactions("reactions", text);
+        *text += "    }\n    return status;\n}\n\n";
+    }
+
+    fn clear_reactions(&self, terms: &str, text: &mut String) {
+        _ = writeln!(
+            text,
+            "        {{\n            int k;\n            for (k = 0; k < @U@_REACTION_COUNT; k++) {{\n                {terms}->a[k] = ZERO;\n                {terms}->b[k] = ZERO;\n            }}"
+        );
+        if self.has_loads() {
+            _ = writeln!(
+                text,
+                "            for (k = 0; k < @U@_LOAD_COUNT * @U@_REACTION_COUNT; k++) {{\n                {terms}->c[k] = ZERO;\n            }}"
+            );
+        }
+        *text += "        }\n";
+    }
+
+    /// The inside of a function that fills arrays with the columns of a part.
+    fn columns_body(&self, kind: PartKind, targets: &[(String, usize)], text: &mut String) {
+        let mut assignments = String::new();
+        self.assign_columns(kind, targets, &mut assignments);
+        match self.has_cells(kind) {
+            true => {
+                _ = writeln!(
+                    text,
+                    "    const place at = place_in_{}(q);",
+                    tables::name(kind)
+                );
+            }
+            false => *text += "    (void)q;\n",
+        }
+        if self.needs_counter(&assignments) {
+            // C99 allows a declaration here, and every compiler an early one.
+            let declaration = "    int k;\n";
+            let at = text.rfind("{\n").map_or(text.len(), |at| at + 2);
+            text.insert_str(at, declaration);
+        }
+        *text += &assignments;
+    }
+
+    pub(super) fn positions(&self, text: &mut String) {
+        let count = 2 * self.export.machine.points.len();
+        let targets: Vec<_> = (0..count).map(|k| ("xy".to_owned(), k)).collect();
+        *text += "static void positions_at(@p@_real q, @p@_real *xy)\n{\n";
+        self.columns_body(PartKind::Positions, &targets, text);
+        *text += "}\n\n@p@_status @p@_positions(@p@_real q, @p@_real xy[2 * @U@_POINT_COUNT])\n{\n    int k;\n    const @p@_status status = wrap(&q);\n    if (status == @U@_OK) {\n        positions_at(q, xy);\n        return status;\n    }\n    for (k = 0; k < 2 * @U@_POINT_COUNT; k++) {\n        xy[k] = ZERO;\n    }\n    return status;\n}\n\n";
+    }
+
+    pub(super) fn scene(&self, text: &mut String) {
+        *text += "void @p@_scene(@p@_parameters *parameters, @p@_inputs *inputs, @p@_state *state)\n{\n    int k;\n";
+        for (name, value, _) in self.parameters() {
+            _ = writeln!(text, "    parameters->{name} = {};", self.number(value));
+        }
+        let inputs = self.inputs();
+        for (_, name, value, _) in &inputs {
+            _ = writeln!(text, "    inputs->{name} = {};", self.number(*value));
+        }
+        if inputs.is_empty() {
+            *text += "    inputs->none = ZERO;\n";
+        }
+        let [q, q_dot] = self.export.machine.initial;
+        let (q, q_dot) = (self.number(q), self.number(q_dot));
+        _ = writeln!(text, "    state->q = {q};\n    state->q_dot = {q_dot};");
+        let currents = self.currents();
+        for &(load, _) in &currents {
+            _ = writeln!(
+                text,
+                "    state->current_{} = ZERO;",
+                self.names.loads[load]
+            );
+        }
+        _ = write!(
+            text,
+            "    for (k = 0; k < {}; k++) {{\n        state->carry[k] = ZERO;\n    }}\n    state->periods = 0;\n}}\n\n@p@_real @p@_whole_coordinate(const @p@_state *state)\n{{\n",
+            2 + currents.len()
+        );
+        *text += match self.export.machine.domain.revolutions {
+            0 => "    return state->q;\n}\n\n",
+            _ => {
+                "    const @p@_real periods = (@p@_real)state->periods;\n    return periods * PERIOD_COARSE + (state->q + periods * PERIOD_FINE);\n}\n\n"
+            }
+        };
+    }
+}

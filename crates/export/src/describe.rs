@@ -1,0 +1,82 @@
+//! What an export is and what it is worth, in words.
+
+use crate::export::Export;
+use crate::measure::STATED_STEP;
+use crate::part::Precision;
+
+/// What the export of a machine is and what it is worth, line by line, for every target.
+pub(crate) fn describe(export: &Export) -> Vec<String> {
+    let (machine, measured) = (&export.machine, &export.measured);
+    let domain = machine.domain;
+    let unit = if machine.is_angle { "rad" } else { "m" };
+    let mut lines = vec![
+        machine.title.clone(),
+        String::new(),
+        format!(
+            "Reduced model of one degree of freedom, written by dwell {} from the scene with the hash {}.",
+            machine.version, machine.scene_hash
+        ),
+        "All quantities are in SI units.".to_owned(),
+        match domain.revolutions {
+            0 => format!(
+                "coordinate: {} from {:e} to {:e} {unit}; beyond there is no value",
+                machine.coordinate, domain.from, domain.to
+            ),
+            1 => format!(
+                "coordinate: {}, {unit}, with the period of one revolution",
+                machine.coordinate
+            ),
+            n => format!(
+                "coordinate: {}, {unit}, with the period of {n} revolutions",
+                machine.coordinate
+            ),
+        },
+    ];
+    lines.extend(accuracy(export));
+    let [from, speed] = measured.motion.from;
+    lines.push(match measured.step_error {
+        Some([q, q_dot]) => format!(
+            "step: after 1 s of steps of {STATED_STEP:e} s from q = {from}, q' = {speed} with the inputs of the scene, q is off by {q:.1e} {unit} and q' by {q_dot:.1e} {unit}/s (in exact numbers; it falls with the fourth power of the step)"
+        ),
+        None => format!("step: no error is stated, since the motion from q = {from}, q' = {speed} ends before 1 s"),
+    });
+    lines.extend(
+        machine
+            .left_out
+            .iter()
+            .map(|words| format!("left out: {words}")),
+    );
+    lines
+}
+
+/// What was asked for, and the largest errors.
+fn accuracy(export: &Export) -> [String; 2] {
+    let (machine, measured) = (&export.machine, &export.measured);
+    let errors = measured.errors;
+    let accuracy = export.request.accuracy;
+    let kind = match export.request.precision {
+        Precision::Double => "double precision",
+        Precision::Float => "single precision, its rounding included",
+    };
+    let asked = format!(
+        "accuracy: asked for {accuracy:e}; largest errors measured at 4096 positions in {kind}, relative to the largest value of each function:"
+    );
+    let mut all = vec![("m", errors.m), ("half_dm", errors.half_dm)];
+    if !machine.loads.is_empty() {
+        all.push(("w", errors.loads));
+    }
+    if !machine.reactions.is_empty() {
+        all.push(("a and b", errors.reactions));
+        if !machine.loads.is_empty() {
+            all.push(("c", errors.load_reactions));
+        }
+    }
+    if !machine.points.is_empty() {
+        all.push(("positions", errors.positions));
+    }
+    let all: Vec<String> = all
+        .iter()
+        .map(|(of, error)| format!("{of} {error:.1e}"))
+        .collect();
+    [asked, format!("  {}", all.join(", "))]
+}

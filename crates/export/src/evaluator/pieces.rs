@@ -1,0 +1,160 @@
+//! Looking functions up in the cells of a part.
+
+use super::Status;
+use crate::machine::Domain;
+use crate::part::{CURVE, Column, HEAD, Part, Precision, TERMS, Wrapping};
+use crate::real::Real;
+
+/// The pieces of a part in one kind of number.
+#[derive(Debug, Clone)]
+pub(crate) struct Pieces<R> {
+    cells: Vec<R>,
+    index: Vec<u16>,
+    stride: usize,
+    from: R,
+    bins_per_unit: R,
+    curves: usize,
+    columns: Vec<(Column, R)>,
+}
+
+/// A place in a cell: where its numbers begin, and the powers of the position in it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Place<R> {
+    begin: usize,
+    x: R,
+    x2: R,
+    x4: R,
+}
+
+impl<R: Real> Pieces<R> {
+    pub(crate) fn new(part: &Part, domain: Domain) -> Self {
+        let constant = |column: &Column| match column {
+            Column::Constant(value) => R::of(*value),
+            Column::Tabulated(_) => R::of(0.0),
+        };
+        let columns = part.columns.iter();
+        Self {
+            cells: part.cells.iter().map(|&n| R::of(n)).collect(),
+            index: part.index.clone(),
+            stride: part.stride(),
+            from: R::of(domain.from),
+            bins_per_unit: R::of(part.bins_per_unit),
+            curves: part.curves.len(),
+            columns: columns.map(|(_, c)| (*c, constant(c))).collect(),
+        }
+    }
+
+    /// Finds the cell of a coordinate within the domain.
+    pub(crate) fn place(&self, q: R) -> Place<R> {
+        let zero = R::of(0.0);
+        if self.index.is_empty() {
+            return Place {
+                begin: 0,
+                x: zero,
+                x2: zero,
+                x4: zero,
+            };
+        }
+        let bin = ((q - self.from) * self.bins_per_unit).to_f64() as usize;
+        let cell = self.index[bin.min(self.index.len() - 1)];
+        let begin = usize::from(cell) * self.stride;
+        let x = (q - self.cells[begin]) * self.cells[begin + 1];
+        let x2 = x * x;
+        Place {
+            begin,
+            x,
+            x2,
+            x4: x2 * x2,
+        }
+    }
+
+    /// A curve and half its slope.
+    pub(crate) fn curve(&self, k: usize, at: Place<R>) -> [R; 2] {
+        let of = &self.cells[at.begin + HEAD + CURVE * k..][..CURVE];
+        let width = self.cells[at.begin + 2];
+        let value = of[0] + width * integral(&of[1..], at);
+        [value, polynomial(&of[1..], at)]
+    }
+
+    /// A column.
+    pub(crate) fn column(&self, k: usize, at: Place<R>) -> R {
+        match self.columns[k] {
+            (Column::Constant(_), value) => value,
+            (Column::Tabulated(j), _) => polynomial(self.terms(j, at), at),
+        }
+    }
+
+    /// The derivative of a column by the coordinate.
+    pub(crate) fn slope(&self, k: usize, at: Place<R>) -> R {
+        match self.columns[k] {
+            (Column::Constant(_), _) => R::of(0.0),
+            (Column::Tabulated(j), _) => slope(self.terms(j, at), at) * self.cells[at.begin + 1],
+        }
+    }
+
+    fn terms(&self, tabulated: usize, at: Place<R>) -> &[R] {
+        let first = at.begin + HEAD + CURVE * self.curves;
+        &self.cells[first + TERMS * tabulated..][..TERMS]
+    }
+}
+
+/// Seven powers in pairs of terms (Estrin's scheme), which are independent of each other.
+fn polynomial<R: Real>(c: &[R], at: Place<R>) -> R {
+    let Place { x, x2, x4, .. } = at;
+    ((c[0] + c[1] * x) + (c[2] + c[3] * x) * x2) + ((c[4] + c[5] * x) + (c[6] + c[7] * x) * x2) * x4
+}
+
+/// The integral of the same from zero.
+fn integral<R: Real>(c: &[R], at: Place<R>) -> R {
+    let Place { x, x2, x4, .. } = at;
+    let part = |j: usize| c[j] * R::of(1.0 / (j + 1) as f64);
+    x * (((c[0] + part(1) * x) + (part(2) + part(3) * x) * x2)
+        + ((part(4) + part(5) * x) + (part(6) + part(7) * x) * x2) * x4)
+}
+
+/// The derivative of the same.
+fn slope<R: Real>(c: &[R], at: Place<R>) -> R {
+    let Place { x, x2, x4, .. } = at;
+    let times = |j: usize| c[j] * R::of(j as f64);
+    ((c[1] + times(2) * x) + (times(3) + times(4) * x) * x2)
+        + ((times(5) + times(6) * x) + times(7) * x2) * x4
+}
+
+/// Brings coordinates into the domain.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Range<R> {
+    from: R,
+    to: R,
+    wrapping: Option<[R; 4]>,
+}
+
+impl<R: Real> Range<R> {
+    pub(crate) fn new(domain: Domain, precision: Precision) -> Self {
+        let wrapping = Wrapping::new(domain, precision);
+        Self {
+            from: R::of(domain.from),
+            to: R::of(domain.to),
+            wrapping: wrapping.map(|w| [w.per_period, w.coarse, w.fine, w.limit].map(R::of)),
+        }
+    }
+
+    /// The coordinate within the domain.
+    pub(crate) fn wrap(&self, q: R) -> Result<R, Status> {
+        let outside = || match q.to_f64().is_finite() {
+            true => Status::OutOfRange,
+            false => Status::NotFinite,
+        };
+        let Some([per_period, coarse, fine, limit]) = self.wrapping else {
+            let inside = q >= self.from && q <= self.to;
+            return if inside { Ok(q) } else { Err(outside()) };
+        };
+        let zero = R::of(0.0);
+        if !(q >= zero - limit && q <= limit) {
+            return Err(outside());
+        }
+        // Truncated towards zero.
+        let periods = R::of(f64::from((q * per_period).to_f64() as i32));
+        let rest = (q - periods * coarse) - periods * fine;
+        Ok(if rest < zero { rest + self.to } else { rest })
+    }
+}

@@ -1,0 +1,70 @@
+//! FMUs: the exported C with an interface of the Functional Mock-up Interface, its description and its build description. An FMU
+//! is complete as source; the caller may add a binary for its platform.
+
+mod description;
+mod model;
+mod variables;
+
+use crate::c::c_files;
+use crate::export::Export;
+use crate::identifiers::Identifiers;
+
+/// A version of the Functional Mock-up Interface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FmiVersion {
+    /// FMI 2.0.
+    Two,
+    /// FMI 3.0.
+    Three,
+}
+
+impl FmiVersion {
+    /// Its folder of binaries for Linux on x86-64.
+    pub fn linux_folder(self) -> &'static str {
+        match self {
+            Self::Two => "linux64",
+            Self::Three => "x86_64-linux",
+        }
+    }
+}
+
+/// The files of an FMU, by their paths in it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FmuFiles {
+    /// The name of its model, and of its library.
+    pub identifier: String,
+    /// Paths and texts; sources are under `sources/`.
+    pub texts: Vec<(String, String)>,
+    /// The sources to be compiled, in `sources/`.
+    pub sources: Vec<String>,
+}
+
+/// The files of an FMU for model exchange and co-simulation. The export must be in double precision.
+pub fn fmu_files(export: &Export, version: FmiVersion) -> FmuFiles {
+    let names = Identifiers::new(&export.machine);
+    let identifier = names.prefix;
+    let variables = variables::variables(export);
+    let interface = match version {
+        FmiVersion::Two => ("fmi2.c", include_str!("fmu/fmi2.c")),
+        FmiVersion::Three => ("fmi3.c", include_str!("fmu/fmi3.c")),
+    };
+    let mut texts = vec![(
+        "modelDescription.xml".to_owned(),
+        description::model_description(export, version, &identifier, &variables),
+    )];
+    let mut source = |name: &str, text: String| texts.push((format!("sources/{name}"), text));
+    for (name, text) in c_files(export) {
+        source(&name, text);
+    }
+    source("model.h", model::model(export, &variables));
+    source(interface.0, interface.1.to_owned());
+    if version == FmiVersion::Three {
+        let text = description::build_description(&identifier);
+        source("buildDescription.xml", text);
+    }
+    FmuFiles {
+        sources: vec![format!("{identifier}.c"), interface.0.to_owned()],
+        identifier,
+        texts,
+    }
+}

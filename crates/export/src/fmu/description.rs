@@ -1,0 +1,228 @@
+//! The XML of an FMU: its model description and its build description.
+
+use super::FmiVersion;
+use super::model::token;
+use super::variables::{Role, Variable, base_exponents};
+use crate::describe::describe;
+use crate::export::Export;
+use crate::identifiers::comment;
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+/// Text in an attribute.
+fn attribute(text: &str) -> String {
+    let mut safe = String::new();
+    for c in text.chars() {
+        match c {
+            '&' => safe += "&amp;",
+            '<' => safe += "&lt;",
+            '>' => safe += "&gt;",
+            '"' => safe += "&quot;",
+            c if c.is_control() => safe.push(' '),
+            c => safe.push(c),
+        }
+    }
+    safe
+}
+
+/// `modelDescription.xml`.
+pub(super) fn model_description(
+    export: &Export,
+    version: FmiVersion,
+    identifier: &str,
+    variables: &[Variable],
+) -> String {
+    let machine = &export.machine;
+    let about: Vec<String> = describe(export)
+        .iter()
+        .skip(2)
+        .map(|line| comment(line))
+        .collect();
+    let (title, token, about) = (
+        attribute(&machine.title),
+        token(export),
+        attribute(&about.join(" ")),
+    );
+    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    let tool = format!("dwell {}", attribute(&machine.version));
+    let indicators = variables
+        .iter()
+        .filter(|v| v.role == Role::Indicator)
+        .count();
+    let common = "canGetAndSetFMUState=\"true\" canSerializeFMUState=\"true\"";
+    match version {
+        FmiVersion::Three => {
+            _ = write!(
+                text,
+                "<fmiModelDescription fmiVersion=\"3.0\" modelName=\"{title}\" instantiationToken=\"{token}\" description=\"{about}\" generationTool=\"{tool}\" variableNamingConvention=\"flat\">\n  <ModelExchange modelIdentifier=\"{identifier}\" {common} providesDirectionalDerivatives=\"true\"/>\n  <CoSimulation modelIdentifier=\"{identifier}\" {common} canHandleVariableCommunicationStepSize=\"true\" providesDirectionalDerivatives=\"true\"/>\n"
+            );
+        }
+        FmiVersion::Two => {
+            let common = common.replace("FMUState", "FMUstate");
+            let sources = format!(
+                "    <SourceFiles>\n      <File name=\"{identifier}.c\"/>\n      <File name=\"fmi2.c\"/>\n    </SourceFiles>\n"
+            );
+            _ = write!(
+                text,
+                "<fmiModelDescription fmiVersion=\"2.0\" modelName=\"{title}\" guid=\"{token}\" description=\"{about}\" generationTool=\"{tool}\" variableNamingConvention=\"flat\" numberOfEventIndicators=\"{indicators}\">\n  <ModelExchange modelIdentifier=\"{identifier}\" {common} providesDirectionalDerivative=\"true\">\n{sources}  </ModelExchange>\n  <CoSimulation modelIdentifier=\"{identifier}\" {common} canHandleVariableCommunicationStepSize=\"true\" providesDirectionalDerivative=\"true\">\n{sources}  </CoSimulation>\n"
+            );
+        }
+    }
+    units(variables, &mut text);
+    text += "  <DefaultExperiment startTime=\"0\" stopTime=\"10\" stepSize=\"0.01\"/>\n";
+    match version {
+        FmiVersion::Three => three(variables, &mut text),
+        FmiVersion::Two => two(variables, &mut text),
+    }
+    text += "</fmiModelDescription>\n";
+    text
+}
+
+fn units(variables: &[Variable], text: &mut String) {
+    let used: BTreeSet<&str> = variables.iter().map(|v| v.unit.as_str()).collect();
+    *text += "  <UnitDefinitions>\n";
+    for unit in used.into_iter().filter(|unit| !unit.is_empty()) {
+        let exponents = base_exponents(unit).unwrap_or_default();
+        let named = ["kg", "m", "s", "A", "rad"].iter().zip(exponents);
+        let named = named.filter(|(_, exponent)| *exponent != 0);
+        let base: String = named.map(|(name, e)| format!(" {name}=\"{e}\"")).collect();
+        let display = match unit {
+            "rad" => Some(("deg", 57.295_779_513_082_32)),
+            "rad/s" => Some(("rpm", 9.549_296_585_513_72)),
+            "m" => Some(("mm", 1000.0)),
+            _ => None,
+        };
+        let display = display.map_or_else(String::new, |(name, factor)| {
+            format!("<DisplayUnit name=\"{name}\" factor=\"{factor}\"/>")
+        });
+        _ = writeln!(
+            text,
+            "    <Unit name=\"{}\"><BaseUnit{base}/>{display}</Unit>",
+            attribute(unit)
+        );
+    }
+    *text += "  </UnitDefinitions>\n";
+}
+
+/// Causality, variability and the rest that both versions write alike.
+fn properties(variable: &Variable) -> String {
+    let start = format!("start=\"{:e}\"", variable.start);
+    match variable.role {
+        Role::Time => "causality=\"independent\" variability=\"continuous\"".to_owned(),
+        Role::State(_) => {
+            format!("causality=\"output\" variability=\"continuous\" initial=\"exact\" {start}")
+        }
+        Role::Rate(_) | Role::Indicator => {
+            "causality=\"local\" variability=\"continuous\" initial=\"calculated\"".to_owned()
+        }
+        Role::Output => {
+            "causality=\"output\" variability=\"continuous\" initial=\"calculated\"".to_owned()
+        }
+        Role::Parameter => {
+            format!("causality=\"parameter\" variability=\"tunable\" initial=\"exact\" {start}")
+        }
+        Role::Input => format!("causality=\"input\" variability=\"continuous\" {start}"),
+        Role::Periods => {
+            "causality=\"output\" variability=\"discrete\" initial=\"calculated\"".to_owned()
+        }
+    }
+}
+
+/// The state whose derivative a variable is: its place in the list.
+fn state_of(variables: &[Variable], role: Role) -> Option<usize> {
+    let Role::Rate(state) = role else { return None };
+    variables.iter().position(|v| v.role == Role::State(state))
+}
+
+fn is_output(variable: &Variable) -> bool {
+    matches!(variable.role, Role::State(_) | Role::Output | Role::Periods)
+}
+
+/// Unknown at the start: everything that is calculated and that the structure lists.
+fn is_initial_unknown(variable: &Variable) -> bool {
+    matches!(variable.role, Role::Rate(_) | Role::Output | Role::Periods)
+}
+
+fn three(variables: &[Variable], text: &mut String) {
+    *text += "  <ModelVariables>\n";
+    for (k, variable) in variables.iter().enumerate() {
+        let kind = if variable.role == Role::Periods {
+            "Int32"
+        } else {
+            "Float64"
+        };
+        let derivative = state_of(variables, variable.role);
+        let derivative = derivative.map_or_else(String::new, |s| format!(" derivative=\"{s}\""));
+        let unit = match variable.unit.as_str() {
+            "" => String::new(),
+            unit => format!(" unit=\"{}\"", attribute(unit)),
+        };
+        _ = writeln!(
+            text,
+            "    <{kind} name=\"{}\" valueReference=\"{k}\" description=\"{}\" {}{unit}{derivative}/>",
+            attribute(&variable.name),
+            attribute(&variable.meaning),
+            properties(variable)
+        );
+    }
+    *text += "  </ModelVariables>\n  <ModelStructure>\n";
+    let mut list = |element: &str, is: &dyn Fn(&Variable) -> bool| {
+        for (k, _) in variables.iter().enumerate().filter(|(_, v)| is(v)) {
+            _ = writeln!(text, "    <{element} valueReference=\"{k}\"/>");
+        }
+    };
+    list("Output", &is_output);
+    list("ContinuousStateDerivative", &|v| {
+        matches!(v.role, Role::Rate(_))
+    });
+    list("InitialUnknown", &is_initial_unknown);
+    list("EventIndicator", &|v| v.role == Role::Indicator);
+    *text += "  </ModelStructure>\n";
+}
+
+fn two(variables: &[Variable], text: &mut String) {
+    *text += "  <ModelVariables>\n";
+    for (k, variable) in variables.iter().enumerate() {
+        // In 2.0 the start belongs to the type, and indices count from one.
+        let properties = properties(variable);
+        let (outer, start) = match properties.split_once(" start=") {
+            Some((outer, start)) => (outer.to_owned(), format!(" start={start}")),
+            None => (properties, String::new()),
+        };
+        let derivative = state_of(variables, variable.role);
+        let derivative =
+            derivative.map_or_else(String::new, |s| format!(" derivative=\"{}\"", s + 1));
+        let inner = match variable.role {
+            Role::Periods => "<Integer/>".to_owned(),
+            _ => format!(
+                "<Real unit=\"{}\"{derivative}{start}/>",
+                attribute(&variable.unit)
+            ),
+        };
+        _ = writeln!(
+            text,
+            "    <ScalarVariable name=\"{}\" valueReference=\"{k}\" description=\"{}\" {outer}>{inner}</ScalarVariable>",
+            attribute(&variable.name),
+            attribute(&variable.meaning)
+        );
+    }
+    *text += "  </ModelVariables>\n  <ModelStructure>\n";
+    let mut list = |element: &str, is: &dyn Fn(&Variable) -> bool| {
+        _ = writeln!(text, "    <{element}>");
+        for (k, _) in variables.iter().enumerate().filter(|(_, v)| is(v)) {
+            _ = writeln!(text, "      <Unknown index=\"{}\"/>", k + 1);
+        }
+        _ = writeln!(text, "    </{element}>");
+    };
+    list("Outputs", &is_output);
+    list("Derivatives", &|v| matches!(v.role, Role::Rate(_)));
+    list("InitialUnknowns", &is_initial_unknown);
+    *text += "  </ModelStructure>\n";
+}
+
+/// `sources/buildDescription.xml` of FMI 3.0.
+pub(super) fn build_description(identifier: &str) -> String {
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n  <BuildConfiguration modelIdentifier=\"{identifier}\">\n    <SourceFileSet language=\"C99\">\n      <SourceFile name=\"{identifier}.c\"/>\n      <SourceFile name=\"fmi3.c\"/>\n    </SourceFileSet>\n  </BuildConfiguration>\n</fmiBuildDescription>\n"
+    )
+}

@@ -1,0 +1,114 @@
+//! Names of a scene as identifiers: different names stay different, and none can be a word of a language.
+
+use crate::machine::MachineDescription;
+use std::collections::HashSet;
+
+/// The identifiers of an export.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Identifiers {
+    /// What the names of functions and types begin with.
+    pub prefix: String,
+    /// The same in capitals, for constants.
+    pub capitals: String,
+    /// By load.
+    pub loads: Vec<String>,
+    /// By reaction.
+    pub reactions: Vec<String>,
+    /// By point.
+    pub points: Vec<String>,
+}
+
+impl Identifiers {
+    /// Those of a machine.
+    pub fn new(machine: &MachineDescription) -> Self {
+        let mut prefix = plain(&machine.name).to_ascii_lowercase();
+        if !prefix.starts_with(|c: char| c.is_ascii_alphabetic()) {
+            prefix.insert_str(0, "machine_");
+        }
+        let reactions: Vec<_> = machine.reactions.iter().map(|(name, _)| name).collect();
+        let loads: Vec<_> = machine.loads.iter().map(|load| &load.name).collect();
+        Self {
+            capitals: prefix.to_ascii_uppercase(),
+            prefix,
+            loads: distinct(&loads),
+            reactions: distinct(&reactions),
+            points: distinct(&machine.points.iter().collect::<Vec<_>>()),
+        }
+    }
+}
+
+/// Letters, digits and underscores; any other character becomes an underscore if it separates words, else its number.
+fn plain(name: &str) -> String {
+    let mut text = String::new();
+    for c in name.chars() {
+        match c {
+            c if c.is_ascii_alphanumeric() => text.push(c),
+            '.' | '-' | '_' | ' ' => text.push('_'),
+            c => text += &format!("u{:04x}", u32::from(c)),
+        }
+    }
+    text
+}
+
+/// As [`plain`], with a number behind those that would be like another.
+fn distinct(names: &[&String]) -> Vec<String> {
+    let mut used = HashSet::new();
+    let mut all = Vec::with_capacity(names.len());
+    for name in names {
+        let plain = plain(name);
+        let numbered = (2_usize..).map(|k| format!("{plain}_{k}"));
+        let mut candidates = std::iter::once(plain.clone()).chain(numbered);
+        // In capitals, too, they differ.
+        let free = candidates.find(|one| !used.contains(&one.to_ascii_uppercase()));
+        let found = free.unwrap_or(plain);
+        used.insert(found.to_ascii_uppercase());
+        all.push(found);
+    }
+    all
+}
+
+/// Text that can stand in a comment of any language: it has one line and cannot end the comment or continue the line.
+pub(crate) fn comment(text: &str) -> String {
+    let safe = |c: char| match c {
+        '*' => '+',
+        '\\' => '/',
+        '?' => '.',
+        c if c.is_alphanumeric() || c.is_ascii_graphic() || c == ' ' => c,
+        '²' | '′' | '½' | '·' | '–' | '“' | '”' | '°' | '±' | '≤' | '≥' | '−' => {
+            c
+        }
+        _ => ' ',
+    };
+    text.chars().map(safe).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn different_names_stay_different() {
+        let names = [
+            "slide.normal",
+            "slide_normal",
+            "φ",
+            "u03c6",
+            "A",
+            "a",
+            "a_2",
+        ];
+        let owned: Vec<String> = names.iter().map(|&n| n.to_owned()).collect();
+        let found = distinct(&owned.iter().collect::<Vec<_>>());
+        let capitals: HashSet<_> = found.iter().map(|n| n.to_ascii_uppercase()).collect();
+        assert_eq!(capitals.len(), names.len(), "{found:?}");
+    }
+
+    #[test]
+    fn a_title_stays_in_its_comment() {
+        let hostile = "x */ int y; /* ??/\n *??/\r\u{2028}\u{202e}\\";
+        let found = comment(hostile);
+        assert!(!found.contains("*/") && !found.contains("/*") && !found.contains('\\'));
+        assert!(!found.contains("??") && found.lines().count() == 1);
+        assert!(!found.contains('\u{202e}'));
+    }
+}

@@ -1,0 +1,314 @@
+//! What an export states about itself: errors, operations and the error of its step, measured before it is written.
+
+use crate::evaluator::{Evaluator, MotionTerms, ReactionTerms};
+use crate::fit::FittedPart;
+use crate::machine::{FunctionSampler, LoadEffect, MachineDescription, PartKind};
+use crate::part::{Part, Precision};
+use crate::real::{Counted, Real};
+
+/// Positions at which the errors are measured, steps of the golden section over the domain.
+const POSITIONS: usize = 4096;
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+/// Rows of the self-test.
+pub(crate) const SELF_TEST_ROWS: usize = 12;
+/// The step whose error is stated, s, and the steps over which it is measured.
+pub const STATED_STEP: f64 = 1e-3;
+const STATED_STEPS: usize = 1000;
+/// Parts of a step of the motion that the step is compared with.
+const REFINEMENT: usize = 16;
+
+/// The largest errors of the exported functions, each as a part of its scale.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Errors {
+    /// Of m.
+    pub m: f64,
+    /// Of ½m′.
+    pub half_dm: f64,
+    /// Of every w and potential.
+    pub loads: f64,
+    /// Of every a and b.
+    pub reactions: f64,
+    /// Of every c.
+    pub load_reactions: f64,
+    /// Of every position.
+    pub positions: f64,
+}
+
+impl Errors {
+    /// The largest of them.
+    pub fn max(&self) -> f64 {
+        let Self {
+            m,
+            half_dm,
+            loads,
+            reactions,
+            load_reactions,
+            positions,
+        } = *self;
+        [half_dm, loads, reactions, load_reactions, positions]
+            .into_iter()
+            .fold(m, f64::max)
+    }
+}
+
+/// A row of the self-test: a coordinate, and the exact values of all functions there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SelfTestRow {
+    /// The coordinate, as the exported code stores it.
+    pub q: f64,
+    /// m, ½m′, w of every load, a, b, c and positions.
+    pub values: Vec<f64>,
+}
+
+/// A motion of the self-test: the state after some steps from a state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SelfTestMotion {
+    /// The step, s.
+    pub step: f64,
+    /// How many.
+    pub steps: usize,
+    /// q and q̇ at the beginning.
+    pub from: [f64; 2],
+    /// q and q̇ at the end, of a motion with much smaller steps, and how far the code may be off; none if it leaves the domain.
+    pub end: Option<[[f64; 2]; 2]>,
+}
+
+/// Everything that is measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// The largest errors.
+    pub errors: Errors,
+    /// Additions, multiplications and divisions of the terms of motion, of those of motion and reactions, and of a step.
+    pub operations: [u64; 3],
+    /// The error of q (rad or m) and q̇ after a second of steps of a millisecond from the initial state; none if the motion
+    /// leaves the domain before.
+    pub step_error: Option<[f64; 2]>,
+    /// Rows of the self-test.
+    pub rows: Vec<SelfTestRow>,
+    /// By value of a row: how far the code may be off.
+    pub tolerances: Vec<f64>,
+    /// The motion of the self-test.
+    pub motion: SelfTestMotion,
+}
+
+/// The scales and errors by function, in the order of a row of the self-test.
+struct ValueErrors {
+    scales: Vec<f64>,
+    errors: Vec<f64>,
+}
+
+/// Measures fitted parts in the order of [`PartKind::ALL`] against the exact functions.
+///
+/// # Errors
+/// Those of the sampler.
+pub fn measure<S: FunctionSampler>(
+    machine: &MachineDescription,
+    fitted: &[FittedPart; 3],
+    precision: Precision,
+    sampler: &mut S,
+) -> Result<Measured, S::Error> {
+    let parts: [Part; 3] = [0, 1, 2].map(|k| fitted[k].part.clone());
+    let double = Evaluator::<f64>::new(machine, &parts, precision);
+    let float = Evaluator::<f32>::new(machine, &parts, precision);
+    let mut all = ValueErrors {
+        scales: scales(machine, fitted),
+        errors: Vec::new(),
+    };
+    all.errors = vec![0.0; all.scales.len()];
+    let mut rows = Vec::new();
+    for i in 0..POSITIONS {
+        let part = (0.5 + i as f64 * GOLDEN).fract();
+        let q = precision.round(machine.domain.from + part * machine.domain.length());
+        let q = q.clamp(machine.domain.from, machine.domain.to);
+        let values = exact_values(machine, q, sampler)?;
+        let found = match precision {
+            Precision::Double => values_of(machine, &double, q),
+            Precision::Float => values_of(machine, &float, q as f32),
+        };
+        for (error, (found, value)) in all.errors.iter_mut().zip(found.iter().zip(&values)) {
+            let difference = (found - value).abs();
+            *error = error.max(if difference.is_nan() {
+                f64::INFINITY
+            } else {
+                difference
+            });
+        }
+        if i < SELF_TEST_ROWS {
+            rows.push(SelfTestRow { q, values });
+        }
+    }
+    let relative = all.errors.iter().zip(&all.scales);
+    let relative: Vec<f64> = relative.map(|(error, scale)| error / scale).collect();
+    let rounding = match precision {
+        Precision::Double => 1e-14,
+        Precision::Float => 1e-6,
+    };
+    let tolerances = all.errors.iter().zip(&all.scales);
+    let (step_error, motion) = measure_steps(machine, &parts, precision);
+    Ok(Measured {
+        errors: by_kind(machine, &relative),
+        operations: operations(machine, &parts, precision),
+        step_error,
+        rows,
+        // At other positions, and by another compiler, an error may be somewhat larger.
+        tolerances: tolerances
+            .map(|(error, scale)| 2.0 * error + rounding * scale)
+            .collect(),
+        motion,
+    })
+}
+
+/// The scale of each value of a row.
+fn scales(machine: &MachineDescription, fitted: &[FittedPart; 3]) -> Vec<f64> {
+    let [motion, reactions, positions] = fitted;
+    let (mut curve, mut column) = (0, 0);
+    let load_scales = machine.loads.iter().map(|load| {
+        let next = |k: &mut usize| {
+            *k += 1;
+            *k
+        };
+        match load.effect.is_conservative() {
+            true => 2.0 * motion.curve_scales[next(&mut curve)][1],
+            false => motion.column_scales[next(&mut column) - 1],
+        }
+    });
+    let inertia = motion.curve_scales[0];
+    let rest = reactions.column_scales.iter();
+    let rest = rest.chain(&positions.column_scales).copied();
+    inertia.into_iter().chain(load_scales).chain(rest).collect()
+}
+
+/// The exact values of a row.
+fn exact_values<S: FunctionSampler>(
+    machine: &MachineDescription,
+    q: f64,
+    sampler: &mut S,
+) -> Result<Vec<f64>, S::Error> {
+    let mut values = Vec::new();
+    for kind in PartKind::ALL {
+        let mut curves = vec![[0.0; 2]; machine.curves(kind).len()];
+        let mut columns = vec![0.0; machine.columns(kind).len()];
+        sampler.sample(kind, q, &mut curves, &mut columns)?;
+        if kind == PartKind::Motion {
+            values.extend(curves[0]);
+            let (mut curves, mut columns) = (curves[1..].iter(), columns.iter());
+            values.extend(machine.loads.iter().map(|load| {
+                let w = match load.effect.is_conservative() {
+                    true => curves.next().map(|[_, half_slope]| -2.0 * half_slope),
+                    false => columns.next().copied(),
+                };
+                w.unwrap_or(f64::NAN)
+            }));
+        } else {
+            values.extend(columns);
+        }
+    }
+    Ok(values)
+}
+
+/// The exported values of a row.
+pub(crate) fn values_of<R: Real>(
+    machine: &MachineDescription,
+    evaluator: &Evaluator<R>,
+    q: R,
+) -> Vec<f64> {
+    let count = 2
+        + machine.loads.len()
+        + machine.reactions.len() * (2 + machine.loads.len())
+        + 2 * machine.points.len();
+    let all = || {
+        let MotionTerms { m, half_dm, w, .. } = evaluator.motion_terms(q)?;
+        let ReactionTerms { a, b, c } = evaluator.reaction_terms(q)?;
+        let positions = evaluator.positions(q)?;
+        let rest = [w, a, b, c, positions].into_iter().flatten();
+        let values = [m, half_dm].into_iter().chain(rest);
+        Ok(values.map(Real::to_f64).collect())
+    };
+    all().unwrap_or_else(|_: crate::evaluator::Status| vec![f64::NAN; count])
+}
+
+/// The largest relative errors by kind.
+fn by_kind(machine: &MachineDescription, relative: &[f64]) -> Errors {
+    let (loads, reactions) = (machine.loads.len(), machine.reactions.len());
+    let max = |from: usize, count: usize| {
+        let some = relative.iter().skip(from).take(count);
+        some.copied().fold(0.0, f64::max)
+    };
+    let first = 2 + loads;
+    Errors {
+        m: max(0, 1),
+        half_dm: max(1, 1),
+        loads: max(2, loads),
+        reactions: max(first, 2 * reactions),
+        load_reactions: max(first + 2 * reactions, loads * reactions),
+        positions: max(first + (2 + loads) * reactions, usize::MAX),
+    }
+}
+
+/// Counts of operations: the same at every coordinate but for the subtraction of periods.
+fn operations(machine: &MachineDescription, parts: &[Part; 3], precision: Precision) -> [u64; 3] {
+    let counting = Evaluator::<Counted>::new(machine, parts, precision);
+    // Below a periodic domain the period is added.
+    let domain = machine.domain;
+    let below = match domain.revolutions {
+        0 => domain.from,
+        _ => -0.25 * domain.length(),
+    };
+    let q = Counted::of(below);
+    let motion = Counted::operations(|| _ = counting.motion_terms(q));
+    let reactions = Counted::operations(|| _ = counting.reaction_terms(q));
+    let mut state = counting.state([below, 0.0]);
+    let step = Counted::operations(|| _ = counting.step(Counted::of(0.0), &mut state));
+    [motion, motion + reactions, step]
+}
+
+/// The error of the step from the initial state, and the motion of the self-test.
+fn measure_steps(
+    machine: &MachineDescription,
+    parts: &[Part; 3],
+    precision: Precision,
+) -> (Option<[f64; 2]>, SelfTestMotion) {
+    let [q, q_dot] = machine.initial;
+    // Some scenes have no initial state, or rest: a motion of one unit a second shows the step's error.
+    let moves = machine.loads.iter().any(|l| match l.effect {
+        LoadEffect::Conservative { .. } | LoadEffect::Constant { .. } => true,
+        LoadEffect::Damper { .. } | LoadEffect::VariableDamper { .. } => false,
+        LoadEffect::Input { initial } => initial != 0.0,
+        LoadEffect::Motor(motor) => motor.initial_voltage != 0.0,
+    });
+    let from = [q, if q_dot == 0.0 && !moves { 1.0 } else { q_dot }];
+    // In double precision: the rounding of floats is stated with the functions.
+    let exact = Evaluator::<f64>::new(machine, parts, precision);
+    let run = |steps: usize, refinement: usize| {
+        let mut state = exact.state(from);
+        for _ in 0..steps * refinement {
+            exact
+                .step(STATED_STEP / refinement as f64, &mut state)
+                .ok()?;
+        }
+        let length = machine.domain.length();
+        let whole = f64::from(state.periods) * length;
+        Some([state.y[0] + whole, state.y[1]])
+    };
+    let step_error = run(STATED_STEPS, 1).zip(run(STATED_STEPS, REFINEMENT));
+    let step_error = step_error.map(|(one, many)| [0, 1].map(|k| (one[k] - many[k]).abs()));
+    let steps = 100;
+    let rounding = match precision {
+        Precision::Double => 1e-12,
+        Precision::Float => 2e-5,
+    };
+    let end = run(steps, 1)
+        .zip(run(steps, REFINEMENT))
+        .map(|(one, many)| {
+            let tolerance =
+                |k: usize| 2.0 * (one[k] - many[k]).abs() + rounding * many[k].abs().max(1.0);
+            [many, [tolerance(0), tolerance(1)]]
+        });
+    let motion = SelfTestMotion {
+        step: STATED_STEP,
+        steps,
+        from,
+        end,
+    };
+    (step_error, motion)
+}

@@ -1,0 +1,69 @@
+//! Rust without the standard library: one crate without allocation, unsafe code or a dependency.
+
+mod results;
+mod self_test;
+mod source;
+
+use crate::describe::describe;
+use crate::export::Export;
+use crate::identifiers::comment;
+use crate::part::Precision;
+use crate::writer::Writer;
+use std::fmt::Write as _;
+use std::ops::Deref;
+
+/// An export as a crate: paths and texts of its manifest and its source.
+///
+/// The source has a `self_test` for its feature of that name and for `cargo test`.
+pub fn rust_files(export: &Export) -> [(String, String); 2] {
+    let writer = RustWriter(Writer::new(export));
+    let name = &writer.names.prefix;
+    let manifest = format!(
+        "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2021\"\n\n[features]\nself-test = []\n\n[dependencies]\n"
+    );
+    [
+        (format!("{name}/Cargo.toml"), manifest),
+        (format!("{name}/src/lib.rs"), writer.source()),
+    ]
+}
+
+/// Writes an export in Rust.
+struct RustWriter<'a>(Writer<'a>);
+
+impl<'a> Deref for RustWriter<'a> {
+    type Target = Writer<'a>;
+
+    fn deref(&self) -> &Writer<'a> {
+        &self.0
+    }
+}
+
+impl RustWriter<'_> {
+    /// A number of the exported kind.
+    fn number(&self, value: f64) -> String {
+        match self.export.request.precision {
+            Precision::Double => format!("{value:e}"),
+            Precision::Float => format!("{:e}", value as f32),
+        }
+    }
+
+    fn list(&self, numbers: &[f64]) -> String {
+        let numbers: Vec<String> = numbers.iter().map(|&n| self.number(n)).collect();
+        numbers.join(", ")
+    }
+
+    /// What the code is and what it is worth.
+    fn banner(&self) -> String {
+        let mut text = String::new();
+        for line in describe(self.export) {
+            _ = writeln!(text, "{}", format!("//! {}", comment(&line)).trim_end());
+        }
+        let [motion, all, step] = self.export.measured.operations;
+        _ = writeln!(
+            text,
+            "//! constants: {} bytes. Additions, multiplications and divisions, the worst case at any q: {motion} of the terms\n//! of motion, {all} with those of the reactions, {step} of a step.",
+            self.export.constant_bytes()
+        );
+        text
+    }
+}

@@ -1,0 +1,322 @@
+//! A model in the plane as a machine takes it.
+
+use super::machine_model::MachineModel;
+use super::{Model, Workspace};
+use crate::drive::Drive;
+use crate::error::{LoadError, PositionResult, Result};
+use crate::friction::{self, FrictionState};
+use crate::load::{ForceSource, Friction, Load, LoadKind, Magnitude, Signal};
+use crate::pass::{AtRest, GivenMotion, InverseDynamics, UnitAcceleration};
+use dwell_geometry::body_states::CoordinateFunction;
+use dwell_geometry::{Coordinate, Range};
+use dwell_laws::HeldPieces;
+use dwell_numerics::Scalar;
+
+impl MachineModel for Model {
+    type Coordinate = Coordinate;
+    type CoordinateFunction = CoordinateFunction;
+    type LoadKind = LoadKind;
+    type Workspace<T: Scalar> = Workspace<T>;
+
+    fn pass_workspace<T: Scalar>(&self) -> Workspace<T> {
+        self.workspace()
+    }
+
+    fn actuators(&self) -> usize {
+        self.plan().actuators()
+    }
+
+    fn range(&self) -> Range {
+        self.plan().range()
+    }
+
+    fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T> {
+        self.result_buffer()
+    }
+
+    fn is_angle(&self, actuator: usize) -> bool {
+        self.plan().is_angle(actuator)
+    }
+
+    fn size(&self) -> f64 {
+        self.mechanism().size()
+    }
+
+    fn total_mass(&self) -> f64 {
+        self.masses().iter().map(|m| m.mass).sum()
+    }
+
+    fn without_reactions(&self) -> Self {
+        self.without_reactions()
+    }
+
+    fn coordinate_function(
+        &self,
+        coordinate: Coordinate,
+    ) -> Result<CoordinateFunction, &'static str> {
+        let found = CoordinateFunction::find(self.mechanism(), coordinate);
+        found.ok_or("the mechanism does not have its coordinate")
+    }
+
+    fn with_loads(self, loads: Vec<Load>) -> Result<Self, LoadError> {
+        self.with_loads(loads)
+    }
+
+    fn drive_load(&self, drive: &Drive) -> Result<Load, &'static str> {
+        drive.load(self.mechanism())
+    }
+
+    fn loads(&self) -> &[Load] {
+        self.loads()
+    }
+
+    fn compiled_signals(&self, load: usize) -> &[Signal<CoordinateFunction>] {
+        self.compiled_signals(load)
+    }
+
+    fn is_conservative(&self, load: usize) -> bool {
+        self.is_conservative(load)
+    }
+
+    fn work_lever(&self, kind: &LoadKind) -> f64 {
+        let size = self.mechanism().size();
+        match kind {
+            LoadKind::Gravity { .. } => size * self.total_mass(),
+            LoadKind::Force { .. }
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SlideForce(_) => size,
+            LoadKind::Torque { .. } | LoadKind::TorsionSpring { .. } => 1.0,
+            LoadKind::Spring { .. } => size * size,
+            LoadKind::Damper { .. }
+            | LoadKind::RotationalDamper { .. }
+            | LoadKind::SlideDamper(_)
+            | LoadKind::SeparatingForce(_) => 0.0,
+        }
+    }
+
+    fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
+        self.frictions()
+    }
+
+    fn sticking_friction(&self, index: usize) -> Option<(Friction, CoordinateFunction)> {
+        self.sticking_friction(index)
+    }
+
+    #[inline]
+    fn update_kinematics<T: Scalar>(
+        &self,
+        q: &[T],
+        q_dot: &[T],
+        workspace: &mut Workspace<T>,
+    ) -> PositionResult {
+        let plan = self.plan();
+        plan.positions(q, &mut workspace.pose)?;
+        plan.velocities(&workspace.pose, q_dot, &mut workspace.motion);
+        let states = &mut workspace.states;
+        states.fill_velocities(plan, &workspace.pose, &workspace.motion);
+        workspace.q_dot.copy_from_slice(q_dot);
+        Ok(())
+    }
+
+    #[inline]
+    fn coordinate_motion<T: Scalar>(
+        &self,
+        of: CoordinateFunction,
+        workspace: &Workspace<T>,
+    ) -> [T; 3] {
+        workspace.states.coordinate(of)
+    }
+
+    fn counts_revolutions<T: Scalar>(
+        &self,
+        of: CoordinateFunction,
+        workspace: &Workspace<T>,
+    ) -> Option<bool> {
+        let counted = |body| workspace.states.body(body).angle.is_some();
+        match of {
+            CoordinateFunction::Angle(bodies) => Some(bodies.into_iter().all(counted)),
+            CoordinateFunction::Travel { .. } | CoordinateFunction::Length { .. } => None,
+        }
+    }
+
+    #[inline]
+    fn update_accelerations<T: Scalar>(&self, q_ddot: &[T], workspace: &mut Workspace<T>) {
+        let Workspace { pose, motion, .. } = &mut *workspace;
+        self.plan().accelerations(pose, q_ddot, motion);
+        self.update_bodies(workspace);
+    }
+
+    #[inline]
+    fn update_bodies<T: Scalar>(&self, workspace: &mut Workspace<T>) {
+        let Workspace {
+            pose,
+            motion,
+            states,
+            ..
+        } = workspace;
+        states.fill_accelerations(self.plan(), pose, motion);
+    }
+
+    #[inline]
+    fn update_magnitudes<T: Scalar>(&self, t: f64, workspace: &mut Workspace<T>) -> Result<()> {
+        workspace
+            .friction_workspace
+            .known
+            .fill(FrictionState::BySpeed);
+        let Workspace { states, loads, .. } = workspace;
+        self.loads.update_magnitudes(t, states, loads)
+    }
+
+    #[inline]
+    fn magnitudes<T: Scalar>(workspace: &Workspace<T>) -> &[T] {
+        &workspace.loads.magnitude
+    }
+
+    #[inline]
+    fn magnitudes_mut<T: Scalar>(workspace: &mut Workspace<T>) -> &mut [T] {
+        &mut workspace.loads.magnitude
+    }
+
+    #[inline]
+    fn eval_magnitude<T: Scalar>(
+        &self,
+        (load, magnitude): (usize, &Magnitude),
+        t: f64,
+        workspace: &mut Workspace<T>,
+    ) -> Result<T> {
+        let Workspace { states, loads, .. } = workspace;
+        let signals = &mut loads.signal_workspace;
+        self.loads
+            .eval_magnitude(load, magnitude, t, states, signals)
+    }
+
+    fn held_pieces<T: Scalar>(workspace: &mut Workspace<T>, load: usize) -> &mut HeldPieces {
+        workspace.held_pieces(load)
+    }
+
+    #[inline]
+    fn update_wrenches<T: Scalar>(&self, workspace: &mut Workspace<T>) -> Result<()> {
+        let Workspace { states, loads, .. } = workspace;
+        self.loads.update_wrenches(states, loads)
+    }
+
+    #[inline]
+    fn loaded_dynamics<T: Scalar>(
+        &self,
+        q_ddot: &[T],
+        workspace: &mut Workspace<T>,
+        result: &mut InverseDynamics<T>,
+    ) {
+        let model = &self.pass_model;
+        let Workspace {
+            pose,
+            motion,
+            pass,
+            loads,
+            ..
+        } = workspace;
+        model.plan.accelerations(pose, q_ddot, motion);
+        pass.evaluate_loaded(model, pose, GivenMotion(motion), loads);
+        result.read_from(model, pose, pass);
+    }
+
+    #[inline]
+    fn mass_matrix_column<T: Scalar>(
+        &self,
+        i: usize,
+        workspace: &mut Workspace<T>,
+        result: &mut InverseDynamics<T>,
+    ) {
+        let model = &self.pass_model;
+        workspace.set_unit_velocities(&model.plan, &[i]);
+        let Workspace { pose, pass, .. } = workspace;
+        let unit = UnitAcceleration(&workspace.virtual_motion);
+        pass.evaluate(model, pose, unit, None);
+        result.read_from(model, pose, pass);
+    }
+
+    #[inline]
+    fn load_response<T: Scalar>(
+        &self,
+        load: usize,
+        workspace: &mut Workspace<T>,
+        result: &mut InverseDynamics<T>,
+    ) -> Result<()> {
+        let model = &self.pass_model;
+        let (loads, single) = (&self.loads, &mut workspace.single_load);
+        loads.unit_wrenches(load, &workspace.states, single)?;
+        let Workspace { pose, pass, .. } = workspace;
+        pass.evaluate_loaded(model, pose, AtRest, single);
+        result.read_from(model, pose, pass);
+        Ok(())
+    }
+
+    #[inline]
+    fn load_power<T: Scalar>(&self, load: usize, workspace: &Workspace<T>) -> T {
+        let Workspace { states, loads, .. } = workspace;
+        let mut sum = T::from_f64(0.0);
+        let source = ForceSource::Load(load);
+        for wrench in loads.wrenches.iter().filter(|w| w.source == source) {
+            sum += wrench.power(states);
+        }
+        sum
+    }
+
+    fn kinetic_energy(&self, workspace: &Workspace<f64>) -> f64 {
+        let terms = self.inertia_terms(&workspace.states);
+        terms
+            .map(|[of_mass, of_inertia, ..]| 0.5 * (of_mass + of_inertia))
+            .sum()
+    }
+
+    fn potential_energy(&self, load: usize, workspace: &Workspace<f64>) -> Option<f64> {
+        self.loads.potential_energy(load, &workspace.states)
+    }
+
+    fn contact_force<T: Scalar>(&self, index: usize, reactions: &[T]) -> T {
+        self.dependent_loads[index].contact_force(reactions)
+    }
+
+    fn friction_states<T: Scalar>(workspace: &mut Workspace<T>) -> &mut [FrictionState<T>] {
+        &mut workspace.friction_workspace.known
+    }
+
+    fn solve_friction<T: Scalar>(
+        &self,
+        frictionless: &[T],
+        responses: &[InverseDynamics<T>],
+        workspace: &mut Workspace<T>,
+    ) -> Result<()> {
+        let dependent_loads = &self.dependent_loads;
+        let solution = &mut workspace.friction_workspace;
+        let states = &workspace.states;
+        friction::solve(dependent_loads, states, frictionless, responses, solution)?;
+        for (dependent, force) in dependent_loads.iter().zip(&solution.force) {
+            workspace.loads.magnitude[dependent.load] = *force;
+        }
+        self.update_wrenches(workspace)
+    }
+
+    fn solve_prescribed_friction<T: Scalar>(
+        &self,
+        q_ddot: &[T],
+        workspace: &mut Workspace<T>,
+        result: &mut InverseDynamics<T>,
+    ) -> Result<()> {
+        if self.dependent_loads.is_empty() {
+            return Ok(());
+        }
+        let mut responses = std::mem::take(&mut workspace.friction_responses);
+        let mut respond = || -> Result<()> {
+            for (load, response) in self.frictions().zip(&mut responses) {
+                self.load_response(load, workspace, response)?;
+            }
+            self.solve_friction(&result.reactions, &responses, workspace)
+        };
+        let solved = respond();
+        workspace.friction_responses = responses;
+        solved?;
+        self.loaded_dynamics(q_ddot, workspace, result);
+        Ok(())
+    }
+}

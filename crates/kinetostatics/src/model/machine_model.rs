@@ -1,0 +1,232 @@
+//! What a machine needs of the model of a mechanism, in the plane or in space: the [stages](super::stages) and the
+//! equations of motion above them know a model by this alone.
+
+use crate::drive::Drive;
+use crate::error::{LoadError, PositionResult, Result};
+use crate::friction::FrictionState;
+use crate::load::{Friction, Load, Magnitude, Signal};
+use crate::pass::InverseDynamics;
+use dwell_geometry::Range;
+use dwell_laws::HeldPieces;
+use dwell_numerics::Scalar;
+use std::fmt::Debug;
+
+/// A mechanism with masses and loads that can be evaluated at a state of motion. The methods with a workspace are the steps
+/// of the [stages](super::stages), which call them in the right order: kinematics, magnitudes of loads, forces.
+pub trait MachineModel: Debug + Clone + PartialEq + Send + Sync + 'static {
+    /// How a coordinate of the mechanism is described.
+    type Coordinate: Debug + Copy + PartialEq + Send + Sync + 'static;
+    /// The same of a compiled mechanism.
+    type CoordinateFunction: Debug + Copy + PartialEq + Send + Sync + 'static;
+    /// The shape of a load.
+    type LoadKind: Debug + Copy + PartialEq + Send + Sync + 'static;
+
+    /// Working memory of one thread in a kind of number.
+    type Workspace<T: Scalar>: Debug + Clone + Send;
+
+    /// Such memory.
+    fn pass_workspace<T: Scalar>(&self) -> Self::Workspace<T>;
+
+    /// Number of actuators.
+    fn actuators(&self) -> usize;
+
+    /// The range of the coordinate of the only actuator.
+    fn range(&self) -> Range;
+
+    /// A buffer for the results of this model.
+    fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T>;
+
+    /// Whether an actuator drives an angle; otherwise it drives a length.
+    fn is_angle(&self, actuator: usize) -> bool;
+
+    /// A length of the order of the mechanism, m.
+    fn size(&self) -> f64;
+
+    /// The mass of all bodies, kg.
+    fn total_mass(&self) -> f64;
+
+    /// The same without reactions that nothing depends on.
+    #[must_use]
+    fn without_reactions(&self) -> Self;
+
+    /// A coordinate, ready to be evaluated.
+    ///
+    /// # Errors
+    /// Why there is none.
+    fn coordinate_function(
+        &self,
+        coordinate: Self::Coordinate,
+    ) -> Result<Self::CoordinateFunction, &'static str>;
+
+    /// The same under these loads, instead of any before.
+    ///
+    /// # Errors
+    /// [`LoadError`] when a load does not fit the mechanism.
+    fn with_loads(self, loads: Vec<ModelLoad<Self>>) -> Result<Self, LoadError>;
+
+    /// The load by which a drive acts on the mechanism.
+    ///
+    /// # Errors
+    /// A message if the mechanism does not have its coordinate.
+    fn drive_load(&self, drive: &Drive<Self::Coordinate>) -> Result<ModelLoad<Self>, &'static str>;
+
+    /// The loads, in their order.
+    fn loads(&self) -> &[ModelLoad<Self>];
+
+    /// The compiled signals of a load's magnitude, in the order of its [signals](Magnitude::signals).
+    fn compiled_signals(&self, load: usize) -> &[Signal<Self::CoordinateFunction>];
+
+    /// Whether a load has a potential energy.
+    fn is_conservative(&self, load: usize) -> bool;
+
+    /// The work of a unit of a load over the size of the mechanism, or a turn of one radian; zero of a damper. m, kg m, m² or 1.
+    fn work_lever(&self, kind: &Self::LoadKind) -> f64;
+
+    /// The loads that depend on reactions (frictions and separating forces), by their indices.
+    fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_;
+
+    /// One of these loads that holds its surfaces at rest: its numbers, and the coordinate whose speed is that of the surfaces.
+    fn sticking_friction(&self, index: usize) -> Option<(Friction, Self::CoordinateFunction)>;
+
+    /// Positions and velocities.
+    ///
+    /// # Errors
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
+    fn update_kinematics<T: Scalar>(
+        &self,
+        q: &[T],
+        q_dot: &[T],
+        workspace: &mut Self::Workspace<T>,
+    ) -> PositionResult;
+
+    /// A coordinate with its rate and acceleration, rad or m, per s and s².
+    fn coordinate_motion<T: Scalar>(
+        &self,
+        of: Self::CoordinateFunction,
+        workspace: &Self::Workspace<T>,
+    ) -> [T; 3];
+
+    /// Of an angle: whether its whole revolutions are counted.
+    fn counts_revolutions<T: Scalar>(
+        &self,
+        of: Self::CoordinateFunction,
+        workspace: &Self::Workspace<T>,
+    ) -> Option<bool>;
+
+    /// The accelerations of the bodies by those of the coordinates.
+    fn update_accelerations<T: Scalar>(&self, q_ddot: &[T], workspace: &mut Self::Workspace<T>);
+
+    /// The accelerations of the bodies by those of the last inverse dynamics.
+    fn update_bodies<T: Scalar>(&self, workspace: &mut Self::Workspace<T>);
+
+    /// The magnitudes of the loads at time `t` (s), those of frictions and external ones zero.
+    ///
+    /// # Errors
+    /// [`MagnitudeNotFinite`](crate::KinetostaticsError::MagnitudeNotFinite).
+    fn update_magnitudes<T: Scalar>(
+        &self,
+        t: f64,
+        workspace: &mut Self::Workspace<T>,
+    ) -> Result<()>;
+
+    /// The magnitudes of the loads.
+    fn magnitudes<T: Scalar>(workspace: &Self::Workspace<T>) -> &[T];
+
+    /// The same, to be set.
+    fn magnitudes_mut<T: Scalar>(workspace: &mut Self::Workspace<T>) -> &mut [T];
+
+    /// A magnitude of the signals of a load at time `t` (s).
+    ///
+    /// # Errors
+    /// [`MagnitudeNotFinite`](crate::KinetostaticsError::MagnitudeNotFinite).
+    fn eval_magnitude<T: Scalar>(
+        &self,
+        load: (usize, &Magnitude<Self::Coordinate>),
+        t: f64,
+        workspace: &mut Self::Workspace<T>,
+    ) -> Result<T>;
+
+    /// The pieces on which the magnitude of a load is held.
+    fn held_pieces<T: Scalar>(workspace: &mut Self::Workspace<T>, load: usize) -> &mut HeldPieces;
+
+    /// The forces of the loads at their magnitudes.
+    ///
+    /// # Errors
+    /// [`NoDirection`](crate::KinetostaticsError::NoDirection).
+    fn update_wrenches<T: Scalar>(&self, workspace: &mut Self::Workspace<T>) -> Result<()>;
+
+    /// The actuators' actions and the reactions of inertia and of the loads at these accelerations.
+    fn loaded_dynamics<T: Scalar>(
+        &self,
+        q_ddot: &[T],
+        workspace: &mut Self::Workspace<T>,
+        result: &mut InverseDynamics<T>,
+    );
+
+    /// Column i of the mass matrix with the reactions.
+    fn mass_matrix_column<T: Scalar>(
+        &self,
+        i: usize,
+        workspace: &mut Self::Workspace<T>,
+        result: &mut InverseDynamics<T>,
+    );
+
+    /// The response to a load alone of magnitude 1, at rest; of a damper, to a unit of its resistance.
+    ///
+    /// # Errors
+    /// [`NoDirection`](crate::KinetostaticsError::NoDirection).
+    fn load_response<T: Scalar>(
+        &self,
+        load: usize,
+        workspace: &mut Self::Workspace<T>,
+        result: &mut InverseDynamics<T>,
+    ) -> Result<()>;
+
+    /// The power of a load, W.
+    fn load_power<T: Scalar>(&self, load: usize, workspace: &Self::Workspace<T>) -> T;
+
+    /// Kinetic energy, J.
+    fn kinetic_energy(&self, workspace: &Self::Workspace<f64>) -> f64;
+
+    /// The potential energy of a load, J; none if it is not conservative.
+    fn potential_energy(&self, load: usize, workspace: &Self::Workspace<f64>) -> Option<f64>;
+
+    /// Of a load that depends on reactions: the force that its factor multiplies, N·m or N. Of a model without friction zero.
+    fn contact_force<T: Scalar>(&self, _index: usize, _reactions: &[T]) -> T {
+        T::from_f64(0.0)
+    }
+
+    /// What is known of the loads that depend on reactions. A model without friction has none.
+    fn friction_states<T: Scalar>(_workspace: &mut Self::Workspace<T>) -> &mut [FrictionState<T>] {
+        &mut []
+    }
+
+    /// Solves for the loads that depend on reactions, as [`ForceState::solve_friction`](super::ForceState::solve_friction) says.
+    ///
+    /// # Errors
+    /// [`SelfLocking`](crate::KinetostaticsError::SelfLocking).
+    fn solve_friction<T: Scalar>(
+        &self,
+        _frictionless: &[T],
+        _responses: &[InverseDynamics<T>],
+        _workspace: &mut Self::Workspace<T>,
+    ) -> Result<()> {
+        Ok(())
+    }
+
+    /// Where loads depend on reactions, solves for them in a prescribed motion, whose reactions without them are in `result`.
+    ///
+    /// # Errors
+    /// As [`MachineModel::solve_friction`].
+    fn solve_prescribed_friction<T: Scalar>(
+        &self,
+        _q_ddot: &[T],
+        _workspace: &mut Self::Workspace<T>,
+        _result: &mut InverseDynamics<T>,
+    ) -> Result<()> {
+        Ok(())
+    }
+}
+
+/// A load of a mechanism that is known by its model.
+pub type ModelLoad<M> = Load<<M as MachineModel>::LoadKind, <M as MachineModel>::Coordinate>;

@@ -1,0 +1,90 @@
+//! `dwell export`: a machine of one degree of freedom as code for controllers and simulations.
+
+pub(crate) mod description;
+#[cfg(feature = "output")]
+mod fmu_archive;
+#[cfg(feature = "output")]
+pub(crate) mod output;
+pub(crate) mod sampler;
+
+use crate::explain::{StudyError, explain_motion, scene_error};
+use crate::number_format::number;
+use description::ExportedScene;
+use dwell_export::{Export, FitError, Function, MachineDescription, Request};
+use dwell_geometry::ActuatorId;
+use dwell_scene::{Scene, SceneFile, SceneLocation};
+use std::fmt::Display;
+
+/// What of a scene is exported, and how accurately.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExportRequest {
+    /// Accuracy and numbers.
+    pub request: Request,
+    /// Interval in the scene's unit; `None` for a full period, or the range without 2 % at each end.
+    pub interval: Option<(f64, f64)>,
+}
+
+/// Fits the functions of a scene's machine for export.
+///
+/// # Errors
+/// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
+pub fn compute_export(scene: &Scene, asked: &ExportRequest) -> Result<Export, StudyError> {
+    let exported = ExportedScene::new(scene, asked.interval)?;
+    let machine = exported.description.clone();
+    let mut sampler = exported.sampler();
+    Export::new(machine, asked.request, &mut sampler).map_err(|error| match error {
+        FitError::Sampler(error) => explain_motion(&exported.loaded, exported.model.plan(), &error),
+        other => explain_fit(scene, &exported.description, asked, &other),
+    })
+}
+
+/// Explains why no cells were found, with names and places of the scene.
+pub(crate) fn explain_fit<E: Display>(
+    scene: &SceneFile,
+    machine: &MachineDescription,
+    asked: &ExportRequest,
+    error: &FitError<E>,
+) -> StudyError {
+    let actuator = SceneLocation::Actuator(ActuatorId(0));
+    let place = |function: &Function| match function {
+        Function::Potential(load) | Function::W(load) | Function::C(load, _) => {
+            (SceneLocation::Load(*load), "this load")
+        }
+        Function::Position(point, _) => (SceneLocation::Path(*point), "this point"),
+        Function::Inertia | Function::A(_) | Function::B(_) => (actuator, "over this coordinate"),
+    };
+    match error {
+        FitError::Sampler(error) => scene_error(
+            scene,
+            error.to_string(),
+            "",
+            [(actuator, "over this coordinate")],
+        ),
+        FitError::NotPeriodic { name, function } => scene_error(
+            scene,
+            format!("no export: {name} is not periodic over a revolution"),
+            "what depends on the number of revolutions needs an interval: give --from and --until",
+            [place(function)],
+        ),
+        FitError::TooLarge { name } => scene_error(
+            scene,
+            format!("no export: {name} is too large for single precision"),
+            "leave --float out",
+            [(SceneLocation::Whole, "of this scene")],
+        ),
+        FitError::NotReached { name, q, .. } => {
+            let (at, unit) = scene.to_scene_unit(*q, machine.is_angle);
+            let accuracy = asked.request.accuracy;
+            let message = format!(
+                "no export of accuracy {accuracy:e}: {name} bends too much near {} {unit}",
+                number(at)
+            );
+            scene_error(
+                scene,
+                message,
+                "ask for less accuracy, or for a smaller part of the range with --from and --until, away from limit positions and change points",
+                [(actuator, "over this coordinate")],
+            )
+        }
+    }
+}

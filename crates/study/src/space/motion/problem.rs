@@ -1,0 +1,233 @@
+//! The initial value problem of a free motion of a scene in space.
+
+use crate::explain::{StudyError, missing_section_label, scene_error};
+use crate::space::explain::{explain_load_error, explain_loads, explain_position, with_loads};
+use crate::space::prepared::compile;
+use crate::space::trajectory::JointReactions;
+use dwell_dynamics::{
+    CoordinateMode, DynamicsError, Event, EventKind, Machine, MachineError, OdeState, Orbit,
+    ReducedState,
+};
+use dwell_geometry::ActuatorId;
+use dwell_kinetostatics::MachineModel as _;
+use dwell_kinetostatics::space::{Coordinate, CoordinateFunction, Model, Reaction};
+use dwell_laws::Law;
+use dwell_scene::{EventTrigger, FreeMotionSpec, MotionDuration, SceneLocation, SpaceScene};
+use std::num::NonZeroUsize;
+
+/// The motion of a scene.
+pub(super) type Spec = FreeMotionSpec<Coordinate, Reaction>;
+
+/// The initial value problem of a scene's free motion.
+pub(super) struct SpaceMotionProblem<'a> {
+    pub(super) scene: &'a SpaceScene,
+    pub(super) spec: &'a Spec,
+    /// The reactions of the model for outputs, and that model with all loads.
+    pub(super) reactions: JointReactions,
+    pub(super) output_model: Model,
+    /// The equations of motion.
+    pub(super) machine: Machine<Model>,
+    /// The model whose reactions events are about.
+    pub(super) event_model: Model,
+    pub(super) events: Vec<Event<CoordinateFunction>>,
+}
+
+impl<'a> SpaceMotionProblem<'a> {
+    /// Compiles a scene.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] when it has no motion, or its machine cannot be built.
+    pub(super) fn new(scene: &'a SpaceScene) -> Result<Self, StudyError> {
+        let Some(spec) = &scene.motion else {
+            return Err(scene_error(
+                scene,
+                "the scene has no [motion] to simulate",
+                "add [motion] with `initial-velocity`, and `periods` or `duration`",
+                missing_section_label("motion"),
+            ));
+        };
+        let (reactions, output_model) = JointReactions::new(scene)?;
+        let of_events = spec.events.iter().filter_map(|event| match event.trigger {
+            EventTrigger::Reaction(reaction, _) => Some(reaction),
+            EventTrigger::Reaches(..) | EventTrigger::Reversal(_) | EventTrigger::Revolution(_) => {
+                None
+            }
+        });
+        let of_events: Vec<Reaction> = of_events.collect();
+        let event_model = with_loads(scene, compile(scene, &of_events)?)?;
+        let mut problem = Self {
+            scene,
+            spec,
+            reactions,
+            output_model,
+            machine: machine(scene, spec)?,
+            events: Vec::new(),
+            event_model,
+        };
+        problem.require_determined(&of_events)?;
+        problem.events = problem.compile_events(&of_events)?;
+        Ok(problem)
+    }
+
+    /// Refuses an event of a reaction that redundant constraints leave open.
+    fn require_determined(&self, reactions: &[Reaction]) -> Result<(), StudyError> {
+        let mut workspace = self.event_model.workspace();
+        let determined = self
+            .event_model
+            .determined(&self.spec.initial_coordinates, &mut workspace);
+        let determined =
+            determined.map_err(|e| explain_position(self.scene, self.event_model.plan(), &e))?;
+        let open = reactions.iter().zip(determined).find(|(_, d)| !d);
+        let Some((&reaction, _)) = open else {
+            return Ok(());
+        };
+        let event = self.spec.events.iter().position(
+            |event| matches!(event.trigger, EventTrigger::Reaction(r, _) if r == reaction),
+        );
+        let name = self.scene.reaction_name(reaction);
+        Err(scene_error(
+            self.scene,
+            format!(
+                "the loads do not determine the reaction `{name}`: redundant constraints share them"
+            ),
+            "`dwell check` lists the reactions that are determined",
+            [(
+                SceneLocation::Event(event.unwrap_or(0)),
+                "of an open reaction",
+            )],
+        ))
+    }
+
+    fn compile_events(
+        &self,
+        reactions: &[Reaction],
+    ) -> Result<Vec<Event<CoordinateFunction>>, StudyError> {
+        let one = |(k, named): (usize, &dwell_scene::NamedEvent<Coordinate, Reaction>)| {
+            let find = |coordinate: Coordinate| {
+                let found = self.event_model.coordinate_function(coordinate);
+                found.map_err(|what| {
+                    let message = format!("event `{}` cannot be located: {what}", named.name);
+                    let help = "watch the coordinate of an actuator";
+                    scene_error(
+                        self.scene,
+                        message,
+                        help,
+                        [(SceneLocation::Event(k), "here")],
+                    )
+                })
+            };
+            let kind = match named.trigger {
+                EventTrigger::Reaches(c, value) => EventKind::Reaches(find(c)?, value),
+                EventTrigger::Reversal(c) => EventKind::Reversal(find(c)?),
+                EventTrigger::Revolution(c) => EventKind::Revolution(find(c)?),
+                EventTrigger::Reaction(r, value) => {
+                    let index = reactions.iter().position(|&other| other == r);
+                    EventKind::Reaction(index.unwrap_or(0), value)
+                }
+            };
+            Ok(Event {
+                kind,
+                terminal: named.terminal.then_some(NonZeroUsize::MIN),
+            })
+        };
+        self.spec.events.iter().enumerate().map(one).collect()
+    }
+
+    /// The initial state of its machine.
+    pub(super) fn initial_state(&self) -> OdeState {
+        let (q, q_dot) = (
+            &self.spec.initial_coordinates,
+            &self.spec.initial_velocities,
+        );
+        OdeState {
+            t: 0.0,
+            y: self.machine.initial_state(q, q_dot),
+        }
+    }
+
+    /// The initial state of the first free coordinate.
+    pub(super) fn initial_reduced_state(&self) -> ReducedState {
+        let first = self.machine.free().first().copied().unwrap_or(0);
+        ReducedState {
+            t: 0.0,
+            q: self.spec.initial_coordinates[first],
+            q_dot: self.spec.initial_velocities[first],
+        }
+    }
+
+    /// The orbit of a conservative motion of one coordinate.
+    pub(super) fn orbit(&self, speed_factor: f64) -> Result<Orbit, DynamicsError> {
+        let start = self.initial_reduced_state();
+        let q_dot = start.q_dot * speed_factor;
+        Orbit::loaded(&self.machine, ReducedState { q_dot, ..start })
+    }
+
+    /// The duration of the motion, s.
+    pub(super) fn duration(&self) -> Result<f64, StudyError> {
+        let periods = match self.spec.duration {
+            MotionDuration::Seconds(duration) => return Ok(duration),
+            MotionDuration::Periods(periods) => periods,
+        };
+        match self.orbit(1.0) {
+            Ok(orbit) => Ok(periods * orbit.period),
+            Err(DynamicsError::NotConservative { .. }) => Err(scene_error(
+                self.scene,
+                "the motion is not conservative, so its period is not known in advance",
+                "give a `duration` in s",
+                [(SceneLocation::Duration, "a period is needed")],
+            )),
+            Err(error) => Err(self.explain(&error)),
+        }
+    }
+
+    /// An error of its motion in the names of the scene.
+    pub(super) fn explain(&self, error: &DynamicsError) -> StudyError {
+        let (scene, plan) = (self.scene, self.output_model.plan());
+        match error {
+            DynamicsError::Position(position) => explain_position(scene, plan, position),
+            DynamicsError::Load(load) => explain_loads(scene, plan, load),
+            DynamicsError::AtRest => scene_error(
+                scene,
+                "the free motion starts at rest, and no force moves the mechanism",
+                "give an `initial-velocity` in [motion]",
+                [(SceneLocation::InitialVelocity(ActuatorId(0)), "no speed")],
+            ),
+            other => scene_error(
+                scene,
+                other.to_string(),
+                "end the motion earlier, or change its start or its loads",
+                [(SceneLocation::Duration, "in this motion")],
+            ),
+        }
+    }
+
+    /// Whether a coordinate is an angle.
+    pub(super) fn is_angle(&self, actuator: usize) -> bool {
+        self.output_model.is_angle(actuator)
+    }
+}
+
+/// The machine of a scene.
+fn machine(scene: &SpaceScene, spec: &Spec) -> Result<Machine<Model>, StudyError> {
+    let mode = |law: &Option<Law>| match law {
+        Some(law) => CoordinateMode::Prescribed(law.clone()),
+        None => CoordinateMode::Free,
+    };
+    let modes = spec.laws.iter().map(mode).collect();
+    let machine = Machine::new(compile(scene, &[])?, &scene.loads, modes, &scene.drives);
+    machine.map_err(|error| match error {
+        MachineError::Load(load) => explain_load_error(scene, &load),
+        MachineError::Drive(drive) => scene_error(
+            scene,
+            drive.to_string(),
+            "drive the coordinate of an actuator",
+            [(SceneLocation::Drive(drive.drive), "this drive")],
+        ),
+        MachineError::Stop(_) | MachineError::CoordinateModes => scene_error(
+            scene,
+            error.to_string(),
+            "",
+            [(SceneLocation::Motion, "this motion")],
+        ),
+    })
+}

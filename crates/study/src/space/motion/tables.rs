@@ -1,0 +1,212 @@
+//! The samples and the events of a motion as tables.
+
+use super::problem::SpaceMotionProblem;
+use super::run::Run;
+use crate::free_motion::compute::sliding_at;
+use crate::models::states_of_drives;
+use crate::number_format::coordinate_unit;
+use crate::trajectory::compute::{BALANCE, Column, KINETIC, POTENTIAL, Quantity, TrajectorySample};
+use dwell_dynamics::{
+    DenseOutput, DynamicsError, MachineOde, MachineWorkspace, NonconservativeSource, OdeState,
+    Options, Sliding, Solution, StepControl, integrate,
+};
+use dwell_findings::{Column as TableColumn, Table};
+use dwell_kinetostatics::space::{Coordinate, Model};
+
+impl SpaceMotionProblem<'_> {
+    /// Every sample with its accelerations, drive magnitudes and energies.
+    pub(super) fn samples(
+        &self,
+        solution: &Solution,
+    ) -> Result<Vec<TrajectorySample>, DynamicsError> {
+        let mut workspace = self.machine.workspace();
+        let states = solution.samples.iter();
+        let all = states.map(|state| {
+            let sliding = sliding_at(solution, state.t);
+            self.sample(state, sliding, &mut workspace)
+        });
+        let mut all = all.collect::<Result<Vec<_>, _>>()?;
+        self.count_balance_from_start(&mut all);
+        if let [only] = all.as_slice() {
+            // A trajectory needs two samples, even if the motion ends at its start.
+            all.push(only.clone());
+        }
+        Ok(all)
+    }
+
+    /// The samples of a motion at wanted times (s, ascending) up to its end, and at its end.
+    pub(super) fn samples_at(
+        &self,
+        run: &Run,
+        times: &[f64],
+    ) -> Result<Vec<TrajectorySample>, DynamicsError> {
+        let last = run.solution.steps.last();
+        let end = last.map_or(0.0, |step| step.t);
+        let wanted: Vec<f64> = times
+            .iter()
+            .copied()
+            .filter(|&t| t < end)
+            .chain([end])
+            .collect();
+        let mut states = Vec::with_capacity(wanted.len());
+        let mut state = self.initial_state();
+        let options = Options {
+            sample_interval: None,
+            ..run.options
+        };
+        for &t in &wanted {
+            if let Some((orbit, _)) = &run.orbit {
+                states.push(OdeState::from(orbit.state_at(t)));
+                continue;
+            }
+            if t > state.t {
+                let mut ode = MachineOde::until(&self.machine, state.t, &state.y, Some(end))?;
+                let mut every =
+                    |_: &OdeState, _: &OdeState, _: DenseOutput<'_>| Ok(StepControl::Continue);
+                let until = integrate(&mut ode, &state, Some(t), &options, &mut every)?;
+                if let Some(error) = until.error {
+                    return Err(error);
+                }
+                state = until.state;
+            }
+            states.push(state.clone());
+        }
+        let mut workspace = self.machine.workspace();
+        let all = states.iter().map(|state| {
+            let sliding = sliding_at(&run.solution, state.t);
+            self.sample(state, sliding, &mut workspace)
+        });
+        let mut all = all.collect::<Result<Vec<_>, _>>()?;
+        let initial = self.sample(&self.initial_state(), None, &mut workspace)?;
+        let index = self.balance_index();
+        for sample in &mut all {
+            sample.extra_values[index] -= initial.extra_values[index];
+        }
+        if let [only] = all.as_slice() {
+            all.push(only.clone());
+        }
+        Ok(all)
+    }
+
+    /// A state of the machine with its accelerations, drive magnitudes and energies; with the balance of energies and works in
+    /// place of its error.
+    fn sample(
+        &self,
+        point: &OdeState,
+        sliding: Option<&Sliding>,
+        workspace: &mut MachineWorkspace<f64, Model>,
+    ) -> Result<TrajectorySample, DynamicsError> {
+        let machine = &self.machine;
+        let loads = self.scene.loads.len();
+        let state = machine.evaluate(point.t, &point.y, workspace)?;
+        let [kinetic, potential] = state.energy();
+        let works = point.y.get(machine.work_offset()..).unwrap_or_default();
+        let mut extra_values = vec![kinetic, potential];
+        extra_values.extend(works);
+        extra_values.push(kinetic + potential - works.iter().sum::<f64>());
+        extra_values.extend(&point.y[machine.drive_states()]);
+        let drives = || loads..loads + machine.drives();
+        let magnitudes = state.magnitudes();
+        let mut sample = TrajectorySample {
+            t: point.t,
+            q: state.q().to_vec(),
+            q_dot: state.q_dot().to_vec(),
+            q_ddot: state.q_ddot().to_vec(),
+            drive_magnitudes: drives().map(|load| (load, magnitudes[load])).collect(),
+            extra_values,
+            ..TrajectorySample::default()
+        };
+        if let Some(sliding) = sliding {
+            let forces = machine.sliding_forces(sliding, point, workspace)?;
+            let given = drives().chain(machine.switching_loads());
+            let given = given.filter(|load| *load >= loads);
+            sample.drive_magnitudes = given.map(|load| (load, forces.magnitudes[load])).collect();
+            sample.q_ddot = forces.q_ddot;
+        }
+        Ok(sample)
+    }
+
+    /// Makes the balance of energies and works that since the start.
+    fn count_balance_from_start(&self, samples: &mut [TrajectorySample]) {
+        let index = self.balance_index();
+        let initial = samples.first().map_or(0.0, |s| s.extra_values[index]);
+        for sample in samples {
+            sample.extra_values[index] -= initial;
+        }
+    }
+
+    /// Where the error of the energy balance is among the extra values of a sample.
+    pub(super) fn balance_index(&self) -> usize {
+        2 + self.machine.nonconservative_sources().len()
+    }
+
+    /// The columns of the extra values, in their order.
+    pub(super) fn extra_columns(&self) -> Vec<Column> {
+        let mut all = vec![
+            (
+                KINETIC.to_owned(),
+                "J",
+                "kinetic energy of all bodies and rotors",
+            ),
+            (
+                POTENTIAL.to_owned(),
+                "J",
+                "potential energy of gravity, springs and constant forces",
+            ),
+        ];
+        let sources = self.machine.nonconservative_sources().iter();
+        all.extend(sources.map(|&source| {
+            let name = format!("{}.work", self.source_name(source));
+            (name, "J", "work since t = 0")
+        }));
+        let balance =
+            "drift of kinetic + potential energy − work since t = 0: error of the integration";
+        all.push((BALANCE.to_owned(), "J", balance));
+        all.extend(states_of_drives(&self.scene.drives, Coordinate::is_angle));
+        let column = |(k, (name, unit, meaning)): (usize, (String, _, &str))| Column {
+            name,
+            former: None,
+            unit,
+            quantity: Quantity::Extra(k),
+            meaning: meaning.to_owned(),
+        };
+        all.into_iter().enumerate().map(column).collect()
+    }
+
+    /// The name of what does work on the machine.
+    fn source_name(&self, source: NonconservativeSource) -> &str {
+        match source {
+            NonconservativeSource::Load(load) => &self.scene.loads[load].name,
+            NonconservativeSource::Drive(drive) => &self.scene.drives[drive].name,
+            NonconservativeSource::Prescribed(i) => &self.scene.mechanism.actuators[i].name,
+            // A scene in space has no end stops.
+            NonconservativeSource::Stop(_) => "",
+        }
+    }
+
+    /// The time of each event, and the actuator coordinates and speeds then.
+    pub(super) fn event_table(&self, solution: &Solution) -> Table {
+        let mut columns = vec![TableColumn::new("t", "s"), TableColumn::new("event", "")];
+        for (i, actuator) in self.scene.mechanism.actuators.iter().enumerate() {
+            let (name, unit) = (&actuator.name, coordinate_unit(self.is_angle(i)));
+            columns.push(TableColumn::new(name, unit));
+            columns.push(TableColumn::new(
+                format!("{name}.velocity"),
+                format!("{unit}/s"),
+            ));
+        }
+        let mut workspace = self.machine.workspace();
+        let rows = solution.event_occurrences.iter().map(|occurrence| {
+            let at = &occurrence.state;
+            let mut row = vec![at.t, (occurrence.event + 1) as f64];
+            if let Ok(state) = self.machine.evaluate(at.t, &at.y, &mut workspace) {
+                let both = state.q().iter().zip(state.q_dot());
+                row.extend(both.flat_map(|(q, speed)| [*q, *speed]));
+            }
+            row.resize(columns.len(), f64::NAN);
+            row
+        });
+        let rows = rows.collect();
+        Table { columns, rows }
+    }
+}

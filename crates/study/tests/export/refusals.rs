@@ -1,0 +1,27 @@
+//! What cannot be exported: the message names it, points to it and says what to change.
+
+use super::toolchain::{case, request};
+use dwell_export::Precision;
+use dwell_study::{ExportRequest, compute_export};
+
+fn message(name: &str, asked: &ExportRequest) -> String {
+    let error = compute_export(&case(name), asked).unwrap_err();
+    error.to_string()
+}
+
+#[test]
+fn several_freedoms_and_dry_friction_are_refused_by_name() {
+    let asked = request(1e-6, Precision::Double);
+    let found = message("double-pendulum", &asked);
+    assert!(found.contains("one"), "{found}");
+    let found = message("slider-crank-friction", &asked);
+    assert!(found.contains("dry friction"), "{found}");
+}
+
+#[test]
+fn an_interval_outside_the_range_is_refused() {
+    let mut asked = request(1e-6, Precision::Double);
+    asked.interval = Some((1.0, 0.5));
+    let found = message("single-dwell", &asked);
+    assert!(found.contains("beyond its beginning"), "{found}");
+}
