@@ -61,22 +61,25 @@ fn a_bevel_differential_adds_its_inputs() {
         quarter - planet,
         right + quarter + planet,
     ];
-    let (mut workspace, mut mass, mut forces) = (model.workspace(), [0.0; 4], [0.0; 2]);
+    let (mut workspace, mut found) = (model.workspace(), model.result_buffer());
     let body = |name: &str| {
         let bodies = &scene.mechanism.bodies;
         bodies.iter().position(|b| b.name == name).expect("a body")
     };
     for q in [[0.3, -0.1], [1.4, 0.9], [-2.0, 2.5]] {
-        let speeds = [1.3, -0.4];
-        let at = [&q[..], &speeds[..]];
-        model
-            .equation_of_motion(at, &[], &mut workspace, &mut mass, &mut forces)
-            .expect("a pose");
-        for (found, wanted) in mass.into_iter().zip(wanted) {
+        let mut forces_at = |q_dot: [f64; 2], q_ddot: [f64; 2]| {
+            model
+                .inverse_dynamics(&q, &q_dot, &q_ddot, &mut workspace, &mut found)
+                .expect("a pose");
+            [found.tau[0], found.tau[1]]
+        };
+        let [first, second] = [[1.0, 0.0], [0.0, 1.0]].map(|unit| forces_at([0.0; 2], unit));
+        for (found, wanted) in first.into_iter().chain(second).zip(wanted) {
             close(found, wanted, wanted);
         }
         // The mass matrix is constant: no velocity makes a force.
-        forces.iter().for_each(|f| close(*f, 0.0, wanted[0]));
+        let of_speeds = forces_at([1.3, -0.4], [0.0; 2]);
+        of_speeds.iter().for_each(|f| close(*f, 0.0, wanted[0]));
         let mut pose = model.plan().pose();
         model.plan().positions(&q, &mut pose).expect("a pose");
         let turned = model.plan().placement(&pose, body("carrier")).rotation;

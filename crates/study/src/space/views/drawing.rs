@@ -74,13 +74,10 @@ impl<'a> SpaceDrawing<'a> {
         }
         let travel = |joint: &Joint| {
             let along = |(placements, _): &(Vec<Placement>, String)| {
-                let [a, b] = [0, 1].map(|k| {
-                    let placement = &placements[joint.side_body(k).0];
-                    placement.position + placement.rotation.apply(joint.sides[k].point)
-                });
-                let axis = placements[joint.side_body(0).0]
-                    .rotation
-                    .apply(joint.sides[0].axis);
+                let [a, b] =
+                    [0, 1].map(|k| placed(placements, joint.side_body(k), joint.sides[k].point));
+                let frame = &placements[joint.side_body(0).0].rotation;
+                let axis = frame.apply(joint.sides[0].axis);
                 axis.dot(b - a)
             };
             crate::ranges::extent(positions.iter().map(along))
@@ -105,9 +102,7 @@ impl<'a> SpaceDrawing<'a> {
     fn joint_points(&self, body: usize) -> impl Iterator<Item = (usize, Vec3)> + '_ {
         let joints = self.scene.mechanism.joints.iter().enumerate();
         joints.flat_map(move |(j, joint)| {
-            // Teeth touch beside the wheels: no bar ends there.
-            let is_gear = matches!(joint.kind, JointKind::Gear { .. });
-            let sides = (0..2).filter(move |k| joint.bodies[*k].0 == body && !is_gear);
+            let sides = (0..2).filter(move |k| joint.side_body(*k).0 == body);
             sides.map(move |k| (j, self.bar_end(j, k)))
         })
     }
