@@ -93,13 +93,13 @@ fn describe(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> MachineDescrip
         .iter()
         .map(|&reaction| scene.reaction_name(reaction))
         .collect();
-    let left_out = (!names.is_empty()).then(|| {
-        format!(
+    if !names.is_empty() {
+        left_out.push(format!(
             "the statically indeterminate reactions {}",
             names.join(", ")
-        )
-    });
-    let start = scene.assembly.q.first().copied().unwrap_or(0.0);
+        ));
+    }
+    let [start, q_dot] = initial(scene);
     let q = match domain.revolutions {
         0 => start.clamp(domain.from, domain.to),
         _ => start.rem_euclid(domain.to),
@@ -118,6 +118,19 @@ fn describe(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> MachineDescrip
         points: Vec::new(),
         sizes: sizes(prepared, domain),
         left_out,
+    }
+}
+
+/// q and q̇ at the start.
+fn initial(scene: &SpaceScene) -> [f64; 2] {
+    let first = |of: &[f64]| of.first().copied();
+    let assembly = first(&scene.assembly.q).unwrap_or(0.0);
+    match &scene.motion {
+        Some(spec) => [
+            first(&spec.initial_coordinates).unwrap_or(assembly),
+            first(&spec.initial_velocities).unwrap_or(0.0),
+        ],
+        None => [assembly, 0.0],
     }
 }
 
