@@ -1,8 +1,8 @@
 //! Figures as their readers get them: PNG files.
 
 use dwell_report::{
-    Axis, Cell, Chart, Drawing, Figure, Grid, Group, Paint, Panel, Pen, Row, Series, Shape, Stroke,
-    png,
+    Axis, Cell, Chart, Drawing, Figure, Grid, Group, Layout, Paint, Panel, Pen, Row, Series, Shape,
+    Stroke, png,
 };
 use std::collections::BTreeMap;
 
