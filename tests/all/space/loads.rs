@@ -3,8 +3,8 @@
 use dwell_dynamics::{CoordinateMode, Machine};
 use dwell_geometry::space::{Coordinate, Placement};
 use dwell_geometry::{BodyId, JointId};
+use dwell_kinetostatics::MachineModel;
 use dwell_kinetostatics::space::{Axes, Component, Model};
-use dwell_kinetostatics::{MachineModel, Magnitude};
 use dwell_scene::SpaceScene;
 use dwell_verify::space::DenseSpace;
 
