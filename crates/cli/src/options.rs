@@ -1,6 +1,7 @@
 //! The command-line options: the names of fields are the names of options.
 
-use crate::export::ExportArgs;
+pub(crate) mod export;
+
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use dwell_dynamics::Method;
@@ -9,6 +10,7 @@ use dwell_study::{
     FormulaFormat, Language, OperatingPoint, PictureFormat, Pictures, RowStore,
     SampleInterpolation, Shard,
 };
+use export::ExportArgs;
 use std::path::{Path, PathBuf};
 
 /// Kinetostatics and dynamics of planar mechanisms, with independent checks
