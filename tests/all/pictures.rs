@@ -2,12 +2,11 @@
 //! is not there to see.
 
 use dwell_dynamics::Method;
-use dwell_scene::{Scene, SpaceScene};
+use dwell_scene::Scene;
 use dwell_study::output::Picture;
 use dwell_study::{
-    Analysis, Outcome, ParameterSweep, PictureSpan, SolverSettings, StudyError, TrajectoryOutcome,
-    analyse_in_space, analyse_trajectory, cycle, equilibria, no_progress, reduce, reduce_in_space,
-    simulate, sweep,
+    Analysis, Outcome, ParameterSweep, SolverSettings, StudyError, TrajectoryOutcome,
+    analyse_trajectory, cycle, equilibria, no_progress, reduce, simulate, sweep,
 };
 use dwell_tests::fixtures::{case_names, repository_root, scene};
 use dwell_validation::{export_study, extremes, index, validate, work_precision};
@@ -108,53 +107,6 @@ fn the_pictures_of_the_validation_are_legible() {
     let all = sum(all.into_iter());
     assert!(all.defects.is_empty(), "{}", all.defects);
     assert!(all.pictures > 160, "{} pictures", all.pictures);
-}
-
-/// The scenes of `validation/spatial`; those with several actuators sweep the first.
-fn scenes_in_space() -> Vec<SpaceScene> {
-    let folder = repository_root().join("validation/spatial");
-    let files = std::fs::read_dir(folder).expect("a folder");
-    let mut paths: Vec<_> = files.map(|file| file.expect("a file").path()).collect();
-    paths.retain(|path| path.extension().is_some_and(|e| e == "toml"));
-    paths.sort();
-    let read = |path: &std::path::PathBuf| {
-        let mut text = std::fs::read_to_string(path).expect("a scene");
-        let scene = SpaceScene::parse(&path.to_string_lossy(), &text).expect("a scene");
-        let actuators = &scene.mechanism.actuators;
-        let (first, start) = (&actuators[0].name, scene.assembly.q[0]);
-        let range = match actuators.len() {
-            1 => String::new(),
-            _ => format!("{first} = [{start}, {}]\n", start + 0.4),
-        };
-        text += &format!("\n[coordinate-sweep]\n{range}");
-        SpaceScene::parse(&path.to_string_lossy(), &text).expect("a scene")
-    };
-    paths.iter().map(read).collect()
-}
-
-#[test]
-fn the_pictures_of_scenes_in_space_are_legible() {
-    let of_scene = |scene: &SpaceScene| {
-        let trajectory = |analysis| {
-            let span = PictureSpan::default();
-            let done = analyse_in_space(scene, analysis, None, span, &no_progress);
-            of_trajectory(&format!("{} {}", scene.name, analysis.name()), done)
-        };
-        let kinds = [
-            of_outcome(
-                &format!("{} reduce", scene.name),
-                reduce_in_space(scene, None),
-            ),
-            trajectory(Analysis::Kinematics),
-            trajectory(Analysis::Statics),
-            trajectory(Analysis::Kinetostatics),
-        ];
-        sum(kinds.into_iter())
-    };
-    let all: Vec<Checked> = scenes_in_space().par_iter().map(of_scene).collect();
-    let all = sum(all.into_iter());
-    assert!(all.defects.is_empty(), "{}", all.defects);
-    assert!(all.pictures > 300, "{} pictures", all.pictures);
 }
 
 /// A chain of pinned links from one bearing, folded so that its joints lie close together.

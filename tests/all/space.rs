@@ -9,7 +9,6 @@ mod reference;
 mod scenes;
 mod simulate;
 mod tilted;
-mod trajectories;
 
 use dwell_geometry::space::{
     Actuator, ActuatorKind, Assembly, Joint, JointKind, Mechanism, Plan, Side, Vec3,

@@ -1,8 +1,8 @@
 //! Figures as their readers get them: PNG files.
 
 use dwell_report::{
-    Axis, Cell, Chart, Drawing, Figure, Grid, Group, Paint, Panel, Pen, Row, Series, Shape, Stroke,
-    png,
+    Axis, Cell, Chart, Drawing, Figure, Grid, Group, Layout, Paint, Panel, Pen, Row, Series, Shape,
+    Stroke, png,
 };
 use std::collections::BTreeMap;
 
@@ -285,4 +285,25 @@ fn threads_draw_the_same_bytes() {
             assert!(thread.join().unwrap() == alone);
         }
     });
+}
+
+/// A view of space has no ticks, and none of their words: its plot is as wide as its cell.
+#[test]
+fn a_view_without_axes_has_no_words_but_its_own() {
+    let layout = |without_axes| {
+        let square = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+        let drawing = Drawing {
+            shapes: vec![Shape::area(square, Pen::new(Paint::Ink, 2.0), 0.5)],
+            without_axes,
+            ..Drawing::default()
+        };
+        let figure = Figure {
+            panels: vec![drawing.into()],
+            columns: 1,
+            ..Figure::default()
+        };
+        Layout::of(&figure).unwrap()
+    };
+    assert!(layout(true).labels.is_empty());
+    assert!(layout(false).labels.len() > 4);
 }

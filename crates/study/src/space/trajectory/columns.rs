@@ -82,6 +82,7 @@ impl Columns<'_> {
             let (units, is_angle, what) = match actuator.kind {
                 ActuatorKind::Angle(_) => (["rad", "rad/s", "rad/s2"], true, "angle"),
                 ActuatorKind::Travel(_) => (["m", "m/s", "m/s2"], false, "travel"),
+                ActuatorKind::Length(_) => (["m", "m/s", "m/s2"], false, "length"),
             };
             let name = &actuator.name;
             let suffixes = ["", ".velocity", ".acceleration"];

@@ -53,7 +53,7 @@ impl JointReactions {
             let is_determined = |some: &[Reaction]| !some.iter().any(|r| open.contains(r));
             let has_moment = !matches!(
                 joint.kind,
-                JointKind::Spherical | JointKind::Distance { .. }
+                JointKind::Spherical | JointKind::Distance { .. } | JointKind::Gear { .. }
             );
             let (force, moment) = of_joint.split_at(3);
             [is_determined(force), has_moment && is_determined(moment)]

@@ -1,7 +1,7 @@
 //! A mechanism in one position, as it is seen from one side: bodies as bars and plates, joints by the symbols of spatial kinematics.
 
 use super::projection::{Picture, View};
-use super::solids::{center_of_mass, hull};
+use super::solids::{center_of_mass, circle, hull};
 use dwell_geometry::BodyId;
 use dwell_geometry::space::{Joint, JointKind, Placement, Vec3};
 use dwell_report::{Paint, Pen, Shape, TextPlacement};
@@ -74,13 +74,10 @@ impl<'a> SpaceDrawing<'a> {
         }
         let travel = |joint: &Joint| {
             let along = |(placements, _): &(Vec<Placement>, String)| {
-                let [a, b] = [0, 1].map(|k| {
-                    let placement = &placements[joint.bodies[k].0];
-                    placement.position + placement.rotation.apply(joint.sides[k].point)
-                });
-                let axis = placements[joint.bodies[0].0]
-                    .rotation
-                    .apply(joint.sides[0].axis);
+                let [a, b] =
+                    [0, 1].map(|k| placed(placements, joint.side_body(k), joint.sides[k].point));
+                let frame = &placements[joint.side_body(0).0].rotation;
+                let axis = frame.apply(joint.sides[0].axis);
                 axis.dot(b - a)
             };
             crate::ranges::extent(positions.iter().map(along))
@@ -105,7 +102,7 @@ impl<'a> SpaceDrawing<'a> {
     fn joint_points(&self, body: usize) -> impl Iterator<Item = (usize, Vec3)> + '_ {
         let joints = self.scene.mechanism.joints.iter().enumerate();
         joints.flat_map(move |(j, joint)| {
-            let sides = (0..2).filter(move |k| joint.bodies[*k].0 == body);
+            let sides = (0..2).filter(move |k| joint.side_body(*k).0 == body);
             sides.map(move |k| (j, self.bar_end(j, k)))
         })
     }
@@ -126,7 +123,7 @@ impl<'a> SpaceDrawing<'a> {
         let of = &self.scene.mechanism.joints[joint];
         let (body, side) = (of.bodies[k].0, &of.sides[k]);
         let others = self.scene.mechanism.joints.iter().flat_map(|other| {
-            let sides = (0..2).filter(|i| other.bodies[*i].0 == body);
+            let sides = (0..2).filter(|i| other.side_body(*i).0 == body);
             sides.map(|i| other.sides[i].point)
         });
         let named = self.scene.points[body].iter().map(|(_, p)| *p);
@@ -148,6 +145,10 @@ impl<'a> SpaceDrawing<'a> {
                 continue;
             }
             for (other, k, l) in self.meeting(i) {
+                // A slide is drawn where its block is.
+                if !is_hinge && k == self.guide_side(joint) {
+                    continue;
+                }
                 let (own, of_other) = (&joint.sides[k], &joints[other].sides[l]);
                 let stays = match joints[other].kind {
                     // Of a slide and a hinge the slide is moved.
@@ -173,6 +174,18 @@ impl<'a> SpaceDrawing<'a> {
         shifts
     }
 
+    /// Which body of a sliding joint has the guide: the first, unless only the second is the ground.
+    pub(super) fn guide_side(&self, joint: &Joint) -> usize {
+        usize::from(self.is_ground(joint.bodies[1]))
+    }
+
+    /// Whether a body is drawn as the block of a slide.
+    fn is_block(&self, body: BodyId) -> bool {
+        let joints = self.scene.mechanism.joints.iter();
+        let mut slides = joints.filter(|joint| matches!(joint.kind, JointKind::Prismatic));
+        slides.any(|joint| joint.bodies[1 - self.guide_side(joint)] == body)
+    }
+
     /// The joints at the point of a joint, with the number of the common moving body in the one and the other.
     fn meeting(&self, joint: usize) -> Vec<(usize, usize, usize)> {
         let joints = &self.scene.mechanism.joints;
@@ -181,7 +194,10 @@ impl<'a> SpaceDrawing<'a> {
         for (j, other) in joints.iter().enumerate().filter(|(j, _)| *j != joint) {
             for (k, l) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let is_near = (own.sides[k].point - other.sides[l].point).norm() < self.same;
-                if own.bodies[k] == other.bodies[l] && is_near && !self.is_ground(own.bodies[k]) {
+                if own.side_body(k) == other.side_body(l)
+                    && is_near
+                    && !self.is_ground(own.bodies[k])
+                {
                     meeting.push((j, k, l));
                 }
             }
@@ -193,7 +209,7 @@ impl<'a> SpaceDrawing<'a> {
     fn middle_of_joints(&self, body: BodyId, placements: &[Placement]) -> Vec3 {
         let joints = self.scene.mechanism.joints.iter();
         let points = joints.flat_map(|joint| {
-            let sides = (0..2).filter(|k| joint.bodies[*k] == body);
+            let sides = (0..2).filter(|k| joint.side_body(*k) == body);
             sides.map(|k| placed(placements, body, joint.sides[k].point))
         });
         let points: Vec<Vec3> = points.collect();
@@ -298,7 +314,7 @@ impl<'a> Scenery<'a> {
 
     /// Where a joint is drawn, on its `k`th body.
     pub(super) fn anchor(&self, joint: usize, k: usize) -> Vec3 {
-        let body = self.drawing.scene.mechanism.joints[joint].bodies[k];
+        let body = self.drawing.scene.mechanism.joints[joint].side_body(k);
         self.at(body, self.drawing.anchor(joint, k))
     }
 
@@ -353,7 +369,12 @@ impl<'a> Scenery<'a> {
         let points: Vec<Vec3> = local.iter().map(|p| self.at(body, *p)).collect();
         let bar = (color, BAR);
         match points[..] {
-            [] | [_] => {}
+            [] => {}
+            [point] => {
+                if !self.drawing.is_block(body) {
+                    self.ring(body, point);
+                }
+            }
             [a, b] => self.bar([a, b], bar, Some(name)),
             _ => {
                 if let Some([a, b]) = line_of(&points, self.drawing.same) {
@@ -378,6 +399,18 @@ impl<'a> Scenery<'a> {
                 }
             }
         }
+    }
+
+    /// A body of one point: a ring about it.
+    fn ring(&mut self, body: BodyId, at: Vec3) {
+        let view = self.picture.view;
+        let outline = circle(view.place(at), 0.9 * self.drawing.unit);
+        let line = Shape::line(outline, Pen::new(self.drawing.color(body), 4.0));
+        let line = match self.name(body) {
+            Some(name) => line.named(name),
+            None => line,
+        };
+        self.picture.add(view.nearness(at), vec![line]);
     }
 
     /// The mark of a centre of mass, with a line to the body where it is beside it.

@@ -100,12 +100,19 @@ impl<'a> Scenery<'a> {
                 self.picture.add(near, ball(&view, at, 0.4 * unit));
                 self.ground_mark(joint, at, None);
             }
+            // The normal of the teeth, through the pitch point.
+            JointKind::Gear { .. } => {
+                let ends = [-0.9, 0.9].map(|s| view.place(at + axes.axis.scaled(s * unit)));
+                let normal = Shape::line(ends.to_vec(), Pen::new(Paint::Ink, 2.5));
+                self.picture.add(near, vec![normal]);
+                self.picture.add(near, ball(&view, at, 0.3 * unit));
+            }
         }
     }
 
     /// The axes of a joint on one of its bodies, in those of the ground.
     fn axes(&self, joint: &Joint, k: usize) -> Axes {
-        let (body, side) = (joint.bodies[k], &joint.sides[k]);
+        let (body, side) = (joint.side_body(k), &joint.sides[k]);
         Axes::new(self.turned(body, side.axis), self.turned(body, side.normal))
     }
 
@@ -121,7 +128,7 @@ impl<'a> Scenery<'a> {
     fn slide(&mut self, j: usize) {
         let joint = &self.drawing.scene.mechanism.joints[j];
         let (unit, view) = (self.drawing.unit, self.picture.view);
-        let on = self.guide_side(joint);
+        let on = self.drawing.guide_side(joint);
         let block_body = joint.bodies[1 - on];
         let (at, axes) = (self.anchor(j, 1 - on), self.axes(joint, on));
         let size = BLOCK.map(|s| s * unit);
@@ -145,15 +152,10 @@ impl<'a> Scenery<'a> {
         self.ground_line(middle, normal, 0.5 * length, view.nearness(at));
     }
 
-    /// Which body of a sliding joint has the guide: the first, unless only the second is the ground.
-    fn guide_side(&self, joint: &Joint) -> usize {
-        usize::from(self.drawing.is_ground(joint.bodies[1]))
-    }
-
     /// The ends of the guide of a sliding joint.
     fn guide_ends(&self, j: usize) -> [Vec3; 2] {
         let joint = &self.drawing.scene.mechanism.joints[j];
-        let (on, unit) = (self.guide_side(joint), self.drawing.unit);
+        let (on, unit) = (self.drawing.guide_side(joint), self.drawing.unit);
         let (start, axis) = (self.anchor(j, on), self.axes(joint, on).axis);
         let [low, high] = self.drawing.travels[j];
         let [low, high] = if on == 0 { [low, high] } else { [-high, -low] };
@@ -163,7 +165,7 @@ impl<'a> Scenery<'a> {
     /// The straight rod of one body on which the other one slides.
     fn guide(&mut self, j: usize) {
         let joint = &self.drawing.scene.mechanism.joints[j];
-        let on = self.guide_side(joint);
+        let on = self.drawing.guide_side(joint);
         let (body, axis) = (joint.bodies[on], self.axes(joint, on).axis);
         let ends = self.guide_ends(j);
         self.bar(ends, (self.drawing.color(body), ROD), None);
@@ -178,7 +180,7 @@ impl<'a> Scenery<'a> {
     fn grounded_sleeve(&mut self, j: usize) {
         let joint = &self.drawing.scene.mechanism.joints[j];
         let (unit, view) = (self.drawing.unit, self.picture.view);
-        let on = self.guide_side(joint);
+        let on = self.drawing.guide_side(joint);
         let (at, rod, axes) = (
             self.anchor(j, on),
             self.anchor(j, 1 - on),
@@ -321,6 +323,22 @@ impl<'a> Scenery<'a> {
                     name: None,
                 };
                 self.picture.add(near, vec![Shape::line(arc, pen), arrow]);
+            }
+            // Beside the rod, from one of its ends towards the other.
+            ActuatorKind::Length(_) => {
+                let ends = [self.anchor(j, 0), at].map(|end| view.place(end));
+                let [dx, dy] = [0, 1].map(|k| ends[1][k] - ends[0][k]);
+                let long = dx.hypot(dy).max(f64::MIN_POSITIVE);
+                let aside = [-dy, dx].map(|d| 1.2 * unit * d / long);
+                let point =
+                    |s: f64| [0, 1].map(|k| ends[0][k] + s * (ends[1][k] - ends[0][k]) + aside[k]);
+                let arrow = Shape::Arrow {
+                    from: point(0.3),
+                    to: point(0.7),
+                    pen,
+                    name: None,
+                };
+                self.picture.add(near, vec![arrow]);
             }
             ActuatorKind::Travel(_) => {
                 let offset = axes.normal.scaled(1.5 * unit);

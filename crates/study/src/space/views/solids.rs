@@ -61,7 +61,7 @@ pub(super) fn face(
     [area, line]
 }
 
-fn circle(view: &View, at: Vec3, axes: &Axes, radius: f64) -> Vec<[f64; 2]> {
+fn rim(view: &View, at: Vec3, axes: &Axes, radius: f64) -> Vec<[f64; 2]> {
     let corner = |k: usize| {
         let angle = TAU * k as f64 / CORNERS as f64;
         view.place(at + axes.rim(angle, radius))
@@ -78,18 +78,18 @@ pub(super) fn cylinder(
     color: Paint,
 ) -> Vec<Shape> {
     let ends = [-half, half].map(|s| at + axes.axis.scaled(s));
-    let outline = ends.iter().flat_map(|end| circle(view, *end, axes, radius));
+    let outline = ends.iter().flat_map(|end| rim(view, *end, axes, radius));
     let mut shapes = face(hull(outline.collect()), (color, SIDE), Paint::Ink, None).to_vec();
     let nearest = ends[usize::from(view.nearness(ends[1]) > view.nearness(ends[0]))];
     // Seen exactly from the side it has no end.
     if view.length(axes.axis) < 0.999 {
         shapes.extend(face(
-            circle(view, nearest, axes, radius),
+            rim(view, nearest, axes, radius),
             (color, FACE),
             Paint::Ink,
             None,
         ));
-        let pin = circle(view, nearest, axes, 0.35 * radius);
+        let pin = rim(view, nearest, axes, 0.35 * radius);
         shapes.push(Shape::area(pin, Pen::new(Paint::Ink, 1.0), 1.0));
     }
     shapes
@@ -173,6 +173,15 @@ pub(super) fn ball(view: &View, at: Vec3, radius: f64) -> Vec<Shape> {
         Shape::area(round(offset * radius, size * radius), pen, 1.0)
     }));
     shapes
+}
+
+/// A circle in the picture, closed.
+pub(super) fn circle([x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
+    let corner = |k: usize| {
+        let (sin, cos) = (TAU * k as f64 / CORNERS as f64).sin_cos();
+        [x + radius * cos, y + radius * sin]
+    };
+    (0..=CORNERS).map(corner).collect()
 }
 
 /// The mark of a centre of mass: a disc of four quarters.

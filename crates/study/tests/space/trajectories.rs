@@ -1,42 +1,18 @@
 //! Kinematics, statics and kinetostatics of the scenes of `validation/spatial`: every row of the written tables against the dense
 //! equations of all bodies, which share neither tree nor closures with what wrote them.
 
+use super::{SCENES, scene};
 use dwell_findings::Table;
 use dwell_geometry::JointId;
 use dwell_geometry::space::{BodyMotion, Placement, Rotation, Vec3, vec3};
-use dwell_kinetostatics::space::{Axes, Component};
+use dwell_kinetostatics::Magnitude;
+use dwell_kinetostatics::space::{Axes, Component, Load};
 use dwell_scene::SpaceScene;
 use dwell_study::{Analysis, PictureSpan, TrajectoryOutcome, analyse_in_space, no_progress};
 use dwell_verify::space::DenseSpace;
 
-const SCENES: [&str; 13] = [
-    "bennett",
-    "bricard-a04",
-    "double-hooke",
-    "governor",
-    "planar-oblique-4r",
-    "planar-oblique-rcsr",
-    "rssr-haug",
-    "rssr",
-    "rsur-haug",
-    "rsur",
-    "schatz",
-    "slider-crank-haug",
-    "wobble-plate",
-];
-
 /// Relative to the largest of the unit: a hundred times what rounding and the digits of a rotation as a vector leave.
 const ALLOWED: f64 = 2e-11;
-
-/// The text of a scene with a section for its motion.
-fn scene(name: &str, motion: &str) -> SpaceScene {
-    let path = format!(
-        "{}/../validation/spatial/{name}.toml",
-        env!("CARGO_MANIFEST_DIR")
-    );
-    let text = std::fs::read_to_string(path).expect("a scene") + motion;
-    SpaceScene::parse(name, &text).unwrap_or_else(|e| panic!("{name}: {e}"))
-}
 
 /// An accelerated motion of all actuators from the assembly.
 fn accelerated(name: &str) -> SpaceScene {
@@ -293,7 +269,11 @@ fn compare(name: &str, analysis: Analysis) -> usize {
     );
     let (table, positions) = (written(&done), written(&kinematics.expect("positions")));
     assert_eq!(table.rows.len(), 7, "{name}");
-    let loads: Vec<_> = scene.loads.iter().map(|l| (l.kind, l.magnitude)).collect();
+    let constant = |load: &Load| match load.magnitude {
+        Magnitude::Constant(magnitude) => (load.kind, magnitude),
+        _ => panic!("a load of these scenes has a law"),
+    };
+    let loads: Vec<_> = scene.loads.iter().map(constant).collect();
     let (mut found, mut motion) = (Compared::default(), Compared::default());
     for (values, moving) in table.rows.iter().zip(&positions.rows) {
         let row = Row {
