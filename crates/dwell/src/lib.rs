@@ -71,6 +71,7 @@ mod sweep;
 mod table;
 mod value;
 
+pub use batch::CoefficientBatch;
 /// An integration method; see [`Solver::method`].
 ///
 /// ```
@@ -93,7 +94,6 @@ pub use dwell_dynamics::Mode;
 /// # }
 /// ```
 pub use dwell_dynamics::Stability;
-pub use batch::CoefficientBatch;
 pub use equation::EquationOfMotion;
 pub use error::Error;
 pub use machine::{Cycle, Equilibrium, StateSpace};

@@ -27,7 +27,9 @@ impl From<dwell::Equilibrium> for Equilibrium {
                 dwell::Stability::Neutral => "neutral",
                 dwell::Stability::Undecided => "undecided",
             },
-            modes: modes.map(|m| (m.angular_frequency, m.damping_ratio)).collect(),
+            modes: modes
+                .map(|m| (m.angular_frequency, m.damping_ratio))
+                .collect(),
             eigenvalues: found.eigenvalues,
         }
     }

@@ -50,7 +50,8 @@ pub(crate) fn solver(
 ) -> PyResult<dwell::Solver> {
     let solver = match (accuracy, method) {
         (Some(_), Some(_)) => {
-            let message = "give `accuracy`, or `method` with `tolerance`: an accuracy chooses its method";
+            let message =
+                "give `accuracy`, or `method` with `tolerance`: an accuracy chooses its method";
             return Err(DwellError::new_err(message));
         }
         (Some(accuracy), None) => dwell::Solver::accuracy(accuracy),
