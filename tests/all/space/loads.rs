@@ -57,7 +57,7 @@ fn model(scene: &SpaceScene) -> Model {
 /// Coordinates, speeds and accelerations.
 const STATES: [[f64; 3]; 4] = [
     [0.3, 2.0, -3.0],
-    [-0.8, -1.1, 4.0],
+    [-0.4, -1.1, 4.0],
     [0.9, 0.0, 0.0],
     [0.05, 5.0, 1.0],
 ];
