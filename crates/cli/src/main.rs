@@ -4,6 +4,7 @@
 //! written).
 
 mod cases;
+mod export;
 mod exported_runs;
 mod former;
 mod in_space;
@@ -263,7 +264,7 @@ fn run_study(
         Command::Symbolic {
             format, reaction, ..
         } => dwell_study::symbolic(scene, *format, reaction.as_deref())?,
-        Command::Export(arguments) => options::export::run(arguments, scene)?,
+        Command::Export(arguments) => export::run(arguments, scene)?,
         Command::Kinematics(arguments) => {
             return run_trajectory(arguments, scene, Analysis::Kinematics, bar);
         }

@@ -1,7 +1,6 @@
 //! The command-line options: the names of fields are the names of options.
 
-pub(crate) mod export;
-
+use crate::export::ExportArgs;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use dwell_dynamics::Method;
@@ -10,7 +9,6 @@ use dwell_study::{
     FormulaFormat, Language, OperatingPoint, PictureFormat, Pictures, RowStore,
     SampleInterpolation, Shard,
 };
-use export::ExportArgs;
 use std::path::{Path, PathBuf};
 
 /// Kinetostatics and dynamics of planar mechanisms, with independent checks

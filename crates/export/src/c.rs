@@ -8,8 +8,8 @@ mod step;
 mod tables;
 
 use crate::export::Export;
-use crate::export::writer::Writer;
 use crate::part::Precision;
+use crate::writer::Writer;
 use std::ops::Deref;
 
 /// An export as C99: the name and the text of the header, then of the source.

@@ -1,12 +1,10 @@
 //! A machine with its fitted parts and what was measured of them: all that a target needs.
 
-pub(crate) mod writer;
-
 use crate::fit::{FitError, FittedPart, fit};
 use crate::machine::{FunctionSampler, MachineDescription, PartKind};
 use crate::measure::{Measured, measure};
 use crate::part::{Column, Part, Precision};
-use writer::Writer;
+use crate::writer::Writer;
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]

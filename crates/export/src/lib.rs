@@ -62,6 +62,7 @@ mod measure;
 mod part;
 mod real;
 mod rust;
+mod writer;
 
 pub use c::c_files;
 pub use evaluator::{Evaluator, MotionTerms, ReactionTerms, State, Status};

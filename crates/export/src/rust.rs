@@ -6,9 +6,9 @@ mod source;
 
 use crate::describe::describe;
 use crate::export::Export;
-use crate::export::writer::Writer;
 use crate::identifiers::comment;
 use crate::part::Precision;
+use crate::writer::Writer;
 use std::fmt::Write as _;
 use std::ops::Deref;
 

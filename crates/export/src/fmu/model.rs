@@ -2,7 +2,7 @@
 
 use super::variables::{Role, Variable};
 use crate::export::Export;
-use crate::export::writer::Writer;
+use crate::writer::Writer;
 use std::fmt::Write as _;
 
 /// What does not depend on the machine.

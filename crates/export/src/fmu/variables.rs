@@ -1,7 +1,7 @@
 //! The variables of an FMU: names, units and where each is found in the C.
 
 use crate::export::Export;
-use crate::export::writer::Writer;
+use crate::writer::Writer;
 
 /// What a variable is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
