@@ -1,6 +1,6 @@
 //! `dwell export`: its options, and what they ask for.
 
-use crate::options::{Choices, choice, parse_finite, parse_table_accuracy};
+use crate::values::{Choices, choice, parse_finite, parse_table_accuracy};
 use clap::Args;
 use dwell_export::{FmiVersion, Precision, Request};
 use dwell_report::TableFormat;

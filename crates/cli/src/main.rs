@@ -16,6 +16,7 @@ mod options;
 mod simulation;
 mod times;
 mod validate;
+mod values;
 
 use clap::{CommandFactory as _, FromArgMatches as _};
 use dwell_findings::all_pass;

@@ -1,10 +1,10 @@
 //! A machine with its fitted parts and what was measured of them: all that a target needs.
 
+use crate::evaluator::scene_value;
 use crate::fit::{FitError, FittedPart, fit};
 use crate::machine::{FunctionSampler, MachineDescription, PartKind};
 use crate::measure::{Measured, measure};
 use crate::part::{Column, Part, Precision};
-use crate::writer::Writer;
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,21 +79,22 @@ impl Export {
                 return Some(names.collect::<Vec<_>>().join(", "));
             }
         }
-        let writer = Writer::new(self);
-        let constants = writer.parameters().into_iter();
-        let inputs = writer
-            .inputs()
-            .into_iter()
-            .map(|(_, name, value, _)| (name, value));
-        let all = constants
-            .map(|(name, value, _)| (name, value))
-            .chain(inputs);
-        let state = self
-            .machine
-            .initial
-            .map(|value| ("the initial state".to_owned(), value));
-        let mut large = all.chain(state).filter(|(_, value)| !fits(*value));
-        large.next().map(|(name, _)| name)
+        for load in &self.machine.loads {
+            let motor = load.effect.motor().map_or([0.0; 5], |m| {
+                [
+                    m.torque_constant,
+                    m.resistance,
+                    m.inductance,
+                    m.gear_ratio,
+                    m.rotor_inertia,
+                ]
+            });
+            if !fits(scene_value(&load.effect)) || !motor.into_iter().all(fits) {
+                return Some(load.name.clone());
+            }
+        }
+        let starts = self.machine.initial.into_iter().all(fits);
+        (!starts).then(|| "the initial state".to_owned())
     }
 
     /// Bytes of the constants.
