@@ -9,7 +9,7 @@ use dwell_scene::SpaceScene;
 
 /// Half the length of a hinge, in sizes of the picture; less where joints are closer, but no less than the second.
 const SYMBOL: f64 = 0.032;
-const MIN_SYMBOL: f64 = 0.013;
+const MIN_SYMBOL: f64 = 0.02;
 /// The same in distances of joints on one body.
 const SYMBOL_OF_DISTANCE: f64 = 0.28;
 /// Points of a body nearer than this, in sizes, are one.
@@ -91,7 +91,12 @@ impl<'a> SpaceDrawing<'a> {
 
     /// The smallest distance of two joints on a body; infinite without two.
     fn nearest_joints(&self, body: usize) -> f64 {
-        let points: Vec<Vec3> = self.joint_points(body).map(|(_, p)| p).collect();
+        let joints = self.scene.mechanism.joints.iter();
+        let points = joints.flat_map(|joint| {
+            let sides = (0..2).filter(|k| joint.bodies[*k].0 == body);
+            sides.map(|k| joint.sides[k].point)
+        });
+        let points: Vec<Vec3> = points.collect();
         let pairs = points
             .iter()
             .enumerate()
