@@ -74,6 +74,7 @@ bench:
     cargo bench -p dwell-kinetostatics --bench reduced --bench batches --bench table --bench kinds --bench variants
     cargo bench -p dwell-dynamics --bench motion
     cargo bench -p dwell-cli --bench wait
+    cargo bench -p dwell-study --bench export
 
 # Beside Exudyn, Pinocchio and MuJoCo: installs them into a scratch environment; reports/peers.md and .png
 [group('care')]

@@ -7,6 +7,7 @@ mod motions;
 mod random_loops;
 mod reference;
 mod scenes;
+mod simulate;
 mod tilted;
 
 use dwell_geometry::space::{

@@ -1,22 +1,100 @@
-//! `dwell export`: what its options ask for.
+//! `dwell export`: its options, and what they ask for.
 
-use crate::options::ExportArgs;
-use dwell_export::{Precision, Request};
-use dwell_scene::Scene;
-use dwell_study::{ExportRequest, Outcome, StudyError};
+use crate::options::{Choices, choice, parse_finite, parse_table_accuracy};
+use clap::Args;
+use dwell_export::{FmiVersion, Precision, Request};
+use dwell_report::TableFormat;
+use dwell_scene::{Scene, SpaceScene};
+use dwell_study::{ExportRequest, ExportTarget, Outcome, StudyError};
+use std::path::PathBuf;
+
+const EXPORT_TARGETS: Choices<ExportTarget> = &[
+    (
+        "c",
+        ExportTarget::C,
+        "C99: a header and a source that need no library",
+    ),
+    (
+        "rust",
+        ExportTarget::Rust,
+        "A crate without the standard library, allocation or unsafe code",
+    ),
+    (
+        "fmu",
+        ExportTarget::Fmu(FmiVersion::Three),
+        "An FMU of FMI 3.0, for model exchange and co-simulation",
+    ),
+    (
+        "fmu2",
+        ExportTarget::Fmu(FmiVersion::Two),
+        "The same of FMI 2.0",
+    ),
+    (
+        "matlab",
+        ExportTarget::Matlab,
+        "A MAT-file, and functions for MATLAB and Octave",
+    ),
+    (
+        "npz",
+        ExportTarget::Rows(TableFormat::Npz),
+        "The rows of `dwell reduce` as a NumPy archive",
+    ),
+    (
+        "csv",
+        ExportTarget::Rows(TableFormat::Csv),
+        "The same as text",
+    ),
+    (
+        "json",
+        ExportTarget::Json,
+        "The same as a list of name, unit and values of each column",
+    ),
+];
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportArgs {
+    /// The scene file, or `-` for standard input
+    pub(crate) scene: PathBuf,
+    /// The target
+    #[arg(long, value_parser = choice(EXPORT_TARGETS), value_name = "TARGET")]
+    pub(crate) to: ExportTarget,
+    /// Accuracy of every function, relative to its largest value (default: 1e-9, or 1e-6 with --float)
+    #[arg(long, value_parser = parse_table_accuracy, value_name = "ACCURACY", allow_hyphen_values = true)]
+    pub(crate) accuracy: Option<f64>,
+    /// Numbers of four bytes; an accuracy below 1e-6 buys nothing then
+    #[arg(long)]
+    pub(crate) float: bool,
+    /// Lower end of the coordinate, in the scene's unit (default: a full period, or the range without 2 % at each end)
+    #[arg(long, requires = "to_coordinate", value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
+    pub(crate) from: Option<f64>,
+    /// Upper end of the coordinate
+    #[arg(long = "until", id = "to_coordinate", requires = "from", value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
+    pub(crate) until: Option<f64>,
+}
 
 /// Exports a scene as its options say.
 pub(crate) fn run(arguments: &ExportArgs, scene: &Scene) -> Result<Outcome, StudyError> {
-    let precision = match arguments.float {
-        true => Precision::Float,
-        false => Precision::Double,
+    dwell_study::export(scene, arguments.to, &request(arguments))
+}
+
+/// Exports a scene in space as its options say.
+pub(crate) fn run_in_space(
+    arguments: &ExportArgs,
+    scene: &SpaceScene,
+) -> Result<Outcome, StudyError> {
+    dwell_study::export_in_space(scene, arguments.to, &request(arguments))
+}
+
+fn request(arguments: &ExportArgs) -> ExportRequest {
+    let (precision, accuracy) = match arguments.float {
+        true => (Precision::Float, 1e-6),
+        false => (Precision::Double, 1e-9),
     };
-    let asked = ExportRequest {
+    ExportRequest {
         request: Request {
-            accuracy: arguments.accuracy,
+            accuracy: arguments.accuracy.unwrap_or(accuracy),
             precision,
         },
         interval: arguments.from.zip(arguments.until),
-    };
-    dwell_study::export(scene, arguments.to, &asked)
+    }
 }

@@ -18,6 +18,7 @@ pub(crate) fn run_study(
             points,
             ..
         } => dwell_study::reduce_in_space(scene, points.map(|n| n as usize))?,
+        Command::Export(arguments) => crate::export::run_in_space(arguments, scene)?,
         Command::Kinematics(arguments) => {
             return run_trajectory(arguments, scene, Analysis::Kinematics, progress);
         }

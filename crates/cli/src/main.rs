@@ -22,9 +22,8 @@ use dwell_findings::all_pass;
 use dwell_report::{Files, OutputFolder, ReportError};
 use dwell_scene::{AnyScene, Scene, SceneError, SceneFile};
 use dwell_study::{
-    Analysis, CommandResult, MotionSolver, Outcome, ParameterSweep, PictureFormat, PictureSpan,
-    Pictures, Shard, SolverSettings, Step, StudyError, TableRequest, TrajectoryOutcome,
-    add_summary, no_progress,
+    Analysis, CommandResult, Outcome, ParameterSweep, PictureFormat, PictureSpan, Pictures, Shard,
+    SolverSettings, Step, StudyError, TableRequest, TrajectoryOutcome, add_summary, no_progress,
 };
 use dwell_validation::ValidationError;
 use indicatif::{ProgressBar, ProgressStyle};

@@ -1,12 +1,12 @@
 //! The command-line options: the names of fields are the names of options.
 
+use crate::export::ExportArgs;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use dwell_dynamics::Method;
-use dwell_export::FmiVersion;
 use dwell_report::TableFormat;
 use dwell_study::{
-    ExportTarget, FormulaFormat, Language, OperatingPoint, PictureFormat, Pictures, RowStore,
+    FormulaFormat, Language, OperatingPoint, PictureFormat, Pictures, RowStore,
     SampleInterpolation, Shard,
 };
 use std::path::{Path, PathBuf};
@@ -290,29 +290,8 @@ pub(crate) struct TrajectoryArgs {
     pub(crate) to: Option<f64>,
 }
 
-#[derive(Debug, Args)]
-pub(crate) struct ExportArgs {
-    /// The scene file, or `-` for standard input
-    pub(crate) scene: PathBuf,
-    /// The target
-    #[arg(long, value_parser = choice(EXPORT_TARGETS), value_name = "TARGET")]
-    pub(crate) to: ExportTarget,
-    /// Accuracy of every function, relative to its largest value
-    #[arg(long, default_value = "1e-9", value_parser = parse_table_accuracy, value_name = "ACCURACY", allow_hyphen_values = true)]
-    pub(crate) accuracy: f64,
-    /// Numbers of four bytes; an accuracy below 1e-6 buys nothing then
-    #[arg(long)]
-    pub(crate) float: bool,
-    /// Lower end of the coordinate, in the scene's unit (default: a full period, or the range without 2 % at each end)
-    #[arg(long, requires = "to_coordinate", value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
-    pub(crate) from: Option<f64>,
-    /// Upper end of the coordinate
-    #[arg(long = "until", id = "to_coordinate", requires = "from", value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
-    pub(crate) until: Option<f64>,
-}
-
 /// The values of an option: name, value, help.
-type Choices<T> = &'static [(&'static str, T, &'static str)];
+pub(crate) type Choices<T> = &'static [(&'static str, T, &'static str)];
 
 const METHODS: Choices<Method> = &[
     (
@@ -408,49 +387,6 @@ const FORMATS: Choices<FormulaFormat> = &[
     ),
 ];
 
-const EXPORT_TARGETS: Choices<ExportTarget> = &[
-    (
-        "c",
-        ExportTarget::C,
-        "C99: a header and a source that need no library",
-    ),
-    (
-        "rust",
-        ExportTarget::Rust,
-        "A crate without the standard library, allocation or unsafe code",
-    ),
-    (
-        "fmu",
-        ExportTarget::Fmu(FmiVersion::Three),
-        "An FMU of FMI 3.0, for model exchange and co-simulation",
-    ),
-    (
-        "fmu2",
-        ExportTarget::Fmu(FmiVersion::Two),
-        "The same of FMI 2.0",
-    ),
-    (
-        "matlab",
-        ExportTarget::Matlab,
-        "A MAT-file, and functions for MATLAB and Octave",
-    ),
-    (
-        "npz",
-        ExportTarget::Rows(TableFormat::Npz),
-        "The rows of `dwell reduce` as a NumPy archive",
-    ),
-    (
-        "csv",
-        ExportTarget::Rows(TableFormat::Csv),
-        "The same as text",
-    ),
-    (
-        "json",
-        ExportTarget::Json,
-        "The same as a list of name, unit and values of each column",
-    ),
-];
-
 const TABLE_FORMATS: Choices<TableFormat> = &[
     ("csv", TableFormat::Csv, "Text"),
     ("npz", TableFormat::Npz, "A NumPy archive"),
@@ -465,7 +401,9 @@ const ROW_STORES: Choices<RowStore> = &[
 const FORMER_VALUES: [(&str, &str); 1] = [("initial", "start")];
 
 /// The parser of an option that has one of these values.
-fn choice<T: Copy + Send + Sync>(choices: Choices<T>) -> impl TypedValueParser<Value = T> {
+pub(crate) fn choice<T: Copy + Send + Sync>(
+    choices: Choices<T>,
+) -> impl TypedValueParser<Value = T> {
     let value = |&(name, _, help): &(&'static str, T, &'static str)| {
         let former = FORMER_VALUES
             .iter()
@@ -508,7 +446,7 @@ fn parse_count(text: &str) -> Result<u64, String> {
         .map_err(|_| "expected a whole number, 0 or more".to_owned())
 }
 
-fn parse_finite(text: &str) -> Result<f64, String> {
+pub(crate) fn parse_finite(text: &str) -> Result<f64, String> {
     parse_checked(text, f64::is_finite, "not a finite number")
 }
 
@@ -540,7 +478,7 @@ fn parse_accuracy(text: &str) -> Result<f64, String> {
 }
 
 /// The accuracy of a table: double precision allows 1e-14, and above 1e-2 a table is useless.
-fn parse_table_accuracy(text: &str) -> Result<f64, String> {
+pub(crate) fn parse_table_accuracy(text: &str) -> Result<f64, String> {
     let message = "the accuracy of a table must be between 1e-14 and 1e-2";
     parse_checked(text, |v| (1e-14..=1e-2).contains(&v), message)
 }

@@ -43,6 +43,14 @@ pub enum Error {
         /// How many it needs.
         actuators: usize,
     },
+    /// A state that does not have one number for each state of the equation of motion.
+    #[error("{given} numbers given as a state, where the equation of motion has {states}")]
+    State {
+        /// How many numbers it has.
+        given: usize,
+        /// How many it needs.
+        states: usize,
+    },
     /// Two parts of one name in a section of a builder.
     #[error("`{name}` is given twice among the {section}")]
     GivenTwice {
@@ -80,6 +88,7 @@ impl Error {
             Self::Study(_)
             | Self::Unknown { .. }
             | Self::Count { .. }
+            | Self::State { .. }
             | Self::GivenTwice { .. }
             | Self::Table(_)
             | Self::OutOfTable { .. } => None,

@@ -37,8 +37,10 @@
 //! |---|---|
 //! | where are the bodies? | [`Mechanism::positions`], [`Mechanism::kinematics`] |
 //! | which forces does a motion need? | [`Mechanism::inverse_dynamics`] at one instant, [`Mechanism::kinetostatics`] along the prescribed motion |
+//! | the same without forces, or at rest | [`Mechanism::kinematics_along_motion`], [`Mechanism::statics_along_motion`] |
 //! | the equation of motion | [`Mechanism::reduced`]: m, ½m′, w, and a, b, c of each reaction; [`ReducedModel::table`] |
 //! | how does it move under its loads and drives? | [`Mechanism::simulate`], [`Mechanism::period`] |
+//! | the same by an integrator of one's own | [`Mechanism::equation_of_motion`] |
 //! | where does it rest, how does it vibrate? | [`Mechanism::equilibria`], [`Mechanism::linearise`] |
 //! | how steadily does it run, which flywheel does it need? | [`Mechanism::cycle`] |
 //! | what if its dimensions vary? | [`Sweep`] |
@@ -57,7 +59,9 @@
 //! More programs are in the folder `examples`: reactions of a four-bar, the single-dwell study, the flywheel of a press,
 //! equilibrium and eigenfrequencies, a tolerance study, and loads of one's own.
 
+mod batch;
 mod column_table;
+mod equation;
 mod error;
 mod machine;
 mod mechanism;
@@ -67,6 +71,7 @@ mod sweep;
 mod table;
 mod value;
 
+pub use batch::CoefficientBatch;
 /// An integration method; see [`Solver::method`].
 ///
 /// ```
@@ -89,6 +94,7 @@ pub use dwell_dynamics::Mode;
 /// # }
 /// ```
 pub use dwell_dynamics::Stability;
+pub use equation::EquationOfMotion;
 pub use error::Error;
 pub use machine::{Cycle, Equilibrium, StateSpace};
 pub use mechanism::Mechanism;

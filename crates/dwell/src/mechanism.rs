@@ -94,6 +94,34 @@ impl Mechanism {
         all.map(|r| mechanism.reaction_name(r)).collect()
     }
 
+    /// The bodies with their named points, in the order of the scene; the ground is among them.
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// assert_eq!(slider.points()[1], ("crank", vec!["A", "B"]));
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn points(&self) -> Vec<(&str, Vec<&str>)> {
+        let scene = self.scene.inner();
+        let bodies = scene.mechanism.bodies.iter().zip(&scene.points);
+        let named = bodies.map(|(body, points)| {
+            let points = points.iter().map(|(point, _)| point.as_str());
+            (body.name.as_str(), points.collect())
+        });
+        named.collect()
+    }
+
+    /// Where the actuators' coordinates are at assembly, rad or m.
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// assert_eq!(slider.start(), [0.0]);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn start(&self) -> Vec<f64> {
+        self.scene.inner().assembly.coordinates.clone()
+    }
+
     /// The limits of the only coordinate, rad or m, where it has limits: limit positions of the mechanism.
     ///
     /// ```

@@ -26,8 +26,43 @@ impl Mechanism {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn kinetostatics(&self) -> Result<MotionResults, Error> {
-        let (scene, analysis) = (self.scene.inner(), Analysis::Kinetostatics);
-        let computed = compute_trajectory(scene, analysis, None, &no_progress)?;
+        self.along_motion(Analysis::Kinetostatics)
+    }
+
+    /// Positions, velocities and accelerations along the prescribed motion or the coordinate sweep of the scene: every
+    /// column that `dwell kinematics` writes.
+    ///
+    /// # Errors
+    /// As [`Mechanism::kinetostatics`].
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// let motion = slider.kinematics_along_motion()?;
+    /// assert_eq!(motion.column("phi.velocity")?[0], 150.0);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn kinematics_along_motion(&self) -> Result<MotionResults, Error> {
+        self.along_motion(Analysis::Kinematics)
+    }
+
+    /// Actuator forces and reactions under the loads, at rest in every position of the prescribed motion or the coordinate
+    /// sweep: every column that `dwell statics` writes.
+    ///
+    /// # Errors
+    /// As [`Mechanism::kinetostatics`].
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// let held = slider.statics_along_motion()?;
+    /// assert_eq!(held.column("phi.actuator_force")?.len(), 361);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn statics_along_motion(&self) -> Result<MotionResults, Error> {
+        self.along_motion(Analysis::Statics)
+    }
+
+    fn along_motion(&self, analysis: Analysis) -> Result<MotionResults, Error> {
+        let computed = compute_trajectory(self.scene.inner(), analysis, None, &no_progress)?;
         Ok(MotionResults::new(computed))
     }
 

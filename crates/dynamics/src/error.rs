@@ -72,6 +72,9 @@ pub enum DynamicsError {
         /// Its value.
         value: f64,
     },
+    /// Its user has had enough: see [`interruption`](crate::interruption).
+    #[error("the computation was interrupted")]
+    Interrupted,
     /// The integrator produced a state that is not finite.
     #[error("the state is no longer finite after t = {t} s")]
     NotFinite {

@@ -56,6 +56,7 @@ pub mod error;
 pub mod flywheel;
 pub mod integrate;
 mod integration_parts;
+pub mod interruption;
 mod libration;
 pub mod machine;
 pub mod machine_ode;

@@ -3,6 +3,7 @@
 use crate::contact::{ContactEvent, ContactMode, ContactStep};
 use crate::contact_events::pass;
 use crate::error::Result;
+use crate::interruption;
 use crate::machine::{Machine, MachineState, MachineWorkspace, MovingModel};
 use crate::ode::{DualWorkspace, OdeState, OdeSystem};
 use crate::sliding::Sliding;
@@ -103,6 +104,7 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
     }
 
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
+        interruption::check()?;
         let state = self.machine.evaluate(t, y, &mut self.workspace)?;
         state.derivative(out);
         Ok(())

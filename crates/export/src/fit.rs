@@ -23,6 +23,12 @@ pub enum FitError<E> {
         /// Which.
         function: Function,
     },
+    /// A number is beyond single precision.
+    #[error("{name} is too large for single precision")]
+    TooLarge {
+        /// What it is of.
+        name: String,
+    },
     /// No number of cells reaches the accuracy.
     #[error("no cells of accuracy {accuracy:e}: {name} bends too much near {q}")]
     NotReached {
@@ -44,7 +50,7 @@ const KIND_FLOOR: f64 = 1e-3;
 /// A coefficient that a period changes by more than this part of its scale is not periodic.
 const PERIODICITY_TOLERANCE: f64 = 1e-9;
 /// Numbers of bins that are tried.
-const BINS: std::ops::RangeInclusive<u32> = 4..=15;
+const BINS: std::ops::RangeInclusive<u32> = 4..=13;
 /// Points of a cell at which its error is measured, the ends included.
 const CHECKS: usize = 3 * TERMS;
 /// Part of the accuracy that the errors at these points may reach.

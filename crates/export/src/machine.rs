@@ -25,7 +25,7 @@ pub struct MachineDescription {
     pub reactions: Vec<(String, &'static str)>,
     /// The points whose positions are exported.
     pub points: Vec<String>,
-    /// The size of each function, from which rounding is told.
+    /// What the functions come to, below which is rounding.
     pub sizes: ReferenceSizes,
     /// Sentences about what the scene has and the export has not.
     pub left_out: Vec<String>,

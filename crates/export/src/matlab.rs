@@ -65,29 +65,38 @@ fn data(export: &Export) -> Vec<u8> {
     file.add("accuracy", &row(vec![export.request.accuracy]));
     file.add("largest_error", &row(vec![export.measured.errors.max()]));
     for kind in PartKind::ALL {
-        let (part, name) = (&export.parts[kind as usize], part_name(kind));
-        // By column: its number in the cells, or zero and a constant.
-        let places = part.columns.iter().map(|(_, column)| match column {
-            Column::Tabulated(k) => (*k + 1) as f64,
-            Column::Constant(_) => 0.0,
-        });
-        let constants = part.columns.iter().map(|(_, column)| match column {
-            Column::Tabulated(_) => 0.0,
-            Column::Constant(value) => *value,
-        });
-        file.add(&format!("{name}_places"), &row(places.collect()));
-        file.add(&format!("{name}_constants"), &row(constants.collect()));
-        let index = part.index.iter().map(|&cell| f64::from(cell) + 1.0);
-        file.add(&format!("{name}_index"), &row(index.collect()));
-        file.add(
-            &format!("{name}_bins_per_unit"),
-            &row(vec![part.bins_per_unit]),
-        );
-        let cells = Matrix::Numbers {
-            columns: part.stride(),
-            values: part.cells.clone(),
-        };
-        file.add(&format!("{name}_cells"), &cells);
+        cells(export, kind, &mut file);
     }
     file.finish()
+}
+
+/// The cells of a part.
+fn cells(export: &Export, kind: PartKind, file: &mut MatFile) {
+    let row = |values: Vec<f64>| Matrix::Numbers {
+        columns: values.len(),
+        values,
+    };
+    let (part, name) = (&export.parts[kind as usize], part_name(kind));
+    // By column: its number in the cells, or zero and a constant.
+    let places = part.columns.iter().map(|(_, column)| match column {
+        Column::Tabulated(k) => (*k + 1) as f64,
+        Column::Constant(_) => 0.0,
+    });
+    let constants = part.columns.iter().map(|(_, column)| match column {
+        Column::Tabulated(_) => 0.0,
+        Column::Constant(value) => *value,
+    });
+    file.add(&format!("{name}_places"), &row(places.collect()));
+    file.add(&format!("{name}_constants"), &row(constants.collect()));
+    let index = part.index.iter().map(|&cell| f64::from(cell) + 1.0);
+    file.add(&format!("{name}_index"), &row(index.collect()));
+    file.add(
+        &format!("{name}_bins_per_unit"),
+        &row(vec![part.bins_per_unit]),
+    );
+    let cells = Matrix::Numbers {
+        columns: part.stride(),
+        values: part.cells.clone(),
+    };
+    file.add(&format!("{name}_cells"), &cells);
 }

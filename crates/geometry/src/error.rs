@@ -35,6 +35,14 @@ pub enum StructureError {
         /// Actuators among which they are.
         actuators: Vec<ActuatorId>,
     },
+    /// A gear pair in space that cannot be one.
+    #[error("the teeth of a gear pair cannot mesh: {reason}")]
+    Gear {
+        /// The gear pair.
+        joint: JointId,
+        /// Why.
+        reason: &'static str,
+    },
     /// A joint, an actuator or the ground refers to something that does not exist, or the assembly configuration does not
     /// fit the mechanism. No scene can cause this; a library caller can.
     #[error("the description of the mechanism is inconsistent: {reason}")]

@@ -82,6 +82,7 @@ fn main() {
         coefficients("Bricard linkage, a moment", (0.3, 2.5), &bricard),
         coefficients("crank-rocker, a force", FULL_REVOLUTION, &one_force),
     ]);
+    subjects.extend(stages_in_space(&rssr));
 
     let mut forces = vec![
         Subject::new(
@@ -278,6 +279,34 @@ fn stages(model: &ExactModel) -> [Subject<'_>; 4] {
         subject("  … and speeds", 2),
         subject("  … and accelerations", 3),
         subject("  … and multipliers, two runs", 4),
+    ]
+}
+
+/// The same of a mechanism in space.
+fn stages_in_space(model: &ExactModel<space::Model>) -> [Subject<'_>; 4] {
+    let plan = model.model().plan();
+    let subject = |name, count: usize| {
+        let (mut pose, mut forces) = (plan.pose(), plan.forces::<f64, 2>());
+        Subject::new(name, FULL_REVOLUTION, move |q| {
+            black_box(plan.positions(&[q], &mut pose).is_ok());
+            if count > 1 {
+                plan.velocities(&[1.0], &mut pose);
+            }
+            if count > 2 {
+                plan.accelerations(&[0.0], &mut pose);
+            }
+            if count > 3 {
+                plan.balance(&pose, &mut forces);
+                black_box(&forces);
+            }
+            black_box(&pose);
+        })
+    };
+    [
+        subject("  RSSR: of which positions", 1),
+        subject("  … and velocities", 2),
+        subject("  … and accelerations", 3),
+        subject("  … and forces, two passes", 4),
     ]
 }
 

@@ -90,7 +90,7 @@ pub trait ReducedModel: Sync {
 /// A mechanism whose two unit passes give the reduced coefficients, in the plane or in space.
 pub trait ReducibleModel: Sync + Sized {
     /// Working memory of one thread for passes in a kind of number.
-    type Workspace<T: Scalar>: std::fmt::Debug + Clone + Send;
+    type Workspace<T: Scalar>: Send;
 
     /// Such memory.
     fn pass_workspace<T: Scalar>(&self) -> Self::Workspace<T>;

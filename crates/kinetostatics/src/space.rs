@@ -33,6 +33,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod action;
+mod compiled_loads;
 mod load;
 mod machine;
 mod mass;

@@ -4,11 +4,11 @@
 use allocation_counter::measure;
 use dwell_geometry::{BodyId, Coordinate, vec2};
 use dwell_kinetostatics::{
-    ExactModel, FreeBodyForces, Load, LoadKind, Magnitude, Model, ReducedModel, ShakingForce,
-    Signal,
+    ExactModel, FreeBodyForces, Load, LoadKind, MachineModel as _, Magnitude, Model, ReducedModel,
+    ShakingForce, Signal, space,
 };
 use dwell_laws::{Expression, Law, Polynomial};
-use dwell_scene::Scene;
+use dwell_scene::{Scene, SpaceScene};
 use std::path::Path;
 
 /// The one scene here in which a prismatic joint carries a body.
@@ -164,4 +164,46 @@ fn an_allocation_would_be_counted() {
         model.inertia(0.0, &mut workspace).is_ok()
     });
     assert!(count > 0);
+}
+
+/// Loads in space at a state of motion, with a column of the mass matrix and the response to each load alone: what a machine needs.
+#[test]
+fn machines_in_space_allocate_nothing() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../validation/spatial/slider-crank-haug.toml"
+    );
+    let loads = r#"
+spring = { spring = ["ground.A", "slider.C"], stiffness = 31.0, free-length = 0.15 }
+coil = { torsion-spring = "A", stiffness = 0.7, free-angle = 0.4 }
+rub = { slide-damper = "D", damping = 1.5 }
+push = { slide-force = "D", magnitude = "3*sin(2*t) - 4*s" }
+[coordinates]
+s = { travel = "D" }
+"#;
+    let text = std::fs::read_to_string(path).expect("the file") + loads;
+    let scene = SpaceScene::parse("test.toml", &text).expect("a scene");
+    let model = space::Model::new(&scene.mechanism, &scene.masses, &scene.assembly, &[]);
+    let model = model
+        .expect("a model")
+        .with_loads(scene.loads)
+        .expect("they fit");
+    let (mut workspace, mut result) = (model.workspace(), model.result_buffer());
+    let mut other = model.result_buffer();
+    let spent = allocations("space", true, || {
+        let Ok(state) = model.kinematic_state(&[0.4], &[2.0], &mut workspace) else {
+            return false;
+        };
+        let state = state.apply_loads(0.5);
+        let state = state.and_then(|state| state.inverse_dynamics(&[1.0], &mut result));
+        let Ok(mut state) = state else { return false };
+        state.mass_matrix_column(0, &mut other);
+        let loads = 0..model.loads().len();
+        let responds = loads
+            .clone()
+            .all(|load| state.unit_load_response(load, &mut other).is_ok());
+        let power: f64 = loads.map(|load| state.load_power(load)).sum();
+        responds && power.is_finite() && state.kinetic_energy() > 0.0
+    });
+    assert_eq!(spent, 0);
 }

@@ -87,7 +87,8 @@ pub use {
     output::{CommandResult, Outcome, PictureFormat, Pictures, add_summary},
     reduce::output::reduce,
     space::{
-        PreparedSpaceScene, analyse_in_space, check_in_space, reduce_in_space, simulate_in_space,
+        PreparedSpaceScene, analyse_in_space, check_in_space, export_in_space, reduce_in_space,
+        simulate_in_space,
     },
     sweep::output::{ParameterSweep, RowStore, sweep},
     symbolic::output::{FormulaFormat, symbolic},

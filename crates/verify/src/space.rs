@@ -11,10 +11,12 @@
 //! ```text
 //! e·d = 0,    u·d = 0,    u·w = 0,    (d·d − L²)/2L = 0,    u·d − h θ = 0                                   (2)
 //! ```
+//!
+//! and, of gear pairs, velocities of the wheels at the pitch point.
 
 mod rows;
 
-pub use rows::closure_error;
+pub use rows::{closure_error, mesh_error};
 
 use crate::error::{DenseError, Result};
 use dwell_geometry::space::{ActuatorKind, BodyMotion, Joint, Mechanism, Placement, Vec3, Wrench};
@@ -216,17 +218,22 @@ impl Bodies<'_> {
     fn all_rows(&self) -> (Vec<Row>, Vec<std::ops::Range<usize>>) {
         let mut rows = Vec::new();
         let mut of_joint = Vec::new();
-        for joint in &self.mechanism.joints {
+        for (j, joint) in self.mechanism.joints.iter().enumerate() {
             let start = rows.len();
-            rows.extend(self.rows(joint));
+            // A driven distance holds nothing by itself.
+            let driven = ActuatorKind::Length(JointId(j));
+            if self.mechanism.actuators.iter().all(|a| a.kind != driven) {
+                rows.extend(self.rows(joint));
+            }
             of_joint.push(start..rows.len());
         }
         for actuator in &self.mechanism.actuators {
             let joint = &self.mechanism.joints[actuator.kind.joint().0];
-            let u = self.arm(joint.bodies[0].0, joint.sides[0].axis);
+            let u = self.arm(joint.side_body(0).0, joint.sides[0].axis);
             rows.push(match actuator.kind {
                 ActuatorKind::Angle(_) => self.angle(joint, u),
                 ActuatorKind::Travel(_) => self.in_plane(joint, u),
+                ActuatorKind::Length(_) => self.distance(joint),
             });
         }
         (rows, of_joint)
@@ -278,6 +285,7 @@ impl Bodies<'_> {
         required
     }
 
+    // Long because it has one arm for each kind of load.
     fn subtract_load(&self, kind: &LoadKind, f: f64, masses: &[Mass], required: &mut [Wrench]) {
         let turned = |body: usize, direction: Direction| match direction {
             Direction::Ground(u) => u,
@@ -426,7 +434,8 @@ impl Bodies<'_> {
                 wrench.force += system.on_second[i].force.scaled(multipliers[i]);
                 wrench.moment += system.on_second[i].moment.scaled(multipliers[i]);
             }
-            let arm = self.arm(joint.bodies[1].0, joint.sides[1].point);
+            let at = self.point(joint.side_body(1).0, joint.sides[1].point);
+            let arm = at - self.placements[joint.bodies[1].0].position;
             wrench.moment -= arm.cross(wrench.force);
             wrench
         };

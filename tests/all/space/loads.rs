@@ -3,8 +3,8 @@
 use dwell_dynamics::{CoordinateMode, Machine};
 use dwell_geometry::space::{Coordinate, Placement};
 use dwell_geometry::{BodyId, JointId};
+use dwell_kinetostatics::MachineModel;
 use dwell_kinetostatics::space::{Axes, Component, Model};
-use dwell_kinetostatics::{MachineModel, Magnitude};
 use dwell_scene::SpaceScene;
 use dwell_verify::space::DenseSpace;
 
@@ -17,7 +17,7 @@ coil = { torsion-spring = "A", stiffness = 0.7, free-angle = 0.4 }
 drag = { rotational-damper = "A", damping = "0.02 + 0.01*s^2" }
 push = { slide-force = "D", magnitude = "3*sin(2*t) - 4*s" }
 rub = { slide-damper = "D", damping = 1.5 }
-motor = { torque = "A", magnitude = "0.3 - 0.05*q.velocity" }
+motor = { joint-torque = "A", magnitude = "0.3 - 0.05*q.velocity" }
 follower = { force = "rod.C", direction = [0.6, 0, 0.8], frame = "body", magnitude = { table = [[-1, 2], [0, 3], [9, 1]], of = "d" } }
 between = { point-to-point-force = ["crank.B", "slider.D"], magnitude = 1.7 }
 twist = { torque = ["crank", "rod"], axis = [0, 0.6, 0.8], magnitude = 0.11 }
@@ -31,7 +31,7 @@ const ON_BRICARD: &str = r#"
 first = { torsion-spring = "P3", stiffness = 2.1, free-angle = 0.2 }
 second = { torsion-spring = "P1", stiffness = 1.3, free-angle = -0.1 }
 third = { rotational-damper = "P4", damping = 0.4 }
-fourth = { torque = "P2", magnitude = "0.3*x" }
+fourth = { joint-torque = "P2", magnitude = "0.3*x" }
 fifth = { torsion-spring = "P5", stiffness = 0.9, free-angle = 0.3 }
 [coordinates]
 x = { angle = "P3" }

@@ -1,246 +1,18 @@
-//! Random loops in space: one loop of any joints with one degree of freedom, or two, assembled around a pose; each is solved with all
+//! Random loops in space: one loop of any joints with one degree of freedom, or two, driven at a joint, by a length or through gears, assembled around a pose; each is solved with all
 //! truths of the dense equations, or refused as their singular values confirm.
 //!
 //! `DWELL_SEED` and `DWELL_LOOPS` choose others than the usual ones.
 
+mod assembled;
+
+use assembled::{Assembled, DrivenBy, Random};
 use dwell_geometry::space::{
-    Actuator, Assembly, Joint, JointKind, Mechanism, Placement, Plan, Rotation, Side, Vec3, vec3,
+    ActuatorKind, Assembly, Joint, JointKind, Mechanism, Placement, Plan, vec3,
 };
-use dwell_geometry::{AssemblyError, Body};
+use dwell_geometry::{AssemblyError, JointId};
 use dwell_kinetostatics::InverseDynamics;
-use dwell_kinetostatics::space::{Axes, Component, LoadKind, Mass, Model, ModelError, Reaction};
-use dwell_verify::space::{DenseSpace, closure_error};
-
-/// Pseudorandom numbers by the generator of Steele, Lea and Flood (SplitMix64).
-struct Random(u64);
-
-impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// From −1 to 1.
-    fn number(&mut self) -> f64 {
-        (self.bits() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn below(&mut self, count: usize) -> usize {
-        (self.bits() % count as u64) as usize
-    }
-
-    fn vector(&mut self) -> Vec3 {
-        vec3(self.number(), self.number(), self.number())
-    }
-
-    fn direction(&mut self) -> Vec3 {
-        loop {
-            let v = self.vector();
-            if v.norm() > 0.1 && v.norm() < 1.0 {
-                return v.unit().unwrap_or(v);
-            }
-        }
-    }
-
-    fn placement(&mut self) -> Placement {
-        Placement {
-            position: self.vector(),
-            rotation: Rotation::IDENTITY.turned_by(self.direction().scaled(3.0 * self.number())),
-        }
-    }
-
-    fn mass(&mut self) -> Mass {
-        // The tensor of six point masses.
-        let points: Vec<Vec3> = (0..6).map(|_| self.vector().scaled(0.3)).collect();
-        let center = points
-            .iter()
-            .fold(Vec3::ZERO, |a, b| a + *b)
-            .scaled(1.0 / 6.0);
-        let mut inertia = [0.0; 6];
-        for r in points.iter().map(|p| *p - center) {
-            let square = r.dot(r);
-            let part = [
-                square - r.x * r.x,
-                square - r.y * r.y,
-                square - r.z * r.z,
-                -r.x * r.y,
-                -r.x * r.z,
-                -r.y * r.z,
-            ];
-            for (sum, part) in inertia.iter_mut().zip(part) {
-                *sum += part / 6.0;
-            }
-        }
-        let mass = 1.5 + self.number();
-        Mass {
-            mass,
-            center,
-            inertia: inertia.map(|i| i * mass),
-        }
-    }
-
-    /// Kinds of joints with so many freedoms in sum; one screw at most.
-    fn kinds(&mut self, freedoms: usize) -> Vec<JointKind> {
-        let all = [
-            JointKind::Revolute,
-            JointKind::Prismatic,
-            JointKind::Cylindrical,
-            JointKind::Universal,
-            JointKind::Spherical,
-            JointKind::Planar,
-            JointKind::Helical { pitch: 0.2 },
-        ];
-        let mut found: Vec<JointKind> = Vec::new();
-        let mut left = freedoms;
-        while left > 0 {
-            let kind = all[self.below(all.len())];
-            let is_second_screw =
-                matches!(kind, JointKind::Helical { .. }) && found.contains(&kind);
-            if kind.freedoms() <= left && !is_second_screw {
-                left -= kind.freedoms();
-                found.push(kind);
-            }
-        }
-        found
-    }
-}
-
-/// A mechanism assembled at a pose.
-struct Assembled {
-    mechanism: Mechanism,
-    placements: Vec<Placement>,
-    masses: Vec<Mass>,
-    q: f64,
-}
-
-impl Assembled {
-    fn new(random: &mut Random, loops: usize) -> Self {
-        let mut made = Self {
-            mechanism: Mechanism {
-                bodies: vec![Body::named("ground")],
-                ground: 0,
-                joints: Vec::new(),
-                actuators: Vec::new(),
-            },
-            placements: vec![Placement::default()],
-            masses: vec![Mass::default()],
-            q: 0.0,
-        };
-        // One of the joints with an angle or a travel is driven; the loop has one freedom in all.
-        let driven = [
-            JointKind::Revolute,
-            JointKind::Prismatic,
-            JointKind::Cylindrical,
-        ][random.below(3)];
-        let mut kinds = vec![driven];
-        kinds.extend(random.kinds(7 - driven.freedoms()));
-        made.chain(random, &kinds, [0, 0]);
-        let travel = driven == JointKind::Prismatic;
-        made.mechanism.actuators = vec![if travel {
-            Actuator::travel("q", 0)
-        } else {
-            Actuator::angle("q", 0)
-        }];
-        for _ in 1..loops {
-            let kinds = random.kinds(6);
-            let from = 1 + random.below(made.mechanism.bodies.len() - 1);
-            let to = (from + 1 + random.below(made.mechanism.bodies.len() - 1))
-                % made.mechanism.bodies.len();
-            made.chain(random, &kinds, [from, to]);
-        }
-        made
-    }
-
-    /// Adds a chain of joints, with bodies between them, from one body to another.
-    fn chain(&mut self, random: &mut Random, kinds: &[JointKind], [from, to]: [usize; 2]) {
-        let mut last = from;
-        for (k, kind) in kinds.iter().enumerate() {
-            let next = if k + 1 == kinds.len() {
-                to
-            } else {
-                self.mechanism
-                    .bodies
-                    .push(Body::named(format!("body-{}", self.placements.len())));
-                self.placements.push(random.placement());
-                self.masses.push(random.mass());
-                self.placements.len() - 1
-            };
-            self.join(random, *kind, [last, next]);
-            last = next;
-        }
-    }
-
-    /// A joint between two bodies where they are.
-    fn join(&mut self, random: &mut Random, kind: JointKind, bodies: [usize; 2]) {
-        let (point, axis) = (random.vector(), random.direction());
-        let normal = axis
-            .cross(random.direction())
-            .unit()
-            .unwrap_or_else(|| axis.any_normal());
-        let (mut angle, mut along) = (2.0 * random.number(), 0.5 * random.number());
-        match kind {
-            JointKind::Prismatic | JointKind::Weld => angle = 0.0,
-            JointKind::Helical { pitch } => along = pitch * angle,
-            _ => {}
-        }
-        let slides = matches!(
-            kind,
-            JointKind::Prismatic | JointKind::Cylindrical | JointKind::Helical { .. }
-        );
-        let across = axis.cross(normal);
-        let moved = match kind {
-            JointKind::Planar => normal.scaled(along) + across.scaled(0.3 * random.number()),
-            _ if slides => axis.scaled(along),
-            _ => Vec3::ZERO,
-        };
-        let turned = normal.scaled(angle.cos()) + across.scaled(angle.sin());
-        let (second_axis, second_normal) = match kind {
-            JointKind::Universal => (turned, axis),
-            _ => (axis, turned),
-        };
-        if self.mechanism.joints.is_empty() {
-            self.q = if kind == JointKind::Prismatic {
-                along
-            } else {
-                angle
-            };
-        }
-        let side = |body: usize, point: Vec3, axis: Vec3, normal: Vec3| {
-            let Placement { position, rotation } = self.placements[body];
-            Side {
-                point: rotation.apply_inverse(point - position),
-                axis: rotation.apply_inverse(axis),
-                normal: rotation.apply_inverse(normal),
-            }
-        };
-        let sides = [
-            side(bodies[0], point, axis, normal),
-            side(bodies[1], point + moved, second_axis, second_normal),
-        ];
-        let name = format!("joint-{}", self.mechanism.joints.len());
-        self.mechanism
-            .joints
-            .push(Joint::new(name, bodies, kind, sides));
-    }
-
-    /// Every component of every joint in the axes of the ground.
-    fn reactions(&self) -> Vec<Reaction> {
-        let joints = 0..self.mechanism.joints.len();
-        let components = |j: usize| {
-            (0..6).map(move |k| Reaction {
-                joint: dwell_geometry::JointId(j),
-                component: match k {
-                    0..3 => Component::Force(Axes::Ground, k),
-                    _ => Component::Moment(Axes::Ground, k - 3),
-                },
-            })
-        };
-        joints.flat_map(components).collect()
-    }
-}
+use dwell_kinetostatics::space::{LoadKind, Model, ModelError};
+use dwell_verify::space::{DenseSpace, closure_error, mesh_error};
 
 /// What became of a mechanism.
 enum Verdict {
@@ -273,6 +45,9 @@ fn judge(made: &Assembled, random: &mut Random) -> Verdict {
             let driven = dense(&made.mechanism, &made.placements, [&[1.0], &[0.0]], &[]);
             let mut undriven = made.mechanism.clone();
             undriven.actuators.clear();
+            // Without its actuator a driven distance holds nothing.
+            let is_open = JointKind::Distance { length: 0.0 };
+            undriven.joints.retain(|j| j.kind != is_open);
             let undriven = dense(&undriven, &made.placements, [&[], &[]], &[]);
             let is_blocked = driven.redundant_count > undriven.redundant_count;
             let singular = driven.idle_freedoms > 0 || is_blocked;
@@ -305,14 +80,16 @@ fn judge(made: &Assembled, random: &mut Random) -> Verdict {
         let placements: Vec<Placement> = (0..made.placements.len())
             .map(|b| plan.placement(&pose, b))
             .collect();
-        let open = made
-            .mechanism
-            .joints
-            .iter()
-            .map(|j| closure_error(j, &placements))
+        let open = joints_at(&made.mechanism, q)
+            .map(|j| closure_error(&j, &placements))
             .fold(0.0, f64::max);
         if open > 1e-9 {
             return Verdict::Unconfirmed(format!("open by {open:.1e}"));
+        }
+        let slip = made.mechanism.joints.iter();
+        let slip = slip.filter_map(|j| mesh_error(j, [&made.placements, &placements]));
+        if slip.fold(0.0, |a: f64, b| a.max(b.abs())) > 1e-9 {
+            return Verdict::Unconfirmed("its teeth do not mesh".to_owned());
         }
         let determined = model.determined(&[q], &mut work).expect("a pose");
         for (rates, loads) in [
@@ -348,6 +125,18 @@ fn judge(made: &Assembled, random: &mut Random) -> Verdict {
     } else {
         Verdict::Unconfirmed("no pose".to_owned())
     }
+}
+
+/// The joints, the driven distance with its length.
+fn joints_at(mechanism: &Mechanism, q: f64) -> impl Iterator<Item = Joint> {
+    let driven = mechanism.actuators[0].kind;
+    let joints = mechanism.joints.iter().cloned().enumerate();
+    joints.map(move |(j, mut joint)| {
+        if driven == ActuatorKind::Length(JointId(j)) {
+            joint.kind = JointKind::Distance { length: q };
+        }
+        joint
+    })
 }
 
 /// What differs from the dense equations; amplified rounding near singular positions is allowed for.
@@ -433,7 +222,13 @@ fn random_loops_are_solved_or_refused_rightly() {
     for number in 0..count {
         let mut random = Random(seed.wrapping_mul(1_000_003).wrapping_add(number));
         let loops = if number % 5 == 4 { 2 } else { 1 };
-        let made = Assembled::new(&mut random, loops);
+        let driven_by = match number % 10 {
+            1 => DrivenBy::Length,
+            2 | 4 => DrivenBy::Gear,
+            7 => DrivenBy::ScrewOfScrews,
+            _ => DrivenBy::Joint,
+        };
+        let made = Assembled::new(&mut random, loops, driven_by);
         match judge(&made, &mut random) {
             Verdict::Solved => solved += 1,
             Verdict::Refused => refused += 1,
@@ -444,7 +239,10 @@ fn random_loops_are_solved_or_refused_rightly() {
                     .iter()
                     .map(|j| format!("{:?}", j.kind))
                     .collect();
-                others.push(format!("{number}: {why}: {}", kinds.join(" ")));
+                others.push(format!(
+                    "{number} {driven_by:?}: {why}: {}",
+                    kinds.join(" ")
+                ));
             }
         }
     }

@@ -66,6 +66,28 @@ impl Scene {
         &self.0.title
     }
 
+    /// Its text, with what [`with_value`](Self::with_value) changed.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// assert!(scene.text().contains("[bodies.crank]"));
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn text(&self) -> &str {
+        self.0.source.inner()
+    }
+
+    /// What it should change, though it is read: former names, and numbers that may not be meant.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// assert_eq!(scene.warnings().count(), 0);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn warnings(&self) -> impl Iterator<Item = &str> {
+        self.0.warnings.iter().map(|w| w.message.as_str())
+    }
+
     /// A number of the scene by its path, in the scene's own unit: `crank.mass`, `rod.points.C[0]`,
     /// `loads.brake.damping`.
     ///
@@ -94,6 +116,42 @@ impl Scene {
     /// ```
     pub fn with_value(&self, path: &str, value: f64) -> Result<Self, Error> {
         Ok(Self(Arc::new(self.0.with_value(path, value)?)))
+    }
+
+    /// What `dwell check` prints: degrees of freedom, range, groups, assembly modes, loads and requests.
+    ///
+    /// # Errors
+    /// [`Error::Study`] where the mechanism cannot be assembled.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// assert!(scene.describe()?.contains("phi rotates fully"));
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn describe(&self) -> Result<String, Error> {
+        Ok(dwell_study::describe_scene(&self.0)?)
+    }
+
+    /// The same scene with the magnitude of a load computed by a function of signals: `t` (s), coordinates (rad or m) and
+    /// velocities such as `phi.velocity`, in the order in which they are named.
+    ///
+    /// # Errors
+    /// [`Error::Study`] where there is no such load or signal.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let scene = scene.with_function("gas", &["phi"], |s| 400.0 * (1.0 + s[0].cos()))?;
+    /// # assert!(scene.assemble().is_ok());
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn with_function(
+        &self,
+        load: &str,
+        signals: &[&str],
+        function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static,
+    ) -> Result<Self, Error> {
+        let signals: Vec<String> = signals.iter().map(|&s| s.to_owned()).collect();
+        self.with_load_function(load, &signals, &MagnitudeFunction::new(function))
     }
 
     /// Assembles its mechanism.

@@ -164,7 +164,9 @@ fn hold<T: Scalar, M: MachineModel>(
     let is_held = |j: &usize| held.iter().any(|&i| contacts[i].dependent == *j);
     others.clear();
     others.extend((0..count).filter(|j| !is_held(j)));
-    let limit = |contact: &Contact<M::CoordinateFunction>| contact.static_coefficient.max(f64::MIN_POSITIVE);
+    let limit = |contact: &Contact<M::CoordinateFunction>| {
+        contact.static_coefficient.max(f64::MIN_POSITIVE)
+    };
     of.set_next_weights(contacts, |contact| T::from_f64(limit(contact)), workspace);
     std::mem::swap(&mut of.weights, &mut of.next_weights);
     let mut last = f64::INFINITY;

@@ -47,12 +47,12 @@ impl IndependentSet {
             }
             let root = left[best].sqrt();
             let first = columns.len();
-            for k in 0..n {
+            for (k, &own) in scale.iter().enumerate() {
                 let mut entry = 0.0;
-                if scale[k] > 0.0 {
+                if own > 0.0 {
                     let known = columns[..first].chunks_exact(n).map(|c| c[k] * c[best]);
                     let known: f64 = known.sum();
-                    entry = compliance(of[k], of[best]) / (scale[k] * scale[best]) - known;
+                    entry = compliance(of[k], of[best]) / (own * scale[best]) - known;
                 }
                 columns.push(entry / root);
             }

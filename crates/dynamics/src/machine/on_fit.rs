@@ -17,6 +17,42 @@ const REACTION_NODES: usize = 8;
 const REACTION_DEGREE: usize = 8;
 
 /// A model that moves: with what takes its place where a motion crosses a change point, if it can.
+///
+/// A machine in space is made as one in the plane:
+///
+/// ```
+/// use dwell_dynamics::{CoordinateMode, Machine, Orbit, ReducedState};
+/// use dwell_geometry::Body;
+/// use dwell_geometry::space::{Actuator, Assembly, Joint, JointKind, Mechanism, Side, vec3};
+/// use dwell_kinetostatics::Magnitude;
+/// use dwell_kinetostatics::space::{Load, LoadKind, Mass, Model};
+/// use std::f64::consts::{PI, TAU};
+///
+/// // Mach's pendulum: 1 kg at 1 m from an axis that is inclined by 60°, so that it swings as under g cos 60°.
+/// let (sin, cos) = (PI / 3.0).sin_cos();
+/// let lowest = vec3(sin, 0.0, -cos);
+/// let side = Side { axis: vec3(cos, 0.0, sin), normal: lowest, ..Side::default() };
+/// let mechanism = Mechanism {
+///     bodies: ["ground", "pendulum"].map(Body::named).into(),
+///     ground: 0,
+///     joints: vec![Joint::new("A", [0, 1], JointKind::Revolute, [side; 2])],
+///     actuators: vec![Actuator::angle("q", 0)],
+/// };
+/// let masses = [Mass::default(), Mass { mass: 1.0, center: lowest, inertia: [0.0; 6] }];
+/// let model = Model::new(&mechanism, &masses, &Assembly::at(&[0.0]), &[])?;
+/// let weight = Load {
+///     name: "weight".into(),
+///     kind: LoadKind::Gravity(vec3(0.0, 0.0, -1.0)),
+///     magnitude: Magnitude::Constant(9.81),
+/// };
+/// let machine = Machine::new(model, &[weight], vec![CoordinateMode::Free], &[])?;
+///
+/// let orbit = Orbit::loaded(&machine, ReducedState { t: 0.0, q: 0.01, q_dot: 0.0 })?;
+/// // T = 2π √(l / g cos α) (1 + q₀²/16 + …)
+/// let period = TAU / (9.81 * cos).sqrt() * (1.0 + 0.01 * 0.01 / 16.0);
+/// assert!((orbit.period / period - 1.0).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait MovingModel: MachineModel {
     /// The part of the coordinate on which a fit takes the place of the model.
     type FitWindow: Debug + Clone + PartialEq + Send + Sync;

@@ -42,8 +42,12 @@ struct List(Vec<Variable>);
 
 impl List {
     fn add(&mut self, name: &str, role: Role, unit: &str, meaning: &str, code: String) {
+        // Names of a scene may be those of FMI or of other parts.
+        let numbered = (2_usize..).map(|k| format!("{name}_{k}"));
+        let mut candidates = std::iter::once(name.to_owned()).chain(numbered);
+        let free = candidates.find(|one| self.0.iter().all(|other| other.name != *one));
         self.0.push(Variable {
-            name: name.to_owned(),
+            name: free.unwrap_or_default(),
             role,
             unit: unit.to_owned(),
             start: 0.0,

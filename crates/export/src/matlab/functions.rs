@@ -26,7 +26,7 @@ pub(super) fn evaluation(export: &Export, name: &str) -> String {
     match machine.domain.revolutions {
         0 => text += "q(~(q >= d.domain(1) & q <= d.domain(2))) = NaN;\n",
         _ => {
-            text += "q(~(abs(q) < 1e6 * d.domain(2))) = NaN;\nq = q - d.domain(2) * floor(q / d.domain(2));\n"
+            text += "q(~(abs(q) < 1e6 * d.domain(2))) = NaN;\nq = q - d.domain(2) * floor(q / d.domain(2));\n";
         }
     }
     _ = writeln!(
@@ -54,6 +54,16 @@ pub(super) fn evaluation(export: &Export, name: &str) -> String {
             next_column += 1;
         }
     }
+    other_parts(export, &mut text);
+    text += "end\n\n";
+    text += PLACE;
+    text += &POLYNOMIAL.replace("TERMS", &TERMS.to_string());
+    text
+}
+
+/// Reactions and positions.
+fn other_parts(export: &Export, text: &mut String) {
+    let machine = &export.machine;
     for (kind, part) in [
         (PartKind::Reactions, "reactions"),
         (PartKind::Positions, "positions"),
@@ -77,13 +87,9 @@ pub(super) fn evaluation(export: &Export, name: &str) -> String {
                     2 * reactions + 1
                 );
             }
-            PartKind::Motion | PartKind::Positions => text += "out.xy = values;\n",
+            PartKind::Motion | PartKind::Positions => *text += "out.xy = values;\n",
         }
     }
-    text += "end\n\n";
-    text += PLACE;
-    text += &POLYNOMIAL.replace("TERMS", &TERMS.to_string());
-    text
 }
 
 const PLACE: &str = "\

@@ -32,3 +32,17 @@ fn hostile_names_compile() {
     scratch.write(&rust_files(&export));
     super::rust::compile_library(&scratch.0);
 }
+
+/// Numbers that single precision does not have are refused, and named.
+#[test]
+fn what_is_too_large_for_floats_is_refused() {
+    let mut machine = machine(0.0);
+    machine.loads[3].effect = dwell_export::LoadEffect::Input { initial: 1e300 };
+    let request = dwell_export::Request {
+        accuracy: 1e-5,
+        precision: Precision::Float,
+    };
+    let mut sampler = super::machine::ClosedForms(machine.clone());
+    let error = dwell_export::Export::new(machine, request, &mut sampler).unwrap_err();
+    assert!(error.to_string().contains("load_brake"), "{error}");
+}

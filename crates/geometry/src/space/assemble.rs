@@ -28,15 +28,12 @@ const NEARLY_CLOSED: f64 = 0.05;
 
 impl Plan {
     /// The mechanism with everything in one group, not yet assembled.
-    pub(super) fn whole(mechanism: &Mechanism) -> Result<Self, StructureError> {
-        if let Some(reason) = mechanism.fault() {
-            return Err(StructureError::Malformed { reason });
-        }
-        let tree = Tree::find(mechanism)?;
+    pub(super) fn whole(mechanism: &Mechanism, in_tree: &[bool]) -> Result<Self, StructureError> {
+        let tree = Tree::find(mechanism, in_tree)?;
         let closures = closures(mechanism, &tree)?;
         let drivers = mechanism.actuators.iter().map(|a| tree.driven(a.kind));
         let Some(drivers) = drivers.collect::<Option<Vec<_>>>() else {
-            let reason = "the driven joints form a loop of their own";
+            let reason = "a driven joint is not in the tree";
             return Err(StructureError::Malformed { reason });
         };
         let joint_places = joint_places(mechanism.joints.len(), &tree, &closures);
@@ -103,8 +100,8 @@ impl Plan {
         let (coordinates, balls) = self.tree.approximate_coordinates(assembly);
         pose.coordinates = coordinates;
         pose.balls = balls;
-        for (&(freedom, sign), q) in self.drivers.iter().zip(&assembly.q) {
-            pose.coordinates[freedom] = sign * q;
+        for (driver, q) in self.drivers.iter().zip(&assembly.q) {
+            pose.coordinates[driver.freedom] = driver.factor * q;
         }
         self.evaluate_whole(&mut pose);
         let mut damping = 1e-3;

@@ -15,7 +15,7 @@ use super::vector::Vec3;
 use super::wrench::Wrench;
 use crate::error::StructureError;
 use crate::mechanism::JointId;
-use dwell_numerics::Scalar;
+use dwell_numerics::{Scalar, map_array};
 use std::ops::Range;
 
 /// What a row requires. Directions are in the internal frames of the bodies.
@@ -29,6 +29,11 @@ pub(super) enum RowKind {
     InPlane(Vec3),
     /// The points keep this distance, m.
     Length(f64),
+    /// The points have the distance that an actuator gives, the coordinate of this number.
+    Driven(usize),
+    /// The second body moves at the point as the first does along this direction of the carrier. Its residual is a sum over the freedoms
+    /// of its path, by [`Closure::ratios`].
+    Mesh(Vec3),
     /// The second body, between two balls, does not turn about their line.
     NoSpin(Vec3),
 }
@@ -36,7 +41,11 @@ pub(super) enum RowKind {
 impl RowKind {
     /// Whether its residual is a length, m, and not the cosine of an angle.
     pub(super) fn is_length(self) -> bool {
-        matches!(self, Self::Point(_) | Self::InPlane(_) | Self::Length(_))
+        match self {
+            Self::Point(_) | Self::InPlane(_) | Self::Length(_) => true,
+            Self::Driven(_) | Self::Mesh(_) => true,
+            Self::Parallel(..) | Self::NoSpin(_) => false,
+        }
     }
 }
 
@@ -46,7 +55,11 @@ pub(super) struct Closure {
     /// None for the row that holds an idle freedom.
     pub(super) joint: Option<JointId>,
     pub(super) bodies: [usize; 2],
+    /// The bodies in whose frames the points are: the same, or the carrier of a gear pair.
+    pub(super) on: [usize; 2],
     pub(super) points: [Vec3; 2],
+    /// Of a gear pair: the travel of the teeth for a unit of each freedom of its path, m.
+    pub(super) ratios: Vec<f64>,
     pub(super) kinds: Vec<RowKind>,
     /// Its rows among all.
     pub(super) rows: Range<usize>,
@@ -68,22 +81,31 @@ pub(super) struct RowValue<T> {
 /// All closures of a mechanism.
 ///
 /// # Errors
-/// [`StructureError::Malformed`] where a loop consists of screws alone.
+/// [`StructureError::Malformed`] where a screw closes a loop, which [lowering](super::lower) prevents.
 pub(super) fn closures(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Closure>, StructureError> {
     let (mut rows, mut entries) = (0, 0);
     let mut found = Vec::new();
     for &id in &tree.closures {
         let joint = &mechanism.joints[id.0];
         let bodies = joint.bodies.map(|b| b.0);
-        let side = |k: usize| joint.sides[k].in_frame(&tree.internal[bodies[k]]);
+        let on = [0, 1].map(|k| joint.side_body(k).0);
+        let side = |k: usize| joint.sides[k].in_frame(&tree.internal[on[k]]);
         let sides = [side(0), side(1)];
-        let Some(kinds) = rows_of(joint, &sides) else {
-            let reason =
-                "a loop consists of helical joints alone; replace one by a cylindrical joint";
+        let driven = tree.driven_lengths.iter().find(|(j, _)| *j == id);
+        let kinds = match driven {
+            Some((_, freedom)) => Some(vec![RowKind::Driven(*freedom)]),
+            None => rows_of(joint, &sides),
+        };
+        let Some(kinds) = kinds else {
+            let reason = "a screw closes a loop";
             return Err(StructureError::Malformed { reason });
         };
         let points = [sides[0].point, sides[1].point];
-        let closure = Closure::new(tree, Some(id), (bodies, points), kinds, [rows, entries]);
+        let mut closure = Closure::new(tree, Some(id), (bodies, points), kinds, [rows, entries]);
+        closure.on = on;
+        if let Some((_, freedom)) = driven {
+            closure.path.push((*freedom, 1.0));
+        }
         rows += closure.kinds.len();
         entries += closure.kinds.len() * closure.path.len();
         found.push(closure);
@@ -93,7 +115,7 @@ pub(super) fn closures(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Closure
 
 /// The rows of a joint; none of a helical one.
 fn rows_of(joint: &Joint, [a, b]: &[Side; 2]) -> Option<Vec<RowKind>> {
-    use RowKind::{InPlane, Length, Parallel, Point};
+    use RowKind::{InPlane, Length, Mesh, Parallel, Point};
     let across = a.axis.cross(a.normal);
     let points = || (0..3).map(Point);
     let parallel_axes = || [Parallel(a.normal, b.axis), Parallel(across, b.axis)].into_iter();
@@ -110,6 +132,7 @@ fn rows_of(joint: &Joint, [a, b]: &[Side; 2]) -> Option<Vec<RowKind>> {
             .chain(parallel_axes())
             .collect(),
         JointKind::Distance { length } => vec![Length(length)],
+        JointKind::Gear { .. } => vec![Mesh(a.axis)],
         JointKind::Helical { .. } => return None,
     })
 }
@@ -152,7 +175,9 @@ impl Closure {
         Self {
             joint,
             bodies,
+            on: bodies,
             points,
+            ratios: Vec::new(),
             rows: rows..rows + kinds.len(),
             kinds,
             path: links.iter().flat_map(freedoms).collect(),
@@ -161,10 +186,15 @@ impl Closure {
         }
     }
 
+    /// Whether it is a distance that an actuator gives.
+    pub(super) fn is_driven(&self) -> bool {
+        matches!(self.kinds[..], [RowKind::Driven(_)])
+    }
+
     /// The points of both bodies and their difference d.
     #[inline(always)]
     pub(super) fn ends<T: Scalar>(&self, frames: &[Frame<T>]) -> [Vec3<T>; 3] {
-        let [a, b] = [0, 1].map(|k| frames[self.bodies[k]].point(self.points[k]));
+        let [a, b] = map_array([0, 1], |k| frames[self.on[k]].point(self.points[k]));
         [a, b, b - a]
     }
 
@@ -174,13 +204,19 @@ impl Closure {
         &self,
         kind: RowKind,
         frames: &[Frame<T>],
+        coordinates: &[T],
         d: Vec3<T>,
     ) -> RowValue<T> {
-        let [a, b] = self.bodies.map(|body| &frames[body].rotation);
+        let [a, b] = map_array(self.bodies, |body| &frames[body].rotation);
         let zero = Vec3::zero();
         let of = |residual, force, moment| RowValue {
             residual,
             wrench: Wrench { force, moment },
+        };
+        let distance = |length| {
+            let distance = d.dot(d).sqrt();
+            let along = d.scaled(T::from_f64(1.0) / distance);
+            of(distance - length, along, zero)
         };
         match kind {
             RowKind::Point(k) => {
@@ -195,10 +231,15 @@ impl Closure {
                 let u = a.apply(u.cast());
                 of(u.dot(d), u, zero)
             }
-            RowKind::Length(length) => {
-                let distance = d.dot(d).sqrt();
-                let along = d.scaled(T::from_f64(1.0) / distance);
-                of(distance - T::from_f64(length), along, zero)
+            RowKind::Length(length) => distance(T::from_f64(length)),
+            RowKind::Driven(freedom) => distance(coordinates[freedom]),
+            RowKind::Mesh(n) => {
+                let path = self.path.iter().zip(&self.ratios);
+                let travel = path.fold(T::from_f64(0.0), |sum, ((freedom, _), ratio)| {
+                    sum + coordinates[*freedom] * T::from_f64(*ratio)
+                });
+                let n = frames[self.on[0]].rotation.apply(n.cast());
+                of(travel, n, zero)
             }
             RowKind::NoSpin(e) => of(T::from_f64(0.0), zero, b.apply(e.cast())),
         }
@@ -211,8 +252,8 @@ impl Closure {
         frames: &[Frame<T>],
         states: &[BodyMotion<T>],
     ) -> [Vec3<T>; 3] {
-        let [a, b] = [0, 1].map(|k| {
-            let (frame, state) = (&frames[self.bodies[k]], &states[self.bodies[k]]);
+        let [a, b] = map_array([0, 1], |k| {
+            let (frame, state) = (&frames[self.on[k]], &states[self.on[k]]);
             let arm = frame.rotation.apply(self.points[k].cast());
             let (first, second) = state.direction_derivatives(arm);
             [
@@ -250,7 +291,9 @@ impl Closure {
                 let (u, u1, u2) = direction(a, u);
                 u2.dot(d) + twice * u1.dot(d1) + u.dot(d2)
             }
-            RowKind::Length(_) => {
+            // What the teeth travel is linear in the freedoms.
+            RowKind::Mesh(_) => T::from_f64(0.0),
+            RowKind::Length(_) | RowKind::Driven(_) => {
                 let inverse = T::from_f64(1.0) / d.dot(d).sqrt();
                 let along = d.dot(d1) * inverse;
                 (d1.dot(d1) + d.dot(d2) - along * along) * inverse
@@ -277,8 +320,16 @@ impl Closure {
             frames[self.bodies[k]].rotation.apply(side.axis)
         };
         match joint.kind {
-            JointKind::Universal | JointKind::Spherical | JointKind::Distance { .. } => false,
-            _ => axis(0).dot(axis(1)) < 0.0,
+            JointKind::Universal
+            | JointKind::Spherical
+            | JointKind::Distance { .. }
+            | JointKind::Gear { .. } => false,
+            JointKind::Weld
+            | JointKind::Revolute
+            | JointKind::Prismatic
+            | JointKind::Cylindrical
+            | JointKind::Helical { .. }
+            | JointKind::Planar => axis(0).dot(axis(1)) < 0.0,
         }
     }
 }

@@ -12,7 +12,7 @@
 //! range.
 
 use super::frames::BodyMotion;
-use super::mechanism::{ActuatorKind, JointKind, Mechanism};
+use super::mechanism::{ActuatorKind, Joint, JointKind, Mechanism};
 use super::plan::{Plan, Pose};
 use super::vector::{Rotation, Vec3};
 use crate::mechanism::{BodyId, JointId};
@@ -42,11 +42,16 @@ impl Coordinate {
     }
 }
 
-impl From<ActuatorKind> for Coordinate {
-    fn from(kind: ActuatorKind) -> Self {
-        match kind {
-            ActuatorKind::Angle(joint) => Self::Angle(joint),
-            ActuatorKind::Travel(joint) => Self::Travel(joint),
+impl ActuatorKind {
+    /// The coordinate that it drives, of this joint.
+    pub fn coordinate(self, joint: &Joint) -> Coordinate {
+        match self {
+            Self::Angle(id) => Coordinate::Angle(id),
+            Self::Travel(id) => Coordinate::Travel(id),
+            Self::Length(_) => Coordinate::Distance {
+                bodies: joint.bodies,
+                points: joint.sides.map(|side| side.point),
+            },
         }
     }
 }
@@ -113,7 +118,8 @@ fn has(kind: JointKind) -> [bool; 2] {
         | JointKind::Universal
         | JointKind::Spherical
         | JointKind::Planar
-        | JointKind::Distance { .. } => [false; 2],
+        | JointKind::Distance { .. }
+        | JointKind::Gear { .. } => [false; 2],
     }
 }
 
@@ -166,8 +172,8 @@ impl Plan {
 
     /// How the revolutions of a joint are counted.
     fn counting(&self, joint: JointId) -> Result<Counting, &'static str> {
-        if let Some((freedom, sign)) = self.tree.driven(ActuatorKind::Angle(joint)) {
-            return Ok(Counting::Freedom(freedom, sign));
+        if let Some(driver) = self.tree.driven(ActuatorKind::Angle(joint)) {
+            return Ok(Counting::Freedom(driver.freedom, driver.factor));
         }
         let stored = self.closure_angles.iter().position(|s| s.joint == joint);
         stored.map(Counting::Stored).ok_or(
@@ -182,8 +188,8 @@ impl Plan {
         };
         let mut pose = self.pose::<f64>();
         let at = |q: f64, pose: &mut Pose| {
-            if let Some(piece) = self.predictions.at(q) {
-                self.predictions.predict(piece, q, pose);
+            if let Some(at) = self.predictions.at(q) {
+                self.predictions.predict(at, pose);
             }
             self.close(&[q], None, pose).is_ok()
         };
@@ -255,8 +261,8 @@ impl Plan {
     #[inline(always)]
     fn first_coordinate<T: Scalar>(&self, pose: &Pose<T>) -> f64 {
         let driver = self.drivers.first();
-        driver.map_or(0.0, |&(freedom, sign)| {
-            pose.coordinates[freedom].value() * sign
+        driver.map_or(0.0, |driver| {
+            pose.coordinates[driver.freedom].value() / driver.factor
         })
     }
 
@@ -272,7 +278,7 @@ impl Plan {
         match counting {
             Counting::Freedom(freedom, sign) => {
                 let value = pose.coordinates[freedom] * T::from_f64(sign);
-                if self.drivers.iter().any(|(driver, _)| *driver == freedom) {
+                if self.drivers.iter().any(|driver| driver.freedom == freedom) {
                     return value;
                 }
                 let gain = self.freedom_gains.get(freedom).copied().unwrap_or(0.0);

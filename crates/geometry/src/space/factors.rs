@@ -10,7 +10,9 @@ impl Plan {
     pub(super) fn factor<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) -> FactorOutcome {
         let (m, n) = (group.rows.len(), group.unknowns.len());
         let matrix = &mut pose.factors[group.factors..][..m * n];
-        matrix.fill(T::from_f64(0.0));
+        for zero in &group.zeros {
+            matrix[*zero] = T::from_f64(0.0);
+        }
         for inner in &group.inner {
             matrix[inner.at] = pose.entries[inner.entry] * T::from_f64(inner.scale);
         }

@@ -24,8 +24,9 @@ pub(super) struct Node {
     pub(super) inverses: Vec<f64>,
 }
 
-/// Steps of one revolution, or of the size of the mechanism.
-const STEPS: f64 = 256.0;
+/// Steps of one revolution, or of the size of the mechanism: what a prediction of degree five misses between two of them is
+/// rounding.
+const STEPS: f64 = 1024.0;
 /// A step is halved where the prediction misses by more, rad or parts of the size.
 const MISS: f64 = 2e-3;
 /// A step this small, relative to the first, ends the range.
@@ -237,7 +238,7 @@ impl Plan {
 
     /// How far a pose is from its prediction.
     fn missed_by(&self, (coordinates, balls): &(Vec<f64>, Vec<Rotation>), pose: &Pose) -> f64 {
-        let driven = |f: usize| self.drivers.iter().any(|(d, _)| *d == f);
+        let driven = |f: usize| self.drivers.iter().any(|d| d.freedom == f);
         let ball = |f: usize| self.tree.freedoms[f] == FreedomKind::BallTurn;
         let scalar = (0..coordinates.len()).filter(|f| !driven(*f) && !ball(*f));
         let scalar = scalar.map(|f| (coordinates[f] - pose.coordinates[f]).abs() / self.unit(f));

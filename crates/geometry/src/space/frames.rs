@@ -72,6 +72,7 @@ impl<T: Scalar> Screw<T> {
         let (linear, angular) = match kind {
             FreedomKind::Turn | FreedomKind::BallTurn => (turned(), axis),
             FreedomKind::Slide => (axis, Vec3::zero()),
+            FreedomKind::Length => (Vec3::zero(), Vec3::zero()),
             FreedomKind::Screw(pitch) => (turned() + axis.scaled(T::from_f64(pitch)), axis),
         };
         Twist { linear, angular }
@@ -204,6 +205,7 @@ impl Link {
                     state.angular_velocity += along;
                 }
                 FreedomKind::BallTurn => state.angular_velocity += along,
+                FreedomKind::Length => {}
             }
         }
         state
@@ -233,6 +235,7 @@ impl Link {
                     added[1] += along;
                 }
                 FreedomKind::Turn | FreedomKind::BallTurn => added[1] += along,
+                FreedomKind::Length => {}
             }
         }
         added

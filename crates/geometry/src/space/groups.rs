@@ -42,6 +42,8 @@ pub(super) struct Group {
     /// Links with a ball among the unknowns, and the position of its first freedom among them.
     pub(super) balls: Vec<(usize, usize)>,
     pub(super) inner: Vec<Inner>,
+    /// Where the matrix has no entry.
+    pub(super) zeros: Vec<usize>,
     pub(super) outer: Vec<Outer>,
     pub(super) row_scales: Vec<f64>,
     pub(super) column_scales: Vec<f64>,
@@ -62,7 +64,7 @@ impl Plan {
     /// The unit in which a freedom is measured: the size of the mechanism for translations.
     pub(super) fn unit(&self, freedom: usize) -> f64 {
         match self.tree.freedoms[freedom] {
-            FreedomKind::Slide => self.size,
+            FreedomKind::Slide | FreedomKind::Length => self.size,
             FreedomKind::Turn | FreedomKind::Screw(_) | FreedomKind::BallTurn => 1.0,
         }
     }
@@ -78,7 +80,7 @@ impl Plan {
 
     /// The freedoms that no actuator drives.
     pub(super) fn unknowns(&self) -> Vec<usize> {
-        let driven = |f: &usize| self.drivers.iter().any(|(d, _)| d == f);
+        let driven = |f: &usize| self.drivers.iter().any(|d| d.freedom == *f);
         (0..self.tree.freedoms.len())
             .filter(|f| !driven(f))
             .collect()
@@ -127,6 +129,8 @@ impl Plan {
                 }
             }
         }
+        let is_zero = |at: &usize| group.inner.iter().all(|inner| inner.at != *at);
+        group.zeros = (0..rows.len() * n).filter(is_zero).collect();
         for (l, link) in self.tree.links.iter().enumerate() {
             for step in &link.steps {
                 if let Step::Ball(_, first) = *step

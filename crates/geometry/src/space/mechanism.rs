@@ -29,7 +29,8 @@ pub struct Joint {
     pub sides: [Side; 2],
 }
 
-/// A joint on one of its bodies: its point (m) and two directions at right angles, unit vectors, in the frame of the body.
+/// A joint on one of its bodies: its point (m) and two directions at right angles, unit vectors, in the frame of the body; of a gear
+/// pair in that of the carrier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Side {
     /// The joint's point.
@@ -75,8 +76,21 @@ pub enum JointKind {
     Planar,
     /// A massless rod with balls at its ends.
     Distance {
-        /// Its length, m.
+        /// Its length, m; without meaning where an actuator drives it.
         length: f64,
+    },
+    /// The teeth of two wheels, or of a rack and a wheel, that touch at a pitch point of a third body, the carrier: there
+    /// the wheels have the same velocity along the normal n of the teeth,
+    ///
+    /// ```text
+    /// n·(v₂ − v₁) = 0,     with both sides of the joint, point and axis n, in the frame of the carrier
+    /// ```
+    ///
+    /// Each wheel turns about, or slides along, one line of the carrier. The teeth mesh so that all joint angles and travels
+    /// between the wheels are zero together.
+    Gear {
+        /// The body in which the pitch point and the normal are fixed.
+        carrier: BodyId,
     },
 }
 
@@ -88,12 +102,20 @@ impl JointKind {
             Self::Revolute | Self::Prismatic | Self::Helical { .. } => 1,
             Self::Cylindrical | Self::Universal => 2,
             Self::Spherical | Self::Planar => 3,
-            Self::Distance { .. } => 5,
+            Self::Distance { .. } | Self::Gear { .. } => 5,
         }
     }
 }
 
 impl Joint {
+    /// The body in whose frame a side is given.
+    pub fn side_body(&self, side: usize) -> BodyId {
+        if let JointKind::Gear { carrier } = self.kind {
+            return carrier;
+        }
+        self.bodies[side]
+    }
+
     /// A joint between two bodies, by their numbers. Directions become unit vectors, and the normal the part of it at right
     /// angles to the axis; where that is nothing, any. A direction of no length stays, and compiling refuses it.
     pub fn new(
@@ -141,15 +163,27 @@ pub struct Actuator {
 pub enum ActuatorKind {
     /// The angle of a revolute, cylindrical or helical joint, from the first body's normal to the second's about the axis, rad.
     Angle(JointId),
-    /// The travel of a prismatic or cylindrical joint, along the axis from the first point to the second, m.
+    /// The travel of a prismatic, cylindrical or helical joint, along the axis from the first point to the second, m.
     Travel(JointId),
+    /// The length of a distance, m.
+    Length(JointId),
 }
 
 impl ActuatorKind {
     /// The joint that is driven.
     pub fn joint(self) -> JointId {
         match self {
-            Self::Angle(joint) | Self::Travel(joint) => joint,
+            Self::Angle(joint) | Self::Travel(joint) | Self::Length(joint) => joint,
+        }
+    }
+
+    /// Whether joints of a kind have such a coordinate.
+    pub fn is_of(self, kind: JointKind) -> bool {
+        use JointKind::{Cylindrical, Distance, Helical, Prismatic, Revolute};
+        match self {
+            Self::Angle(_) => matches!(kind, Revolute | Cylindrical | Helical { .. }),
+            Self::Travel(_) => matches!(kind, Prismatic | Cylindrical | Helical { .. }),
+            Self::Length(_) => matches!(kind, Distance { .. }),
         }
     }
 }
@@ -168,6 +202,14 @@ impl Actuator {
         Self {
             name: name.into(),
             kind: ActuatorKind::Travel(JointId(joint)),
+        }
+    }
+
+    /// The length of a distance, by the number of the joint.
+    pub fn length(name: impl Into<String>, joint: usize) -> Self {
+        Self {
+            name: name.into(),
+            kind: ActuatorKind::Length(JointId(joint)),
         }
     }
 }
@@ -212,7 +254,8 @@ impl Mechanism {
         let mut boxes = vec![[Vec3::ZERO; 2]; self.bodies.len()];
         let mut seen = vec![false; self.bodies.len()];
         for joint in &self.joints {
-            for (body, side) in joint.bodies.iter().zip(&joint.sides) {
+            for (k, side) in joint.sides.iter().enumerate() {
+                let body = joint.side_body(k);
                 let Some([low, high]) = boxes.get_mut(body.0) else {
                     continue;
                 };
@@ -239,60 +282,73 @@ impl Mechanism {
         if size > 0.0 { size } else { 1.0 }
     }
 
+    /// Whether an actuator drives a joint.
+    pub(super) fn is_driven(&self, joint: JointId) -> bool {
+        self.actuators.iter().any(|a| a.kind.joint() == joint)
+    }
+
+    /// What is inconsistent in the description of a joint.
+    fn joint_fault(&self, j: usize, joint: &Joint) -> Option<&'static str> {
+        if joint.bodies.iter().any(|b| b.0 >= self.bodies.len()) {
+            return Some("a joint refers to a body that does not exist");
+        }
+        if joint.bodies[0] == joint.bodies[1] {
+            return Some("a joint connects a body with itself");
+        }
+        if let JointKind::Gear { carrier } = joint.kind
+            && (carrier.0 >= self.bodies.len() || joint.bodies.contains(&carrier))
+        {
+            return Some("the carrier of a gear pair is not a third body");
+        }
+        let finite = |s: &Side| s.point.is_finite() && s.axis.is_finite() && s.normal.is_finite();
+        let number = match joint.kind {
+            JointKind::Helical { pitch } => pitch.is_finite(),
+            JointKind::Distance { length } => {
+                self.is_driven(JointId(j)) || length.is_finite() && length > 0.0
+            }
+            _ => true,
+        };
+        let square = |s: &Side| {
+            let off = [
+                s.axis.norm() - 1.0,
+                s.normal.norm() - 1.0,
+                s.axis.dot(s.normal),
+            ];
+            off.iter().all(|o| o.abs() < 1e-9)
+        };
+        if !joint.sides.iter().all(square) {
+            return Some("a joint's axis and normal are not unit vectors at right angles");
+        }
+        if !(joint.sides.iter().all(finite) && number) {
+            return Some(
+                "a joint has a number that is not finite, or a length that is not positive",
+            );
+        }
+        None
+    }
+
     /// What is inconsistent in the description, if anything.
     pub(super) fn fault(&self) -> Option<&'static str> {
         if self.ground >= self.bodies.len() {
             return Some("there is no ground");
         }
-        for joint in &self.joints {
-            if joint.bodies.iter().any(|b| b.0 >= self.bodies.len()) {
-                return Some("a joint refers to a body that does not exist");
-            }
-            if joint.bodies[0] == joint.bodies[1] {
-                return Some("a joint connects a body with itself");
-            }
-            let finite =
-                |s: &Side| s.point.is_finite() && s.axis.is_finite() && s.normal.is_finite();
-            let number = match joint.kind {
-                JointKind::Helical { pitch } => pitch.is_finite(),
-                JointKind::Distance { length } => length.is_finite() && length > 0.0,
-                _ => true,
-            };
-            let square = |s: &Side| {
-                let off = [
-                    s.axis.norm() - 1.0,
-                    s.normal.norm() - 1.0,
-                    s.axis.dot(s.normal),
-                ];
-                off.iter().all(|o| o.abs() < 1e-9)
-            };
-            if !joint.sides.iter().all(square) {
-                return Some("a joint's axis and normal are not unit vectors at right angles");
-            }
-            if !(joint.sides.iter().all(finite) && number) {
-                return Some(
-                    "a joint has a number that is not finite, or a length that is not positive",
-                );
-            }
+        let mut joints = self.joints.iter().enumerate();
+        if let Some(fault) = joints.find_map(|(j, joint)| self.joint_fault(j, joint)) {
+            return Some(fault);
         }
-        let drives =
-            |a: &Actuator| match (a.kind, self.joints.get(a.kind.joint().0).map(|j| j.kind)) {
-                (ActuatorKind::Angle(_), Some(kind)) => {
-                    matches!(
-                        kind,
-                        JointKind::Revolute | JointKind::Cylindrical | JointKind::Helical { .. }
-                    )
-                }
-                (ActuatorKind::Travel(_), Some(kind)) => {
-                    matches!(kind, JointKind::Prismatic | JointKind::Cylindrical)
-                }
-                (_, None) => false,
-            };
-        let driven_twice = |i: usize| {
-            self.actuators[..i]
-                .iter()
-                .any(|a| a.kind == self.actuators[i].kind)
+        let drives = |a: &Actuator| {
+            let joint = self.joints.get(a.kind.joint().0);
+            joint.is_some_and(|joint| a.kind.is_of(joint.kind))
         };
+        // Of a screw the travel is the angle.
+        let coordinate = |i: usize| {
+            let kind = self.actuators[i].kind;
+            match self.joints[kind.joint().0].kind {
+                JointKind::Helical { .. } => ActuatorKind::Angle(kind.joint()),
+                _ => kind,
+            }
+        };
+        let driven_twice = |i: usize| (0..i).any(|k| coordinate(k) == coordinate(i));
         if !self.actuators.iter().all(drives) {
             return Some("an actuator drives a joint that has no such coordinate");
         }

@@ -10,8 +10,8 @@ impl Plan {
     /// The velocities of all freedoms and bodies at those of the actuators, rad/s or m/s. The accelerations of the bodies become
     /// those at zero accelerations of the freedoms.
     pub fn velocities<T: Scalar>(&self, q_dot: &[T], pose: &mut Pose<T>) {
-        for (&(freedom, sign), &rate) in self.drivers.iter().zip(q_dot) {
-            pose.rates[freedom] = rate * T::from_f64(sign);
+        for (driver, &rate) in self.drivers.iter().zip(q_dot) {
+            pose.rates[driver.freedom] = rate * T::from_f64(driver.factor);
         }
         for group in &self.groups {
             self.carry_known(
@@ -33,8 +33,8 @@ impl Plan {
             self.fill_states(pose);
             pose.has_no_acceleration = false;
         }
-        for (&(freedom, sign), &acceleration) in self.drivers.iter().zip(q_ddot) {
-            pose.accelerations[freedom] = acceleration * T::from_f64(sign);
+        for (driver, &acceleration) in self.drivers.iter().zip(q_ddot) {
+            pose.accelerations[driver.freedom] = acceleration * T::from_f64(driver.factor);
         }
         for group in &self.groups {
             let (mut last, mut points) = (usize::MAX, [Vec3::zero(); 3]);

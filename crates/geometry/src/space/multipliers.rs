@@ -1,10 +1,9 @@
 //! Multipliers of the loops by the transposed factors, group by group in reverse order, and the forces and moments in the joints.
 
 use super::plan::{JointPlace, Plan, Pose};
-use super::tree::FreedomKind;
 use super::wrench::Wrench;
 use crate::mechanism::JointId;
-use dwell_numerics::Scalar;
+use dwell_numerics::{Scalar, map_array};
 
 /// The forces of `N` passes at one pose, for one thread.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,6 +41,9 @@ impl Plan {
     #[inline(always)]
     pub fn balance<T: Scalar, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
         self.carry_down(pose, forces);
+        for (_, freedom) in &self.tree.driven_lengths {
+            forces.balance[*freedom] = [T::from_f64(0.0); N];
+        }
         for link in &self.tree.links {
             let wrenches = &forces.transmitted[link.body];
             let at = pose.frames[link.body].origin;
@@ -132,8 +134,9 @@ impl Plan {
         forces: &Forces<T, N>,
         actuator: usize,
     ) -> [T; N] {
-        let (freedom, sign) = self.drivers[actuator];
-        forces.balance[freedom].map(|action| action * T::from_f64(sign))
+        let driver = self.drivers[actuator];
+        let factor = T::from_f64(driver.factor);
+        map_array(forces.balance[driver.freedom], |action| action * factor)
     }
 
     /// What a link transmits to its body, about the origin of that body's frame, with the actions of its actuators.
@@ -169,23 +172,26 @@ impl Plan {
         joint: JointId,
     ) -> [Wrench<T>; N] {
         let index = match self.joint_places[joint.0] {
+            // A driven distance transmits the actuator's action alone.
+            JointPlace::Closure(closure) if self.closures[closure].is_driven() => {
+                return [Wrench::default(); N];
+            }
             JointPlace::Closure(closure) => return forces.closure_actions[closure],
             JointPlace::Link(link) => link,
         };
         let link = &self.tree.links[index];
         let mut wrenches = self.transmitted(pose, forces, index);
-        for &(freedom, _) in self
-            .drivers
-            .iter()
-            .filter(|(f, _)| link.freedoms.contains(f))
-        {
-            for (wrench, action) in wrenches.iter_mut().zip(forces.balance[freedom]) {
-                let action = pose.screws[freedom].axis.scaled(action);
-                match self.tree.freedoms[freedom] {
-                    FreedomKind::Slide => wrench.force -= action,
-                    FreedomKind::Turn | FreedomKind::Screw(_) | FreedomKind::BallTurn => {
-                        wrench.moment -= action;
-                    }
+        for (actuator, driver) in self.drivers.iter().enumerate() {
+            if !link.freedoms.contains(&driver.freedom) {
+                continue;
+            }
+            let actions = self.actuator_action(forces, actuator);
+            let sign = T::from_f64(link.sign);
+            for (wrench, action) in wrenches.iter_mut().zip(actions) {
+                let action = pose.screws[driver.freedom].axis.scaled(action * sign);
+                match driver.is_force {
+                    true => wrench.force -= action,
+                    false => wrench.moment -= action,
                 }
             }
         }
@@ -195,7 +201,7 @@ impl Plan {
         // The first body is carried by the second: what the second does to it, reversed, about the second's point.
         let second = pose.frames[link.parent].point(link.on_parent.position);
         let arm = pose.frames[link.body].origin - second;
-        wrenches.map(|wrench| {
+        map_array(wrenches, |wrench| {
             let mut reversed = Wrench::default();
             reversed.add_at(arm, -wrench.force, -wrench.moment);
             reversed

@@ -5,13 +5,14 @@ use super::coordinate::StoredAngles;
 use super::follow::Node;
 use super::frames::{BodyMotion, Frame, Screw};
 use super::groups::Group;
+use super::lower::Lowered;
 use super::mechanism::{Assembly, Mechanism, Placement};
 use super::prediction::Predictions;
 use super::rank::Mobility;
-use super::tree::Tree;
+use super::tree::{Driver, Tree};
 use super::vector::{Rotation, Vec3};
 use super::wrench::Wrench;
-use crate::error::AssemblyError;
+use crate::error::{AssemblyError, StructureError};
 use crate::mechanism::JointId;
 use crate::plan::range::Range;
 use dwell_numerics::Scalar;
@@ -49,8 +50,8 @@ pub struct Plan {
     /// Links that depend on the driven freedoms alone; then those that no group places.
     pub(super) first_links: Vec<usize>,
     pub(super) last_links: Vec<usize>,
-    /// By actuator: its freedom, and −1 where the tree counts it backwards.
-    pub(super) drivers: Vec<(usize, f64)>,
+    /// By actuator.
+    pub(super) drivers: Vec<Driver>,
     /// The stored pose of the assembly.
     pub(super) start: Node,
     /// The poses stored along the range of one actuator.
@@ -131,7 +132,17 @@ impl Plan {
     /// # Errors
     /// [`AssemblyError`] where it cannot be assembled, its freedoms are not those of its actuators, or its loops contradict each other.
     pub fn compile(mechanism: &Mechanism, assembly: &Assembly) -> Result<Self, AssemblyError> {
-        let mut plan = Self::whole(mechanism)?;
+        if let Some(reason) = mechanism.fault() {
+            return Err(StructureError::Malformed { reason }.into());
+        }
+        let lowered = Lowered::new(mechanism)?;
+        Self::compile_lowered(&lowered, assembly).map_err(|error| lowered.described(error))
+    }
+
+    fn compile_lowered(lowered: &Lowered, assembly: &Assembly) -> Result<Self, AssemblyError> {
+        let (mechanism, assembly) = (&lowered.mechanism, &lowered.assembly(assembly));
+        let mut plan = Self::whole(mechanism, &lowered.in_tree)?;
+        plan.measure_gears()?;
         let start = plan.assemble(mechanism, assembly)?;
         let start = plan.find_groups(mechanism, start)?;
         let kind = mechanism.actuators.first().map(|a| a.kind);
@@ -154,8 +165,7 @@ impl Plan {
 
     /// Whether an actuator drives an angle; otherwise it drives a travel.
     pub fn is_angle(&self, actuator: usize) -> bool {
-        let (freedom, _) = self.drivers[actuator];
-        !matches!(self.tree.freedoms[freedom].parts(), (0.0, _))
+        !self.drivers[actuator].is_force
     }
 
     /// The range of the coordinate.

@@ -3,8 +3,8 @@
 
 use super::groups::Group;
 use super::plan::{Plan, Pose};
-use super::prediction::Piece;
-use super::tree::Step;
+use super::prediction::PiecePoint;
+use super::tree::{FreedomKind, Step};
 use super::vector::vec3;
 use crate::error::PositionError;
 use crate::positions::is_plain;
@@ -12,8 +12,10 @@ use dwell_numerics::Scalar;
 
 /// Steps with a predicted inverse at most.
 const MAX_PREDICTED_STEPS: usize = 3;
-/// A residual this small, relative to the size, is rounding.
-const ROUNDING: f64 = 1e-15;
+/// A residual this small, relative to the size, is rounding: that of the points along a loop, which no step makes smaller.
+const ROUNDING: f64 = 2e-15;
+/// One step with a predicted inverse leaves rounding of so large a residual: where the inverse is wrong by a part of a thousand.
+const ONE_STEP: f64 = 1e-13;
 /// Newton's steps at most.
 const MAX_STEPS: usize = 40;
 /// The square of a step, relative to the pivots, below which a further step would be rounding.
@@ -42,12 +44,12 @@ impl Plan {
             return self.continue_to(q, pose);
         }
         let value = self.within_range(first.value())?;
-        let piece = self.predictions.at(value);
-        match piece {
-            Some(piece) => self.predictions.predict(piece, value, pose),
+        let at = self.predictions.at(value);
+        match at {
+            Some(at) => self.predictions.predict(at, pose),
             None => self.start_from(&self.start, value - self.start.q, pose),
         }
-        self.close(q, piece.map(|piece| (piece, value)), pose)
+        self.close(q, at, pose)
     }
 
     /// Closes all groups in order, from the coordinates in the pose, which are those of a prediction at a coordinate if that is given.
@@ -55,11 +57,11 @@ impl Plan {
     pub(super) fn close<T: Scalar>(
         &self,
         q: &[T],
-        predicted: Option<(&Piece, f64)>,
+        predicted: Option<PiecePoint>,
         pose: &mut Pose<T>,
     ) -> Result<(), PositionError> {
-        for (&(freedom, sign), &q) in self.drivers.iter().zip(q) {
-            pose.coordinates[freedom] = q * T::from_f64(sign);
+        for (driver, &q) in self.drivers.iter().zip(q) {
+            pose.coordinates[driver.freedom] = q * T::from_f64(driver.factor);
         }
         self.place(&self.first_links, pose);
         let predicted = predicted.filter(|_| is_plain::<T>());
@@ -79,23 +81,24 @@ impl Plan {
     fn close_predicted<T: Scalar>(
         &self,
         group: &Group,
-        (piece, q): (&Piece, f64),
+        at: PiecePoint,
         pose: &mut Pose<T>,
     ) -> bool {
         let m = group.rows.len();
+        self.place(&group.links, pose);
         for _ in 0..MAX_PREDICTED_STEPS {
-            self.place(&group.links, pose);
             self.fill_residuals(group, pose);
-            if self.largest_residual(group, pose) <= ROUNDING {
+            let residual = self.largest_residual(group, pose);
+            if residual <= ROUNDING {
                 return true;
             }
             for (i, row) in group.residuals.iter().enumerate() {
                 pose.scratch[i] = -pose.residuals[*row];
             }
-            let mut inverse = piece.inverse(group.factors, m * group.unknowns.len(), q);
             let mut turns = [T::from_f64(0.0); 3];
             for (j, &freedom) in group.unknowns.iter().enumerate() {
-                let entries = inverse.by_ref().take(m).zip(&pose.scratch);
+                let row = self.predictions.inverse(at, group.factors + j * m);
+                let entries = row.zip(&pose.scratch[..m]);
                 let step = entries.fold(T::from_f64(0.0), |sum, (entry, r)| {
                     sum + T::from_f64(entry) * *r
                 });
@@ -105,6 +108,10 @@ impl Plan {
                 if let Some(&(link, _)) = group.balls.iter().find(|(_, first)| first + 2 == j) {
                     self.turn_ball(link, vec3(turns[0], turns[1], turns[2]), pose);
                 }
+            }
+            self.place(&group.links, pose);
+            if residual <= ONE_STEP {
+                return true;
             }
         }
         false
@@ -194,7 +201,7 @@ impl Plan {
             let closure = &self.closures[*c];
             let [_, _, d] = closure.ends(&pose.frames);
             for &(_, k) in &group.rows[rows.clone()] {
-                let row = closure.row(closure.kinds[k], &pose.frames, d);
+                let row = closure.row(closure.kinds[k], &pose.frames, &pose.coordinates, d);
                 pose.residuals[closure.rows.start + k] = row.residual;
             }
         }
@@ -208,14 +215,20 @@ impl Plan {
             let rows = &group.rows[rows.clone()];
             let [_, at, d] = closure.ends(&pose.frames);
             for &(_, k) in rows {
-                let row = closure.row(closure.kinds[k], &pose.frames, d);
+                let row = closure.row(closure.kinds[k], &pose.frames, &pose.coordinates, d);
                 let index = closure.rows.start + k;
                 pose.residuals[index] = row.residual;
                 pose.row_wrenches[index] = row.wrench;
             }
             let freedoms = closure.path.len();
             for (p, &(freedom, sign)) in closure.path.iter().enumerate() {
-                let twist = pose.screws[freedom].twist(self.tree.freedoms[freedom], at, sign);
+                let kind = self.tree.freedoms[freedom];
+                if kind == FreedomKind::Length {
+                    // The row is the distance less the length.
+                    pose.entries[closure.entries + p] = T::from_f64(-1.0);
+                    continue;
+                }
+                let twist = pose.screws[freedom].twist(kind, at, sign);
                 for &(_, k) in rows {
                     let wrench = &pose.row_wrenches[closure.rows.start + k];
                     pose.entries[closure.entries + k * freedoms + p] = twist.power(wrench);

@@ -14,126 +14,141 @@ use super::plan::Pose;
 use super::vector::{Rotation, Vec3, vec3};
 use dwell_numerics::Scalar;
 
-/// The poses stored along the range, as predictions between each and the next.
+/// The poses stored along the range, as predictions between each and the next. The numbers of a piece stand together: an evaluation
+/// at a new coordinate waits for them more than it computes with them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Predictions {
     /// The coordinates of the stored poses, ascending.
     ends: Vec<f64>,
-    /// The predictions between them.
-    pieces: Vec<Piece>,
     /// By equal part of the range: the piece in which it begins.
-    parts: Vec<usize>,
+    parts: Vec<u32>,
     parts_per_unit: f64,
+    /// By piece: six coefficients of each scalar; of each ball its first rotation and six coefficients of its turn.
+    numbers: Vec<f64>,
+    /// How many those of a piece are.
+    stride: usize,
+    /// By stored pose: the inverses of the groups' Jacobians.
+    inverses: Vec<f64>,
+    inverse_stride: usize,
     /// The freedoms that are predicted as numbers: all but those of actuators and balls.
     scalars: Vec<usize>,
 }
 
-/// The poses between two stored ones.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Piece {
-    from: f64,
-    coordinates: Vec<[f64; 6]>,
-    balls: Vec<(Rotation, [Vec3; 6])>,
-    /// The inverses of the groups' Jacobians at the first pose, and their slopes.
-    inverses: Vec<[f64; 2]>,
+/// Numbers of a ball in a piece.
+const BALL: usize = 9 + 18;
+
+/// A coordinate in a piece.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PiecePoint {
+    index: usize,
+    /// From the first pose, rad or m.
+    ahead: f64,
 }
 
 impl Predictions {
     /// Between stored poses, of these freedoms and of all balls.
     pub(super) fn new(nodes: &[Node], scalars: Vec<usize>) -> Self {
-        let pairs = nodes.windows(2);
-        let pieces: Vec<Piece> = pairs
-            .map(|pair| Piece::new(&pair[0], &pair[1], &scalars))
-            .collect();
+        let balls = nodes.first().map_or(0, |n| n.balls.len());
+        let count = nodes.len().saturating_sub(1);
         let ends: Vec<f64> = nodes.iter().map(|n| n.q).collect();
-        let (first, last) = (ends[0], ends[ends.len() - 1]);
-        let count = pieces.len();
+        let span = ends.last().copied().unwrap_or(0.0) - ends.first().copied().unwrap_or(0.0);
         let part = |k: usize| {
-            let begin = first + (last - first) * k as f64 / count as f64;
-            ends[1..count].partition_point(|end| *end <= begin)
+            let begin = ends[0] + span * k as f64 / count as f64;
+            ends[1..count].partition_point(|end| *end <= begin) as u32
         };
+        let mut numbers = Vec::new();
+        for pair in nodes.windows(2) {
+            add_piece(&pair[0], &pair[1], &scalars, &mut numbers);
+        }
         Self {
-            parts: (0..=count).map(part).collect(),
-            parts_per_unit: count as f64 / (last - first),
+            parts: (0..count).map(part).collect(),
+            parts_per_unit: count as f64 / span,
             ends,
-            pieces,
+            numbers,
+            stride: 6 * scalars.len() + BALL * balls,
+            inverses: nodes.iter().flat_map(|n| n.inverses.clone()).collect(),
+            inverse_stride: nodes.first().map_or(0, |n| n.inverses.len()),
             scalars,
         }
     }
 
     /// The coordinates of the first and the last stored pose.
+    #[inline(always)]
     pub(super) fn range(&self) -> Option<[f64; 2]> {
         Some([*self.ends.first()?, *self.ends.last()?])
     }
 
-    /// The prediction at a coordinate; none where there is one stored pose only.
+    /// Where a coordinate within the range is; none where there is one stored pose only.
     #[inline(always)]
-    pub(super) fn at(&self, q: f64) -> Option<&Piece> {
-        let count = self.pieces.len();
-        let first = self.ends.first()?;
-        let part = ((q - first) * self.parts_per_unit) as usize;
-        // Rounding may take a coordinate at the edge of a part for one of the next.
-        let low = *self.parts.get(part.min(count).max(1) - 1)?;
-        let high = *self.parts.get((part + 2).min(count))?;
-        let ends = self.ends.get(low + 1..high + 1)?;
-        self.pieces
-            .get((low + ends.partition_point(|end| *end < q)).min(count.max(1) - 1))
+    pub(super) fn at(&self, q: f64) -> Option<PiecePoint> {
+        let last = self.parts.len().checked_sub(1)?;
+        let part = ((q - self.ends[0]) * self.parts_per_unit) as usize;
+        let mut index = self.parts[part.min(last)] as usize;
+        while index < last && self.ends[index + 1] < q {
+            index += 1;
+        }
+        let ahead = q - self.ends[index];
+        Some(PiecePoint { index, ahead })
     }
 
-    /// Sets the coordinates to those of a piece at a coordinate.
+    /// Sets the coordinates to the predicted ones.
     #[inline(always)]
-    pub(super) fn predict<T: Scalar>(&self, piece: &Piece, q: f64, pose: &mut Pose<T>) {
-        let s = q - piece.from;
-        for (freedom, c) in self.scalars.iter().zip(&piece.coordinates) {
-            pose.coordinates[*freedom] =
-                T::from_f64(c.iter().rev().fold(0.0, |sum, c| sum * s + c));
+    pub(super) fn predict<T: Scalar>(&self, at: PiecePoint, pose: &mut Pose<T>) {
+        let s = at.ahead;
+        let (scalars, balls) =
+            self.numbers[at.index * self.stride..][..self.stride].split_at(6 * self.scalars.len());
+        for (freedom, c) in self.scalars.iter().zip(scalars.as_chunks::<6>().0) {
+            pose.coordinates[*freedom] = T::from_f64(sum(s, |k| c[k]));
         }
-        for (ball, (start, c)) in pose.balls.iter_mut().zip(&piece.balls) {
-            let turn = c.iter().rev().fold(Vec3::ZERO, |sum, c| sum.scaled(s) + *c);
+        for (ball, c) in pose.balls.iter_mut().zip(balls.as_chunks::<BALL>().0) {
+            let start = Rotation {
+                columns: [
+                    vec3(c[0], c[1], c[2]),
+                    vec3(c[3], c[4], c[5]),
+                    vec3(c[6], c[7], c[8]),
+                ],
+            };
+            let component = |i: usize| sum(s, |k| c[9 + 3 * k + i]);
+            let turn = vec3(component(0), component(1), component(2));
             *ball = start.turned_by(turn).cast();
         }
     }
+
+    /// The predicted inverses of the groups' Jacobians, from an entry on.
+    #[inline(always)]
+    pub(super) fn inverse(&self, at: PiecePoint, first: usize) -> impl Iterator<Item = f64> + '_ {
+        let part = at.ahead / (self.ends[at.index + 1] - self.ends[at.index]);
+        let here = at.index * self.inverse_stride + first;
+        let next = here + self.inverse_stride;
+        let pairs = self.inverses[here..].iter().zip(&self.inverses[next..]);
+        pairs.map(move |(a, b)| a + part * (b - a))
+    }
 }
 
-impl Piece {
-    /// Between two stored poses.
-    fn new(first: &Node, second: &Node, scalars: &[usize]) -> Self {
-        let h = second.q - first.q;
-        let coordinates = scalars.iter().map(|f| {
-            let [a, b] = [first, second].map(|node| node.coordinates[*f]);
-            polynomial(a, b, h)
-        });
-        let balls = first.balls.iter().zip(&second.balls);
-        let balls = balls.zip(first.turns.iter().zip(&second.turns));
-        let inverses = first.inverses.iter().zip(&second.inverses);
-        Self {
-            from: first.q,
-            coordinates: coordinates.collect(),
-            inverses: inverses.map(|(a, b)| [*a, (b - a) / h]).collect(),
-            balls: balls
-                .map(|((start, end), (turn, later))| {
-                    let turned = end.after(&start.inverse()).tangent();
-                    let [rate, second] = derivatives(turned, *later);
-                    (
-                        *start,
-                        turns([Vec3::ZERO, turn[0], turn[1]], [turned, rate, second], h),
-                    )
-                })
-                .collect(),
-        }
-    }
+/// The polynomial with these coefficients, by Horner's rule.
+#[inline(always)]
+fn sum(s: f64, c: impl Fn(usize) -> f64) -> f64 {
+    (0..5).rev().fold(c(5), |sum, k| sum * s + c(k))
+}
 
-    /// The predicted inverse of a group's Jacobian, whose entries begin at a number.
-    #[inline(always)]
-    pub(super) fn inverse(
-        &self,
-        first: usize,
-        count: usize,
-        q: f64,
-    ) -> impl Iterator<Item = f64> + '_ {
-        let s = q - self.from;
-        let entries = self.inverses[first..][..count].iter();
-        entries.map(move |[value, slope]| value + slope * s)
+/// Adds the numbers of the piece between two stored poses.
+fn add_piece(first: &Node, second: &Node, scalars: &[usize], numbers: &mut Vec<f64>) {
+    let h = second.q - first.q;
+    for f in scalars {
+        numbers.extend(polynomial(first.coordinates[*f], second.coordinates[*f], h));
+    }
+    for (k, (start, end)) in first.balls.iter().zip(&second.balls).enumerate() {
+        let turned = end.after(&start.inverse()).tangent();
+        let [rate, change] = derivatives(turned, second.turns[k]);
+        let [before, before_change] = first.turns[k];
+        let coefficients = turns(
+            [Vec3::ZERO, before, before_change],
+            [turned, rate, change],
+            h,
+        );
+        for v in start.columns.iter().chain(&coefficients) {
+            numbers.extend([v.x, v.y, v.z]);
+        }
     }
 }
 

@@ -1,5 +1,4 @@
-//! The spanning tree: each body is placed from its parent by one joint. The joints with the fewest freedoms are in
-//! the tree, driven ones first, so that those with many are cut and no orientation is an unknown where it need not be.
+//! The spanning tree: each body is placed from its parent by one joint.
 
 use super::mechanism::{ActuatorKind, Assembly, JointKind, Mechanism, Placement, Side};
 use super::vector::{Rotation, Vec3};
@@ -18,6 +17,8 @@ pub(super) enum FreedomKind {
     Screw(f64),
     /// Rotation about an axis of the ground: one of three components of a small turn.
     BallTurn,
+    /// The distance of two points, which an actuator gives, m: no link moves by it.
+    Length,
 }
 
 impl FreedomKind {
@@ -26,7 +27,7 @@ impl FreedomKind {
     pub(super) fn parts(self) -> (f64, f64) {
         match self {
             Self::Turn | Self::BallTurn => (1.0, 0.0),
-            Self::Slide => (0.0, 1.0),
+            Self::Slide | Self::Length => (0.0, 1.0),
             Self::Screw(pitch) => (1.0, pitch),
         }
     }
@@ -73,6 +74,18 @@ pub(super) struct Tree {
     pub(super) balls: usize,
     /// The joints that close loops.
     pub(super) closures: Vec<JointId>,
+    /// The distances that actuators give, with their freedoms, which come last.
+    pub(super) driven_lengths: Vec<(JointId, usize)>,
+}
+
+/// The freedom that an actuator drives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Driver {
+    pub(super) freedom: usize,
+    /// The coordinate of the freedom over that of the actuator: −1 where the tree counts it backwards.
+    pub(super) factor: f64,
+    /// Whether its action is a force, and not a couple.
+    pub(super) is_force: bool,
 }
 
 /// A side as a frame: origin in its point, z along the axis and x along the normal.
@@ -119,8 +132,7 @@ impl Tree {
     ///
     /// # Errors
     /// [`StructureError::NotConnected`] for bodies that no joint connects with the ground.
-    pub(super) fn find(mechanism: &Mechanism) -> Result<Self, StructureError> {
-        let in_tree = tree_joints(mechanism);
+    pub(super) fn find(mechanism: &Mechanism, in_tree: &[bool]) -> Result<Self, StructureError> {
         let mut tree = Self {
             link_of: vec![None; mechanism.bodies.len()],
             internal: vec![Placement::default(); mechanism.bodies.len()],
@@ -129,7 +141,7 @@ impl Tree {
         // A point of the ground near the mechanism is its origin: results do not depend on where it stands.
         let ground = mechanism.ground;
         let on_ground = mechanism.joints.iter().find_map(|joint| {
-            let side = joint.bodies.iter().position(|b| b.0 == ground)?;
+            let side = (0..2).find(|k| joint.side_body(*k).0 == ground)?;
             Some(joint.sides[side].point)
         });
         tree.internal[ground].position = on_ground.unwrap_or(Vec3::ZERO);
@@ -170,6 +182,12 @@ impl Tree {
             .filter(|j| !in_tree[*j])
             .map(JointId)
             .collect();
+        for actuator in &mechanism.actuators {
+            if let ActuatorKind::Length(joint) = actuator.kind {
+                tree.driven_lengths.push((joint, tree.freedoms.len()));
+                tree.freedoms.push(FreedomKind::Length);
+            }
+        }
         Ok(tree)
     }
 
@@ -257,22 +275,39 @@ impl Tree {
                     Step::Turn(first + 2),
                 ],
             ),
-            // A distance is never in the tree.
-            JointKind::Spherical | JointKind::Distance { .. } => return vec![self.ball()],
+            // A distance or a gear pair is never in the tree.
+            JointKind::Spherical | JointKind::Distance { .. } | JointKind::Gear { .. } => {
+                return vec![self.ball()];
+            }
         };
         self.freedoms.extend(freedoms);
         steps
     }
 
-    /// The freedom that an actuator drives.
-    pub(super) fn driven(&self, kind: ActuatorKind) -> Option<(usize, f64)> {
-        let link = self
-            .links
-            .iter()
-            .find(|link| link.joint == Some(kind.joint()))?;
-        let first = link.freedoms.start;
-        let is_second = matches!(kind, ActuatorKind::Travel(_)) && link.freedoms.len() == 2;
-        Some((first + usize::from(is_second), link.sign))
+    /// The freedom that an actuator drives; none of a joint outside the tree.
+    pub(super) fn driven(&self, kind: ActuatorKind) -> Option<Driver> {
+        let joint = kind.joint();
+        if let ActuatorKind::Length(_) = kind {
+            let (_, freedom) = self.driven_lengths.iter().find(|(j, _)| *j == joint)?;
+            return Some(Driver {
+                freedom: *freedom,
+                factor: 1.0,
+                is_force: true,
+            });
+        }
+        let link = self.links.iter().find(|link| link.joint == Some(joint))?;
+        let is_travel = matches!(kind, ActuatorKind::Travel(_));
+        let of_two = link.freedoms.len() == 2;
+        let freedom = link.freedoms.start + usize::from(is_travel && of_two);
+        let factor = match self.freedoms[freedom] {
+            FreedomKind::Screw(pitch) if is_travel => link.sign / pitch,
+            _ => link.sign,
+        };
+        Some(Driver {
+            freedom,
+            factor,
+            is_force: is_travel,
+        })
     }
 
     /// Approximate coordinates and rotations of the balls from approximate placements of the bodies.
@@ -327,28 +362,4 @@ fn universal_frame(side: &Side) -> Placement {
         normal: side.axis.any_normal(),
         ..*side
     })
-}
-
-/// By joint: whether it is in the tree, by Kruskal's rule with the freedoms as weights.
-fn tree_joints(mechanism: &Mechanism) -> Vec<bool> {
-    let driven = |j: usize| mechanism.actuators.iter().any(|a| a.kind.joint().0 == j);
-    let weight = |j: &usize| match mechanism.joints[*j].kind {
-        _ if driven(*j) => 0,
-        // The rows of a screw that closes a loop would need its angle with all revolutions.
-        JointKind::Helical { .. } => 1,
-        kind => 2 + kind.freedoms(),
-    };
-    let can_carry = |j: &usize| !matches!(mechanism.joints[*j].kind, JointKind::Distance { .. });
-    let mut order: Vec<usize> = (0..mechanism.joints.len()).filter(can_carry).collect();
-    order.sort_by_key(weight);
-    let mut part: Vec<usize> = (0..mechanism.bodies.len()).collect();
-    let mut in_tree = vec![false; mechanism.joints.len()];
-    for j in order {
-        let [a, b] = mechanism.joints[j].bodies.map(|b| part[b.0]);
-        if a != b {
-            in_tree[j] = true;
-            part.iter_mut().filter(|p| **p == b).for_each(|p| *p = a);
-        }
-    }
-    in_tree
 }

@@ -1,6 +1,6 @@
 //! Vectors and rotations of space.
 
-use dwell_numerics::Scalar;
+use dwell_numerics::{Scalar, map_array};
 use std::ops::{Add, AddAssign, Neg, Sub, SubAssign};
 
 /// A vector of space.
@@ -212,7 +212,7 @@ impl Rotation<f64> {
     #[inline(always)]
     pub fn cast<T: Scalar>(&self) -> Rotation<T> {
         Rotation {
-            columns: self.columns.map(Vec3::cast),
+            columns: map_array(self.columns, Vec3::cast),
         }
     }
 }

@@ -7,8 +7,8 @@ use crate::error::{LoadError, PositionResult, Result};
 use crate::friction::{self, FrictionState};
 use crate::load::{ForceSource, Friction, Load, LoadKind, Magnitude, Signal};
 use crate::pass::{AtRest, GivenMotion, InverseDynamics, UnitAcceleration};
-use dwell_geometry::Coordinate;
 use dwell_geometry::body_states::CoordinateFunction;
+use dwell_geometry::{Coordinate, Range};
 use dwell_laws::HeldPieces;
 use dwell_numerics::Scalar;
 
@@ -16,6 +16,19 @@ impl MachineModel for Model {
     type Coordinate = Coordinate;
     type CoordinateFunction = CoordinateFunction;
     type LoadKind = LoadKind;
+    type Workspace<T: Scalar> = Workspace<T>;
+
+    fn pass_workspace<T: Scalar>(&self) -> Workspace<T> {
+        self.workspace()
+    }
+
+    fn actuators(&self) -> usize {
+        self.plan().actuators()
+    }
+
+    fn range(&self) -> Range {
+        self.plan().range()
+    }
 
     fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T> {
         self.result_buffer()

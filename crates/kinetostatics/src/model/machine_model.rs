@@ -6,20 +6,32 @@ use crate::error::{LoadError, PositionResult, Result};
 use crate::friction::FrictionState;
 use crate::load::{Friction, Load, Magnitude, Signal};
 use crate::pass::InverseDynamics;
-use crate::reduced::ReducibleModel;
+use dwell_geometry::Range;
 use dwell_laws::HeldPieces;
 use dwell_numerics::Scalar;
 use std::fmt::Debug;
 
 /// A mechanism with masses and loads that can be evaluated at a state of motion. The methods with a workspace are the steps
 /// of the [stages](super::stages), which call them in the right order: kinematics, magnitudes of loads, forces.
-pub trait MachineModel: ReducibleModel + Debug + Clone + PartialEq + Send + 'static {
+pub trait MachineModel: Debug + Clone + PartialEq + Send + Sync + 'static {
     /// How a coordinate of the mechanism is described.
     type Coordinate: Debug + Copy + PartialEq + Send + Sync + 'static;
     /// The same of a compiled mechanism.
     type CoordinateFunction: Debug + Copy + PartialEq + Send + Sync + 'static;
     /// The shape of a load.
     type LoadKind: Debug + Copy + PartialEq + Send + Sync + 'static;
+
+    /// Working memory of one thread in a kind of number.
+    type Workspace<T: Scalar>: Debug + Clone + Send;
+
+    /// Such memory.
+    fn pass_workspace<T: Scalar>(&self) -> Self::Workspace<T>;
+
+    /// Number of actuators.
+    fn actuators(&self) -> usize;
+
+    /// The range of the coordinate of the only actuator.
+    fn range(&self) -> Range;
 
     /// A buffer for the results of this model.
     fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T>;

@@ -7,15 +7,17 @@
 //! Column i of M is what the actuators do at unit acceleration of coordinate i from rest; c − Q is what they do without
 //! acceleration, under all loads. All passes share the pose and its factors.
 
-use super::load::{CompiledLoads, Load, LoadKind};
+use super::action::CompiledKind;
+use super::compiled_loads::CompiledLoads;
+use super::load::{Load, LoadKind};
 use super::model::{Model, Workspace};
 use crate::drive::Drive;
 use crate::error::{KinetostaticsError, LoadError, PositionResult, Result};
 use crate::load::{Friction, Magnitude, Signal};
 use crate::model::{EvaluatedState, KinematicState, MachineModel};
 use crate::pass::InverseDynamics;
-use dwell_geometry::PositionError;
 use dwell_geometry::space::{BodyMotion, Coordinate, CoordinateFunction, Wrench};
+use dwell_geometry::{PositionError, Range};
 use dwell_laws::HeldPieces;
 use dwell_numerics::Scalar;
 
@@ -76,6 +78,19 @@ impl MachineModel for Model {
     type Coordinate = Coordinate;
     type CoordinateFunction = CoordinateFunction;
     type LoadKind = LoadKind;
+    type Workspace<T: Scalar> = Workspace<T>;
+
+    fn pass_workspace<T: Scalar>(&self) -> Workspace<T> {
+        self.workspace()
+    }
+
+    fn actuators(&self) -> usize {
+        self.plan().actuators()
+    }
+
+    fn range(&self) -> Range {
+        self.plan().range()
+    }
 
     fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T> {
         self.result_buffer()
@@ -135,7 +150,7 @@ impl MachineModel for Model {
     }
 
     fn work_lever(&self, kind: &LoadKind) -> f64 {
-        let compiled = super::load::CompiledKind::new(kind, self.mechanism(), self.plan());
+        let compiled = CompiledKind::new(kind, self.mechanism(), self.plan());
         compiled.map_or(0.0, |kind| {
             kind.work_lever(self.plan().size(), self.total_mass())
         })

@@ -1,7 +1,7 @@
 //! Mass and inertia of a body in space.
 
 use dwell_geometry::space::{BodyMotion, Frame, Placement, Rotation, Vec3, Wrench, vec3};
-use dwell_numerics::Scalar;
+use dwell_numerics::{Scalar, map_array};
 
 /// Mass, centre of mass and moments of inertia of a body, in its frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -16,6 +16,7 @@ pub struct Mass {
 }
 
 /// The rows of a tensor by its elements.
+#[inline(always)]
 fn rows([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> [Vec3; 3] {
     [vec3(xx, xy, xz), vec3(xy, yy, yz), vec3(xz, yz, zz)]
 }
@@ -108,7 +109,7 @@ impl Mass {
     /// The tensor of inertia in the axes of the ground, times a vector.
     #[inline(always)]
     fn tensor<T: Scalar>(&self, frame: &Frame<T>) -> impl Fn(Vec3<T>) -> Vec3<T> {
-        let [x, y, z] = rows(self.inertia).map(Vec3::cast);
+        let [x, y, z] = map_array(rows(self.inertia), Vec3::cast);
         let rotation = frame.rotation;
         move |v: Vec3<T>| {
             let v = rotation.apply_inverse(v);

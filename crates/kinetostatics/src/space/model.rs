@@ -1,6 +1,8 @@
 //! A mechanism in space with its masses and requested reactions, and the passes over it.
 
-use super::load::{CompiledKind, CompiledLoads, LoadKind};
+use super::action::CompiledKind;
+use super::compiled_loads::CompiledLoads;
+use super::load::LoadKind;
 use super::mass::Mass;
 use crate::error::PositionResult;
 use crate::load::SignalWorkspace;
@@ -9,7 +11,7 @@ use dwell_geometry::space::{
     Assembly, Forces, Mechanism, Plan, Pose, PoseMotion, Rotation, Vec3, Wrench,
 };
 use dwell_geometry::{AssemblyError, BodyId, JointId};
-use dwell_numerics::Scalar;
+use dwell_numerics::{Scalar, map_array};
 use std::sync::Arc;
 use thiserror::Error;
 
@@ -131,7 +133,7 @@ impl Model {
             let joint = mechanism.joints.get(reaction.joint.0).filter(|_| k < 3);
             let joint = joint.ok_or(ModelError::Reaction(*reaction))?;
             let of_joint = (axes == Axes::Joint).then(|| {
-                let (body, side) = (joint.bodies[0].0, &joint.sides[0]);
+                let (body, side) = (joint.side_body(0).0, &joint.sides[0]);
                 let in_body = Rotation::of_axes(side.axis, side.normal);
                 (body, frame(body).rotation.inverse().after(&in_body))
             });
@@ -350,7 +352,7 @@ impl Model {
                 Component::Force(..) => along.dot(wrench.force),
                 Component::Moment(..) => along.dot(wrench.moment),
             };
-            take(index, wrenches.map(part));
+            take(index, map_array(wrenches, part));
         }
     }
 

@@ -1,4 +1,4 @@
-//! The independent coordinates: angles and travels of joints.
+//! The independent coordinates: angles, travels and lengths of joints.
 
 use super::bodies::Space;
 use super::joints::{Joints, ParsedJoint};
@@ -40,7 +40,8 @@ pub(super) fn actuators<'a>(
         }
         let actuator = read_actuator(entry, joints);
         let kind = actuator.as_ref().map(|a| a.kind);
-        let is_angle = !matches!(kind, Some(ActuatorKind::Travel(_)));
+        let is_length = |kind| matches!(kind, ActuatorKind::Travel(_) | ActuatorKind::Length(_));
+        let is_angle = !kind.is_some_and(is_length);
         found.push(ParsedActuator {
             named: NamedActuator::new(entry, is_angle, false),
             actuator,
@@ -51,10 +52,9 @@ pub(super) fn actuators<'a>(
 
 fn read_actuator(entry: &Entry<'_>, joints: &Joints<'_>) -> Option<Actuator> {
     let fields = TableReader::open(entry, format!("actuator `{}`", shorten(entry.name)))?;
-    let help =
-        "write it as `{ angle = \"A\" }` or `{ travel = \"slide\" }`, with the name of a joint";
+    let help = "write it as `{ angle = \"A\" }`, `{ travel = \"slide\" }` or `{ length = \"link\" }`, with the name of a joint";
     fields.reject_unknown_keys(table("actuator-in-space"));
-    let lacks = ("drives nothing", "neither `angle` nor `travel`");
+    let lacks = ("drives nothing", "no `angle`, `travel` or `length`");
     let coordinate = fields.alternative(table("actuator-in-space"), lacks, help)?;
     if matches!(coordinate.value.get(), DeValue::Array(_)) {
         let message = format!(
@@ -65,15 +65,15 @@ fn read_actuator(entry: &Entry<'_>, joints: &Joints<'_>) -> Option<Actuator> {
             .value
             .reject(message, "expected the name of a joint", help);
     }
-    let is_angle = coordinate.name == "angle";
-    let id = joint_with_freedom(is_angle, coordinate, &fields, joints)?;
-    let kind = match is_angle {
-        true => ActuatorKind::Angle(id),
-        false => ActuatorKind::Travel(id),
+    let kind: fn(JointId) -> ActuatorKind = match coordinate.name {
+        "travel" => ActuatorKind::Travel,
+        "length" => ActuatorKind::Length,
+        _ => ActuatorKind::Angle,
     };
+    let id = joint_with(kind, coordinate, &fields, joints)?;
     Some(Actuator {
         name: entry.name.to_owned(),
-        kind,
+        kind: kind(id),
     })
 }
 
@@ -84,36 +84,47 @@ pub(super) fn joint_with_freedom(
     fields: &TableReader<'_>,
     joints: &Joints<'_>,
 ) -> Option<JointId> {
+    let kind = match is_angle {
+        true => ActuatorKind::Angle,
+        false => ActuatorKind::Travel,
+    };
+    joint_with(kind, entry, fields, joints)
+}
+
+/// The joint that an entry names, with a coordinate of that kind.
+fn joint_with(
+    kind: fn(JointId) -> ActuatorKind,
+    entry: &Entry<'_>,
+    fields: &TableReader<'_>,
+    joints: &Joints<'_>,
+) -> Option<JointId> {
     let name = entry.value.string(fields.name_of(entry))?;
     let at = entry.value.span();
     let joint = joints.find(name, &at)?;
-    require_freedom(is_angle, &joints.list[joint], &at)?;
+    require_freedom(kind(JointId(joint)), &joints.list[joint], &at)?;
     Some(JointId(joint))
 }
 
 /// Reports a joint that has no such coordinate, or whose angle has no zero.
-fn require_freedom(is_angle: bool, parsed: &ParsedJoint<'_>, at: &Span) -> Option<()> {
-    let kind = parsed.joint.as_ref()?.kind;
-    let (what, drives, others) = match is_angle {
-        true => (
+fn require_freedom(kind: ActuatorKind, parsed: &ParsedJoint<'_>, at: &Span) -> Option<()> {
+    let joint = parsed.joint.as_ref()?.kind;
+    let (what, others) = match kind {
+        ActuatorKind::Angle(_) => (
             "angle",
-            matches!(
-                kind,
-                JointKind::Revolute | JointKind::Cylindrical | JointKind::Helical { .. }
-            ),
             "revolute, cylindrical and helical joints have an angle that can be driven",
         ),
-        false => (
+        ActuatorKind::Travel(_) => (
             "travel",
-            matches!(kind, JointKind::Prismatic | JointKind::Cylindrical),
-            "prismatic and cylindrical joints have a travel",
+            "prismatic, cylindrical and helical joints have a travel",
         ),
+        ActuatorKind::Length(_) => ("length", "a `distance` has a length that can be driven"),
     };
     let name = shorten(parsed.name);
-    if !drives {
+    if !kind.is_of(joint) {
         let message = format!("joint `{name}` has no {what} to be driven");
         return (parsed.log).reject(message, &[(at, "this joint")], others);
     }
+    let is_angle = matches!(kind, ActuatorKind::Angle(_));
     if is_angle && !parsed.has_zero {
         let message = format!("the angle of joint `{name}` has no zero");
         let labels = [
@@ -123,5 +134,29 @@ fn require_freedom(is_angle: bool, parsed: &ParsedJoint<'_>, at: &Span) -> Optio
         let help = "add `normals` to the joint: a direction across the axis in the frame of each body, parallel at zero";
         return (parsed.log).reject(message, &labels, help);
     }
+    if let JointKind::Distance { length } = joint
+        && length > 0.0
+    {
+        let message = format!("the length of joint `{name}` is driven and given");
+        let labels = [(at, "driven here"), (&parsed.key, "with a `length`")];
+        return (parsed.log).reject(message, &labels, "leave `length` out of the joint");
+    }
     Some(())
+}
+
+/// Reports distances whose length neither a number nor an actuator gives.
+pub(super) fn require_lengths(joints: &Joints<'_>, actuators: &[ParsedActuator<'_>]) {
+    for (j, parsed) in joints.list.iter().enumerate() {
+        let kind = parsed.joint.as_ref().map(|joint| joint.kind);
+        let driven = ActuatorKind::Length(JointId(j));
+        let is_driven =
+            |a: &ParsedActuator<'_>| a.actuator.as_ref().is_none_or(|a| a.kind == driven);
+        if kind == Some(JointKind::Distance { length: 0.0 }) && !actuators.iter().any(is_driven) {
+            let message = format!("joint `{}` has no length", shorten(parsed.name));
+            let help = "add `length = 200`: the distance the two points keep; or drive it: `[actuators]` with `{ length = \"…\" }`";
+            parsed
+                .log
+                .reject::<()>(message, &[(&parsed.key, "`length` is missing")], help);
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! The sections of a scene in space, read in an order in which each finds what it refers to.
 
-use super::actuators::{ParsedActuator, actuators};
+use super::actuators::{ParsedActuator, actuators, require_lengths};
 use super::assembly::assembly;
 use super::bodies::Space;
 use super::coordinates::coordinates;
@@ -74,6 +74,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
     let bodies: Bodies<'_, Space> = Bodies::read(&needed_section(fields, "bodies")?);
     let joints = Joints::read(needed_section(fields, "joints").as_ref(), &bodies, log);
     let actuators = section("actuators").map_or_else(Vec::new, |f| actuators(&f, &bodies, &joints));
+    require_lengths(&joints, &actuators);
     let by_name: Vec<NamedActuator<'_>> = actuators.iter().map(|a| a.named.clone()).collect();
     let named_section = section("coordinates");
     let named = coordinates(&actuators, named_section.as_ref(), &bodies, &joints);

@@ -18,7 +18,10 @@ pub(super) fn coordinates<'a>(
     joints: &Joints<'a>,
 ) -> ParsedCoordinates<'a, Coordinate> {
     let named = actuators.iter().map(|a| {
-        let coordinate = a.actuator.as_ref().map(|a| Coordinate::from(a.kind));
+        let coordinate = a.actuator.as_ref().and_then(|a| {
+            let joint = joints.list[a.kind.joint().0].joint.as_ref()?;
+            Some(a.kind.coordinate(joint))
+        });
         (&a.named, coordinate)
     });
     let read = |entry: &Entry<'a>| read_coordinate(entry, bodies, joints);

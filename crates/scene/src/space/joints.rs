@@ -81,6 +81,9 @@ fn read_joint(entry: &Entry<'_>, id: JointId, bodies: &Bodies<'_, Space>) -> Opt
     for key in ["axis", "axes"] {
         fields.place(key, SceneLocation::Axis(id));
     }
+    if kind == "gear" {
+        return gear(entry.name, id, kind_entry, &fields, bodies).map(|joint| (joint, true));
+    }
     let what = fields.name_of(kind_entry);
     let points = bodies.find_two_points(kind_entry.value, TWO_POINTS, what);
     let joint_kind = joint_kind(kind, kind_entry, &fields);
@@ -127,6 +130,8 @@ fn joint_kind(kind: &str, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option
             let pitch = fields.number("pitch", help, &rule)? / TAU;
             JointKind::Helical { pitch }
         }
+        // Whether an actuator drives it is seen when all are read.
+        "distance" if fields.get("length").is_none() => JointKind::Distance { length: 0.0 },
         "distance" => {
             let help = "add `length = 200`: the distance the two points keep";
             let rule = NumberRule::new(&fields.units().length, SignRule::Positive);
@@ -136,6 +141,53 @@ fn joint_kind(kind: &str, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option
         }
         _ => return reject_unread_kind(entry),
     })
+}
+
+/// A gear pair: two wheels, the point of the carrier where their teeth meet, and the normal of the teeth there.
+fn gear(
+    name: &str,
+    id: JointId,
+    entry: &Entry<'_>,
+    fields: &TableReader<'_>,
+    bodies: &Bodies<'_, Space>,
+) -> Option<Joint> {
+    let wheels = bodies.find_two(entry.value, fields.name_of(entry));
+    let help = "add `pitch-point = \"ground.P\"`: the point of the carrier where the teeth meet";
+    let pitch = fields.require("pitch-point", help);
+    let help =
+        "add `normal = [0, 1, 0]`: the direction along which the teeth push each other there";
+    let normal = fields.require("normal", help);
+    let normal = normal.and_then(|n| direction(n.value, fields.name_of(n)));
+    fields.place("normal", SceneLocation::Axis(id));
+    let pitch = pitch?;
+    let at = pitch.value.span();
+    let point = bodies.find_point(pitch.value.string(fields.name_of(pitch))?, &at);
+    let [a, b] = wheels?;
+    let message = |name: &str| format!("{} joins body `{name}` to itself", fields.what);
+    let ends = [(a.0, &a.1), (b.0, &b.1)];
+    let wheels = bodies.require_different(ends, message, "a gear pair has two wheels")?;
+    let (carrier, index) = point?;
+    for (k, wheel) in [&a, &b].into_iter().enumerate() {
+        fields
+            .log()
+            .place(SceneLocation::JointPoint(id, k), &wheel.1);
+        if wheel.0 == carrier {
+            let message = format!(
+                "the pitch point of {} is a point of one of its wheels",
+                fields.what
+            );
+            let help = "name a point of the body that carries both wheels: where the teeth meet does not turn with a wheel";
+            let labels = [(&at, "this body"), (&wheel.1, "is a wheel here")];
+            return fields.log().reject(message, &labels, help);
+        }
+    }
+    let side = Side {
+        point: bodies.at(&(carrier, index, at)),
+        axis: normal?,
+        normal: Vec3::ZERO,
+    };
+    let kind = JointKind::Gear { carrier };
+    Some(Joint::new(name, wheels, kind, [side; 2]))
 }
 
 /// The axes of a joint and the normals from which its angle counts, in the frame of each body.

@@ -66,7 +66,7 @@ impl LoadReader<'_> {
             "force" | "point-to-point-force" | "slide-force" => {
                 ("magnitude", "N", SignRule::Any, "")
             }
-            "torque" => ("magnitude", "N m", SignRule::Any, ""),
+            "torque" | "joint-torque" => ("magnitude", "N m", SignRule::Any, ""),
             "spring" => ("stiffness", "N/m", SignRule::NotNegative, stiffness),
             "torsion-spring" => ("stiffness", "N m/rad", SignRule::NotNegative, stiffness),
             "damper" | "slide-damper" => ("damping", "N s/m", SignRule::NotNegative, damping),
@@ -90,7 +90,8 @@ impl LoadReader<'_> {
         let joint = |is_angle| joint_with_freedom(is_angle, entry, fields, self.joints);
         match kind {
             "force" => force(entry, fields, self.bodies),
-            "torque" => self.torque(entry, fields),
+            "torque" => torque(entry, fields, self.bodies),
+            "joint-torque" => joint(true).map(LoadKind::JointTorque),
             "point-to-point-force" => {
                 let (bodies, points) = self.two_points(entry, fields)?;
                 Some(LoadKind::PointToPointForce { bodies, points })
@@ -140,16 +141,6 @@ impl LoadReader<'_> {
         let ends = [(a.0, &a.2), (b.0, &b.2)];
         let bodies = (self.bodies).require_different(ends, message, "name points of two bodies")?;
         Some((bodies, points))
-    }
-
-    /// A torque about a direction, or about the axis of a joint that is named.
-    fn torque(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<LoadKind> {
-        if let (DeValue::String(name), None) = (entry.value.get(), fields.get("axis"))
-            && self.joints.list.iter().any(|joint| joint.name == *name)
-        {
-            return joint_with_freedom(true, entry, fields, self.joints).map(LoadKind::JointTorque);
-        }
-        torque(entry, fields, self.bodies)
     }
 }
 

@@ -40,6 +40,10 @@ fn exists(kind: JointKind, component: Component) -> bool {
         (kind, Component::Force(Axes::Joint, _)) if !has_axis(kind) => false,
         (JointKind::Revolute | JointKind::Universal, Component::Moment(Axes::Joint, 2)) => false,
         (JointKind::Prismatic, Component::Force(Axes::Joint, 2)) => false,
+        // A force along the normal of the teeth, at the pitch point.
+        (JointKind::Gear { .. }, Component::Moment(..) | Component::Force(Axes::Joint, 0 | 1)) => {
+            false
+        }
         (
             JointKind::Cylindrical,
             Component::Force(Axes::Joint, 2) | Component::Moment(Axes::Joint, 2),
@@ -54,11 +58,13 @@ fn exists(kind: JointKind, component: Component) -> bool {
 
 /// The components of a joint in the axes of the ground, but those that are always zero.
 pub(super) fn in_ground_axes(joint: &Joint, ground: usize) -> Vec<Component> {
-    let own_axis = joint.bodies.iter().position(|b| b.0 == ground);
+    let own_axis = (0..2).find(|k| joint.side_body(*k).0 == ground);
     let own_axis = own_axis.map(|k| joint.sides[k].axis);
     // Where the joint's axis is one of the ground's, the component along it is the axial one.
     let is_along = |k: usize| own_axis.is_some_and(|u| Vec3::AXES[k].cross(u).norm() == 0.0);
+    let is_gear = matches!(joint.kind, JointKind::Gear { .. });
     let is_never_zero = |component: &Component| match *component {
+        Component::Force(_, k) if is_gear => own_axis.is_none_or(|u| Vec3::AXES[k].dot(u) != 0.0),
         Component::Force(_, k) if is_along(k) => {
             exists(joint.kind, Component::Force(Axes::Joint, 2)) || !has_axis(joint.kind)
         }

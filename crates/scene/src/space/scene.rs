@@ -50,7 +50,10 @@ impl SpaceScene {
     /// Every coordinate that has a name, those of the actuators first.
     pub fn all_coordinates(&self) -> impl Iterator<Item = (&str, Coordinate)> + Clone {
         let actuators = self.mechanism.actuators.iter();
-        let actuators = actuators.map(|a| (a.name.as_str(), Coordinate::from(a.kind)));
+        let actuators = actuators.map(|a| {
+            let joint = &self.mechanism.joints[a.kind.joint().0];
+            (a.name.as_str(), a.kind.coordinate(joint))
+        });
         let named = self.coordinates.iter();
         actuators.chain(named.map(|c| (c.name.as_str(), c.coordinate)))
     }

@@ -137,6 +137,56 @@ fn no_text_breaks_the_reader() {
     }
 }
 
+#[test]
+fn gear_pairs_and_driven_lengths_are_read() {
+    let with = |joints: &str, actuators: &str| {
+        let text = format!(
+            "bodies.ground.points = {{ A = [0, 0, 0], P = [1, 0, 0] }}\nbodies.arm.points = {{ A = [0, 0, 0] }}\n\
+             bodies.wheel.points = {{ A = [0, 0, 0] }}\njoints.A = {{ revolute = [\"ground.A\", \"arm.A\"], axis = [0, 0, 1] }}\n\
+             joints.W = {{ revolute = [\"ground.P\", \"wheel.A\"], axis = [0, 0, 1] }}\n{joints}\n{actuators}\n"
+        );
+        SpaceScene::parse("test.toml", &text)
+    };
+    let teeth = "joints.T = { gear = [\"arm\", \"wheel\"], pitch-point = \"ground.P\", normal = [0, 2, 0] }";
+    let rod = "joints.rod = { distance = [\"ground.P\", \"arm.A\"] }";
+    let scene = with(teeth, "actuators.q = { angle = \"A\" }").expect("a scene");
+    let pair = &scene.mechanism.joints[2];
+    assert_eq!(pair.kind, JointKind::Gear { carrier: BodyId(0) });
+    assert_eq!(pair.bodies, [BodyId(1), BodyId(2)]);
+    assert!(close(pair.sides[1].axis, vec3(0.0, 1.0, 0.0)));
+    assert!(close(pair.sides[1].point, vec3(1.0, 0.0, 0.0)));
+    let names = scene.reactions.iter().map(|&r| scene.reaction_name(r));
+    let of_pair: Vec<_> = names.filter(|n| n.starts_with('T')).collect();
+    assert_eq!(of_pair, ["T.y"]);
+    let scene = with(rod, "actuators.q = { length = \"rod\" }").expect("a scene");
+    assert_eq!(
+        scene.mechanism.actuators[0].kind,
+        ActuatorKind::Length(JointId(2))
+    );
+    let says = |joints: &str, actuators: &str, words: &str| {
+        let error = with(joints, actuators).expect_err(words);
+        let text = render(&error);
+        assert!(text.contains(words), "{text}");
+    };
+    let angle = "actuators.q = { angle = \"A\" }";
+    says(rod, angle, "joint `rod` has no length");
+    let given = rod.replace(" }", ", length = 1 }");
+    let length = "actuators.q = { length = \"rod\" }";
+    says(&given, length, "driven and given");
+    says(
+        &given,
+        "actuators.q = { length = \"A\" }",
+        "has no length to be driven",
+    );
+    let own = teeth.replace("ground.P", "arm.A");
+    says(&own, angle, "is a point of one of its wheels");
+    says(
+        &teeth.replace(", normal = [0, 2, 0]", ""),
+        angle,
+        "`normal`",
+    );
+}
+
 /// The bodies that the examples of keys name.
 const BODIES: &str = r#"
 bodies.ground = { points = { A = [0, 0, 0], S = [0, 0, 0] } }
@@ -171,7 +221,13 @@ fn every_example_of_a_key_in_space_is_read() {
             let first = table.kind_key();
             let fragment = match table.name.as_str() {
                 "[bodies.<body>] in space" => format!("bodies.crank = {inner}"),
+                "[actuators.<actuator>] in space" if inner.contains("length") => format!(
+                    "joints.link = {{ distance = [\"ground.A\", \"nut.A\"] }}\nactuators.other = {inner}"
+                ),
                 "[actuators.<actuator>] in space" => format!("actuators.other = {inner}"),
+                "distance in space" if !inner.contains("length") => {
+                    format!("joints.other = {inner}\nactuators.other = {{ length = \"other\" }}")
+                }
                 "[assembly.<body>] in space" => format!("assembly.rod = {inner}"),
                 "[requests] in space" => format!("requests = {inner}"),
                 _ if kinds("joints-in-space")

@@ -156,7 +156,8 @@ fn explain_structure(scene: &Scene, error: &StructureError) -> StudyError {
             joints,
             actuators,
         } => explain_over_constrained(scene, *redundant_count, joints, actuators),
-        StructureError::Malformed { .. } => {
+        // The first is of mechanisms in space.
+        StructureError::Gear { .. } | StructureError::Malformed { .. } => {
             scene_error(scene, error.to_string(), "", [(SceneLocation::Whole, "")])
         }
     }

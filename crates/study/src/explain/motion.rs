@@ -103,6 +103,12 @@ fn describe(
     let speed = SceneLocation::InitialVelocity(ActuatorId(0));
     let start = initial_state_location(scene);
     match error {
+        DynamicsError::Interrupted => (
+            "the computation was interrupted".to_owned(),
+            "",
+            SceneLocation::Whole,
+            "",
+        ),
         DynamicsError::AtRest => (
             "the free motion starts at rest, and no force moves the mechanism".to_owned(),
             "give a `speed` in [motion]",

@@ -11,7 +11,7 @@ use dwell_geometry::{ActuatorId, Range};
 use dwell_kinetostatics::{
     Coefficients, DriveKind, Load, LoadKind, Magnitude, Model, Signal, TableDomain,
 };
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{Scene, SceneFile, SceneLocation};
 use std::f64::consts::TAU;
 
 /// Part of a limited range that is left out at each end, where everything grows.
@@ -47,7 +47,8 @@ impl<'a> ExportedScene<'a> {
         let model = determinate_model(scene)?
             .with_loads(unit_loads)
             .map_err(|e| explain_machine(scene, e.into()))?;
-        let domain = domain(scene, &model, interval)?;
+        let plan = model.plan();
+        let domain = domain(scene, plan.range(), plan.is_angle(0), interval)?;
         reject_change_points(scene, domain)?;
         let description = describe(scene, &loaded, &model, domain);
         Ok(Self {
@@ -125,13 +126,16 @@ fn reject_change_points(scene: &Scene, domain: Domain) -> Result<(), StudyError>
     }
 }
 
-/// The interval of the coordinate.
-fn domain(
-    scene: &Scene,
-    model: &Model,
+/// The interval of the coordinate: what is given in the scene's unit, a period, or the range without its ends.
+///
+/// # Errors
+/// [`StudyError::Scene`] for an interval outside the range, and for a coordinate without ends.
+pub(crate) fn domain(
+    scene: &SceneFile,
+    range: Range,
+    is_angle: bool,
     interval: Option<(f64, f64)>,
 ) -> Result<Domain, StudyError> {
-    let (plan, is_angle) = (model.plan(), model.plan().is_angle(0));
     let limited = |from, to| Domain {
         from,
         to,
@@ -140,10 +144,10 @@ fn domain(
     if let Some((from, to)) = interval {
         let [from, to] = [from, to].map(|written| scene.to_si(written, is_angle));
         let inside = |(lower, upper)| lower <= from && to <= upper;
-        if from < to && plan.range().limits().is_none_or(inside) {
+        if from < to && range.limits().is_none_or(inside) {
             return Ok(limited(from, to));
         }
-        let message = match plan.range().limits() {
+        let message = match range.limits() {
             Some((lower, upper)) if from < to => {
                 let [(lower, unit), (upper, _)] =
                     [lower, upper].map(|q| scene.to_scene_unit(q, is_angle));
@@ -161,7 +165,7 @@ fn domain(
             )],
         ));
     }
-    Ok(match (plan.range(), plan.range().period()) {
+    Ok(match (range, range.period()) {
         (_, Some(period)) => Domain {
             from: 0.0,
             to: period,
@@ -195,7 +199,11 @@ fn describe(scene: &Scene, loaded: &Scene, model: &Model, domain: Domain) -> Mac
     let mut left_out = left_out(scene, model);
     let loads = loaded.loads.iter().zip(kinds).map(|(load, drive)| {
         let (effect, unit) = match drive {
-            Some(drive) => drive_effect(load, drive, &mut left_out),
+            Some(drive) => {
+                let is_couple = matches!(load.kind, LoadKind::Torque { .. });
+                let force = if is_couple { "N m" } else { "N" };
+                drive_effect((&load.name, force), drive, &mut left_out)
+            }
             None => load_effect(load),
         };
         LoadDescription {
@@ -301,16 +309,6 @@ fn reference_sizes(scene: &Scene, loaded: &Scene, model: &Model, domain: Domain)
 
 /// How a load acts, and the unit of its magnitude.
 fn load_effect(load: &Load) -> (LoadEffect, &'static str) {
-    let constant = match load.magnitude {
-        Magnitude::Constant(value) => Some(value),
-        Magnitude::Law(..)
-        | Magnitude::Expression(..)
-        | Magnitude::Function(..)
-        | Magnitude::Friction(_)
-        | Magnitude::Separating(_)
-        | Magnitude::External(_) => None,
-    };
-    let initial = value_at_start(&load.magnitude);
     let unit = match load.kind {
         LoadKind::Gravity { .. } => "m/s2",
         LoadKind::Force { .. }
@@ -327,34 +325,38 @@ fn load_effect(load: &Load) -> (LoadEffect, &'static str) {
         load.kind,
         LoadKind::Damper { .. } | LoadKind::SlideDamper(_) | LoadKind::RotationalDamper { .. }
     );
-    let effect = match (constant, is_damper) {
-        (Some(damping), true) => LoadEffect::Damper { damping },
-        (None, true) => LoadEffect::VariableDamper { initial },
-        (Some(magnitude), false) if load.is_conservative() => {
-            LoadEffect::Conservative { magnitude }
-        }
-        (Some(magnitude), false) => LoadEffect::Constant { magnitude },
-        (None, false) => LoadEffect::Input { initial },
-    };
+    let effect = magnitude_effect(&load.magnitude, is_damper, load.is_conservative());
     (effect, unit)
 }
 
-/// How a drive acts, and the unit of its input.
-fn drive_effect(
-    load: &Load,
-    drive: &DriveKind,
+/// How a magnitude acts: as a parameter if it is a constant, else as an input.
+pub(crate) fn magnitude_effect<C>(
+    magnitude: &Magnitude<C>,
+    is_damper: bool,
+    is_conservative: bool,
+) -> LoadEffect {
+    let initial = value_at_start(magnitude);
+    match (magnitude, is_damper) {
+        (Magnitude::Constant(damping), true) => LoadEffect::Damper { damping: *damping },
+        (Magnitude::Constant(magnitude), false) if is_conservative => LoadEffect::Conservative {
+            magnitude: *magnitude,
+        },
+        (Magnitude::Constant(magnitude), false) => LoadEffect::Constant {
+            magnitude: *magnitude,
+        },
+        (_, true) => LoadEffect::VariableDamper { initial },
+        (_, false) => LoadEffect::Input { initial },
+    }
+}
+
+/// How a drive acts on a coordinate with this unit of force, and the unit of its input.
+pub(crate) fn drive_effect<C>(
+    (name, force): (&str, &'static str),
+    drive: &DriveKind<C>,
     left_out: &mut Vec<String>,
 ) -> (LoadEffect, &'static str) {
-    let force = match load.kind {
-        LoadKind::Torque { .. } => "N m",
-        _ => "N",
-    };
     let initial = value_at_start(drive.input());
     match drive {
-        DriveKind::AppliedForce(Magnitude::Constant(magnitude)) => {
-            let magnitude = *magnitude;
-            (LoadEffect::Input { initial: magnitude }, force)
-        }
         DriveKind::AppliedForce(_) => (LoadEffect::Input { initial }, force),
         DriveKind::Motor(motor) => {
             let motor = Motor {
@@ -369,8 +371,7 @@ fn drive_effect(
         }
         DriveKind::SpeedController(_) => {
             left_out.push(format!(
-                "the speed controller {}: what it applies is an input",
-                load.name
+                "the speed controller {name}: what it applies is an input"
             ));
             (LoadEffect::Input { initial: 0.0 }, force)
         }
@@ -378,7 +379,7 @@ fn drive_effect(
 }
 
 /// The value of a magnitude at t = 0, where it depends on nothing else; else zero.
-fn value_at_start(magnitude: &Magnitude) -> f64 {
+fn value_at_start<C>(magnitude: &Magnitude<C>) -> f64 {
     match magnitude {
         Magnitude::Constant(value) => *value,
         Magnitude::Law(Signal::Time, law) => {

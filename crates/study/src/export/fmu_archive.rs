@@ -2,7 +2,7 @@
 
 use crate::explain::{StudyError, scene_error};
 use dwell_export::{Export, FmiVersion, FmuFiles, fmu_files};
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{SceneFile, SceneLocation};
 use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -14,7 +14,7 @@ const COMPILERS: [&str; 3] = ["cc", "gcc", "clang"];
 
 /// The bytes of an FMU, and a sentence about its library.
 pub(super) fn fmu_archive(
-    scene: &Scene,
+    scene: &SceneFile,
     export: &Export,
     version: FmiVersion,
 ) -> Result<(Vec<u8>, String), StudyError> {

@@ -10,10 +10,10 @@ pub(crate) mod sampler;
 use crate::explain::{StudyError, explain_motion, scene_error};
 use crate::number_format::number;
 use description::ExportedScene;
-use dwell_dynamics::DynamicsError;
-use dwell_export::{Export, FitError, Function, Request};
+use dwell_export::{Export, FitError, Function, MachineDescription, Request};
 use dwell_geometry::ActuatorId;
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{Scene, SceneFile, SceneLocation};
+use std::fmt::Display;
 
 /// What of a scene is exported, and how accurately.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,17 +32,19 @@ pub fn compute_export(scene: &Scene, asked: &ExportRequest) -> Result<Export, St
     let exported = ExportedScene::new(scene, asked.interval)?;
     let machine = exported.description.clone();
     let mut sampler = exported.sampler();
-    Export::new(machine, asked.request, &mut sampler)
-        .map_err(|error| explain_fit(&exported, asked, &error))
+    Export::new(machine, asked.request, &mut sampler).map_err(|error| match error {
+        FitError::Sampler(error) => explain_motion(&exported.loaded, exported.model.plan(), &error),
+        other => explain_fit(scene, &exported.description, asked, &other),
+    })
 }
 
 /// Explains why no cells were found, with names and places of the scene.
-fn explain_fit(
-    exported: &ExportedScene<'_>,
+pub(crate) fn explain_fit<E: Display>(
+    scene: &SceneFile,
+    machine: &MachineDescription,
     asked: &ExportRequest,
-    error: &FitError<DynamicsError>,
+    error: &FitError<E>,
 ) -> StudyError {
-    let (scene, plan) = (exported.scene, exported.model.plan());
     let actuator = SceneLocation::Actuator(ActuatorId(0));
     let place = |function: &Function| match function {
         Function::Potential(load) | Function::W(load) | Function::C(load, _) => {
@@ -52,15 +54,26 @@ fn explain_fit(
         Function::Inertia | Function::A(_) | Function::B(_) => (actuator, "over this coordinate"),
     };
     match error {
-        FitError::Sampler(error) => explain_motion(&exported.loaded, plan, error),
+        FitError::Sampler(error) => scene_error(
+            scene,
+            error.to_string(),
+            "",
+            [(actuator, "over this coordinate")],
+        ),
         FitError::NotPeriodic { name, function } => scene_error(
             scene,
             format!("no export: {name} is not periodic over a revolution"),
             "what depends on the number of revolutions needs an interval: give --from and --until",
             [place(function)],
         ),
+        FitError::TooLarge { name } => scene_error(
+            scene,
+            format!("no export: {name} is too large for single precision"),
+            "leave --float out",
+            [(SceneLocation::Whole, "of this scene")],
+        ),
         FitError::NotReached { name, q, .. } => {
-            let (at, unit) = scene.to_scene_unit(*q, plan.is_angle(0));
+            let (at, unit) = scene.to_scene_unit(*q, machine.is_angle);
             let accuracy = asked.request.accuracy;
             let message = format!(
                 "no export of accuracy {accuracy:e}: {name} bends too much near {} {unit}",

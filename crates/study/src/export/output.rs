@@ -9,9 +9,9 @@ use crate::reduce::compute::compute_reduction;
 use dwell_export::{
     Export, FmiVersion, Identifiers, PartKind, Precision, c_files, matlab_files, rust_files,
 };
-use dwell_findings::{Column, Record};
+use dwell_findings::{Column, Record, Table};
 use dwell_report::{Number, TableFormat, json};
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{Scene, SceneFile, SceneLocation};
 
 /// The target of an export.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,6 +39,18 @@ pub fn export(
     target: ExportTarget,
     asked: &ExportRequest,
 ) -> Result<Outcome, StudyError> {
+    let table = || Ok(compute_reduction(scene, None)?.table());
+    export_machine(scene, target, asked, table, || compute_export(scene, asked))
+}
+
+/// Writes what a target needs of a machine: its rows, or its fitted functions.
+pub(crate) fn export_machine(
+    scene: &SceneFile,
+    target: ExportTarget,
+    asked: &ExportRequest,
+    table: impl FnOnce() -> Result<Table, StudyError>,
+    fitted: impl FnOnce() -> Result<Export, StudyError>,
+) -> Result<Outcome, StudyError> {
     if matches!(target, ExportTarget::Fmu(_)) && asked.request.precision == Precision::Float {
         return Err(scene_error(
             scene,
@@ -48,11 +60,11 @@ pub fn export(
         ));
     }
     match target {
-        ExportTarget::Rows(format) => return rows(scene, Some(format)),
-        ExportTarget::Json => return rows(scene, None),
+        ExportTarget::Rows(format) => return rows(scene, &table()?, Some(format)),
+        ExportTarget::Json => return rows(scene, &table()?, None),
         ExportTarget::C | ExportTarget::Rust | ExportTarget::Fmu(_) | ExportTarget::Matlab => {}
     }
-    let export = compute_export(scene, asked)?;
+    let export = fitted()?;
     let mut outcome = Outcome {
         summary: summary(scene, &export),
         record: record(&export),
@@ -93,12 +105,15 @@ pub fn export(
 }
 
 /// The rows of the reduced model, evaluated exactly.
-fn rows(scene: &Scene, format: Option<TableFormat>) -> Result<Outcome, StudyError> {
-    let table = compute_reduction(scene, None)?.table();
+fn rows(
+    scene: &SceneFile,
+    table: &Table,
+    format: Option<TableFormat>,
+) -> Result<Outcome, StudyError> {
     let mut outcome = Outcome::default();
     let stem = format!("{}-reduced", scene.name);
     match format {
-        Some(format) => outcome.files.add_table(&stem, &table, &[format])?,
+        Some(format) => outcome.files.add_table(&stem, table, &[format])?,
         None => {
             let column = |(k, column): (usize, &Column)| {
                 let values = table.rows.iter().map(|row| Number(row[k]));
@@ -111,14 +126,11 @@ fn rows(scene: &Scene, format: Option<TableFormat>) -> Result<Outcome, StudyErro
     }
     let count = table.rows.len();
     outcome.record.add_count("positions", count);
-    outcome.summary = format!(
-        "{}: {count} positions of {}, evaluated exactly\n",
-        scene.title, scene.mechanism.actuators[0].name
-    );
+    outcome.summary = format!("{}: {count} positions, evaluated exactly\n", scene.title);
     Ok(outcome)
 }
 
-fn summary(scene: &Scene, export: &Export) -> String {
+fn summary(scene: &SceneFile, export: &Export) -> String {
     let (machine, measured) = (&export.machine, &export.measured);
     let numbers = match export.request.precision {
         Precision::Double => "double",

@@ -14,7 +14,9 @@ pub(crate) use compile::{
     determinate_model, exact_model, lists_reactions, loaded_determinate_model,
     requested_reaction_bodies, requested_reactions, with_loads,
 };
-pub(crate) use drives::{drive_states, motor_columns, motor_of, source_name, states_of_drives};
+#[cfg(feature = "output")]
+pub(crate) use drives::states_of_drives;
+pub(crate) use drives::{drive_states, motor_columns, motor_of, source_name};
 pub use prepared_scene::PreparedScene;
 pub(crate) use prepared_scene::initial_reduced_state;
 pub use scene_machine::SceneMachine;

@@ -173,6 +173,18 @@ fn explain_structure(scene: &SpaceScene, error: &StructureError) -> StudyError {
             let help = "each degree of freedom needs one actuator: remove an actuator, or replace a joint by one with more freedoms";
             scene_error(scene, message, help, driven("drives it"))
         }
+        StructureError::Gear { joint, reason } => {
+            let name = &scene.mechanism.joints[joint.0].name;
+            let message = format!("the teeth of gear pair `{name}` cannot mesh: {reason}");
+            let help = "both wheels need bearings whose axes keep their places in the carrier, the body of the pitch point; and \
+                        the normal of the teeth must have an arm about each axis";
+            let mut places = joint_labels(&[*joint], "this gear pair");
+            places.push((
+                SceneLocation::Axis(*joint),
+                "the normal of its teeth".to_owned(),
+            ));
+            scene_error(scene, message, help, places)
+        }
         StructureError::Malformed { reason } => scene_error(
             scene,
             (*reason).to_owned(),

@@ -2,12 +2,14 @@
 
 mod check;
 mod explain;
+mod export;
 mod motion;
 mod prepared;
 mod trajectory;
 mod views;
 
 pub use check::check_in_space;
+pub use export::export_in_space;
 pub use motion::simulate_in_space;
 pub use prepared::PreparedSpaceScene;
 pub use trajectory::analyse_in_space;

@@ -312,5 +312,8 @@ pub(super) fn range_limits(scene: &SpaceScene, plan: &Plan) -> ([f64; 2], [bool;
 /// Whether the first coordinate is an angle.
 pub(super) fn is_angle(scene: &SpaceScene) -> bool {
     let kind = scene.mechanism.actuators.first().map(|a| a.kind);
-    !matches!(kind, Some(ActuatorKind::Travel(_)))
+    !matches!(
+        kind,
+        Some(ActuatorKind::Travel(_) | ActuatorKind::Length(_))
+    )
 }

@@ -2,8 +2,8 @@
 
 use super::toolchain::{Scratch, c_compiler, cases, compile, request, run};
 use dwell_export::{Precision, c_files};
-use dwell_scene::Scene;
-use dwell_study::compute_export;
+use dwell_scene::{AnyScene, Scene};
+use dwell_study::{ExportTarget, compute_export, export_in_space};
 
 /// The cases that cannot be exported as they are, with words of the reason.
 const REFUSED: [(&str, &str); 0] = [];
@@ -56,4 +56,44 @@ fn every_case_exports_or_says_why_not() {
         run(&scratch.0, "./program", &[]);
     }
     assert!(exported >= 10, "{exported}");
+}
+
+/// Linkages in space export by the same lines: their self-tests hold exact values of the models in space.
+#[test]
+fn linkages_in_space_export() {
+    let Some(compiler) = c_compiler() else { return };
+    let mut exported = 0;
+    for entry in std::fs::read_dir(cases().join("spatial")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|extension| extension != "toml") {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).unwrap();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        let AnyScene::Space(scene) = AnyScene::parse(name, &text).unwrap() else {
+            panic!("{name} is in space");
+        };
+        let asked = request(1e-7, Precision::Double);
+        let outcome = match export_in_space(&scene, ExportTarget::C, &asked) {
+            Ok(outcome) => outcome,
+            Err(error) => {
+                eprintln!("NOT EXPORTED {name}: {error}");
+                continue;
+            }
+        };
+        exported += 1;
+        let scratch = Scratch::new();
+        let files = outcome.files.iter().map(|(path, bytes)| {
+            let path = path.to_str().unwrap().to_owned();
+            (path, String::from_utf8(bytes.to_vec()).unwrap())
+        });
+        let files: Vec<_> = files.collect();
+        scratch.write(&files);
+        let source = files.iter().find(|(path, _)| path.ends_with(".c")).unwrap();
+        let stem = source.0.trim_end_matches(".c").to_uppercase();
+        let define = format!("-D{stem}_SELF_TEST");
+        compile(&scratch.0, compiler, &[&define, &source.0, "-o", "program"]);
+        run(&scratch.0, "./program", &[]);
+    }
+    assert!(exported >= 5, "{exported}");
 }

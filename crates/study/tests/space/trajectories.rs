@@ -4,7 +4,7 @@
 use super::{SCENES, scene};
 use dwell_findings::Table;
 use dwell_geometry::JointId;
-use dwell_geometry::space::{BodyMotion, Placement, Rotation, Vec3, vec3};
+use dwell_geometry::space::{ActuatorKind, BodyMotion, Placement, Rotation, Vec3, vec3};
 use dwell_kinetostatics::Magnitude;
 use dwell_kinetostatics::space::{Axes, Component, Load};
 use dwell_scene::SpaceScene;
@@ -215,8 +215,8 @@ fn compare_forces(scene: &SpaceScene, row: &Row<'_>, dense: &DenseSpace, found: 
     for (i, actuator) in mechanism.actuators.iter().enumerate() {
         let (id, tau) = (actuator.kind.joint(), dense.actuator_actions[i]);
         let unit = match actuator.kind {
-            dwell_geometry::space::ActuatorKind::Angle(_) => "N m",
-            dwell_geometry::space::ActuatorKind::Travel(_) => "N",
+            ActuatorKind::Angle(_) => "N m",
+            ActuatorKind::Travel(_) | ActuatorKind::Length(_) => "N",
         };
         found.add(
             unit,
@@ -226,9 +226,17 @@ fn compare_forces(scene: &SpaceScene, row: &Row<'_>, dense: &DenseSpace, found: 
         let joint = &mechanism.joints[id.0];
         if let Some(side) = on_ground(id) {
             let sign = if side == 0 { -1.0 } else { 1.0 };
-            let axis = placements[joint.bodies[0].0]
-                .rotation
-                .apply(joint.sides[0].axis);
+            let first = &placements[joint.bodies[0].0];
+            let axis = match actuator.kind {
+                ActuatorKind::Angle(_) | ActuatorKind::Travel(_) => {
+                    first.rotation.apply(joint.sides[0].axis)
+                }
+                ActuatorKind::Length(_) => {
+                    let from = first.position + first.rotation.apply(joint.sides[0].point);
+                    let along = joint_place(id) - from;
+                    along.scaled(1.0 / along.norm())
+                }
+            };
             let acting = axis.scaled(sign * tau);
             match unit {
                 "N" => {

@@ -112,6 +112,45 @@ impl Bodies<'_> {
         (bodies, arms, b - a)
     }
 
+    /// The distance of a joint's points: its row has the unit vector from one to the other.
+    pub(super) fn distance(&self, joint: &Joint) -> Row {
+        let (_, _, d) = self.ends(joint);
+        let length = d.norm();
+        let along = d.scaled(1.0 / length);
+        self.along(joint, along, |d1| {
+            (d1.dot(d1) - d1.dot(along).powi(2)) / length
+        })
+    }
+
+    /// The velocity of the second wheel less that of the first, at the pitch point P and along the normal n of the teeth, both fixed in
+    /// the carrier c:
+    ///
+    /// ```text
+    /// n·(ẋ₂ − ẋ₁) = 0,     ẋ_k = v_k + ω_k×(P − r_k),     J̇ẋ = (ω_c×n)·(ẋ₂ − ẋ₁) + n·Σ ± ω_k×(ẋ_c − v_k)
+    /// ```
+    fn mesh(&self, joint: &Joint, carrier: usize) -> Row {
+        let bodies = joint.bodies.map(|b| b.0);
+        let n = self.arm(carrier, joint.sides[0].axis);
+        let p = self.point(carrier, joint.sides[0].point);
+        let arm = |body: usize| p - self.placements[body].position;
+        let at = |body: usize| self.velocity(body, arm(body));
+        let on = |body: usize, force: Vec3| Gradient {
+            force,
+            moment: arm(body).cross(force),
+        };
+        let turned = |body: usize| {
+            let motion = &self.motions[body];
+            motion.angular_velocity.cross(at(carrier) - motion.velocity)
+        };
+        let [a, b] = bodies;
+        let n1 = self.motions[carrier].angular_velocity.cross(n);
+        Row {
+            bodies,
+            gradients: [on(a, -n), on(b, n)],
+            bias: n1.dot(at(b) - at(a)) + n.dot(turned(b) - turned(a)),
+        }
+    }
+
     /// The angle of a joint about the axis u of the first body.
     pub(super) fn angle(&self, joint: &Joint, u: Vec3) -> Row {
         let bodies = joint.bodies.map(|b| b.0);
@@ -171,12 +210,14 @@ impl Bodies<'_> {
                 let (_, _, d) = self.ends(joint);
                 rows.push(self.along(joint, d.scaled(1.0 / length), |d1| d1.dot(d1) / length));
             }
+            JointKind::Gear { carrier } => rows.push(self.mesh(joint, carrier.0)),
         }
         rows
     }
 }
 
-/// How far a joint is from closed, m and rad: the residual of its rows (2) at placements of all bodies.
+/// How far a joint is from closed, m and rad: the residual of its rows (2) at placements of all bodies. The row of a gear pair is one of
+/// velocities: what its wheels have travelled is seen by comparing two poses, not here.
 pub fn closure_error(joint: &Joint, placements: &[Placement]) -> f64 {
     let bodies = joint.bodies.map(|b| b.0);
     let at = |k: usize, v: Vec3| placements[bodies[k]].rotation.apply(v);
@@ -201,6 +242,51 @@ pub fn closure_error(joint: &Joint, placements: &[Placement]) -> f64 {
         JointKind::Spherical => &[apart],
         JointKind::Planar => &[d.dot(u), tilt],
         JointKind::Distance { length } => &[apart - length],
+        JointKind::Gear { .. } => &[],
     };
     found.iter().fold(0.0, |all, part| all.max(part.abs()))
+}
+
+/// How far the teeth of a gear pair are off after moving from one pose to another, m: what they travel on the second wheel less on the first, each
+/// relative to the carrier by the screw that leads from one pose to the other (its angle below half a revolution). None of other joints.
+pub fn mesh_error(joint: &Joint, poses: [&[Placement]; 2]) -> Option<f64> {
+    let JointKind::Gear { carrier } = joint.kind else {
+        return None;
+    };
+    let travel = |wheel: usize| {
+        let [before, after] = poses.map(|at| in_frame(&at[carrier.0], &at[wheel]));
+        let turned = after.rotation.after(&before.rotation.inverse());
+        let w = turned.vector();
+        // Of the point of the carrier where the teeth are.
+        let p = joint.sides[0].point;
+        let moved = after.position + turned.apply(p - before.position) - p;
+        joint.sides[0].axis.dot(along_screw(w, moved))
+    };
+    let [first, second] = joint.bodies.map(|b| travel(b.0));
+    Some(second - first)
+}
+
+/// A placement in the frame of another.
+fn in_frame(frame: &Placement, body: &Placement) -> Placement {
+    Placement {
+        position: frame.rotation.apply_inverse(body.position - frame.position),
+        rotation: frame.rotation.inverse().after(&body.rotation),
+    }
+}
+
+/// The velocity of a point that a constant twist with this rotation vector w moves by d in unit time: the logarithm of a displacement
+/// (Murray, Li and Sastry 1994, eq. 2.36),
+///
+/// ```text
+/// v = d − ½ w×d + (1/θ² − (1 + cos θ)/(2 θ sin θ)) w×(w×d),     θ = |w|
+/// ```
+fn along_screw(w: Vec3, d: Vec3) -> Vec3 {
+    let angle = w.norm();
+    let factor = if angle < 1e-3 {
+        1.0 / 12.0
+    } else {
+        1.0 / angle.powi(2) - (1.0 + angle.cos()) / (2.0 * angle * angle.sin())
+    };
+    let across = w.cross(d);
+    d - across.scaled(0.5) + w.cross(across).scaled(factor)
 }

@@ -15,6 +15,7 @@ mod simulation;
 mod tables;
 
 pub(crate) use difference::Difference;
+#[cfg(feature = "output")]
 pub(crate) use difference::pair_by_time;
 pub use problem::FreeMotionProblem;
 pub use segmented_motion::SegmentedMotion;
@@ -24,4 +25,5 @@ pub(crate) use simulation::{
     DEFAULT_SAMPLES, check_sample_interval, check_times, compute_free_motion_at,
 };
 pub use simulation::{FreeMotion, MotionSolver, compute_free_motion};
+#[cfg(feature = "output")]
 pub(crate) use tables::sliding_at;

@@ -29,7 +29,7 @@ const ROTATION: [(&str, &str, &str); 3] = [
 const POINT: [(&str, &str); 3] = [("", "m"), ("v", "m/s"), ("a", "m/s2")];
 
 /// Every column of an analysis of a scene; with the time if `timed`.
-pub(in crate::space) fn all_columns(
+pub(crate) fn all_columns(
     scene: &SpaceScene,
     reactions: &JointReactions,
     (analysis, timed): (Analysis, bool),
@@ -82,6 +82,7 @@ impl Columns<'_> {
             let (units, is_angle, what) = match actuator.kind {
                 ActuatorKind::Angle(_) => (["rad", "rad/s", "rad/s2"], true, "angle"),
                 ActuatorKind::Travel(_) => (["m", "m/s", "m/s2"], false, "travel"),
+                ActuatorKind::Length(_) => (["m", "m/s", "m/s2"], false, "length"),
             };
             let name = &actuator.name;
             let suffixes = ["", ".velocity", ".acceleration"];

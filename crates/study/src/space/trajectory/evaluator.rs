@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 
 /// Evaluates all quantities at one position after another.
 #[derive(Clone)]
-pub(in crate::space) struct SpaceEvaluator<'a> {
+pub(crate) struct SpaceEvaluator<'a> {
     scene: &'a SpaceScene,
     model: &'a Model,
     reactions: &'a JointReactions,
@@ -27,7 +27,7 @@ pub(in crate::space) struct SpaceEvaluator<'a> {
 }
 
 impl<'a> SpaceEvaluator<'a> {
-    pub(in crate::space) fn new(
+    pub(crate) fn new(
         scene: &'a SpaceScene,
         (model, reactions): (&'a Model, &'a JointReactions),
         analysis: Analysis,

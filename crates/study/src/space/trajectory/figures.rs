@@ -15,7 +15,7 @@ const SAME: f64 = 1e-9;
 ///
 /// # Errors
 /// [`StudyError::Scene`] where the span of the curves is not within the trajectory.
-pub(in crate::space) fn figures(
+pub(crate) fn figures(
     scene: &SpaceScene,
     swept: Option<(&str, bool)>,
     computed: &ComputedTrajectory<'_>,
@@ -170,7 +170,7 @@ impl SpaceFigures<'_> {
 }
 
 /// Whether a column is in the tables of a scene that lists reactions.
-pub(in crate::space) fn is_listed(quantity: Quantity, reactions: &JointReactions) -> bool {
+pub(crate) fn is_listed(quantity: Quantity, reactions: &JointReactions) -> bool {
     match quantity {
         Quantity::Time
         | Quantity::ActuatorCoordinate(..)

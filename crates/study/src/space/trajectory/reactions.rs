@@ -20,11 +20,11 @@ const COMPONENTS: [Component; 6] = [
 
 /// The reactions of the model of a trajectory, the requested ones first.
 #[derive(Debug, Clone)]
-pub(in crate::space) struct JointReactions {
+pub(crate) struct JointReactions {
     /// The requested ones that the loads determine.
     pub(super) requested: Vec<Reaction>,
     /// The requested ones that redundant constraints leave open.
-    pub(in crate::space) indeterminate: Vec<Reaction>,
+    pub(crate) indeterminate: Vec<Reaction>,
     /// By joint: whether its force and its moment have a magnitude that the loads determine.
     has_magnitude: Vec<[bool; 2]>,
 }
@@ -34,7 +34,7 @@ impl JointReactions {
     ///
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be assembled.
-    pub(in crate::space) fn new(scene: &SpaceScene) -> Result<(Self, Model), StudyError> {
+    pub(crate) fn new(scene: &SpaceScene) -> Result<(Self, Model), StudyError> {
         let joints = &scene.mechanism.joints;
         let whole = (0..joints.len()).flat_map(|j| {
             let reaction = move |component| Reaction {
@@ -53,7 +53,7 @@ impl JointReactions {
             let is_determined = |some: &[Reaction]| !some.iter().any(|r| open.contains(r));
             let has_moment = !matches!(
                 joint.kind,
-                JointKind::Spherical | JointKind::Distance { .. }
+                JointKind::Spherical | JointKind::Distance { .. } | JointKind::Gear { .. }
             );
             let (force, moment) = of_joint.split_at(3);
             [is_determined(force), has_moment && is_determined(moment)]

@@ -74,13 +74,10 @@ impl<'a> SpaceDrawing<'a> {
         }
         let travel = |joint: &Joint| {
             let along = |(placements, _): &(Vec<Placement>, String)| {
-                let [a, b] = [0, 1].map(|k| {
-                    let placement = &placements[joint.bodies[k].0];
-                    placement.position + placement.rotation.apply(joint.sides[k].point)
-                });
-                let axis = placements[joint.bodies[0].0]
-                    .rotation
-                    .apply(joint.sides[0].axis);
+                let [a, b] =
+                    [0, 1].map(|k| placed(placements, joint.side_body(k), joint.sides[k].point));
+                let frame = &placements[joint.side_body(0).0].rotation;
+                let axis = frame.apply(joint.sides[0].axis);
                 axis.dot(b - a)
             };
             crate::ranges::extent(positions.iter().map(along))
@@ -110,7 +107,7 @@ impl<'a> SpaceDrawing<'a> {
     fn joint_points(&self, body: usize) -> impl Iterator<Item = (usize, Vec3)> + '_ {
         let joints = self.scene.mechanism.joints.iter().enumerate();
         joints.flat_map(move |(j, joint)| {
-            let sides = (0..2).filter(move |k| joint.bodies[*k].0 == body);
+            let sides = (0..2).filter(move |k| joint.side_body(*k).0 == body);
             sides.map(move |k| (j, self.bar_end(j, k)))
         })
     }
@@ -131,7 +128,7 @@ impl<'a> SpaceDrawing<'a> {
         let of = &self.scene.mechanism.joints[joint];
         let (body, side) = (of.bodies[k].0, &of.sides[k]);
         let others = self.scene.mechanism.joints.iter().flat_map(|other| {
-            let sides = (0..2).filter(|i| other.bodies[*i].0 == body);
+            let sides = (0..2).filter(|i| other.side_body(*i).0 == body);
             sides.map(|i| other.sides[i].point)
         });
         let named = self.scene.points[body].iter().map(|(_, p)| *p);
@@ -202,7 +199,10 @@ impl<'a> SpaceDrawing<'a> {
         for (j, other) in joints.iter().enumerate().filter(|(j, _)| *j != joint) {
             for (k, l) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let is_near = (own.sides[k].point - other.sides[l].point).norm() < self.same;
-                if own.bodies[k] == other.bodies[l] && is_near && !self.is_ground(own.bodies[k]) {
+                if own.side_body(k) == other.side_body(l)
+                    && is_near
+                    && !self.is_ground(own.bodies[k])
+                {
                     meeting.push((j, k, l));
                 }
             }
@@ -214,7 +214,7 @@ impl<'a> SpaceDrawing<'a> {
     fn middle_of_joints(&self, body: BodyId, placements: &[Placement]) -> Vec3 {
         let joints = self.scene.mechanism.joints.iter();
         let points = joints.flat_map(|joint| {
-            let sides = (0..2).filter(|k| joint.bodies[*k] == body);
+            let sides = (0..2).filter(|k| joint.side_body(*k) == body);
             sides.map(|k| placed(placements, body, joint.sides[k].point))
         });
         let points: Vec<Vec3> = points.collect();
@@ -319,7 +319,7 @@ impl<'a> Scenery<'a> {
 
     /// Where a joint is drawn, on its `k`th body.
     pub(super) fn anchor(&self, joint: usize, k: usize) -> Vec3 {
-        let body = self.drawing.scene.mechanism.joints[joint].bodies[k];
+        let body = self.drawing.scene.mechanism.joints[joint].side_body(k);
         self.at(body, self.drawing.anchor(joint, k))
     }
 

@@ -108,12 +108,19 @@ impl<'a> Scenery<'a> {
                 self.picture.add(near, ball(&view, at, 0.4 * unit));
                 self.ground_mark(joint, at, None);
             }
+            // The normal of the teeth, through the pitch point.
+            JointKind::Gear { .. } => {
+                let ends = [-0.9, 0.9].map(|s| view.place(at + axes.axis.scaled(s * unit)));
+                let normal = Shape::line(ends.to_vec(), Pen::new(Paint::Ink, 2.5));
+                self.picture.add(near, vec![normal]);
+                self.picture.add(near, ball(&view, at, 0.3 * unit));
+            }
         }
     }
 
     /// The axes of a joint on one of its bodies, in those of the ground.
     fn axes(&self, joint: &Joint, k: usize) -> Axes {
-        let (body, side) = (joint.bodies[k], &joint.sides[k]);
+        let (body, side) = (joint.side_body(k), &joint.sides[k]);
         Axes::new(self.turned(body, side.axis), self.turned(body, side.normal))
     }
 
@@ -326,6 +333,22 @@ impl<'a> Scenery<'a> {
                     name: None,
                 };
                 self.picture.add(near, vec![Shape::line(arc, pen), arrow]);
+            }
+            // Beside the rod, from one of its ends towards the other.
+            ActuatorKind::Length(_) => {
+                let ends = [self.anchor(j, 0), at].map(|end| view.place(end));
+                let [dx, dy] = [0, 1].map(|k| ends[1][k] - ends[0][k]);
+                let long = dx.hypot(dy).max(f64::MIN_POSITIVE);
+                let aside = [-dy, dx].map(|d| 1.2 * unit * d / long);
+                let point =
+                    |s: f64| [0, 1].map(|k| ends[0][k] + s * (ends[1][k] - ends[0][k]) + aside[k]);
+                let arrow = Shape::Arrow {
+                    from: point(0.3),
+                    to: point(0.7),
+                    pen,
+                    name: None,
+                };
+                self.picture.add(near, vec![arrow]);
             }
             ActuatorKind::Travel(_) => {
                 let offset = axes.normal.scaled(1.5 * unit);

@@ -15,7 +15,7 @@ const WIDTH: f64 = 2.0;
 fn local_points(scene: &SpaceScene) -> Vec<(BodyId, Vec3)> {
     let joints = scene.mechanism.joints.iter();
     let mut points: Vec<(BodyId, Vec3)> = joints
-        .flat_map(|joint| [0, 1].map(|k| (joint.bodies[k], joint.sides[k].point)))
+        .flat_map(|joint| [0, 1].map(|k| (joint.side_body(k), joint.sides[k].point)))
         .collect();
     for (b, named) in scene.points.iter().enumerate() {
         points.extend(named.iter().map(|(_, p)| (BodyId(b), *p)));

@@ -3,6 +3,7 @@
 use crate::explain::StudyError;
 use crate::sweep::compute::point::PointResult;
 use crate::sweep::compute::{Design, RequestedQuantities, Row, VariantFamily};
+use dwell_dynamics::interruption;
 use dwell_findings::{Column, Table};
 use dwell_scene::Scene;
 use rayon::prelude::*;
@@ -38,11 +39,18 @@ pub fn compute_sweep(
     let blocks = indices.par_chunks(block_length(family.as_ref()));
     let blocks = blocks.map(|block| {
         let mut rows = Vec::with_capacity(block.len());
+        if interruption::is_requested() {
+            return rows;
+        }
         let study = (scene, &design, family.as_ref());
         requested.points(study, block, &mut |row| rows.push(row));
         rows
     });
     let rows: Vec<Row> = blocks.flatten_iter().collect();
+    if rows.len() < indices.len() {
+        let message = "the computation was interrupted".to_owned();
+        return Err(scene.error(message, None, &[]).into());
+    }
     Ok(ComputedSweep {
         table: requested.table(&design, &rows),
         messages: rows.into_iter().map(|row| row.result.message).collect(),

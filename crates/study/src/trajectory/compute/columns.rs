@@ -340,7 +340,7 @@ impl Columns<'_> {
                 self.add(name, unit, Quantity::LoadForce(k), meaning);
             }
             let meaning = match scene.drives.iter().any(|drive| drive.name == load.name) {
-                true => "power of the drive on all bodies, behind its rotor",
+                true => "power of the drive on all bodies, without what its rotor takes",
                 false => "power of the load on all bodies",
             };
             let name = format!("{}.power", load.name);

@@ -17,8 +17,11 @@ impl ChartContext<'_> {
                 let quantity = Quantity::ActuatorCoordinate(i, order);
                 self.results.column_index(quantity)
             };
-            let Some(first) = column(0) else { continue };
-            let name = symbol(&self.results.columns[first].name);
+            let Some(any) = column(0).or_else(|| column(1)) else {
+                continue;
+            };
+            let name = &self.results.columns[any].name;
+            let name = symbol(name.strip_suffix(".velocity").unwrap_or(name));
             let curves = [(0, name.clone()), (1, format!("d{name}/dt"))];
             for (order, label) in curves {
                 let curve = column(order).map(|k| [(label.clone(), k)]);

@@ -132,7 +132,7 @@ fn printed_extrema(rows: &Rows, summary: &serde_json::Value) -> [(&'static str, 
 const TABLE_ACCURACY: &str = "1e-7";
 
 /// Differences of a text of `symbolic` from the rows of `reduce`, in a coordinate, with a reaction.
-type Judge = fn(&str, &Rows, &str, &str) -> Differences;
+type Comparison = fn(&str, &Rows, &str, &str) -> Differences;
 
 /// The reduced model once more: as a table, as code in three languages, and as formulas.
 fn compare_copies(
@@ -179,7 +179,7 @@ fn compare_copies(
         match program.run("code", scene, &arguments) {
             Ok(run) => {
                 let text = run.text(end)?;
-                let (key, differences): (_, Judge) = match format {
+                let (key, differences): (_, Comparison) = match format {
                     "latex" => ("written-formulas", formula_differences),
                     _ => ("written-code", code_differences),
                 };

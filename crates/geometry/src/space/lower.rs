@@ -1,0 +1,226 @@
+//! Which joints are in the tree, and a mechanism in which those whose coordinates are needed can be.
+//!
+//! The joints with the fewest freedoms are in the tree, so that those with many are cut and no orientation is an unknown where it
+//! need not be; before them those whose coordinates are needed: bearings of gear pairs, driven joints, screws (whose angle counts all
+//! revolutions). A driven joint or a screw that closes a loop of such joints all the same moves a massless body instead,
+//! which is welded to its second body.
+
+use super::mechanism::{Assembly, Joint, JointKind, Mechanism, Placement};
+use crate::error::{AssemblyError, StructureError};
+use crate::mechanism::{Body, BodyId, JointId};
+
+/// A mechanism with the massless bodies that it needs, and their welds, after its own.
+pub(super) struct Lowered {
+    pub(super) mechanism: Mechanism,
+    /// By joint: whether it is in the tree.
+    pub(super) in_tree: Vec<bool>,
+    /// By massless body: the joint that moves it. Its weld has the same place among the welds.
+    split: Vec<JointId>,
+}
+
+/// By joint: whether it is on the chain between a wheel of a gear pair and its carrier.
+///
+/// # Errors
+/// [`StructureError::Gear`] where there is no such chain.
+fn bearings(mechanism: &Mechanism) -> Result<Vec<bool>, StructureError> {
+    let mut found = vec![false; mechanism.joints.len()];
+    for (j, joint) in mechanism.joints.iter().enumerate() {
+        let JointKind::Gear { carrier } = joint.kind else {
+            continue;
+        };
+        for wheel in joint.bodies {
+            let chain = chain_between(mechanism, carrier, wheel);
+            let chain = chain.ok_or(StructureError::Gear {
+                joint: JointId(j),
+                reason: "no joints with one axis connect a wheel with the carrier",
+            })?;
+            chain.iter().for_each(|j| found[j.0] = true);
+        }
+    }
+    Ok(found)
+}
+
+/// The fewest joints with one axis that connect two bodies.
+fn chain_between(mechanism: &Mechanism, from: BodyId, to: BodyId) -> Option<Vec<JointId>> {
+    let has_one_axis = |kind| match kind {
+        JointKind::Weld | JointKind::Revolute | JointKind::Prismatic => true,
+        JointKind::Cylindrical | JointKind::Helical { .. } => true,
+        JointKind::Universal | JointKind::Spherical | JointKind::Planar => false,
+        JointKind::Distance { .. } | JointKind::Gear { .. } => false,
+    };
+    // By body: the joint that leads to it from a body nearer to the first.
+    let mut by: Vec<Option<(JointId, BodyId)>> = vec![None; mechanism.bodies.len()];
+    let mut reached = vec![from];
+    let mut next = 0;
+    while let Some(&body) = reached.get(next) {
+        next += 1;
+        for (j, joint) in mechanism.joints.iter().enumerate() {
+            let side = joint.bodies.iter().position(|b| *b == body);
+            let Some(side) = side.filter(|_| has_one_axis(joint.kind)) else {
+                continue;
+            };
+            let other = joint.bodies[1 - side];
+            if by[other.0].is_none() && other != from {
+                by[other.0] = Some((JointId(j), body));
+                reached.push(other);
+            }
+        }
+    }
+    let (mut chain, mut body) = (Vec::new(), to);
+    while body != from {
+        let (joint, nearer) = by[body.0]?;
+        chain.push(joint);
+        body = nearer;
+    }
+    Some(chain)
+}
+
+/// By joint: whether it is in the tree, by Kruskal's rule with the freedoms as weights.
+fn tree_joints(mechanism: &Mechanism, bearings: &[bool]) -> Vec<bool> {
+    let weight = |j: &usize| match mechanism.joints[*j].kind {
+        _ if bearings.get(*j) == Some(&true) => 0,
+        _ if mechanism.is_driven(JointId(*j)) => 1,
+        JointKind::Helical { .. } => 2,
+        kind => 3 + kind.freedoms(),
+    };
+    let can_carry = |j: &usize| {
+        let kind = mechanism.joints[*j].kind;
+        !matches!(kind, JointKind::Distance { .. } | JointKind::Gear { .. })
+    };
+    let mut order: Vec<usize> = (0..mechanism.joints.len()).filter(can_carry).collect();
+    order.sort_by_key(weight);
+    let mut part: Vec<usize> = (0..mechanism.bodies.len()).collect();
+    let mut in_tree = vec![false; mechanism.joints.len()];
+    for j in order {
+        let [a, b] = mechanism.joints[j].bodies.map(|b| part[b.0]);
+        if a != b {
+            in_tree[j] = true;
+            part.iter_mut().filter(|p| **p == b).for_each(|p| *p = a);
+        }
+    }
+    in_tree
+}
+
+impl Lowered {
+    /// The mechanism with what it needs.
+    ///
+    /// # Errors
+    /// [`StructureError::Gear`] where the bearings of gear pairs cannot be in a tree.
+    pub(super) fn new(mechanism: &Mechanism) -> Result<Self, StructureError> {
+        let bearings = bearings(mechanism)?;
+        let mut lowered = Self {
+            in_tree: tree_joints(mechanism, &bearings),
+            mechanism: mechanism.clone(),
+            split: Vec::new(),
+        };
+        let is_gear = |j: &JointId| {
+            let kind = mechanism.joints[j.0].kind;
+            matches!(kind, JointKind::Gear { .. })
+        };
+        let mut bearings_in_tree = bearings.iter().zip(&lowered.in_tree);
+        if bearings_in_tree.any(|(bearing, in_tree)| *bearing && !in_tree) {
+            let mut joints = (0..mechanism.joints.len()).map(JointId);
+            return Err(StructureError::Gear {
+                joint: joints.find(is_gear).unwrap_or(JointId(0)),
+                reason: "the bearings of gear pairs form a loop of their own",
+            });
+        }
+        let is_counted = |j: &usize| {
+            let kind = mechanism.joints[*j].kind;
+            let has_coordinate = match kind {
+                JointKind::Distance { .. } | JointKind::Gear { .. } => false,
+                JointKind::Helical { .. } => true,
+                JointKind::Weld
+                | JointKind::Revolute
+                | JointKind::Prismatic
+                | JointKind::Cylindrical
+                | JointKind::Universal
+                | JointKind::Spherical
+                | JointKind::Planar => mechanism.is_driven(JointId(*j)),
+            };
+            has_coordinate && !lowered.in_tree[*j]
+        };
+        lowered.split = (0..mechanism.joints.len())
+            .filter(is_counted)
+            .map(JointId)
+            .collect();
+        if lowered.split.is_empty() {
+            return Ok(lowered);
+        }
+        let mut with = mechanism.clone();
+        for joint in &lowered.split {
+            let Joint {
+                name,
+                bodies,
+                sides,
+                ..
+            } = mechanism.joints[joint.0].clone();
+            let moved = BodyId(with.bodies.len());
+            with.bodies.push(Body::named(name.clone()));
+            with.joints[joint.0].bodies[1] = moved;
+            let weld = Joint::new(name, [moved, bodies[1]], JointKind::Weld, [sides[1]; 2]);
+            with.joints.push(weld);
+        }
+        lowered.in_tree = tree_joints(&with, &bearings);
+        lowered.mechanism = with;
+        Ok(lowered)
+    }
+
+    /// The assembly with the placements of the massless bodies.
+    pub(super) fn assembly(&self, assembly: &Assembly) -> Assembly {
+        let bodies = self.mechanism.bodies.len() - self.split.len();
+        let own = (0..bodies).map(|b| assembly.placement(b));
+        let welded = (0..self.split.len()).map(|k| assembly.placement(self.welded_to(k).0));
+        let placements: Vec<Placement> = own.chain(welded).collect();
+        Assembly {
+            q: assembly.q.clone(),
+            placements,
+        }
+    }
+
+    /// The body to which a massless one is welded.
+    fn welded_to(&self, k: usize) -> BodyId {
+        let joints = self.mechanism.joints.len() - self.split.len();
+        self.mechanism.joints[joints + k].bodies[1]
+    }
+
+    /// An error in terms of the mechanism as it was described.
+    pub(super) fn described(&self, mut error: AssemblyError) -> AssemblyError {
+        let bodies = self.mechanism.bodies.len() - self.split.len();
+        let joints = self.mechanism.joints.len() - self.split.len();
+        let own_bodies = |list: &mut Vec<BodyId>| {
+            for body in list.iter_mut().filter(|b| b.0 >= bodies) {
+                *body = self.welded_to(body.0 - bodies);
+            }
+            list.sort_unstable();
+            list.dedup();
+        };
+        let own_joints = |list: &mut Vec<JointId>| {
+            for joint in list.iter_mut().filter(|j| j.0 >= joints) {
+                *joint = self.split[joint.0 - joints];
+            }
+            list.sort_unstable();
+            list.dedup();
+        };
+        if self.split.is_empty() {
+            return error;
+        }
+        match &mut error {
+            AssemblyError::NoAssembly { bodies, joints, .. }
+            | AssemblyError::SingularAssembly { bodies, joints }
+            | AssemblyError::Ambiguous { bodies, joints, .. } => {
+                own_bodies(bodies);
+                own_joints(joints);
+            }
+            AssemblyError::Inconsistent { joints, .. } => own_joints(joints),
+            AssemblyError::NotMeshing { .. } => {}
+            AssemblyError::Structure(structure) => match structure {
+                StructureError::UnderActuated { bodies, .. }
+                | StructureError::NotConnected { bodies } => own_bodies(bodies),
+                StructureError::OverConstrained { joints, .. } => own_joints(joints),
+                StructureError::Gear { .. } | StructureError::Malformed { .. } => {}
+            },
+        }
+        error
+    }
+}

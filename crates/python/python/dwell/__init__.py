@@ -1,0 +1,57 @@
+"""Kinematics, forces, the reduced model and motions of planar mechanisms.
+
+A mechanism is read from a scene file, or built; it is assembled, and then asked:
+
+>>> import numpy as np, dwell
+>>> m = dwell.Builder("Pendulum")
+>>> m.body("ground", O=(0, 0))
+>>> m.body("bob", O=(0, 0), P=(0, -0.5), mass=2.0, center="P", inertia=0.0)
+>>> m.pin("O", "ground", "bob").actuator("phi", angle=("ground", "bob")).load("weight", gravity=(0, -9.81))
+Builder('Pendulum')
+>>> bob = m.assemble()
+>>> round(bob.at(np.pi / 2).actuator_force("phi"), 6)  # held horizontally, N m
+9.81
+
+Everything is in SI: m, rad, kg, s, N. Reactions are named ``joint.component``: the force or moment of the joint's first-named body
+on the second. Points are named ``body.point``. Results know their units, and convert to pandas, polars and xarray where these are
+installed.
+"""
+
+from __future__ import annotations
+
+from ._builder import Builder
+from ._mechanism import Cycle, Equilibrium, Mechanism, Period, State, StateSpace
+from ._native import DwellError, SceneError, __version__
+from ._reduced import Coefficients, ReducedModel, Table
+from ._results import Motion, Results
+from ._scene import Scene
+from ._sweep import sweep
+
+__all__ = [
+    "Builder",
+    "Coefficients",
+    "Cycle",
+    "DwellError",
+    "Equilibrium",
+    "Mechanism",
+    "Motion",
+    "Period",
+    "ReducedModel",
+    "Results",
+    "Scene",
+    "SceneError",
+    "State",
+    "StateSpace",
+    "Table",
+    "__version__",
+    "read",
+    "sweep",
+]
+
+
+def read(path: str) -> Mechanism:
+    """Reads a scene file and assembles its mechanism: ``Scene.read(path).assemble()``.
+
+    Raises SceneError with everything that is wrong in the file, each with its place.
+    """
+    return Scene.read(path).assemble()

@@ -1,0 +1,304 @@
+"""Assembled mechanisms, and what can be asked of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native
+from ._reduced import Coefficients, ReducedModel
+from ._results import Motion, Results
+
+if TYPE_CHECKING:
+    from ._scene import Scene
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Period:
+    """The period of a conservative motion, s, and its energy, J."""
+
+    period: float
+    energy: float
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """An equilibrium: free coordinates (rad or m); stability "asymptotic", "centre", "unstable", "neutral" or "undecided"; modes as
+    (angular frequency in rad/s, damping ratio); eigenvalues, 1/s."""
+
+    coordinates: Array
+    stability: str
+    modes: list[tuple[float, float]]
+    eigenvalues: npt.NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class StateSpace:
+    """A linearised motion, ẋ = A x + B u, z = C x + D u, in deviations from the operating point.
+
+    ``scipy.signal.StateSpace(*s.matrices)`` and ``control.ss(*s.matrices)`` take it.
+    """
+
+    states: list[str]
+    inputs: list[str]
+    outputs: list[str]
+    operating_point: Array
+    a: Array
+    b: Array
+    c: Array
+    d: Array
+    eigenvalues: npt.NDArray[np.complex128]
+
+    @property
+    def matrices(self) -> tuple[Array, Array, Array, Array]:
+        """A, B, C, D."""
+        return self.a, self.b, self.c, self.d
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """A steady cycle: period (s), mean speed (rad/s), coefficient of fluctuation, whether a small disturbance decays, the work of each
+    load and drive in a cycle (J), and the moment of inertia to be added for the fluctuation that was asked for (kg m²)."""
+
+    period: float
+    mean_speed: float
+    fluctuation: float
+    is_stable: bool
+    works: dict[str, float]
+    flywheel: float | None
+
+
+class State:
+    """Positions, velocities, accelerations and forces at one position. Points are ``body.point``, reactions ``joint.component``."""
+
+    def __init__(self, native: _native.State) -> None:
+        self._native = native
+
+    def position(self, point: str) -> Array:
+        """Position of a point in the ground's frame, m."""
+        return np.array(self._native.position(point))
+
+    def velocity(self, point: str) -> Array:
+        """Velocity of a point, m/s."""
+        return np.array(self._native.velocity(point))
+
+    def acceleration(self, point: str) -> Array:
+        """Acceleration of a point, m/s²."""
+        return np.array(self._native.acceleration(point))
+
+    def angle(self, body: str) -> float:
+        """Angle of a body from the ground, rad."""
+        return self._native.angle(body)
+
+    def angular_velocity(self, body: str) -> float:
+        """Angular velocity of a body, rad/s."""
+        return self._native.angular_velocity(body)
+
+    def angular_acceleration(self, body: str) -> float:
+        """Angular acceleration of a body, rad/s²."""
+        return self._native.angular_acceleration(body)
+
+    def coordinate(self, name: str) -> tuple[float, float, float]:
+        """A coordinate with its first two derivatives: rad or m, per s, per s²."""
+        value, velocity, acceleration = self._native.coordinate(name)
+        return value, velocity, acceleration
+
+    def reaction(self, name: str) -> float:
+        """A reaction, N or N m: of the joint's first-named body on the second. ``magnitude`` of a pin is the length of (x, y)."""
+        return self._native.reaction(name)
+
+    def actuator_force(self, name: str) -> float:
+        """The force, N, or torque, N m, that an actuator must exert."""
+        return self._native.actuator_force(name)
+
+
+class Mechanism:
+    """An assembled mechanism: constant, and safe to use in several threads. Coordinates are those of the actuators, in their order.
+
+    In a notebook it shows itself as a picture; ``plot()`` draws it with matplotlib.
+    """
+
+    def __init__(self, native: _native.Mechanism, scene: Scene) -> None:
+        self._native = native
+        self.scene = scene
+
+    @property
+    def actuators(self) -> list[str]:
+        """Names of the coordinates."""
+        return self._native.actuators
+
+    @property
+    def reactions(self) -> list[str]:
+        """Names of all reactions: ``joint.component``."""
+        return self._native.reactions
+
+    @property
+    def limits(self) -> tuple[float, float] | None:
+        """The limits of the only coordinate, rad or m, if it has any."""
+        return self._native.limits
+
+    @property
+    def points(self) -> dict[str, list[str]]:
+        """The bodies with their named points."""
+        return dict(self._native.points)
+
+    @property
+    def start(self) -> Array:
+        """The coordinates at assembly, rad or m."""
+        return np.array(self._native.start)
+
+    def at(
+        self,
+        q: float | Sequence[float],
+        q_dot: float | Sequence[float] = 0.0,
+        q_ddot: float | Sequence[float] = 0.0,
+        *,
+        t: float = 0.0,
+    ) -> State:
+        """State and forces with coordinates q, velocities and accelerations, under all loads at time t (s): the inverse dynamics. At
+        rest it is statics. A number stands for the only coordinate, or for all of them.
+
+        Raises DwellError where the mechanism cannot reach q.
+        """
+        count = len(self.actuators)
+
+        def all_of(values: float | Sequence[float]) -> list[float]:
+            array = np.asarray(values, dtype=np.float64)
+            return [float(array)] * count if array.ndim == 0 else [float(value) for value in array]
+
+        return State(self._native.at(all_of(q), all_of(q_dot), all_of(q_ddot), float(t)))
+
+    def reduced(self, reactions: Sequence[str] | None = None) -> ReducedModel:
+        """The reduced model with these reactions: joints (``A``) or components (``guide.normal``); without a list, all of them.
+
+        Raises DwellError unless there is exactly one actuator.
+        """
+        return ReducedModel(self._native.reduced(list(self.reactions if reactions is None else reactions)))
+
+    def reduce(self, q: npt.ArrayLike, reactions: Sequence[str] | None = None, *, threads: int = 0) -> Coefficients:
+        """``reduced(reactions)(q)``: m, ½m′, a, b, w and c at coordinates of any shape."""
+        return self.reduced(reactions)(q, threads=threads)
+
+    def kinematics(self) -> Results:
+        """Positions, velocities and accelerations along the scene's prescribed motion or coordinate sweep: the columns of
+        ``dwell kinematics``."""
+        return Motion(self._native.kinematics()).check()
+
+    def statics(self) -> Results:
+        """Actuator forces and reactions at rest in every position of the prescribed motion or coordinate sweep."""
+        return Motion(self._native.statics()).check()
+
+    def kinetostatics(self) -> Results:
+        """Everything of ``kinematics`` and the forces that the motion needs."""
+        return Motion(self._native.kinetostatics()).check()
+
+    def simulate(
+        self,
+        accuracy: float | None = None,
+        *,
+        method: str | None = None,
+        tolerance: float = 1e-10,
+        sample_interval: float | None = None,
+    ) -> Motion:
+        """The free motion of the scene under its loads, drives and friction.
+
+        accuracy: the cheapest method that reaches it, with an error estimate. Otherwise ``method`` ("bdf", "esdirk34", "tr-bdf2",
+        "tsit45", "dop853") with a relative and absolute tolerance; without either, BDF at 1e-10, as the command. sample_interval: s; absent, a thousandth of the duration.
+        """
+        return Motion(self._native.simulate(accuracy, method, tolerance, sample_interval))
+
+    def period(self) -> Period:
+        """Period and energy of the free motion, by quadrature: one free coordinate, conservative loads."""
+        return Period(*self._native.period())
+
+    def equilibria(self) -> list[Equilibrium]:
+        """The equilibria, with stability and modes."""
+        return [
+            Equilibrium(np.array(e["coordinates"]), e["stability"], e["modes"], _complex(e["eigenvalues"]))
+            for e in self._native.equilibria()
+        ]
+
+    def linearise(self) -> StateSpace:
+        """Small motions about the equilibrium nearest to the initial state."""
+        found = self._native.linearise()
+        states, inputs, outputs = found["states"], found["inputs"], found["outputs"]
+
+        def matrix(rows: list[list[float]], height: int, width: int) -> Array:
+            return np.array(rows, dtype=np.float64).reshape(height, width)
+
+        return StateSpace(
+            states,
+            inputs,
+            outputs,
+            np.array(found["operating_point"]),
+            matrix(found["a"], len(states), len(states)),
+            matrix(found["b"], len(states), len(inputs)),
+            matrix(found["c"], len(outputs), len(states)),
+            matrix(found["d"], len(outputs), len(inputs)),
+            _complex(found["eigenvalues"]),
+        )
+
+    def cycle(
+        self,
+        accuracy: float | None = None,
+        *,
+        method: str | None = None,
+        tolerance: float = 1e-10,
+        fluctuation: float | None = None,
+    ) -> Cycle:
+        """The steady cycle of a rotating machine, and the flywheel that keeps its coefficient of fluctuation to ``fluctuation``."""
+        found = self._native.cycle(accuracy, method, tolerance, fluctuation)
+        return Cycle(
+            period=found["period"],
+            mean_speed=found["mean_speed"],
+            fluctuation=found["fluctuation"],
+            is_stable=found["is_stable"],
+            works=dict(found["works"]),
+            flywheel=found["flywheel"],
+        )
+
+    def rhs(self) -> tuple[Callable[[float, Array], Array], Callable[[float, Array], Array], Array]:
+        """The free motion as plain functions for an integrator such as ``scipy.integrate.solve_ivp``: f(t, y), its Jacobian, and the
+        state at t = 0. States: free coordinates, their velocities, states of drives and contacts, works of the sources without a
+        potential. The functions share one working memory: one thread at a time.
+        """
+        equation = self._native.equation()
+        states = len(equation.initial_state)
+
+        def f(t: float, y: Array) -> Array:
+            return equation.rates(t, np.asarray(y, dtype=np.float64))
+
+        def jacobian(t: float, y: Array) -> Array:
+            return equation.jacobian(t, np.asarray(y, dtype=np.float64)).reshape(states, states)
+
+        return f, jacobian, equation.initial_state
+
+    def plot(self, q: float | Sequence[float] | None = None, **options: Any) -> Any:
+        """Draws the mechanism with matplotlib at coordinates q (absent: at assembly). Returns the axes."""
+        from ._drawing import plot_mechanism
+
+        return plot_mechanism(self, q, **options)
+
+    def animate(self, motion: Results | None = None, *, frames: int = 120, interval: float = 40.0) -> Any:
+        """A matplotlib animation over a motion, or over the range of the only coordinate. interval: ms between frames."""
+        from ._drawing import animate_mechanism
+
+        return animate_mechanism(self, motion, frames, interval)
+
+    def _repr_svg_(self) -> str:
+        from ._drawing import svg
+
+        return svg(self)
+
+    def __repr__(self) -> str:
+        return f"Mechanism({self.scene.title!r}, driven by {', '.join(self.actuators)})"
+
+
+def _complex(pairs: list[list[float]]) -> npt.NDArray[np.complex128]:
+    array = np.array(pairs, dtype=np.float64).reshape(-1, 2)
+    return array[:, 0] + 1j * array[:, 1]

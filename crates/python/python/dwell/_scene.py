@@ -1,0 +1,107 @@
+"""Scenes: the description of a mechanism, read and checked."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from typing import TYPE_CHECKING, Callable, Sequence
+
+import numpy.typing as npt
+
+from . import _native
+from ._mechanism import Mechanism
+
+if TYPE_CHECKING:
+    from ._reduced import Coefficients
+    from ._results import Motion, Results
+
+
+class Scene:
+    """A scene, from its text; ``Scene.read(path)`` reads a file. The format is that of the ``dwell`` command.
+
+    >>> scene = Scene('''
+    ... bodies.ground.points = { O = [0, 0] }
+    ... bodies.bob = { points = { O = [0, 0] }, mass = 2.0, center = [0.5, 0] }
+    ... joints.O = { revolute = ["ground.O", "bob.O"] }
+    ... actuators.phi = { angle = ["ground", "bob"] }
+    ... ''')
+    >>> scene.value("bob.mass")
+    2.0
+    >>> Scene("bodies = 3").title
+    Traceback (most recent call last):
+    dwell.SceneError: ...
+    """
+
+    def __init__(self, text: str, *, _native_scene: _native.Scene | None = None) -> None:
+        self._native = _native.Scene(text) if _native_scene is None else _native_scene
+        for message in self._native.warnings:
+            warnings.warn(message, stacklevel=2)
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str]) -> Scene:
+        """Reads a scene file. Raises SceneError with line, column and help."""
+        return cls._of(_native.Scene.read(os.fspath(path)))
+
+    @classmethod
+    def _of(cls, native: _native.Scene) -> Scene:
+        return cls("", _native_scene=native)
+
+    @property
+    def title(self) -> str:
+        """Its title."""
+        return self._native.title
+
+    @property
+    def text(self) -> str:
+        """Its text, with what ``with_value`` changed."""
+        return self._native.text
+
+    def value(self, path: str) -> float:
+        """A number by its path, in the scene's own unit: ``crank.mass``, ``rod.points.C[0]``, ``loads.brake.damping``."""
+        return self._native.value(path)
+
+    def with_value(self, path: str, value: float) -> Scene:
+        """The same scene with a number replaced."""
+        return Scene._of(self._native.with_value(path, value))
+
+    def with_function(
+        self, load: str, signals: Sequence[str], function: Callable[..., float], *, breakpoints: bool | None = None
+    ) -> Scene:
+        """The same scene with the magnitude of a load computed by a Python function.
+
+        It is called with the signals, in their order: ``t`` (s), coordinates (rad or m), velocities such as ``phi.velocity``.
+        One call costs about 1 µs more than an expression. Nothing is known of where the function switches: a motion may step over
+        a short pulse of it. ``breakpoints=False`` says that it is smooth, and is silent; otherwise a warning says so.
+
+        An exception in the function makes the magnitude not a number: the evaluation fails there and names the load.
+        """
+        if breakpoints is None:
+            warnings.warn(
+                f"`{load}` is a Python function: where it switches is not known, and a motion may step over a short pulse of it "
+                "(breakpoints=False says that it is smooth)",
+                stacklevel=2,
+            )
+        return Scene._of(self._native.with_function(load, list(signals), function))
+
+    def check(self) -> str:
+        """What ``dwell check`` prints: degrees of freedom, range, groups, assembly modes, loads and requests."""
+        return self._native.check()
+
+    def assemble(self) -> Mechanism:
+        """Assembles its mechanism. Raises SceneError where it cannot be assembled or a load does not fit it."""
+        return Mechanism(self._native.assemble(), self)
+
+    def reduce(self, q: npt.ArrayLike, reactions: Sequence[str] | None = None, *, threads: int = 0) -> Coefficients:
+        """``assemble().reduce(q, reactions)``."""
+        return self.assemble().reduce(q, reactions, threads=threads)
+
+    def kinetostatics(self) -> Results:
+        """``assemble().kinetostatics()``."""
+        return self.assemble().kinetostatics()
+
+    def simulate(self, accuracy: float | None = None) -> Motion:
+        """``assemble().simulate(accuracy)``."""
+        return self.assemble().simulate(accuracy)
+
+    def __repr__(self) -> str:
+        return f"Scene({self.title!r})"

@@ -1,0 +1,180 @@
+//! Assembled mechanisms, and their state at one position.
+
+use crate::errors::Raise as _;
+use crate::interrupt::run;
+use crate::machine::{Cycle, Equation, Equilibrium, Linear};
+use crate::motion::{Rows, solver};
+use crate::reduced::ReducedModel;
+use pyo3::prelude::*;
+
+/// An assembled mechanism: constant, shared between threads.
+#[pyclass(frozen, module = "dwell._native")]
+pub(crate) struct Mechanism {
+    pub(crate) mechanism: dwell::Mechanism,
+}
+
+#[pymethods]
+impl Mechanism {
+    #[getter]
+    fn actuators(&self) -> Vec<String> {
+        let names = self.mechanism.actuators().into_iter();
+        names.map(str::to_owned).collect()
+    }
+
+    #[getter]
+    fn reactions(&self) -> Vec<String> {
+        self.mechanism.reactions()
+    }
+
+    #[getter]
+    fn limits(&self) -> Option<(f64, f64)> {
+        self.mechanism.limits()
+    }
+
+    /// Bodies with their points, by name.
+    #[getter]
+    fn points(&self) -> Vec<(String, Vec<String>)> {
+        let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect();
+        let bodies = self.mechanism.points().into_iter();
+        bodies
+            .map(|(body, points)| (body.to_owned(), owned(points)))
+            .collect()
+    }
+
+    /// The coordinates at assembly.
+    #[getter]
+    fn start(&self) -> Vec<f64> {
+        self.mechanism.start()
+    }
+
+    /// The state and forces at one position.
+    #[pyo3(signature = (q, q_dot, q_ddot, t))]
+    fn at(
+        &self,
+        py: Python<'_>,
+        q: Vec<f64>,
+        q_dot: Vec<f64>,
+        q_ddot: Vec<f64>,
+        t: f64,
+    ) -> PyResult<State> {
+        let forces = self.mechanism.inverse_dynamics(t, &q, &q_dot, &q_ddot);
+        Ok(State {
+            forces: forces.or_raise(py)?,
+        })
+    }
+
+    fn reduced(&self, py: Python<'_>, reactions: Vec<String>) -> PyResult<ReducedModel> {
+        let names = reactions.iter().map(String::as_str);
+        let reduced = self.mechanism.reduced(names).or_raise(py)?;
+        Ok(ReducedModel { reduced })
+    }
+
+    fn kinematics(&self, py: Python<'_>) -> PyResult<Rows> {
+        let found = run(py, || self.mechanism.kinematics_along_motion())?;
+        Ok(Rows(found.or_raise(py)?))
+    }
+
+    fn statics(&self, py: Python<'_>) -> PyResult<Rows> {
+        let found = run(py, || self.mechanism.statics_along_motion())?;
+        Ok(Rows(found.or_raise(py)?))
+    }
+
+    fn kinetostatics(&self, py: Python<'_>) -> PyResult<Rows> {
+        let found = run(py, || self.mechanism.kinetostatics())?;
+        Ok(Rows(found.or_raise(py)?))
+    }
+
+    #[pyo3(signature = (accuracy, method, tolerance, sample_interval))]
+    fn simulate(
+        &self,
+        py: Python<'_>,
+        accuracy: Option<f64>,
+        method: Option<&str>,
+        tolerance: f64,
+        sample_interval: Option<f64>,
+    ) -> PyResult<Rows> {
+        let solver = solver(accuracy, method, tolerance, sample_interval)?;
+        let found = run(py, || self.mechanism.simulate(&solver))?;
+        Ok(Rows(found.or_raise(py)?))
+    }
+
+    fn period(&self, py: Python<'_>) -> PyResult<(f64, f64)> {
+        let found = run(py, || self.mechanism.period())?.or_raise(py)?;
+        Ok((found.period, found.energy))
+    }
+
+    fn equilibria(&self, py: Python<'_>) -> PyResult<Vec<Equilibrium>> {
+        let found = run(py, || self.mechanism.equilibria())?.or_raise(py)?;
+        Ok(found.into_iter().map(Equilibrium::from).collect())
+    }
+
+    fn linearise(&self, py: Python<'_>) -> PyResult<Linear> {
+        let found = run(py, || self.mechanism.linearise())?.or_raise(py)?;
+        Ok(Linear::from(found))
+    }
+
+    #[pyo3(signature = (accuracy, method, tolerance, fluctuation))]
+    fn cycle(
+        &self,
+        py: Python<'_>,
+        accuracy: Option<f64>,
+        method: Option<&str>,
+        tolerance: f64,
+        fluctuation: Option<f64>,
+    ) -> PyResult<Cycle> {
+        let solver = solver(accuracy, method, tolerance, None)?;
+        let found = run(py, || self.mechanism.cycle(&solver, fluctuation))?;
+        Ok(Cycle::from(found.or_raise(py)?))
+    }
+
+    fn equation(&self, py: Python<'_>) -> PyResult<Equation> {
+        let equation = self.mechanism.equation_of_motion().or_raise(py)?;
+        Ok(Equation { equation })
+    }
+}
+
+/// The state of all bodies and all forces at one position.
+#[pyclass(frozen, module = "dwell._native")]
+pub(crate) struct State {
+    forces: dwell::InverseDynamics,
+}
+
+#[pymethods]
+impl State {
+    fn position(&self, py: Python<'_>, point: &str) -> PyResult<[f64; 2]> {
+        self.forces.kinematics().position(point).or_raise(py)
+    }
+
+    fn velocity(&self, py: Python<'_>, point: &str) -> PyResult<[f64; 2]> {
+        self.forces.kinematics().velocity(point).or_raise(py)
+    }
+
+    fn acceleration(&self, py: Python<'_>, point: &str) -> PyResult<[f64; 2]> {
+        self.forces.kinematics().acceleration(point).or_raise(py)
+    }
+
+    fn angle(&self, py: Python<'_>, body: &str) -> PyResult<f64> {
+        self.forces.kinematics().angle(body).or_raise(py)
+    }
+
+    fn angular_velocity(&self, py: Python<'_>, body: &str) -> PyResult<f64> {
+        self.forces.kinematics().angular_velocity(body).or_raise(py)
+    }
+
+    fn angular_acceleration(&self, py: Python<'_>, body: &str) -> PyResult<f64> {
+        let found = self.forces.kinematics().angular_acceleration(body);
+        found.or_raise(py)
+    }
+
+    fn coordinate(&self, py: Python<'_>, name: &str) -> PyResult<[f64; 3]> {
+        self.forces.kinematics().coordinate(name).or_raise(py)
+    }
+
+    fn reaction(&self, py: Python<'_>, name: &str) -> PyResult<f64> {
+        self.forces.reaction(name).or_raise(py)
+    }
+
+    fn actuator_force(&self, py: Python<'_>, name: &str) -> PyResult<f64> {
+        self.forces.actuator_force(name).or_raise(py)
+    }
+}

@@ -1,0 +1,85 @@
+//! Scenes.
+
+use crate::errors::{Raise as _, keep};
+use crate::mechanism::Mechanism;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// The description of a mechanism, read and checked.
+#[pyclass(frozen, module = "dwell._native")]
+pub(crate) struct Scene {
+    pub(crate) scene: dwell::Scene,
+}
+
+#[pymethods]
+impl Scene {
+    #[new]
+    fn new(py: Python<'_>, text: &str) -> PyResult<Self> {
+        let scene = dwell::Scene::parse(text).or_raise(py)?;
+        Ok(Self { scene })
+    }
+
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let scene = dwell::Scene::read(path).or_raise(py)?;
+        Ok(Self { scene })
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        self.scene.title()
+    }
+
+    #[getter]
+    fn text(&self) -> &str {
+        self.scene.text()
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.scene.warnings().map(str::to_owned).collect()
+    }
+
+    fn value(&self, py: Python<'_>, path: &str) -> PyResult<f64> {
+        self.scene.value(path).or_raise(py)
+    }
+
+    fn with_value(&self, py: Python<'_>, path: &str, value: f64) -> PyResult<Self> {
+        let scene = self.scene.with_value(path, value).or_raise(py)?;
+        Ok(Self { scene })
+    }
+
+    /// The magnitude of a load by a Python function of a tuple of signals.
+    fn with_function(
+        &self,
+        py: Python<'_>,
+        load: &str,
+        signals: Vec<String>,
+        function: Py<PyAny>,
+    ) -> PyResult<Self> {
+        let names: Vec<&str> = signals.iter().map(String::as_str).collect();
+        let called = move |signals: &[f64]| {
+            Python::attach(|py| {
+                let tuple = pyo3::types::PyTuple::new(py, signals)?;
+                function.call1(py, tuple)?.extract::<f64>(py)
+            })
+            // A function that fails has no value: the evaluation fails there, names the load, and is raised from this.
+            .unwrap_or_else(|error| {
+                keep(error);
+                f64::NAN
+            })
+        };
+        let scene = self.scene.with_function(load, &names, called);
+        let scene = scene.or_raise(py)?;
+        Ok(Self { scene })
+    }
+
+    fn check(&self, py: Python<'_>) -> PyResult<String> {
+        py.detach(|| self.scene.describe()).or_raise(py)
+    }
+
+    fn assemble(&self, py: Python<'_>) -> PyResult<Mechanism> {
+        let mechanism = py.detach(|| self.scene.assemble()).or_raise(py)?;
+        Ok(Mechanism { mechanism })
+    }
+}

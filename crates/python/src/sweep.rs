@@ -1,0 +1,47 @@
+//! Parameter sweeps.
+
+use crate::errors::Raise as _;
+use crate::interrupt::run;
+use crate::scene::Scene;
+use numpy::{IntoPyArray as _, PyArray1};
+use pyo3::prelude::*;
+
+/// The columns of a sweep: name, unit, values; and by row why results are missing.
+type Columns<'py> = (
+    Vec<(String, String, Bound<'py, PyArray1<f64>>)>,
+    Vec<Option<String>>,
+);
+
+/// Every combination of what varies.
+#[pyfunction]
+#[pyo3(signature = (scene, vary, results, samples, seed))]
+pub(crate) fn sweep<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    vary: Vec<(String, String)>,
+    results: Vec<String>,
+    samples: Option<u64>,
+    seed: u64,
+) -> PyResult<Columns<'py>> {
+    let mut sweep = dwell::Sweep::new(&scene.scene);
+    for (path, variation) in &vary {
+        sweep = sweep.vary(path, variation);
+    }
+    for result in &results {
+        sweep = sweep.result(result);
+    }
+    if let Some(samples) = samples {
+        sweep = sweep.samples(samples, seed);
+    }
+    let found = run(py, || sweep.run())?.or_raise(py)?;
+    let names: Vec<_> = found
+        .columns()
+        .map(|(name, unit)| (name.to_owned(), unit.to_owned()))
+        .collect();
+    let mut columns = Vec::with_capacity(names.len());
+    for (name, unit) in names {
+        let values = found.column(&name).or_raise(py)?.into_pyarray(py);
+        columns.push((name, unit, values));
+    }
+    Ok((columns, found.messages))
+}

@@ -1,0 +1,247 @@
+//! `dwell export` of a scene in space.
+
+use super::explain::explain_position;
+use super::prepared::PreparedSpaceScene;
+use crate::explain::StudyError;
+use crate::export::description::{domain, drive_effect, magnitude_effect};
+use crate::export::output::{ExportTarget, export_machine};
+use crate::export::{ExportRequest, explain_fit};
+use crate::output::Outcome;
+use crate::reduce::compute::{ReducedScene as _, Reduction};
+use dwell_export::{
+    Domain, Export, FitError, Function, FunctionSampler, LoadDescription, MachineDescription,
+    PartKind, ReferenceSizes,
+};
+use dwell_geometry::PositionError;
+use dwell_kinetostatics::space::{LoadKind, Workspace};
+use dwell_kinetostatics::{Coefficients, InverseDynamics, ReducedModel as _};
+use dwell_scene::SpaceScene;
+
+/// Exports the reduced model of a machine in space.
+///
+/// # Errors
+/// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
+pub fn export_in_space(
+    scene: &SpaceScene,
+    target: ExportTarget,
+    asked: &ExportRequest,
+) -> Result<Outcome, StudyError> {
+    let table = || Ok(Reduction::new(PreparedSpaceScene::new(scene)?, None)?.table());
+    export_machine(scene, target, asked, table, || fitted(scene, asked))
+}
+
+/// The fitted functions.
+fn fitted(scene: &SpaceScene, asked: &ExportRequest) -> Result<Export, StudyError> {
+    let prepared = PreparedSpaceScene::new(scene)?;
+    let domain = domain(
+        &scene.file,
+        prepared.model.range(),
+        prepared.is_angle(),
+        asked.interval,
+    )?;
+    let machine = describe(&prepared, domain);
+    let mut sampler = SpaceSampler::new(&prepared, &machine);
+    Export::new(machine.clone(), asked.request, &mut sampler).map_err(|error| match error {
+        FitError::Sampler(error) => explain_position(scene, prepared.model.model().plan(), &error),
+        other => explain_fit(&scene.file, &machine, asked, &other),
+    })
+}
+
+/// The shapes of the loads, then of the drives.
+fn load_kinds(scene: &SpaceScene) -> Vec<LoadKind> {
+    let drives = scene.drives.iter();
+    let drives = drives.map(|drive| LoadKind::along(drive.coordinate));
+    let loads = scene.loads.iter().map(|load| load.kind);
+    loads.chain(drives).collect()
+}
+
+/// The unit of a load's magnitude, and whether it resists with a speed.
+fn load_unit(kind: &LoadKind) -> (&'static str, bool) {
+    match kind {
+        LoadKind::Gravity(_) => ("m/s2", false),
+        LoadKind::Torque { .. } | LoadKind::JointTorque(_) => ("N m", false),
+        LoadKind::Force { .. } | LoadKind::PointToPointForce { .. } | LoadKind::SlideForce(_) => {
+            ("N", false)
+        }
+        LoadKind::Spring { .. } => ("N/m", false),
+        LoadKind::TorsionSpring { .. } => ("N m/rad", false),
+        LoadKind::Damper { .. } | LoadKind::SlideDamper(_) => ("N s/m", true),
+        LoadKind::RotationalDamper(_) => ("N m s/rad", true),
+    }
+}
+
+fn describe(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> MachineDescription {
+    let scene = prepared.scene;
+    let mut left_out = Vec::new();
+    let loads = scene.loads.iter().map(|load| {
+        let (unit, is_damper) = load_unit(&load.kind);
+        LoadDescription {
+            name: load.name.clone(),
+            effect: magnitude_effect(&load.magnitude, is_damper, load.kind.is_conservative()),
+            unit,
+        }
+    });
+    let mut loads: Vec<LoadDescription> = loads.collect();
+    for drive in &scene.drives {
+        let (force, _) = load_unit(&LoadKind::along(drive.coordinate));
+        let (effect, unit) = drive_effect((&drive.name, force), &drive.kind, &mut left_out);
+        let name = drive.name.clone();
+        loads.push(LoadDescription { name, effect, unit });
+    }
+    let names: Vec<String> = prepared
+        .indeterminate
+        .iter()
+        .map(|&reaction| scene.reaction_name(reaction))
+        .collect();
+    if !names.is_empty() {
+        left_out.push(format!(
+            "the statically indeterminate reactions {}",
+            names.join(", ")
+        ));
+    }
+    let [start, q_dot] = initial(scene);
+    let q = match domain.revolutions {
+        0 => start.clamp(domain.from, domain.to),
+        _ => start.rem_euclid(domain.to),
+    };
+    MachineDescription {
+        name: scene.name.clone(),
+        title: scene.title.clone(),
+        scene_hash: scene.hash(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        coordinate: prepared.coordinate_name().to_owned(),
+        is_angle: prepared.is_angle(),
+        domain,
+        initial: [q, q_dot],
+        loads,
+        reactions: prepared.reaction_units(),
+        points: Vec::new(),
+        sizes: sizes(prepared, domain),
+        left_out,
+    }
+}
+
+/// q and q̇ at the start.
+fn initial(scene: &SpaceScene) -> [f64; 2] {
+    let first = |of: &[f64]| of.first().copied();
+    let assembly = first(&scene.assembly.q).unwrap_or(0.0);
+    match &scene.motion {
+        Some(spec) => [
+            first(&spec.initial_coordinates).unwrap_or(assembly),
+            first(&spec.initial_velocities).unwrap_or(0.0),
+        ],
+        None => [assembly, 0.0],
+    }
+}
+
+/// What m, the forces and lengths come to.
+fn sizes(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> ReferenceSizes {
+    let (scene, length) = (prepared.scene, prepared.size());
+    let parts = [0.1, 0.3, 0.5, 0.7, 0.9];
+    let positions = parts.map(|part| domain.from + part * domain.length());
+    // A position that cannot be reached is reported when it is sampled.
+    let found = prepared.coefficients(&positions).unwrap_or_default();
+    let inertia = found.iter().fold(0.0_f64, |max, at| max.max(at.m.abs()));
+    let mass: f64 = scene.masses.iter().map(|mass| mass.mass).sum();
+    let positive = |value: f64| {
+        let usable = value.is_finite() && value > 0.0;
+        if usable { value } else { 1.0 }
+    };
+    let kinds = load_kinds(scene);
+    let unit_loads = kinds.iter().map(|kind| match kind {
+        LoadKind::Gravity(_) => positive(mass),
+        LoadKind::Torque { .. }
+        | LoadKind::JointTorque(_)
+        | LoadKind::TorsionSpring { .. }
+        | LoadKind::RotationalDamper(_) => positive(1.0 / length),
+        LoadKind::Force { .. }
+        | LoadKind::PointToPointForce { .. }
+        | LoadKind::SlideForce(_)
+        | LoadKind::Damper { .. }
+        | LoadKind::SlideDamper(_) => 1.0,
+        LoadKind::Spring { .. } => positive(length),
+    });
+    ReferenceSizes {
+        inertia: positive(inertia),
+        length: positive(length),
+        unit_loads: unit_loads.collect(),
+    }
+}
+
+/// The exact functions of a machine in space.
+struct SpaceSampler<'a> {
+    prepared: &'a PreparedSpaceScene<'a>,
+    loads: Vec<LoadKind>,
+    workspace: Workspace<f64>,
+    coefficients: Coefficients,
+    response: InverseDynamics<f64>,
+    curves: [Vec<Function>; 3],
+    columns: [Vec<Function>; 3],
+}
+
+impl<'a> SpaceSampler<'a> {
+    fn new(prepared: &'a PreparedSpaceScene<'a>, machine: &MachineDescription) -> Self {
+        let model = prepared.model.model();
+        Self {
+            workspace: model.workspace(),
+            coefficients: model.coefficient_buffer(),
+            response: model.result_buffer(),
+            curves: PartKind::ALL.map(|kind| machine.curves(kind)),
+            columns: PartKind::ALL.map(|kind| machine.columns(kind)),
+            loads: load_kinds(prepared.scene),
+            prepared,
+        }
+    }
+
+    /// The response to one unit of a load.
+    fn respond(&mut self, load: usize, q: f64) -> Result<Option<f64>, PositionError> {
+        let model = self.prepared.model.model();
+        let kind = &self.loads[load];
+        model.unit_load_response(&[q], kind, &mut self.workspace, &mut self.response)?;
+        Ok(model.potential_energy(kind, &self.workspace))
+    }
+}
+
+impl FunctionSampler for SpaceSampler<'_> {
+    type Error = PositionError;
+
+    fn sample(
+        &mut self,
+        part: PartKind,
+        q: f64,
+        curves: &mut [[f64; 2]],
+        columns: &mut [f64],
+    ) -> Result<(), PositionError> {
+        let model = self.prepared.model.model();
+        model.reduce(q, &mut self.workspace, &mut self.coefficients)?;
+        for (k, out) in curves.iter_mut().enumerate() {
+            *out = match self.curves[part as usize][k] {
+                Function::Potential(load) => {
+                    let potential = self.respond(load, q)?;
+                    [potential.unwrap_or(f64::NAN), 0.5 * self.response.tau[0]]
+                }
+                // The others are columns.
+                _ => [self.coefficients.m, self.coefficients.half_dm],
+            };
+        }
+        let mut evaluated = None;
+        for (k, out) in columns.iter_mut().enumerate() {
+            let function = self.columns[part as usize][k];
+            if let Function::W(load) | Function::C(load, _) = function
+                && evaluated != Some(load)
+            {
+                self.respond(load, q)?;
+                evaluated = Some(load);
+            }
+            *out = match function {
+                Function::W(_) => -self.response.tau[0],
+                Function::A(k) => self.coefficients.a[k],
+                Function::B(k) => self.coefficients.b[k],
+                Function::C(_, k) => self.response.reactions[k],
+                // They are curves, or there are none.
+                Function::Inertia | Function::Potential(_) | Function::Position(..) => f64::NAN,
+            };
+        }
+        Ok(())
+    }
+}
