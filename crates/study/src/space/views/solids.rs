@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 /// Corners of a circle.
 const CORNERS: usize = 32;
 /// Width of the edges of symbols, pixels.
-const EDGE: f64 = 2.0;
+const EDGE: f64 = 1.4;
 /// Shades of what is seen from the side and of what faces the reader.
 const SIDE: f64 = 0.72;
 const FACE: f64 = 0.9;
