@@ -137,6 +137,9 @@ impl Compared {
             let scale = match unit.as_str() {
                 "N" => force.max(moment / size),
                 "N m" => moment.max(force * size),
+                // Points may stay where they are while the bodies turn.
+                "m/s" => largest.max(size * of("rad/s")),
+                "m/s2" => largest.max(size * of("rad/s2")),
                 _ => *largest,
             };
             assert!(
@@ -340,7 +343,7 @@ fn motions_are_those_of_the_dense_equations() {
         .map(|name| compare(name, Analysis::Kinematics))
         .iter()
         .sum();
-    assert!(compared > 8000, "{compared}");
+    assert!(compared > 7000, "{compared}");
 }
 
 #[test]
@@ -371,5 +374,5 @@ fn what_redundant_constraints_share_is_not_written() {
             .any(|j| c.name.starts_with(&format!("{}.", j.name)))
     });
     let names: Vec<_> = of_joints.map(|c| c.name.as_str()).collect();
-    assert_eq!(names, ["D.moment-z"]);
+    assert!(names.is_empty(), "{names:?}");
 }

@@ -1,6 +1,7 @@
 //! A mechanism in one position, as it is seen from one side: bodies as bars and plates, joints by the symbols of spatial kinematics.
 
 use super::projection::{Picture, View};
+use super::segments::{line_of, nearest_of_segment};
 use super::solids::{center_of_mass, circle, hull};
 use dwell_geometry::BodyId;
 use dwell_geometry::space::{Joint, JointKind, Placement, Vec3};
@@ -9,7 +10,7 @@ use dwell_scene::SpaceScene;
 
 /// Half the length of a hinge, in sizes of the picture; less where joints are closer, but no less than the second.
 const SYMBOL: f64 = 0.032;
-const MIN_SYMBOL: f64 = 0.013;
+const MIN_SYMBOL: f64 = 0.02;
 /// The same in distances of joints on one body.
 const SYMBOL_OF_DISTANCE: f64 = 0.28;
 /// Points of a body nearer than this, in sizes, are one.
@@ -88,7 +89,12 @@ impl<'a> SpaceDrawing<'a> {
 
     /// The smallest distance of two joints on a body; infinite without two.
     fn nearest_joints(&self, body: usize) -> f64 {
-        let points: Vec<Vec3> = self.joint_points(body).map(|(_, p)| p).collect();
+        let joints = self.scene.mechanism.joints.iter();
+        let points = joints.flat_map(|joint| {
+            let sides = (0..2).filter(|k| joint.bodies[*k].0 == body);
+            sides.map(|k| joint.sides[k].point)
+        });
+        let points: Vec<Vec3> = points.collect();
         let pairs = points
             .iter()
             .enumerate()
@@ -470,30 +476,4 @@ impl<'a> Scenery<'a> {
 fn placed(placements: &[Placement], body: BodyId, point: Vec3) -> Vec3 {
     let placement = &placements[body.0];
     placement.position + placement.rotation.apply(point)
-}
-
-/// The point of a segment that is nearest to another.
-fn nearest_of_segment([a, b]: [Vec3; 2], to: Vec3) -> Vec3 {
-    let along = b - a;
-    let length = along.dot(along);
-    let part = if length > 0.0 {
-        (to - a).dot(along) / length
-    } else {
-        0.0
-    };
-    a + along.scaled(part.clamp(0.0, 1.0))
-}
-
-/// The ends of the straight line through all points; none if they are on none.
-fn line_of(points: &[Vec3], same: f64) -> Option<[Vec3; 2]> {
-    let first = points[0];
-    let far = |from: Vec3| {
-        let all = points.iter().copied();
-        all.max_by(|a, b| (*a - from).norm().total_cmp(&(*b - from).norm()))
-    };
-    let end = far(first)?;
-    let start = far(end)?;
-    let along = (end - start).unit()?;
-    let is_on = |p: &Vec3| along.cross(*p - start).norm() < same;
-    points.iter().all(is_on).then_some([start, end])
 }

@@ -34,8 +34,15 @@ impl<'a> Scenery<'a> {
         match joint.kind {
             JointKind::Revolute => {
                 self.center_line(at, axes.axis);
+                // In the colour of the body that moves, so that one of two hinges close together is seen, too.
+                let body = if self.drawing.is_ground(two) {
+                    one
+                } else {
+                    two
+                };
+                let paint = (self.drawing.color(body), self.name(body));
                 self.picture
-                    .add(near, cylinder(&view, at, &axes, hinge, Paint::Grey));
+                    .add(near, cylinder(&view, at, &axes, hinge, paint));
                 self.ground_mark(joint, at, Some(axes.axis));
             }
             JointKind::Spherical => {
@@ -50,13 +57,14 @@ impl<'a> Scenery<'a> {
                 let sleeve = [HINGE_RADIUS * unit, SLEEVE * unit];
                 self.picture.add(
                     near,
-                    cylinder(&view, at, &axes, sleeve, self.drawing.color(two)),
+                    cylinder(&view, at, &axes, sleeve, (self.drawing.color(two), None)),
                 );
             }
             JointKind::Helical { pitch } => {
                 self.guide(j);
                 let sleeve = [HINGE_RADIUS * unit, SLEEVE * unit];
-                let mut shapes = cylinder(&view, at, &axes, sleeve, self.drawing.color(two));
+                let mut shapes =
+                    cylinder(&view, at, &axes, sleeve, (self.drawing.color(two), None));
                 shapes.push(thread(&view, at, &axes, sleeve, pitch >= 0.0));
                 self.picture.add(near, shapes);
             }
@@ -80,7 +88,7 @@ impl<'a> Scenery<'a> {
                         at,
                         &axes,
                         [unit, 0.3 * unit],
-                        self.drawing.color(two),
+                        (self.drawing.color(two), None),
                     ),
                 );
                 self.ground_mark(joint, at, Some(axes.normal));
@@ -188,8 +196,10 @@ impl<'a> Scenery<'a> {
         );
         let sleeve = [HINGE_RADIUS * unit, SLEEVE * unit];
         let near = view.nearness(at) + BEFORE * unit;
-        self.picture
-            .add(near, cylinder(&view, at, &axes, sleeve, Paint::Grey));
+        self.picture.add(
+            near,
+            cylinder(&view, at, &axes, sleeve, (Paint::Grey, None)),
+        );
         self.ground_mark(joint, at, Some(axes.axis));
         let apart = axes.axis.dot(rod - at);
         let ends = [

@@ -7,6 +7,7 @@ mod drawing;
 mod joints;
 mod paths;
 mod projection;
+mod segments;
 mod solids;
 
 use self::drawing::{Detail, SpaceDrawing};

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 /// Corners of a circle.
 const CORNERS: usize = 32;
 /// Width of the edges of symbols, pixels.
-const EDGE: f64 = 2.0;
+const EDGE: f64 = 1.4;
 /// Shades of what is seen from the side and of what faces the reader.
 const SIDE: f64 = 0.72;
 const FACE: f64 = 0.9;
@@ -75,11 +75,11 @@ pub(super) fn cylinder(
     at: Vec3,
     axes: &Axes,
     [radius, half]: [f64; 2],
-    color: Paint,
+    (color, name): (Paint, Option<&str>),
 ) -> Vec<Shape> {
     let ends = [-half, half].map(|s| at + axes.axis.scaled(s));
     let outline = ends.iter().flat_map(|end| rim(view, *end, axes, radius));
-    let mut shapes = face(hull(outline.collect()), (color, SIDE), Paint::Ink, None).to_vec();
+    let mut shapes = face(hull(outline.collect()), (color, SIDE), Paint::Ink, name).to_vec();
     let nearest = ends[usize::from(view.nearness(ends[1]) > view.nearness(ends[0]))];
     // Seen exactly from the side it has no end.
     if view.length(axes.axis) < 0.999 {
@@ -87,7 +87,7 @@ pub(super) fn cylinder(
             rim(view, nearest, axes, radius),
             (color, FACE),
             Paint::Ink,
-            None,
+            name,
         ));
         let pin = rim(view, nearest, axes, 0.35 * radius);
         shapes.push(Shape::area(pin, Pen::new(Paint::Ink, 1.0), 1.0));
