@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 /// Radii of hinges and balls, half a block's width and length, half the length of a sleeve: in half lengths of a hinge.
 const HINGE_RADIUS: f64 = 0.5;
 const BALL_RADIUS: f64 = 0.55;
-const BLOCK: [f64; 2] = [0.6, 1.1];
+const BLOCK: [f64; 2] = [0.8, 1.3];
 const SLEEVE: f64 = 1.3;
 const PLATE: [f64; 2] = [2.4, 0.08];
 /// How far a guide goes on beyond the travel, in the same.
