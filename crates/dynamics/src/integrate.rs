@@ -3,8 +3,8 @@
 //! diffsol's own `solve` has no limit of steps and does not check for finite states, and its explicit methods accept
 //! a step whose error is NaN (`f64::max` discards it). So every step is taken here, and
 //! after each one the state, the number of steps and the errors of evaluations are checked. An evaluation
-//! that fails stores its error in a cell and NaN in the derivative, or a huge number where NaN is accepted: the integrator then
-//! shortens its step or fails, and the caller gets the error of that evaluation.
+//! that fails stores its error in a cell and NaN in the derivative: the integrator then shortens
+//! its step or fails, and the caller gets the error of that evaluation.
 
 mod step_loop;
 
@@ -28,10 +28,6 @@ type Solver = NalgebraLU<f64>;
 
 /// Smallest step, s, at a rate of 1 per s or less; at a higher one, in proportion shorter.
 const MIN_STEP: f64 = 1e-17;
-
-/// The rates that an explicit method of diffsol is given where an evaluation fails: it takes the error of a step that is not a
-/// number for none, and accepts it. One with these rates it refuses, and tries a shorter one.
-const REFUSED_RATE: f64 = 1e150;
 
 /// Integrates a system from `start` until `end` (s), or without an end until the observer stops it. The
 /// observer is called after every step. Where a function of time or of the state switches, one integration ends and
@@ -263,8 +259,6 @@ fn integrate_smooth(
     let system = RefCell::new(system);
     let failure: RefCell<Option<DynamicsError>> = RefCell::new(None);
     let (evaluations, jacobians) = (Cell::new(0), Cell::new(0));
-    // The search for a first step passes over what is not a number.
-    let refused = Cell::new(f64::NAN);
     // diffsol requests the Jacobian column by column at one state.
     let last = RefCell::new((vec![f64::NAN; n + 1], vec![0.0; n * n]));
     let solver = |e: DiffsolError| solver_error(&e, start.t);
@@ -280,7 +274,7 @@ fn integrate_smooth(
                     // The first error since the last good step is the cause; what a NaN then
                     // leads to is not.
                     failure.borrow_mut().get_or_insert(e);
-                    out.fill(refused.get());
+                    out.fill(f64::NAN);
                 }
             },
             |x, _p, t, v, jv| {
@@ -338,7 +332,6 @@ fn integrate_smooth(
         Method::Tsit45 | Method::Dop853 => {
             let state = state_of(Tableau::tsit45()).map_err(solver)?;
             let mut by = problem.tsit45_solver(state).map_err(solver)?;
-            refused.set(REFUSED_RATE);
             step_loop.run(&mut by, observer)
         }
     };

@@ -51,7 +51,7 @@ impl CompiledLoads {
     }
 
     /// The largest number of signals of one load.
-    pub(super) fn most_signals(&self) -> usize {
+    pub(super) fn max_signals(&self) -> usize {
         self.signals.iter().map(Vec::len).max().unwrap_or(0)
     }
 }

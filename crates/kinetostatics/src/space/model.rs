@@ -197,7 +197,7 @@ impl Model {
             virtual_motion: self.plan.pose_motion(),
             magnitudes: vec![T::from_f64(0.0); self.loads.kinds.len()],
             load_wrenches: vec![Wrench::default(); self.masses.len()],
-            signals: SignalWorkspace::new(self.loads.most_signals()),
+            signals: SignalWorkspace::new(self.loads.max_signals()),
         }
     }
 

@@ -306,7 +306,7 @@ pub(super) fn explain_loads(
             error.to_string(),
             "reduce the coefficient of friction",
             SceneLocation::Load(load),
-            "jams",
+            "self-locking here",
         ),
     };
     scene_error(scene, message, help, [(at, label)])

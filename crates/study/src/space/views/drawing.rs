@@ -267,7 +267,12 @@ impl<'a> SpaceDrawing<'a> {
     }
 
     /// The mechanism seen from one side; without words where it moves.
-    pub(super) fn seen(&self, view: View, placements: &[Placement], detail: Detail) -> Vec<Shape> {
+    pub(super) fn drawn_from(
+        &self,
+        view: View,
+        placements: &[Placement],
+        detail: Detail,
+    ) -> Vec<Shape> {
         let mut scenery = Scenery {
             drawing: self,
             placements,

@@ -31,7 +31,7 @@ const MAX_FRAMES: usize = 60;
 const DELAY_MS: u32 = 60;
 const WIDTH_PX: u32 = 640;
 
-const CAPTION: &str = "Top view (x–y) above the front view (x–z), beside it the side view from the right (y–z), and an axonometric view, all \
+const CAPTION: &str = "Top view (x–y) above the front view (x–z), next to it the side view from the right (y–z), and an axonometric view, all \
                        to one scale. Cylinders are hinges, long ones sleeves on rods, blocks slides, balls spherical joints, forks with a cross universal joints; \
                        hatching is the ground, an arrow the driven joint, a quartered disc a centre of mass. Light lines are paths of points.";
 
@@ -216,7 +216,7 @@ impl<'a> Views<'a> {
 
     fn shapes(&self, view: View, placements: &[Placement], detail: Detail) -> Vec<Shape> {
         let mut shapes = paths(&self.positions.all, &self.drawing, view);
-        shapes.extend(self.drawing.seen(view, placements, detail));
+        shapes.extend(self.drawing.drawn_from(view, placements, detail));
         shapes
     }
 

@@ -73,6 +73,10 @@ fn operand_start(text: &str) -> Option<usize> {
                 break;
             }
         }
+        // The bracket that closes has none that opens.
+        if depth > 0 {
+            return None;
+        }
     }
     let word = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
     Some(text.get(..start)?.trim_end_matches(word).len())
