@@ -133,13 +133,16 @@ impl<'a> ParsedCoordinates<'a> {
     }
 }
 
+/// Reads a coordinate of a section.
+type ReadCoordinate<'r, 'a, C> = &'r dyn Fn(&Entry<'a>) -> Option<C>;
+
 impl<'a, C: AnyCoordinate> ParsedCoordinates<'a, C> {
     /// Those of actuators, and of a section whose entries `read` reads.
     pub(crate) fn read_by<'n, D: Dimensions>(
         actuators: impl ExactSizeIterator<Item = (&'n NamedActuator<'a>, Option<C>)>,
         fields: Option<&TableReader<'a>>,
         bodies: &Bodies<'_, D>,
-        (log, read): (&'a Diagnostics, &dyn Fn(&Entry<'a>) -> Option<C>),
+        (log, read): (&'a Diagnostics, ReadCoordinate<'_, 'a, C>),
     ) -> Self
     where
         'a: 'n,

@@ -55,9 +55,9 @@ fn passage(line: &[f64], value: f64) -> f64 {
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         if at(middle) < value {
-            low = middle
+            low = middle;
         } else {
-            high = middle
+            high = middle;
         }
     }
     t + h * low
