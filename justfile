@@ -86,6 +86,12 @@ peers:
 octave:
     python3 validation/foreign/run.py
 
+# The Python package: built into target/python, its tests, notebooks and types, and what its calls cost. Needs Python 3.10 or later
+[group('care')]
+python:
+    cargo build --release --workspace --bins
+    crates/python/run.sh
+
 # Exported FMUs by FMPy and the standard's schemas, in a scratch environment: validated, simulated by both kinds, saved and restored
 [group('care')]
 export:
@@ -125,7 +131,7 @@ nightly-fuzz part="0" seed=`date +%j`:
 
 # Of `nightly`: ten million designs, other programs, the reference values, the dependencies' advisories. Installs what these need
 [group('care')]
-nightly-others: peers deny octave designs reference
+nightly-others: peers deny octave designs reference export python
 
 # What the build server runs
 [group('care')]
