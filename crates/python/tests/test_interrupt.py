@@ -4,6 +4,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import time
 
 PROGRAM = """
     import dwell, sys
@@ -13,8 +14,8 @@ PROGRAM = """
     m.pin("O", "ground", "bob").actuator("phi", angle=("ground", "bob")).load("weight", gravity=(0, -9.81))
     m.load("drag", torque="bob", magnitude="-1e-9*phi.velocity")
     bob = m.motion(duration=1e6, initial_coordinate={"phi": 0.3}).assemble()
-    print("begins", flush=True)
     try:
+        print("begins", flush=True)
         bob.simulate(method="bdf", tolerance=1e-10)
     except KeyboardInterrupt:
         # And the next one runs.
@@ -26,6 +27,8 @@ PROGRAM = """
 def test_a_long_motion_is_interrupted():
     with subprocess.Popen([sys.executable, "-c", textwrap.dedent(PROGRAM)], stdout=subprocess.PIPE, text=True) as child:
         assert child.stdout.readline() == "begins\n"
+        # Into the motion.
+        time.sleep(0.5)
         child.send_signal(signal.SIGINT)
         assert child.stdout.read() == "interrupted, True\n"
         assert child.wait() == 0
