@@ -64,7 +64,6 @@ fn every_case_exports_or_says_why_not() {
 #[test]
 fn linkages_in_space_export() {
     let Some(compiler) = c_compiler() else { return };
-    let mut exported = 0;
     for entry in std::fs::read_dir(cases().join("spatial")).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_none_or(|extension| extension != "toml") {
@@ -78,12 +77,13 @@ fn linkages_in_space_export() {
         let asked = request(1e-7, Precision::Double);
         let outcome = match export_in_space(&scene, ExportTarget::C, &asked) {
             Ok(outcome) => outcome,
-            Err(error) => {
-                eprintln!("NOT EXPORTED {name}: {error}");
+            // Two coordinates.
+            Err(error) if ["bevel-differential.toml", "governor.toml"].contains(&name) => {
+                assert!(error.to_string().contains("2 actuators"), "{name}: {error}");
                 continue;
             }
+            Err(error) => panic!("{name} is not exported: {error}"),
         };
-        exported += 1;
         let scratch = Scratch::new();
         let files = outcome.files.iter().map(|(path, bytes)| {
             let path = path.to_str().unwrap().to_owned();
@@ -97,5 +97,4 @@ fn linkages_in_space_export() {
         compile(&scratch.0, compiler, &[&define, &source.0, "-o", "program"]);
         run(&scratch.0, "./program", &[]);
     }
-    assert!(exported >= 5, "{exported}");
 }
