@@ -11,9 +11,11 @@ pub(crate) use tables::{drawing_at, table_page, unit_group};
 
 use crate::trajectory::column_extrema::sorted_extrema;
 use crate::trajectory::compute::ComputedTrajectory;
+use arrows::plane_arrows;
 use dwell_page::{DisplayUnit, Page, PageMessage, PageScene, Peak};
 use dwell_scene::{Scene, SceneError, SceneFile};
-use arrows::plane_arrows;
+#[cfg(feature = "output")]
+pub(crate) use plane::paint;
 use plane::plane_drawing;
 
 /// What the page of any command shows of its scene, without results.
