@@ -7,7 +7,9 @@ mod plane;
 mod tables;
 
 pub(crate) use columns::{RowChoice, page_columns};
-pub(crate) use tables::{drawing_at, table_page, unit_group};
+#[cfg(feature = "output")]
+pub(crate) use tables::unit_group;
+pub(crate) use tables::{drawing_at, table_page};
 
 use crate::trajectory::column_extrema::sorted_extrema;
 use crate::trajectory::compute::ComputedTrajectory;

@@ -59,6 +59,7 @@ fn row_peak(table: &Table, column: usize) -> Option<Peak> {
 }
 
 /// What belongs in one chart, where only the unit tells.
+#[cfg(feature = "output")]
 pub(crate) fn unit_group(_: &str, unit: &str) -> (String, String) {
     let group = match unit {
         "rad" | "m" => "Coordinates",
