@@ -7,8 +7,8 @@ const FIRST_GROUPS = {
   kinematics: ['Bodies|rad', 'Bodies|rad/s', 'Coordinates|m', 'Points|m', 'Points|m/s', 'Bodies|rad/s2', 'Transmission angles|rad'],
   statics: ['Reactions, magnitudes|N', 'Actuator forces|N m', 'Actuator forces|N', 'Reactions, components|N', 'Shaking force|N', 'Loads|N'],
   kinetostatics: ['Reactions, magnitudes|N', 'Actuator forces|N m', 'Actuator forces|N', 'Reactions, components|N', 'Bodies|rad/s2', 'Coordinates|m/s2', 'Power and energy|W'],
-  simulate: ['Coordinates|rad', 'Coordinates|m', 'Energies and states|J', 'Reactions, magnitudes|N', 'Coordinates|rad/s', 'Power and energy|J'],
-  validate: ['Coordinates|rad', 'Reactions, magnitudes|N', 'Actuator forces|N m', 'Actuator forces|N', 'Energies and states|J', 'Bodies|rad', 'Bodies|rad/s', 'Coordinates|m'],
+  simulate: ['Coordinates|rad/s', 'Coordinates|m/s', 'Reactions, magnitudes|N', 'Energies and states|J', 'Coordinates|rad', 'Coordinates|m', 'Power and energy|J'],
+  validate: ['Reactions, magnitudes|N', 'Reactions, components|N', 'Coordinates|rad/s', 'Actuator forces|N m', 'Actuator forces|N', 'Bodies|rad', 'Bodies|rad/s', 'Coordinates|m', 'Energies and states|J'],
   reduce: ['Generalised inertia|kg m2', 'Generalised inertia|kg', 'Half its slope, ½m′|kg m2/rad', 'Half its slope, ½m′|kg/m', 'Reaction coefficients a|kg m', 'Reaction coefficients a|kg'],
 };
 
