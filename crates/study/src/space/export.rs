@@ -3,7 +3,7 @@
 use super::explain::explain_position;
 use super::prepared::PreparedSpaceScene;
 use crate::explain::StudyError;
-use crate::export::description::{domain, drive_effect, magnitude_effect};
+use crate::export::description::{domain, drive_effect, magnitude_effect, varying_input};
 use crate::export::output::{ExportTarget, export_machine};
 use crate::export::{ExportRequest, explain_fit};
 use crate::output::Outcome;
@@ -75,6 +75,7 @@ fn describe(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> MachineDescrip
     let mut left_out = Vec::new();
     let loads = scene.loads.iter().map(|load| {
         let (unit, is_damper) = load_unit(&load.kind);
+        left_out.extend(varying_input("the load", &load.name, &load.magnitude));
         LoadDescription {
             name: load.name.clone(),
             effect: magnitude_effect(&load.magnitude, is_damper, load.kind.is_conservative()),
@@ -98,6 +99,10 @@ fn describe(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> MachineDescrip
             "the statically indeterminate reactions {}",
             names.join(", ")
         ));
+    }
+    let spec = scene.motion.as_ref();
+    if spec.is_some_and(|spec| !spec.events.is_empty()) {
+        left_out.push("the events of [motion]".to_owned());
     }
     let [start, q_dot] = initial(scene);
     let q = match domain.revolutions {
