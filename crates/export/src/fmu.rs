@@ -59,7 +59,7 @@ pub fn fmu_files(export: &Export, version: FmiVersion) -> FmuFiles {
     source("model.h", model::model(export, &variables));
     source(interface.0, interface.1.to_owned());
     if version == FmiVersion::Three {
-        let text = description::build_description(&identifier);
+        let text = description::build_description(&identifier, export.code.is_some());
         source("buildDescription.xml", text);
     }
     FmuFiles {

@@ -98,6 +98,7 @@ fn compiles(compiler: &str, files: &FmuFiles, folder: &Path) -> bool {
         ])
         .args(["-o", "library.so"])
         .args(files.sources.iter().map(|name| format!("sources/{name}")))
+        .arg("-lm")
         .current_dir(folder);
     command.output().is_ok_and(|output| output.status.success())
 }

@@ -5,7 +5,7 @@ use super::prepared::PreparedSpaceScene;
 use crate::explain::StudyError;
 use crate::export::description::{domain, drive_effect, magnitude_effect, varying_input};
 use crate::export::output::{ExportTarget, export_machine};
-use crate::export::{ExportRequest, explain_fit};
+use crate::export::{ExportRequest, explain_fit, no_operations};
 use crate::output::Outcome;
 use crate::reduce::compute::{ReducedScene as _, Reduction};
 use dwell_export::{
@@ -40,6 +40,10 @@ fn fitted(scene: &SpaceScene, asked: &ExportRequest) -> Result<Export, StudyErro
         asked.interval,
     )?;
     let machine = describe(&prepared, domain);
+    if asked.exact {
+        let reason = "loops in space are closed by Newton's method";
+        return Err(no_operations(&scene.file, reason));
+    }
     let mut sampler = SpaceSampler::new(&prepared, &machine);
     Export::new(machine.clone(), asked.request, &mut sampler).map_err(|error| match error {
         FitError::Sampler(error) => explain_position(scene, prepared.model.model().plan(), &error),
