@@ -98,6 +98,12 @@ export:
     cargo build --release --workspace --bins
     python3 validation/fmu/run.py
 
+# Exported C and Rust on an emulated Cortex-M4F: self-tests, instructions of a call, a million steps. Installs compiler and emulator
+[group('care')]
+cortex:
+    cargo build --release --workspace --bins
+    python3 validation/cortex/run.py
+
 # Ten million designs in Parquet files by a run that is killed twice, read back by Polars, DuckDB and pandas as docs/sweep.md shows. Installs these into a scratch environment
 [group('care')]
 designs points="10000000":
@@ -131,7 +137,7 @@ nightly-fuzz part="0" seed=`date +%j`:
 
 # Of `nightly`: ten million designs, other programs, the reference values, the dependencies' advisories. Installs what these need
 [group('care')]
-nightly-others: peers deny octave designs reference export python
+nightly-others: peers deny octave designs reference export cortex python
 
 # What the build server runs
 [group('care')]
