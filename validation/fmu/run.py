@@ -10,7 +10,9 @@ import subprocess
 import sys
 import tempfile
 import venv
+import zipfile
 from pathlib import Path
+from xml.etree import ElementTree
 
 HOME = Path(__file__).resolve().parents[2]
 # The folder of a scene, how long it moves (s), and what both kinds may differ from `dwell simulate` in the largest value of a column.
@@ -51,7 +53,6 @@ def passage(result, column, value):
 def check_schema(fmu, version):
     """The model description against the schema that FMPy brings along."""
     import fmpy
-    import zipfile
     from lxml import etree
     name = "fmi3/fmi3ModelDescription.xsd" if version == 3 else "fmi2/fmi2ModelDescription.xsd"
     schema = etree.XMLSchema(etree.parse(str(Path(fmpy.__file__).parent / "schema" / name)))
@@ -99,6 +100,29 @@ def check_restored(fmu, version):
         one.terminate()
         one.freeInstance()
     shutil.rmtree(folder, ignore_errors=True)
+
+
+def compare_with_reference(fmu, result, allowed):
+    """The co-simulation against the results that the FMU brings along, and their manifest."""
+    folder = "extra/org.fmi-standard.fmi-ls-ref/"
+    with zipfile.ZipFile(fmu) as archive:
+        manifest = ElementTree.fromstring(archive.read(folder + "fmi-ls-manifest.xml"))
+        related = {related.get("role"): related.get("source") for related in manifest}
+        assert set(related) == {"model", "result"}, related
+        assert archive.read(folder + related["model"]).strip(), "the scene is empty"
+        rows = list(csv.reader(archive.read(folder + related["result"]).decode().splitlines()))
+    row = {round(t, 6): k for k, t in enumerate(result["time"])}
+    compared = 0
+    for k, name in enumerate(rows[0]):
+        values = [float(r[k]) for r in rows[1:] if round(float(r[0]), 6) in row]
+        largest = max(map(abs, values))
+        if name in ("time", "periods") or largest < 1e-12:
+            continue
+        at = [row[round(float(r[0]), 6)] for r in rows[1:] if round(float(r[0]), 6) in row]
+        error = max(abs(result[name][i] - value) for i, value in zip(at, values)) / largest
+        assert error < allowed, f"{name} differs from the reference results by {error:.1e}"
+        compared += 1
+    assert compared > 3 and len(at) > 5, (compared, len(at))
 
 
 def compare_with_simulate(dwell, scene, results, stop, allowed):
@@ -150,6 +174,7 @@ def judge_one(dwell, scene, version, out, target, stop, allowed):
             error = passage(result, coordinate, 6.283185307179586) - PERIOD
             assert abs(error) <= allowed_period, f"{kind}: the period is off by {error:.1e} s"
             print(f"{scene.stem}, FMI {version}, {kind}: period off by {error:.1e} s")
+    compare_with_reference(fmu, results["CoSimulation"], allowed)
     for kind, text in compare_with_simulate(dwell, scene, results, stop, allowed).items():
         print(f"{scene.stem}, FMI {version}, {kind}: {text}")
 

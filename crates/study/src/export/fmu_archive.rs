@@ -18,7 +18,7 @@ pub(super) fn fmu_archive(
     export: &Export,
     version: FmiVersion,
 ) -> Result<(Vec<u8>, String), StudyError> {
-    let files = fmu_files(export, version);
+    let files = fmu_files(export, version, scene.source.inner());
     let (library, sentence) = match platform(version) {
         None => (
             None,

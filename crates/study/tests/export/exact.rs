@@ -31,7 +31,9 @@ fn every_case_has_its_operations_or_says_why_not() {
     names.sort();
     let mut wrong = Vec::new();
     for name in &names {
-        let refused = WITHOUT_OPERATIONS.iter().find(|(refused, _)| refused == name);
+        let refused = WITHOUT_OPERATIONS
+            .iter()
+            .find(|(refused, _)| refused == name);
         let export = match (compute_export(&case(name), &exact()), refused) {
             (Ok(export), None) => export,
             (Ok(_), Some((_, reason))) => {
@@ -91,12 +93,22 @@ fn single_precision_has_operations_too() {
         ..request(1e-6, Precision::Float)
     };
     let export = compute_export(&case("single-dwell"), &asked).unwrap();
-    assert!(export.measured.errors.max() < 1e-5, "{:?}", export.measured.errors);
+    assert!(
+        export.measured.errors.max() < 1e-5,
+        "{:?}",
+        export.measured.errors
+    );
     let scratch = Scratch::new();
     let files = c_files(&export);
     assert!(files[1].1.contains("sqrtf("));
     scratch.write(&files);
-    let arguments = ["-DSINGLE_DWELL_SELF_TEST", &files[1].0, "-lm", "-o", "program"];
+    let arguments = [
+        "-DSINGLE_DWELL_SELF_TEST",
+        &files[1].0,
+        "-lm",
+        "-o",
+        "program",
+    ];
     compile(&scratch.0, compiler, &arguments);
     run(&scratch.0, "./program", &[]);
 }

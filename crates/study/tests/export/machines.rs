@@ -5,8 +5,8 @@ use super::toolchain::request;
 use dwell_dynamics::Machine;
 use dwell_export::{Evaluator, Precision};
 use dwell_scene::Scene;
-use dwell_study::{ExportRequest, compute_export};
 use dwell_study::models::build_machine;
+use dwell_study::{ExportRequest, compute_export};
 
 /// A crank and rocker with a weight, springs, dampers and a geared motor with a rotor and inductance.
 const MOTOR: &str = r#"
