@@ -92,6 +92,12 @@ python:
     cargo build --release --workspace --bins
     crates/python/run.sh
 
+# A million designs spread by Ray and by Dask over four processes, two of which are killed on the way. After `just python`; installs Ray
+[group('care')]
+engines: python
+    target/python/bin/pip install --quiet ray polars
+    cd crates/python && DWELL_POINTS=1000000 ../../target/python/bin/python -m pytest -s tests/test_engines.py
+
 # Exported FMUs by FMPy and the standard's schemas, in a scratch environment: validated, simulated by both kinds, saved and restored
 [group('care')]
 export:
@@ -137,7 +143,7 @@ nightly-fuzz part="0" seed=`date +%j`:
 
 # Of `nightly`: ten million designs, other programs, the reference values, the dependencies' advisories. Installs what these need
 [group('care')]
-nightly-others: peers deny octave designs reference export cortex python
+nightly-others: peers deny octave designs reference export cortex engines
 
 # What the build server runs
 [group('care')]
