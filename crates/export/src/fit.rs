@@ -29,6 +29,12 @@ pub enum FitError<E> {
         /// What it is of.
         name: String,
     },
+    /// The operations are not those of the functions over the whole domain.
+    #[error("the operations differ from the functions by {error:.1e}")]
+    OtherOperations {
+        /// The largest relative error.
+        error: f64,
+    },
     /// No number of cells reaches the accuracy.
     #[error("no cells of accuracy {accuracy:e}: {name} bends too much near {q}")]
     NotReached {
@@ -99,17 +105,7 @@ pub fn fit<S: FunctionSampler>(
     precision: Precision,
     sampler: &mut S,
 ) -> Result<FittedPart, FitError<S::Error>> {
-    let mut fitter = Fitter {
-        machine,
-        kind,
-        sampler,
-        curves: machine.curves(kind),
-        columns: machine.columns(kind),
-        precision,
-        curve_tolerances: Vec::new(),
-        column_tolerances: Vec::new(),
-        tabulated: Vec::new(),
-    };
+    let mut fitter = Fitter::new(machine, kind, precision, sampler);
     let (curve_scales, column_scales, found) = fitter.sizes()?;
     fitter.require_periodic(&curve_scales, &column_scales)?;
     let allowed = SHARE * accuracy;
@@ -137,10 +133,56 @@ pub fn fit<S: FunctionSampler>(
     })
 }
 
+/// The scales of a part whose functions are operations; nothing of it is in cells.
+///
+/// # Errors
+/// [`FitError`] where there is no position, or a function is not periodic.
+pub(crate) fn scales<S: FunctionSampler>(
+    machine: &MachineDescription,
+    kind: PartKind,
+    precision: Precision,
+    sampler: &mut S,
+) -> Result<FittedPart, FitError<S::Error>> {
+    let mut fitter = Fitter::new(machine, kind, precision, sampler);
+    let (curve_scales, column_scales, found) = fitter.sizes()?;
+    fitter.require_periodic(&curve_scales, &column_scales)?;
+    let part = Part {
+        columns: fitter.columns.iter().copied().zip(found).collect(),
+        curves: fitter.curves,
+        index: Vec::new(),
+        cells: Vec::new(),
+        bins_per_unit: 0.0,
+    };
+    Ok(FittedPart {
+        part,
+        curve_scales,
+        column_scales,
+    })
+}
+
 type Sizes = (Vec<[f64; 2]>, Vec<f64>, Vec<Column>);
 type Cells = (Vec<u16>, Vec<f64>, f64);
 
-impl<S: FunctionSampler> Fitter<'_, S> {
+impl<'a, S: FunctionSampler> Fitter<'a, S> {
+    fn new(
+        machine: &'a MachineDescription,
+        kind: PartKind,
+        precision: Precision,
+        sampler: &'a mut S,
+    ) -> Self {
+        Self {
+            machine,
+            kind,
+            sampler,
+            curves: machine.curves(kind),
+            columns: machine.columns(kind),
+            precision,
+            curve_tolerances: Vec::new(),
+            column_tolerances: Vec::new(),
+            tabulated: Vec::new(),
+        }
+    }
+
     fn row(&mut self, q: f64) -> Result<Row, FitError<S::Error>> {
         let mut row = Row {
             curves: vec![[0.0; 2]; self.curves.len()],

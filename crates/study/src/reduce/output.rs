@@ -5,7 +5,7 @@ use super::page::page_of;
 use crate::explain::StudyError;
 use crate::number_format::{coordinate_unit, digits, digits_within};
 use crate::output::{Outcome, Picture};
-use crate::page::drawing_at;
+use crate::page::drawing_along;
 use crate::ranges::extent;
 use crate::reduce::compute::{
     Peak, ReducedScene, Reduction, RoundingErrors, TableRequest, compute_reduction, inertia_units,
@@ -33,8 +33,7 @@ pub fn reduce(
     let reduction = compute_reduction(scene, points)?;
     let mut outcome = reduction_outcome(&reduction)?;
     if let Some(run) = &mut outcome.run {
-        let coordinates: Vec<Vec<f64>> = reduction.curves.q.iter().map(|q| vec![*q]).collect();
-        run.drawing = drawing_at(scene, &coordinates);
+        run.drawing = drawing_along(scene, run);
     }
     if let Some(request) = table {
         let tabulation = tabulate(&reduction.prepared, &request)?;

@@ -2,7 +2,7 @@
 
 use crate::models::PreparedScene;
 use crate::number_format::count;
-use crate::page::{drawing_at, table_page};
+use crate::page::{drawing_along, table_page};
 use crate::reduce::compute::{Peak, ReducedScene, Reduction, peak_between_rows};
 use dwell_findings::Table;
 use dwell_page::Page;
@@ -28,9 +28,8 @@ const M_COLUMN: usize = 1;
 /// ```
 pub fn reduction_page(reduction: &Reduction<PreparedScene<'_>>) -> Page {
     let peak = peak_between_rows(&reduction.prepared, &reduction.curves);
-    let coordinates: Vec<Vec<f64>> = reduction.curves.q.iter().map(|q| vec![*q]).collect();
     let mut page = page_of(reduction, &reduction.table(), peak);
-    page.drawing = drawing_at(reduction.prepared.scene, &coordinates);
+    page.drawing = drawing_along(reduction.prepared.scene, &page);
     page
 }
 
