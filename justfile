@@ -92,19 +92,17 @@ python:
     cargo build --release --workspace --bins
     crates/python/run.sh
 
-<<<<<<< HEAD
 # The HTML pages of every command and all reports in Chromium, from the file system; pictures in target/page/pictures. Installs Chromium and its driver; needs the reports of `just validate`
 [group('care')]
 page:
     cargo build --release --workspace --bins
     tests/page/run.sh
-=======
+
 # A million designs spread by Ray and by Dask over four processes, two of which are killed on the way. After `just python`; installs Ray
 [group('care')]
 engines: python
     target/python/bin/pip install --quiet ray polars
     cd crates/python && DWELL_POINTS=1000000 ../../target/python/bin/python -m pytest -s tests/test_engines.py
->>>>>>> main
 
 # Exported FMUs by FMPy and the standard's schemas, in a scratch environment: validated, simulated by both kinds, saved and restored
 [group('care')]

@@ -14,7 +14,9 @@ const FIRST_GROUPS = {
 
 function firstGroup(run, number) {
   const groups = [...run.groups.values()];
-  const preferred = (FIRST_GROUPS[run.description.command] || []).map(key => run.groups.get(key)).filter(g => g && g.columns.some(varies));
+  let preferred = (FIRST_GROUPS[run.description.command] || []).map(key => run.groups.get(key)).filter(g => g && g.columns.some(varies));
+  // Components where there are no magnitudes.
+  if (preferred.some(g => g.title === 'Reactions, magnitudes')) preferred = preferred.filter(g => g.title !== 'Reactions, components');
   const rest = groups.filter(g => !preferred.includes(g));
   const order = [...preferred, ...rest.filter(g => g.columns.some(varies)), ...rest.filter(g => !g.columns.some(varies))];
   return order[number] || null;
