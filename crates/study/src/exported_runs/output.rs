@@ -10,11 +10,14 @@ use super::written_scene::scene_text;
 use crate::explain::StudyError;
 use crate::number_format::{coordinate_unit, count, digits_within};
 use crate::output::{Outcome, Picture};
+use crate::page::table_page;
 use crate::ranges::extent;
+use crate::reduce::column_group;
 use crate::reduce::compute::{coefficient_units, inertia_units};
 use dwell_dynamics::{Orbit, ReducedState};
 use dwell_findings::{Column, Record, Table};
 use dwell_kinetostatics::Coefficients;
+use dwell_page::Page;
 use dwell_report::{Block, Document, Files, TableFormat};
 use dwell_scene::SceneError;
 
@@ -64,7 +67,14 @@ pub fn reduce_runs(
     );
     let figure = figures::figure(&runs, &model, caption);
     let mut files = Files::new();
-    files.add_table(&format!("{name}-reduced"), &table(&runs), &TableFormat::ALL)?;
+    let reduced = table(&runs);
+    files.add_table(&format!("{name}-reduced"), &reduced, &TableFormat::ALL)?;
+    let base = Page {
+        title: format!("{name}: reduced parameters of exported runs"),
+        subtitle: format!("{} and {}", tables[0].file, tables[1].file),
+        ..Page::default()
+    };
+    let run = table_page(base, &reduced, column_group);
     match scene_text(name, &runs, interpolation, tables) {
         Some(text) => {
             summary += &format!(
@@ -84,6 +94,7 @@ pub fn reduce_runs(
         files,
         pictures: vec![picture],
         page: Some((format!("{name}-reduced.md"), page)),
+        run: Some(Box::new(run)),
         ..Outcome::default()
     })
 }
