@@ -93,7 +93,7 @@ impl Export {
         let measured = measure(&machine, &measurable, scales, (precision, sampler));
         let measured = measured.map_err(FitError::Sampler)?;
         let accuracy = match precision {
-            Precision::Double => 1e-9,
+            Precision::Double => 1e-7,
             Precision::Float => 1e-3,
         };
         // Operations of another branch are off by much more.
