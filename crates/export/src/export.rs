@@ -1,7 +1,8 @@
 //! A machine with its fitted parts and what was measured of them: all that a target needs.
 
+use crate::error::FitError;
 use crate::evaluator::{Evaluator, has_rotor, scene_value};
-use crate::fit::{FitError, FittedPart, fit, scales};
+use crate::fit::{FittedPart, fit, scales};
 use crate::machine::{FunctionSampler, MachineDescription, PartKind};
 use crate::measure::{self, Measurable, Measured, measure};
 use crate::part::{Column, Part, Precision};
