@@ -92,6 +92,12 @@ python:
     cargo build --release --workspace --bins
     crates/python/run.sh
 
+# The HTML pages of every command and all reports in Chromium, from the file system; pictures in target/page/pictures. Installs Chromium and its driver; needs the reports of `just validate`
+[group('care')]
+page:
+    cargo build --release --workspace --bins
+    tests/page/run.sh
+
 # A million designs spread by Ray and by Dask over four processes, two of which are killed on the way. After `just python`; installs Ray
 [group('care')]
 engines: python

@@ -1,9 +1,11 @@
 //! Writes the reduced parameters: table, figures, summary and interpolation table.
 
 use super::figures;
+use super::page::page_of;
 use crate::explain::StudyError;
 use crate::number_format::{coordinate_unit, digits, digits_within};
 use crate::output::{Outcome, Picture};
+use crate::page::drawing_along;
 use crate::ranges::extent;
 use crate::reduce::compute::{
     Peak, ReducedScene, Reduction, RoundingErrors, TableRequest, compute_reduction, inertia_units,
@@ -30,6 +32,9 @@ pub fn reduce(
 ) -> Result<Outcome, StudyError> {
     let reduction = compute_reduction(scene, points)?;
     let mut outcome = reduction_outcome(&reduction)?;
+    if let Some(run) = &mut outcome.run {
+        run.drawing = drawing_along(scene, run);
+    }
     if let Some(request) = table {
         let tabulation = tabulate(&reduction.prepared, &request)?;
         outcome.summary += &tabulation.summary;
@@ -58,7 +63,8 @@ pub(crate) fn reduction_outcome<P: ReducedScene>(
     }
     let mut files = Files::new();
     let stem = format!("{}-reduced", scene.name);
-    files.add_table(&stem, &reduction.table(), &TableFormat::ALL)?;
+    let table = reduction.table();
+    files.add_table(&stem, &table, &TableFormat::ALL)?;
     let picture = |figure: Figure| {
         let path = format!("{}-{}.png", scene.name, figure.name);
         let is_main = MAIN_FIGURES.contains(&figure.name.as_str());
@@ -69,6 +75,7 @@ pub(crate) fn reduction_outcome<P: ReducedScene>(
     Ok(Outcome {
         summary: summary(reduction, peak, note.as_deref()),
         record: record(reduction, peak),
+        run: Some(Box::new(page_of(reduction, &table, peak))),
         files,
         pictures,
         ..Outcome::default()
@@ -151,7 +158,7 @@ pub(crate) fn summary<P: ReducedScene>(
     };
     let [m_error, half_dm_error, _] = reduction.errors.max_errors;
     let ([m_min, m_max], [h_min, h_max]) = (texts(m, m_error), texts(half_dm, half_dm_error));
-    let (title, count) = (&prepared.file().title, curves.q.len());
+    let (title, positions) = (&prepared.file().title, curves.q.len());
     let name = prepared.coordinate_name();
     let [m_unit, half_dm_unit] = match prepared.is_angle() {
         true => ["kg m²", "kg m²/rad"],
@@ -169,7 +176,7 @@ pub(crate) fn summary<P: ReducedScene>(
         _ => String::new(),
     };
     let mut summary = format!(
-        "{title}: {count} positions of {name}{range}, and there\n  m    from {m_min} to {m_max} {m_unit}\n  ½m′  from {h_min} to \
+        "{title}: {positions} positions of {name}{range}, and there\n  m    from {m_min} to {m_max} {m_unit}\n  ½m′  from {h_min} to \
          {h_max} {half_dm_unit}\n"
     );
     if let Some(peak) = peak {

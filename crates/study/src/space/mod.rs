@@ -14,6 +14,7 @@ pub use motion::simulate_in_space;
 pub use prepared::PreparedSpaceScene;
 pub use trajectory::analyse_in_space;
 
+use self::views::page_drawing;
 use crate::explain::StudyError;
 use crate::output::{Outcome, Picture};
 use crate::reduce::compute::Reduction;
@@ -27,6 +28,10 @@ use dwell_scene::SpaceScene;
 pub fn reduce_in_space(scene: &SpaceScene, points: Option<usize>) -> Result<Outcome, StudyError> {
     let reduction = Reduction::new(PreparedSpaceScene::new(scene)?, points)?;
     let mut outcome = reduction_outcome(&reduction)?;
+    if let Some(run) = &mut outcome.run {
+        let rows = reduction.prepared.placements(&run.columns[0].values)?;
+        run.drawing = Some(page_drawing(scene, rows, Vec::new()));
+    }
     let positions = reduction.prepared.drawn_positions()?;
     let name = |rest: &str| format!("{}-mechanism.{rest}", scene.name);
     let figure = Picture::figure(scene, name("png"), true, positions.figure());

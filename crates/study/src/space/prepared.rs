@@ -62,8 +62,14 @@ impl<'a> PreparedSpaceScene<'a> {
         })
     }
 
-    /// The mechanism over its range, for pictures: at the start, and in positions that follow each other.
-    pub(super) fn drawn_positions(&self) -> Result<SpacePositions<'a>, StudyError> {
+    /// The placements of all bodies at coordinates, rad or m.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where one of them cannot be reached.
+    pub(super) fn placements(
+        &self,
+        coordinates: &[f64],
+    ) -> Result<Vec<Vec<Placement>>, StudyError> {
         let plan = self.model.model().plan();
         let mut pose = plan.pose();
         let bodies = 0..self.scene.mechanism.bodies.len();
@@ -71,8 +77,13 @@ impl<'a> PreparedSpaceScene<'a> {
             plan.positions(&[q], &mut pose)
                 .map_err(|e| self.explain(&e))?;
             let all = bodies.clone().map(|b| plan.placement(&pose, b));
-            Ok::<Vec<Placement>, StudyError>(all.collect())
+            Ok(all.collect())
         };
+        coordinates.iter().map(|q| placements(*q)).collect()
+    }
+
+    /// The mechanism over its range, for pictures: at the start, and in positions that follow each other.
+    pub(super) fn drawn_positions(&self) -> Result<SpacePositions<'a>, StudyError> {
         let turns = match self.range() {
             Range::Revolutions(count) => count as usize,
             _ => 1,
@@ -87,12 +98,13 @@ impl<'a> PreparedSpaceScene<'a> {
             false => format!("{} = {} m", symbol(self.coordinate_name()), digits(q, 4)),
         };
         let describe = |q: f64| describe(q).replace('-', "−");
-        let all = q.iter().map(|&q| Ok((placements(q)?, describe(q))));
-        let all = all.collect::<Result<Vec<_>, StudyError>>()?;
+        let names = q.iter().map(|&q| describe(q));
+        let all: Vec<_> = self.placements(&q)?.into_iter().zip(names).collect();
         let start = self.scene.assembly.q[0];
+        let drawn = self.placements(&[start])?.pop().unwrap_or_default();
         Ok(SpacePositions {
             scene: self.scene,
-            drawn: placements(start)?,
+            drawn,
             drawn_at: describe(start),
             provenance: format!("the mechanism at {}", count(all.len(), "position")),
             all,
