@@ -1,7 +1,8 @@
 //! A machine with its fitted parts and what was measured of them: all that a target needs.
 
+use crate::error::FitError;
 use crate::evaluator::{Evaluator, has_rotor, scene_value};
-use crate::fit::{FitError, FittedPart, fit, scales};
+use crate::fit::{FittedPart, fit, scales};
 use crate::machine::{FunctionSampler, MachineDescription, PartKind};
 use crate::measure::{self, Measurable, Measured, measure};
 use crate::part::{Column, Part, Precision};
@@ -93,7 +94,7 @@ impl Export {
         let measured = measure(&machine, &measurable, scales, (precision, sampler));
         let measured = measured.map_err(FitError::Sampler)?;
         let accuracy = match precision {
-            Precision::Double => 1e-9,
+            Precision::Double => 1e-7,
             Precision::Float => 1e-3,
         };
         // Operations of another branch are off by much more.

@@ -52,6 +52,7 @@
 mod balance;
 mod c;
 mod describe;
+mod error;
 mod evaluator;
 mod export;
 mod fit;
@@ -69,9 +70,10 @@ mod straight_line;
 mod writer;
 
 pub use c::c_files;
+pub use error::FitError;
 pub use evaluator::{Evaluator, MotionTerms, ReactionTerms, State, Status};
 pub use export::{Export, Request};
-pub use fit::{FitError, FittedPart, fit};
+pub use fit::{FittedPart, fit};
 pub use fmu::{FmiVersion, FmuFiles, fmu_files};
 pub use identifiers::Identifiers;
 pub use machine::{

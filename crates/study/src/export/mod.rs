@@ -42,7 +42,7 @@ pub fn compute_export(scene: &Scene, asked: &ExportRequest) -> Result<Export, St
                 RecordingError::Evaluation(error) => explain(error),
                 RecordingError::Function => no_operations(
                     scene,
-                    "a law of a cam or of a joint is known by its values alone",
+                    "a law of a cam, of a joint or of an inertia is known by its values alone",
                 ),
                 RecordingError::Differs { .. } => no_operations(scene, SEARCHED),
             })?;

@@ -51,23 +51,7 @@ pub(crate) fn export_machine(
     table: impl FnOnce() -> Result<Table, StudyError>,
     fitted: impl FnOnce() -> Result<Export, StudyError>,
 ) -> Result<Outcome, StudyError> {
-    if matches!(target, ExportTarget::Fmu(_)) && asked.request.precision == Precision::Float {
-        return Err(scene_error(
-            scene,
-            "an FMU computes in double precision, as its interface does",
-            "leave --float out",
-            [(SceneLocation::Whole, "of this scene")],
-        ));
-    }
-    let takes_operations = matches!(target, ExportTarget::C | ExportTarget::Fmu(_));
-    if asked.exact && !takes_operations {
-        return Err(scene_error(
-            scene,
-            "an exact export is C or an FMU: its operations need square roots, sines and cosines",
-            "leave --exact out, or export to `c` or `fmu`",
-            [(SceneLocation::Whole, "of this scene")],
-        ));
-    }
+    reject_options(scene, target, asked)?;
     match target {
         ExportTarget::Rows(format) => return rows(scene, &table()?, Some(format)),
         ExportTarget::Json => return rows(scene, &table()?, None),
@@ -111,6 +95,32 @@ pub(crate) fn export_machine(
         }
     }
     Ok(outcome)
+}
+
+/// Rejects options that a target does not have.
+fn reject_options(
+    scene: &SceneFile,
+    target: ExportTarget,
+    asked: &ExportRequest,
+) -> Result<(), StudyError> {
+    if matches!(target, ExportTarget::Fmu(_)) && asked.request.precision == Precision::Float {
+        return Err(scene_error(
+            scene,
+            "an FMU computes in double precision, as its interface does",
+            "leave --float out",
+            [(SceneLocation::Whole, "of this scene")],
+        ));
+    }
+    let takes_operations = matches!(target, ExportTarget::C | ExportTarget::Fmu(_));
+    if asked.exact && !takes_operations {
+        return Err(scene_error(
+            scene,
+            "an exact export is C or an FMU: its operations need square roots, sines and cosines",
+            "leave --exact out, or export to `c` or `fmu`",
+            [(SceneLocation::Whole, "of this scene")],
+        ));
+    }
+    Ok(())
 }
 
 /// The rows of the reduced model, evaluated exactly.

@@ -7,10 +7,18 @@ use dwell_scene::Scene;
 use dwell_study::{ExportRequest, compute_export};
 
 /// The cases without operations that hold everywhere, with words of the reason.
-const WITHOUT_OPERATIONS: [(&str, &str); 0] = [];
+const WITHOUT_OPERATIONS: [(&str, &str); 5] = [
+    ("cam", "a law of a cam"),
+    ("class-three-six-bar", "Newton's method"),
+    ("exported-model", "a law of a cam"),
+    ("parallelogram-three-cranks", "Newton's method"),
+    ("stephenson-six-bar", "Newton's method"),
+];
 
-/// Of the largest value of each function, over all cases: ten times what is measured.
-const LARGEST_ERROR: f64 = 1e-10;
+/// Of the largest value of each function: 1.2e-13 is measured.
+const LARGEST_ERROR: f64 = 1e-12;
+/// Next to the flat positions at both ends of this range, the rounding of a sine is enlarged: 3.9e-10.
+const NEXT_TO_FLAT: (&str, f64) = ("n-four-bar-a02", 2e-9);
 
 fn exact() -> ExportRequest {
     ExportRequest {
@@ -47,7 +55,11 @@ fn every_case_has_its_operations_or_says_why_not() {
             }
         };
         let error = export.measured.errors.max();
-        if error > LARGEST_ERROR {
+        let allowed = match name == NEXT_TO_FLAT.0 {
+            true => NEXT_TO_FLAT.1,
+            false => LARGEST_ERROR,
+        };
+        if error > allowed {
             wrong.push(format!("{name}: an error of {error:.1e}"));
         }
         let Some(compiler) = compiler else { continue };
@@ -72,13 +84,13 @@ fn the_single_dwell_takes_few_operations() {
     assert!(counts[0] < 250 && counts[1] < 250, "{counts:?}");
     // An operation that is wrong is found.
     let mut wrong = code;
-    let sine = wrong[0].operations.iter_mut();
-    let sine = sine.rfind(|operation| matches!(operation, Operation::Multiply(..)));
-    let sine = sine.unwrap();
-    let Operation::Multiply(a, b) = *sine else {
+    let mut products = wrong[0].operations.iter_mut();
+    let product = products.rfind(|operation| matches!(operation, Operation::Multiply(..)));
+    let product = product.unwrap();
+    let Operation::Multiply(a, b) = *product else {
         panic!("a product");
     };
-    *sine = Operation::Divide(a, b);
+    *product = Operation::Divide(a, b);
     let again = compute_export(&case("single-dwell"), &exact()).unwrap();
     let twin = dwell_export::Evaluator::<f64>::exact(&again.machine, &wrong, Precision::Double);
     let [found, right] = [&twin, &again.evaluator()].map(|e| e.motion_terms(1.0).unwrap());
