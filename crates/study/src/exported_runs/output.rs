@@ -69,12 +69,6 @@ pub fn reduce_runs(
     let mut files = Files::new();
     let reduced = table(&runs);
     files.add_table(&format!("{name}-reduced"), &reduced, &TableFormat::ALL)?;
-    let base = Page {
-        title: format!("{name}: reduced parameters of exported runs"),
-        subtitle: format!("{} and {}", tables[0].file, tables[1].file),
-        ..Page::default()
-    };
-    let run = table_page(base, &reduced, column_group);
     match scene_text(name, &runs, interpolation, tables) {
         Some(text) => {
             summary += &format!(
@@ -94,9 +88,19 @@ pub fn reduce_runs(
         files,
         pictures: vec![picture],
         page: Some((format!("{name}-reduced.md"), page)),
-        run: Some(Box::new(run)),
+        run: Some(Box::new(rows_page(name, tables, &reduced))),
         ..Outcome::default()
     })
+}
+
+/// The rows on an HTML page.
+fn rows_page(name: &str, [one, two]: [&ExportedTable; 2], reduced: &Table) -> Page {
+    let base = Page {
+        title: format!("{name}: reduced parameters of exported runs"),
+        subtitle: format!("{} and {}", one.file, two.file),
+        ..Page::default()
+    };
+    table_page(base, reduced, column_group)
 }
 
 fn refused(message: String, help: &str) -> StudyError {
