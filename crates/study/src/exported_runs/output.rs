@@ -30,6 +30,7 @@ const USELESS: f64 = 0.05;
 /// # Errors
 /// [`StudyError`]: a column is missing, the runs do not determine m or contradict each other, a trigonometric series is asked for
 /// positions that are no whole revolution.
+// Long: one result after another.
 pub fn reduce_runs(
     name: &str,
     tables: [&ExportedTable; 2],
