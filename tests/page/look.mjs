@@ -67,7 +67,7 @@ export async function lookTests({ onPage, pictures }) {
     same(result.charts, 3, 'charts');
   });
 
-  for (const [name, other] of [['check', 'single-dwell-check'], ['reduce', 'single-dwell-reduce'], ['hostile', 'hostile-kinematics'], ['wobble', 'wobble-plate-kinetostatics'], ['space-reduce', 'rssr-reduce']]) {
+  for (const [name, other] of [['check', 'single-dwell-check'], ['reduce', 'single-dwell-reduce'], ['hostile', 'hostile-kinematics'], ['wobble', 'wobble-plate-statics'], ['space-forces', 'space-forces-kinetostatics'], ['space-reduce', 'rssr-reduce']]) {
     await onPage('picture', `${other}.html`, async page => {
       await page.evaluate(() => { if (window.dwellPage.run().rows) window.dwellPage.move(40); });
       await picture(page, name, { fullPage: true });

@@ -23,9 +23,12 @@ sed '/^\[requests\]/,/^\[/{/^\[requests\]/d;/^\[/!d}' validation/single-dwell/sc
 run kinematics "$out/whole-dwell.toml" --points 1001
 run simulate "$out/whole-dwell.toml"
 run kinematics validation/spatial/rssr.toml
-run kinetostatics validation/spatial/wobble-plate.toml
+run statics validation/spatial/wobble-plate.toml
 run reduce validation/spatial/rssr.toml
-run simulate validation/spatial/governor.toml
+{ cat validation/spatial/rssr.toml; printf '\n[prescribed]\nduration = 6.0\nq = { speed = 1.0 }\n'; } >"$out/space-forces.toml"
+run kinetostatics "$out/space-forces.toml"
+{ cat validation/spatial/rssr.toml; printf '\n[motion]\nduration = 3.0\ninitial-velocity = { q = 1.0 }\n'; } >"$out/space-motion.toml"
+run simulate "$out/space-motion.toml"
 run cycle validation/press/scene.toml
 run cycle validation/slider-crank-friction/scene.toml
 run equilibria validation/andrews/scene.toml

@@ -73,7 +73,7 @@ for (const file of [...htmlOf(pages), ...htmlOf(reports)]) {
 
 const size = file => statSync(file).size;
 await test('sizes', async () => {
-  const limits = [[join(pages, 'whole-dwell-kinematics.html'), 900e3], [join(reports, 'index.html'), 300e3]];
+  const limits = [[join(pages, 'whole-dwell-kinematics.html'), 900e3], [join(pages, 'whole-dwell-simulate.html'), 900e3], [join(reports, 'index.html'), 300e3]];
   for (const [file, limit] of limits) {
     console.log(`${file}: ${Math.round(size(file) / 1000)} kB`);
     if (size(file) > limit) throw new Error(`${file} has ${size(file)} bytes, more than ${limit}`);

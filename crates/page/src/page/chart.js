@@ -112,6 +112,10 @@ function createChart(number, state, units, actions) {
     const [xFrom, xTo] = state.zoom || [Math.min(run.axis.values[0], run.axis.values[run.rows - 1]), Math.max(run.axis.values[0], run.axis.values[run.rows - 1])];
     let [low, high] = [Infinity, -Infinity];
     for (const column of columns) {
+      if (isRounding(column)) {
+        [low, high] = [Math.min(low, 0), Math.max(high, 0)];
+        continue;
+      }
       for (let k = rows[0]; k <= rows[1]; k++) {
         const v = column.values[k];
         if (v < low && Number.isFinite(v)) low = v;
@@ -124,7 +128,7 @@ function createChart(number, state, units, actions) {
     if (!(low <= high)) [low, high] = [0, 1];
     // What is constant but for rounding is a straight line.
     const size = Math.max(Math.abs(low), Math.abs(high));
-    if (high - low <= 1e-9 * size || high === low) [low, high] = [low - 0.5 * (size || 1), high + 0.5 * (size || 1)];
+    if (high - low <= 1e-9 * size) [low, high] = [low - 0.5 * (size || 1), high + 0.5 * (size || 1)];
     const room = 0.06 * (high - low);
     [low, high] = [low - room, high + room];
     const toX = x => PAD.left + ((x - xFrom) / (xTo - xFrom || 1)) * (width - PAD.left - PAD.right);

@@ -34,7 +34,7 @@ function format(value, digits = 5) {
   return text.replace('-', '−');
 }
 
-const scientific = value => (Number.isFinite(value) ? value.toExponential(1).replace('-', '−').replace('+', '') : String(value));
+const scientific = value => (value === 0 ? '0' : Number.isFinite(value) ? value.toExponential(1).replace('-', '−').replace('+', '') : String(value));
 
 // A unit as it is printed: `N m` becomes N·m, `m/s2` m/s².
 const printedUnit = unit => unit.replace(/ /g, '·').replace(/([a-zA-Z])(\d)/g, (_, letter, power) => letter + raised(power));
@@ -88,6 +88,7 @@ function ticks(from, to, wanted, isDegrees) {
 }
 
 function tickText(value, decimals) {
+  if (decimals > 4 && value === 0) return '0';
   if (value !== 0 && (Math.abs(value) >= 1e6 || Math.abs(value) < 1e-4)) return format(value, 3);
   const text = value.toFixed(Math.min(decimals, 12));
   return (Number(text) === 0 ? text.replace('-', '') : text).replace('-', '−');

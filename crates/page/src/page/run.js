@@ -16,8 +16,12 @@ function createRun(description, numbers) {
   return run;
 }
 
-// The smallest and the largest value of a column in its rows.
+// Whether the command says that a column is zero but for rounding.
+const isRounding = column => Boolean(column.peak) && column.peak.min.value === 0 && column.peak.max.value === 0;
+
+// The smallest and the largest value of a column in its rows; of one that is rounding zero.
 function extentOf(column) {
+  if (!column.extent && isRounding(column)) column.extent = [0, 0];
   if (!column.extent) {
     let low = Infinity;
     let high = -Infinity;

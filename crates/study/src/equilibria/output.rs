@@ -6,7 +6,7 @@ use crate::explain::StudyError;
 use crate::models::SceneMachine;
 use crate::number_format::{coordinate_unit, count, digits, digits_within, force_unit, number};
 use crate::output::{Outcome, Picture, results_page};
-use crate::page::{drawing_along, table_page, unit_group};
+use crate::page::{drawing_along, scene_page, table_page, unit_group};
 use crate::ranges::extent;
 use dwell_dynamics::{Equilibrium, Stability};
 use dwell_findings::{Column, Record, Table};
@@ -58,7 +58,7 @@ fn static_force_page(scene: &Scene, results: &EquilibriaResults<'_>) -> Option<P
             .map(|(q, [force, potential])| vec![*q, *force, *potential])
             .collect(),
     };
-    let mut page = table_page(&scene.file, "equilibria", &table, unit_group);
+    let mut page = table_page(scene_page(scene, "equilibria"), &table, unit_group);
     page.subtitle = format!("static force and potential over {name}");
     page.drawing = drawing_along(scene, &page);
     Some(page)

@@ -10,11 +10,14 @@ use super::written_scene::scene_text;
 use crate::explain::StudyError;
 use crate::number_format::{coordinate_unit, count, digits_within};
 use crate::output::{Outcome, Picture};
+use crate::page::table_page;
 use crate::ranges::extent;
+use crate::reduce::column_group;
 use crate::reduce::compute::{coefficient_units, inertia_units};
 use dwell_dynamics::{Orbit, ReducedState};
 use dwell_findings::{Column, Record, Table};
 use dwell_kinetostatics::Coefficients;
+use dwell_page::Page;
 use dwell_report::{Block, Document, Files, TableFormat};
 use dwell_scene::SceneError;
 
@@ -27,6 +30,7 @@ const USELESS: f64 = 0.05;
 /// # Errors
 /// [`StudyError`]: a column is missing, the runs do not determine m or contradict each other, a trigonometric series is asked for
 /// positions that are no whole revolution.
+// Long: one result after another.
 pub fn reduce_runs(
     name: &str,
     tables: [&ExportedTable; 2],
@@ -64,7 +68,8 @@ pub fn reduce_runs(
     );
     let figure = figures::figure(&runs, &model, caption);
     let mut files = Files::new();
-    files.add_table(&format!("{name}-reduced"), &table(&runs), &TableFormat::ALL)?;
+    let reduced = table(&runs);
+    files.add_table(&format!("{name}-reduced"), &reduced, &TableFormat::ALL)?;
     match scene_text(name, &runs, interpolation, tables) {
         Some(text) => {
             summary += &format!(
@@ -84,8 +89,19 @@ pub fn reduce_runs(
         files,
         pictures: vec![picture],
         page: Some((format!("{name}-reduced.md"), page)),
+        run: Some(Box::new(rows_page(name, tables, &reduced))),
         ..Outcome::default()
     })
+}
+
+/// The rows on an HTML page.
+fn rows_page(name: &str, [one, two]: [&ExportedTable; 2], reduced: &Table) -> Page {
+    let base = Page {
+        title: format!("{name}: reduced parameters of exported runs"),
+        subtitle: format!("{} and {}", one.file, two.file),
+        ..Page::default()
+    };
+    table_page(base, reduced, column_group)
 }
 
 fn refused(message: String, help: &str) -> StudyError {

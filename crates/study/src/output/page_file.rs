@@ -20,7 +20,6 @@ pub fn add_page(
     let base = match result.scene {
         Some(scene) => scene_page(scene, result.command),
         None => Page {
-            title: format!("dwell {}", result.command),
             command: result.command.to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             ..Page::default()
@@ -29,8 +28,16 @@ pub fn add_page(
     let run = outcome.run.take().map_or_else(Page::default, |run| *run);
     let mut messages = base.messages;
     messages.extend(error_messages(result.errors));
+    let title = [
+        base.title,
+        run.title.clone(),
+        format!("dwell {}", base.command),
+    ];
     let page = Page {
-        title: base.title,
+        title: title
+            .into_iter()
+            .find(|t| !t.is_empty())
+            .unwrap_or_default(),
         command: base.command,
         note: base.note,
         scene: base.scene,

@@ -2,19 +2,18 @@
 
 use super::columns::RowChoice;
 use super::plane::plane_drawing;
-use super::scene_page;
 use crate::bodies::BodyPose;
 use crate::models::loaded_model;
 use dwell_findings::Table;
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{BodyId, Vec2};
 use dwell_page::{Drawing, Page, PageColumn, Peak};
-use dwell_scene::{Scene, SceneFile};
+use dwell_scene::Scene;
 
-/// The page of a table whose first column is the axis; of a group has what belongs in one chart with a column.
+/// A page with the rows of a table whose first column is the axis. `group` says what belongs in one chart with a column, and
+/// what the column is.
 pub(crate) fn table_page(
-    scene: &SceneFile,
-    command: &str,
+    page: Page,
     table: &Table,
     group: impl Fn(&str, &str) -> (String, String),
 ) -> Page {
@@ -40,7 +39,7 @@ pub(crate) fn table_page(
         peaks_note: Some("These are the largest values of the rows.".to_owned()),
         rows_note: choice.note(table.rows.len()),
         columns,
-        ..scene_page(scene, command)
+        ..page
     }
 }
 

@@ -8,4 +8,6 @@ pub(crate) mod output;
 mod page;
 #[cfg(feature = "output")]
 pub(crate) use output::reduction_outcome;
+#[cfg(feature = "output")]
+pub(crate) use page::column_group;
 pub use page::reduction_page;

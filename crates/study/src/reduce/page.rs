@@ -2,7 +2,7 @@
 
 use crate::models::PreparedScene;
 use crate::number_format::count;
-use crate::page::{drawing_along, table_page};
+use crate::page::{drawing_along, scene_page, table_page};
 use crate::reduce::compute::{Peak, ReducedScene, Reduction, peak_between_rows};
 use dwell_findings::Table;
 use dwell_page::Page;
@@ -40,7 +40,7 @@ pub(crate) fn page_of<P: ReducedScene>(
     peak: Option<Peak>,
 ) -> Page {
     let prepared = &reduction.prepared;
-    let mut page = table_page(prepared.file(), "reduce", table, column_group);
+    let mut page = table_page(scene_page(prepared.file(), "reduce"), table, column_group);
     let positions = count(table.rows.len(), "position");
     page.subtitle = format!("{positions} of {}", prepared.coordinate_name());
     if let Some(peak) = peak
@@ -52,7 +52,7 @@ pub(crate) fn page_of<P: ReducedScene>(
 }
 
 /// What belongs in one chart with a column of the table, and what it is.
-fn column_group(name: &str, _: &str) -> (String, String) {
+pub(crate) fn column_group(name: &str, _: &str) -> (String, String) {
     let (group, description) = match name {
         "m" => ("Generalised inertia", "m(q): generalised inertia"),
         "half_dm" => ("Half its slope, ½m′", "½ dm/dq"),

@@ -4,9 +4,10 @@ use super::compute::{ComparedCoefficient, UnitRuns, compute_unit_runs};
 use crate::explain::{Labels, StudyError, scene_error};
 use crate::number_format::{coordinate_unit, count, digits};
 use crate::output::{Outcome, Picture, provenance_line};
-use crate::page::{drawing_along, table_page, unit_group};
+use crate::page::{drawing_along, scene_page, table_page, unit_group};
 use crate::progress::Progress;
 use crate::trajectory::output::TrajectoryOutcome;
+use dwell_page::PageTable;
 use dwell_report::{Block, Document, Figure, Files, TableFormat};
 use dwell_scene::Scene;
 
@@ -24,12 +25,17 @@ pub fn unit_runs(
     let runs = compute_unit_runs(scene, points, progress)?;
     let comparison = runs.comparison();
     let table = runs.table();
-    let mut run = table_page(&scene.file, "runs", &table, unit_group);
+    let mut run = table_page(scene_page(scene, "runs"), &table, unit_group);
     run.subtitle = format!(
         "the two kinetostatic runs and their combination at {}",
         count(table.rows.len(), "position")
     );
     run.drawing = drawing_along(scene, &run);
+    run.tables.push(PageTable {
+        title: COMPARED.to_owned(),
+        header: COMPARISON_HEADER.map(str::to_owned).into(),
+        rows: comparison_rows(&comparison),
+    });
     let name = |rest: &str| format!("{}-{rest}", scene.name);
     let mut files = Files::new();
     for (run, table) in ["run-i", "run-ii"].into_iter().zip(&runs.runs) {
@@ -115,12 +121,17 @@ fn power_of_ten_above(value: f64) -> f64 {
     }
 }
 
-fn page(
-    runs: &UnitRuns<'_>,
-    comparison: &[ComparedCoefficient],
-    figures: &[Figure],
-    file: &dyn Fn(&Figure) -> String,
-) -> Document {
+/// The heading, the header and the rows of the comparison with the reduced model.
+const COMPARED: &str = "Compared with the reduced model";
+const COMPARISON_HEADER: [&str; 5] = [
+    "coefficient",
+    "largest value",
+    "unit",
+    "difference, relative",
+    "tolerance",
+];
+
+fn comparison_rows(comparison: &[ComparedCoefficient]) -> Vec<Vec<String>> {
     let row = |of: &ComparedCoefficient| {
         vec![
             of.symbol.clone(),
@@ -130,12 +141,15 @@ fn page(
             format!("{:.0e}", of.tolerance),
         ]
     };
-    let head = [
-        "coefficient",
-        "largest value",
-        "unit",
-        "difference, relative",
-    ];
+    comparison.iter().map(row).collect()
+}
+
+fn page(
+    runs: &UnitRuns<'_>,
+    comparison: &[ComparedCoefficient],
+    figures: &[Figure],
+    file: &dyn Fn(&Figure) -> String,
+) -> Document {
     let mut blocks = vec![
         Block::Text(
             "The procedure of Jordi, Zayas and Cardona (2008): two kinetostatic analyses of prescribed motions give the \
@@ -148,10 +162,10 @@ fn page(
              m_e1 = (F − m_e2 q̇²)/q̈, with the values of run i at the same position."
                 .to_owned(),
         ),
-        Block::Heading("Compared with the reduced model".to_owned()),
+        Block::Heading(COMPARED.to_owned()),
         Block::Table {
-            header: head.map(str::to_owned).to_vec(),
-            rows: comparison.iter().map(row).collect(),
+            header: COMPARISON_HEADER.map(str::to_owned).into(),
+            rows: comparison_rows(comparison),
         },
         Block::Heading("Figures".to_owned()),
     ];

@@ -249,7 +249,19 @@ impl SpaceParts<'_> {
             look,
             at: anchor(joint.side_body(k), self.drawing.anchor(j, k)),
             axis: coordinates(joint.sides[k].axis),
-            on_ground: joint.bodies.iter().any(|b| self.drawing.is_ground(*b)),
+            // Of a rod each end has its own ball.
+            on_ground: match joint.kind {
+                JointKind::Distance { .. } => self.drawing.is_ground(joint.bodies[k]),
+                JointKind::Weld
+                | JointKind::Revolute
+                | JointKind::Prismatic
+                | JointKind::Cylindrical
+                | JointKind::Helical { .. }
+                | JointKind::Universal
+                | JointKind::Spherical
+                | JointKind::Planar
+                | JointKind::Gear { .. } => joint.bodies.iter().any(|b| self.drawing.is_ground(*b)),
+            },
             label,
             title: format!("{} (joint of {one} and {two})", joint.name),
         }
