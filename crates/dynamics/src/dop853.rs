@@ -11,12 +11,14 @@
 //! enough. Three more stages are evaluated where dense output is needed within a step.
 
 mod coefficients;
+mod interpolation;
 
 use crate::error::{DynamicsError, Result};
 use crate::ode::{OdeState, OdeSystem, StepControl, StepObserver, Termination};
 use crate::options::{Options, Statistics};
 use crate::time_pieces::TimePieces;
-use coefficients::{DENSE, ERRORS, EXTRA_NODES, EXTRA_STAGES, NODES, Row, STAGES, WEIGHTS};
+use coefficients::{ERRORS, NODES, Row, STAGES, WEIGHTS};
+use interpolation::Interpolant;
 
 /// Stages, the interpolant's among them.
 const ALL_STAGES: usize = 16;
@@ -26,8 +28,6 @@ const END_STAGE: usize = 12;
 const SAFETY: f64 = 0.9;
 const MIN_FACTOR: f64 = 1.0 / 3.0;
 const MAX_FACTOR: f64 = 6.0;
-/// Terms of the interpolant.
-const INTERPOLANT_TERMS: usize = 8;
 /// Exponents of a step's error and of the one before in the choice of the next step (Gustafsson): compared with
 /// 1/8 and 0, a third fewer steps are rejected, with the same work for the same error.
 const ERROR_EXPONENT: f64 = -(0.125 - 0.2 * PREVIOUS_ERROR_EXPONENT);
@@ -60,6 +60,8 @@ pub(crate) fn integrate(
         to: start.clone(),
         min_step,
         previous_error: MIN_ERROR,
+        stiffness: 0.0,
+        interpolant: Interpolant::new(rates.len()),
         statistics: Statistics::default(),
     };
     let error = stepper
@@ -83,6 +85,9 @@ struct Stepper<'s> {
     min_step: f64,
     /// Error of the step before, in units of the tolerance.
     previous_error: f64,
+    /// h |λ| of the step.
+    stiffness: f64,
+    interpolant: Interpolant,
     statistics: Statistics,
 }
 
@@ -111,13 +116,14 @@ impl Stepper<'_> {
         for _ in 0..options.max_steps {
             h = self.step(h.min(longest(self.from.t)?), end)?;
             let (stages, from, to) = (&mut self.stages, &self.from, &self.to);
+            let (interpolant, stiffness) = (&mut self.interpolant, self.stiffness);
             let mut ready = false;
             let control = observer(from, to, &mut |t, y| {
                 if !ready {
-                    stages.build_interpolant(from, to)?;
+                    interpolant.build(stages, [from, to], stiffness)?;
                     ready = true;
                 }
-                stages.interpolate((t - from.t) / (to.t - from.t), y);
+                interpolant.at((t - from.t) / (to.t - from.t), y);
                 Ok(())
             })?;
             std::mem::swap(&mut self.from, &mut self.to);
@@ -160,8 +166,8 @@ impl Stepper<'_> {
                     * self.previous_error.powf(PREVIOUS_ERROR_EXPONENT);
                 self.previous_error = error.max(MIN_ERROR);
                 self.statistics.steps += 1;
-                let stiffness = self.stages.stiffness(h, (self.tolerance.1, &self.to.y));
-                self.statistics.stiff_steps += usize::from(stiffness > STABILITY_LIMIT);
+                self.stiffness = self.stages.stiffness(h, (self.tolerance.1, &self.to.y));
+                self.statistics.stiff_steps += usize::from(self.stiffness > STABILITY_LIMIT);
                 return Ok(factor.clamp(MIN_FACTOR, max_factor) * h);
             }
             self.statistics.rejected_steps += 1;
@@ -228,20 +234,17 @@ struct Stages<'s> {
     stage_state: Vec<f64>,
     stage_12_state: Vec<f64>,
     rhs: Vec<f64>,
-    /// By state, the interpolant's coefficients.
-    interpolant_terms: Vec<[f64; INTERPOLANT_TERMS]>,
     evaluations: usize,
 }
 
 impl<'s> Stages<'s> {
     fn new(system: &'s mut dyn OdeSystem, rates: &[f64]) -> Self {
-        let n = rates.len();
         let first = |&rate: &f64| {
             let mut all = [0.0; ALL_STAGES];
             all[0] = rate;
             all
         };
-        let zeros = vec![0.0; n];
+        let zeros = vec![0.0; rates.len()];
         Self {
             system,
             stage_rhs: rates.iter().map(first).collect(),
@@ -251,7 +254,6 @@ impl<'s> Stages<'s> {
             stage_state: zeros.clone(),
             stage_12_state: zeros.clone(),
             rhs: zeros,
-            interpolant_terms: vec![[0.0; INTERPOLANT_TERMS]; n],
             evaluations: 1,
         }
     }
@@ -331,41 +333,6 @@ impl<'s> Stages<'s> {
             rates[0] = rates[END_STAGE];
         }
         std::mem::swap(&mut self.compensation, &mut self.next_compensation);
-    }
-
-    /// Builds the interpolant of the last step, with three more stages.
-    fn build_interpolant(&mut self, from: &OdeState, to: &OdeState) -> Result<()> {
-        let h = to.t - from.t;
-        for (k, (row, node)) in EXTRA_STAGES.iter().zip(&EXTRA_NODES).enumerate() {
-            self.set_stage_state(row, from, h);
-            self.evaluate_stage(END_STAGE + 1 + k, from.t + node * h)?;
-        }
-        let states = self.interpolant_terms.iter_mut().zip(&self.stage_rhs);
-        for (i, (terms, rates)) in states.enumerate() {
-            let increment = to.y[i] - from.y[i];
-            let slope_difference = h * rates[0] - increment;
-            *terms = [
-                from.y[i],
-                increment,
-                slope_difference,
-                increment - h * rates[END_STAGE] - slope_difference,
-                h * DENSE[0].weighted_sum(rates),
-                h * DENSE[1].weighted_sum(rates),
-                h * DENSE[2].weighted_sum(rates),
-                h * DENSE[3].weighted_sum(rates),
-            ];
-        }
-        Ok(())
-    }
-
-    /// The state at a fraction of the step by the interpolant: its terms are multiplied alternately by the fraction
-    /// behind and the fraction ahead.
-    fn interpolate(&self, part: f64, y: &mut [f64]) {
-        let factors = [part, 1.0 - part];
-        for (y, terms) in y.iter_mut().zip(&self.interpolant_terms) {
-            let inner = (1..INTERPOLANT_TERMS).rev();
-            *y = inner.fold(0.0, |sum, k| (sum + terms[k]) * factors[(k + 1) % 2]) + terms[0];
-        }
     }
 }
 
