@@ -125,7 +125,8 @@ fn rows_within_long_steps_are_as_good_as_their_ends() {
         let table = Table::parse(&file(&found, "-motion.csv"));
         let currents = table.column("push.current");
         let largest = currents.iter().fold(0.0_f64, |all, i| all.max(i.abs()));
-        let errors = table.column("t").iter().zip(&currents);
+        let times = table.column("t");
+        let errors = times.iter().zip(&currents);
         let errors = errors.map(|(&t, i)| (i - exact(t)[0]).abs());
         let error = errors.fold(0.0, f64::max) / largest;
         // With one polynomial a step it was 350 and 160 tolerances at 1e-5 and 1e-10.
