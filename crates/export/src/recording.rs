@@ -319,7 +319,7 @@ mod tests {
         let code = code.expect("code");
         // sin, cos, sin², cos², their sum, 6 sin², −q.
         assert_eq!(code.operations.len(), 7);
-        let [one, six, minus] = code.evaluate(0.8)[..] else {
+        let [one, six, minus] = code.evaluate(0.8_f64)[..] else {
             panic!("three outputs");
         };
         assert!((one - 1.0).abs() < 1e-15);

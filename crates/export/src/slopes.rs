@@ -165,7 +165,7 @@ mod tests {
         };
         let sloped = with_slopes(&code, [(0, true), (1, false), (2, true)].into_iter());
         assert_eq!(sloped.outputs.len(), 6);
-        for q in [-1.0, 0.3, 2.0] {
+        for q in [-1.0_f64, 0.3, 2.0] {
             let [value, _, _, slope, unwanted, of_constant] = sloped.evaluate(q)[..] else {
                 panic!("six outputs");
             };
