@@ -49,12 +49,12 @@ lint:
     python3 tests/mutate/named.py
     python3 tests/mutate/selftest.py
 
-# That the computing half compiles without pictures and files, here and for a browser (without that target: here only). Cold it takes minutes, for it builds with other features
+# That the computing half compiles without pictures and files, here and for a browser (without that target: here only), without a warning. Cold it takes minutes, for it builds with other features
 [group('care')]
 computing:
-    cargo check -p dwell-study --no-default-features
+    cargo clippy -p dwell-study --no-default-features -- -D warnings
     @if rustc --print target-libdir --target wasm32-unknown-unknown | xargs test -d; then \
-        cargo check -p dwell-study --no-default-features --target wasm32-unknown-unknown; \
+        cargo clippy -p dwell-study --no-default-features --target wasm32-unknown-unknown -- -D warnings; \
     else echo "wasm32 is not checked: rustup target add wasm32-unknown-unknown"; fi
 
 # Changes of the source text, one at a time in a scratch copy, and which checks fail by each: reports/source-mutations.md and .txt. An hour; `--named` only the faults of tests/mutate/named.toml

@@ -1,11 +1,14 @@
 //! What tables, figures and sentences of reduced parameters need of a scene with its model, in the plane or in space.
 
 use super::UnitLoadCurves;
-use crate::branch_note::branch_note;
 use crate::explain::{StudyError, explain_position};
-use crate::models::{PreparedScene, lists_reactions, requested_reactions};
+use crate::models::{PreparedScene, lists_reactions};
 #[cfg(feature = "output")]
-use crate::output::{coordinate_label, indeterminate_note, separating_note};
+use crate::{
+    branch_note::branch_note,
+    models::requested_reactions,
+    output::{coordinate_label, indeterminate_note, separating_note},
+};
 use crate::ranges::equally_spaced;
 use crate::trajectory::compute::default_limits;
 use dwell_findings::Column;
