@@ -86,6 +86,14 @@ peers:
 octave:
     python3 validation/foreign/run.py
 
+# The live page, in target/web: the analyses as WebAssembly with an editor, as one HTML file and as a folder for a server. Adds the target wasm32-unknown-unknown to Rust where it is missing
+[group('care')]
+web:
+    @rustc --print target-libdir --target wasm32-unknown-unknown | xargs test -d || rustup target add wasm32-unknown-unknown || \
+        { echo "the live page needs Rust's target wasm32-unknown-unknown: rustup target add wasm32-unknown-unknown"; exit 1; }
+    cargo build -p dwell-live --lib --target wasm32-unknown-unknown --profile web
+    cargo run --release --example web
+
 # The Python package: built into target/python, its tests, notebooks and types, and what its calls cost. Needs Python 3.10 or later
 [group('care')]
 python:

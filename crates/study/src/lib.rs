@@ -65,7 +65,7 @@ pub use equilibria::compute::compute_equilibria;
 pub use explain::{StudyError, SweepError};
 pub use export::{ExportRequest, compute_export};
 pub use exported_runs::{ColumnNames, ExportedTable, SampleInterpolation};
-pub use free_motion::compute::{MotionSolver, compute_free_motion};
+pub use free_motion::compute::{MotionSolver, compute_free_motion, compute_period};
 pub use linearise::compute::{OperatingPoint, compute_linearisation};
 pub use models::{PRESETS, PreparedScene, SolverSettings};
 pub use progress::{Progress, Step, no_progress};
