@@ -25,7 +25,7 @@ use dwell_report::{Files, OutputFolder, ReportError};
 use dwell_scene::{AnyScene, Scene, SceneError, SceneFile};
 use dwell_study::{
     Analysis, CommandResult, Outcome, ParameterSweep, PictureFormat, PictureSpan, Pictures, Shard,
-    SolverSettings, Step, StudyError, TableRequest, TrajectoryOutcome, add_summary, no_progress,
+    SolverSettings, Step, StudyError, TableRequest, TrajectoryOutcome, add_page, add_summary, no_progress,
 };
 use dwell_validation::ValidationError;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -130,7 +130,7 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
     };
     // No line follows the results.
     drop(lines);
-    finish(done, (command, name), (folder, &options.out), times)
+    finish(done, (options, name), folder, times)
 }
 
 /// What a command came to.
@@ -150,8 +150,8 @@ struct Done {
 /// Prints and writes the results, and returns whether all checks passed.
 fn finish(
     mut done: Done,
-    (command, name): (&Command, &str),
-    (folder, out): (OutputFolder, &Path),
+    (options, name): (&Options, &str),
+    folder: OutputFolder,
     mut times: Times,
 ) -> Result<bool, Report> {
     let passed = done.early_stop.is_none() && all_pass(&done.outcome.findings);
@@ -160,20 +160,26 @@ fn finish(
         (None, passed) => u8::from(!passed),
     };
     let errors = done.early_stop.iter().chain(&done.failures).cloned();
+    let stem = results_stem(&options.command, name, results_name(&done));
     let result = CommandResult {
         command: name,
         scene: done.scene.as_ref(),
-        path: &summary_path(command, name, results_name(&done)),
+        path: &format!("{stem}.json"),
         status,
         errors: &errors.collect::<Vec<_>>(),
     };
     // Where no case could be validated there is nothing to write.
     if status < 2 || !done.outcome.files.is_empty() {
-        let added = add_summary(&mut done.outcome, &result);
+        let page = match (options.html, &options.command) {
+            // Its pages are written already.
+            (_, Command::Validate { .. }) | (false, _) => Ok(()),
+            (true, _) => add_page(&mut done.outcome, &result, &format!("{stem}.html")),
+        };
+        let added = page.and_then(|()| add_summary(&mut done.outcome, &result));
         added.map_err(|e| Report::new(as_scene_error(e)))?;
     }
     print(&done.outcome.summary)?;
-    write_files(&done.outcome.files, folder, out)?;
+    write_files(&done.outcome.files, folder, &options.out)?;
     times.add("writing");
     print_note(&times.text());
     if let Some(reason) = done.early_stop {
@@ -202,8 +208,8 @@ fn results_name(done: &Done) -> Option<&str> {
     scene.or(done.exported.as_deref())
 }
 
-/// The path of the summary in the output folder. Each part of a sweep has one of its own.
-fn summary_path(command: &Command, name: &str, results: Option<&str>) -> String {
+/// The paths of summary and page in the output folder, without their endings. Each part of a sweep has its own.
+fn results_stem(command: &Command, name: &str, results: Option<&str>) -> String {
     let of_scene = results.map_or(String::new(), |results| format!("{results}-"));
     let part = match command {
         Command::Sweep {
@@ -212,7 +218,7 @@ fn summary_path(command: &Command, name: &str, results: Option<&str>) -> String 
         } => format!("-{part}-of-{of}"),
         _ => String::new(),
     };
-    format!("{of_scene}{name}{part}.json")
+    format!("{of_scene}{name}{part}")
 }
 
 /// Runs a study of one scene: one arm for each command, so longer than a screen.

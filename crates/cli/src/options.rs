@@ -29,6 +29,10 @@ pub(crate) struct Options {
     /// Format of the pictures; animations are always GIF. Validation always draws its PNG, too
     #[arg(long, global = true, value_parser = choice(PICTURE_FORMATS), default_value = "png", value_name = "FORMAT")]
     pub(crate) picture_format: PictureFormat,
+    /// Also write the results as one HTML page, NAME-COMMAND.html, which opens without a connection: mechanism in motion, curves,
+    /// largest values, findings. Validation always writes its pages
+    #[arg(long, global = true)]
+    pub(crate) html: bool,
     /// Name of the scene, which the names of its files begin with (default: that of its file, or `stdin`)
     #[arg(long, global = true, value_parser = parse_name, value_name = "NAME")]
     pub(crate) name: Option<String>,

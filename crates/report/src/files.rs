@@ -100,6 +100,11 @@ impl Files {
         })
     }
 
+    /// All paths, in their order.
+    pub fn paths(&self) -> impl Iterator<Item = &Path> {
+        self.files.keys().map(PathBuf::as_path)
+    }
+
     /// All paths and contents.
     pub(crate) fn contents(&self) -> impl Iterator<Item = (&Path, &Content)> {
         self.files

@@ -36,6 +36,7 @@ pub mod models;
 pub mod number_format;
 #[cfg(feature = "output")]
 pub mod output;
+pub mod page;
 mod progress;
 pub mod ranges;
 
@@ -54,6 +55,7 @@ mod space;
 mod suspicious_units;
 pub mod sweep;
 mod symbolic;
+mod symbols;
 pub mod trajectory;
 pub mod unit_runs;
 
@@ -84,7 +86,7 @@ pub use {
     exported_runs::reduce_runs,
     free_motion::output::{simulate, simulate_to_accuracy, simulate_with, simulate_within},
     linearise::output::linearise,
-    output::{CommandResult, Outcome, PictureFormat, Pictures, add_summary},
+    output::{CommandResult, Outcome, PictureFormat, Pictures, add_page, add_summary},
     reduce::output::reduce,
     space::{
         PreparedSpaceScene, analyse_in_space, check_in_space, export_in_space, reduce_in_space,

@@ -8,6 +8,7 @@ use crate::explain::StudyError;
 use crate::models::{SceneMachine, SolverSettings, source_name};
 use crate::number_format::{count, digits, digits_within};
 use crate::output::{Outcome, Picture, results_page};
+use crate::page::{table_page, unit_group};
 use crate::trajectory::output::TrajectoryOutcome;
 use dwell_dynamics::Cycle;
 use dwell_findings::Record;
@@ -46,6 +47,12 @@ pub fn cycle(
     };
     let mut outcome = Outcome::default();
     let name = |rest: &str| format!("{}-cycle{rest}", scene.name);
+    let mut page_of_rows = table_page(&scene.file, "cycle", &results.samples, unit_group);
+    page_of_rows.subtitle = format!(
+        "one steady cycle in {}",
+        count(results.samples.rows.len(), "position")
+    );
+    outcome.run = Some(Box::new(page_of_rows));
     let files = &mut outcome.files;
     files.add_table(&name(""), &results.samples, &TableFormat::ALL)?;
     files.add_table(&name("-work"), &results.works, &[TableFormat::Csv])?;

@@ -6,9 +6,11 @@ use crate::explain::StudyError;
 use crate::models::SceneMachine;
 use crate::number_format::{coordinate_unit, count, digits, digits_within, force_unit, number};
 use crate::output::{Outcome, Picture, results_page};
+use crate::page::{drawing_at, table_page, unit_group};
 use crate::ranges::extent;
 use dwell_dynamics::{Equilibrium, Stability};
-use dwell_findings::Record;
+use dwell_findings::{Column, Record, Table};
+use dwell_page::Page;
 use dwell_report::TableExport as _;
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
@@ -25,6 +27,7 @@ pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
     outcome.files.add(name("csv"), results.table.csv()?);
     outcome.summary = summary(&results);
     outcome.record = record(&results);
+    outcome.run = static_force_page(scene, &results).map(Box::new);
     let figure = results.curves.as_ref();
     let figure = figure.map(|curves| figures::equilibria(&results, curves));
     let figures: Vec<_> = figure.iter().map(|figure| (figure, name("png"))).collect();
@@ -36,6 +39,30 @@ pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
         .map(|figure| Picture::figure(scene, name("png"), true, figure))
         .collect();
     Ok(outcome)
+}
+
+/// The static force and the potential over the range of the only coordinate, with the mechanism, unless another one is
+/// prescribed.
+fn static_force_page(scene: &Scene, results: &EquilibriaResults<'_>) -> Option<Page> {
+    let curves = results.curves.as_ref()?;
+    let (i, is_angle) = results.prepared.first_free_coordinate();
+    let (name, unit) = coordinate(&results.prepared, i);
+    let rows = curves.q.iter().zip(&curves.force_and_potential);
+    let table = Table {
+        columns: vec![
+            Column::new(name, unit),
+            Column::new("static_force", force_unit(is_angle)),
+            Column::new("potential", "J"),
+        ],
+        rows: rows.map(|(q, [force, potential])| vec![*q, *force, *potential]).collect(),
+    };
+    let mut page = table_page(&scene.file, "equilibria", &table, unit_group);
+    page.subtitle = format!("static force and potential over {name}");
+    if scene.mechanism.actuators.len() == 1 {
+        let coordinates: Vec<Vec<f64>> = curves.q.iter().map(|q| vec![*q]).collect();
+        page.drawing = drawing_at(scene, &coordinates);
+    }
+    Some(page)
 }
 
 fn summary(results: &EquilibriaResults<'_>) -> String {

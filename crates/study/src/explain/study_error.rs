@@ -1,6 +1,8 @@
 //! The errors of analyses, with their locations in the scene file.
 
 #[cfg(feature = "output")]
+use dwell_page::PageError;
+#[cfg(feature = "output")]
 use dwell_report::ReportError;
 use dwell_scene::SceneError;
 use std::path::PathBuf;
@@ -16,6 +18,10 @@ pub enum StudyError {
     #[cfg(feature = "output")]
     #[error(transparent)]
     Report(#[from] ReportError),
+    /// The page cannot be made.
+    #[cfg(feature = "output")]
+    #[error(transparent)]
+    Page(#[from] PageError),
     /// A sweep fails.
     #[error(transparent)]
     Sweep(#[from] SweepError),

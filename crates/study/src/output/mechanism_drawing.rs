@@ -1,23 +1,15 @@
 //! Drawing of a mechanism in one position: bodies as bars, plates and blocks, joints and springs.
 
-use super::mechanism_symbols::{
-    PitchCurve, axis_of, circle, drawn_size, pitch_curve, rack_outline, spring_outline,
-};
 use crate::bodies::{BodyPose, point_position};
-use crate::ranges::extent;
-use dwell_geometry::{ActuatorKind, BodyId, Joint, JointId, JointKind, Vec2, vec2};
+use crate::symbols::{
+    BodyOutline, PitchCurve, RAIL_DISTANCE, SLOT_DISTANCE, TOOTH, TRACK_MARGIN, circle,
+    common_joint_name, is_cylinder, outline_of, pitch_curve, rack_outline, reach, spring_outline,
+    symbol_size, travels,
+};
+use dwell_geometry::{ActuatorKind, BodyId, Joint, JointKind, Vec2, vec2};
 use dwell_kinetostatics::LoadKind;
 use dwell_report::{Paint, Pen, Shape, TextPlacement};
 use dwell_scene::Scene;
-
-/// Reference length of the symbols, in sizes of the mechanism.
-const SYMBOL_RATIO: f64 = 0.6;
-/// The same of the whole drawing, below which symbols could not be recognised.
-const MIN_SYMBOL_RATIO: f64 = 0.4;
-/// Half the distance of the rails of a guide, and of a slot, and the height of the teeth of a rack, in reference lengths.
-const RAIL_DISTANCE: f64 = 0.055;
-const SLOT_DISTANCE: f64 = 0.035;
-const TOOTH: f64 = 0.012;
 
 /// Draws a mechanism in some of its positions.
 pub struct MechanismDrawing<'a> {
@@ -45,26 +37,14 @@ fn array(at: Vec2) -> [f64; 2] {
 impl<'a> MechanismDrawing<'a> {
     /// For a scene at these positions.
     pub fn new(scene: &'a Scene, positions: &[Vec<BodyPose>]) -> Self {
-        let travel = |joint: &Joint| {
-            let axis = axis_of(joint.kind)?;
-            let [one, two] = joint.bodies.map(|b| b.0);
-            let travel_along = |body_poses: &Vec<BodyPose>| {
-                let at = |body, k: usize| point_position(body_poses, body, joint.points[k]);
-                let [a, b] = [at(one, 0), at(two, 1)].map(vector);
-                axis.rotate(body_poses[one].1).dot(b - a)
-            };
-            let limits = extent(positions.iter().map(travel_along));
-            (limits[0] <= limits[1]).then_some(limits)
-        };
         let couplings = scene.mechanism.couplings.iter();
         let cams = couplings.filter_map(|coupling| pitch_curve(scene, coupling, positions));
         Self {
             cams: cams.collect(),
             paths: Vec::new(),
             scene,
-            size: (SYMBOL_RATIO * scene.mechanism.size())
-                .max(MIN_SYMBOL_RATIO * drawn_size(scene, positions)),
-            travels: scene.mechanism.joints.iter().map(travel).collect(),
+            size: symbol_size(scene, positions),
+            travels: travels(scene, positions),
             visible: vec![true; scene.mechanism.bodies.len()],
         }
     }
@@ -121,47 +101,6 @@ impl<'a> MechanismDrawing<'a> {
             k => Paint::Palette(k),
         }
     }
-
-    /// Whether a joint is a driven prismatic one between two moving bodies.
-    fn is_cylinder(&self, joint: usize) -> bool {
-        let mechanism = &self.scene.mechanism;
-        let drives = ActuatorKind::Travel(JointId(joint));
-        let bodies = mechanism.joints[joint].bodies;
-        let is_driven = mechanism.actuators.iter().any(|a| a.kind == drives);
-        is_driven && !bodies.iter().any(|b| self.is_ground(*b))
-    }
-
-    /// The common label of joints at one point: for a pin of several bodies, whose joints are named `pin-body`, the pin.
-    fn common_name(&self, joints: &[&Joint]) -> String {
-        let pin = |joint: &&Joint| {
-            let body = self.scene.mechanism.body_name(joint.bodies[1]);
-            let pin = joint.name.strip_suffix(body)?.strip_suffix('-')?;
-            Some(pin.to_owned())
-        };
-        let pins: Option<Vec<String>> = joints.iter().map(pin).collect();
-        match pins.as_deref() {
-            Some([first, rest @ ..]) if !rest.is_empty() && rest.iter().all(|p| p == first) => {
-                first.clone()
-            }
-            _ => {
-                let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
-                names.join(", ")
-            }
-        }
-    }
-
-    /// The axis of a body's prismatic joint, in its frame.
-    fn slide_axis(&self, body: usize) -> Option<Vec2> {
-        let joints = self.scene.mechanism.joints.iter().enumerate();
-        let mut joints = joints.filter(|(j, _)| !self.is_cylinder(*j));
-        joints.find_map(|(_, joint)| match joint.kind {
-            JointKind::Prismatic { axes } => {
-                let end = joint.bodies.iter().position(|b| b.0 == body)?;
-                Some(axes[end])
-            }
-            _ => None,
-        })
-    }
 }
 
 /// One position of a mechanism, with the shapes drawn so far.
@@ -216,7 +155,7 @@ impl DrawnPosition<'_> {
                     self.disc(two, at[1], radius.abs());
                 }
                 JointKind::Slot { axis } if is_first => self.track(joint, axis, *travel),
-                JointKind::Prismatic { axes } if drawing.is_cylinder(j) => {
+                JointKind::Prismatic { axes } if is_cylinder(drawing.scene, j) => {
                     let min_travel = travel.map_or(0.0, |[low, _]| 0.85 * low);
                     let end = at[0] + axes[0].rotate(self.rotation(one)) * min_travel;
                     self.named_line(two, &at, 5.0);
@@ -312,7 +251,7 @@ impl DrawnPosition<'_> {
         let start = self.point(one, joint.points[0]);
         let direction = axis.rotate(self.rotation(one));
         let [low, high] = travel.unwrap_or([0.0; 2]);
-        let margin = 0.25 * self.drawing.size;
+        let margin = TRACK_MARGIN * self.drawing.size;
         let [from, to] = [low - margin, high + margin].map(|s| start + direction * s);
         let radius = match joint.kind {
             JointKind::Rack { radius, .. } | JointKind::Rolling { radius, .. } => Some(radius),
@@ -361,12 +300,7 @@ impl DrawnPosition<'_> {
 
     /// The large ones first: where two lie on each other, the small one stays in sight.
     fn draw_bodies(&mut self) {
-        let points = |b: usize| &self.drawing.scene.points[b];
-        let reach = |b: usize| {
-            let all = points(b).iter();
-            let pairs = all.flat_map(|(_, p)| points(b).iter().map(move |(_, q)| (*p - *q).norm()));
-            pairs.fold(0.0, f64::max)
-        };
+        let reach = |b: usize| reach(self.drawing.scene, b);
         let is_block = |b: &usize| reach(*b) == 0.0;
         let mut bodies = self.drawn_bodies();
         bodies.sort_by(|a, b| {
@@ -384,32 +318,10 @@ impl DrawnPosition<'_> {
         let (drawing, id) = (self.drawing, BodyId(body));
         let pen = |width| self.pen(drawing.color(id), width);
         let at = |points: &[Vec2]| points.iter().map(|p| array(self.point(id, *p))).collect();
-        let mut points: Vec<Vec2> = Vec::new();
-        for (_, p) in &drawing.scene.points[body] {
-            if !points.contains(p) {
-                points.push(*p);
-            }
-        }
-        if let (&[middle], Some(axis)) = (points.as_slice(), drawing.slide_axis(body)) {
-            let half = 0.045 * drawing.size;
-            let (along, across) = (axis * (1.6 * half), axis.perp() * half);
-            let [behind, before] = [middle - along, middle + along];
-            let right = [behind - across, before - across];
-            let corners = [right, [before + across, behind + across]].concat();
-            return Shape::area(at(&corners), pen(3.0), 0.35);
-        }
-        let sum = points.iter().fold(Vec2::ZERO, |sum, p| sum + *p);
-        let middle = sum * (1.0 / points.len().max(1) as f64);
-        let offsets = points.iter().map(|p| *p - middle);
-        let farthest = offsets.max_by(|a, b| a.norm().total_cmp(&b.norm()));
-        let line = farthest.unwrap_or(Vec2::ZERO);
-        let off_line = |p: &Vec2| line.cross(*p - middle).abs() > 1e-6 * line.norm().powi(2);
-        if points.len() > 2 && points.iter().any(off_line) {
-            points.sort_by(|a, b| (*a - middle).angle().total_cmp(&(*b - middle).angle()));
-            Shape::area(at(&points), pen(4.0), 0.15)
-        } else {
-            points.sort_by(|a, b| line.dot(*a).total_cmp(&line.dot(*b)));
-            Shape::line(at(&points), pen(6.0))
+        match outline_of(drawing.scene, body, drawing.size) {
+            BodyOutline::Block(corners) => Shape::area(at(&corners), pen(3.0), 0.35),
+            BodyOutline::Plate(points) => Shape::area(at(&points), pen(4.0), 0.15),
+            BodyOutline::Bar(points) => Shape::line(at(&points), pen(6.0)),
         }
     }
 
@@ -461,7 +373,7 @@ impl DrawnPosition<'_> {
             }
         }
         for (at, joints, side) in labels {
-            let name = drawing.common_name(&joints);
+            let name = common_joint_name(drawing.scene, &joints);
             self.shapes.push(Shape::text(array(at), name, side));
         }
     }

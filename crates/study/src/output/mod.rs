@@ -3,7 +3,7 @@
 mod captions;
 mod distinct_names;
 mod mechanism_drawing;
-mod mechanism_symbols;
+mod page_file;
 mod pictures;
 mod provenance;
 mod results_page;
@@ -16,12 +16,14 @@ pub(crate) use captions::{
 pub use captions::{caption, chart, coordinate_label, figure, scene_caption, symbol};
 pub(crate) use distinct_names::DistinctNames;
 pub use mechanism_drawing::MechanismDrawing;
+pub use page_file::add_page;
 pub use pictures::{Picture, PictureFormat, Pictures};
 pub use provenance::provenance_line;
 pub(crate) use results_page::results_page;
 pub use summary_file::{CommandResult, add_summary};
 
 use dwell_findings::{Finding, Record};
+use dwell_page::Page;
 use dwell_report::{Document, Files};
 
 /// The result of an analysis, in memory: nothing is drawn until the caller [draws](Self::draw) the pictures, and nothing
@@ -40,4 +42,6 @@ pub struct Outcome {
     pub pictures: Vec<Picture>,
     /// The page that shows the results and the pictures that are drawn, with its path.
     pub page: Option<(String, Document)>,
+    /// What its one-file HTML page shows beside that: rows, peaks, the moving mechanism.
+    pub run: Option<Box<Page>>,
 }

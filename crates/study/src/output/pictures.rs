@@ -1,6 +1,7 @@
 //! The pictures of an analysis: described with the results, drawn afterwards, and only those that are wanted.
 
 use super::Outcome;
+use super::page_file::tables_page;
 use super::provenance::signature;
 use crate::explain::StudyError;
 use crate::number_format::count;
@@ -154,6 +155,7 @@ impl Outcome {
             findings,
             pictures,
             page,
+            run,
         } = self;
         let all = pictures.len();
         let (drawn, left): (Vec<Picture>, Vec<Picture>) =
@@ -174,6 +176,7 @@ impl Outcome {
         for (path, bytes) in picture_files.into_iter().flatten() {
             files.add(path, bytes);
         }
+        let run = run.or_else(|| page.as_ref().map(|(_, page)| tables_page(page)));
         if let Some((path, page)) = page {
             files.add(path, with_drawn_pictures(page, &left, format).markdown());
         }
@@ -191,6 +194,7 @@ impl Outcome {
             record,
             files,
             findings,
+            run,
             ..Self::default()
         })
     }

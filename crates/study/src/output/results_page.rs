@@ -10,6 +10,9 @@ use dwell_scene::Scene;
 /// Digits of a number of the page; files have all of them.
 const DIGITS: usize = 9;
 
+/// The header of the table of numbers.
+pub(super) const RESULTS_HEADER: [&str; 4] = ["quantity", "value", "unit", "estimated error"];
+
 /// The page of an analysis, from its summary (whose first line is the heading of the results), its numbers, and its
 /// figures with their files.
 pub(crate) fn results_page(
@@ -32,9 +35,8 @@ pub(crate) fn results_page(
         caption: String::new(),
     }));
     blocks.push(Block::Heading("Results".to_owned()));
-    let header = ["quantity", "value", "unit", "estimated error"];
     blocks.push(Block::Table {
-        header: header.map(str::to_owned).into(),
+        header: RESULTS_HEADER.map(str::to_owned).into(),
         rows: record.numbers.iter().map(row).collect(),
     });
     let mut methods: Vec<&str> = figures.iter().map(|(f, _)| f.provenance.as_str()).collect();

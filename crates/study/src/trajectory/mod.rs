@@ -1,8 +1,7 @@
 //! `dwell kinematics`, `dwell statics`, `dwell kinetostatics`: a mechanism along a prescribed motion or a
 //! coordinate sweep.
 
-#[cfg(feature = "output")]
-mod column_extrema;
+pub(crate) mod column_extrema;
 pub mod compute;
 #[cfg(feature = "output")]
 pub(crate) mod document;

@@ -4,6 +4,7 @@ use super::figures::PictureSpan;
 use super::{document, figures};
 use crate::explain::StudyError;
 use crate::output::{DistinctNames, Outcome, Picture};
+use crate::page::trajectory_page;
 use crate::progress::Progress;
 use crate::trajectory::compute::{Analysis, ComputedTrajectory, RowStorage, compute_trajectory_in};
 use dwell_report::{Animation, Figure, Files, TableExport as _, TableFormat};
@@ -74,6 +75,7 @@ pub(crate) fn report(
     let animation = figures::animation(scene, computed)?;
     let document = document::Document::new(scene, computed);
     let mut outcome = outcome_of(&scene.file, computed, &document, (figures, animation))?;
+    outcome.run = Some(Box::new(trajectory_page(scene, computed)));
     outcome.files.extend("", files);
     outcome.summary += &left_out.map_or_else(String::new, |note| format!("  {note}\n"));
     Ok(outcome)

@@ -4,6 +4,7 @@ use super::compute::{ComparedCoefficient, UnitRuns, compute_unit_runs};
 use crate::explain::{Labels, StudyError, scene_error};
 use crate::number_format::{coordinate_unit, count, digits};
 use crate::output::{Outcome, Picture, provenance_line};
+use crate::page::{drawing_at, table_page, unit_group};
 use crate::progress::Progress;
 use crate::trajectory::output::TrajectoryOutcome;
 use dwell_report::{Block, Document, Figure, Files, TableFormat};
@@ -22,12 +23,20 @@ pub fn unit_runs(
 ) -> Result<TrajectoryOutcome, StudyError> {
     let runs = compute_unit_runs(scene, points, progress)?;
     let comparison = runs.comparison();
+    let table = runs.table();
+    let mut run = table_page(&scene.file, "runs", &table, unit_group);
+    run.subtitle = format!(
+        "the two kinetostatic runs and their combination at {}",
+        count(table.rows.len(), "position")
+    );
+    let coordinates: Vec<Vec<f64>> = runs.combined.q.iter().map(|q| vec![*q]).collect();
+    run.drawing = drawing_at(scene, &coordinates);
     let name = |rest: &str| format!("{}-{rest}", scene.name);
     let mut files = Files::new();
     for (run, table) in ["run-i", "run-ii"].into_iter().zip(&runs.runs) {
         files.add_table(&name(run), table, &TableFormat::ALL)?;
     }
-    files.add_table(&name("runs"), &runs.table(), &TableFormat::ALL)?;
+    files.add_table(&name("runs"), &table, &TableFormat::ALL)?;
     let file = |figure: &Figure| name(&format!("{}.png", figure.name));
     let figures = runs.figures();
     let page = Some((name("runs.md"), page(&runs, &comparison, &figures, &file)));
@@ -38,6 +47,7 @@ pub fn unit_runs(
         files,
         pictures: pictures.collect(),
         page,
+        run: Some(Box::new(run)),
         ..Outcome::default()
     };
     Ok(TrajectoryOutcome {

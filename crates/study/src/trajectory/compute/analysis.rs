@@ -23,4 +23,12 @@ impl Analysis {
             Self::FreeMotion => "motion",
         }
     }
+
+    /// The command that runs it.
+    pub(crate) fn command(self) -> &'static str {
+        match self {
+            Self::FreeMotion => "simulate",
+            Self::Kinematics | Self::Statics | Self::Kinetostatics => self.name(),
+        }
+    }
 }

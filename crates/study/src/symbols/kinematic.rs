@@ -11,23 +11,25 @@ use std::f64::consts::{PI, TAU};
 const STRAIGHT: f64 = 1e-6;
 
 /// Number of corners of a circle.
+#[cfg(feature = "output")]
 const CIRCLE_POINTS: usize = 72;
 /// Number of coils of a spring.
+#[cfg(feature = "output")]
 const SPRING_COILS: usize = 7;
 
 /// The pitch curve of a cam: the path of the follower's point in the cam's frame.
 #[derive(Debug, Clone)]
-pub(super) struct PitchCurve {
+pub(crate) struct PitchCurve {
     /// The cam.
-    pub(super) body: usize,
+    pub(crate) body: usize,
     /// Points in its frame, m.
-    pub(super) points: Vec<Vec2>,
+    pub(crate) points: Vec<Vec2>,
     /// Whether it goes all the way round.
-    pub(super) closed: bool,
+    pub(crate) closed: bool,
 }
 
 /// The pitch curve of a coupling that is a cam with its follower, from the positions in the order of the motion.
-pub(super) fn pitch_curve(
+pub(crate) fn pitch_curve(
     scene: &Scene,
     coupling: &Coupling,
     positions: &[Vec<BodyPose>],
@@ -93,7 +95,7 @@ fn relative_angle(poses: &[BodyPose], [from, to]: [usize; 2]) -> f64 {
 }
 
 /// The outline of a rack from one place to another: teeth along the pitch line, on the side that `normal` points to.
-pub(super) fn rack_outline([from, to]: [Vec2; 2], normal: Vec2, tooth: f64) -> Vec<Vec2> {
+pub(crate) fn rack_outline([from, to]: [Vec2; 2], normal: Vec2, tooth: f64) -> Vec<Vec2> {
     let along = to - from;
     let length = along.norm();
     if length == 0.0 || tooth <= 0.0 {
@@ -118,7 +120,7 @@ pub(super) fn rack_outline([from, to]: [Vec2; 2], normal: Vec2, tooth: f64) -> V
 }
 
 /// The larger side of what all points of all bodies go through, m.
-pub(super) fn drawn_size(scene: &Scene, positions: &[Vec<BodyPose>]) -> f64 {
+pub(crate) fn drawn_size(scene: &Scene, positions: &[Vec<BodyPose>]) -> f64 {
     let all = positions.iter().flat_map(|poses| {
         let bodies = scene.points.iter().take(poses.len()).enumerate();
         bodies.flat_map(move |(b, points)| {
@@ -136,7 +138,8 @@ pub(super) fn drawn_size(scene: &Scene, positions: &[Vec<BodyPose>]) -> f64 {
 }
 
 /// The corners of a circle.
-pub(super) fn circle(at: Vec2, radius: f64) -> Vec<Vec2> {
+#[cfg(feature = "output")]
+pub(crate) fn circle(at: Vec2, radius: f64) -> Vec<Vec2> {
     let corner = |k: usize| {
         let (sin, cos) = (TAU * k as f64 / CIRCLE_POINTS as f64).sin_cos();
         vec2(at.x + radius * cos, at.y + radius * sin)
@@ -145,7 +148,8 @@ pub(super) fn circle(at: Vec2, radius: f64) -> Vec<Vec2> {
 }
 
 /// A zigzag between two points.
-pub(super) fn spring_outline(a: Vec2, b: Vec2, half: f64) -> Vec<Vec2> {
+#[cfg(feature = "output")]
+pub(crate) fn spring_outline(a: Vec2, b: Vec2, half: f64) -> Vec<Vec2> {
     let gap = b - a;
     if gap.norm() == 0.0 {
         return Vec::new();
@@ -163,7 +167,7 @@ pub(super) fn spring_outline(a: Vec2, b: Vec2, half: f64) -> Vec<Vec2> {
 }
 
 /// The axis of a joint along which a point goes.
-pub(super) fn axis_of(kind: JointKind) -> Option<Vec2> {
+pub(crate) fn axis_of(kind: JointKind) -> Option<Vec2> {
     match kind {
         JointKind::Prismatic { axes } => Some(axes[0]),
         JointKind::Slot { axis }

@@ -1,0 +1,210 @@
+//! The mechanism as a page draws it: what is fixed to bodies, where bodies are in each row, and which columns arrows show.
+
+use serde::Serialize;
+
+/// A mechanism in the plane or in space. Points have two or three numbers, in m, in the frame of a body.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Drawing {
+    /// Reference length of symbols, m.
+    pub size: f64,
+    /// In space the direction from which it is seen first, rad: azimuth about z and elevation. None in the plane.
+    pub view: Option<[f64; 2]>,
+    /// The bodies.
+    pub bodies: Vec<DrawnBody>,
+    /// What is drawn, from the back to the front.
+    pub parts: Vec<Part>,
+    /// Forces that can be shown as arrows.
+    pub arrows: Vec<ForceArrow>,
+    /// Points whose paths can be shown.
+    pub paths: Vec<DrawnPath>,
+}
+
+/// A body.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DrawnBody {
+    /// Its name.
+    pub name: String,
+    /// The number of its colour: six of the palette, then ink; none of the ground.
+    pub paint: Option<usize>,
+    /// Where it is in each row. In the plane x, y (m) and the angle (rad); in space x, y, z (m) and the first two columns
+    /// of its rotation. Empty where it is fixed. They are kept in single precision, as they are only drawn.
+    pub placements: Vec<Vec<f64>>,
+}
+
+/// A point of a body.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Anchor {
+    /// The body.
+    pub body: usize,
+    /// The point in its frame, m.
+    pub point: Vec<f64>,
+}
+
+/// What an outline is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum OutlineLook {
+    /// A bar through points of one line.
+    Bar,
+    /// A plate through three points or more.
+    Plate,
+    /// A block that slides.
+    Block,
+    /// A wheel: its circle.
+    Wheel,
+    /// A line that shows how a wheel rotates.
+    Spoke,
+    /// A cam, or a rack.
+    Profile,
+    /// A slot or a guide of a moving body.
+    Slot,
+    /// A line of the ground, hatched on its right.
+    GroundLine,
+}
+
+/// What a connection of two points is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LinkLook {
+    /// A massless rod.
+    Rod,
+    /// A driven length: the barrel of a cylinder in the first half.
+    Cylinder,
+    /// A spring.
+    Spring,
+    /// A damper.
+    Damper,
+}
+
+/// The symbol of a joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MarkLook {
+    /// A pin between moving bodies.
+    Pin,
+    /// A pin on the ground.
+    GroundPin,
+    /// A weld.
+    Weld,
+    /// A hinge in space, with its axis.
+    Hinge,
+    /// A sleeve in space, with its axis.
+    Sleeve,
+    /// A slide in space, with its axis.
+    Slide,
+    /// A ball in space.
+    Ball,
+    /// A universal joint in space.
+    Universal,
+    /// Two plates that slide on each other in space, with their normal.
+    Planar,
+    /// Teeth in space, with their normal.
+    Teeth,
+    /// The centre of mass of a body.
+    CenterOfMass,
+}
+
+/// A symbol at a point of a body.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Mark {
+    /// What it is.
+    pub look: MarkLook,
+    /// Where it is.
+    pub at: Anchor,
+    /// Its axis in the frame of that body, a unit vector; empty where it has none.
+    pub axis: Vec<f64>,
+    /// Whether it is fixed to the ground.
+    pub on_ground: bool,
+    /// Its label, or nothing.
+    pub label: String,
+    /// What it is in words, such as `revolute joint A of ground and crank`.
+    pub title: String,
+}
+
+/// A part of a drawing.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "part", rename_all = "kebab-case")]
+pub enum Part {
+    /// A line or an area that moves with a body.
+    Outline {
+        /// What it is.
+        look: OutlineLook,
+        /// The body.
+        body: usize,
+        /// Its points in the frame of the body, m.
+        points: Vec<Vec<f64>>,
+        /// Whether it is closed.
+        closed: bool,
+    },
+    /// A connection of two points.
+    Link {
+        /// What it is.
+        look: LinkLook,
+        /// Its ends.
+        ends: [Anchor; 2],
+        /// The bodies to which its halves belong; none of what has no mass.
+        bodies: [Option<usize>; 2],
+        /// What it is in words.
+        title: String,
+    },
+    /// A symbol.
+    Mark(Mark),
+}
+
+/// Where a force points to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "direction", rename_all = "kebab-case")]
+pub enum Direction {
+    /// Its components along the axes of the ground, by column.
+    Components {
+        /// The columns, N.
+        columns: Vec<usize>,
+    },
+    /// Along a direction of a body.
+    Along {
+        /// The column, N.
+        column: usize,
+        /// The body.
+        body: usize,
+        /// The direction in its frame, a unit vector.
+        axis: Vec<f64>,
+    },
+    /// Along a line from one point to another, or across it.
+    Line {
+        /// The column, N.
+        column: usize,
+        /// The points.
+        ends: [Anchor; 2],
+        /// Whether the force is across the line: that line turned by +90°.
+        across: bool,
+        /// Where on the line it acts, from 0 to 1; it may be outside.
+        part: f64,
+    },
+}
+
+/// A force that can be shown as an arrow.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ForceArrow {
+    /// The joint or the load.
+    pub name: String,
+    /// `Reactions` or `Loads`.
+    pub group: String,
+    /// What it is.
+    pub title: String,
+    /// Where it acts; of one along a line the line decides.
+    pub at: Anchor,
+    /// Where it points to.
+    #[serde(flatten)]
+    pub direction: Direction,
+}
+
+/// A point whose path can be shown.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DrawnPath {
+    /// The point.
+    pub at: Anchor,
+    /// Its name, such as `coupler.P`.
+    pub name: String,
+    /// Whether the scene asks for it: it is shown at first.
+    pub requested: bool,
+}

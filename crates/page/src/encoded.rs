@@ -1,0 +1,412 @@
+//! A page as one JSON description and one block of numbers.
+
+use crate::description::{
+    DisplayUnit, FileLink, Page, PageColumn, PageMessage, PageScene, PageTable, Peak,
+};
+use crate::drawing::{DrawnBody, DrawnPath, ForceArrow, Part};
+use dwell_findings::{Finding, RecordedEvent, RecordedNumber};
+use serde::{Serialize, Serializer};
+use std::collections::HashMap;
+
+/// The format of the description. It changes when a reader of the old one would misread the new one.
+pub const FORMAT: &str = "dwell-page-1";
+
+/// Why a page cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum PageError {
+    /// The columns differ in length.
+    #[error("column `{key}` of the page has {found} rows, and the first has {expected}")]
+    Rows {
+        /// The column.
+        key: String,
+        /// Its rows.
+        found: usize,
+        /// Those of the first column.
+        expected: usize,
+    },
+    /// The description cannot be JSON.
+    #[error("the description of the page cannot be written: {0}")]
+    Json(#[from] serde_json::Error),
+    /// The numbers cannot be packed.
+    #[error("the numbers of the page cannot be packed: {0}")]
+    Packing(#[from] std::io::Error),
+}
+
+/// A page, encoded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EncodedPage {
+    /// The description, JSON.
+    pub description: String,
+    /// The columns, one after the other, each as long as the description's `rows` says; equal ones once. The description
+    /// refers to them by number.
+    pub numbers: Vec<f64>,
+}
+
+impl Page {
+    /// The page as a description and its numbers.
+    ///
+    /// # Errors
+    /// [`PageError::Rows`] where columns differ in length; [`PageError::Json`] where the description cannot be written.
+    pub fn encode(&self) -> Result<EncodedPage, PageError> {
+        let rows = self.columns.first().map_or(0, |first| first.values.len());
+        let mut block = Block {
+            rows,
+            ..Block::default()
+        };
+        let columns = self.columns.iter();
+        let columns = columns.map(|of| block.column(of));
+        let columns = columns.collect::<Result<Vec<_>, _>>()?;
+        let drawing = self.drawing.as_ref();
+        let drawing = drawing.map(|drawing| EncodedDrawing {
+            size: drawing.size,
+            view: drawing.view,
+            bodies: drawing.bodies.iter().map(|b| block.body(b)).collect(),
+            parts: &drawing.parts,
+            arrows: &drawing.arrows,
+            paths: &drawing.paths,
+        });
+        let description = serde_json::to_string(&Description {
+            format: FORMAT,
+            title: &self.title,
+            command: &self.command,
+            subtitle: &self.subtitle,
+            note: self.note.as_deref(),
+            scene: self.scene.as_ref(),
+            version: &self.version,
+            method: &self.method,
+            units: &self.units,
+            rows,
+            axis: self.axis,
+            columns,
+            rows_note: self.rows_note.as_deref(),
+            drawing,
+            peaks: self.peaks.iter().map(EncodedPeak::from).collect(),
+            peaks_note: self.peaks_note.as_deref(),
+            findings: self.findings.iter().map(EncodedFinding::from).collect(),
+            messages: &self.messages,
+            printed: &self.printed,
+            numbers: self.numbers.iter().map(EncodedNumber::from).collect(),
+            events: self.events.iter().map(EncodedEvent::from).collect(),
+            tables: &self.tables,
+            files: &self.files,
+        })?;
+        Ok(EncodedPage {
+            description,
+            numbers: block.numbers,
+        })
+    }
+}
+
+/// The columns that are stored, each once.
+#[derive(Default)]
+struct Block {
+    rows: usize,
+    numbers: Vec<f64>,
+    /// By their bits: the number of the column.
+    known: HashMap<Vec<u64>, usize>,
+}
+
+impl Block {
+    /// The number of a column, which is stored unless an equal one is.
+    fn add(&mut self, values: &[f64]) -> usize {
+        let bits: Vec<u64> = values.iter().map(|v| v.to_bits()).collect();
+        let next = self.known.len();
+        let (numbers, known) = (&mut self.numbers, &mut self.known);
+        *known.entry(bits).or_insert_with(|| {
+            numbers.extend_from_slice(values);
+            next
+        })
+    }
+
+    fn column<'a>(&mut self, of: &'a PageColumn) -> Result<EncodedColumn<'a>, PageError> {
+        if of.values.len() != self.rows {
+            return Err(PageError::Rows {
+                key: of.key.clone(),
+                found: of.values.len(),
+                expected: self.rows,
+            });
+        }
+        let slot = self.add(&of.values);
+        Ok(EncodedColumn { of, slot })
+    }
+
+    fn body<'a>(&mut self, body: &'a DrawnBody) -> EncodedBody<'a> {
+        // What is only drawn is kept in single precision.
+        let single = |values: &Vec<f64>| values.iter().map(|v| f64::from(*v as f32)).collect();
+        let whole = body.placements.iter().all(|p| p.len() == self.rows);
+        let placements: Vec<Vec<f64>> = match whole {
+            true => body.placements.iter().map(single).collect(),
+            false => Vec::new(),
+        };
+        EncodedBody {
+            name: &body.name,
+            paint: body.paint,
+            placements: placements.iter().map(|p| self.add(p)).collect(),
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct Description<'a> {
+    format: &'static str,
+    title: &'a str,
+    command: &'a str,
+    subtitle: &'a str,
+    note: Option<&'a str>,
+    scene: Option<&'a PageScene>,
+    version: &'a str,
+    method: &'a str,
+    units: &'a [DisplayUnit],
+    rows: usize,
+    axis: Option<usize>,
+    columns: Vec<EncodedColumn<'a>>,
+    rows_note: Option<&'a str>,
+    drawing: Option<EncodedDrawing<'a>>,
+    peaks: Vec<EncodedPeak>,
+    peaks_note: Option<&'a str>,
+    findings: Vec<EncodedFinding<'a>>,
+    messages: &'a [PageMessage],
+    printed: &'a str,
+    numbers: Vec<EncodedNumber<'a>>,
+    events: Vec<EncodedEvent<'a>>,
+    tables: &'a [PageTable],
+    files: &'a [FileLink],
+}
+
+struct EncodedColumn<'a> {
+    of: &'a PageColumn,
+    slot: usize,
+}
+
+impl Serialize for EncodedColumn<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Fields<'a> {
+            key: &'a str,
+            label: &'a str,
+            unit: &'a str,
+            group: &'a str,
+            description: &'a str,
+            slot: usize,
+        }
+        let PageColumn {
+            key,
+            label,
+            unit,
+            group,
+            description,
+            values: _,
+        } = self.of;
+        let slot = self.slot;
+        Fields {
+            key,
+            label,
+            unit,
+            group,
+            description,
+            slot,
+        }
+        .serialize(serializer)
+    }
+}
+
+#[derive(Serialize)]
+struct EncodedDrawing<'a> {
+    size: f64,
+    view: Option<[f64; 2]>,
+    bodies: Vec<EncodedBody<'a>>,
+    parts: &'a [Part],
+    arrows: &'a [ForceArrow],
+    paths: &'a [DrawnPath],
+}
+
+#[derive(Serialize)]
+struct EncodedBody<'a> {
+    name: &'a str,
+    paint: Option<usize>,
+    placements: Vec<usize>,
+}
+
+#[derive(Serialize)]
+struct EncodedPeak {
+    column: usize,
+    min: [Number; 2],
+    max: [Number; 2],
+    error: Option<Number>,
+}
+
+impl From<&Peak> for EncodedPeak {
+    fn from(peak: &Peak) -> Self {
+        let [min, max] = peak.ends.map(|end| end.map(Number));
+        Self {
+            column: peak.column,
+            min,
+            max,
+            error: peak.error.map(Number),
+        }
+    }
+}
+
+/// A finding; its texts are those of the reports.
+#[derive(Serialize)]
+struct EncodedFinding<'a> {
+    key: &'a str,
+    check: String,
+    pass: bool,
+    comparison: &'a str,
+    domain: &'a str,
+    absolute_difference: Number,
+    unit: &'a str,
+    relative_difference: Number,
+    scale: &'a str,
+    tolerance: Number,
+    tolerance_reason: &'a str,
+    worst_at: &'a str,
+}
+
+impl<'a> From<&'a Finding> for EncodedFinding<'a> {
+    fn from(f: &'a Finding) -> Self {
+        Self {
+            key: &f.key,
+            check: f.check.to_string(),
+            pass: f.pass,
+            comparison: &f.comparison,
+            domain: &f.domain,
+            absolute_difference: Number(f.absolute_difference),
+            unit: &f.unit,
+            relative_difference: Number(f.relative_difference),
+            scale: &f.scale,
+            tolerance: Number(f.tolerance),
+            tolerance_reason: &f.tolerance_reason,
+            worst_at: &f.worst_at,
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct EncodedNumber<'a> {
+    name: &'a str,
+    unit: &'a str,
+    value: Number,
+    error: Option<Number>,
+}
+
+impl<'a> From<&'a RecordedNumber> for EncodedNumber<'a> {
+    fn from(number: &'a RecordedNumber) -> Self {
+        Self {
+            name: &number.name,
+            unit: &number.unit,
+            value: Number(number.value),
+            error: number.error.map(Number),
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct EncodedEvent<'a> {
+    name: &'a str,
+    t: Number,
+}
+
+impl<'a> From<&'a RecordedEvent> for EncodedEvent<'a> {
+    fn from(event: &'a RecordedEvent) -> Self {
+        Self {
+            name: &event.name,
+            t: Number(event.t),
+        }
+    }
+}
+
+/// A number of the description: one that is not finite becomes `"NaN"`, `"Infinity"` or `"-Infinity"`, which `Number()`
+/// reads.
+struct Number(f64);
+
+impl Serialize for Number {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.0 {
+            v if v.is_finite() => serializer.serialize_f64(v),
+            v if v.is_nan() => serializer.serialize_str("NaN"),
+            v if v > 0.0 => serializer.serialize_str("Infinity"),
+            _ => serializer.serialize_str("-Infinity"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drawing::Drawing;
+
+    fn read(page: &Page) -> (serde_json::Value, Vec<f64>) {
+        let encoded = page.encode().unwrap();
+        let json = serde_json::from_str(&encoded.description).unwrap();
+        (json, encoded.numbers)
+    }
+
+    #[test]
+    fn columns_come_back_by_their_numbers_to_the_last_bit() {
+        let values = [0.1 + 0.2, -0.0, 1e-310, f64::NAN, f64::INFINITY];
+        let columns = vec![
+            PageColumn::new("a", "m", values.to_vec()),
+            PageColumn::new("b", "m", vec![0.0; 5]),
+            PageColumn::new("a again", "m", values.to_vec()),
+            // Minus zero is another number than zero.
+            PageColumn::new("c", "m", vec![-0.0; 5]),
+        ];
+        let page = Page {
+            columns,
+            ..Page::default()
+        };
+        let (json, numbers) = read(&page);
+        let slots: Vec<u64> = (0..4)
+            .map(|k| json["columns"][k]["slot"].as_u64().unwrap())
+            .collect();
+        assert_eq!(slots, [0, 1, 0, 2]);
+        let bits = |all: &[f64]| -> Vec<u64> { all.iter().map(|v| v.to_bits()).collect() };
+        assert_eq!(bits(&numbers[..5]), bits(&values));
+        assert_eq!(bits(&numbers[10..]), bits(&[-0.0; 5]));
+        assert_eq!(json["rows"], 5);
+    }
+
+    #[test]
+    fn a_short_column_is_an_error_that_names_it() {
+        let columns = vec![
+            PageColumn::new("a", "", vec![0.0, 1.0]),
+            PageColumn::new("b", "", vec![0.0]),
+        ];
+        let page = Page {
+            columns,
+            ..Page::default()
+        };
+        let error = page.encode().unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "column `b` of the page has 1 rows, and the first has 2"
+        );
+    }
+
+    #[test]
+    fn placements_are_columns_in_single_precision() {
+        let x = vec![1.0 / 3.0, 2.0];
+        let body = DrawnBody {
+            name: "bar".to_owned(),
+            paint: Some(0),
+            placements: vec![x.clone(), vec![2.0, 4.0], vec![0.0, 0.0]],
+        };
+        let page = Page {
+            columns: vec![PageColumn::new("x", "m", x.clone())],
+            drawing: Some(Drawing {
+                bodies: vec![body],
+                ..Drawing::default()
+            }),
+            ..Page::default()
+        };
+        let (json, numbers) = read(&page);
+        assert_eq!(
+            json["drawing"]["bodies"][0]["placements"],
+            serde_json::json!([1, 2, 3])
+        );
+        assert_eq!(numbers[..2], x);
+        assert_eq!(numbers[2], f64::from(1.0_f32 / 3.0));
+    }
+}

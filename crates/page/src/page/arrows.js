@@ -1,0 +1,101 @@
+// What lies over the mechanism: forces as arrows, and paths of points, each by choice.
+
+const ARROW_PART = 0.24;
+
+function createOverlay(drawing, run, frames, view, layers, state) {
+  const arrows = drawing.arrows.map((arrow, index) => ({ ...arrow, index, size: sizeOf(arrow) }));
+  const largest = {};
+  for (const arrow of arrows) largest[arrow.group] = Math.max(largest[arrow.group] || 0, arrow.size);
+  const w = [0, 0, 0];
+  const u = [0, 0, 0];
+  if (!state.arrows) state.arrows = new Set(arrows.filter(a => a.size > 0).map(a => a.name));
+  if (!state.paths) state.paths = new Set(drawing.paths.filter(p => p.requested).map(p => p.name));
+
+  // The largest force of an arrow in the rows.
+  function sizeOf(arrow) {
+    const columns = arrow.direction === 'components' ? arrow.columns : [arrow.column];
+    let most = 0;
+    for (let row = 0; row < run.rows; row++) {
+      let sum = 0;
+      for (const k of columns) sum += run.columns[k].values[row] ** 2;
+      if (sum > most) most = sum;
+    }
+    return Math.sqrt(most);
+  }
+
+  const elements = arrows.map(arrow => {
+    const path = svg('path', { class: `force force-${arrow.group === 'Loads' ? 'load' : 'reaction'}` });
+    const title = svg('title', {}, arrow.title);
+    const group = svg('g', { 'data-arrow': arrow.name }, title, path);
+    layers.forces.append(group);
+    return { group, path };
+  });
+  const paths = drawing.paths.map(path => {
+    const line = svg('path', { class: 'path' }, svg('title', {}, `path of ${path.name}`));
+    layers.paths.append(line);
+    return line;
+  });
+
+  // Where a force acts and its vector, in the axes of the ground.
+  function forceOf(arrow, row) {
+    const value = k => run.columns[k].values[row];
+    if (arrow.direction === 'components') {
+      const at = [...frames.place(arrow.at.body, arrow.at.point, row, w)];
+      return [at, [value(arrow.columns[0]), value(arrow.columns[1]), arrow.columns.length > 2 ? value(arrow.columns[2]) : 0]];
+    }
+    if (arrow.direction === 'along') {
+      const at = [...frames.place(arrow.at.body, arrow.at.point, row, w)];
+      frames.direct(arrow.body, arrow.axis, row, u);
+      return [at, u.map(c => c * value(arrow.column))];
+    }
+    const [a, b] = arrow.ends.map(end => [...frames.place(end.body, end.point, row, w)]);
+    const d = [0, 1, 2].map(k => b[k] - a[k]);
+    const length = Math.hypot(...d) || 1;
+    const unit = arrow.across ? [-d[1] / length, d[0] / length, 0] : d.map(c => c / length);
+    return [a.map((c, k) => c + arrow.part * d[k]), unit.map(c => c * value(arrow.column))];
+  }
+
+  function layOut() {
+    drawing.paths.forEach((path, k) => {
+      const isShown = state.paths.has(path.name);
+      paths[k].style.display = isShown ? '' : 'none';
+      if (!isShown) return;
+      let d = '';
+      const stride = Math.max(1, Math.floor(run.rows / 720));
+      for (let row = 0; row < run.rows; row += stride) {
+        const [x, y] = view.screen(frames.place(path.at.body, path.at.point, row, w));
+        d += `${d ? 'L' : 'M'}${x.toFixed(1)} ${y.toFixed(1)}`;
+      }
+      paths[k].setAttribute('d', d);
+    });
+    arrows.forEach((arrow, k) => { elements[k].group.style.display = state.arrows.has(arrow.name) && state.forces !== false ? '' : 'none'; });
+    layers.paths.style.display = state.showPaths === false ? 'none' : '';
+  }
+
+  function move(row) {
+    if (state.forces === false) return;
+    const reach = ARROW_PART * 640;
+    arrows.forEach((arrow, k) => {
+      if (!state.arrows.has(arrow.name)) return;
+      const [at, force] = forceOf(arrow, row);
+      const scale = largest[arrow.group] > 0 ? reach / (largest[arrow.group] * view.scale) : 0;
+      const [x, y] = view.screen(at);
+      const [dx, dy] = view.direction(force.map(c => c * scale));
+      elements[k].path.setAttribute('d', arrowPath(x, y, dx, dy));
+    });
+  }
+
+  return { arrows, largest, layOut, move, paths: drawing.paths };
+}
+
+// An arrow from a point; of one too short to be seen nothing.
+function arrowPath(x, y, dx, dy) {
+  const length = Math.hypot(dx, dy);
+  if (!(length > 2)) return '';
+  const [ux, uy] = [dx / length, dy / length];
+  const head = Math.min(11, 0.6 * length);
+  const [tx, ty] = [x + dx, y + dy];
+  const [bx, by] = [tx - ux * head, ty - uy * head];
+  const half = 0.42 * head;
+  return `M${x} ${y}L${bx} ${by}M${tx} ${ty}L${bx - uy * half} ${by + ux * half}L${bx + uy * half} ${by - ux * half}Z`;
+}

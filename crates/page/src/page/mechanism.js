@@ -1,0 +1,280 @@
+// The mechanism in a row, as SVG: dragged by a body in the plane, turned in space.
+
+const HEIGHT = 400;
+const MARGIN = 34;
+
+function createMechanism(state, onMove) {
+  const root = svg('svg', { class: 'mechanism', role: 'img', tabindex: 0, height: HEIGHT });
+  let run = null;
+  let drawing = null;
+  let frames = null;
+  let view = null;
+  let bounds = null;
+  let items = [];
+  let layers = null;
+  let overlay = null;
+  let width = 0;
+  let row = 0;
+
+  function show(newRun) {
+    run = newRun;
+    drawing = run.description.drawing;
+    root.replaceChildren();
+    items = [];
+    if (!drawing) return;
+    frames = createFrames(drawing, run);
+    view = createView(frames.isPlane ? null : state.view || drawing.view);
+    bounds = boundsOf(drawing, frames, run.rows);
+    layers = { parts: svg('g'), paths: svg('g'), marks: svg('g'), forces: svg('g'), words: svg('g', { 'aria-hidden': 'true' }) };
+    root.append(svg('title', {}, frames.isPlane ? 'The mechanism in this position' : 'The mechanism in this position, seen from one side'));
+    root.append(layers.parts, layers.paths, layers.marks, layers.forces, layers.words);
+    for (const part of drawing.parts) items.push(createItem(part));
+    overlay = createOverlay(drawing, run, frames, view, layers, state);
+    root.classList.toggle('turnable', !frames.isPlane);
+    fit();
+  }
+
+  // Fills the picture with all that the mechanism goes through.
+  function fit() {
+    width = root.clientWidth || 560;
+    root.setAttribute('viewBox', `0 0 ${width} ${HEIGHT}`);
+    const [low, high] = bounds;
+    const size = [0, 1, 2].map(k => high[k] - low[k]);
+    const middle = [0, 1, 2].map(k => 0.5 * (low[k] + high[k]));
+    const across = frames.isPlane ? size : [Math.hypot(...size), Math.hypot(...size)];
+    const free = [width - 2 * MARGIN, HEIGHT - 2 * MARGIN];
+    const scales = [0, 1].map(k => (across[k] > 0 ? free[k] / across[k] : Infinity));
+    const scale = Math.min(...scales);
+    view.scale = Number.isFinite(scale) ? scale : 100;
+    [view.x, view.y] = [0, 0];
+    const [x, y] = view.screen(middle);
+    [view.x, view.y] = [width / 2 - x, HEIGHT / 2 - y];
+    overlay.layOut();
+    move(row);
+  }
+
+  const colored = body => {
+    const paint = body === null || body === undefined ? null : drawing.bodies[body].paint;
+    return paint === null ? 'paint-ground' : `paint-${paint}`;
+  };
+
+  function createItem(part) {
+    const w = [0, 0, 0];
+    const at = (anchor, r) => view.screen(frames.place(anchor.body, anchor.point, r, w));
+    if (part.part === 'outline') return createOutline(part, w);
+    if (part.part === 'link') {
+      const looks = { spring: 'spring', damper: 'spring', rod: 'rod', cylinder: 'cylinder' };
+      const [one, two] = [svg('path', { class: `${looks[part.look]} ${colored(part.bodies[0])}` }), svg('path', { class: `rod ${colored(part.bodies[1])}` })];
+      const group = svg('g', {}, svg('title', {}, part.title), part.look === 'cylinder' ? two : null, one);
+      layers.parts.append(group);
+      return {
+        element: group,
+        depth: r => 0.5 * (view.nearness(frames.place(part.ends[0].body, part.ends[0].point, r, w)) + view.nearness(frames.place(part.ends[1].body, part.ends[1].point, r, w))),
+        move(r) {
+          const [a, b] = part.ends.map(end => at(end, r));
+          const line = `M${a[0]} ${a[1]}L${b[0]} ${b[1]}`;
+          if (part.look === 'spring') one.setAttribute('d', springPath(a, b, 9));
+          else if (part.look === 'damper') one.setAttribute('d', damperPath(a, b, 7));
+          else if (part.look === 'cylinder') {
+            one.setAttribute('d', `M${a[0]} ${a[1]}L${0.45 * a[0] + 0.55 * b[0]} ${0.45 * a[1] + 0.55 * b[1]}`);
+            two.setAttribute('d', line);
+          } else one.setAttribute('d', line);
+        },
+      };
+    }
+    return createMark(part, at, w);
+  }
+
+  function createOutline(part, w) {
+    const title = svg('title', {}, drawing.bodies[part.body].name);
+    const classes = `${part.look} ${colored(part.body)}`;
+    const main = svg('path', { class: classes });
+    const inner = part.look === 'slot' ? svg('path', { class: 'slot-inside' }) : null;
+    const group = svg('g', { 'data-body': part.body }, title, main, inner);
+    layers.parts.append(group);
+    if (part.look === 'ground-line') {
+      return {
+        element: group,
+        depth: () => -Infinity,
+        move(r) {
+          const [a, b] = part.points.map(p => view.screen(frames.place(part.body, p, r, w)));
+          main.setAttribute('d', `M${a[0]} ${a[1]}L${b[0]} ${b[1]}${hatching(a, b)}`);
+        },
+      };
+    }
+    const nearness = r => {
+      let sum = 0;
+      for (const p of part.points) sum += view.nearness(frames.place(part.body, p, r, w));
+      return sum / part.points.length;
+    };
+    if (!frames.isPlane) {
+      return {
+        element: group,
+        depth: nearness,
+        move(r) {
+          let d = '';
+          for (const p of part.points) {
+            const [x, y] = view.screen(frames.place(part.body, p, r, w));
+            d += `${d ? 'L' : 'M'}${x.toFixed(2)} ${y.toFixed(2)}`;
+          }
+          main.setAttribute('d', part.closed ? d + 'Z' : d);
+        },
+      };
+    }
+    // In the plane the outline is fixed to its body, in meters; only its frame moves.
+    const d = outlinePath(part);
+    for (const path of [main, inner]) if (path) path.setAttribute('d', d);
+    return {
+      element: group,
+      depth: nearness,
+      move(r) {
+        const [x, y, angle] = frames.isFixed(part.body) ? [0, 0, 0] : frames.placement(part.body, r);
+        const [c, s] = [Math.cos(angle) * view.scale, Math.sin(angle) * view.scale];
+        group.setAttribute('transform', `matrix(${c} ${-s} ${-s} ${-c} ${view.x + view.scale * x} ${view.y - view.scale * y})`);
+      },
+    };
+  }
+
+  function createMark(part, at, w) {
+    const shape = svg('g', { class: `mark mark-${part.look} ${colored(part.on_ground ? null : part.at.body)}` }, svg('title', {}, part.title), markElements(part.look));
+    const label = part.label ? svg('text', { class: 'label' }, part.label) : null;
+    layers.marks.append(shape);
+    if (label) layers.words.append(label);
+    const axisLine = shape.querySelector('.axis-line');
+    const axisMark = shape.querySelector('.axis-mark');
+    return {
+      element: shape,
+      inMarks: true,
+      depth: r => view.nearness(frames.place(part.at.body, part.at.point, r, w)),
+      move(r) {
+        const [x, y] = at(part.at, r);
+        shape.setAttribute('transform', `translate(${x} ${y})`);
+        if (label) {
+          label.setAttribute('x', x + (part.look === 'ground-pin' ? -11 : 10));
+          label.setAttribute('y', y - 10);
+          label.setAttribute('text-anchor', part.look === 'ground-pin' ? 'end' : 'start');
+        }
+        if (axisMark && part.axis.length) {
+          const [dx, dy] = view.direction(frames.direct(part.at.body, part.axis, r, w)).map(v => v / view.scale);
+          axisMark.setAttribute('d', axisPath(part.look, [dx, dy]));
+          if (axisLine) axisLine.setAttribute('d', `M${-30 * dx} ${-30 * dy}L${30 * dx} ${30 * dy}`);
+        }
+      },
+    };
+  }
+
+  function move(newRow) {
+    row = newRow;
+    if (!drawing || !items.length) return;
+    for (const item of items) item.move(row);
+    if (!frames.isPlane) sort();
+    overlay.move(row);
+  }
+
+  // The far parts first.
+  function sort() {
+    for (const layer of ['parts', 'marks']) {
+      const own = items.filter(item => (item.inMarks ? 'marks' : 'parts') === layer);
+      const order = own.map(item => [item.depth(row), item.element]).sort((a, b) => a[0] - b[0]);
+      const children = layers[layer].children;
+      if (order.some(([, element], k) => children[k] !== element)) layers[layer].append(...order.map(([, element]) => element));
+    }
+  }
+
+  dragging(root, {
+    isPlane: () => !frames || frames.isPlane,
+    // The point of a body under the pointer, in its frame.
+    grab(body, [sx, sy]) {
+      if (frames.isFixed(body)) return null;
+      const [x, y, angle] = frames.placement(body, row);
+      const [dx, dy] = [(sx - view.x) / view.scale - x, (view.y - sy) / view.scale - y];
+      const [c, s] = [Math.cos(angle), Math.sin(angle)];
+      return { body, point: [c * dx + s * dy, -s * dx + c * dy] };
+    },
+    follow: (anchor, at) => onMove(nearestRow(run, frames, view, anchor, at, row)),
+    turn(dx, dy) {
+      const [azimuth, elevation] = view.angles;
+      view.look(azimuth - dx * 0.01, Math.max(-1.57, Math.min(1.57, elevation + dy * 0.01)));
+      state.view = view.angles;
+      fit();
+    },
+  });
+  root.addEventListener('keydown', event => {
+    if (!frames || frames.isPlane || !event.altKey) return;
+    const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
+    if (!steps) return;
+    event.preventDefault();
+    const [azimuth, elevation] = view.angles;
+    view.look(azimuth + 0.1 * steps[0], Math.max(-1.57, Math.min(1.57, elevation - 0.1 * steps[1])));
+    state.view = view.angles;
+    fit();
+  });
+  new ResizeObserver(() => { if (drawing && root.clientWidth && root.clientWidth !== width) fit(); }).observe(root);
+  return { root, show, move, overlay: () => overlay, refresh: () => { if (drawing) { overlay.layOut(); overlay.move(row); } }, angles: () => view && view.angles };
+}
+
+// An outline in the frame of its body, m.
+function outlinePath(part) {
+  if (part.look === 'wheel') {
+    const [[x, y], rim] = part.points;
+    const r = Math.hypot(rim[0] - x, rim[1] - y);
+    return `M${x + r} ${y}A${r} ${r} 0 1 1 ${x - r} ${y}A${r} ${r} 0 1 1 ${x + r} ${y}M${x} ${y}L${rim[0]} ${rim[1]}`;
+  }
+  return part.points.map(([x, y], k) => `${k ? 'L' : 'M'}${x} ${y}`).join('') + (part.closed ? 'Z' : '');
+}
+
+// The row in which a point of a body is nearest to the pointer; of two branches the one that goes on from this row.
+function nearestRow(run, frames, view, anchor, [sx, sy], row) {
+  const rows = run.rows;
+  const reach = Math.max(12, Math.ceil(rows / 5));
+  const w = [0, 0, 0];
+  let best = row;
+  let least = Infinity;
+  for (let step = -reach; step <= reach; step++) {
+    // A motion that ends where it begins goes on there.
+    const k = run.isClosed ? (((row + step) % (rows - 1)) + rows - 1) % (rows - 1) : row + step;
+    if (k < 0 || k >= rows) continue;
+    const [x, y] = view.screen(frames.place(anchor.body, anchor.point, k, w));
+    const jump = (40 * step) / rows;
+    const distance = (x - sx) ** 2 + (y - sy) ** 2 + jump * jump;
+    if (distance < least) [least, best] = [distance, k];
+  }
+  return best;
+}
+
+// Pointer drags: a body in the plane, the view in space.
+function dragging(root, { isPlane, grab, follow, turn }) {
+  let held = null;
+  let last = null;
+  const at = event => {
+    const box = root.getBoundingClientRect();
+    return [event.clientX - box.left, event.clientY - box.top];
+  };
+  root.addEventListener('pointerdown', event => {
+    if (event.button !== 0) return;
+    const group = event.target.closest('[data-body]');
+    if (isPlane()) {
+      held = group && grab(Number(group.dataset.body), at(event));
+      if (!held) return;
+    }
+    last = at(event);
+    root.setPointerCapture(event.pointerId);
+    root.classList.add('held');
+    event.preventDefault();
+    root.focus({ preventScroll: true });
+  });
+  root.addEventListener('pointermove', event => {
+    if (!last) return;
+    const now = at(event);
+    if (held) follow(held, now);
+    else turn(now[0] - last[0], now[1] - last[1]);
+    last = now;
+  });
+  const end = () => {
+    held = null;
+    last = null;
+    root.classList.remove('held');
+  };
+  root.addEventListener('pointerup', end);
+  root.addEventListener('pointercancel', end);
+}

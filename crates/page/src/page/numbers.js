@@ -1,0 +1,92 @@
+// Numbers: unpacked to the last bit, and written for people in the units that they choose.
+
+// Base64 of a gzip stream of doubles: first the least significant bytes of all of them, then the next, and so on.
+async function unpack(text) {
+  const packed = Uint8Array.from(atob(text.trim()), c => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
+  const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
+  const count = bytes.length / 8;
+  const numbers = new Float64Array(count);
+  const into = new Uint8Array(numbers.buffer);
+  for (let b = 0; b < 8; b++) for (let k = 0; k < count; k++) into[8 * k + b] = bytes[b * count + k];
+  return numbers;
+}
+
+const POWERS = { '-': '⁻', 0: '⁰', 1: '¹', 2: '²', 3: '³', 4: '⁴', 5: '⁵', 6: '⁶', 7: '⁷', 8: '⁸', 9: '⁹' };
+const raised = text => [...String(text)].map(c => POWERS[c] || c).join('');
+
+// A number to so many significant digits, with a true minus.
+function format(value, digits = 5) {
+  if (Number.isNaN(value)) return '–';
+  if (!Number.isFinite(value)) return value > 0 ? '∞' : '−∞';
+  if (value === 0) return '0';
+  const power = Math.floor(Math.log10(Math.abs(value)));
+  let text;
+  if (power < -4 || power > 6) {
+    const [mantissa, exponent] = value.toExponential(digits - 1).split('e');
+    const short = mantissa.includes('.') ? mantissa.replace(/\.?0+$/, '') : mantissa;
+    text = `${short}·10${raised(Number(exponent))}`;
+  } else {
+    text = value.toFixed(Math.max(0, digits - 1 - power));
+    if (text.includes('.')) text = text.replace(/\.?0+$/, '');
+    if (text === '-0' || text === '0') text = '0';
+  }
+  return text.replace('-', '−');
+}
+
+const scientific = value => (Number.isFinite(value) ? value.toExponential(1).replace('-', '−').replace('+', '') : String(value));
+
+// A unit as it is printed: `N m` becomes N·m, `m/s2` m/s².
+const printedUnit = unit => unit.replace(/ /g, '·').replace(/([a-zA-Z])(\d)/g, (_, letter, power) => letter + raised(power));
+
+// The units of a page: those of the scene, with degrees for angles as on pictures, or those of SI.
+function createUnits(displayUnits) {
+  const known = {};
+  for (const { si, unit, factor } of displayUnits) known[si] = { unit, factor };
+  if (!known.rad || known.rad.unit === 'rad' || known.rad.unit === 'deg') known.rad = { unit: '°', factor: 180 / Math.PI };
+  if (!known.m) known.m = { unit: 'm', factor: 1 };
+  return {
+    mode: 'scene',
+    // Name and factor of what is a unit of SI in the data.
+    of(si) {
+      const root = /^(rad|m)(\/s2?)?$/.exec(si);
+      if (this.mode === 'si' || !root) return { name: printedUnit(si), factor: 1 };
+      const { unit, factor } = known[root[1]];
+      return { name: printedUnit(unit + (root[2] || '')), factor };
+    },
+    // A value with its unit.
+    text(value, si, digits) {
+      const { name, factor } = this.of(si);
+      const space = name === '°' || name === '' ? '' : ' ';
+      return format(value * factor, digits) + (Number.isFinite(value) ? space + name : '');
+    },
+    // What the two modes are called.
+    names() {
+      const { rad, m } = known;
+      return { scene: `${rad.unit}, ${m.unit}`, si: 'rad, m' };
+    },
+  };
+}
+
+// Round numbers from one value to another, about so many, with the decimals that tell them apart.
+function ticks(from, to, wanted, isDegrees) {
+  const span = to - from;
+  if (!(span > 0) || !Number.isFinite(span)) return { values: [from], decimals: 2 };
+  const rough = span / Math.max(1, wanted);
+  const power = 10 ** Math.floor(Math.log10(rough));
+  let step = [1, 2, 2.5, 5, 10].map(m => m * power).find(s => s >= rough * 0.999);
+  if (isDegrees && span > 12) step = [5, 10, 15, 30, 45, 90, 180, 360].find(s => s >= rough * 0.999) || Math.ceil(rough / 360) * 360;
+  const values = [];
+  // A tick at the end is not lost to rounding.
+  const first = Math.ceil(from / step - 1e-6);
+  const last = Math.floor(to / step + 1e-6);
+  for (let k = first; k <= last && values.length < 60; k++) values.push(k * step);
+  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) + (Math.abs(step / power - 2.5) < 1e-9 && !isDegrees ? 1 : 0);
+  return { values, decimals };
+}
+
+function tickText(value, decimals) {
+  if (value !== 0 && (Math.abs(value) >= 1e6 || Math.abs(value) < 1e-4)) return format(value, 3);
+  const text = value.toFixed(Math.min(decimals, 12));
+  return (Number(text) === 0 ? text.replace('-', '') : text).replace('-', '−');
+}

@@ -1,0 +1,103 @@
+//! The rows of a page: which of them, and what belongs in one chart.
+
+use crate::number_format::count;
+use crate::trajectory::compute::{Quantity, TrajectoryResults};
+use dwell_page::PageColumn;
+
+/// Numbers of a page at most, so that it can be opened: about 10 MB.
+const MAX_VALUES: usize = 1_200_000;
+
+/// Which of the rows in memory a page shows.
+pub(crate) struct RowChoice {
+    rows: Vec<usize>,
+}
+
+impl RowChoice {
+    /// All rows, or every so many-th with the last one.
+    pub(crate) fn new(results: &TrajectoryResults) -> Self {
+        let columns = results.written.len().max(1);
+        Self::of(results.rows.len(), columns)
+    }
+
+    /// Of so many rows with so many columns.
+    pub(crate) fn of(rows: usize, columns: usize) -> Self {
+        let stride = (rows * columns).div_ceil(MAX_VALUES).max(1);
+        let last = rows.saturating_sub(1);
+        let mut chosen: Vec<usize> = (0..rows).step_by(stride).collect();
+        if chosen.last().is_some_and(|k| *k != last) {
+            chosen.push(last);
+        }
+        Self { rows: chosen }
+    }
+
+    /// Something of each row that is shown.
+    pub(crate) fn map<'a, T, R>(&self, all: &'a [T], of: impl Fn(&'a T) -> R) -> Vec<R> {
+        let rows = self.rows.iter().filter_map(|&k| all.get(k));
+        rows.map(of).collect()
+    }
+
+    /// What to say where not all of so many rows are shown.
+    pub(crate) fn note(&self, all: usize) -> Option<String> {
+        let shown = self.rows.len();
+        (shown < all).then(|| {
+            let all = count(all, "row");
+            format!("{shown} of {all} are shown here; the table beside this page has all of them.")
+        })
+    }
+}
+
+/// The columns of the tables.
+pub(crate) fn page_columns(results: &TrajectoryResults, choice: &RowChoice) -> Vec<PageColumn> {
+    let column = |&k: &usize| {
+        let of = &results.columns[k];
+        PageColumn {
+            group: group(of.quantity).to_owned(),
+            description: of.meaning.clone(),
+            ..PageColumn::new(
+                &of.name,
+                of.unit,
+                choice.map(&results.rows, |row: &Vec<f64>| row[k]),
+            )
+        }
+    };
+    results.written.iter().map(column).collect()
+}
+
+/// What belongs in one chart, where it has one unit.
+fn group(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Time => "Time",
+        Quantity::ActuatorCoordinate(..) | Quantity::Measured(..) => "Coordinates",
+        Quantity::ActuatorForce(_) => "Actuator forces",
+        Quantity::BodyAngle(..) | Quantity::RotationInSpace(..) => "Bodies",
+        Quantity::VelocityRatio(_) => "Velocity ratios",
+        Quantity::MechanicalAdvantage(..) => "Mechanical advantages",
+        Quantity::Pole(..) => "Poles",
+        Quantity::PointCoordinate(..) | Quantity::PointInSpace(..) => "Points",
+        Quantity::TransmissionAngle(_) => "Transmission angles",
+        Quantity::ForceMagnitude(_) | Quantity::MomentMagnitude(_) => "Reactions, magnitudes",
+        Quantity::ForceDirection(_) => "Reactions, directions",
+        Quantity::Reaction(_) | Quantity::KnownReaction(..) => "Reactions, components",
+        Quantity::BodyFrameForce(..) => "Reactions in frames of bodies",
+        Quantity::ShakingForce(_) => "Shaking force",
+        Quantity::Power(_) | Quantity::LoadPower(_) => "Power and energy",
+        Quantity::LoadForce(_) => "Loads",
+        Quantity::Extra(_) => "Energies and states",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_rows_are_all_shown_and_of_many_the_first_and_the_last() {
+        let few = RowChoice::of(1001, 139);
+        assert_eq!((few.rows.len(), few.note(1001)), (1001, None));
+        let many = RowChoice::of(100_000, 139);
+        assert_eq!((many.rows[0], many.rows.last()), (0, Some(&99_999)));
+        assert!(many.rows.len() * 139 <= MAX_VALUES + 139);
+        assert!(many.note(100_000).is_some());
+        assert!(RowChoice::of(0, 0).rows.is_empty());
+    }
+}

@@ -1,0 +1,146 @@
+//! What the page of a run shows, as plain data: rows, peaks and the moving mechanism. It compiles without pictures, for
+//! programs that show a page in a document of their own.
+
+mod arrows;
+mod columns;
+mod plane;
+mod tables;
+
+pub(crate) use columns::{RowChoice, page_columns};
+pub(crate) use tables::{drawing_at, table_page, unit_group};
+
+use crate::trajectory::column_extrema::sorted_extrema;
+use crate::trajectory::compute::ComputedTrajectory;
+use dwell_page::{DisplayUnit, Page, PageMessage, PageScene, Peak};
+use dwell_scene::{Scene, SceneError, SceneFile};
+use arrows::plane_arrows;
+use plane::plane_drawing;
+
+/// What the page of any command shows of its scene, without results.
+///
+/// ```
+/// let text = r#"
+/// bodies.ground.points = { O = [0, 0] }
+/// bodies.bob = { points = { O = [0, 0] }, mass = 2.0, center = [0.5, 0] }
+/// joints.O = { revolute = ["ground.O", "bob.O"] }
+/// actuators.phi = { angle = ["ground", "bob"] }
+/// "#;
+/// let scene = dwell_scene::Scene::parse("pendulum.toml", text)?;
+/// let page = dwell_study::page::scene_page(&scene, "check");
+/// assert_eq!(page.scene.map(|scene| scene.text), Some(text.to_owned()));
+/// # Ok::<(), dwell_scene::SceneError>(())
+/// ```
+pub fn scene_page(scene: &SceneFile, command: &str) -> Page {
+    let unit = |(si, is_angle): (&str, bool)| {
+        let (factor, unit) = scene.to_scene_unit(1.0, is_angle);
+        DisplayUnit {
+            si: si.to_owned(),
+            unit: unit.to_owned(),
+            factor,
+        }
+    };
+    Page {
+        title: scene.title.clone(),
+        command: command.to_owned(),
+        note: scene.note.clone(),
+        scene: Some(PageScene {
+            name: scene.name.clone(),
+            text: scene.source.inner().clone(),
+            sha256: scene.hash(),
+        }),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        units: [("rad", true), ("m", false)].map(unit).into(),
+        messages: warnings(scene),
+        ..Page::default()
+    }
+}
+
+/// The warnings of a scene's file, with their places.
+fn warnings(scene: &SceneFile) -> Vec<PageMessage> {
+    let message = |warning: &dwell_scene::SceneWarning| PageMessage {
+        severity: "warning".to_owned(),
+        text: warning.message.clone(),
+        help: None,
+        span: None,
+    };
+    scene.warnings.iter().map(message).collect()
+}
+
+/// Errors as messages of a page.
+pub fn error_messages<'a>(errors: impl IntoIterator<Item = &'a SceneError>) -> Vec<PageMessage> {
+    let message = |error: &SceneError| PageMessage {
+        severity: "error".to_owned(),
+        text: error.message.clone(),
+        help: error.help.clone(),
+        span: None,
+    };
+    let all = errors.into_iter().flat_map(SceneError::errors);
+    all.map(message).collect()
+}
+
+/// The page of an analysis along a trajectory: the rows of its table, peaks, and the mechanism in each row.
+///
+/// Of very many rows it holds every so many-th, and says so.
+///
+/// ```
+/// # let text = r#"
+/// # bodies.ground.points = { O = [0, 0] }
+/// # bodies.bob = { points = { O = [0, 0] }, mass = 2.0, center = [0.5, 0] }
+/// # joints.O = { revolute = ["ground.O", "bob.O"] }
+/// # actuators.phi = { angle = ["ground", "bob"] }
+/// # "#;
+/// use dwell_study::{Analysis, compute_trajectory, no_progress, page::trajectory_page};
+///
+/// let scene = dwell_scene::Scene::parse("pendulum.toml", text)?;
+/// let computed = compute_trajectory(&scene, Analysis::Kinematics, Some(13), &no_progress)?;
+/// let page = trajectory_page(&scene, &computed);
+/// let encoded = page.encode()?;
+/// assert!(encoded.description.contains("bob.angle"));
+/// assert_eq!(encoded.numbers.len() % 13, 0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn trajectory_page(scene: &Scene, computed: &ComputedTrajectory<'_>) -> Page {
+    let results = &computed.results;
+    let mut page = run_page(&scene.file, scene.mechanism.size(), computed);
+    let choice = RowChoice::new(results);
+    let bodies = (results.body_poses.as_slice(), results.modelled.as_slice());
+    let arrows = plane_arrows(scene, results);
+    page.drawing = Some(plane_drawing(scene, bodies, &choice, arrows));
+    page
+}
+
+/// The same without the mechanism, of any scene with a mechanism of this size, m.
+pub(crate) fn run_page(scene: &SceneFile, size: f64, computed: &ComputedTrajectory<'_>) -> Page {
+    let (trajectory, results) = (&computed.trajectory, &computed.results);
+    let choice = RowChoice::new(results);
+    let abscissa = results.abscissa(trajectory);
+    let extrema = sorted_extrema(results, &results.written, abscissa, size);
+    let peak = |of: crate::trajectory::column_extrema::ColumnExtrema| {
+        let column = results.written.iter();
+        let mut column = column.map(|&k| &results.columns[k].name);
+        Some(Peak {
+            column: column.position(|name| *name == of.name)?,
+            ends: of.ends.map(|end| [end.value, end.at]),
+            error: (of.error > 0.0).then_some(of.error),
+        })
+    };
+    let of_rows = "These are the largest values of the rows: the motion has too many steps to look between them.";
+    let (reached, points) = (results.len(), trajectory.points);
+    let positions = match reached == points {
+        true => crate::number_format::count(points, "position"),
+        false => format!(
+            "{reached} of {}",
+            crate::number_format::count(points, "position")
+        ),
+    };
+    Page {
+        subtitle: format!("{positions} over {}", trajectory.description),
+        method: trajectory.method_text.clone(),
+        axis: results.written.iter().position(|&k| k == abscissa),
+        columns: page_columns(results, &choice),
+        rows_note: choice.note(reached),
+        peaks: extrema.into_iter().filter_map(peak).collect(),
+        peaks_note: (!results.extrema.are_between_rows).then(|| of_rows.to_owned()),
+        ..scene_page(scene, trajectory.analysis.command())
+    }
+}

@@ -1,0 +1,48 @@
+//! What pictures and pages draw of a mechanism in the plane: symbols that follow from its motion or its size, and outlines of
+//! its bodies.
+
+mod kinematic;
+mod outline;
+
+#[cfg(feature = "output")]
+pub(crate) use kinematic::{PitchCurve, circle, spring_outline};
+pub(crate) use kinematic::{pitch_curve, rack_outline};
+pub(crate) use outline::{BodyOutline, common_joint_name, is_cylinder, outline_of, reach};
+
+use crate::bodies::{BodyPose, point_position};
+use crate::ranges::extent;
+use dwell_geometry::{Joint, vec2};
+use dwell_scene::Scene;
+use kinematic::{axis_of, drawn_size};
+
+/// Reference length of the symbols, in sizes of the mechanism.
+const SYMBOL_RATIO: f64 = 0.6;
+/// The same of the whole drawing, below which symbols could not be recognised.
+const MIN_SYMBOL_RATIO: f64 = 0.4;
+/// Half the distance of the rails of a guide, and of a slot, and the height of the teeth of a rack, in reference lengths.
+pub(crate) const RAIL_DISTANCE: f64 = 0.055;
+pub(crate) const SLOT_DISTANCE: f64 = 0.035;
+pub(crate) const TOOTH: f64 = 0.012;
+/// How far a track goes on beyond the travel, in reference lengths.
+pub(crate) const TRACK_MARGIN: f64 = 0.25;
+
+/// The reference length of the symbols of a scene that is drawn at these positions, m.
+pub(crate) fn symbol_size(scene: &Scene, positions: &[Vec<BodyPose>]) -> f64 {
+    (SYMBOL_RATIO * scene.mechanism.size()).max(MIN_SYMBOL_RATIO * drawn_size(scene, positions))
+}
+
+/// By joint: the range of its second point along its axis over all positions, m.
+pub(crate) fn travels(scene: &Scene, positions: &[Vec<BodyPose>]) -> Vec<Option<[f64; 2]>> {
+    let travel = |joint: &Joint| {
+        let axis = axis_of(joint.kind)?;
+        let [one, two] = joint.bodies.map(|b| b.0);
+        let travel_along = |body_poses: &Vec<BodyPose>| {
+            let at = |body, k: usize| point_position(body_poses, body, joint.points[k]);
+            let [a, b] = [at(one, 0), at(two, 1)].map(|[x, y]| vec2(x, y));
+            axis.rotate(body_poses[one].1).dot(b - a)
+        };
+        let limits = extent(positions.iter().map(travel_along));
+        (limits[0] <= limits[1]).then_some(limits)
+    };
+    scene.mechanism.joints.iter().map(travel).collect()
+}
