@@ -54,7 +54,7 @@ lint:
 computing:
     cargo clippy -p dwell-study --no-default-features -- -D warnings
     @if rustc --print target-libdir --target wasm32-unknown-unknown | xargs test -d; then \
-        cargo clippy -p dwell-study --no-default-features --target wasm32-unknown-unknown -- -D warnings; \
+        cargo clippy -p dwell-study -p dwell-live --no-default-features --target wasm32-unknown-unknown -- -D warnings; \
     else echo "wasm32 is not checked: rustup target add wasm32-unknown-unknown"; fi
 
 # Changes of the source text, one at a time in a scratch copy, and which checks fail by each: reports/source-mutations.md and .txt. An hour; `--named` only the faults of tests/mutate/named.toml

@@ -25,7 +25,8 @@ use dwell_report::{Files, OutputFolder, ReportError};
 use dwell_scene::{AnyScene, Scene, SceneError, SceneFile};
 use dwell_study::{
     Analysis, CommandResult, Outcome, ParameterSweep, PictureFormat, PictureSpan, Pictures, Shard,
-    SolverSettings, Step, StudyError, TableRequest, TrajectoryOutcome, add_page, add_summary, no_progress,
+    SolverSettings, Step, StudyError, TableRequest, TrajectoryOutcome, add_page, add_summary,
+    no_progress,
 };
 use dwell_validation::ValidationError;
 use indicatif::{ProgressBar, ProgressStyle};

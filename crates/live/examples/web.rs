@@ -47,7 +47,12 @@ fn main() {
     let examples = examples(&root.join("validation"));
     let carried = STANDARD.encode(&compressed);
     let one = document("", "", &carried, &examples);
-    let served = document("; connect-src 'self'", " data-file=\"dwell.wasm\"", "", &examples);
+    let served = document(
+        "; connect-src 'self'",
+        " data-file=\"dwell.wasm\"",
+        "",
+        &examples,
+    );
     fs::write(folder.join("dwell.html"), &one).unwrap();
     fs::write(folder.join("index.html"), &served).unwrap();
     fs::write(folder.join("dwell.wasm"), &module).unwrap();
@@ -72,19 +77,28 @@ fn examples(validation: &Path) -> String {
     let scenes = cases.map(|case| case.unwrap().path().join("scene.toml"));
     let spatial = fs::read_dir(validation.join("spatial")).unwrap();
     let spatial = spatial.map(|file| file.unwrap().path());
-    let files = scenes.chain(spatial).filter(|path| {
-        path.is_file() && path.extension().is_some_and(|ending| ending == "toml")
-    });
+    let files = scenes
+        .chain(spatial)
+        .filter(|path| path.is_file() && path.extension().is_some_and(|ending| ending == "toml"));
     let read = |path: PathBuf| {
         let text = fs::read_to_string(&path).unwrap();
         let scene = dwell_scene::AnyScene::read(&path).unwrap();
         let in_space = matches!(scene, dwell_scene::AnyScene::Space(_));
-        (in_space, scene.file().name.clone(), scene.file().title.clone(), text)
+        (
+            in_space,
+            scene.file().name.clone(),
+            scene.file().title.clone(),
+            text,
+        )
     };
     let mut all: Vec<_> = files.map(read).collect();
     all.sort_by_key(|(in_space, name, ..)| (name != FIRST, *in_space, name.clone()));
     let object = |(in_space, name, title, text): &(bool, String, String, String)| {
-        let title = if *in_space { format!("In space: {title}") } else { title.clone() };
+        let title = if *in_space {
+            format!("In space: {title}")
+        } else {
+            title.clone()
+        };
         serde_json::json!({ "name": name, "title": title, "text": text })
     };
     let all: Vec<_> = all.iter().map(object).collect();

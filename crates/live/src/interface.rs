@@ -23,7 +23,7 @@ thread_local! {
 
 /// Makes room for a request of so many bytes, and returns its address.
 #[unsafe(no_mangle)]
-pub extern "C" fn room(bytes: usize) -> *mut u8 {
+pub(crate) extern "C" fn room(bytes: usize) -> *mut u8 {
     BUFFERS.with_borrow_mut(|buffers| {
         buffers.request.clear();
         buffers.request.resize(bytes, 0);
@@ -33,7 +33,7 @@ pub extern "C" fn room(bytes: usize) -> *mut u8 {
 
 /// Answers the request that was written, and returns the address of the answer's text.
 #[unsafe(no_mangle)]
-pub extern "C" fn respond() -> *const u8 {
+pub(crate) extern "C" fn respond() -> *const u8 {
     BUFFERS.with_borrow_mut(|buffers| {
         buffers.answer = answer(&String::from_utf8_lossy(&buffers.request));
         buffers.answer.text.as_ptr()
@@ -42,18 +42,18 @@ pub extern "C" fn respond() -> *const u8 {
 
 /// Bytes of the answer's text.
 #[unsafe(no_mangle)]
-pub extern "C" fn text_bytes() -> usize {
+pub(crate) extern "C" fn text_bytes() -> usize {
     BUFFERS.with_borrow(|buffers| buffers.answer.text.len())
 }
 
 /// The address of the answer's numbers.
 #[unsafe(no_mangle)]
-pub extern "C" fn numbers() -> *const f64 {
+pub(crate) extern "C" fn numbers() -> *const f64 {
     BUFFERS.with_borrow(|buffers| buffers.answer.numbers.as_ptr())
 }
 
 /// How many numbers the answer has.
 #[unsafe(no_mangle)]
-pub extern "C" fn number_count() -> usize {
+pub(crate) extern "C" fn number_count() -> usize {
     BUFFERS.with_borrow(|buffers| buffers.answer.numbers.len())
 }

@@ -24,6 +24,7 @@
 
 mod diagnostics;
 mod export;
+#[cfg(target_family = "wasm")]
 mod interface;
 mod pages;
 mod request;

@@ -5,25 +5,9 @@ use dwell_page::{Page, PageColumn};
 use dwell_scene::Scene;
 use dwell_study::cycle::compute::CycleResults;
 use dwell_study::equilibria::compute::EquilibriaResults;
-use dwell_study::page::scene_page;
+use dwell_study::page::{drawing_at, scene_page, table_page, unit_group};
 use dwell_study::reduce::compute::{ReducedScene as _, Reduction};
 use dwell_study::{PreparedScene, compute_period};
-
-/// A table with the column of its abscissa.
-fn table_page(scene: &Scene, command: &str, table: &Table, group: impl Fn(&Column) -> &'static str) -> Page {
-    let column = |(k, column): (usize, &Column)| {
-        let values = table.rows.iter().map(|row| row[k]).collect();
-        PageColumn {
-            group: group(column).to_owned(),
-            ..PageColumn::new(&column.name, &column.unit, values)
-        }
-    };
-    Page {
-        axis: Some(0),
-        columns: table.columns.iter().enumerate().map(column).collect(),
-        ..scene_page(scene, command)
-    }
-}
 
 /// The reduced model over the range.
 pub(crate) fn reduction(scene: &Scene, reduction: &Reduction<PreparedScene<'_>>) -> Page {
@@ -33,67 +17,118 @@ pub(crate) fn reduction(scene: &Scene, reduction: &Reduction<PreparedScene<'_>>)
     Page {
         subtitle: format!("{positions} positions over the range of {coordinate}"),
         method: "evaluated exactly at each position".to_owned(),
-        ..table_page(scene, "reduce", &table, |column| match column.name.as_str() {
-            "m" | "half_dm" => "Reduced model",
-            name if name.ends_with(".a") => "Reactions per acceleration",
-            name if name.ends_with(".b") => "Reactions per squared speed",
-            _ => "Loads and errors",
-        })
+        drawing: drawing_at(scene, &over_one(&reduction.curves.q)),
+        ..table_page(&scene.file, "reduce", &table, reduced_group)
     }
+}
+
+/// What belongs in one chart.
+fn reduced_group(name: &str, _: &str) -> (String, String) {
+    let [group, description] = match name {
+        "m" => ["Generalised inertia", "m(q)"],
+        "half_dm" => ["Half its slope, ½m′", "½ dm/dq"],
+        "V" => ["Potential energy", "of the loads"],
+        name if name.ends_with(".a") => ["Reaction coefficients a", "per unit of acceleration"],
+        name if name.ends_with(".b") => ["Reaction coefficients b", "per unit of squared speed"],
+        name if name.ends_with(".w") => ["Generalised forces w", "per unit of the load"],
+        _ => ["Coordinates and others", ""],
+    };
+    (group.to_owned(), description.to_owned())
 }
 
 /// One steady cycle.
 pub(crate) fn cycle(scene: &Scene, found: &CycleResults<'_>) -> Page {
-    let steady = &found.steady;
-    let work = found.works.columns.iter().zip(found.works.rows.iter().flatten());
-    let work = work.map(|(column, &work)| number(&column.name, &column.unit, work, Some(found.errors.work)));
+    let (steady, errors) = (&found.steady, &found.errors);
+    let of_speed = |value: f64| Some(errors.speed * value.abs());
+    let fluctuation = steady.fluctuation;
     let mut numbers = vec![
-        number("period", "s", steady.period, Some(found.errors.speed * steady.period)),
-        number("mean_speed", "rad/s", steady.mean_speed, Some(found.errors.speed * steady.mean_speed.abs())),
-        number("coefficient_of_fluctuation", "", steady.fluctuation, Some(found.errors.fluctuation)),
+        number("period", "s", steady.period, of_speed(steady.period)),
+        number(
+            "mean_speed",
+            "rad/s",
+            steady.mean_speed,
+            of_speed(steady.mean_speed),
+        ),
+        number(
+            "coefficient_of_fluctuation",
+            "",
+            fluctuation,
+            Some(errors.fluctuation),
+        ),
     ];
-    numbers.extend(work);
+    let works = found
+        .works
+        .columns
+        .iter()
+        .zip(found.works.rows.iter().flatten());
+    numbers.extend(works.map(|(of, &work)| number(&of.name, &of.unit, work, Some(errors.work))));
     Page {
         subtitle: "one steady cycle".to_owned(),
         numbers,
-        ..table_page(scene, "cycle", &found.samples, |column| match column.unit.as_str() {
-            "J" => "Work since the start of the cycle",
-            _ => "Motion",
-        })
+        ..table_page(&scene.file, "cycle", &found.samples, unit_group)
     }
 }
 
 /// The equilibria, and the static force around them.
 pub(crate) fn equilibria(scene: &Scene, results: &EquilibriaResults<'_>) -> Page {
-    let named = results.table.rows.iter().enumerate();
-    let numbers = named.flat_map(|(k, row)| {
+    let rows = results.table.rows.iter().enumerate();
+    let numbers = rows.flat_map(|(k, row)| {
         let values = results.table.columns.iter().zip(row);
         let known = values.filter(|(_, value)| value.is_finite());
-        known.map(move |(column, &value)| {
-            number(&format!("equilibrium.{}.{}", k + 1, column.name), &column.unit, value, None)
+        known.map(move |(of, &value)| {
+            number(
+                &format!("equilibrium.{}.{}", k + 1, of.name),
+                &of.unit,
+                value,
+                None,
+            )
         })
     });
-    let found = results.found.len();
-    let mut page = Page {
-        subtitle: format!("{found} found"),
-        numbers: numbers.collect(),
-        ..scene_page(scene, "equilibria")
+    let subtitle = match results.found.len() {
+        1 => "1 equilibrium".to_owned(),
+        found => format!("{found} equilibria"),
     };
-    if let Some(curves) = &results.curves {
-        let column = &results.table.columns[0];
-        let force = if column.unit == "rad" { "N m" } else { "N" };
-        let part = |k: usize| curves.force_and_potential.iter().map(|at| at[k]).collect();
-        page.axis = Some(0);
-        page.columns = vec![
-            PageColumn::new(&column.name, &column.unit, curves.q.clone()),
-            PageColumn::new("static_force", force, part(0)),
-            PageColumn::new("potential", "J", part(1)),
-        ];
+    let page = match static_forces(results) {
+        None => scene_page(&scene.file, "equilibria"),
+        Some((q, table)) => Page {
+            drawing: (scene.mechanism.actuators.len() == 1)
+                .then(|| drawing_at(scene, &over_one(q)))
+                .flatten(),
+            ..table_page(&scene.file, "equilibria", &table, unit_group)
+        },
+    };
+    Page {
+        subtitle,
+        numbers: numbers.collect(),
+        ..page
     }
-    page
 }
 
-/// Adds m and ½m′ at the coordinate of each row, where there is one actuator and its model is exact everywhere.
+/// Static force and potential over the coordinate, and the coordinates, rad or m.
+fn static_forces<'a>(results: &'a EquilibriaResults<'_>) -> Option<(&'a [f64], Table)> {
+    let curves = results.curves.as_ref()?;
+    let coordinate = results.table.columns.first()?.clone();
+    let force = if coordinate.unit == "rad" { "N m" } else { "N" };
+    let rows = curves.q.iter().zip(&curves.force_and_potential);
+    let table = Table {
+        columns: vec![
+            coordinate,
+            Column::new("static_force", force),
+            Column::new("potential", "J"),
+        ],
+        rows: rows
+            .map(|(&q, &[force, potential])| vec![q, force, potential])
+            .collect(),
+    };
+    Some((&curves.q, table))
+}
+
+/// Coordinates of the only actuator, as those of all.
+fn over_one(q: &[f64]) -> Vec<Vec<f64>> {
+    q.iter().map(|&q| vec![q]).collect()
+}
+
+/// Adds m and ½m′ at the coordinate of each row, where there is one actuator.
 pub(crate) fn add_reduced_inertia(scene: &Scene, page: &mut Page) {
     let Ok(prepared) = PreparedScene::without_loads(scene) else {
         return;
@@ -104,23 +139,21 @@ pub(crate) fn add_reduced_inertia(scene: &Scene, page: &mut Page) {
     };
     let mut inertia = prepared.inertia();
     let rows = coordinate.values.iter();
-    let rows: Vec<(f64, f64)> = rows.map(|&q| inertia(q).unwrap_or((f64::NAN, f64::NAN))).collect();
+    let rows = rows.map(|&q| inertia(q).unwrap_or((f64::NAN, f64::NAN)));
+    let (m, half_dm) = rows.unzip();
     drop(inertia);
     let units = match prepared.is_angle() {
         true => ["kg m2", "kg m2/rad"],
         false => ["kg", "kg/m"],
     };
-    let column = |key: &str, unit: &str, description: &str, values: Vec<f64>| PageColumn {
-        group: "Reduced model".to_owned(),
-        description: format!("{description} {name}"),
-        ..PageColumn::new(key, unit, values)
-    };
-    let (m, half_dm) = rows.into_iter().unzip();
-    let added = [
-        column("m", units[0], "generalised inertia along", m),
-        column("half_dm", units[1], "half the derivative of m along", half_dm),
-    ];
-    page.columns.extend(added);
+    for ((key, values), unit) in [("m", m), ("half_dm", half_dm)].into_iter().zip(units) {
+        let (group, description) = reduced_group(key, unit);
+        page.columns.push(PageColumn {
+            group,
+            description,
+            ..PageColumn::new(key, unit, values)
+        });
+    }
 }
 
 /// Adds the period of the free motion, where it is conservative and repeats itself.

@@ -34,7 +34,11 @@ fn rows_of_a_motion_are_those_of_the_front_door() {
     let motion = mechanism.kinetostatics().unwrap();
     let mut compared = 0;
     for (name, _) in motion.columns() {
-        assert_eq!(column(&answer, &numbers, name), motion.column(name).unwrap(), "{name}");
+        assert_eq!(
+            column(&answer, &numbers, name),
+            motion.column(name).unwrap(),
+            "{name}"
+        );
         compared += 1;
     }
     assert!(compared > 20, "{compared} columns");
@@ -64,20 +68,37 @@ fn a_free_motion_a_cycle_and_equilibria_are_those_of_the_front_door() {
     let text = text_of("single-dwell");
     let mechanism = dwell::Scene::parse(&text).unwrap().assemble().unwrap();
     let (answer, numbers) = run("simulate", &text);
-    let motion = mechanism.simulate(&dwell::Solver::method(dwell::Method::Bdf, 1e-10)).unwrap();
+    let motion = mechanism
+        .simulate(&dwell::Solver::method(dwell::Method::Bdf, 1e-10))
+        .unwrap();
     for name in ["t", "phi", "phi.velocity"] {
-        assert_eq!(column(&answer, &numbers, name), motion.column(name).unwrap(), "{name}");
+        assert_eq!(
+            column(&answer, &numbers, name),
+            motion.column(name).unwrap(),
+            "{name}"
+        );
     }
     let text = text_of("press");
     let mechanism = dwell::Scene::parse(&text).unwrap().assemble().unwrap();
-    let cycle = mechanism.cycle(&dwell::Solver::method(dwell::Method::Bdf, 1e-10), None).unwrap();
+    let cycle = mechanism
+        .cycle(&dwell::Solver::method(dwell::Method::Bdf, 1e-10), None)
+        .unwrap();
     let (answer, numbers) = run("cycle", &text);
     assert_eq!(column(&answer, &numbers, "t").last(), Some(&cycle.period));
     let text = text_of("pendulum-a01");
-    let found = dwell::Scene::parse(&text).unwrap().assemble().unwrap().equilibria().unwrap();
+    let found = dwell::Scene::parse(&text)
+        .unwrap()
+        .assemble()
+        .unwrap()
+        .equilibria()
+        .unwrap();
     let (answer, _) = run("equilibria", &text);
     let shown = answer["page"]["numbers"].as_array().unwrap();
-    let stable = |k: usize| shown.iter().any(|n| n["name"] == format!("equilibrium.{k}.stability"));
+    let stable = |k: usize| {
+        shown
+            .iter()
+            .any(|n| n["name"] == format!("equilibrium.{k}.stability"))
+    };
     assert!(stable(found.len()) && !stable(found.len() + 1));
 }
 
@@ -93,14 +114,18 @@ fn a_misspelt_name_has_its_message_and_its_place() {
     let label = &messages[0]["labels"][0];
     let place = usize::try_from(label["from"].as_u64().unwrap()).unwrap();
     let units: Vec<u16> = wrong.encode_utf16().collect();
-    assert_eq!(String::from_utf16(&units[place..place + 7]).unwrap(), "revolte");
+    assert_eq!(
+        String::from_utf16(&units[place..place + 7]).unwrap(),
+        "revolte"
+    );
     assert!(answer.get("page").is_none() && numbers.is_empty());
 }
 
 #[test]
 fn an_export_is_that_of_the_command_line() {
     let request = json!({ "do": "c", "text": text_of("single-dwell") });
-    let answer: Value = serde_json::from_str(&dwell_live::answer(&request.to_string()).text).unwrap();
+    let answer: Value =
+        serde_json::from_str(&dwell_live::answer(&request.to_string()).text).unwrap();
     let files = answer["files"].as_array().unwrap();
     assert_eq!(files.len(), 2);
     assert!(files[0][0].as_str().unwrap().ends_with(".h"));
@@ -109,9 +134,20 @@ fn an_export_is_that_of_the_command_line() {
 
 #[test]
 fn texts_that_are_no_scenes_are_answered() {
-    for text in ["", "\u{feff}", "[", "a = [[[[[[", "bodies = 1", "\0", &"[".repeat(100_000)] {
+    for text in [
+        "",
+        "\u{feff}",
+        "[",
+        "a = [[[[[[",
+        "bodies = 1",
+        "\0",
+        &"[".repeat(100_000),
+    ] {
         let (answer, numbers) = run("simulate", text);
-        assert!(!answer["messages"].as_array().unwrap().is_empty(), "{text:.20}");
+        assert!(
+            !answer["messages"].as_array().unwrap().is_empty(),
+            "{text:.20}"
+        );
         assert!(numbers.is_empty());
     }
 }

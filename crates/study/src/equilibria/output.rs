@@ -54,7 +54,9 @@ fn static_force_page(scene: &Scene, results: &EquilibriaResults<'_>) -> Option<P
             Column::new("static_force", force_unit(is_angle)),
             Column::new("potential", "J"),
         ],
-        rows: rows.map(|(q, [force, potential])| vec![*q, *force, *potential]).collect(),
+        rows: rows
+            .map(|(q, [force, potential])| vec![*q, *force, *potential])
+            .collect(),
     };
     let mut page = table_page(&scene.file, "equilibria", &table, unit_group);
     page.subtitle = format!("static force and potential over {name}");

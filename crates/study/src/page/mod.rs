@@ -7,13 +7,13 @@ mod plane;
 mod tables;
 
 pub(crate) use columns::{RowChoice, page_columns};
-pub(crate) use tables::{drawing_at, table_page, unit_group};
+pub use tables::{drawing_at, table_page, unit_group};
 
 use crate::trajectory::column_extrema::sorted_extrema;
 use crate::trajectory::compute::ComputedTrajectory;
+use arrows::plane_arrows;
 use dwell_page::{DisplayUnit, Page, PageMessage, PageScene, Peak};
 use dwell_scene::{Scene, SceneError, SceneFile};
-use arrows::plane_arrows;
 use plane::plane_drawing;
 
 /// What the page of any command shows of its scene, without results.

@@ -9,7 +9,7 @@ use crate::symbols::{
 use dwell_geometry::{ActuatorKind, BodyId, Joint, JointKind, Vec2, vec2};
 use dwell_kinetostatics::LoadKind;
 use dwell_page::{
-    Anchor, Drawing, DrawnBody, DrawnPath, LinkLook, Mark, MarkLook, OutlineLook, Part,
+    Anchor, Drawing, DrawnBody, DrawnPath, ForceArrow, LinkLook, Mark, MarkLook, OutlineLook, Part,
 };
 use dwell_scene::Scene;
 
@@ -64,7 +64,7 @@ pub(super) fn plane_drawing(
 }
 
 /// The number of a body's colour; none of the ground.
-pub(super) fn paint(ground: usize, body: usize) -> Option<usize> {
+pub(crate) fn paint(ground: usize, body: usize) -> Option<usize> {
     (body != ground).then(|| (body - usize::from(body > ground)) % PAINTS)
 }
 

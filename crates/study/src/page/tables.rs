@@ -12,7 +12,7 @@ use dwell_page::{Drawing, Page, PageColumn, Peak};
 use dwell_scene::{Scene, SceneFile};
 
 /// The page of a table whose first column is the axis; of a group has what belongs in one chart with a column.
-pub(crate) fn table_page(
+pub fn table_page(
     scene: &SceneFile,
     command: &str,
     table: &Table,
@@ -59,7 +59,7 @@ fn row_peak(table: &Table, column: usize) -> Option<Peak> {
 }
 
 /// What belongs in one chart, where only the unit tells.
-pub(crate) fn unit_group(_: &str, unit: &str) -> (String, String) {
+pub fn unit_group(_: &str, unit: &str) -> (String, String) {
     let group = match unit {
         "rad" | "m" => "Coordinates",
         "rad/s" | "m/s" => "Speeds",
@@ -73,7 +73,7 @@ pub(crate) fn unit_group(_: &str, unit: &str) -> (String, String) {
 }
 
 /// The mechanism at the coordinates of all actuators, by row; none where a position cannot be reached.
-pub(crate) fn drawing_at(scene: &Scene, coordinates: &[Vec<f64>]) -> Option<Drawing> {
+pub fn drawing_at(scene: &Scene, coordinates: &[Vec<f64>]) -> Option<Drawing> {
     let model = loaded_model(scene).ok()?;
     let plan = model.plan();
     let mut pose = plan.pose();

@@ -3,14 +3,14 @@
 use super::UnitLoadCurves;
 use crate::explain::{StudyError, explain_position};
 use crate::models::{PreparedScene, lists_reactions};
+use crate::ranges::equally_spaced;
+use crate::trajectory::compute::default_limits;
 #[cfg(feature = "output")]
 use crate::{
     branch_note::branch_note,
     models::requested_reactions,
     output::{coordinate_label, indeterminate_note, separating_note},
 };
-use crate::ranges::equally_spaced;
-use crate::trajectory::compute::default_limits;
 use dwell_findings::Column;
 use dwell_geometry::Range;
 use dwell_kinetostatics::{Batch, Coefficients, ReducedModel as _};
