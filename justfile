@@ -100,6 +100,12 @@ python:
     cargo build --release --workspace --bins
     crates/python/run.sh
 
+# The HTML pages of every command and all reports in Chromium, from the file system; pictures in target/page/pictures. Installs Chromium and its driver; needs the reports of `just validate`
+[group('care')]
+page:
+    cargo build --release --workspace --bins
+    tests/page/run.sh
+
 # Exported FMUs by FMPy and the standard's schemas, in a scratch environment: validated, simulated by both kinds, saved and restored
 [group('care')]
 export:

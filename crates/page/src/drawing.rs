@@ -50,10 +50,10 @@ pub enum OutlineLook {
     Plate,
     /// A block that slides.
     Block,
-    /// A wheel: its circle.
+    /// A wheel: its centre, and a point of its rim.
     Wheel,
-    /// A line that shows how a wheel rotates.
-    Spoke,
+    /// A thin rod on which something slides, or that carries a mass.
+    Guide,
     /// A cam, or a rack.
     Profile,
     /// A slot or a guide of a moving body.

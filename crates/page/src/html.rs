@@ -71,10 +71,18 @@ impl Page {
     }
 }
 
+/// A style or script as the source of a content security policy: its hash.
+///
+/// ```
+/// assert!(dwell_page::source_hash("p{margin:0}").starts_with("'sha256-"));
+/// ```
+pub fn source_hash(text: &str) -> String {
+    format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text)))
+}
+
 /// The content security policy of the file.
 fn policy() -> String {
-    let hash = |text: &str| format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text)));
-    let (style, script, start) = (hash(STYLE), hash(SCRIPT), hash(START));
+    let [style, script, start] = [STYLE, SCRIPT, START].map(source_hash);
     format!(
         "default-src 'none'; style-src {style}; script-src {script} {start}; base-uri 'none'; form-action 'none'"
     )

@@ -39,4 +39,4 @@ pub use drawing::{
     OutlineLook, Part,
 };
 pub use encoded::{EncodedPage, FORMAT, PageError};
-pub use html::{SCRIPT, STYLE};
+pub use html::{SCRIPT, STYLE, source_hash};

@@ -2,6 +2,7 @@
 
 use crate::error::ReportError;
 use crate::long_export::LongExport;
+use crate::markdown::Document;
 use crate::table::TableExport as _;
 use crate::table::{Table, TableFormat};
 use dwell_findings::LongTable;
@@ -46,6 +47,12 @@ impl Files {
     pub fn add(&mut self, path: impl Into<PathBuf>, bytes: impl Into<Vec<u8>>) {
         let content = Content::Bytes(bytes.into());
         self.files.insert(path.into(), content);
+    }
+
+    /// Adds a document as `stem.md` and `stem.html`.
+    pub fn add_document(&mut self, stem: &str, document: &Document) {
+        self.add(format!("{stem}.md"), document.markdown());
+        self.add(format!("{stem}.html"), document.html());
     }
 
     /// Adds a table in some formats: `stem.csv`, `stem.npz`.

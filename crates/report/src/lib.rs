@@ -20,7 +20,7 @@
 //! - [`Animation`] (drawings one after another) → [`Animation::gif`]
 //! - [`Table`] → [`TableExport::csv`] to read, [`TableExport::npz`] to compute with: both give back every bit
 //! - named matrices → [`npz()`]
-//! - [`Document`] (a study in words, tables, figures and findings) → [`Document::markdown`]
+//! - [`Document`] (a study in words, tables, figures and findings) → [`Document::markdown`], [`Document::html`]
 //! - anything serialisable → [`json()`], with [`Number`] for numbers that may not be finite
 //! - [`Summary`] (what a command came to, for programs) → [`Summary::json`]
 //! - findings → [`reproducible_text`], the text that every machine reproduces
@@ -67,6 +67,7 @@ mod fonts;
 mod grid;
 mod header;
 mod heat_map;
+mod html;
 mod ink;
 mod json;
 mod layout;
@@ -105,6 +106,7 @@ pub use error::ReportError;
 pub use figure::{Chart, Figure, Mark, Panel, Series, Stroke};
 pub use files::Files;
 pub use grid::{Cell, Grid, Group, Row};
+pub use html::escaped;
 pub use json::{FindingRecord, Number, json};
 pub use layout::{Label, Layout, NamedCurve};
 pub use markdown::{Block, Document, markdown_text, reproducible_text};

@@ -7,13 +7,12 @@ const MAX_CURVES = 6;
 function createChart(number, state, units, actions) {
   const picture = svg('svg', { class: 'chart', role: 'img', tabindex: 0, height: CHART_HEIGHT });
   const chooser = el('select', { class: 'group', 'aria-label': `quantities of chart ${number + 1}`, onchange: () => choose(chooser.value) });
-  const unitText = el('span', { class: 'unit' });
   const legend = el('ul', { class: 'legend' });
   const picker = el('details', { class: 'picker' }, el('summary', {}, 'curves'));
   const pickerList = el('div', { class: 'picker-list' });
   picker.append(pickerList);
   const save = el('button', { type: 'button', class: 'quiet', title: 'this chart as an SVG file', onclick: () => actions.saveSvg(picture, `chart-${number + 1}`) }, 'SVG ↓');
-  const root = el('section', { class: 'card chart-card', 'aria-label': `chart ${number + 1}` }, el('div', { class: 'chart-head' }, chooser, unitText, picker, save), legend, picture);
+  const root = el('section', { class: 'card chart-card', 'aria-label': `chart ${number + 1}` }, el('div', { class: 'chart-head' }, chooser, picker, save), legend, picture);
 
   let run = null;
   let group = null;
@@ -27,7 +26,7 @@ function createChart(number, state, units, actions) {
 
   function show(newRun) {
     run = newRun;
-    chooser.replaceChildren(...[...run.groups.values()].map(g => el('option', { value: g.key }, `${g.title}${g.unit ? ` (${printedUnit(g.unit)})` : ''}`)));
+    chooser.replaceChildren(...[...run.groups.values()].map(g => el('option', { value: g.key }, `${g.title}${g.unit ? ` (${units.of(g.unit).name})` : ''}`)));
     const own = state.charts[number];
     const wanted = own && run.groups.get(own.group);
     group = wanted || firstGroup(run, number);
@@ -106,9 +105,8 @@ function createChart(number, state, units, actions) {
     picture.replaceChildren();
     width = picture.clientWidth || 560;
     picture.setAttribute('viewBox', `0 0 ${width} ${CHART_HEIGHT}`);
-    const { name, factor } = units.of(group.unit);
+    const { factor } = units.of(group.unit);
     const axisUnit = units.of(run.axis.unit);
-    setText(unitText, name);
     const rows = shownRows();
     const [xFrom, xTo] = state.zoom || [Math.min(run.axis.values[0], run.axis.values[run.rows - 1]), Math.max(run.axis.values[0], run.axis.values[run.rows - 1])];
     let [low, high] = [Infinity, -Infinity];

@@ -8,6 +8,7 @@ const FIRST_GROUPS = {
   statics: ['Reactions, magnitudes|N', 'Actuator forces|N m', 'Actuator forces|N', 'Reactions, components|N', 'Shaking force|N', 'Loads|N'],
   kinetostatics: ['Reactions, magnitudes|N', 'Actuator forces|N m', 'Actuator forces|N', 'Reactions, components|N', 'Bodies|rad/s2', 'Coordinates|m/s2', 'Power and energy|W'],
   simulate: ['Coordinates|rad', 'Coordinates|m', 'Energies and states|J', 'Reactions, magnitudes|N', 'Coordinates|rad/s', 'Power and energy|J'],
+  validate: ['Coordinates|rad', 'Reactions, magnitudes|N', 'Actuator forces|N m', 'Actuator forces|N', 'Energies and states|J', 'Bodies|rad', 'Bodies|rad/s', 'Coordinates|m'],
   reduce: ['Generalised inertia|kg m2', 'Generalised inertia|kg', 'Half its slope, ½m′|kg m2/rad', 'Half its slope, ½m′|kg/m', 'Reaction coefficients a|kg m', 'Reaction coefficients a|kg'],
 };
 

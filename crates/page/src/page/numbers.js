@@ -81,7 +81,9 @@ function ticks(from, to, wanted, isDegrees) {
   const first = Math.ceil(from / step - 1e-6);
   const last = Math.floor(to / step + 1e-6);
   for (let k = first; k <= last && values.length < 60; k++) values.push(k * step);
-  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9)) + (Math.abs(step / power - 2.5) < 1e-9 && !isDegrees ? 1 : 0);
+  // So many that the step is exact: 2.5 needs one more than 2.
+  let decimals = 0;
+  while (decimals < 12 && Math.abs(step * 10 ** decimals - Math.round(step * 10 ** decimals)) > 1e-6 * step * 10 ** decimals) decimals++;
   return { values, decimals };
 }
 

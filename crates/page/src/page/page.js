@@ -82,6 +82,8 @@ function create(root, options = {}) {
     words.show(run);
     nameUnits();
     move(row);
+    if (state.check) seekCheck(words.root, state.check);
+    state.check = null;
   }
 
   function describeHelp(d) {

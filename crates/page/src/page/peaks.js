@@ -13,7 +13,7 @@ function createPeaks(units, actions) {
   const body = el('tbody');
   const note = el('p', { class: 'note' });
   const head = el('thead', {}, el('tr', {}, ['quantity', 'curve', 'min', 'at', 'max', 'at', 'now'].map((t, k) => el('th', { scope: 'col', class: k > 1 ? 'number' : null }, t))));
-  const tableCard = card('Peaks', 'peaks', el('div', { class: 'tools' }, filter, copy, all), note, el('div', { class: 'wide' }, el('table', { class: 'peaks' }, head, body)));
+  const tableCard = card(null, 'peaks', el('div', { class: 'card-head' }, el('h2', {}, 'Peaks'), el('div', { class: 'tools' }, filter, copy, all)), note, el('div', { class: 'wide' }, el('table', { class: 'peaks' }, head, body)));
   let run = null;
   let rows = [];
   let row = 0;
@@ -52,7 +52,7 @@ function createPeaks(units, actions) {
     if (!isFlat) curve.append(svg('path', { d: sparkline(column.values, 96, 20, extentOf(column)) }));
     const value = el('td', { class: 'number now' });
     const error = peak && peak.error ? `estimated error ${scientific(peak.error)} ${printedUnit(column.unit)}` : null;
-    const ends = peak ? [peak.min, peak.max].flatMap(({ value: v, at }) => [el('td', { class: 'number', title: error }, units.text(v, column.unit).replace(/ ?[^\d.∞–·⁻⁰-⁹−]*$/, '')), el('td', { class: 'number' }, isFlat ? '' : jump(at))]) : Array.from({ length: 4 }, () => el('td'));
+    const ends = peak ? [peak.min, peak.max].flatMap(({ value: v, at }) => [el('td', { class: 'number', title: error }, format(v * units.of(column.unit).factor)), el('td', { class: 'number' }, isFlat ? '' : jump(at))]) : Array.from({ length: 4 }, () => el('td'));
     const name = el('button', { type: 'button', class: 'name', title: [column.description, 'add to a chart'].filter(Boolean).join(' · '), onclick: () => actions.addColumn(column) }, column.label);
     const { name: unit } = units.of(column.unit);
     return { column, value, line: el('tr', {}, el('th', { scope: 'row' }, name, ' ', el('span', { class: 'unit' }, unit)), el('td', {}, curve), ends, value) };

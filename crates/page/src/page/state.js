@@ -6,6 +6,7 @@ function readState(hash) {
   for (const [key, value] of new URLSearchParams(hash.replace(/^#/, ''))) {
     if (key === 'at' && Number.isFinite(Number(value))) state.at = Number(value);
     else if (key === 'zoom' && numbers(value).length === 2 && numbers(value).every(Number.isFinite)) state.zoom = numbers(value);
+    else if (key === 'check' && /^\d+$/.test(value)) state.check = value;
     else if (key === 'units' && value === 'si') state.units = 'si';
     else if (key === 'view' && numbers(value).length === 2 && numbers(value).every(Number.isFinite)) state.view = numbers(value);
     else if (key === 'forces' && value === 'off') state.forces = false;

@@ -26,7 +26,7 @@ function findingsCard(findings) {
   const failed = findings.filter(f => !f.pass);
   const passed = findings.filter(f => f.pass);
   const header = ['', 'check', 'what is compared', 'difference', 'tolerance'];
-  const line = f => el('tr', { class: f.pass ? 'pass' : 'fail' },
+  const line = f => el('tr', { class: f.pass ? 'pass' : 'fail', 'data-check': f.check.split(' ')[0] },
     el('td', {}, el('span', { 'aria-label': f.pass ? 'pass' : 'fail' }, f.pass ? '✓' : '✗')),
     el('td', {}, f.check),
     el('td', {}, f.comparison, el('span', { class: 'detail' }, [f.domain, f.worst_at && `worst at ${f.worst_at}`, f.scale && f.scale !== 'none' && `relative to ${f.scale}`].filter(Boolean).join(' · '))),
@@ -36,6 +36,18 @@ function findingsCard(findings) {
   const count = `${passed.length} of ${findings.length} checks pass`;
   return card('Findings', 'findings', el('p', { class: failed.length ? 'verdict fail' : 'verdict pass' }, count), failed.length ? table(failed) : null,
     passed.length ? el('details', { open: passed.length <= 12 }, el('summary', {}, `${passed.length} that pass`), table(passed)) : null);
+}
+
+// Shows the findings of a check, by its number.
+function seekCheck(root, check) {
+  const lines = [...root.querySelectorAll('tr[data-check]')].filter(line => line.dataset.check === check);
+  if (!lines.length) return;
+  for (const line of lines) {
+    line.classList.add('sought');
+    const details = line.closest('details');
+    if (details) details.open = true;
+  }
+  lines[0].scrollIntoView({ block: 'center' });
 }
 
 function printedCard(printed) {

@@ -30,6 +30,12 @@ impl RowChoice {
         Self { rows: chosen }
     }
 
+    /// The rows in memory that are shown.
+    #[cfg(feature = "output")]
+    pub(crate) fn rows(&self) -> impl Iterator<Item = usize> {
+        self.rows.iter().copied()
+    }
+
     /// Something of each row that is shown.
     pub(crate) fn map<'a, T, R>(&self, all: &'a [T], of: impl Fn(&'a T) -> R) -> Vec<R> {
         let rows = self.rows.iter().filter_map(|&k| all.get(k));

@@ -7,5 +7,6 @@ mod family;
 mod family_page;
 mod figures;
 mod numbers;
+mod page;
 mod snapshot;
 pub(crate) mod validate;

@@ -5,6 +5,7 @@ use super::dwell::Dwell;
 use super::family::Family;
 use super::figures;
 use super::numbers::{numbers, tables};
+use super::page;
 use super::snapshot::snapshot;
 use crate::cases::reference::{Reference, SourceKinds};
 use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis, analyse};
@@ -34,7 +35,7 @@ pub struct Validation {
 }
 
 /// Validates the case whose scene is `scene` and whose reference, if any, is in `folder`. The
-/// files are `NAME.md`, `NAME.json`, `NAME.txt` and the folder `NAME/` with figures and tables.
+/// files are `NAME.html`, `NAME.md`, `NAME.json`, `NAME.txt` and the folder `NAME/` with figures and tables.
 ///
 /// # Errors
 /// [`ValidationError`] when the scene or the reference cannot be used. A failed check is no error.
@@ -83,6 +84,13 @@ fn validate_case(
     files.add(format!("{name}.txt"), snapshot.clone());
     files.add(format!("{name}.json"), numbers(scene, &analysis)?);
     files.add(format!("{name}.md"), document.markdown());
+    let tables: Vec<String> = files
+        .paths()
+        .filter(|path| path.extension().is_some_and(|e| e == "csv"))
+        .map(|path| path.display().to_string())
+        .collect();
+    let html = page::page(scene, &analysis, &figures, &tables)?;
+    files.add(format!("{name}.html"), html);
     done("report");
     let picture = |figure: Figure| {
         let path = format!("{name}/{}.png", figure.name);
@@ -103,7 +111,7 @@ fn validate_case(
 }
 
 /// How many findings pass, those that fail, and the period.
-fn summary(scene: &Scene, analysis: &CaseAnalysis<'_>) -> String {
+pub(super) fn summary(scene: &Scene, analysis: &CaseAnalysis<'_>) -> String {
     let mut text = findings_text(&scene.name, &analysis.findings, "");
     let Some(reduced) = &analysis.reduced else {
         return text;

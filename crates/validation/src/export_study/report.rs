@@ -27,10 +27,7 @@ pub(super) fn outcome(cells: &[Cell]) -> Result<Outcome, StudyError> {
     let mut files = Files::new();
     files.add(format!("{NAME}/errors.csv"), numbers(cells).csv()?);
     files.add(format!("{NAME}.txt"), snapshot(cells, &findings));
-    files.add(
-        format!("{NAME}.md"),
-        document(cells, &figures, &findings).markdown(),
-    );
+    files.add_document(NAME, &document(cells, &figures, &findings));
     Ok(Outcome {
         summary: findings_text(NAME, &findings, &format!(", {} exports", cells.len())),
         files,

@@ -38,7 +38,7 @@ pub fn outcome(
     }
     files.add(format!("{name}.txt"), snapshot(results, &findings));
     let document = document(results, name, &figures, &findings);
-    files.add(format!("{name}.md"), document.markdown());
+    files.add_document(name, &document);
     let cells: usize = results.iter().map(|m| m.cells.len()).sum();
     Ok(Outcome {
         summary: findings_text(name, &findings, &format!(", {cells} cells")),

@@ -14,7 +14,6 @@ mod altered;
 mod capabilities;
 mod committed_mutations;
 mod document;
-mod html;
 mod key_study;
 mod lines;
 mod machine;
@@ -31,7 +30,6 @@ use document::{CaseEntry, Contents, counts, document, text};
 use dwell_findings::{Check, Finding};
 use dwell_scene::Scene;
 use dwell_study::Outcome;
-use html::html;
 use key_study::{KeyResult, study_keys};
 use lines::{CaseFindings, Line, LineState, command_lines, key_lines};
 use planted::PlantedScene;
@@ -157,8 +155,7 @@ impl KeyStudy {
         };
         let document = document(&contents);
         let mut outcome = Outcome::default();
-        outcome.files.add("manual.md", document.markdown());
-        outcome.files.add("manual.html", html(&document));
+        outcome.files.add_document("manual", &document);
         outcome.files.add("manual.txt", text(&lines, &entries));
         let [passed, failed, exempt] = counts(&lines);
         outcome.summary = format!(

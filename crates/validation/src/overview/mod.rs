@@ -1,6 +1,7 @@
 //! The cases that were validated together: case by check, as a table and as a figure.
 
 mod figure;
+mod page;
 
 use crate::case_report::validate::Validation;
 use crate::cases::reference::SourceKind;
@@ -49,7 +50,7 @@ pub(crate) fn check_cells(done: &Validation) -> [CheckCell; Check::ALL.len()] {
     })
 }
 
-/// The report on all cases beside their own: `index.md`, and the picture of its table, `index.png`, to be drawn.
+/// The report on all cases beside their own: `index.md`, `index.html`, and the picture of its table, `index.png`, to be drawn.
 pub fn index(results: &[CaseResult<'_>]) -> Outcome {
     let good = |(_, result): &&CaseResult<'_>| match result {
         Ok((_, done)) => all_pass(&done.outcome.findings),
@@ -104,6 +105,7 @@ pub fn index(results: &[CaseResult<'_>]) -> Outcome {
     };
     let mut outcome = Outcome::default();
     outcome.files.add("index.md", document.markdown());
+    outcome.files.add("index.html", page::html(results));
     let overview = Picture::of_no_scene("index.png".to_owned(), figure::overview(results));
     outcome.pictures.push(overview);
     outcome
@@ -291,6 +293,17 @@ mod tests {
             "- `cases/lost`: it cannot be read",
         ] {
             assert!(text.contains(part), "{part}\n{text}");
+        }
+        let page = files.iter().find(|(path, _)| path.ends_with("index.html"));
+        let page = String::from_utf8(page.unwrap().1.to_vec()).unwrap();
+        for part in [
+            "<p>0 of 2 cases pass",
+            "<a href=\"bar.html#check=1\" title=\"key-1: 1.0e-16, tolerance 1.0e-9\">15.7</a>",
+            "title=\"key-2: 1.0e-9, tolerance 1.0e-12\">FAIL key-2</a>",
+            "<td class=\"none\" title=\"driven\">",
+            "not validated: it cannot be read",
+        ] {
+            assert!(page.contains(part), "{part}\n{page}");
         }
         assert!(pictures.iter().any(|picture| picture.path == "index.png"));
     }

@@ -36,7 +36,7 @@ pub fn selected_case_reports(scenes: &[&Scene]) -> Result<Outcome, StudyError> {
         let path = format!("work-precision/{name}.png");
         let picture = Picture::figure(scene, path, true, figure);
         let document = report::document(scene, &found, name);
-        files.add(format!("work-precision/{name}.md"), document.markdown());
+        files.add_document(&format!("work-precision/{name}"), &document);
         // Under dry friction the last bit of a sine decides which steps are rejected: not reproducible.
         let text = found.quadrature().map(|_| snapshot(scene, &found));
         Ok((files, picture, text.unwrap_or_default()))

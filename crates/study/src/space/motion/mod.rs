@@ -9,6 +9,7 @@ use self::problem::SpaceMotionProblem;
 use self::run::Run;
 use super::trajectory::{
     SpaceEvaluator, add_rows, all_columns, drawn_positions, explain_stop, figures, is_listed,
+    space_page,
 };
 use crate::explain::StudyError;
 use crate::free_motion::compute::{MotionSolver, check_times};
@@ -57,12 +58,20 @@ pub fn simulate_in_space(
     computed.set_errors(second.as_ref().map(|(computed, _)| computed));
     let shortfall = problem.shortfall(&run, solver);
     computed.early_stop = shortfall.or(computed.early_stop);
+    let size = problem.output_model.plan().size();
+    let page = space_page(
+        scene,
+        size,
+        &computed,
+        (&problem.reactions, evaluator.clone()),
+    );
     let positions = drawn_positions(scene, &computed, evaluator, None);
     let mut all_figures = vec![positions.figure()];
     all_figures.extend(figures(scene, None, &computed, span)?);
     let document = Document::of_file(&scene.file, problem.output_model.plan().size(), &computed);
     let pictures = (all_figures, positions.animation());
     let mut outcome = outcome_of(&scene.file, &computed, &document, pictures)?;
+    outcome.run = Some(Box::new(page));
     if !run.solution.event_occurrences.is_empty() {
         let name = format!("{}-motion-events.csv", scene.name);
         outcome

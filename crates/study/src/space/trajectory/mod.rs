@@ -3,6 +3,7 @@
 mod columns;
 mod evaluator;
 mod figures;
+mod page;
 mod path;
 mod reactions;
 mod totals;
@@ -10,6 +11,7 @@ mod totals;
 pub(super) use self::columns::all_columns;
 pub(super) use self::evaluator::SpaceEvaluator;
 pub(super) use self::figures::{figures, is_listed};
+pub(super) use self::page::space_page;
 pub(super) use self::reactions::JointReactions;
 use super::explain::{explain_loads, explain_position};
 use super::views::SpacePositions;
@@ -79,12 +81,14 @@ pub fn analyse_in_space(
         .swept_actuator()
         .map(|k| &scene.mechanism.actuators[k]);
     let swept = actuator.map(|a| (a.name.as_str(), matches!(a.kind, ActuatorKind::Angle(_))));
+    let run = space_page(scene, size, &computed, (&reactions, evaluator.clone()));
     let positions = drawn_positions(scene, &computed, evaluator, swept);
     let mut figures = vec![positions.figure()];
     figures.extend(self::figures(scene, swept, &computed, span)?);
     let document = Document::of_file(&scene.file, size, &computed);
     let pictures = (figures, positions.animation());
-    let outcome = outcome_of(&scene.file, &computed, &document, pictures)?;
+    let mut outcome = outcome_of(&scene.file, &computed, &document, pictures)?;
+    outcome.run = Some(Box::new(run));
     Ok(TrajectoryOutcome {
         outcome,
         early_stop: computed.early_stop,

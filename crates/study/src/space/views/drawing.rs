@@ -87,6 +87,11 @@ impl<'a> SpaceDrawing<'a> {
         drawing
     }
 
+    /// Length below which points are one, m.
+    pub(super) fn same(&self) -> f64 {
+        self.same
+    }
+
     /// The smallest distance of two joints on a body; infinite without two.
     fn nearest_joints(&self, body: usize) -> f64 {
         let joints = self.scene.mechanism.joints.iter();

@@ -14,7 +14,7 @@ const BLOCK: [f64; 2] = [0.8, 1.3];
 const SLEEVE: f64 = 1.3;
 const PLATE: [f64; 2] = [2.4, 0.08];
 /// How far a guide goes on beyond the travel, in the same.
-const GUIDE_MARGIN: f64 = 2.6;
+pub(super) const GUIDE_MARGIN: f64 = 2.6;
 /// Width of guides and massless rods, pixels.
 const ROD: f64 = 3.5;
 

@@ -5,10 +5,13 @@
 
 mod drawing;
 mod joints;
+mod page;
 mod paths;
 mod projection;
 mod segments;
 mod solids;
+
+pub(crate) use self::page::{anchor, page_drawing};
 
 use self::drawing::{Detail, SpaceDrawing};
 use self::paths::{paths, points_of};

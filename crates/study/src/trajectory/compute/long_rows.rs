@@ -54,6 +54,12 @@ impl LongRows {
         }))
     }
 
+    /// The number of the `k`th row in memory: every so many-th, and the last one.
+    #[cfg(feature = "output")]
+    pub(crate) fn row_number(&self, k: usize) -> usize {
+        (k * self.stride).min(self.table.len().saturating_sub(1))
+    }
+
     /// Adds a row and its poses; gives them back where they belong in memory, too.
     pub(crate) fn add(&mut self, row: Vec<f64>, poses: Vec<BodyPose>) -> Option<RowAndPoses> {
         let is_kept = self.table.len().is_multiple_of(self.stride);

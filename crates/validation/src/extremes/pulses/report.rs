@@ -68,7 +68,7 @@ pub(in crate::extremes) fn add_to(
         title: "Pulses".to_owned(),
         blocks,
     };
-    outcome.files.add(format!("{name}.md"), document.markdown());
+    outcome.files.add_document(&name, &document);
     let count = format!(", {} pulses", results.len());
     outcome.summary += &findings_text(&name, &findings, &count);
     outcome.findings.extend(findings);

@@ -1,36 +1,92 @@
-//! A document as one HTML file that prints well: no scripts, nothing from elsewhere.
+//! A document as an HTML file that prints well: no scripts, nothing from elsewhere.
 
-use dwell_report::{Block, Document};
+use crate::markdown::{Block, Document};
+use crate::number::scientific;
+use dwell_findings::Finding;
 
 /// For screens and paper: tables do not break inside a row, and headings stay with what follows.
 const STYLE: &str = "body{font:10.5pt/1.4 Georgia,serif;margin:2em auto;max-width:62em;padding:0 1em;color:#111}\
 h1{font-size:1.7em}h2{font-size:1.25em;margin-top:2em;border-bottom:1px solid #999}\
 table{border-collapse:collapse;width:100%;font:8.5pt/1.3 Helvetica,Arial,sans-serif;margin:.8em 0}\
 th,td{border:1px solid #bbb;padding:.25em .4em;text-align:left;vertical-align:top;overflow-wrap:anywhere}\
-th{background:#eee}code{font-size:.95em}td strong{color:#a00}\
+th{background:#eee}code{font-size:.95em}td strong,.fail{color:#a00}\
+figure{margin:1em 0}figure img{max-width:100%;height:auto}figcaption{font-style:italic}.words{white-space:pre-line}.table{overflow-x:auto}\
 @media print{@page{size:A4 landscape;margin:14mm}body{margin:0;max-width:none;font-size:9.5pt}\
 h2{break-after:avoid}tr{break-inside:avoid}thead{display:table-header-group}a{color:inherit;text-decoration:none}}";
 
-/// The document.
-pub(super) fn html(document: &Document) -> String {
-    let title = escaped(&document.title);
-    let mut text = format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
-    );
-    for block in &document.blocks {
-        match block {
-            Block::Heading(heading) => text += &format!("<h2>{}</h2>\n", inline(heading)),
-            Block::Text(paragraphs) => {
-                for paragraph in paragraphs.split("\n\n") {
-                    text += &paragraph_or_list(paragraph);
+impl Document {
+    /// The document as an HTML file that prints well. It has no script; its pictures are the files beside it, nothing comes
+    /// from elsewhere.
+    ///
+    /// ```
+    /// use dwell_report::{Block, Document};
+    ///
+    /// let blocks = vec![Block::Words("a < b".to_owned())];
+    /// let document = Document { title: "Study".to_owned(), blocks };
+    /// assert!(document.html().contains("<p class=\"words\">a &lt; b</p>"));
+    /// ```
+    pub fn html(&self) -> String {
+        let title = escaped(&self.title);
+        let mut text = format!(
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
+        );
+        for block in &self.blocks {
+            match block {
+                Block::Heading(heading) => text += &format!("<h2>{}</h2>\n", inline(heading)),
+                Block::Text(paragraphs) => {
+                    for paragraph in paragraphs.split("\n\n") {
+                        text += &paragraph_or_list(paragraph);
+                    }
                 }
+                Block::Words(words) => {
+                    text += &format!("<p class=\"words\">{}</p>\n", escaped(words));
+                }
+                Block::Table { header, rows } => text += &table(header, rows),
+                Block::Figure { file, alt, caption } => text += &figure(file, alt, caption),
+                Block::Findings(all) => text += &findings(all),
             }
-            Block::Table { header, rows } => text += &table(header, rows),
-            // The manual has none of them: a picture would be another file.
-            Block::Figure { .. } | Block::Findings(_) | Block::Words(_) => {}
         }
+        text + "</body>\n</html>\n"
     }
-    text + "</body>\n</html>\n"
+}
+
+/// A picture, which a click opens by itself.
+fn figure(file: &str, alt: &str, caption: &str) -> String {
+    let [file, alt, caption] = [file, alt, caption].map(escaped);
+    format!(
+        "<figure><a href=\"{file}\"><img src=\"{file}\" alt=\"{alt}\" loading=\"lazy\"></a><figcaption>{caption}</figcaption></figure>\n"
+    )
+}
+
+fn findings(all: &[Finding]) -> String {
+    const HEADER: [&str; 6] = [
+        "Result",
+        "Check",
+        "Comparison",
+        "Relative difference",
+        "Tolerance",
+        "Worst at",
+    ];
+    let line = |f: &Finding| {
+        let result = match f.pass {
+            true => "<td>pass</td>".to_owned(),
+            false => "<td class=\"fail\">FAIL</td>".to_owned(),
+        };
+        let [relative, tolerance] =
+            [f.relative_difference, f.tolerance].map(|value| scientific(value, 3));
+        let cells = [
+            f.check.to_string(),
+            f.comparison.clone(),
+            relative,
+            tolerance,
+            f.worst_at.clone(),
+        ];
+        let cells = cells.map(|cell| format!("<td>{}</td>", escaped(&cell)));
+        format!("<tr>{result}{}</tr>\n", cells.concat())
+    };
+    let header = HEADER.map(|cell| format!("<th>{cell}</th>")).concat();
+    let body: String = all.iter().map(line).collect();
+    format!("<table>\n<thead><tr>{header}</tr></thead>\n<tbody>\n{body}</tbody>\n</table>\n")
 }
 
 fn paragraph_or_list(paragraph: &str) -> String {
@@ -58,7 +114,7 @@ fn table(header: &[String], rows: &[Vec<String>]) -> String {
     };
     let body: String = rows.iter().map(|row| line(row, "td")).collect();
     format!(
-        "<table>\n<thead>{}</thead>\n<tbody>\n{body}</tbody>\n</table>\n",
+        "<div class=\"table\"><table>\n<thead>{}</thead>\n<tbody>\n{body}</tbody>\n</table></div>\n",
         line(header, "th")
     )
 }
@@ -101,7 +157,12 @@ fn mark(text: &str) -> (String, &str) {
     (escaped(&text[..end]), &text[end..])
 }
 
-fn escaped(text: &str) -> String {
+/// Text as it stands in HTML, also within an attribute.
+///
+/// ```
+/// assert_eq!(dwell_report::escaped("a < \"b\""), "a &lt; &quot;b&quot;");
+/// ```
+pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -136,7 +197,7 @@ mod tests {
                 rows: vec![vec!["<script>".to_owned()]],
             }],
         };
-        let page = html(&document);
+        let page = document.html();
         assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>\n"));
         assert!(!page.contains("<script"), "{page}");
         assert!(page.contains("@media print"));

@@ -1,0 +1,68 @@
+//! The page of a trajectory in space: rows, peaks, and the mechanism in each row with its reactions.
+
+use super::evaluator::SpaceEvaluator;
+use super::reactions::JointReactions;
+use crate::page::{RowChoice, run_page};
+use crate::space::views::{anchor, page_drawing};
+use crate::trajectory::compute::{ComputedTrajectory, Quantity, RowEvaluator as _};
+use dwell_geometry::JointId;
+use dwell_kinetostatics::space::{Axes, Component};
+use dwell_page::{Direction, ForceArrow, Page};
+use dwell_scene::SpaceScene;
+
+/// The page of a mechanism of this size, m.
+pub(crate) fn space_page(
+    scene: &SpaceScene,
+    size: f64,
+    computed: &ComputedTrajectory<'_>,
+    (reactions, mut evaluator): (&JointReactions, SpaceEvaluator<'_>),
+) -> Page {
+    let (trajectory, results) = (&computed.trajectory, &computed.results);
+    let mut page = run_page(&scene.file, size, computed);
+    let choice = RowChoice::new(results);
+    let mut place = |row: usize| {
+        let sample = trajectory.sample_at(trajectory.fraction_at(row));
+        let time = trajectory.load_time(&sample);
+        evaluator.evaluate(&sample, time).ok()?;
+        Some(evaluator.placements.clone())
+    };
+    let rows = choice.rows().map(|k| place(results.row_number(k)));
+    // A row that was evaluated can be evaluated again.
+    if let Some(rows) = rows.collect::<Option<Vec<_>>>() {
+        let arrows = arrows(scene, computed, reactions);
+        page.drawing = Some(page_drawing(scene, rows, arrows));
+    }
+    page
+}
+
+/// The forces of the joints whose three components in the axes of the ground are among the columns.
+fn arrows(
+    scene: &SpaceScene,
+    computed: &ComputedTrajectory<'_>,
+    reactions: &JointReactions,
+) -> Vec<ForceArrow> {
+    let results = &computed.results;
+    let column = |joint: usize, axis: usize| {
+        let wanted = Component::Force(Axes::Ground, axis);
+        let mut all = reactions.requested.iter();
+        let k = all.position(|r| r.joint == JointId(joint) && r.component == wanted)?;
+        let mut written = results.written.iter();
+        written.position(|&c| results.columns[c].quantity == Quantity::Reaction(k))
+    };
+    let joints = scene.mechanism.joints.iter().enumerate();
+    let arrow = |(j, joint): (usize, &dwell_geometry::space::Joint)| {
+        let columns = (0..3).map(|axis| column(j, axis));
+        let columns = columns.collect::<Option<Vec<usize>>>()?;
+        let [one, two] = joint
+            .bodies
+            .map(|b| scene.mechanism.bodies[b.0].name.as_str());
+        Some(ForceArrow {
+            name: joint.name.clone(),
+            group: "Reactions".to_owned(),
+            title: format!("{}: force of {one} on {two}", joint.name),
+            at: anchor(joint.side_body(1), joint.sides[1].point),
+            direction: Direction::Components { columns },
+        })
+    };
+    joints.filter_map(arrow).collect()
+}
