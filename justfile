@@ -100,9 +100,9 @@ python:
     cargo build --release --workspace --bins
     crates/python/run.sh
 
-# The HTML pages of every command and all reports in Chromium, from the file system; pictures in target/page/pictures. Installs Chromium and its driver; needs the reports of `just validate`
+# The HTML pages of every command, all reports and the live page in Chromium, from the file system; pictures in target/page/pictures. Installs Chromium and its driver; needs the reports of `just validate`
 [group('care')]
-page:
+page: web
     cargo build --release --workspace --bins
     tests/page/run.sh
 

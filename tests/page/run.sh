@@ -18,3 +18,4 @@ PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 npm ci --silent --no-audit --no-fund
 
 ./make.sh "$pages"
 node run.mjs "$pages" "$top/reports"
+node live.mjs "$top/target/web" "$pages"

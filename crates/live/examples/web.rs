@@ -35,7 +35,7 @@ fn main() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or(root.join("target"), PathBuf::from);
     let module = target.join("wasm32-unknown-unknown/web/dwell_live.wasm");
-    let module = fs::read(module).unwrap();
+    let module = without_names(&fs::read(module).unwrap());
     let compressed = compressed(&module);
     assert!(
         compressed.len() < MAX_MODULE,
@@ -63,6 +63,33 @@ fn main() {
         module.len(),
         compressed.len()
     );
+}
+
+/// A module without its custom sections: names, and what made it.
+fn without_names(module: &[u8]) -> Vec<u8> {
+    /// Magic number and version.
+    const HEADER: usize = 8;
+    let mut kept = module[..HEADER].to_vec();
+    let mut at = HEADER;
+    while at < module.len() {
+        // A section: its kind, its length in groups of seven bits, the least significant ones first, and its content.
+        let (mut length, mut shift, mut content) = (0_usize, 0, at + 1);
+        loop {
+            let byte = module[content];
+            length |= usize::from(byte & 0x7f) << shift;
+            shift += 7;
+            content += 1;
+            if byte < 0x80 {
+                break;
+            }
+        }
+        let end = content + length;
+        if module[at] != 0 {
+            kept.extend_from_slice(&module[at..end]);
+        }
+        at = end;
+    }
+    kept
 }
 
 fn compressed(bytes: &[u8]) -> Vec<u8> {

@@ -23,13 +23,13 @@ class Live {
     const worker = element('live-worker').textContent;
     this.following = new Engine(bytes, worker);
     this.asked = new Engine(bytes, worker);
-    this.page = DwellPage.create(element('page'));
+    this.page = DwellPage.create(element('page'), { hash: false });
     this.editor = new Editor(element('live-editor'), () => this.edited());
     this.command = 'kinetostatics';
     this.version = 0;
     this.buttons = COMMANDS.map(([name, command]) => this.tab(name, command));
     document.querySelector('.live-tabs').append(...this.buttons);
-    element('live-again').addEventListener('click', () => this.ask());
+    element('live-again').addEventListener('click', () => this.work(this.ask()));
     this.files = new SceneFiles(this);
   }
 
@@ -62,14 +62,26 @@ class Live {
     this.stale(false);
     if (quietly) return;
     if (this.follows(command)) this.edited();
-    else this.ask();
+    else this.work(this.ask());
   }
 
   // After every change: what follows is computed for the newest text, one after the other.
   edited() {
     this.version += 1;
     if (!this.follows(this.command)) this.stale(true);
-    if (!this.busy) this.busy = this.follow().finally(() => { this.busy = null; });
+    if (this.busy) return;
+    this.busy = this.follow().finally(() => { this.busy = null; });
+    this.work(this.busy);
+  }
+
+  // Says in the document whether something is being computed.
+  work(task) {
+    this.working = (this.working || 0) + 1;
+    document.body.dataset.state = 'working';
+    return task.finally(() => {
+      this.working -= 1;
+      if (!this.working) document.body.dataset.state = 'settled';
+    });
   }
 
   async follow() {
