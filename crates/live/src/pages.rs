@@ -1,24 +1,27 @@
 //! Pages of results that are no trajectories, and what the live page adds to one.
 
 use dwell_findings::{Column, RecordedEvent, RecordedNumber, Table};
-use dwell_page::{Page, PageColumn};
+use dwell_page::{Drawing, Page, PageColumn};
 use dwell_scene::Scene;
 use dwell_study::cycle::compute::CycleResults;
 use dwell_study::equilibria::compute::EquilibriaResults;
 use dwell_study::page::{drawing_at, scene_page, table_page, unit_group};
-use dwell_study::reduce::compute::{ReducedScene as _, Reduction};
+use dwell_study::reduce::compute::{ReducedScene, Reduction};
 use dwell_study::{PreparedScene, compute_period};
 
-/// The reduced model over the range.
-pub(crate) fn reduction(scene: &Scene, reduction: &Reduction<PreparedScene<'_>>) -> Page {
-    let table = reduction.table();
+/// The reduced model over the range, with the mechanism at each position.
+pub(crate) fn reduction<P: ReducedScene>(
+    reduction: &Reduction<P>,
+    drawing: Option<Drawing>,
+) -> Page {
+    let (table, prepared) = (reduction.table(), &reduction.prepared);
     let positions = table.rows.len();
-    let coordinate = reduction.prepared.coordinate_name();
+    let coordinate = prepared.coordinate_name();
     Page {
         subtitle: format!("{positions} positions over the range of {coordinate}"),
         method: "evaluated exactly at each position".to_owned(),
-        drawing: drawing_at(scene, &over_one(&reduction.curves.q)),
-        ..table_page(&scene.file, "reduce", &table, reduced_group)
+        drawing,
+        ..table_page(prepared.file(), "reduce", &table, reduced_group)
     }
 }
 
@@ -124,7 +127,7 @@ fn static_forces<'a>(results: &'a EquilibriaResults<'_>) -> Option<(&'a [f64], T
 }
 
 /// Coordinates of the only actuator, as those of all.
-fn over_one(q: &[f64]) -> Vec<Vec<f64>> {
+pub(crate) fn over_one(q: &[f64]) -> Vec<Vec<f64>> {
     q.iter().map(|&q| vec![q]).collect()
 }
 

@@ -3,11 +3,12 @@
 use crate::pages;
 use crate::request::Command;
 use dwell_page::Page;
-use dwell_scene::{AnyScene, Scene, SceneError};
-use dwell_study::page::trajectory_page;
+use dwell_scene::{AnyScene, Scene, SceneError, SpaceScene};
+use dwell_study::page::{drawing_at, trajectory_page};
 use dwell_study::{
     Analysis, CycleSearch, MotionSolver, SolverSettings, StudyError, compute_cycle,
-    compute_equilibria, compute_free_motion, compute_reduction, compute_trajectory, no_progress,
+    compute_equilibria, compute_free_motion, compute_reduction, compute_reduction_in_space,
+    compute_trajectory, no_progress, trajectory_page_in_space,
 };
 
 /// What a command came to.
@@ -31,8 +32,30 @@ impl From<Page> for Run {
 pub(crate) fn run(command: Command, scene: &AnyScene) -> Result<Run, SceneError> {
     match scene {
         AnyScene::Plane(scene) => in_plane(command, scene).map_err(scene_error),
-        AnyScene::Space(scene) => Err(scene.planar_only()),
+        AnyScene::Space(scene) => in_space(command, scene).map_err(scene_error),
     }
+}
+
+fn in_space(command: Command, scene: &SpaceScene) -> Result<Run, StudyError> {
+    let analysis = match command {
+        Command::Kinematics => Analysis::Kinematics,
+        Command::Statics => Analysis::Statics,
+        Command::Kinetostatics => Analysis::Kinetostatics,
+        Command::Reduce => {
+            let reduction = compute_reduction_in_space(scene, None)?;
+            return Ok(pages::reduction(&reduction, None).into());
+        }
+        Command::Simulate | Command::Cycle | Command::Equilibria => {
+            let message = "this page does not compute this of a mechanism in space".to_owned();
+            let help = "the command line does, of some".to_owned();
+            return Err(SceneError::without_labels(message, Some(help)).into());
+        }
+    };
+    let (page, early_stop) = trajectory_page_in_space(scene, analysis, &no_progress)?;
+    Ok(Run {
+        page,
+        early_stop: early_stop.map(scene_error),
+    })
 }
 
 fn in_plane(command: Command, scene: &Scene) -> Result<Run, StudyError> {
@@ -42,7 +65,8 @@ fn in_plane(command: Command, scene: &Scene) -> Result<Run, StudyError> {
         Command::Kinetostatics => along_motion(scene, Analysis::Kinetostatics),
         Command::Reduce => {
             let reduction = compute_reduction(scene, None)?;
-            Ok(pages::reduction(scene, &reduction).into())
+            let drawing = drawing_at(scene, &pages::over_one(&reduction.curves.q));
+            Ok(pages::reduction(&reduction, drawing).into())
         }
         Command::Simulate => {
             let solver = MotionSolver::Settings(SolverSettings::default());

@@ -14,7 +14,6 @@ use crate::trajectory::compute::ComputedTrajectory;
 use arrows::plane_arrows;
 use dwell_page::{DisplayUnit, Page, PageMessage, PageScene, Peak};
 use dwell_scene::{Scene, SceneError, SceneFile};
-#[cfg(feature = "output")]
 pub(crate) use plane::paint;
 use plane::plane_drawing;
 

@@ -15,6 +15,5 @@ pub(crate) use curves::{coefficient_units, inertia_units};
 pub(crate) use peak::{Peak, fast_turns, peak_between_rows};
 pub use reduced_scene::{InertiaAt, ReducedScene};
 pub use table::{TableRequest, Tabulation, tabulate};
-#[cfg(feature = "output")]
 pub(crate) use unit_load_curves::ReducedLoad;
 pub use unit_load_curves::UnitLoadCurves;

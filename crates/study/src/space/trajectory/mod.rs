@@ -2,64 +2,62 @@
 
 mod columns;
 mod evaluator;
+#[cfg(feature = "output")]
 mod figures;
+#[cfg(feature = "output")]
+mod output;
 mod page;
 mod path;
 mod reactions;
 mod totals;
 
-pub(super) use self::columns::all_columns;
+pub(super) use self::columns::{all_columns, is_listed};
 pub(super) use self::evaluator::SpaceEvaluator;
-pub(super) use self::figures::{figures, is_listed};
+#[cfg(feature = "output")]
+pub(super) use self::figures::figures;
+#[cfg(feature = "output")]
+pub use self::output::analyse_in_space;
+#[cfg(feature = "output")]
+pub(super) use self::output::drawn_positions;
 pub(super) use self::page::space_page;
 pub(super) use self::reactions::JointReactions;
 use super::explain::{explain_loads, explain_position};
-use super::views::SpacePositions;
 use crate::explain::{StudyError, scene_error};
-use crate::number_format::digits;
-use crate::output::symbol;
 use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
     Analysis, ComputedTrajectory, POSITIONS_PER_STEP, RowEvaluator as _, RowStorage, StopCause,
     Trajectory, TrajectoryResults,
 };
-use crate::trajectory::document::Document;
-use crate::trajectory::figures::PictureSpan;
-use crate::trajectory::output::{TrajectoryOutcome, outcome_of};
-use dwell_geometry::space::{ActuatorKind, Plan};
+use dwell_geometry::space::Plan;
 use dwell_kinetostatics::KinetostaticsError;
+use dwell_kinetostatics::space::Model;
+use dwell_page::Page;
 use dwell_scene::SpaceScene;
 
-/// Positions from which paths are drawn.
-const DRAWN_POSITIONS: usize = 241;
-
-/// Analyses a scene in space along its prescribed motion, its sweep, or the range of its only actuator, at `points` positions
-/// (two or more) if given; curves show a part of it.
-///
-/// # Errors
-/// [`StudyError::Scene`] when the mechanism cannot be assembled, the scene gives no coordinates, or the first position cannot
-/// be reached.
-pub fn analyse_in_space(
-    scene: &SpaceScene,
-    analysis: Analysis,
-    points: Option<usize>,
-    span: PictureSpan,
+/// The rows of a scene in space along its prescribed motion, its sweep, or the range of its only actuator, and what evaluates further
+/// positions.
+pub(super) fn compute<'a, 'm>(
+    scene: &'a SpaceScene,
+    (reactions, model): (&'m JointReactions, &'m Model),
+    (analysis, points): (Analysis, Option<usize>),
     progress: Progress<'_>,
-) -> Result<TrajectoryOutcome, StudyError> {
-    let (reactions, model) = JointReactions::new(scene)?;
+) -> Result<(ComputedTrajectory<'a>, SpaceEvaluator<'m>), StudyError>
+where
+    'a: 'm,
+{
     let followed = path::followed_scene(scene, model.plan());
     let trajectory = Trajectory::new(&followed, analysis, points)?;
     trajectory.check_laws(&followed)?;
     let is_limited = scene.lists_reactions && analysis != Analysis::Kinematics;
-    let all = all_columns(scene, &reactions, (analysis, trajectory.is_timed()));
+    let all = all_columns(scene, reactions, (analysis, trajectory.is_timed()));
     let mut columns = all.clone();
-    columns.retain(|c| !is_limited || is_listed(c.quantity, &reactions));
+    columns.retain(|c| !is_limited || is_listed(c.quantity, reactions));
     let written = (0..columns.len()).collect();
     let mut results = TrajectoryResults::of_columns(all, columns, written, is_limited);
     results.keep_rows_in(RowStorage::Bounded, trajectory.points)?;
     let open = reactions.indeterminate.iter();
     results.indeterminate = open.map(|r| scene.reaction_name(*r)).collect();
-    let mut evaluator = SpaceEvaluator::new(scene, (&model, &reactions), analysis);
+    let mut evaluator = SpaceEvaluator::new(scene, (model, reactions), analysis);
     let early_stop = add_rows(&trajectory, &mut evaluator, &mut results, progress)
         .map(|error| explain_stop(scene, model.plan(), error));
     let early_stop = match early_stop {
@@ -76,23 +74,34 @@ pub fn analyse_in_space(
         trajectory,
         results,
     };
-    let actuator = computed
-        .trajectory
-        .swept_actuator()
-        .map(|k| &scene.mechanism.actuators[k]);
-    let swept = actuator.map(|a| (a.name.as_str(), matches!(a.kind, ActuatorKind::Angle(_))));
-    let run = space_page(scene, size, &computed, (&reactions, evaluator.clone()));
-    let positions = drawn_positions(scene, &computed, evaluator, swept);
-    let mut figures = vec![positions.figure()];
-    figures.extend(self::figures(scene, swept, &computed, span)?);
-    let document = Document::of_file(&scene.file, size, &computed);
-    let pictures = (figures, positions.animation());
-    let mut outcome = outcome_of(&scene.file, &computed, &document, pictures)?;
-    outcome.run = Some(Box::new(run));
-    Ok(TrajectoryOutcome {
-        outcome,
-        early_stop: computed.early_stop,
-    })
+    Ok((computed, evaluator))
+}
+
+/// The page of an analysis of a scene in space along its prescribed motion, its sweep, or the range of its only actuator, and why it
+/// ended early, if it did.
+///
+/// # Errors
+/// [`StudyError::Scene`] when the mechanism cannot be assembled, the scene gives no coordinates, or the first position cannot
+/// be reached.
+///
+/// ```
+/// use dwell_study::{Analysis, no_progress, trajectory_page_in_space};
+///
+/// let scene = dwell_scene::SpaceScene::read("../../validation/spatial/rssr.toml")?;
+/// let (page, early_stop) = trajectory_page_in_space(&scene, Analysis::Kinematics, &no_progress)?;
+/// assert!(page.drawing.is_some_and(|drawing| drawing.view.is_some()) && early_stop.is_none());
+/// # Ok::<(), dwell_study::StudyError>(())
+/// ```
+pub fn trajectory_page_in_space(
+    scene: &SpaceScene,
+    analysis: Analysis,
+    progress: Progress<'_>,
+) -> Result<(Page, Option<StudyError>), StudyError> {
+    let (reactions, model) = JointReactions::new(scene)?;
+    let (computed, evaluator) = compute(scene, (&reactions, &model), (analysis, None), progress)?;
+    let size = model.plan().size();
+    let page = space_page(scene, size, &computed, (&reactions, evaluator));
+    Ok((page, computed.early_stop))
 }
 
 /// Evaluates one row after another; why it ends early, if it does.
@@ -128,40 +137,5 @@ pub(super) fn explain_stop(scene: &SpaceScene, plan: &Plan, cause: StopCause) ->
         StopCause::OffTable { .. } | StopCause::Discontinuity { .. } => {
             scene_error::<String>(scene, "the trajectory cannot go on", "", [])
         }
-    }
-}
-
-/// The mechanism along the part of a trajectory that was reached.
-pub(super) fn drawn_positions<'a>(
-    scene: &'a SpaceScene,
-    computed: &ComputedTrajectory<'_>,
-    mut evaluator: SpaceEvaluator<'_>,
-    swept: Option<(&str, bool)>,
-) -> SpacePositions<'a> {
-    let trajectory = &computed.trajectory;
-    let last = trajectory.fraction_at(computed.results.len().saturating_sub(1));
-    let mut place = |fraction: f64| {
-        let sample = trajectory.sample_at(fraction);
-        evaluator
-            .evaluate(&sample, trajectory.load_time(&sample))
-            .ok()?;
-        let at = match swept {
-            Some((name, true)) => format!("{} = {:.1}°", symbol(name), sample.q[0].to_degrees()),
-            Some((name, false)) => format!("{} = {} m", symbol(name), digits(sample.q[0], 4)),
-            None => format!("time = {} s", digits(sample.t, 4)),
-        };
-        Some((evaluator.placements.clone(), at.replace('-', "−")))
-    };
-    let intervals = DRAWN_POSITIONS - 1;
-    let all: Vec<_> = (0..=intervals)
-        .filter_map(|k| place(last * k as f64 / intervals as f64))
-        .collect();
-    let (drawn, drawn_at) = all.first().cloned().unwrap_or_default();
-    SpacePositions {
-        scene,
-        drawn,
-        drawn_at,
-        all,
-        provenance: trajectory.method_text.clone(),
     }
 }

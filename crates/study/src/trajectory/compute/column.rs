@@ -14,10 +14,6 @@ pub(crate) fn is_prefix_of(name: &str, column: &str) -> bool {
 
 /// The quantity of a column. An order is 0 for a position, 1 for its velocity, 2 for its acceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(
-    not(feature = "output"),
-    allow(dead_code, reason = "columns in space are part of `output`")
-)]
 pub(crate) enum Quantity {
     Time,
     ActuatorCoordinate(usize, usize),

@@ -155,7 +155,6 @@ impl TrajectoryResults {
     }
 
     /// The number of the position of the `k`th row in memory.
-    #[cfg(feature = "output")]
     pub(crate) fn row_number(&self, k: usize) -> usize {
         let long = self.long_rows.as_ref();
         long.map_or(k, |long| long.row_number(k))
