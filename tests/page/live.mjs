@@ -68,7 +68,8 @@ function table(command, scene) {
   const path = join(scratch, 'scene.toml');
   writeFileSync(path, scene);
   execFileSync(dwell, [command, path, '--pictures', 'none', '--name', 'cli', '--out', scratch], { stdio: 'ignore' });
-  return parse(readFileSync(join(scratch, `cli-${command === 'simulate' ? 'motion' : command}.csv`), 'utf8'));
+  const names = { simulate: 'motion', reduce: 'reduced' };
+  return parse(readFileSync(join(scratch, `cli-${names[command] || command}.csv`), 'utf8'));
 }
 
 // All columns of the command, to 1e-13 of the largest value of each unit.
@@ -91,7 +92,7 @@ function compare(shown, expected, what) {
   });
 }
 
-const SAVE_CSV = '.dwell-page button:text-matches("CSV", "i")';
+const SAVE_CSV = '.dwell-page button:text("all data")';
 
 await test('a changed length gives the numbers of the command line', async page => {
   const scene = caseText('jansen').replace(/(points = \{[^}]*\[)(\d+\.?\d*)/, (_, before, number) => `${before}${Number(number) * 1.01}`);
@@ -144,7 +145,7 @@ await test('the page begins with the single-dwell mechanism, follows its crank, 
 });
 
 await test('what is wrong has the words of the command line, and its place', async page => {
-  const scene = caseText('single-dwell').replace('revolute', 'revolte').replace('mass = 2.1', 'mass = -2.1');
+  const scene = caseText('single-dwell').replace('{ revolute', '{ revolte').replace('mass = 2.1', 'mass = -2.1');
   await write(page, scene);
   const path = join(scratch, 'wrong.toml');
   writeFileSync(path, scene);
@@ -160,13 +161,13 @@ await test('what is wrong has the words of the command line, and its place', asy
   const marked = await page.locator('.live-editor pre .error').allTextContents();
   expect(marked.includes('revolte') || marked.join('').includes('revolte'), `underlined: ${marked}`);
   await page.screenshot({ path: join(pictures, 'live-errors.png') });
-  await write(page, scene.replace('revolte', 'revolute').replace('-2.1', '2.1'));
+  await write(page, scene.replace('{ revolte', '{ revolute').replace('-2.1', '2.1'));
   same(await page.locator('#live-messages li.error').count(), 0, 'messages that stay');
 });
 
 await test('a number has a slider, which everything follows', async page => {
   const scene = await text(page);
-  const at = scene.indexOf('mass = ') + 'mass = '.length;
+  const at = scene.search(/mass = \d/) + 'mass = '.length;
   await page.evaluate(([selector, place]) => {
     const field = document.querySelector(selector);
     field.focus();
@@ -213,7 +214,10 @@ await test('200 random edits never leave it dead', async page => {
     else if (kind === 1) scene = scene.slice(0, at) + scene.slice(at + 1 + random(6));
     else scene = scene.replace(/\d+\.?\d*/g, number => (random(12) === 0 ? String(Number(number) * (random(40) - 10)) : number));
     if (k % 20 === 19) scene = original;
-    await write(page, scene);
+    await page.fill(area, scene);
+    // Edits are faster than results: only some are waited for.
+    if (k % 10 !== 9) continue;
+    await settled(page);
     expect((await status(page)).length > 0, `nothing is said after edit ${k}`);
     expect((await page.locator('#live-messages li').count()) > 0 || /computed in/.test(await status(page)), `neither results nor messages after edit ${k}`);
   }

@@ -61,7 +61,7 @@ class Editor {
   }
 
   // Whether the scene is one in space: a point with three numbers.
-  get inSpace() { return /=\s*\[\s*[^[\],]+,[^[\],]+,[^[\],]+\]/.test(this.text.replace(/#.*$/gm, '')); }
+  get inSpace() { return /=\s*\[\s*[-+\d.e_]+\s*,\s*[-+\d.e_]+\s*,\s*[-+\d.e_]+\s*\]/.test(this.text.replace(/#.*$/gm, '')); }
 
   show(messages) {
     this.messages = messages;
@@ -94,22 +94,29 @@ class Editor {
     this.completion.place();
   }
 
-  // Where a place of the text is on the screen, relative to the editor.
+  // Where a place of the text is on the screen, relative to the editor: at the character there, or behind the one before it.
   rectangle(offset) {
+    const own = this.colours.parentElement.getBoundingClientRect();
+    for (const [at, side] of [[offset, 'left'], [offset - 1, 'right']]) {
+      const found = this.characterBox(at);
+      if (found && found.height) return { left: found[side] - own.left, top: found.top - own.top, bottom: found.bottom - own.top };
+    }
+    return { left: 0, top: 0, bottom: 20 };
+  }
+
+  characterBox(offset) {
     const walker = document.createTreeWalker(this.colours, NodeFilter.SHOW_TEXT);
     let left = offset;
-    for (let node = walker.nextNode(); node; node = walker.nextNode()) {
-      if (left <= node.length) {
+    for (let node = walker.nextNode(); node && left >= 0; node = walker.nextNode()) {
+      if (left < node.length) {
         const range = document.createRange();
         range.setStart(node, left);
-        range.setEnd(node, left);
-        const at = range.getBoundingClientRect();
-        const own = this.colours.parentElement.getBoundingClientRect();
-        return { left: at.left - own.left, top: at.top - own.top, bottom: at.bottom - own.top };
+        range.setEnd(node, left + 1);
+        return range.getBoundingClientRect();
       }
       left -= node.length;
     }
-    return { left: 0, top: 0, bottom: 0 };
+    return null;
   }
 
   keyDown(event) {
@@ -125,13 +132,9 @@ class Editor {
   showHint() {
     const at = this.area.selectionStart;
     const here = this.messages.find((m) => m.labels.some((l) => l.from <= at && at <= Math.max(l.to, l.from + 1)));
-    if (here) {
-      this.hint.textContent = [here.message, here.help].filter(Boolean).join('; ');
-      this.hint.className = here.severity;
-      return;
-    }
-    this.hint.className = '';
-    this.hint.textContent = this.meaningAt(at);
+    const wrong = here ? [here.message, here.help].filter(Boolean).join('; ') : '';
+    this.hint.className = here ? here.severity : '';
+    this.hint.textContent = [wrong, this.meaningAt(at)].filter(Boolean).join('\n');
   }
 
   meaningAt(offset) {

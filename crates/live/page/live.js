@@ -7,7 +7,7 @@ const LINK_LIMIT = 5;
 
 // Name, command, and whether it is computed after every change.
 const COMMANDS = [
-  ['Motion and forces', 'kinetostatics', true],
+  ['Motion and forces', 'motion', true],
   ['Statics', 'statics', true],
   ['Reduced model', 'reduce', true],
   ['Simulate', 'simulate', false],
@@ -25,7 +25,7 @@ class Live {
     this.asked = new Engine(bytes, worker);
     this.page = DwellPage.create(element('page'), { hash: false });
     this.editor = new Editor(element('live-editor'), () => this.edited());
-    this.command = 'kinetostatics';
+    this.command = 'motion';
     this.version = 0;
     this.buttons = COMMANDS.map(([name, command]) => this.tab(name, command));
     document.querySelector('.live-tabs').append(...this.buttons);
@@ -168,7 +168,7 @@ class Live {
   open(text) {
     this.editor.open(text);
     this.edited();
-    if (!this.follows(this.command)) this.choose('kinetostatics');
+    if (!this.follows(this.command)) this.choose('motion');
   }
 }
 

@@ -1,6 +1,7 @@
 //! Errors and warnings as an editor shows them: the words of the command line, and where in the text they belong.
 
 use dwell_scene::{SceneError, SceneWarning};
+use dwell_study::StudyError;
 use serde::Serialize;
 
 /// A message about a scene.
@@ -64,6 +65,17 @@ pub(crate) fn warnings(warnings: &[SceneWarning]) -> Vec<MessageInText> {
         }
     };
     warnings.iter().map(message).collect()
+}
+
+/// The error of an analysis as the command line shows it.
+pub(crate) fn scene_error(error: StudyError) -> SceneError {
+    match error {
+        StudyError::Scene(scene) => *scene,
+        StudyError::Sweep(sweep) => SceneError::without_labels(sweep.to_string(), sweep.help()),
+        // Further kinds are those of written files, where another crate of the program asks for them.
+        #[allow(unreachable_patterns, reason = "without files there are none")]
+        other => SceneError::without_labels(other.to_string(), None),
+    }
 }
 
 /// A span of bytes of the text as a place in it.

@@ -1,6 +1,6 @@
 //! A scene's machine in C.
 
-use crate::runs::scene_error;
+use crate::diagnostics::scene_error;
 use dwell_export::{Precision, Request, c_files as c_files_of};
 use dwell_scene::{AnyScene, SceneError};
 use dwell_study::{ExportRequest, compute_export};

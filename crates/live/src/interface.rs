@@ -8,7 +8,7 @@
 //! dereferences one, and the buffers live until the next call of the same thread.
 #![allow(unsafe_code, reason = "symbols that a browser finds by their names")]
 
-use crate::request::{Answer, answer};
+use crate::answer::{Answer, answer};
 use std::cell::RefCell;
 
 #[derive(Default)]

@@ -22,6 +22,7 @@
 //!
 //! No text makes it panic. Should it panic nevertheless, in WebAssembly the instance is lost and the page starts another.
 
+mod answer;
 mod diagnostics;
 mod export;
 #[cfg(target_family = "wasm")]
@@ -30,5 +31,6 @@ mod pages;
 mod request;
 mod runs;
 
+pub use answer::{Answer, answer};
 pub use diagnostics::{LabelInText, MessageInText};
-pub use request::{Answer, Command, Request, answer};
+pub use request::{Command, Request};

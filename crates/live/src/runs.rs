@@ -1,9 +1,10 @@
 //! A command on a scene: what the page shows of it.
 
+use crate::diagnostics::scene_error;
 use crate::pages;
 use crate::request::Command;
 use dwell_page::Page;
-use dwell_scene::{AnyScene, Scene, SceneError, SpaceScene};
+use dwell_scene::{AnyScene, CoordinateSweep, PrescribedMotion, Scene, SceneError, SpaceScene};
 use dwell_study::page::{drawing_at, trajectory_page};
 use dwell_study::{
     Analysis, CycleSearch, MotionSolver, SolverSettings, StudyError, compute_cycle,
@@ -38,6 +39,7 @@ pub(crate) fn run(command: Command, scene: &AnyScene) -> Result<Run, SceneError>
 
 fn in_space(command: Command, scene: &SpaceScene) -> Result<Run, StudyError> {
     let analysis = match command {
+        Command::Motion => follows(&scene.prescribed, &scene.sweep),
         Command::Kinematics => Analysis::Kinematics,
         Command::Statics => Analysis::Statics,
         Command::Kinetostatics => Analysis::Kinetostatics,
@@ -60,6 +62,7 @@ fn in_space(command: Command, scene: &SpaceScene) -> Result<Run, StudyError> {
 
 fn in_plane(command: Command, scene: &Scene) -> Result<Run, StudyError> {
     match command {
+        Command::Motion => along_motion(scene, follows(&scene.prescribed, &scene.sweep)),
         Command::Kinematics => along_motion(scene, Analysis::Kinematics),
         Command::Statics => along_motion(scene, Analysis::Statics),
         Command::Kinetostatics => along_motion(scene, Analysis::Kinetostatics),
@@ -88,6 +91,14 @@ fn in_plane(command: Command, scene: &Scene) -> Result<Run, StudyError> {
     }
 }
 
+/// What is computed along the motion of a scene: its forces, where it has one.
+fn follows(prescribed: &Option<PrescribedMotion>, sweep: &Option<CoordinateSweep>) -> Analysis {
+    match prescribed.is_some() || sweep.is_some() {
+        true => Analysis::Kinetostatics,
+        false => Analysis::Kinematics,
+    }
+}
+
 /// An analysis along the motion, with m and ½m′ of each row where there is a reduced model, and the period where there is one.
 fn along_motion(scene: &Scene, analysis: Analysis) -> Result<Run, StudyError> {
     let computed = compute_trajectory(scene, analysis, None, &no_progress)?;
@@ -99,15 +110,4 @@ fn along_motion(scene: &Scene, analysis: Analysis) -> Result<Run, StudyError> {
         page,
         early_stop: computed.early_stop.map(scene_error),
     })
-}
-
-/// The error of an analysis as the command line shows it.
-pub(crate) fn scene_error(error: StudyError) -> SceneError {
-    match error {
-        StudyError::Scene(scene) => *scene,
-        StudyError::Sweep(sweep) => SceneError::without_labels(sweep.to_string(), sweep.help()),
-        // Further kinds are those of written files, where another crate of the program asks for them.
-        #[allow(unreachable_patterns, reason = "without files there are none")]
-        other => SceneError::without_labels(other.to_string(), None),
-    }
 }

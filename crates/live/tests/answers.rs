@@ -47,7 +47,7 @@ fn rows_of_a_motion_are_those_of_the_front_door() {
 #[test]
 fn m_of_each_row_is_that_of_the_reduced_model_and_the_period_that_of_the_quadrature() {
     let text = text_of("single-dwell");
-    let (answer, numbers) = run("kinetostatics", &text);
+    let (answer, numbers) = run("motion", &text);
     let mechanism = dwell::Scene::parse(&text).unwrap().assemble().unwrap();
     let reduced = mechanism.reduced(std::iter::empty::<&str>()).unwrap();
     let q = column(&answer, &numbers, "phi");
@@ -105,7 +105,7 @@ fn a_free_motion_a_cycle_and_equilibria_are_those_of_the_front_door() {
 #[test]
 fn a_misspelt_name_has_its_message_and_its_place() {
     let text = text_of("single-dwell");
-    let wrong = text.replacen("revolute", "revolte", 1);
+    let wrong = text.replacen("{ revolute", "{ revolte", 1);
     let error = dwell_scene::Scene::parse("scene.toml", &wrong).unwrap_err();
     let (answer, numbers) = run("kinetostatics", &wrong);
     let messages = answer["messages"].as_array().unwrap();

@@ -10,7 +10,6 @@ use crate::reduce::compute::ReducedScene as _;
 use crate::reduce::reduction_outcome;
 use dwell_geometry::Range;
 use dwell_geometry::space::Placement;
-use dwell_kinetostatics::MachineModel as _;
 use dwell_scene::SpaceScene;
 
 /// Intervals of a revolution, or of the range, from which paths are drawn.
