@@ -106,11 +106,23 @@ page: web
     cargo build --release --workspace --bins
     tests/page/run.sh
 
+# A million designs spread by Ray and by Dask over four processes, two of which are killed on the way. After `just python`; installs Ray
+[group('care')]
+engines: python
+    target/python/bin/pip install --quiet ray polars
+    cd crates/python && DWELL_POINTS=1000000 ../../target/python/bin/python -m pytest -s tests/test_engines.py
+
 # Exported FMUs by FMPy and the standard's schemas, in a scratch environment: validated, simulated by both kinds, saved and restored
 [group('care')]
 export:
     cargo build --release --workspace --bins
     python3 validation/fmu/run.py
+
+# Exported C and Rust on an emulated Cortex-M4F: self-tests, instructions of a call, a million steps. Installs compiler and emulator
+[group('care')]
+cortex:
+    cargo build --release --workspace --bins
+    python3 validation/cortex/run.py
 
 # Ten million designs in Parquet files by a run that is killed twice, read back by Polars, DuckDB and pandas as docs/sweep.md shows. Installs these into a scratch environment
 [group('care')]
@@ -145,7 +157,7 @@ nightly-fuzz part="0" seed=`date +%j`:
 
 # Of `nightly`: ten million designs, other programs, the reference values, the dependencies' advisories. Installs what these need
 [group('care')]
-nightly-others: peers deny octave designs reference export python
+nightly-others: peers deny octave designs reference export cortex engines
 
 # What the build server runs
 [group('care')]

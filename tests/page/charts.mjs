@@ -54,9 +54,9 @@ export async function chartTests({ onPage, test, pages }) {
   });
 
   await onPage('a curve can be taken out and brought in', file, async page => {
-    await page.click('.chart-head .picker summary >> nth=0');
-    await page.click('.picker-list label >> nth=0');
     const chart = page.locator('.chart-card').first();
+    await chart.locator('.picker summary').click();
+    await chart.locator('.picker-list input').first().click();
     same(await chart.locator('.legend li').count(), 3, 'curves that are left');
     same(await chart.locator('path.curve').count(), 3, 'curves that are drawn');
   });

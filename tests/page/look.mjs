@@ -56,7 +56,7 @@ export async function lookTests({ onPage, pictures }) {
       const run = own.run();
       own.move(500);
       const charts = [...document.querySelectorAll('.chart-head select')].map(s => s.value).join();
-      const numbers = run.numbers.map(v => v * 1.5);
+      const numbers = run.numbers.map((v, k) => (Math.floor(k / run.rows) === run.axis.slot ? v : v * 1.5));
       const description = { ...run.description, title: 'Changed' };
       for (let k = 0; k < 20; k++) own.show(JSON.stringify(description), k % 2 ? run.numbers : numbers);
       return { title: document.querySelector('h1').textContent, kept: charts === [...document.querySelectorAll('.chart-head select')].map(s => s.value).join(), row: own.row(), charts: document.querySelectorAll('.chart').length };
@@ -67,7 +67,7 @@ export async function lookTests({ onPage, pictures }) {
     same(result.charts, 3, 'charts');
   });
 
-  for (const [name, other] of [['check', 'single-dwell-check'], ['reduce', 'single-dwell-reduce'], ['hostile', 'hostile-kinematics'], ['wobble', 'wobble-plate-kinematics']]) {
+  for (const [name, other] of [['check', 'single-dwell-check'], ['reduce', 'single-dwell-reduce'], ['hostile', 'hostile-kinematics'], ['wobble', 'wobble-plate-kinetostatics'], ['space-reduce', 'rssr-reduce']]) {
     await onPage('picture', `${other}.html`, async page => {
       await page.evaluate(() => { if (window.dwellPage.run().rows) window.dwellPage.move(40); });
       await picture(page, name, { fullPage: true });

@@ -23,7 +23,13 @@ sed '/^\[requests\]/,/^\[/{/^\[requests\]/d;/^\[/!d}' validation/single-dwell/sc
 run kinematics "$out/whole-dwell.toml" --points 1001
 run simulate "$out/whole-dwell.toml"
 run kinematics validation/spatial/rssr.toml
-run kinematics validation/spatial/wobble-plate.toml
+run kinetostatics validation/spatial/wobble-plate.toml
+run reduce validation/spatial/rssr.toml
+run simulate validation/spatial/governor.toml
+run cycle validation/press/scene.toml
+run cycle validation/slider-crank-friction/scene.toml
+run equilibria validation/andrews/scene.toml
+run linearise validation/double-pendulum/scene.toml
 # A title and a note that would act if they were markup, in a scene with several units.
 cat >"$out/hostile.toml" <<'SCENE'
 title = "</title></script><script>alert('title')</script><img src=x onerror=\"alert('image')\">"

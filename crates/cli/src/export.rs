@@ -64,6 +64,10 @@ pub(crate) struct ExportArgs {
     /// Numbers of four bytes; an accuracy below 1e-6 buys nothing then
     #[arg(long)]
     pub(crate) float: bool,
+    /// The model's own operations instead of cells, to `c` or `fmu`: exact to rounding, with square roots, sines and cosines. Loops
+    /// that are closed by Newton's method have none
+    #[arg(long, conflicts_with = "accuracy")]
+    pub(crate) exact: bool,
     /// Lower end of the coordinate, in the scene's unit (default: a full period, or the range without 2 % at each end)
     #[arg(long, requires = "to_coordinate", value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
     pub(crate) from: Option<f64>,
@@ -95,6 +99,7 @@ fn request(arguments: &ExportArgs) -> ExportRequest {
             accuracy: arguments.accuracy.unwrap_or(accuracy),
             precision,
         },
+        exact: arguments.exact,
         interval: arguments.from.zip(arguments.until),
     }
 }

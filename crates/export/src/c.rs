@@ -1,5 +1,6 @@
 //! C99: one header and one source that need no library, no memory and no other file.
 
+mod code;
 mod header;
 mod results;
 mod self_test;

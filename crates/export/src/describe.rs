@@ -58,8 +58,12 @@ fn accuracy(export: &Export) -> [String; 2] {
         Precision::Double => "double precision",
         Precision::Float => "single precision, its rounding included",
     };
+    let asked = match export.code {
+        None => format!("accuracy: asked for {accuracy:e}"),
+        Some(_) => "accuracy: the operations of the model itself".to_owned(),
+    };
     let asked = format!(
-        "accuracy: asked for {accuracy:e}; largest errors measured at 4096 positions in {kind}, relative to the largest value of each function:"
+        "{asked}; largest errors measured at 4096 positions in {kind}, relative to the largest value of each function:"
     );
     let mut all = vec![("m", errors.m), ("half_dm", errors.half_dm)];
     if !machine.loads.is_empty() {

@@ -1,15 +1,19 @@
 //! A machine with its fitted parts and what was measured of them: all that a target needs.
 
-use crate::evaluator::scene_value;
-use crate::fit::{FitError, FittedPart, fit};
+use crate::error::FitError;
+use crate::evaluator::{Evaluator, has_rotor, scene_value};
+use crate::fit::{FittedPart, fit, scales};
 use crate::machine::{FunctionSampler, MachineDescription, PartKind};
-use crate::measure::{Measured, measure};
+use crate::measure::{self, Measurable, Measured, measure};
 use crate::part::{Column, Part, Precision};
+use crate::real::Real;
+use crate::slopes::with_slopes;
+use crate::straight_line::StraightLine;
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Request {
-    /// The accuracy of every function, relative to its largest value.
+    /// The accuracy of every function, relative to its largest value. Operations have that of their rounding.
     pub accuracy: f64,
     /// The numbers.
     pub precision: Precision,
@@ -24,6 +28,8 @@ pub struct Export {
     pub request: Request,
     /// By part, in the order of [`PartKind::ALL`].
     pub parts: [Part; 3],
+    /// Of an exact export: by part its operations; then no part has cells.
+    pub code: Option<[StraightLine; 3]>,
     /// What it states about itself.
     pub measured: Measured,
 }
@@ -48,17 +54,81 @@ impl Export {
             one(PartKind::Reactions)?,
             one(PartKind::Positions)?,
         ];
-        let measured = measure(&machine, &fitted, precision, sampler).map_err(FitError::Sampler)?;
+        let scales = measure::scales(&machine, &fitted);
         let parts = fitted.map(|fitted| fitted.part);
-        let export = Self {
+        let cells = Measurable::Cells(&parts);
+        let measured = measure(&machine, &cells, scales, (precision, sampler));
+        Self {
+            measured: measured.map_err(FitError::Sampler)?,
             machine,
             request,
             parts,
-            measured,
+            code: None,
+        }
+        .within_precision()
+    }
+
+    /// Takes the operations of all functions of a machine, and measures them. By part in the order of [`PartKind::ALL`], the
+    /// outputs are value and half the slope of each [curve](MachineDescription::curves), then the
+    /// [columns](MachineDescription::columns).
+    ///
+    /// # Errors
+    /// [`FitError`] where a function has no value, is not periodic, or where the operations are not those of the function.
+    pub fn exact<S: FunctionSampler>(
+        machine: MachineDescription,
+        precision: Precision,
+        code: [StraightLine; 3],
+        sampler: &mut S,
+    ) -> Result<Self, FitError<S::Error>> {
+        let mut one = |kind| scales(&machine, kind, precision, sampler);
+        let scaled: [FittedPart; 3] = [
+            one(PartKind::Motion)?,
+            one(PartKind::Reactions)?,
+            one(PartKind::Positions)?,
+        ];
+        let scales = measure::scales(&machine, &scaled);
+        let [motion, reactions, positions] = code;
+        let motion = with_slopes(&motion, rotor_columns(&machine));
+        let code = [motion, reactions, positions];
+        let measurable = Measurable::Code(&code);
+        let measured = measure(&machine, &measurable, scales, (precision, sampler));
+        let measured = measured.map_err(FitError::Sampler)?;
+        let accuracy = match precision {
+            Precision::Double => 1e-7,
+            Precision::Float => 1e-3,
         };
-        match export.too_large() {
+        // Operations of another branch are off by much more.
+        let error = measured.errors.max();
+        if error.is_nan() || error > accuracy {
+            return Err(FitError::OtherOperations { error });
+        }
+        Self {
+            measured,
+            machine,
+            request: Request {
+                accuracy: error,
+                precision,
+            },
+            parts: scaled.map(|scaled| scaled.part),
+            code: Some(code),
+        }
+        .within_precision()
+    }
+
+    /// Its code in Rust, in one kind of number.
+    pub fn evaluator<R: Real>(&self) -> Evaluator<R> {
+        let precision = self.request.precision;
+        match &self.code {
+            Some(code) => Evaluator::exact(&self.machine, code, precision),
+            None => Evaluator::new(&self.machine, &self.parts, precision),
+        }
+    }
+
+    /// Itself, if all its numbers are within the precision.
+    fn within_precision<E>(self) -> Result<Self, FitError<E>> {
+        match self.too_large() {
             Some(name) => Err(FitError::TooLarge { name }),
-            None => Ok(export),
+            None => Ok(self),
         }
     }
 
@@ -79,6 +149,10 @@ impl Export {
                 return Some(names.collect::<Vec<_>>().join(", "));
             }
         }
+        let mut constants = self.code.iter().flatten().flat_map(StraightLine::constants);
+        if !constants.all(fits) {
+            return Some("a constant of the code".to_owned());
+        }
         for load in &self.machine.loads {
             let motor = load.effect.motor().map_or([0.0; 5], |m| {
                 [
@@ -97,9 +171,26 @@ impl Export {
         (!starts).then(|| "the initial state".to_owned())
     }
 
-    /// Bytes of the constants.
+    /// Square roots, sines, cosines and angles of the terms of motion, and of those of motion and reactions; zero of cells.
+    pub fn functions(&self) -> [usize; 2] {
+        let count = |part: usize| self.code.as_ref().map_or(0, |code| code[part].functions());
+        [count(0), count(0) + count(1)]
+    }
+
+    /// Bytes of the constants in cells.
     pub fn constant_bytes(&self) -> usize {
         let bytes = |part: &Part| part.bytes(self.request.precision);
         self.parts.iter().map(bytes).sum()
     }
+}
+
+/// By column of motion: which output it is, and whether its slope is needed, since it moves a rotor.
+fn rotor_columns(
+    machine: &MachineDescription,
+) -> impl Iterator<Item = (usize, bool)> + Clone + use<'_> {
+    let first = 2 * machine.curves(PartKind::Motion).len();
+    let columns = machine.loads.iter();
+    let columns = columns.filter(|load| !load.effect.is_conservative());
+    let columns = columns.map(|load| has_rotor(&load.effect)).enumerate();
+    columns.map(move |(k, rotor)| (first + k, rotor))
 }

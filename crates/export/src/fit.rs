@@ -5,41 +5,9 @@
 //! period, and the energy of a motion does not drift.
 
 use crate::balance::balance;
+use crate::error::FitError;
 use crate::machine::{Domain, Function, FunctionSampler, MachineDescription, PartKind};
 use crate::part::{CURVE, Column, HEAD, Part, Precision, TERMS};
-use thiserror::Error;
-
-/// Why there is no export.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum FitError<E> {
-    /// The mechanism has no position in the domain.
-    #[error("{0}")]
-    Sampler(E),
-    /// A function differs after a period.
-    #[error("{name} is not periodic")]
-    NotPeriodic {
-        /// Its name.
-        name: String,
-        /// Which.
-        function: Function,
-    },
-    /// A number is beyond single precision.
-    #[error("{name} is too large for single precision")]
-    TooLarge {
-        /// What it is of.
-        name: String,
-    },
-    /// No number of cells reaches the accuracy.
-    #[error("no cells of accuracy {accuracy:e}: {name} bends too much near {q}")]
-    NotReached {
-        /// The function that is furthest off.
-        name: String,
-        /// Where, rad or m.
-        q: f64,
-        /// What was asked for.
-        accuracy: f64,
-    },
-}
 
 /// Points at which the sizes of all functions are taken.
 const SIZE_POINTS: usize = 512;
@@ -99,17 +67,7 @@ pub fn fit<S: FunctionSampler>(
     precision: Precision,
     sampler: &mut S,
 ) -> Result<FittedPart, FitError<S::Error>> {
-    let mut fitter = Fitter {
-        machine,
-        kind,
-        sampler,
-        curves: machine.curves(kind),
-        columns: machine.columns(kind),
-        precision,
-        curve_tolerances: Vec::new(),
-        column_tolerances: Vec::new(),
-        tabulated: Vec::new(),
-    };
+    let mut fitter = Fitter::new(machine, kind, precision, sampler);
     let (curve_scales, column_scales, found) = fitter.sizes()?;
     fitter.require_periodic(&curve_scales, &column_scales)?;
     let allowed = SHARE * accuracy;
@@ -137,10 +95,56 @@ pub fn fit<S: FunctionSampler>(
     })
 }
 
+/// The scales of a part whose functions are operations; nothing of it is in cells.
+///
+/// # Errors
+/// [`FitError`] where there is no position, or a function is not periodic.
+pub(crate) fn scales<S: FunctionSampler>(
+    machine: &MachineDescription,
+    kind: PartKind,
+    precision: Precision,
+    sampler: &mut S,
+) -> Result<FittedPart, FitError<S::Error>> {
+    let mut fitter = Fitter::new(machine, kind, precision, sampler);
+    let (curve_scales, column_scales, found) = fitter.sizes()?;
+    fitter.require_periodic(&curve_scales, &column_scales)?;
+    let part = Part {
+        columns: fitter.columns.iter().copied().zip(found).collect(),
+        curves: fitter.curves,
+        index: Vec::new(),
+        cells: Vec::new(),
+        bins_per_unit: 0.0,
+    };
+    Ok(FittedPart {
+        part,
+        curve_scales,
+        column_scales,
+    })
+}
+
 type Sizes = (Vec<[f64; 2]>, Vec<f64>, Vec<Column>);
 type Cells = (Vec<u16>, Vec<f64>, f64);
 
-impl<S: FunctionSampler> Fitter<'_, S> {
+impl<'a, S: FunctionSampler> Fitter<'a, S> {
+    fn new(
+        machine: &'a MachineDescription,
+        kind: PartKind,
+        precision: Precision,
+        sampler: &'a mut S,
+    ) -> Self {
+        Self {
+            machine,
+            kind,
+            sampler,
+            curves: machine.curves(kind),
+            columns: machine.columns(kind),
+            precision,
+            curve_tolerances: Vec::new(),
+            column_tolerances: Vec::new(),
+            tabulated: Vec::new(),
+        }
+    }
+
     fn row(&mut self, q: f64) -> Result<Row, FitError<S::Error>> {
         let mut row = Row {
             curves: vec![[0.0; 2]; self.curves.len()],

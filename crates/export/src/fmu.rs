@@ -3,6 +3,7 @@
 
 mod description;
 mod model;
+mod reference;
 mod variables;
 
 use crate::c::c_files;
@@ -39,8 +40,9 @@ pub struct FmuFiles {
     pub sources: Vec<String>,
 }
 
-/// The files of an FMU for model exchange and co-simulation. The export must be in double precision.
-pub fn fmu_files(export: &Export, version: FmiVersion) -> FmuFiles {
+/// The files of an FMU for model exchange and co-simulation, with the text of the scene and reference results. The export must be
+/// in double precision.
+pub fn fmu_files(export: &Export, version: FmiVersion, scene: &str) -> FmuFiles {
     let names = Identifiers::new(&export.machine);
     let identifier = names.prefix;
     let variables = variables::variables(export);
@@ -59,9 +61,10 @@ pub fn fmu_files(export: &Export, version: FmiVersion) -> FmuFiles {
     source("model.h", model::model(export, &variables));
     source(interface.0, interface.1.to_owned());
     if version == FmiVersion::Three {
-        let text = description::build_description(&identifier);
+        let text = description::build_description(&identifier, export.code.is_some());
         source("buildDescription.xml", text);
     }
+    texts.extend(reference::reference_files(export, &variables, scene));
     FmuFiles {
         sources: vec![format!("{identifier}.c"), interface.0.to_owned()],
         identifier,

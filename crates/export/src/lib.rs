@@ -1,7 +1,8 @@
 //! Out of the workbench: the reduced model of a machine of one degree of freedom as source text that needs nothing.
 //!
 //! Plain data and a sampler of exact functions come in; [`Export::new`] fits cells of uneven width and measures what they are
-//! worth; each target then makes texts or bytes of them: [`c_files`], [`rust_files`], [`fmu_files`], [`matlab_files`]. The
+//! worth, or [`Export::exact`] takes the operations of the exact functions, [recorded](record) once; each target then makes
+//! texts or bytes of them: [`c_files`], [`rust_files`], [`fmu_files`], [`matlab_files`]. The
 //! [`Evaluator`] is the exported code in Rust, operation by operation.
 //!
 //! A crank whose inertia is 2 + cos q, kg m², as C in single precision:
@@ -51,6 +52,7 @@
 mod balance;
 mod c;
 mod describe;
+mod error;
 mod evaluator;
 mod export;
 mod fit;
@@ -61,13 +63,17 @@ mod matlab;
 mod measure;
 mod part;
 mod real;
+mod recording;
 mod rust;
+mod slopes;
+mod straight_line;
 mod writer;
 
 pub use c::c_files;
+pub use error::FitError;
 pub use evaluator::{Evaluator, MotionTerms, ReactionTerms, State, Status};
 pub use export::{Export, Request};
-pub use fit::{FitError, FittedPart, fit};
+pub use fit::{FittedPart, fit};
 pub use fmu::{FmiVersion, FmuFiles, fmu_files};
 pub use identifiers::Identifiers;
 pub use machine::{
@@ -75,7 +81,9 @@ pub use machine::{
     PartKind, ReferenceSizes,
 };
 pub use matlab::matlab_files;
-pub use measure::{Errors, Measured, STATED_STEP, SelfTestMotion, SelfTestRow, measure};
+pub use measure::{Errors, Measured, STATED_STEP, SelfTestMotion, SelfTestRow};
 pub use part::{Column, Part, Precision};
 pub use real::Real;
+pub use recording::{RecordedNumber, RecordingError, record};
 pub use rust::rust_files;
+pub use straight_line::{Operand, Operation, StraightLine};

@@ -10,14 +10,17 @@ use crate::part::Column;
 use functions::{evaluation, rates};
 use level5::{MatFile, Matrix};
 
-/// An export for MATLAB and Octave: names and bytes of its data and its functions.
-pub fn matlab_files(export: &Export) -> Vec<(String, Vec<u8>)> {
+/// An export for MATLAB and Octave: names and bytes of its data and its functions. None of an exact export, which has no data.
+pub fn matlab_files(export: &Export) -> Option<Vec<(String, Vec<u8>)>> {
+    if export.code.is_some() {
+        return None;
+    }
     let name = Identifiers::new(&export.machine).prefix;
-    vec![
+    Some(vec![
         (format!("{name}_data.mat"), data(export)),
         (format!("{name}.m"), evaluation(export, &name).into_bytes()),
         (format!("{name}_rates.m"), rates(export, &name).into_bytes()),
-    ]
+    ])
 }
 
 /// The name of a part in the data.

@@ -5,6 +5,7 @@ use crate::fit::FittedPart;
 use crate::machine::{FunctionSampler, LoadEffect, MachineDescription, PartKind};
 use crate::part::{Part, Precision};
 use crate::real::{Counted, Real};
+use crate::straight_line::StraightLine;
 
 /// Positions at which the errors are measured, steps of the golden section over the domain.
 const POSITIONS: usize = 4096;
@@ -97,21 +98,39 @@ struct ValueErrors {
     errors: Vec<f64>,
 }
 
-/// Measures fitted parts in the order of [`PartKind::ALL`] against the exact functions.
+/// What is measured: cells, or operations.
+pub(crate) enum Measurable<'a> {
+    Cells(&'a [Part; 3]),
+    Code(&'a [StraightLine; 3]),
+}
+
+impl Measurable<'_> {
+    fn evaluator<R: Real>(
+        &self,
+        machine: &MachineDescription,
+        precision: Precision,
+    ) -> Evaluator<R> {
+        match self {
+            Self::Cells(parts) => Evaluator::new(machine, parts, precision),
+            Self::Code(code) => Evaluator::exact(machine, code, precision),
+        }
+    }
+}
+
+/// Measures parts in the order of [`PartKind::ALL`] against the exact functions.
 ///
 /// # Errors
 /// Those of the sampler.
-pub fn measure<S: FunctionSampler>(
+pub(crate) fn measure<S: FunctionSampler>(
     machine: &MachineDescription,
-    fitted: &[FittedPart; 3],
-    precision: Precision,
-    sampler: &mut S,
+    measurable: &Measurable<'_>,
+    scales: Vec<f64>,
+    (precision, sampler): (Precision, &mut S),
 ) -> Result<Measured, S::Error> {
-    let parts: [Part; 3] = [0, 1, 2].map(|k| fitted[k].part.clone());
-    let double = Evaluator::<f64>::new(machine, &parts, precision);
-    let float = Evaluator::<f32>::new(machine, &parts, precision);
+    let double = measurable.evaluator::<f64>(machine, precision);
+    let float = measurable.evaluator::<f32>(machine, precision);
     let mut all = ValueErrors {
-        scales: scales(machine, fitted),
+        scales,
         errors: Vec::new(),
     };
     all.errors = vec![0.0; all.scales.len()];
@@ -144,10 +163,10 @@ pub fn measure<S: FunctionSampler>(
         Precision::Float => 1e-6,
     };
     let tolerances = all.errors.iter().zip(&all.scales);
-    let (step_error, motion) = measure_steps(machine, &parts, precision);
+    let (step_error, motion) = measure_steps(machine, measurable, precision);
     Ok(Measured {
         errors: by_kind(machine, &relative),
-        operations: operations(machine, &parts, precision),
+        operations: operations(machine, measurable, precision),
         step_error,
         rows,
         // At other positions, and by another compiler, an error may be somewhat larger.
@@ -159,7 +178,7 @@ pub fn measure<S: FunctionSampler>(
 }
 
 /// The scale of each value of a row.
-fn scales(machine: &MachineDescription, fitted: &[FittedPart; 3]) -> Vec<f64> {
+pub(crate) fn scales(machine: &MachineDescription, fitted: &[FittedPart; 3]) -> Vec<f64> {
     let [motion, reactions, positions] = fitted;
     let (mut curve, mut column) = (0, 0);
     let load_scales = machine.loads.iter().map(|load| {
@@ -246,8 +265,12 @@ fn by_kind(machine: &MachineDescription, relative: &[f64]) -> Errors {
 }
 
 /// Counts of operations: the same at every coordinate but for the subtraction of periods.
-fn operations(machine: &MachineDescription, parts: &[Part; 3], precision: Precision) -> [u64; 3] {
-    let counting = Evaluator::<Counted>::new(machine, parts, precision);
+fn operations(
+    machine: &MachineDescription,
+    measurable: &Measurable<'_>,
+    precision: Precision,
+) -> [u64; 3] {
+    let counting = measurable.evaluator::<Counted>(machine, precision);
     // Below a periodic domain the period is added.
     let domain = machine.domain;
     let below = match domain.revolutions {
@@ -265,7 +288,7 @@ fn operations(machine: &MachineDescription, parts: &[Part; 3], precision: Precis
 /// The error of the step from the initial state, and the motion of the self-test.
 fn measure_steps(
     machine: &MachineDescription,
-    parts: &[Part; 3],
+    measurable: &Measurable<'_>,
     precision: Precision,
 ) -> (Option<[f64; 2]>, SelfTestMotion) {
     let [q, q_dot] = machine.initial;
@@ -278,7 +301,7 @@ fn measure_steps(
     });
     let from = [q, if q_dot == 0.0 && !moves { 1.0 } else { q_dot }];
     // In double precision: the rounding of floats is stated with the functions.
-    let exact = Evaluator::<f64>::new(machine, parts, precision);
+    let exact = measurable.evaluator::<f64>(machine, precision);
     let run = |steps: usize, refinement: usize| {
         let mut state = exact.state(from);
         for _ in 0..steps * refinement {

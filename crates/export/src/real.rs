@@ -17,9 +17,44 @@ pub trait Real:
 
     /// The value as a double.
     fn to_f64(self) -> f64;
+
+    /// Square root.
+    fn sqrt(self) -> Self;
+
+    /// Sine of an angle, rad.
+    fn sin(self) -> Self;
+
+    /// Cosine of an angle, rad.
+    fn cos(self) -> Self;
+
+    /// The angle of the direction (`other`, `self`), rad, in (−π, π].
+    fn atan2(self, other: Self) -> Self;
+}
+
+/// The functions of a number that has them.
+macro_rules! own_functions {
+    ($number:ty) => {
+        fn sqrt(self) -> Self {
+            <$number>::sqrt(self)
+        }
+
+        fn sin(self) -> Self {
+            <$number>::sin(self)
+        }
+
+        fn cos(self) -> Self {
+            <$number>::cos(self)
+        }
+
+        fn atan2(self, other: Self) -> Self {
+            <$number>::atan2(self, other)
+        }
+    };
 }
 
 impl Real for f64 {
+    own_functions!(f64);
+
     fn of(value: f64) -> Self {
         value
     }
@@ -30,6 +65,8 @@ impl Real for f64 {
 }
 
 impl Real for f32 {
+    own_functions!(f32);
+
     fn of(value: f64) -> Self {
         value as Self
     }
@@ -43,7 +80,7 @@ thread_local! {
     static OPERATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
-/// A double that counts additions, subtractions, multiplications and divisions.
+/// A double that counts additions, subtractions, multiplications and divisions; its functions are not counted.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub(crate) struct Counted(f64);
 
@@ -68,6 +105,22 @@ impl Real for Counted {
 
     fn to_f64(self) -> f64 {
         self.0
+    }
+
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+
+    fn sin(self) -> Self {
+        Self(self.0.sin())
+    }
+
+    fn cos(self) -> Self {
+        Self(self.0.cos())
+    }
+
+    fn atan2(self, other: Self) -> Self {
+        Self(self.0.atan2(other.0))
     }
 }
 

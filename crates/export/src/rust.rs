@@ -14,17 +14,21 @@ use std::ops::Deref;
 
 /// An export as a crate: paths and texts of its manifest and its source.
 ///
-/// The source has a `self_test` for its feature of that name and for `cargo test`.
-pub fn rust_files(export: &Export) -> [(String, String); 2] {
+/// The source has a `self_test` for its feature of that name and for `cargo test`. None of an exact export: without the standard library
+/// there is no square root and no sine.
+pub fn rust_files(export: &Export) -> Option<[(String, String); 2]> {
+    if export.code.is_some() {
+        return None;
+    }
     let writer = RustWriter(Writer::new(export));
     let name = &writer.names.prefix;
     let manifest = format!(
         "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2021\"\n\n[features]\nself-test = []\n\n[dependencies]\n"
     );
-    [
+    Some([
         (format!("{name}/Cargo.toml"), manifest),
         (format!("{name}/src/lib.rs"), writer.source()),
-    ]
+    ])
 }
 
 /// Writes an export in Rust.

@@ -21,6 +21,7 @@ pub(crate) fn c_files(scene: &AnyScene) -> Result<Vec<(String, String)>, SceneEr
             precision: Precision::Double,
         },
         interval: None,
+        exact: false,
     };
     let export = compute_export(scene, &asked).map_err(scene_error)?;
     Ok(c_files_of(&export).into())

@@ -1,43 +1,13 @@
 //! Pages of results that are no trajectories, and what the live page adds to one.
 
 use dwell_findings::{Column, RecordedEvent, RecordedNumber, Table};
-use dwell_page::{Drawing, Page, PageColumn};
+use dwell_page::{Page, PageColumn};
 use dwell_scene::Scene;
 use dwell_study::cycle::compute::CycleResults;
 use dwell_study::equilibria::compute::EquilibriaResults;
-use dwell_study::page::{drawing_at, scene_page, table_page, unit_group};
-use dwell_study::reduce::compute::{ReducedScene, Reduction};
+use dwell_study::page::{drawing_along, scene_page, table_page, unit_group};
+use dwell_study::reduce::compute::ReducedScene as _;
 use dwell_study::{PreparedScene, compute_period};
-
-/// The reduced model over the range, with the mechanism at each position.
-pub(crate) fn reduction<P: ReducedScene>(
-    reduction: &Reduction<P>,
-    drawing: Option<Drawing>,
-) -> Page {
-    let (table, prepared) = (reduction.table(), &reduction.prepared);
-    let positions = table.rows.len();
-    let coordinate = prepared.coordinate_name();
-    Page {
-        subtitle: format!("{positions} positions over the range of {coordinate}"),
-        method: "evaluated exactly at each position".to_owned(),
-        drawing,
-        ..table_page(prepared.file(), "reduce", &table, reduced_group)
-    }
-}
-
-/// What belongs in one chart.
-fn reduced_group(name: &str, _: &str) -> (String, String) {
-    let [group, description] = match name {
-        "m" => ["Generalised inertia", "m(q)"],
-        "half_dm" => ["Half its slope, ½m′", "½ dm/dq"],
-        "V" => ["Potential energy", "of the loads"],
-        name if name.ends_with(".a") => ["Reaction coefficients a", "per unit of acceleration"],
-        name if name.ends_with(".b") => ["Reaction coefficients b", "per unit of squared speed"],
-        name if name.ends_with(".w") => ["Generalised forces w", "per unit of the load"],
-        _ => ["Coordinates and others", ""],
-    };
-    (group.to_owned(), description.to_owned())
-}
 
 /// One steady cycle.
 pub(crate) fn cycle(scene: &Scene, found: &CycleResults<'_>) -> Page {
@@ -93,12 +63,11 @@ pub(crate) fn equilibria(scene: &Scene, results: &EquilibriaResults<'_>) -> Page
     };
     let page = match static_forces(results) {
         None => scene_page(&scene.file, "equilibria"),
-        Some((q, table)) => Page {
-            drawing: (scene.mechanism.actuators.len() == 1)
-                .then(|| drawing_at(scene, &over_one(q)))
-                .flatten(),
-            ..table_page(&scene.file, "equilibria", &table, unit_group)
-        },
+        Some(table) => {
+            let mut page = table_page(&scene.file, "equilibria", &table, unit_group);
+            page.drawing = drawing_along(scene, &page);
+            page
+        }
     };
     Page {
         subtitle,
@@ -107,8 +76,8 @@ pub(crate) fn equilibria(scene: &Scene, results: &EquilibriaResults<'_>) -> Page
     }
 }
 
-/// Static force and potential over the coordinate, and the coordinates, rad or m.
-fn static_forces<'a>(results: &'a EquilibriaResults<'_>) -> Option<(&'a [f64], Table)> {
+/// Static force and potential over the coordinate.
+fn static_forces(results: &EquilibriaResults<'_>) -> Option<Table> {
     let curves = results.curves.as_ref()?;
     let coordinate = results.table.columns.first()?.clone();
     let force = if coordinate.unit == "rad" { "N m" } else { "N" };
@@ -123,12 +92,7 @@ fn static_forces<'a>(results: &'a EquilibriaResults<'_>) -> Option<(&'a [f64], T
             .map(|(&q, &[force, potential])| vec![q, force, potential])
             .collect(),
     };
-    Some((&curves.q, table))
-}
-
-/// Coordinates of the only actuator, as those of all.
-pub(crate) fn over_one(q: &[f64]) -> Vec<Vec<f64>> {
-    q.iter().map(|&q| vec![q]).collect()
+    Some(table)
 }
 
 /// Adds m and ½m′ at the coordinate of each row, where there is one actuator.
@@ -150,10 +114,13 @@ pub(crate) fn add_reduced_inertia(scene: &Scene, page: &mut Page) {
         false => ["kg", "kg/m"],
     };
     for ((key, values), unit) in [("m", m), ("half_dm", half_dm)].into_iter().zip(units) {
-        let (group, description) = reduced_group(key, unit);
+        let (group, description) = match key {
+            "m" => ("Generalised inertia", "m(q): generalised inertia"),
+            _ => ("Half its slope, ½m′", "½ dm/dq"),
+        };
         page.columns.push(PageColumn {
-            group,
-            description,
+            group: group.to_owned(),
+            description: description.to_owned(),
             ..PageColumn::new(key, unit, values)
         });
     }

@@ -5,11 +5,12 @@ use crate::pages;
 use crate::request::Command;
 use dwell_page::Page;
 use dwell_scene::{AnyScene, CoordinateSweep, PrescribedMotion, Scene, SceneError, SpaceScene};
-use dwell_study::page::{drawing_at, trajectory_page};
+use dwell_study::page::trajectory_page;
+use dwell_study::reduce::reduction_page;
 use dwell_study::{
     Analysis, CycleSearch, MotionSolver, SolverSettings, StudyError, compute_cycle,
     compute_equilibria, compute_free_motion, compute_reduction, compute_reduction_in_space,
-    compute_trajectory, no_progress, trajectory_page_in_space,
+    compute_trajectory, no_progress, reduction_page_in_space, trajectory_page_in_space,
 };
 
 /// What a command came to.
@@ -45,7 +46,7 @@ fn in_space(command: Command, scene: &SpaceScene) -> Result<Run, StudyError> {
         Command::Kinetostatics => Analysis::Kinetostatics,
         Command::Reduce => {
             let reduction = compute_reduction_in_space(scene, None)?;
-            return Ok(pages::reduction(&reduction, None).into());
+            return Ok(reduction_page_in_space(&reduction)?.into());
         }
         Command::Simulate | Command::Cycle | Command::Equilibria => {
             let message = "this page does not compute this of a mechanism in space".to_owned();
@@ -68,8 +69,7 @@ fn in_plane(command: Command, scene: &Scene) -> Result<Run, StudyError> {
         Command::Kinetostatics => along_motion(scene, Analysis::Kinetostatics),
         Command::Reduce => {
             let reduction = compute_reduction(scene, None)?;
-            let drawing = drawing_at(scene, &pages::over_one(&reduction.curves.q));
-            Ok(pages::reduction(&reduction, drawing).into())
+            Ok(reduction_page(&reduction).into())
         }
         Command::Simulate => {
             let solver = MotionSolver::Settings(SolverSettings::default());

@@ -3,7 +3,7 @@
 use crate::description::{
     DisplayUnit, FileLink, Page, PageColumn, PageMessage, PageScene, PageTable, Peak,
 };
-use crate::drawing::{DrawnBody, DrawnPath, ForceArrow, Part};
+use crate::drawing::{Drawing, DrawnBody, DrawnPath, ForceArrow, Part};
 use dwell_findings::{Finding, RecordedEvent, RecordedNumber};
 use serde::{Serialize, Serializer};
 use std::collections::HashMap;
@@ -57,14 +57,7 @@ impl Page {
         let columns = columns.map(|of| block.column(of));
         let columns = columns.collect::<Result<Vec<_>, _>>()?;
         let drawing = self.drawing.as_ref();
-        let drawing = drawing.map(|drawing| EncodedDrawing {
-            size: drawing.size,
-            view: drawing.view,
-            bodies: drawing.bodies.iter().map(|b| block.body(b)).collect(),
-            parts: &drawing.parts,
-            arrows: &drawing.arrows,
-            paths: &drawing.paths,
-        });
+        let drawing = drawing.map(|drawing| block.drawing(drawing)).transpose()?;
         let description = serde_json::to_string(&Description {
             format: FORMAT,
             title: &self.title,
@@ -120,28 +113,50 @@ impl Block {
 
     fn column<'a>(&mut self, of: &'a PageColumn) -> Result<EncodedColumn<'a>, PageError> {
         if of.values.len() != self.rows {
-            return Err(PageError::Rows {
-                key: of.key.clone(),
-                found: of.values.len(),
-                expected: self.rows,
-            });
+            return Err(self.unequal(&of.key, &of.values));
         }
         let slot = self.add(&of.values);
         Ok(EncodedColumn { of, slot })
     }
 
-    fn body<'a>(&mut self, body: &'a DrawnBody) -> EncodedBody<'a> {
-        // What is only drawn is kept in single precision.
-        let single = |values: &Vec<f64>| values.iter().map(|v| f64::from(*v as f32)).collect();
-        let whole = body.placements.iter().all(|p| p.len() == self.rows);
-        let placements: Vec<Vec<f64>> = match whole {
-            true => body.placements.iter().map(single).collect(),
-            false => Vec::new(),
+    fn drawing<'a>(&mut self, drawing: &'a Drawing) -> Result<EncodedDrawing<'a>, PageError> {
+        let bodies = drawing.bodies.iter().map(|body| self.body(body));
+        Ok(EncodedDrawing {
+            size: drawing.size,
+            view: drawing.view,
+            bodies: bodies.collect::<Result<_, _>>()?,
+            parts: &drawing.parts,
+            arrows: &drawing.arrows,
+            paths: &drawing.paths,
+        })
+    }
+
+    fn body<'a>(&mut self, body: &'a DrawnBody) -> Result<EncodedBody<'a>, PageError> {
+        let placement = |values: &Vec<f64>| {
+            if values.len() != self.rows {
+                return Err(self.unequal(&body.name, values));
+            }
+            // What is only drawn is kept in single precision.
+            let single: Vec<f64> = values.iter().map(|v| f64::from(*v as f32)).collect();
+            Ok(self.add(&single))
         };
-        EncodedBody {
+        Ok(EncodedBody {
             name: &body.name,
             paint: body.paint,
-            placements: placements.iter().map(|p| self.add(p)).collect(),
+            placements: body
+                .placements
+                .iter()
+                .map(placement)
+                .collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// The error of a column that has not as many rows as the others.
+    fn unequal(&self, key: &str, values: &[f64]) -> PageError {
+        PageError::Rows {
+            key: key.to_owned(),
+            found: values.len(),
+            expected: self.rows,
         }
     }
 }
@@ -335,7 +350,6 @@ impl Serialize for Number {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawing::Drawing;
 
     fn read(page: &Page) -> (serde_json::Value, Vec<f64>) {
         let encoded = page.encode().unwrap();
@@ -383,6 +397,25 @@ mod tests {
             error,
             "column `b` of the page has 1 rows, and the first has 2"
         );
+    }
+
+    #[test]
+    fn a_body_with_other_rows_than_the_columns_is_an_error() {
+        let body = DrawnBody {
+            name: "bar".to_owned(),
+            placements: vec![vec![0.0; 3]; 3],
+            ..DrawnBody::default()
+        };
+        let page = Page {
+            columns: vec![PageColumn::new("x", "m", vec![0.0; 2])],
+            drawing: Some(Drawing {
+                bodies: vec![body],
+                ..Drawing::default()
+            }),
+            ..Page::default()
+        };
+        let error = page.encode().unwrap_err().to_string();
+        assert!(error.contains("`bar`"), "{error}");
     }
 
     #[test]

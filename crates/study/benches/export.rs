@@ -63,6 +63,7 @@ fn main() {
             precision,
         };
         let asked = ExportRequest {
+            exact: false,
             request,
             interval: None,
         };

@@ -71,7 +71,10 @@ pub use linearise::compute::{OperatingPoint, compute_linearisation};
 pub use models::{PRESETS, PreparedScene, SolverSettings};
 pub use progress::{Progress, Step, no_progress};
 pub use reduce::compute::{TableRequest, compute_reduction};
-pub use space::{PreparedSpaceScene, compute_reduction_in_space, trajectory_page_in_space};
+pub use space::{
+    PreparedSpaceScene, compute_reduction_in_space, reduction_page_in_space,
+    trajectory_page_in_space,
+};
 pub use sweep::{Shard, compute_sweep};
 pub use symbolic::compute::{compute_closed_form, symbolic_findings};
 pub use trajectory::compute::{Analysis, compute_trajectory};

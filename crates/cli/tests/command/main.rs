@@ -4,6 +4,7 @@
 mod assembly;
 mod exported_runs;
 mod friction;
+mod html;
 mod lengths;
 mod long_motions;
 mod many_rows;

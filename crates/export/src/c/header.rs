@@ -34,11 +34,28 @@ impl CWriter<'_> {
             line(&words);
         }
         let [motion, all, step] = measured.operations;
-        line(&format!(
-            "constants: {} bytes. Additions, multiplications and divisions, the worst case at any q: {motion} of the terms of motion, {all} with those of the reactions, {step} of a step",
-            self.export.constant_bytes()
-        ));
-        line("No function allocates, recurses, keeps anything between calls or calls a library.");
+        let operations = format!(
+            "Additions, multiplications and divisions, the worst case at any q: {motion} of the terms of motion, {all} with those of the reactions, {step} of a step"
+        );
+        match self.export.functions() {
+            _ if self.export.code.is_none() => {
+                let bytes = self.export.constant_bytes();
+                line(&format!("constants: {bytes} bytes. {operations}"));
+                line(
+                    "No function allocates, recurses, keeps anything between calls or calls a library.",
+                );
+            }
+            [motion, all] => {
+                line(&operations);
+                line(&format!(
+                    "Square roots, sines, cosines and angles: {motion} of the terms of motion, {all} with those of the reactions, {} of a step",
+                    4 * motion
+                ));
+                line(
+                    "No function allocates, recurses or keeps anything between calls. Of the library they call sqrt, sin, cos and atan2 of math.h, each only if it is needed.",
+                );
+            }
+        }
         line(
             "Compile without -ffast-math and with doubles that stay doubles: the sums of a step carry their rounding.",
         );

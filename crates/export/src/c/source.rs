@@ -6,6 +6,14 @@ use crate::machine::PartKind;
 use crate::part::{CURVE, Column, HEAD, Wrapping};
 use std::fmt::Write as _;
 
+const PLACE: &str = "\
+typedef struct {
+    const @p@_real *n;
+    @p@_real x, x2, x4;
+} place;
+
+";
+
 const POLYNOMIAL: &str = "\
 static @p@_real polynomial(const @p@_real *c, const place *at)
 {
@@ -25,13 +33,22 @@ static int is_finite(@p@_real x)
 
 impl CWriter<'_> {
     pub(super) fn source(&self) -> String {
+        let library = match self.export.functions() {
+            [_, 0] if self.export.code.is_none() => "",
+            _ => "\n#include <math.h>\n",
+        };
         let mut text = format!(
-            "#include \"@p@.h\"\n\n#ifdef __FAST_MATH__\n#error \"-ffast-math drops the sums that carry their rounding\"\n#endif\n\n#define ZERO {}\n\ntypedef struct {{\n    const @p@_real *n;\n    @p@_real x, x2, x4;\n}} place;\n\n",
+            "#include \"@p@.h\"\n{library}\n#ifdef __FAST_MATH__\n#error \"-ffast-math drops the sums that carry their rounding\"\n#endif\n\n#define ZERO {}\n\n",
             self.number(0.0)
         );
+        if self.export.code.is_none() {
+            text += PLACE;
+        }
         self.wrap(&mut text);
-        text += POLYNOMIAL;
-        self.integral(&mut text);
+        if self.export.code.is_none() {
+            text += POLYNOMIAL;
+            self.integral(&mut text);
+        }
         text += SCENE_END;
         for kind in PartKind::ALL {
             self.tables(kind, &mut text);
@@ -103,16 +120,13 @@ impl CWriter<'_> {
     /// Each member of the terms of motion, at a place.
     pub(super) fn motion_terms(&self, text: &mut String) {
         let machine = &self.export.machine;
-        *text += "static void motion_at(@p@_real q, @p@_motion_terms *terms)\n{\n    const place at = place_in_motion(q);\n";
-        let curve = |k: usize| HEAD + CURVE * k;
-        let value = |k: usize| {
-            let first = curve(k);
-            format!(
-                "at.n[{first}] + at.n[2] * integral(at.n + {}, &at)",
-                first + 1
-            )
-        };
-        let half_slope = |k: usize| format!("polynomial(at.n + {}, &at)", curve(k) + 1);
+        *text += "static void motion_at(@p@_real q, @p@_motion_terms *terms)\n{\n";
+        match self.code(PartKind::Motion) {
+            Some(code) => self.operations(code, text),
+            None => *text += "    const place at = place_in_motion(q);\n",
+        }
+        let value = |k: usize| self.curve(k)[0].clone();
+        let half_slope = |k: usize| self.curve(k)[1].clone();
         _ = writeln!(
             text,
             "    terms->m = {};\n    terms->half_dm = {};",
@@ -128,19 +142,10 @@ impl CWriter<'_> {
                 v = Some(value(curve));
                 format!("{} * {}", self.number(-2.0), half_slope(curve))
             } else {
-                let column = self.part(PartKind::Motion).columns.get(next_column);
+                let [w, slope] = self.motion_column(next_column);
                 next_column += 1;
-                match column {
-                    Some((_, Column::Tabulated(j))) => {
-                        let offset = self.offset(PartKind::Motion, *j);
-                        if has_rotor(&load.effect) {
-                            dw = Some(format!("slope(at.n + {offset}, &at)"));
-                        }
-                        format!("polynomial(at.n + {offset}, &at)")
-                    }
-                    Some((_, Column::Constant(value))) => self.number(*value),
-                    None => self.number(0.0),
-                }
+                dw = slope.filter(|_| has_rotor(&load.effect));
+                w.unwrap_or_else(|| self.number(0.0))
             };
             _ = writeln!(text, "    terms->w[{k}] = {w};");
             if self.has_potentials() {
@@ -156,6 +161,37 @@ impl CWriter<'_> {
         *text += "@p@_status @p@_motion_terms_at(@p@_real q, @p@_motion_terms *terms)\n{\n    const @p@_status status = wrap(&q);\n    if (status == @U@_OK) {\n        motion_at(q, terms);\n    } else {\n";
         self.clear_motion("terms", "        ", text);
         *text += "    }\n    return status;\n}\n\n";
+    }
+
+    /// A curve of motion, and half its slope.
+    fn curve(&self, k: usize) -> [String; 2] {
+        if let Some(code) = self.code(PartKind::Motion) {
+            return [2 * k, 2 * k + 1].map(|k| self.operand(code.outputs[k]));
+        }
+        let first = HEAD + CURVE * k;
+        let of = first + 1;
+        [
+            format!("at.n[{first}] + at.n[2] * integral(at.n + {of}, &at)"),
+            format!("polynomial(at.n + {of}, &at)"),
+        ]
+    }
+
+    /// A column of motion, and its slope.
+    fn motion_column(&self, k: usize) -> [Option<String>; 2] {
+        let part = self.part(PartKind::Motion);
+        if let Some(code) = self.code(PartKind::Motion) {
+            let first = 2 * part.curves.len() + k;
+            let output = |k: usize| code.outputs.get(k).map(|&o| self.operand(o));
+            return [output(first), output(first + part.columns.len())];
+        }
+        match part.columns.get(k) {
+            Some((_, Column::Tabulated(j))) => {
+                let offset = self.offset(PartKind::Motion, *j);
+                ["polynomial", "slope"].map(|of| Some(format!("{of}(at.n + {offset}, &at)")))
+            }
+            Some((_, Column::Constant(value))) => [Some(self.number(*value)), None],
+            None => [None, None],
+        }
     }
 
     fn clear_motion(&self, terms: &str, indent: &str, text: &mut String) {
@@ -219,6 +255,13 @@ impl CWriter<'_> {
 
     /// The inside of a function that fills arrays with the columns of a part.
     fn columns_body(&self, kind: PartKind, targets: &[(String, usize)], text: &mut String) {
+        if let Some(code) = self.code(kind) {
+            self.operations(code, text);
+            for ((array, place), &output) in targets.iter().zip(&code.outputs) {
+                _ = writeln!(text, "    {array}[{place}] = {};", self.operand(output));
+            }
+            return;
+        }
         let mut assignments = String::new();
         self.assign_columns(kind, targets, &mut assignments);
         match self.has_cells(kind) {

@@ -1,10 +1,11 @@
 //! Terms of the equation of motion at a coordinate, accelerations, reactions, energies and steps.
 
-use super::pieces::{Pieces, Range};
-use super::{Status, pieces::Place};
+use super::Status;
+use super::pieces::{Found, Functions, Pieces, Range};
 use crate::machine::{LoadEffect, MachineDescription, PartKind};
 use crate::part::{Part, Precision, Wrapping};
 use crate::real::Real;
+use crate::straight_line::StraightLine;
 
 /// What the equation of motion needs at a coordinate.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,7 +62,7 @@ struct Load<R> {
 pub struct Evaluator<R> {
     range: Range<R>,
     wrapping: Option<[R; 2]>,
-    parts: [Pieces<R>; 3],
+    parts: [Functions<R>; 3],
     reactions: usize,
     points: usize,
     loads: Vec<Load<R>>,
@@ -71,6 +72,29 @@ pub struct Evaluator<R> {
 impl<R: Real> Evaluator<R> {
     /// Of a machine and its fitted parts, in the order of [`PartKind::ALL`].
     pub fn new(machine: &MachineDescription, parts: &[Part; 3], precision: Precision) -> Self {
+        let cells = |k: usize| Functions::Cells(Pieces::new(&parts[k], machine.domain));
+        Self::of_functions(machine, [0, 1, 2].map(cells), precision)
+    }
+
+    /// Of a machine and the operations of its functions, as [`Export::exact`](crate::Export::exact) takes them.
+    pub fn exact(
+        machine: &MachineDescription,
+        code: &[StraightLine; 3],
+        precision: Precision,
+    ) -> Self {
+        let code = |kind: PartKind| Functions::Code {
+            code: code[kind as usize].clone(),
+            curves: machine.curves(kind).len(),
+            columns: machine.columns(kind).len(),
+        };
+        Self::of_functions(machine, PartKind::ALL.map(code), precision)
+    }
+
+    fn of_functions(
+        machine: &MachineDescription,
+        parts: [Functions<R>; 3],
+        precision: Precision,
+    ) -> Self {
         let (mut curves, mut columns, mut order) = (1, 0, 2);
         let loads = machine.loads.iter().map(|load| {
             let counter = match load.effect.is_conservative() {
@@ -105,7 +129,7 @@ impl<R: Real> Evaluator<R> {
         Self {
             range: Range::new(machine.domain, precision),
             wrapping: wrapping.map(|w| [R::of(w.coarse), R::of(w.fine)]),
-            parts: [0, 1, 2].map(|k| Pieces::new(&parts[k], machine.domain)),
+            parts,
             reactions: machine.reactions.len(),
             points: machine.points.len(),
             loads,
@@ -113,10 +137,9 @@ impl<R: Real> Evaluator<R> {
         }
     }
 
-    fn at(&self, part: PartKind, q: R) -> Result<(&Pieces<R>, Place<R>), Status> {
+    fn at(&self, part: PartKind, q: R) -> Result<Found<'_, R>, Status> {
         let q = self.range.wrap(q)?;
-        let pieces = &self.parts[part as usize];
-        Ok((pieces, pieces.place(q)))
+        Ok(self.parts[part as usize].at(q))
     }
 
     /// m, ½m′, w and the potentials at `q` (rad or m).
@@ -124,8 +147,8 @@ impl<R: Real> Evaluator<R> {
     /// # Errors
     /// [`Status`] outside the domain.
     pub fn motion_terms(&self, q: R) -> Result<MotionTerms<R>, Status> {
-        let (pieces, at) = self.at(PartKind::Motion, q)?;
-        let [m, half_dm] = pieces.curve(0, at);
+        let found = self.at(PartKind::Motion, q)?;
+        let [m, half_dm] = found.curve(0);
         let zeros = vec![R::of(0.0); self.loads.len()];
         let (w, dw, v) = (zeros.clone(), zeros.clone(), zeros);
         let mut terms = MotionTerms {
@@ -137,14 +160,14 @@ impl<R: Real> Evaluator<R> {
         };
         for (k, load) in self.loads.iter().enumerate() {
             if load.effect.is_conservative() {
-                let [value, half_slope] = pieces.curve(load.place, at);
+                let [value, half_slope] = found.curve(load.place);
                 terms.v[k] = value;
                 terms.w[k] = R::of(-2.0) * half_slope;
             } else {
-                terms.w[k] = pieces.column(load.place, at);
+                terms.w[k] = found.column(load.place);
             }
             if has_rotor(&load.effect) {
-                terms.dw[k] = pieces.slope(load.place, at);
+                terms.dw[k] = found.slope(load.place);
             }
         }
         Ok(terms)
@@ -155,9 +178,9 @@ impl<R: Real> Evaluator<R> {
     /// # Errors
     /// [`Status`] outside the domain.
     pub fn reaction_terms(&self, q: R) -> Result<ReactionTerms<R>, Status> {
-        let (pieces, at) = self.at(PartKind::Reactions, q)?;
+        let found = self.at(PartKind::Reactions, q)?;
         let n = self.reactions;
-        let column = |k: usize| pieces.column(k, at);
+        let column = |k: usize| found.column(k);
         Ok(ReactionTerms {
             a: (0..n).map(column).collect(),
             b: (n..2 * n).map(column).collect(),
@@ -170,8 +193,8 @@ impl<R: Real> Evaluator<R> {
     /// # Errors
     /// [`Status`] outside the domain.
     pub fn positions(&self, q: R) -> Result<Vec<R>, Status> {
-        let (pieces, at) = self.at(PartKind::Positions, q)?;
-        Ok((0..2 * self.points).map(|k| pieces.column(k, at)).collect())
+        let found = self.at(PartKind::Positions, q)?;
+        Ok((0..2 * self.points).map(|k| found.column(k)).collect())
     }
 
     /// F of each load, m and ½m′ with rotors, at a state.

@@ -1,9 +1,85 @@
-//! Looking functions up in the cells of a part.
+//! The functions of a part at a coordinate: looked up in cells, or by their operations.
 
 use super::Status;
 use crate::machine::Domain;
 use crate::part::{CURVE, Column, HEAD, Part, Precision, TERMS, Wrapping};
 use crate::real::Real;
+use crate::straight_line::StraightLine;
+
+/// Where the functions of a part come from.
+#[derive(Debug, Clone)]
+pub(crate) enum Functions<R> {
+    /// From cells.
+    Cells(Pieces<R>),
+    /// From operations. Their outputs are value and half slope of each curve, the columns, then the slopes of the columns
+    /// of motion.
+    Code {
+        /// The operations.
+        code: StraightLine,
+        /// How many curves.
+        curves: usize,
+        /// How many columns.
+        columns: usize,
+    },
+}
+
+/// The functions of a part at a coordinate.
+pub(crate) enum Found<'a, R> {
+    Cells(&'a Pieces<R>, Place<R>),
+    Values {
+        values: Vec<R>,
+        curves: usize,
+        columns: usize,
+    },
+}
+
+impl<R: Real> Functions<R> {
+    /// At a coordinate within the domain.
+    pub(crate) fn at(&self, q: R) -> Found<'_, R> {
+        match self {
+            Self::Cells(pieces) => Found::Cells(pieces, pieces.place(q)),
+            Self::Code {
+                code,
+                curves,
+                columns,
+            } => Found::Values {
+                values: code.evaluate(q),
+                curves: *curves,
+                columns: *columns,
+            },
+        }
+    }
+}
+
+impl<R: Real> Found<'_, R> {
+    /// A curve and half its slope.
+    pub(crate) fn curve(&self, k: usize) -> [R; 2] {
+        match self {
+            Self::Cells(pieces, at) => pieces.curve(k, *at),
+            Self::Values { values, .. } => [values[2 * k], values[2 * k + 1]],
+        }
+    }
+
+    /// A column.
+    pub(crate) fn column(&self, k: usize) -> R {
+        match self {
+            Self::Cells(pieces, at) => pieces.column(k, *at),
+            Self::Values { values, curves, .. } => values[2 * curves + k],
+        }
+    }
+
+    /// The derivative of a column of motion by the coordinate.
+    pub(crate) fn slope(&self, k: usize) -> R {
+        match self {
+            Self::Cells(pieces, at) => pieces.slope(k, *at),
+            Self::Values {
+                values,
+                curves,
+                columns,
+            } => values[2 * curves + columns + k],
+        }
+    }
+}
 
 /// The pieces of a part in one kind of number.
 #[derive(Debug, Clone)]
@@ -45,7 +121,7 @@ impl<R: Real> Pieces<R> {
     }
 
     /// Finds the cell of a coordinate within the domain.
-    pub(crate) fn place(&self, q: R) -> Place<R> {
+    fn place(&self, q: R) -> Place<R> {
         let zero = R::of(0.0);
         if self.index.is_empty() {
             return Place {
@@ -69,7 +145,7 @@ impl<R: Real> Pieces<R> {
     }
 
     /// A curve and half its slope.
-    pub(crate) fn curve(&self, k: usize, at: Place<R>) -> [R; 2] {
+    fn curve(&self, k: usize, at: Place<R>) -> [R; 2] {
         let of = &self.cells[at.begin + HEAD + CURVE * k..][..CURVE];
         let width = self.cells[at.begin + 2];
         let value = of[0] + width * integral(&of[1..], at);
@@ -77,7 +153,7 @@ impl<R: Real> Pieces<R> {
     }
 
     /// A column.
-    pub(crate) fn column(&self, k: usize, at: Place<R>) -> R {
+    fn column(&self, k: usize, at: Place<R>) -> R {
         match self.columns[k] {
             (Column::Constant(_), value) => value,
             (Column::Tabulated(j), _) => polynomial(self.terms(j, at), at),
@@ -85,7 +161,7 @@ impl<R: Real> Pieces<R> {
     }
 
     /// The derivative of a column by the coordinate.
-    pub(crate) fn slope(&self, k: usize, at: Place<R>) -> R {
+    fn slope(&self, k: usize, at: Place<R>) -> R {
         match self.columns[k] {
             (Column::Constant(_), _) => R::of(0.0),
             (Column::Tabulated(j), _) => slope(self.terms(j, at), at) * self.cells[at.begin + 1],

@@ -221,8 +221,12 @@ fn two(variables: &[Variable], text: &mut String) {
 }
 
 /// `sources/buildDescription.xml` of FMI 3.0.
-pub(super) fn build_description(identifier: &str) -> String {
+pub(super) fn build_description(identifier: &str, needs_functions: bool) -> String {
+    let library = match needs_functions {
+        true => "    <Library name=\"m\" external=\"true\"/>\n",
+        false => "",
+    };
     format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n  <BuildConfiguration modelIdentifier=\"{identifier}\">\n    <SourceFileSet language=\"C99\">\n      <SourceFile name=\"{identifier}.c\"/>\n      <SourceFile name=\"fmi3.c\"/>\n    </SourceFileSet>\n  </BuildConfiguration>\n</fmiBuildDescription>\n"
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n  <BuildConfiguration modelIdentifier=\"{identifier}\">\n    <SourceFileSet language=\"C99\">\n      <SourceFile name=\"{identifier}.c\"/>\n      <SourceFile name=\"fmi3.c\"/>\n    </SourceFileSet>\n{library}  </BuildConfiguration>\n</fmiBuildDescription>\n"
     )
 }

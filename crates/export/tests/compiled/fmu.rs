@@ -16,7 +16,7 @@ fn the_libraries_have_every_function() {
         for machine in [machine(0.02), bare()] {
             for (version, symbol, functions) in FUNCTIONS {
                 let export = export(machine.clone(), 1e-9, Precision::Double);
-                let files = fmu_files(&export, version);
+                let files = fmu_files(&export, version, "");
                 let scratch = Scratch::new();
                 scratch.write(&files.texts);
                 let sources: Vec<String> = files

@@ -29,7 +29,7 @@ fn hostile_names_compile() {
         run(&scratch.0, "./program", &[]);
     }
     let scratch = Scratch::new();
-    scratch.write(&rust_files(&export));
+    scratch.write(&rust_files(&export).expect("cells"));
     super::rust::compile_library(&scratch.0);
 }
 

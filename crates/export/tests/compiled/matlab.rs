@@ -29,7 +29,7 @@ fn octave_has_the_same_values() {
     }
     let export = export(machine(0.0), 1e-9, Precision::Double);
     let scratch = Scratch::new();
-    for (path, bytes) in matlab_files(&export) {
+    for (path, bytes) in matlab_files(&export).expect("cells") {
         std::fs::write(scratch.0.join(path), bytes).unwrap();
     }
     std::fs::write(scratch.0.join("program.m"), PROGRAM).unwrap();

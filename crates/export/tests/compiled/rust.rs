@@ -60,7 +60,7 @@ fn the_crate_is_its_twin_bit_for_bit() {
     for (inductance, precision) in [(0.0, Precision::Double), (0.02, Precision::Float)] {
         let export = export(machine(inductance), 1e-6, precision);
         let scratch = Scratch::new();
-        scratch.write(&rust_files(&export));
+        scratch.write(&rust_files(&export).expect("cells"));
         scratch.write(&[("main.rs".to_owned(), PROGRAM.to_owned())]);
         compile_library(&scratch.0);
         run(
@@ -88,7 +88,7 @@ fn its_own_test_passes() {
     for machine in [machine(0.02), bare()] {
         let export = export(machine, 1e-9, Precision::Double);
         let scratch = Scratch::new();
-        scratch.write(&rust_files(&export));
+        scratch.write(&rust_files(&export).expect("cells"));
         let source = "test_machine/src/lib.rs";
         run(
             &scratch.0,

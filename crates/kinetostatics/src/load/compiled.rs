@@ -171,39 +171,45 @@ impl CompiledLoads {
     }
 
     /// The potential energy of a load, J, where it has one.
-    pub(crate) fn potential_energy(&self, load: usize, states: &BodyStates) -> Option<f64> {
+    pub(crate) fn potential_energy<T: Scalar>(
+        &self,
+        load: usize,
+        states: &BodyStates<T>,
+    ) -> Option<T> {
         let load = self.loads.get(load)?;
         if let LoadKind::SeparatingForce(_) = load.kind {
             // It does no work, whatever its magnitude.
-            return Some(0.0);
+            return Some(T::from_f64(0.0));
         }
+        let along =
+            |body, point, direction: Vec2| states.point(body, point).position.dot(direction.cast());
         let Magnitude::Constant(f) = load.magnitude else {
             return None;
         };
         match load.kind {
             LoadKind::Gravity { direction } => {
                 let heights = self.weighted_bodies.iter().map(|&(body, mass)| {
-                    mass.mass * states.point(body, mass.center).position.dot(direction)
+                    T::from_f64(mass.mass) * along(body, mass.center, direction)
                 });
-                Some(-f * heights.sum::<f64>())
+                Some(T::from_f64(-f) * heights.fold(T::from_f64(0.0), |sum, one| sum + one))
             }
             LoadKind::Force {
                 body,
                 point,
                 direction,
                 body_fixed: false,
-            } => Some(-f * states.point(body, point).position.dot(direction)),
+            } => Some(T::from_f64(-f) * along(body, point, direction)),
             LoadKind::Spring {
                 bodies,
                 points,
                 free_length: free,
             } => {
-                let stretch = states.separation(bodies, points).length - free;
-                Some(0.5 * f * stretch * stretch)
+                let stretch = states.separation(bodies, points).length - T::from_f64(free);
+                Some(T::from_f64(0.5 * f) * stretch * stretch)
             }
             LoadKind::TorsionSpring { bodies, free_angle } => {
-                let twist = states.angle(bodies)[0] - free_angle;
-                Some(0.5 * f * twist * twist)
+                let twist = states.angle(bodies)[0] - T::from_f64(free_angle);
+                Some(T::from_f64(0.5 * f) * twist * twist)
             }
             LoadKind::Force {
                 body_fixed: true, ..

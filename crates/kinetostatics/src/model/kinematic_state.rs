@@ -168,6 +168,12 @@ impl<T: Scalar> KinematicState<'_, T> {
         &self.workspace.pose
     }
 
+    /// [`Self::potential_energy`] in any kind of number, J.
+    pub fn potential(&self, load: usize) -> Option<T> {
+        let loads = &self.model.loads;
+        loads.potential_energy(load, &self.workspace.states)
+    }
+
     /// Whether the whole revolutions of a body are counted.
     pub fn counts_revolutions(&self, body: BodyId) -> bool {
         let states = &self.workspace.states;

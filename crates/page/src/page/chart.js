@@ -39,7 +39,8 @@ function createChart(number, state, units, actions) {
   }
 
   function remember() {
-    state.charts[number] = { group: group.key, columns: columns.map(c => c.key) };
+    const before = state.charts[number];
+    state.charts[number] = { group: group.key, columns: columns.map(c => c.key), isChosen: Boolean(before && before.isChosen) };
   }
 
   function choose(key) {

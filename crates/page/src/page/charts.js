@@ -7,24 +7,35 @@ const FIRST_GROUPS = {
   kinematics: ['Bodies|rad', 'Bodies|rad/s', 'Coordinates|m', 'Points|m', 'Points|m/s', 'Bodies|rad/s2', 'Transmission angles|rad'],
   statics: ['Reactions, magnitudes|N', 'Actuator forces|N m', 'Actuator forces|N', 'Reactions, components|N', 'Shaking force|N', 'Loads|N'],
   kinetostatics: ['Reactions, magnitudes|N', 'Actuator forces|N m', 'Actuator forces|N', 'Reactions, components|N', 'Bodies|rad/s2', 'Coordinates|m/s2', 'Power and energy|W'],
-  simulate: ['Coordinates|rad', 'Coordinates|m', 'Energies and states|J', 'Reactions, magnitudes|N', 'Coordinates|rad/s', 'Power and energy|J'],
-  validate: ['Coordinates|rad', 'Reactions, magnitudes|N', 'Actuator forces|N m', 'Actuator forces|N', 'Energies and states|J', 'Bodies|rad', 'Bodies|rad/s', 'Coordinates|m'],
+  simulate: ['Coordinates|rad/s', 'Coordinates|m/s', 'Reactions, magnitudes|N', 'Energies and states|J', 'Coordinates|rad', 'Coordinates|m', 'Power and energy|J'],
+  validate: ['Reactions, magnitudes|N', 'Reactions, components|N', 'Coordinates|rad/s', 'Actuator forces|N m', 'Actuator forces|N', 'Bodies|rad', 'Bodies|rad/s', 'Coordinates|m', 'Energies and states|J'],
   reduce: ['Generalised inertia|kg m2', 'Generalised inertia|kg', 'Half its slope, ½m′|kg m2/rad', 'Half its slope, ½m′|kg/m', 'Reaction coefficients a|kg m', 'Reaction coefficients a|kg'],
 };
 
 function firstGroup(run, number) {
   const groups = [...run.groups.values()];
-  const preferred = (FIRST_GROUPS[run.description.command] || []).map(key => run.groups.get(key)).filter(g => g && g.columns.some(varies));
+  let preferred = (FIRST_GROUPS[run.description.command] || []).map(key => run.groups.get(key)).filter(g => g && g.columns.some(varies));
+  // Components where there are no magnitudes.
+  if (preferred.some(g => g.title === 'Reactions, magnitudes')) preferred = preferred.filter(g => g.title !== 'Reactions, components');
   const rest = groups.filter(g => !preferred.includes(g));
   const order = [...preferred, ...rest.filter(g => g.columns.some(varies)), ...rest.filter(g => !g.columns.some(varies))];
   return order[number] || null;
 }
 
+// Whether two columns are one but for rounding: a point of two bodies.
+function isAlike(one, other) {
+  if (one.slot === other.slot) return true;
+  const [low, high] = extentOf(one);
+  const step = Math.max(1, Math.floor(one.values.length / 40));
+  for (let k = 0; k < one.values.length; k += step) if (!(Math.abs(one.values[k] - other.values[k]) <= 1e-9 * (high - low))) return false;
+  return true;
+}
+
 // Those that vary most, of equal ones the first.
 function firstColumns(group) {
   const span = column => { const [low, high] = extentOf(column); return Number.isFinite(high - low) ? high - low : 0; };
-  const seen = new Set();
-  const distinct = group.columns.filter(c => !seen.has(c.slot) && seen.add(c.slot));
+  const distinct = [];
+  for (const column of group.columns) if (!distinct.some(other => isAlike(column, other))) distinct.push(column);
   const largest = [...distinct].sort((a, b) => span(b) - span(a)).slice(0, MAX_CURVES).filter((c, k) => k === 0 || varies(c));
   return distinct.filter(c => largest.includes(c));
 }

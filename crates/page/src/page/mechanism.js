@@ -3,7 +3,7 @@
 const HEIGHT = 400;
 const MARGIN = 34;
 
-function createMechanism(state, onMove) {
+function createMechanism(state, onMove, onTurn) {
   const root = svg('svg', { class: 'mechanism', role: 'img', tabindex: 0, height: HEIGHT });
   let run = null;
   let drawing = null;
@@ -25,9 +25,9 @@ function createMechanism(state, onMove) {
     frames = createFrames(drawing, run);
     view = createView(frames.isPlane ? null : state.view || drawing.view);
     bounds = boundsOf(drawing, frames, run.rows);
-    layers = { parts: svg('g'), paths: svg('g'), marks: svg('g'), forces: svg('g'), words: svg('g', { 'aria-hidden': 'true' }) };
+    layers = { parts: svg('g'), paths: svg('g'), marks: svg('g'), forces: svg('g'), axes: svg('g', { class: 'ground-axes', 'aria-hidden': 'true' }), words: svg('g', { 'aria-hidden': 'true' }) };
     root.append(svg('title', {}, frames.isPlane ? 'The mechanism in this position' : 'The mechanism in this position, seen from one side'));
-    root.append(layers.parts, layers.paths, layers.marks, layers.forces, layers.words);
+    root.append(layers.parts, layers.paths, layers.marks, layers.forces, layers.axes, layers.words);
     for (const part of drawing.parts) items.push(createItem(part));
     overlay = createOverlay(drawing, run, frames, view, layers, state);
     root.classList.toggle('turnable', !frames.isPlane);
@@ -38,10 +38,8 @@ function createMechanism(state, onMove) {
   function fit() {
     width = root.clientWidth || 560;
     root.setAttribute('viewBox', `0 0 ${width} ${HEIGHT}`);
-    const [low, high] = bounds;
-    const size = [0, 1, 2].map(k => high[k] - low[k]);
-    const middle = [0, 1, 2].map(k => 0.5 * (low[k] + high[k]));
-    const across = frames.isPlane ? size : [Math.hypot(...size), Math.hypot(...size)];
+    const { middle, size, radius } = bounds;
+    const across = frames.isPlane ? size : [2 * radius, 2 * radius];
     const free = [width - 2 * MARGIN, HEIGHT - 2 * MARGIN];
     const scales = [0, 1].map(k => (across[k] > 0 ? free[k] / across[k] : Infinity));
     const scale = Math.min(...scales);
@@ -50,7 +48,17 @@ function createMechanism(state, onMove) {
     const [x, y] = view.screen(middle);
     [view.x, view.y] = [width / 2 - x, HEIGHT / 2 - y];
     overlay.layOut();
+    if (!frames.isPlane) drawAxes();
     move(row);
+  }
+
+  // The axes of the ground, in a corner.
+  function drawAxes() {
+    const at = [46, HEIGHT - 46];
+    layers.axes.replaceChildren(...[[1, 0, 0], [0, 1, 0], [0, 0, 1]].flatMap((axis, k) => {
+      const [x, y] = view.direction(axis).map(v => (v / view.scale) * 30);
+      return [svg('path', { d: arrowPath(at[0], at[1], x, y) }), svg('text', { x: at[0] + 1.3 * x, y: at[1] + 1.3 * y + 4, 'text-anchor': 'middle' }, 'xyz'[k])];
+    }));
   }
 
   const colored = body => {
@@ -136,7 +144,7 @@ function createMechanism(state, onMove) {
   }
 
   function createMark(part, at, w) {
-    const shape = svg('g', { class: `mark mark-${part.look} ${colored(part.on_ground ? null : part.at.body)}` }, svg('title', {}, part.title), markElements(part.look));
+    const shape = svg('g', { class: `mark mark-${part.look} ${colored(part.on_ground ? null : part.at.body)}` }, svg('title', {}, part.title), markElements(part.look), !frames.isPlane && part.on_ground && part.look !== 'center-of-mass' ? groundMark() : null);
     const label = part.label ? svg('text', { class: 'label' }, part.label) : null;
     layers.marks.append(shape);
     if (label) layers.words.append(label);
@@ -195,8 +203,7 @@ function createMechanism(state, onMove) {
     turn(dx, dy) {
       const [azimuth, elevation] = view.angles;
       view.look(azimuth - dx * 0.01, Math.max(-1.57, Math.min(1.57, elevation + dy * 0.01)));
-      state.view = view.angles;
-      fit();
+      turned();
     },
   });
   root.addEventListener('keydown', event => {
@@ -206,9 +213,13 @@ function createMechanism(state, onMove) {
     event.preventDefault();
     const [azimuth, elevation] = view.angles;
     view.look(azimuth + 0.1 * steps[0], Math.max(-1.57, Math.min(1.57, elevation - 0.1 * steps[1])));
+    turned();
+  });
+  function turned() {
     state.view = view.angles;
     fit();
-  });
+    onTurn();
+  }
   new ResizeObserver(() => { if (drawing && root.clientWidth && root.clientWidth !== width) fit(); }).observe(root);
   return { root, show, move, overlay: () => overlay, refresh: () => { if (drawing) { overlay.layOut(); overlay.move(row); } }, angles: () => view && view.angles };
 }

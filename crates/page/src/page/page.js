@@ -33,7 +33,7 @@ function create(root, options = {}) {
   };
   const fileName = () => `${run.description.scene ? run.description.scene.name : 'run'}-${run.description.command}`;
 
-  const mechanism = createMechanism(state, newRow => actions.move(newRow));
+  const mechanism = createMechanism(state, newRow => actions.move(newRow), () => remember());
   const player = createPlayer(state, unitProxy, { move });
   player.controls.querySelector('.slider').addEventListener('input', () => player.stop());
   const charts = createCharts(state, unitProxy, actions);

@@ -24,7 +24,9 @@ function createPeaks(units, actions) {
       if (!own) continue;
       if (entry.isIntersecting) { seen.add(own); now(own); } else seen.delete(own);
     }
-  });
+  }, { rootMargin: '400px' });
+  // On paper all of them are seen.
+  window.addEventListener('beforeprint', () => rows.forEach(now));
 
   function show(newRun) {
     run = newRun;
@@ -62,7 +64,7 @@ function createPeaks(units, actions) {
     const chosen = [];
     for (const unit of CHIP_UNITS) {
       const size = c => Math.max(Math.abs(c.peak.min.value), Math.abs(c.peak.max.value));
-      const alike = run.columns.filter(c => c.peak && c.unit === unit && c !== run.axis && varies(c) && Number.isFinite(size(c)));
+      const alike = run.columns.filter(c => c.peak && c.unit === unit && c !== run.axis && varies(c) && size(c) > 0 && Number.isFinite(size(c)));
       const [largest] = alike.sort((a, b) => size(b) - size(a));
       if (largest && chosen.length < CHIPS) chosen.push(largest);
     }

@@ -66,11 +66,12 @@ function createView(angles) {
   return view;
 }
 
-// What all parts go through, as the ends of a box in the axes of the picture; in space a box that holds them from all sides.
+// What all parts go through: the middle and the sides of a box, and the radius of a ball about its middle.
 function boundsOf(drawing, frames, rows) {
   const low = [Infinity, Infinity, Infinity];
   const high = [-Infinity, -Infinity, -Infinity];
   const w = [0, 0, 0];
+  const points = [];
   const stride = Math.max(1, Math.floor(rows / 180));
   const add = (body, point, fixed) => {
     for (let row = 0; row < Math.max(1, fixed ? 1 : rows); row += stride) {
@@ -79,6 +80,7 @@ function boundsOf(drawing, frames, rows) {
         if (w[k] < low[k]) low[k] = w[k];
         if (w[k] > high[k]) high[k] = w[k];
       }
+      if (!frames.isPlane) points.push([...w]);
     }
   };
   for (const part of drawing.parts) {
@@ -91,5 +93,8 @@ function boundsOf(drawing, frames, rows) {
     } else if (part.part === 'link') for (const end of part.ends) add(end.body, end.point, frames.isFixed(end.body));
     else add(part.at.body, part.at.point, frames.isFixed(part.at.body));
   }
-  return low[0] <= high[0] ? [low, high] : [[-1, -1, -1], [1, 1, 1]];
+  if (!(low[0] <= high[0])) return { middle: [0, 0, 0], size: [1, 1, 1], radius: 1 };
+  const middle = low.map((l, k) => 0.5 * (l + high[k]));
+  const radius = Math.sqrt(Math.max(...points.map(p => (p[0] - middle[0]) ** 2 + (p[1] - middle[1]) ** 2 + (p[2] - middle[2]) ** 2)));
+  return { middle, size: low.map((l, k) => high[k] - l), radius };
 }

@@ -13,7 +13,7 @@ function readState(hash) {
     else if (key === 'paths' && value === 'off') state.showPaths = false;
     else if (/^chart[123]$/.test(key)) {
       const [group, ...columns] = value.split('\u001f');
-      state.charts[Number(key[5]) - 1] = { group, columns };
+      state.charts[Number(key[5]) - 1] = { group, columns, isChosen: true };
     }
   }
   return state;

@@ -47,6 +47,11 @@ function groundPin() {
   ];
 }
 
+// The hatched ground below a joint in space.
+function groundMark() {
+  return svg('path', { class: 'ground-line', d: 'M-15 17H15M-12 17l-6 6M-5 17l-6 6M2 17l-6 6M9 17l-6 6' });
+}
+
 // The elements of a mark, drawn about its point. Axes in space are drawn by `markPath`.
 function markElements(look) {
   switch (look) {

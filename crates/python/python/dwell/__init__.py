@@ -20,6 +20,7 @@ installed.
 from __future__ import annotations
 
 from ._builder import Builder
+from ._cluster import StoredSweep
 from ._mechanism import Cycle, Equilibrium, Mechanism, Period, State, StateSpace
 from ._native import DwellError, SceneError, __version__
 from ._reduced import Coefficients, ReducedModel, Table
@@ -42,6 +43,7 @@ __all__ = [
     "SceneError",
     "State",
     "StateSpace",
+    "StoredSweep",
     "Table",
     "__version__",
     "read",

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Mapping, Sequence
+import os
+from typing import TYPE_CHECKING, Literal, Mapping, Sequence, overload
 
 from . import _native
+from ._cluster import StoredSweep, sweep_on
 from ._results import Results
 
 if TYPE_CHECKING:
@@ -17,6 +19,7 @@ class SweepResults(Results):
     messages: list[str | None]
 
 
+@overload
 def sweep(
     scene: Scene,
     vary: Mapping[str, str | Sequence[float]],
@@ -24,7 +27,37 @@ def sweep(
     *,
     samples: int | None = None,
     seed: int = 0,
-) -> SweepResults:
+    engine: None = None,
+) -> SweepResults: ...
+
+
+@overload
+def sweep(
+    scene: Scene,
+    vary: Mapping[str, str | Sequence[float]],
+    results: Sequence[str] = (),
+    *,
+    samples: int | None = None,
+    seed: int = 0,
+    engine: Literal["ray", "dask"],
+    folder: str | os.PathLike[str],
+    blocks: int = 64,
+    command: str = "dwell",
+) -> StoredSweep: ...
+
+
+def sweep(
+    scene: Scene,
+    vary: Mapping[str, str | Sequence[float]],
+    results: Sequence[str] = (),
+    *,
+    samples: int | None = None,
+    seed: int = 0,
+    engine: Literal["ray", "dask"] | None = None,
+    folder: str | os.PathLike[str] | None = None,
+    blocks: int = 64,
+    command: str = "dwell",
+) -> SweepResults | StoredSweep:
     """Results of every combination of numbers of a scene, computed on all cores, as ``dwell sweep`` computes them.
 
     vary: by path of a number, in the scene's unit: a list of values, or a text: ``=FROM:TO:COUNT``, ``~normal(MEAN,SD)``,
@@ -32,13 +65,24 @@ def sweep(
 
     results: ``m.min``, ``m.max``, ``period``, ``phi.actuator_force.max_abs``, ``guide.normal.max_abs`` …; without any, all.
 
-    Raises SceneError where the sweep is not valid.
+    engine: ``"ray"`` or ``"dask"`` spreads the points in this many ``blocks`` over the engine's workers, of the cluster that is
+    connected or of one of this machine's processes. Each runs the ``command`` on one core; the rows go to Parquet files in ``folder``,
+    which all workers must reach. The block of a worker that is killed is computed again. A second call goes on where a first one stopped.
+
+    Raises SceneError where the sweep is not valid, DwellError where a worker's command fails.
     """
 
     def text(value: str | Sequence[float]) -> str:
         return value if isinstance(value, str) else "=" + ",".join(repr(float(v)) for v in value)
 
     varied = [(path, text(value)) for path, value in vary.items()]
+    if engine is not None:
+        if folder is None:
+            raise TypeError("with an engine, the results need a folder: sweep(…, engine=…, folder=…)")
+        options = [word for path, value in varied for word in ("--vary", path + value)]
+        options += [word for result in results for word in ("--result", result)]
+        options += [] if samples is None else ["--samples", str(samples), "--seed", str(seed)]
+        return sweep_on(engine, scene.text, options, folder, blocks, command)
     columns, messages = _native.sweep(scene._native, varied, list(results), samples, seed)
     found = SweepResults({name: values for name, _, values in columns}, {name: unit for name, unit, _ in columns})
     found.messages = messages

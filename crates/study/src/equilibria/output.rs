@@ -6,7 +6,7 @@ use crate::explain::StudyError;
 use crate::models::SceneMachine;
 use crate::number_format::{coordinate_unit, count, digits, digits_within, force_unit, number};
 use crate::output::{Outcome, Picture, results_page};
-use crate::page::{drawing_at, table_page, unit_group};
+use crate::page::{drawing_along, table_page, unit_group};
 use crate::ranges::extent;
 use dwell_dynamics::{Equilibrium, Stability};
 use dwell_findings::{Column, Record, Table};
@@ -60,10 +60,7 @@ fn static_force_page(scene: &Scene, results: &EquilibriaResults<'_>) -> Option<P
     };
     let mut page = table_page(&scene.file, "equilibria", &table, unit_group);
     page.subtitle = format!("static force and potential over {name}");
-    if scene.mechanism.actuators.len() == 1 {
-        let coordinates: Vec<Vec<f64>> = curves.q.iter().map(|q| vec![*q]).collect();
-        page.drawing = drawing_at(scene, &coordinates);
-    }
+    page.drawing = drawing_along(scene, &page);
     Some(page)
 }
 

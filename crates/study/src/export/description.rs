@@ -204,7 +204,10 @@ fn describe(scene: &Scene, loaded: &Scene, model: &Model, domain: Domain) -> Mac
                 let force = if is_couple { "N m" } else { "N" };
                 drive_effect((&load.name, force), drive, &mut left_out)
             }
-            None => load_effect(load),
+            None => {
+                left_out.extend(varying_input("the load", &load.name, &load.magnitude));
+                load_effect(load)
+            }
         };
         LoadDescription {
             name: load.name.clone(),
@@ -349,6 +352,12 @@ pub(crate) fn magnitude_effect<C>(
     }
 }
 
+/// What an export leaves out of a magnitude that is no constant.
+pub(crate) fn varying_input<C>(kind: &str, name: &str, magnitude: &Magnitude<C>) -> Option<String> {
+    let constant = matches!(magnitude, Magnitude::Constant(_));
+    (!constant).then(|| format!("how {kind} {name} varies: its magnitude is an input"))
+}
+
 /// How a drive acts on a coordinate with this unit of force, and the unit of its input.
 pub(crate) fn drive_effect<C>(
     (name, force): (&str, &'static str),
@@ -356,6 +365,9 @@ pub(crate) fn drive_effect<C>(
     left_out: &mut Vec<String>,
 ) -> (LoadEffect, &'static str) {
     let initial = value_at_start(drive.input());
+    if !matches!(drive, DriveKind::SpeedController(_)) {
+        left_out.extend(varying_input("the drive", name, drive.input()));
+    }
     match drive {
         DriveKind::AppliedForce(_) => (LoadEffect::Input { initial }, force),
         DriveKind::Motor(motor) => {

@@ -18,7 +18,7 @@ pub(super) fn fmu_archive(
     export: &Export,
     version: FmiVersion,
 ) -> Result<(Vec<u8>, String), StudyError> {
-    let files = fmu_files(export, version);
+    let files = fmu_files(export, version, scene.source.inner());
     let (library, sentence) = match platform(version) {
         None => (
             None,
@@ -98,6 +98,7 @@ fn compiles(compiler: &str, files: &FmuFiles, folder: &Path) -> bool {
         ])
         .args(["-o", "library.so"])
         .args(files.sources.iter().map(|name| format!("sources/{name}")))
+        .arg("-lm")
         .current_dir(folder);
     command.output().is_ok_and(|output| output.status.success())
 }

@@ -10,9 +10,10 @@ pub(crate) mod sampler;
 use crate::explain::{StudyError, explain_motion, scene_error};
 use crate::number_format::number;
 use description::ExportedScene;
-use dwell_export::{Export, FitError, Function, MachineDescription, Request};
+use dwell_export::{Export, FitError, Function, MachineDescription, RecordingError, Request};
 use dwell_geometry::ActuatorId;
 use dwell_scene::{Scene, SceneFile, SceneLocation};
+use sampler::recorded;
 use std::fmt::Display;
 
 /// What of a scene is exported, and how accurately.
@@ -20,6 +21,8 @@ use std::fmt::Display;
 pub struct ExportRequest {
     /// Accuracy and numbers.
     pub request: Request,
+    /// The model's own operations instead of cells; the accuracy is then that of rounding.
+    pub exact: bool,
     /// Interval in the scene's unit; `None` for a full period, or the range without 2 % at each end.
     pub interval: Option<(f64, f64)>,
 }
@@ -32,10 +35,41 @@ pub fn compute_export(scene: &Scene, asked: &ExportRequest) -> Result<Export, St
     let exported = ExportedScene::new(scene, asked.interval)?;
     let machine = exported.description.clone();
     let mut sampler = exported.sampler();
-    Export::new(machine, asked.request, &mut sampler).map_err(|error| match error {
-        FitError::Sampler(error) => explain_motion(&exported.loaded, exported.model.plan(), &error),
+    let explain = |error| explain_motion(&exported.loaded, exported.model.plan(), &error);
+    let export = match asked.exact {
+        true => {
+            let code = recorded(&exported).map_err(|error| match error {
+                RecordingError::Evaluation(error) => explain(error),
+                RecordingError::Function => no_operations(
+                    scene,
+                    "a law of a cam, of a joint or of an inertia is known by its values alone",
+                ),
+                RecordingError::Differs { .. } => no_operations(scene, SEARCHED),
+            })?;
+            Export::exact(machine, asked.request.precision, code, &mut sampler)
+        }
+        false => Export::new(machine, asked.request, &mut sampler),
+    };
+    export.map_err(|error| match error {
+        FitError::Sampler(error) => explain(error),
         other => explain_fit(scene, &exported.description, asked, &other),
     })
+}
+
+/// Why the operations of a model are not the same at all coordinates.
+const SEARCHED: &str = "its positions are searched by Newton's method or chosen by cases";
+
+/// Refuses the operations of a model, with the reason.
+pub(crate) fn no_operations(scene: &SceneFile, reason: &str) -> StudyError {
+    scene_error(
+        scene,
+        format!("no exact export: {reason}"),
+        "leave --exact out: cells have every function to 1e-12 if you ask for it with --accuracy",
+        [(
+            SceneLocation::Actuator(ActuatorId(0)),
+            "over this coordinate",
+        )],
+    )
 }
 
 /// Explains why no cells were found, with names and places of the scene.
@@ -72,6 +106,7 @@ pub(crate) fn explain_fit<E: Display>(
             "leave --float out",
             [(SceneLocation::Whole, "of this scene")],
         ),
+        FitError::OtherOperations { .. } => no_operations(scene, SEARCHED),
         FitError::NotReached { name, q, .. } => {
             let (at, unit) = scene.to_scene_unit(*q, machine.is_angle);
             let accuracy = asked.request.accuracy;

@@ -51,14 +51,7 @@ pub(crate) fn export_machine(
     table: impl FnOnce() -> Result<Table, StudyError>,
     fitted: impl FnOnce() -> Result<Export, StudyError>,
 ) -> Result<Outcome, StudyError> {
-    if matches!(target, ExportTarget::Fmu(_)) && asked.request.precision == Precision::Float {
-        return Err(scene_error(
-            scene,
-            "an FMU computes in double precision, as its interface does",
-            "leave --float out",
-            [(SceneLocation::Whole, "of this scene")],
-        ));
-    }
+    reject_options(scene, target, asked)?;
     match target {
         ExportTarget::Rows(format) => return rows(scene, &table()?, Some(format)),
         ExportTarget::Json => return rows(scene, &table()?, None),
@@ -81,14 +74,14 @@ pub(crate) fn export_machine(
             }
         }
         ExportTarget::Rust => {
-            for (path, text) in rust_files(&export) {
+            for (path, text) in rust_files(&export).into_iter().flatten() {
                 add(path, text.into_bytes());
             }
         }
         // Their rows are written already.
         ExportTarget::Rows(_) | ExportTarget::Json => {}
         ExportTarget::Matlab => {
-            for (path, bytes) in matlab_files(&export) {
+            for (path, bytes) in matlab_files(&export).into_iter().flatten() {
                 add(path, bytes);
             }
         }
@@ -102,6 +95,32 @@ pub(crate) fn export_machine(
         }
     }
     Ok(outcome)
+}
+
+/// Rejects options that a target does not have.
+fn reject_options(
+    scene: &SceneFile,
+    target: ExportTarget,
+    asked: &ExportRequest,
+) -> Result<(), StudyError> {
+    if matches!(target, ExportTarget::Fmu(_)) && asked.request.precision == Precision::Float {
+        return Err(scene_error(
+            scene,
+            "an FMU computes in double precision, as its interface does",
+            "leave --float out",
+            [(SceneLocation::Whole, "of this scene")],
+        ));
+    }
+    let takes_operations = matches!(target, ExportTarget::C | ExportTarget::Fmu(_));
+    if asked.exact && !takes_operations {
+        return Err(scene_error(
+            scene,
+            "an exact export is C or an FMU: its operations need square roots, sines and cosines",
+            "leave --exact out, or export to `c` or `fmu`",
+            [(SceneLocation::Whole, "of this scene")],
+        ));
+    }
+    Ok(())
 }
 
 /// The rows of the reduced model, evaluated exactly.
@@ -143,14 +162,23 @@ fn summary(scene: &SceneFile, export: &Export) -> String {
         .map(|(n, of)| format!("{} {of}", count(n, "cell")))
         .collect();
     let [motion, all, step] = measured.operations;
+    let (title, coordinate, error) = (&scene.title, &machine.coordinate, measured.errors.max());
+    let worth = match export.code {
+        Some(_) => {
+            let [of_motion, of_all] = export.functions();
+            format!(
+                "the model's own operations; largest error {error:.1e} of the largest value of each function\n  square roots, sines, cosines and angles: {of_motion} of the terms of motion, {of_all} with reactions"
+            )
+        }
+        None => format!(
+            "{}, {} bytes of constants; largest error {error:.1e} of the largest value of each function (asked: {:e})",
+            cells.join(", "),
+            export.constant_bytes(),
+            export.request.accuracy,
+        ),
+    };
     let mut text = format!(
-        "{}: reduced model in {numbers} precision over {}\n  {}, {} bytes of constants; largest error {:.1e} of the largest value of each function (asked: {:e})\n  operations, at most: {motion} of the terms of motion, {all} with reactions, {step} of a step\n",
-        scene.title,
-        machine.coordinate,
-        cells.join(", "),
-        export.constant_bytes(),
-        measured.errors.max(),
-        export.request.accuracy,
+        "{title}: reduced model in {numbers} precision over {coordinate}\n  {worth}\n  operations, at most: {motion} of the terms of motion, {all} with reactions, {step} of a step\n"
     );
     if let Some([q, q_dot]) = measured.step_error {
         let unit = if machine.is_angle { "rad" } else { "m" };
@@ -166,7 +194,10 @@ fn summary(scene: &SceneFile, export: &Export) -> String {
 fn record(export: &Export) -> Record {
     let measured = &export.measured;
     let mut record = Record::default();
-    record.add("accuracy", "", export.request.accuracy);
+    // Of an exact export, nothing was asked for.
+    if export.code.is_none() {
+        record.add("accuracy", "", export.request.accuracy);
+    }
     record.add("error", "", measured.errors.max());
     record.add("error.m", "", measured.errors.m);
     record.add("error.half_dm", "", measured.errors.half_dm);

@@ -158,3 +158,45 @@ fn load_direction(scene: &Scene, kind: &LoadKind, column: usize) -> Option<(Anch
         | LoadKind::SeparatingForce(_) => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_geometry::{BodyId, vec2};
+
+    /// The pitch point is on both pitch circles, and a positive tooth force turns the second gear counter-clockwise by its
+    /// pitch radius, whichever gear is the ring.
+    #[test]
+    fn a_tooth_force_acts_at_the_pitch_point_and_turns_the_second_gear() {
+        let along = vec2(0.6, 0.8);
+        for (radii, internal) in [
+            ([0.3, 0.2], false),
+            ([0.2, 0.5], false),
+            ([0.5, 0.2], true),
+            ([0.2, 0.5], true),
+        ] {
+            let [r1, r2] = radii;
+            let distance: f64 = if internal { r1 - r2 } else { r1 + r2 };
+            let centers = [vec2(1.0, -2.0), vec2(1.0, -2.0) + along * distance.abs()];
+            let joint = Joint {
+                name: "gears".to_owned(),
+                bodies: [BodyId(1), BodyId(2)],
+                points: centers,
+                kind: JointKind::Gear { radii, internal },
+            };
+            let Direction::Line {
+                ends, across, part, ..
+            } = tooth_line(&joint, radii, internal, 0)
+            else {
+                panic!("a line");
+            };
+            let [from, to] = ends.map(|end| vec2(end.point[0], end.point[1]));
+            let pitch = from + (to - from) * part;
+            let direction = (to - from).perp() * (1.0 / (to - from).norm());
+            for (center, radius) in centers.into_iter().zip(radii) {
+                assert!(((pitch - center).norm() - radius).abs() < 1e-12);
+            }
+            assert!(across && ((pitch - centers[1]).cross(direction) - r2).abs() < 1e-12);
+        }
+    }
+}

@@ -19,6 +19,13 @@ impl RowChoice {
         Self::of(results.rows.len(), columns)
     }
 
+    /// All of so many rows.
+    pub(crate) fn all(rows: usize) -> Self {
+        Self {
+            rows: (0..rows).collect(),
+        }
+    }
+
     /// Of so many rows with so many columns.
     pub(crate) fn of(rows: usize, columns: usize) -> Self {
         let stride = (rows * columns).div_ceil(MAX_VALUES).max(1);
@@ -46,7 +53,7 @@ impl RowChoice {
         let shown = self.rows.len();
         (shown < all).then(|| {
             let all = count(all, "row");
-            format!("{shown} of {all} are shown here; the table beside this page has all of them.")
+            format!("the page has {shown} of {all}; the table of the command has all of them")
         })
     }
 }

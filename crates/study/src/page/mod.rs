@@ -7,7 +7,7 @@ mod plane;
 mod tables;
 
 pub(crate) use columns::{RowChoice, page_columns};
-pub use tables::{drawing_at, table_page, unit_group};
+pub use tables::{drawing_along, table_page, unit_group};
 
 use crate::trajectory::column_extrema::sorted_extrema;
 use crate::trajectory::compute::ComputedTrajectory;
@@ -143,5 +143,107 @@ pub(crate) fn run_page(scene: &SceneFile, size: f64, computed: &ComputedTrajecto
         peaks: extrema.into_iter().filter_map(peak).collect(),
         peaks_note: (!results.extrema.are_between_rows).then(|| of_rows.to_owned()),
         ..scene_page(scene, trajectory.analysis.command())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::progress::no_progress;
+    use crate::trajectory::compute::{Analysis, compute_trajectory};
+    use dwell_page::{Anchor, Direction, Drawing, Part};
+
+    fn page_of(name: &str) -> Page {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
+        let scene = Scene::read(format!("{folder}/{name}/scene.toml")).expect("a scene");
+        let analysis = Analysis::Kinetostatics;
+        let computed = compute_trajectory(&scene, analysis, Some(25), &no_progress);
+        let computed = computed.expect("a trajectory");
+        trajectory_page(&scene, &computed)
+    }
+
+    fn column<'p>(page: &'p Page, key: &str) -> &'p [f64] {
+        let mut columns = page.columns.iter();
+        &columns.find(|c| c.key == key).expect("a column").values
+    }
+
+    /// Where a point is, by the placements of the drawing.
+    fn place(drawing: &Drawing, at: &Anchor, row: usize) -> [f64; 2] {
+        let [x, y] = [at.point[0], at.point[1]];
+        let [ox, oy, angle] = match &drawing.bodies[at.body].placements[..] {
+            [] => [0.0; 3],
+            all => [0, 1, 2].map(|k| all[k][row]),
+        };
+        let (sin, cos) = angle.sin_cos();
+        [ox + cos * x - sin * y, oy + sin * x + cos * y]
+    }
+
+    #[test]
+    fn points_of_the_drawing_are_where_the_columns_say() {
+        let page = page_of("slider-crank");
+        let drawing = page.drawing.as_ref().expect("a drawing");
+        let path = drawing.paths.iter().find(|p| p.name == "crank.B");
+        let path = path.expect("a path");
+        let columns = ["crank.B.x", "crank.B.y"].map(|key| column(&page, key));
+        for row in 0..25 {
+            let at = place(drawing, &path.at, row);
+            for k in 0..2 {
+                assert!((at[k] - columns[k][row]).abs() < 1e-12, "row {row}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_two_bodies_of_every_pin_meet_there_in_every_row() {
+        for name in ["slider-crank", "press", "whitworth"] {
+            let page = page_of(name);
+            let drawing = page.drawing.as_ref().expect("a drawing");
+            let arrows = drawing.arrows.iter();
+            let pins = arrows.filter(|a| matches!(a.direction, Direction::Components { .. }));
+            let mut count = 0;
+            for arrow in pins {
+                // The arrow is on the second body, the pin on the first.
+                let pin = drawing.parts.iter().find_map(|part| match part {
+                    Part::Mark(mark) if mark.title.starts_with(&format!("{} (", arrow.name)) => {
+                        Some(mark)
+                    }
+                    _ => None,
+                });
+                let pin = pin.expect("a pin");
+                count += 1;
+                for row in 0..25 {
+                    let [a, b] = [&pin.at, &arrow.at].map(|at| place(drawing, at, row));
+                    assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1e-9, "{name} {row}");
+                }
+            }
+            assert!(count >= 3, "{name} has {count} pins");
+        }
+    }
+
+    #[test]
+    fn an_arrow_refers_to_the_columns_of_its_joint_and_peaks_to_their_own() {
+        let page = page_of("slider-crank");
+        let arrows = &page.drawing.as_ref().expect("a drawing").arrows;
+        let arrow = arrows.iter().find(|a| a.name == "A").expect("an arrow");
+        let Direction::Components { columns } = &arrow.direction else {
+            panic!("a pin has two components");
+        };
+        let keys: Vec<&str> = columns
+            .iter()
+            .map(|&k| page.columns[k].key.as_str())
+            .collect();
+        assert_eq!(keys, ["A.x", "A.y"]);
+        for peak in &page.peaks {
+            let values = &page.columns[peak.column].values;
+            let [low, high] = peak.ends.map(|[value, _]| value);
+            let slack = 1e-9 * low.abs().max(high.abs());
+            // A value between the rows is no less extreme than those of the rows.
+            assert!(
+                values
+                    .iter()
+                    .all(|v| v.is_nan() || (*v >= low - slack && *v <= high + slack))
+            );
+        }
+        assert_eq!(page.columns[page.axis.expect("an axis")].key, "t");
     }
 }

@@ -72,17 +72,22 @@ pub fn unit_group(_: &str, unit: &str) -> (String, String) {
     (group.to_owned(), String::new())
 }
 
-/// The mechanism at the coordinates of all actuators, by row; none where a position cannot be reached.
-pub fn drawing_at(scene: &Scene, coordinates: &[Vec<f64>]) -> Option<Drawing> {
+/// The mechanism in the rows of a page whose axis is the only actuator's coordinate; none where a position cannot be
+/// reached.
+pub fn drawing_along(scene: &Scene, page: &Page) -> Option<Drawing> {
+    let axis = page.columns.get(page.axis?)?;
     let model = loaded_model(scene).ok()?;
     let plan = model.plan();
     let mut pose = plan.pose();
     let mut motion = plan.motion();
     let mut states = BodyStates::new(plan);
-    let rest = vec![0.0; plan.actuators()];
-    let mut poses: Vec<Vec<BodyPose>> = Vec::with_capacity(coordinates.len());
-    for q in coordinates {
-        plan.positions(q, &mut pose).ok()?;
+    let rest = [0.0];
+    if plan.actuators() != rest.len() {
+        return None;
+    }
+    let mut poses: Vec<Vec<BodyPose>> = Vec::with_capacity(axis.values.len());
+    for &q in &axis.values {
+        plan.positions(&[q], &mut pose).ok()?;
         plan.velocities(&pose, &rest, &mut motion);
         states.fill_velocities(plan, &pose, &motion);
         let bodies = (0..scene.mechanism.bodies.len()).map(BodyId);
@@ -95,7 +100,7 @@ pub fn drawing_at(scene: &Scene, coordinates: &[Vec<f64>]) -> Option<Drawing> {
         poses.push(bodies.map(pose_of).collect());
     }
     let modelled = plan.placed_bodies();
-    let choice = RowChoice::of(poses.len(), 1);
+    let choice = RowChoice::all(poses.len());
     let drawing = plane_drawing(scene, (&poses, &modelled), &choice, Vec::new());
     Some(drawing)
 }

@@ -5,5 +5,8 @@ pub mod compute;
 pub mod figures;
 #[cfg(feature = "output")]
 pub(crate) mod output;
+mod page;
 #[cfg(feature = "output")]
 pub(crate) use output::reduction_outcome;
+pub(crate) use page::page_of;
+pub use page::reduction_page;

@@ -1,26 +1,23 @@
 //! Writes the reduced parameters: table, figures, summary and interpolation table.
 
 use super::figures;
+use super::page::page_of;
 use crate::explain::StudyError;
-use crate::number_format::{coordinate_unit, count, digits, digits_within};
+use crate::number_format::{coordinate_unit, digits, digits_within};
 use crate::output::{Outcome, Picture};
-use crate::page::{drawing_at, table_page};
+use crate::page::drawing_along;
 use crate::ranges::extent;
 use crate::reduce::compute::{
     Peak, ReducedScene, Reduction, RoundingErrors, TableRequest, compute_reduction, inertia_units,
     peak_between_rows, tabulate,
 };
-use dwell_findings::{Record, Table};
+use dwell_findings::Record;
 use dwell_kinetostatics::Coefficients;
-use dwell_page::Page;
 use dwell_report::{Figure, Files, TableFormat};
 use dwell_scene::Scene;
 
 /// The figures that are drawn unless others are wanted: m, ½m′, and the first reactions.
 const MAIN_FIGURES: [&str; 2] = ["reduced", "reaction"];
-
-/// The column of m in the table.
-const M_COLUMN: usize = 1;
 
 /// The reduced parameters of a scene over its range, at `points` positions (two or more) if given, and an interpolation
 /// table if requested.
@@ -36,8 +33,7 @@ pub fn reduce(
     let reduction = compute_reduction(scene, points)?;
     let mut outcome = reduction_outcome(&reduction)?;
     if let Some(run) = &mut outcome.run {
-        let coordinates: Vec<Vec<f64>> = reduction.curves.q.iter().map(|q| vec![*q]).collect();
-        run.drawing = drawing_at(scene, &coordinates);
+        run.drawing = drawing_along(scene, run);
     }
     if let Some(request) = table {
         let tabulation = tabulate(&reduction.prepared, &request)?;
@@ -79,56 +75,11 @@ pub(crate) fn reduction_outcome<P: ReducedScene>(
     Ok(Outcome {
         summary: summary(reduction, peak, note.as_deref()),
         record: record(reduction, peak),
-        run: Some(Box::new(page(reduction, &table, peak))),
+        run: Some(Box::new(page_of(reduction, &table, peak))),
         files,
         pictures,
         ..Outcome::default()
     })
-}
-
-/// The rows on a page; the largest m may be between them.
-fn page<P: ReducedScene>(reduction: &Reduction<P>, table: &Table, peak: Option<Peak>) -> Page {
-    let prepared = &reduction.prepared;
-    let mut page = table_page(prepared.file(), "reduce", table, column_group);
-    let positions = count(table.rows.len(), "position");
-    page.subtitle = format!("{positions} of {}", prepared.coordinate_name());
-    if let Some(peak) = peak
-        && let Some(of_m) = page.peaks.iter_mut().find(|of| of.column == M_COLUMN)
-    {
-        of_m.ends[1] = [peak.m, peak.q];
-    }
-    page
-}
-
-/// What belongs in one chart with a column of the table, and what it is.
-fn column_group(name: &str, _: &str) -> (String, String) {
-    let (group, description) = match name {
-        "m" => ("Generalised inertia", "m(q): generalised inertia"),
-        "half_dm" => ("Half its slope, ½m′", "½ dm/dq"),
-        "V" => ("Potential energy", "potential energy of the loads"),
-        "relative_error" => (
-            "Rounding",
-            "estimated rounding error, relative to the largest value of each coefficient",
-        ),
-        name if name.ends_with(".a") => (
-            "Reaction coefficients a",
-            "reaction for a unit acceleration of the coordinate, without speed",
-        ),
-        name if name.ends_with(".b") => (
-            "Reaction coefficients b",
-            "reaction for a unit speed of the coordinate, without acceleration",
-        ),
-        name if name.ends_with(".w") => (
-            "Generalised forces w",
-            "generalised force of the load at magnitude one",
-        ),
-        name if name.contains(".c.") => (
-            "Reaction coefficients c",
-            "reaction for a unit of the load's magnitude, at rest",
-        ),
-        _ => ("Coordinates and others", ""),
-    };
-    (group.to_owned(), description.to_owned())
 }
 
 /// The rounding errors, rounded up to powers of ten.

@@ -3,9 +3,9 @@
 use super::explain::explain_position;
 use super::prepared::PreparedSpaceScene;
 use crate::explain::StudyError;
-use crate::export::description::{domain, drive_effect, magnitude_effect};
+use crate::export::description::{domain, drive_effect, magnitude_effect, varying_input};
 use crate::export::output::{ExportTarget, export_machine};
-use crate::export::{ExportRequest, explain_fit};
+use crate::export::{ExportRequest, explain_fit, no_operations};
 use crate::output::Outcome;
 use crate::reduce::compute::{ReducedScene as _, Reduction};
 use dwell_export::{
@@ -40,6 +40,10 @@ fn fitted(scene: &SpaceScene, asked: &ExportRequest) -> Result<Export, StudyErro
         asked.interval,
     )?;
     let machine = describe(&prepared, domain);
+    if asked.exact {
+        let reason = "loops in space are closed by Newton's method";
+        return Err(no_operations(&scene.file, reason));
+    }
     let mut sampler = SpaceSampler::new(&prepared, &machine);
     Export::new(machine.clone(), asked.request, &mut sampler).map_err(|error| match error {
         FitError::Sampler(error) => explain_position(scene, prepared.model.model().plan(), &error),
@@ -75,6 +79,7 @@ fn describe(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> MachineDescrip
     let mut left_out = Vec::new();
     let loads = scene.loads.iter().map(|load| {
         let (unit, is_damper) = load_unit(&load.kind);
+        left_out.extend(varying_input("the load", &load.name, &load.magnitude));
         LoadDescription {
             name: load.name.clone(),
             effect: magnitude_effect(&load.magnitude, is_damper, load.kind.is_conservative()),
@@ -98,6 +103,10 @@ fn describe(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> MachineDescrip
             "the statically indeterminate reactions {}",
             names.join(", ")
         ));
+    }
+    let spec = scene.motion.as_ref();
+    if spec.is_some_and(|spec| !spec.events.is_empty()) {
+        left_out.push("the events of [motion]".to_owned());
     }
     let [start, q_dot] = initial(scene);
     let q = match domain.revolutions {

@@ -2,14 +2,13 @@
 
 use super::compute_reduction_in_space;
 use super::prepared::PreparedSpaceScene;
-use super::views::SpacePositions;
+use super::views::{SpacePositions, page_drawing};
 use crate::explain::StudyError;
 use crate::number_format::{count, digits};
 use crate::output::{Outcome, Picture, symbol};
 use crate::reduce::compute::ReducedScene as _;
 use crate::reduce::reduction_outcome;
 use dwell_geometry::Range;
-use dwell_geometry::space::Placement;
 use dwell_scene::SpaceScene;
 
 /// Intervals of a revolution, or of the range, from which paths are drawn.
@@ -22,6 +21,10 @@ const DRAWN_INTERVALS: usize = 240;
 pub fn reduce_in_space(scene: &SpaceScene, points: Option<usize>) -> Result<Outcome, StudyError> {
     let reduction = compute_reduction_in_space(scene, points)?;
     let mut outcome = reduction_outcome(&reduction)?;
+    if let Some(run) = &mut outcome.run {
+        let rows = reduction.prepared.placements(&run.columns[0].values)?;
+        run.drawing = Some(page_drawing(scene, rows, Vec::new()));
+    }
     let positions = reduction.prepared.drawn_positions()?;
     let name = |rest: &str| format!("{}-mechanism.{rest}", scene.name);
     let figure = Picture::figure(scene, name("png"), true, positions.figure());
@@ -34,15 +37,6 @@ pub fn reduce_in_space(scene: &SpaceScene, points: Option<usize>) -> Result<Outc
 impl<'a> PreparedSpaceScene<'a> {
     /// The mechanism over its range, for pictures: at the start, and in positions that follow each other.
     fn drawn_positions(&self) -> Result<SpacePositions<'a>, StudyError> {
-        let plan = self.model.model().plan();
-        let mut pose = plan.pose();
-        let bodies = 0..self.scene.mechanism.bodies.len();
-        let mut placements = |q: f64| {
-            plan.positions(&[q], &mut pose)
-                .map_err(|e| self.explain(&e))?;
-            let all = bodies.clone().map(|b| plan.placement(&pose, b));
-            Ok::<Vec<Placement>, StudyError>(all.collect())
-        };
         let turns = match self.range() {
             Range::Revolutions(count) => count as usize,
             _ => 1,
@@ -57,12 +51,13 @@ impl<'a> PreparedSpaceScene<'a> {
             false => format!("{} = {} m", symbol(self.coordinate_name()), digits(q, 4)),
         };
         let describe = |q: f64| describe(q).replace('-', "−");
-        let all = q.iter().map(|&q| Ok((placements(q)?, describe(q))));
-        let all = all.collect::<Result<Vec<_>, StudyError>>()?;
+        let names = q.iter().map(|&q| describe(q));
+        let all: Vec<_> = self.placements(&q)?.into_iter().zip(names).collect();
         let start = self.scene.assembly.q[0];
+        let drawn = self.placements(&[start])?.pop().unwrap_or_default();
         Ok(SpacePositions {
             scene: self.scene,
-            drawn: placements(start)?,
+            drawn,
             drawn_at: describe(start),
             provenance: format!("the mechanism at {}", count(all.len(), "position")),
             all,

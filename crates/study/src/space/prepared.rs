@@ -7,7 +7,7 @@ use crate::number_format::count;
 use crate::output::{indeterminate_note, symbol};
 use crate::ranges::equally_spaced;
 use crate::reduce::compute::{InertiaAt, ReducedLoad, ReducedScene, UnitLoadCurves};
-use dwell_geometry::space::{ActuatorKind, Plan};
+use dwell_geometry::space::{ActuatorKind, Placement, Plan};
 use dwell_geometry::{ActuatorId, PositionError, Range};
 use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};
 use dwell_kinetostatics::{
@@ -58,6 +58,26 @@ impl<'a> PreparedSpaceScene<'a> {
             model,
             indeterminate,
         })
+    }
+
+    /// The placements of all bodies at coordinates, rad or m.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where one of them cannot be reached.
+    pub(super) fn placements(
+        &self,
+        coordinates: &[f64],
+    ) -> Result<Vec<Vec<Placement>>, StudyError> {
+        let plan = self.model.model().plan();
+        let mut pose = plan.pose();
+        let bodies = 0..self.scene.mechanism.bodies.len();
+        let mut placements = |q: f64| {
+            plan.positions(&[q], &mut pose)
+                .map_err(|e| self.explain(&e))?;
+            let all = bodies.clone().map(|b| plan.placement(&pose, b));
+            Ok(all.collect())
+        };
+        coordinates.iter().map(|q| placements(*q)).collect()
     }
 
     pub(super) fn explain(&self, error: &PositionError) -> StudyError {

@@ -1,5 +1,6 @@
 //! The extrema of the columns of a trajectory, with their errors, as they are listed.
 
+#[cfg(feature = "output")]
 use crate::number_format::{digits_within, number};
 use crate::ranges::extent;
 use crate::trajectory::compute::{Extremum, TrajectoryResults};
@@ -13,12 +14,15 @@ pub(crate) struct ColumnExtrema {
     /// The estimated error of its values, in its unit.
     pub(crate) error: f64,
     /// Extent of the abscissa.
+    #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for texts"))]
     span: f64,
 }
 
 /// An extremum is found to this part of the abscissa: there, a rounding of its value is the change of a parabola.
+#[cfg(feature = "output")]
 const FOUND_WITHIN: f64 = 1e-6;
 
+#[cfg(feature = "output")]
 impl ColumnExtrema {
     /// An extremum and where it occurs, to the digits that their errors leave.
     pub(crate) fn texts(&self, Extremum { value, at }: Extremum) -> [String; 2] {
@@ -53,7 +57,9 @@ impl ColumnExtrema {
             unit: self.unit,
         }
     }
+}
 
+impl ColumnExtrema {
     /// The extremum of larger magnitude.
     pub(crate) fn largest(&self) -> Extremum {
         let [min, max] = self.ends;

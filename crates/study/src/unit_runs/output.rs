@@ -4,7 +4,7 @@ use super::compute::{ComparedCoefficient, UnitRuns, compute_unit_runs};
 use crate::explain::{Labels, StudyError, scene_error};
 use crate::number_format::{coordinate_unit, count, digits};
 use crate::output::{Outcome, Picture, provenance_line};
-use crate::page::{drawing_at, table_page, unit_group};
+use crate::page::{drawing_along, table_page, unit_group};
 use crate::progress::Progress;
 use crate::trajectory::output::TrajectoryOutcome;
 use dwell_report::{Block, Document, Figure, Files, TableFormat};
@@ -29,8 +29,7 @@ pub fn unit_runs(
         "the two kinetostatic runs and their combination at {}",
         count(table.rows.len(), "position")
     );
-    let coordinates: Vec<Vec<f64>> = runs.combined.q.iter().map(|q| vec![*q]).collect();
-    run.drawing = drawing_at(scene, &coordinates);
+    run.drawing = drawing_along(scene, &run);
     let name = |rest: &str| format!("{}-{rest}", scene.name);
     let mut files = Files::new();
     for (run, table) in ["run-i", "run-ii"].into_iter().zip(&runs.runs) {

@@ -6,7 +6,7 @@ use dwell_scene::{AnyScene, Scene};
 use dwell_study::{ExportTarget, compute_export, export_in_space};
 
 /// The cases that cannot be exported as they are, with words of the reason.
-const REFUSED: [(&str, &str); 7] = [
+pub(crate) const REFUSED: [(&str, &str); 7] = [
     ("boom", "2 actuators"),
     ("double-pendulum", "2 actuators"),
     ("expressions", "2 actuators"),

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
 mod cases;
+mod exact;
 mod machines;
 mod refusals;
 mod single_dwell;

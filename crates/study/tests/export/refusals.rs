@@ -19,6 +19,16 @@ fn several_freedoms_and_dry_friction_are_refused_by_name() {
 }
 
 #[test]
+fn laws_known_by_values_have_no_operations() {
+    let asked = ExportRequest {
+        exact: true,
+        ..request(1e-6, Precision::Double)
+    };
+    let found = message("cam", &asked);
+    assert!(found.contains("no exact export: a law"), "{found}");
+}
+
+#[test]
 fn an_interval_outside_the_range_is_refused() {
     let mut asked = request(1e-6, Precision::Double);
     asked.interval = Some((1.0, 0.5));

@@ -102,6 +102,7 @@ pub(crate) fn case(name: &str) -> Scene {
 /// What is asked for, over the whole range.
 pub(crate) fn request(accuracy: f64, precision: Precision) -> ExportRequest {
     ExportRequest {
+        exact: false,
         request: Request {
             accuracy,
             precision,

@@ -36,6 +36,8 @@ pub struct CheckedStates {
     pub motion_text: &'static str,
     /// The frames of all bodies along it, close to each other.
     pub body_poses: Vec<Vec<[f64; 3]>>,
+    /// At the same positions: the time (s), and the force of each actuator (N or N m).
+    pub actuator_forces: Vec<(f64, Vec<f64>)>,
     /// The requested reactions that are statically indeterminate: claimed, but not a result.
     pub indeterminate: HashSet<Reaction>,
     /// The checks of the states, then of the reference.
@@ -75,10 +77,11 @@ pub(crate) fn check(
         mass_matrices.push(model.mass_matrix());
     }
     let fine = motions(&model, DRAWN_POSES).next();
-    let mut body_poses = Vec::with_capacity(DRAWN_POSES);
+    let (mut body_poses, mut actuator_forces) = (Vec::new(), Vec::new());
     for request in fine.into_iter().flatten() {
-        model.step_to(&request.q)?;
+        let state = model.state(&request)?;
         body_poses.push(model.body_poses());
+        actuator_forces.push((state.t, state.tau));
     }
     let start = model.assembly_poses.clone();
     let mechanism = &scene.mechanism;
@@ -102,6 +105,7 @@ pub(crate) fn check(
         drawn_count: drawn,
         motion_text: motion,
         body_poses,
+        actuator_forces,
         indeterminate: indeterminate_reactions(scene, model.model.plan()),
         findings,
     })

@@ -31,7 +31,7 @@ const REPORTS: [(&str, &str, &str); 6] = [
     ),
     (
         "mutations.md",
-        "Deliberate faults",
+        "Mutation study",
         "which checks detect which fault (just mutations)",
     ),
     (
@@ -63,7 +63,7 @@ pub(super) fn html(results: &[CaseResult<'_>]) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "<li><a href=\"{path}\">{title}</a>: {what}</li>");
     }
-    text += "</ul></nav>\n<div class=\"wide\"><table>\n<thead><tr><th scope=\"col\">case</th>";
+    text += "</ul></nav>\n<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">case</th>";
     for check in Check::ALL {
         let _ = write!(
             text,

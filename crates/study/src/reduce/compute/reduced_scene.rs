@@ -163,7 +163,6 @@ impl ReducedScene for PreparedScene<'_> {
         self.reactions_of_varying_inertias(q)
     }
 
-    #[cfg(feature = "output")]
     fn fast_turns(&self, rows: &[f64]) -> Vec<[f64; 2]> {
         super::fast_turns(self, rows)
     }

@@ -26,7 +26,9 @@ pub(crate) fn space_page(
         evaluator.evaluate(&sample, time).ok()?;
         Some(evaluator.placements.clone())
     };
-    let rows = choice.rows().map(|k| place(results.row_number(k)));
+    let long = results.long_rows.as_ref();
+    let rows = choice.rows();
+    let rows = rows.map(|k| place(long.map_or(k, |long| long.row_number(k))));
     // A row that was evaluated can be evaluated again.
     if let Some(rows) = rows.collect::<Option<Vec<_>>>() {
         let arrows = arrows(scene, computed, reactions);

@@ -103,7 +103,7 @@ fn paths(scene: &SpaceScene) -> Vec<DrawnPath> {
         let one = |(name, p): &(String, Vec3)| DrawnPath {
             at: anchor(BodyId(b), *p),
             name: format!("{body}.{name}"),
-            requested: false,
+            requested: true,
         };
         points.iter().map(one).collect()
     };

@@ -154,12 +154,6 @@ impl TrajectoryResults {
         long.map_or(self.rows.len(), |long| long.table.len())
     }
 
-    /// The number of the position of the `k`th row in memory.
-    pub(crate) fn row_number(&self, k: usize) -> usize {
-        let long = self.long_rows.as_ref();
-        long.map_or(k, |long| long.row_number(k))
-    }
-
     /// All values of a column.
     pub(crate) fn values(&self, column: usize) -> io::Result<Vec<f64>> {
         match &self.long_rows {

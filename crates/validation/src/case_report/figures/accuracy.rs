@@ -141,6 +141,13 @@ pub(crate) fn finite_differences(prepared: &PreparedScene<'_>, curves: &[ErrorCu
         });
         chart.into()
     };
+    // A quantity that is zero has no relative error.
+    let has_points = |curve: &&ErrorCurve| {
+        curve
+            .second_order
+            .iter()
+            .any(|&(_, error)| error > 0.0 && error.is_finite())
+    };
     figure(
         prepared.scene,
         "differences",
@@ -148,7 +155,7 @@ pub(crate) fn finite_differences(prepared: &PreparedScene<'_>, curves: &[ErrorCu
         "Differences of the unit-run coefficients from finite differences, over the step. The V is the error of the \
          differences: truncation on the right, rounding on the left. ½m′ is differenced from E(q); b with the joint \
          really released, ∂m₁₂/∂q₁ − ½ ∂m₁/∂q₂.",
-        curves.iter().map(panel).collect(),
+        curves.iter().filter(has_points).map(panel).collect(),
         "reduced model by unit runs, and differences of the kinetic energy",
     )
 }

@@ -35,7 +35,8 @@ pub(crate) fn history(prepared: &PreparedScene<'_>, history: &History) -> Figure
     let mut panels = vec![chart(title, format!("d{q}/dt"), "rad/s", velocity)];
     let named = prepared.reaction_units();
     for (unit, noun) in [("N", "force"), ("N m", "moment")] {
-        for (title, label, reactions) in reaction_panels(&named, unit, noun) {
+        let acts = |k: usize| history.rows.iter().any(|row| row[5 + k] != 0.0);
+        for (title, label, reactions) in reaction_panels(&named, unit, noun, &acts) {
             let line = |(name, k)| Series::line(name, curve(5 + k));
             let lines = reactions.into_iter().map(line).collect();
             panels.push(chart(title, label, unit, lines));
@@ -48,7 +49,11 @@ pub(crate) fn history(prepared: &PreparedScene<'_>, history: &History) -> Figure
         )
     });
     let fitted = fitted.unwrap_or_default();
-    let text = format!("No torque. Reactions by R = a q̈ + b q̇².{fitted}");
+    let reactions = match panels.len() {
+        1 => "",
+        _ => " Reactions by R = a q̈ + b q̇².",
+    };
+    let text = format!("No torque.{reactions}{fitted}");
     let columns = if panels.len() > 2 { 2 } else { 1 };
     let provenance = format!("reduced model, {}", SolverSettings::default().describe());
     Figure {
@@ -67,13 +72,16 @@ pub(crate) fn history(prepared: &PreparedScene<'_>, history: &History) -> Figure
 /// A reaction's name, and its index among those of the model.
 type NamedReaction = (String, usize);
 
-/// Title, label and reactions, by name and index, of at most two panels of a unit. One reaction alone needs no name.
+/// Title, label and reactions, by name and index, of at most two panels of a unit. One reaction alone needs no name;
+/// those that never act are left out.
 fn reaction_panels(
     named: &[(String, &str)],
     unit: &str,
     noun: &str,
+    acts: &dyn Fn(usize) -> bool,
 ) -> Vec<(String, String, Vec<NamedReaction>)> {
     let all = named.iter().enumerate().filter(|(_, (_, of))| *of == unit);
+    let all = all.filter(|(k, _)| acts(*k));
     let all: Vec<NamedReaction> = all.map(|(k, (name, _))| (name.clone(), k)).collect();
     let panels = all.len().div_ceil(MAX_CURVES).max(1);
     let per_panel = all.len().div_ceil(panels).max(1);

@@ -70,11 +70,11 @@ fn distinct_positions(body_poses: &[Vec<BodyPose>]) -> Vec<usize> {
 
 /// The actuator forces along those states.
 pub(crate) fn actuator_forces(scene: &Scene, checked: &CheckedStates) -> Figure {
-    let drawn = &checked.states[..checked.drawn_count];
+    let drawn = &checked.actuator_forces;
     let panel = |(k, actuator): (usize, &dwell_geometry::Actuator)| {
         let unit = actuator.coordinate().force_unit();
         let what = if unit == "N" { "force" } else { "moment" };
-        let points = drawn.iter().map(|state| [state.t, state.tau[k]]);
+        let points = drawn.iter().map(|(t, forces)| [*t, forces[k]]);
         let title = format!("Actuator {what} of {}", symbol(&actuator.name));
         let line = vec![Series::line("", points.collect())];
         chart(title, Axis::new("time", "s"), Axis::new(what, unit), line).into()
@@ -93,7 +93,10 @@ pub(crate) fn actuator_forces(scene: &Scene, checked: &CheckedStates) -> Figure 
 }
 
 fn provenance(checked: &CheckedStates) -> String {
-    format!("the mechanism at {}", count(checked.drawn_count, "state"))
+    format!(
+        "the mechanism at {}",
+        count(checked.body_poses.len(), "state")
+    )
 }
 
 #[cfg(test)]

@@ -89,17 +89,26 @@ pub(crate) fn work_precision(prepared: &PreparedScene<'_>, motion: &CheckedFreeM
     let period: (&str, Value) = ("relative error of the period", |r| r.period_error);
     let reaction: (&str, Value) = ("largest relative error", |r| r.reaction_error);
     let of_reaction = ("largest relative error of a reaction", reaction.1);
-    let text = "Each point is one tolerance from 1e-4 to 1e-13, relative and absolute alike, over all revolutions of the motion. \
-         Period: the first revolution against the quadrature. Energy: its largest drift. Reaction: the largest error \
-         at the steps against the exact state at the same time, relative to the largest reaction. Wall times are minima of three runs on this machine, while other threads were running.";
-    let panels = vec![
+    let mut text =
+        "Each point is one tolerance from 1e-4 to 1e-13, relative and absolute alike, over all revolutions of the motion. \
+         Period: the first revolution against the quadrature. Energy: its largest drift. "
+            .to_owned();
+    let mut panels = vec![
         panel("Energy drift", &evaluations, drift),
         panel("Period", &evaluations, period),
-        panel("Reactions", &evaluations, reaction),
         panel("Time", &time, drift),
         panel("Error over tolerance", &tolerance, drift),
-        panel("Error over tolerance", &tolerance, of_reaction),
     ];
+    // Reactions that are zero have no relative error.
+    let runs = motion.tolerance_runs.iter();
+    if runs.map(reaction.1).any(|error| error > 0.0) {
+        panels.insert(2, panel("Reactions", &evaluations, reaction));
+        panels.push(panel("Error over tolerance", &tolerance, of_reaction));
+        text += "Reaction: the largest error at the steps against the exact state at the same time, relative to the \
+                 largest reaction. ";
+    }
+    text +=
+        "Wall times are minima of three runs on this machine, while other threads were running.";
     let (name, title, provenance) = (
         "work-precision",
         "Cost against error",
@@ -107,6 +116,6 @@ pub(crate) fn work_precision(prepared: &PreparedScene<'_>, motion: &CheckedFreeM
     );
     Figure {
         columns: 2,
-        ..figure(prepared.scene, name, title, text, panels, provenance)
+        ..figure(prepared.scene, name, title, &text, panels, provenance)
     }
 }

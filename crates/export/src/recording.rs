@@ -1,0 +1,349 @@
+//! A number that writes down what is done with it. The model is evaluated once in it, through the lines that evaluate it
+//! everywhere, and what was written down is the exported code.
+//!
+//! Decisions are made by values, as everywhere; they are not written down. Code that was recorded at one coordinate is
+//! therefore that of another one only where all decisions are the same: [`record`] compares recordings at several.
+
+use crate::straight_line::{Operand, Operation, StraightLine};
+use dwell_numerics::Scalar;
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+use thiserror::Error;
+
+/// Why there is no straight-line code.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum RecordingError<E> {
+    /// The model has no value.
+    #[error("{0}")]
+    Evaluation(E),
+    /// A function is known by its values alone.
+    #[error("a function is known by its values alone")]
+    Function,
+    /// Other operations at another coordinate.
+    #[error("the operations at {first} and {second} differ")]
+    Differs {
+        /// A coordinate, rad or m.
+        first: f64,
+        /// Another one.
+        second: f64,
+    },
+}
+
+/// What is written down.
+#[derive(Debug, Default)]
+struct Record {
+    operations: Vec<Operation>,
+    /// Where an operation stands, so that each stands once.
+    known: HashMap<(u8, [OperandKey; 2]), usize>,
+    /// Whether a function was met that has no operations.
+    has_function: bool,
+}
+
+/// An operand that can be compared: its kind, and its index or its bits.
+type OperandKey = (u8, u64);
+
+thread_local! {
+    static RECORD: RefCell<Record> = RefCell::default();
+}
+
+/// The operations of functions of a coordinate. They are recorded at each of the coordinates, rad or m, and must be the same.
+///
+/// # Errors
+/// [`RecordingError`].
+pub fn record<E>(
+    coordinates: &[f64],
+    mut evaluate: impl FnMut(RecordedNumber) -> Result<Vec<RecordedNumber>, E>,
+) -> Result<StraightLine, RecordingError<E>> {
+    let mut first: Option<(f64, StraightLine)> = None;
+    for &q in coordinates {
+        RECORD.take();
+        let outputs = evaluate(RecordedNumber {
+            value: q,
+            operand: Recorded::Coordinate,
+        });
+        let record = RECORD.take();
+        let outputs = outputs.map_err(RecordingError::Evaluation)?;
+        if record.has_function {
+            return Err(RecordingError::Function);
+        }
+        let code = StraightLine {
+            operations: record.operations,
+            outputs: outputs.iter().map(RecordedNumber::operand).collect(),
+        };
+        let code = code.without_unused();
+        match &first {
+            None => first = Some((q, code)),
+            Some((_, same)) if *same == code => {}
+            Some((other, _)) => {
+                return Err(RecordingError::Differs {
+                    first: *other,
+                    second: q,
+                });
+            }
+        }
+    }
+    Ok(first.map(|(_, code)| code).unwrap_or_default())
+}
+
+/// Where a number comes from.
+#[derive(Debug, Clone, Copy, Default)]
+enum Recorded {
+    #[default]
+    Constant,
+    Coordinate,
+    Result(u32),
+}
+
+/// A number of which each operation is recorded.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct RecordedNumber {
+    value: f64,
+    operand: Recorded,
+}
+
+impl RecordedNumber {
+    fn operand(&self) -> Operand {
+        match self.operand {
+            Recorded::Constant => Operand::Constant(self.value),
+            Recorded::Coordinate => Operand::Coordinate,
+            Recorded::Result(k) => Operand::Result(k as usize),
+        }
+    }
+
+    fn is_constant(self) -> bool {
+        matches!(self.operand, Recorded::Constant)
+    }
+
+    /// Whether it is this constant.
+    fn is(self, value: f64) -> bool {
+        self.is_constant() && self.value == value
+    }
+
+    /// The result of an operation; of constants it is one.
+    fn result(value: f64, operation: Operation) -> Self {
+        let operands = operation.operands();
+        if operands.iter().all(|o| matches!(o, Operand::Constant(_))) {
+            return Self::from_f64(value);
+        }
+        let key = (kind(&operation), operands.map(key));
+        let index = RECORD.with_borrow_mut(|record| {
+            let next = record.operations.len();
+            let index = *record.known.entry(key).or_insert(next);
+            if index == next {
+                record.operations.push(operation);
+            }
+            index
+        });
+        Self {
+            value,
+            // No machine's code has so many operations that this could be cut.
+            operand: Recorded::Result(u32::try_from(index).unwrap_or(u32::MAX)),
+        }
+    }
+}
+
+fn kind(operation: &Operation) -> u8 {
+    match operation {
+        Operation::Add(..) => 0,
+        Operation::Subtract(..) => 1,
+        Operation::Multiply(..) => 2,
+        Operation::Divide(..) => 3,
+        Operation::Negate(_) => 4,
+        Operation::SquareRoot(_) => 5,
+        Operation::Sine(_) => 6,
+        Operation::Cosine(_) => 7,
+        Operation::Angle(..) => 8,
+    }
+}
+
+fn key(operand: Operand) -> OperandKey {
+    match operand {
+        Operand::Constant(value) => (0, value.to_bits()),
+        Operand::Coordinate => (1, 0),
+        Operand::Result(k) => (2, k as u64),
+    }
+}
+
+impl Scalar for RecordedNumber {
+    const HAS_DERIVATIVES: bool = false;
+    const EPSILON: f64 = f64::EPSILON;
+
+    fn from_f64(value: f64) -> Self {
+        Self {
+            value,
+            operand: Recorded::Constant,
+        }
+    }
+
+    fn value(self) -> f64 {
+        self.value
+    }
+
+    fn sqrt(self) -> Self {
+        Self::result(self.value.sqrt(), Operation::SquareRoot(self.operand()))
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = Scalar::sin_cos(self.value);
+        let of = self.operand();
+        (
+            Self::result(sin, Operation::Sine(of)),
+            Self::result(cos, Operation::Cosine(of)),
+        )
+    }
+
+    fn atan2(self, other: Self) -> Self {
+        let operation = Operation::Angle(self.operand(), other.operand());
+        Self::result(self.value.atan2(other.value), operation)
+    }
+
+    fn compose(self, derivatives: &[f64; 4]) -> Self {
+        if !self.is_constant() {
+            RECORD.with_borrow_mut(|record| record.has_function = true);
+        }
+        Self::from_f64(derivatives[0])
+    }
+}
+
+impl Add for RecordedNumber {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        match (self.is(0.0), other.is(0.0)) {
+            (true, _) => other,
+            (_, true) => self,
+            _ => {
+                let operation = Operation::Add(self.operand(), other.operand());
+                Self::result(self.value + other.value, operation)
+            }
+        }
+    }
+}
+
+impl Sub for RecordedNumber {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        match (self.is(0.0), other.is(0.0)) {
+            (_, true) => self,
+            (true, _) => -other,
+            _ => {
+                let operation = Operation::Subtract(self.operand(), other.operand());
+                Self::result(self.value - other.value, operation)
+            }
+        }
+    }
+}
+
+impl Mul for RecordedNumber {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        // Every value of a position is finite, and so its product with zero is zero.
+        if self.is(0.0) || other.is(0.0) {
+            return Self::from_f64(0.0);
+        }
+        let (one, rest) = if self.is_constant() {
+            (self, other)
+        } else {
+            (other, self)
+        };
+        match (one.is(1.0), one.is(-1.0)) {
+            (true, _) => rest,
+            (_, true) => -rest,
+            _ => {
+                let operation = Operation::Multiply(self.operand(), other.operand());
+                Self::result(self.value * other.value, operation)
+            }
+        }
+    }
+}
+
+impl Div for RecordedNumber {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        match (self.is(0.0) && other.value != 0.0, other.is(1.0)) {
+            (true, _) => Self::from_f64(0.0),
+            (_, true) => self,
+            _ => {
+                let operation = Operation::Divide(self.operand(), other.operand());
+                Self::result(self.value / other.value, operation)
+            }
+        }
+    }
+}
+
+impl Neg for RecordedNumber {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self::result(-self.value, Operation::Negate(self.operand()))
+    }
+}
+
+impl AddAssign for RecordedNumber {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for RecordedNumber {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::convert::Infallible;
+
+    fn number(value: f64) -> RecordedNumber {
+        RecordedNumber::from_f64(value)
+    }
+
+    #[test]
+    fn each_operation_stands_once_and_constants_are_computed() {
+        let code = record(&[0.3, 1.1], |q| {
+            let (sin, cos) = q.sin_cos();
+            let square = sin * sin;
+            let folded = number(2.0) * number(3.0) + number(0.0);
+            Ok::<_, Infallible>(vec![
+                square + cos * cos,
+                square * folded,
+                (q * number(0.0)) - q,
+            ])
+        });
+        let code = code.expect("code");
+        // sin, cos, sin², cos², their sum, 6 sin², −q.
+        assert_eq!(code.operations.len(), 7);
+        let [one, six, minus] = code.evaluate(0.8)[..] else {
+            panic!("three outputs");
+        };
+        assert!((one - 1.0).abs() < 1e-15);
+        assert!((six - 6.0 * 0.8_f64.sin().powi(2)).abs() < 1e-15);
+        assert_eq!(minus, -0.8);
+    }
+
+    #[test]
+    fn a_decision_that_depends_on_the_coordinate_is_found() {
+        let absolute = |q: RecordedNumber| {
+            let value = if q.value() < 0.0 { -q } else { q };
+            Ok::<_, Infallible>(vec![value])
+        };
+        assert!(record(&[0.5, 0.7], absolute).is_ok());
+        let differs = RecordingError::Differs {
+            first: 0.5,
+            second: -0.5,
+        };
+        assert_eq!(record(&[0.5, -0.5], absolute), Err(differs));
+    }
+
+    #[test]
+    fn a_function_of_values_has_no_operations() {
+        let law = |q: RecordedNumber| Ok::<_, Infallible>(vec![q.compose(&[1.0, 0.0, 0.0, 0.0])]);
+        assert_eq!(record(&[0.5], law), Err(RecordingError::Function));
+    }
+}

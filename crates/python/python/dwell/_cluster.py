@@ -1,0 +1,132 @@
+"""Sweeps on a cluster: a study's numbered points in blocks that Ray or Dask spreads over its workers.
+
+A block is a shard of ``dwell sweep``: which points it has follows from the study alone, and its rows are Parquet files that are written
+beside their place and renamed when they are whole. So a block of a worker that was killed is computed again, without a row too many or too few.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+from dataclasses import dataclass
+from typing import Any, Callable, Sequence
+
+from ._native import DwellError
+
+#: How often a block is tried again on another worker.
+RETRIES = 5
+
+
+@dataclass(frozen=True)
+class StoredSweep:
+    """A sweep in a folder of Parquet files. ``summary`` is what ``dwell sweep`` writes of it: extremes, means, failed points."""
+
+    folder: pathlib.Path
+    summary: dict[str, Any]
+
+    @property
+    def rows(self) -> int:
+        """How many rows the files have."""
+        return int(self.summary["results"]["rows"]["value"])
+
+    @property
+    def files(self) -> list[pathlib.Path]:
+        """The files in the order of their points."""
+        return sorted(self.folder.glob("part-*.parquet"))
+
+    def to_pandas(self, columns: Sequence[str] | None = None) -> Any:
+        """A pandas DataFrame of some columns, named as ``m.max [kg m2]``, or of all."""
+        import pandas
+
+        return pandas.read_parquet(self.folder, columns=list(columns) if columns is not None else None)
+
+    def to_polars(self) -> Any:
+        """A polars LazyFrame, which reads only what is asked for."""
+        import polars
+
+        return polars.scan_parquet(f"{self.folder}/part-*.parquet")
+
+
+@dataclass(frozen=True)
+class _Study:
+    """What every worker is given."""
+
+    command: str
+    options: tuple[str, ...]
+    folder: str
+
+    @property
+    def scene(self) -> pathlib.Path:
+        """The scene's file, beside the results: its name is theirs."""
+        return pathlib.Path(self.folder) / "study.toml"
+
+    def run(self, *shard: str, threads: int | None = None) -> None:
+        arguments = [self.command, "sweep", str(self.scene), *self.options, "--store", "parquet"]
+        arguments += ["--out", self.folder, "--pictures", "none", *shard]
+        environment = {**os.environ, "NO_COLOR": "1"}
+        if threads is not None:
+            environment["RAYON_NUM_THREADS"] = str(threads)
+        try:
+            done = subprocess.run(arguments, capture_output=True, text=True, env=environment)
+        except OSError as error:
+            where = f"`{self.command}` cannot be run on this worker: {error}"
+            raise DwellError(f"{where}; install the command there, or give its path as `command`") from None
+        if done.returncode != 0:
+            raise DwellError(f"\n{done.stderr.strip()}")
+
+
+def _block(study: _Study, number: int, of: int) -> int:
+    """A block, on one core of a worker."""
+    study.run("--shard", f"{number}/{of}", threads=1)
+    return number
+
+
+def _by_ray(study: _Study, blocks: int) -> None:
+    import ray
+
+    if not ray.is_initialized():
+        ray.init(log_to_driver=False, include_dashboard=False)
+    # A worker that dies takes no block with it; what the command says is no reason to try again.
+    task = ray.remote(max_retries=RETRIES)(_block)
+    ray.get([task.remote(study, k, blocks) for k in range(1, blocks + 1)])
+
+
+def _by_dask(study: _Study, blocks: int) -> None:
+    from distributed import Client, get_client
+
+    try:
+        client, own = get_client(), False
+    except ValueError:
+        client, own = Client(threads_per_worker=1), True
+    try:
+        client.gather([client.submit(_block, study, k, blocks, pure=False) for k in range(1, blocks + 1)])
+    finally:
+        if own:
+            client.close()
+
+
+ENGINES: dict[str, Callable[[_Study, int], None]] = {"ray": _by_ray, "dask": _by_dask}
+
+
+def sweep_on(
+    engine: str, scene: str, options: Sequence[str], folder: str | os.PathLike[str], blocks: int, command: str
+) -> StoredSweep:
+    """Spreads a study over an engine's workers, then checks and summarises all rows here."""
+    if engine not in ENGINES:
+        raise ValueError(f"there is no engine `{engine}`: there are {' and '.join(f'`{name}`' for name in ENGINES)}")
+    if blocks < 1:
+        raise ValueError("blocks must be at least 1")
+    place = pathlib.Path(folder).resolve()
+    study = _Study(shutil.which(command) or command, tuple(options), str(place))
+    place.mkdir(parents=True, exist_ok=True)
+    study.scene.write_text(scene, encoding="utf-8")
+    ENGINES[engine](study, blocks)
+    # All parts are there: this computes nothing, checks every file and finds the extremes.
+    study.run()
+    summary = json.loads((place / "study-sweep.json").read_text(encoding="utf-8"))
+    for left in place.glob(f"study-sweep-*-of-{blocks}.json"):
+        left.unlink()
+    return StoredSweep(place / "study-sweep", summary)
