@@ -94,15 +94,21 @@ web:
     cargo build -p dwell-live --lib --target wasm32-unknown-unknown --profile web
     cargo run --release --example web
 
+# Tests of the live page in Chromium, after `just page`, which installs what they need
+[group('care')]
+live: web
+    cargo build --release --workspace --bins
+    cd tests/page && node live.mjs ../../target/web ../../target/page
+
 # The Python package: built into target/python, its tests, notebooks and types, and what its calls cost. Needs Python 3.10 or later
 [group('care')]
 python:
     cargo build --release --workspace --bins
     crates/python/run.sh
 
-# The HTML pages of every command, all reports and the live page in Chromium, from the file system; pictures in target/page/pictures. Installs Chromium and its driver; needs the reports of `just validate`
+# The HTML pages of every command and all reports in Chromium, from the file system; pictures in target/page/pictures. Installs Chromium and its driver; needs the reports of `just validate`
 [group('care')]
-page: web
+page:
     cargo build --release --workspace --bins
     tests/page/run.sh
 

@@ -18,4 +18,3 @@ PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 npm ci --silent --no-audit --no-fund
 
 ./make.sh "$pages"
 node run.mjs "$pages" "$top/reports"
-node live.mjs "$top/target/web" "$pages"

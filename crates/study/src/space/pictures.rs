@@ -1,7 +1,7 @@
 //! Pictures of a mechanism in space over its range, beside its reduced parameters.
 
-use super::compute_reduction_in_space;
 use super::prepared::PreparedSpaceScene;
+use super::reduction::compute_reduction_in_space;
 use super::views::{SpacePositions, page_drawing};
 use crate::explain::StudyError;
 use crate::number_format::{count, digits};

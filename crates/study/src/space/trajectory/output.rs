@@ -1,6 +1,9 @@
 //! Writes the results along a trajectory in space: tables, figures, page and animation.
 
-use super::{JointReactions, SpaceEvaluator, compute, space_page};
+use super::evaluator::SpaceEvaluator;
+use super::page::space_page;
+use super::reactions::JointReactions;
+use super::rows::compute;
 use crate::explain::StudyError;
 use crate::number_format::digits;
 use crate::output::symbol;
@@ -40,7 +43,7 @@ pub fn analyse_in_space(
     let run = space_page(scene, size, &computed, (&reactions, evaluator.clone()));
     let positions = drawn_positions(scene, &computed, evaluator, swept);
     let mut figures = vec![positions.figure()];
-    figures.extend(super::figures(scene, swept, &computed, span)?);
+    figures.extend(super::figures::figures(scene, swept, &computed, span)?);
     let document = Document::of_file(&scene.file, size, &computed);
     let pictures = (figures, positions.animation());
     let mut outcome = outcome_of(&scene.file, &computed, &document, pictures)?;
@@ -52,7 +55,7 @@ pub fn analyse_in_space(
 }
 
 /// The mechanism along the part of a trajectory that was reached.
-pub(in crate::space) fn drawn_positions<'a>(
+pub(crate) fn drawn_positions<'a>(
     scene: &'a SpaceScene,
     computed: &ComputedTrajectory<'_>,
     mut evaluator: SpaceEvaluator<'_>,
