@@ -49,12 +49,12 @@ lint:
     python3 tests/mutate/named.py
     python3 tests/mutate/selftest.py
 
-# That the computing half compiles without pictures and files, here and for a browser (without that target: here only). Cold it takes minutes, for it builds with other features
+# That the computing half compiles without pictures and files, here and for a browser (without that target: here only), without a warning. Cold it takes minutes, for it builds with other features
 [group('care')]
 computing:
-    cargo check -p dwell-study --no-default-features
+    cargo clippy -p dwell-study --no-default-features -- -D warnings
     @if rustc --print target-libdir --target wasm32-unknown-unknown | xargs test -d; then \
-        cargo check -p dwell-study --no-default-features --target wasm32-unknown-unknown; \
+        cargo clippy -p dwell-study -p dwell-live --no-default-features --target wasm32-unknown-unknown -- -D warnings; \
     else echo "wasm32 is not checked: rustup target add wasm32-unknown-unknown"; fi
 
 # Changes of the source text, one at a time in a scratch copy, and which checks fail by each: reports/source-mutations.md and .txt. An hour; `--named` only the faults of tests/mutate/named.toml
@@ -85,6 +85,20 @@ peers:
 [group('care')]
 octave:
     python3 validation/foreign/run.py
+
+# The live page, in target/web: the analyses as WebAssembly with an editor, as one HTML file and as a folder for a server. Adds the target wasm32-unknown-unknown to Rust where it is missing
+[group('care')]
+web:
+    @rustc --print target-libdir --target wasm32-unknown-unknown | xargs test -d || rustup target add wasm32-unknown-unknown || \
+        { echo "the live page needs Rust's target wasm32-unknown-unknown: rustup target add wasm32-unknown-unknown"; exit 1; }
+    cargo build -p dwell-live --lib --target wasm32-unknown-unknown --profile web
+    cargo run --release --example web
+
+# Tests of the live page in Chromium, after `just page`, which installs what they need
+[group('care')]
+live: web
+    cargo build --release --workspace --bins
+    cd tests/page && node live.mjs ../../target/web ../../target/page
 
 # The Python package: built into target/python, its tests, notebooks and types, and what its calls cost. Needs Python 3.10 or later
 [group('care')]

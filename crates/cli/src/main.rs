@@ -17,6 +17,7 @@ mod simulation;
 mod times;
 mod validate;
 mod values;
+mod view;
 
 use clap::{CommandFactory as _, FromArgMatches as _};
 use dwell_findings::all_pass;
@@ -66,6 +67,9 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
         _ => {}
     }
     let folder = open_folder(options)?;
+    if let Command::View { scene, page } = command {
+        return view::write(options, scene, page.as_deref(), folder).map(|()| true);
+    }
     let bar = progress_bar();
     let lines = LongRunLines::new(name, &bar);
     let done = match command {
@@ -317,7 +321,10 @@ fn run_study(
             dwell_study::sweep(scene, &sweep, &progress)?
         }
         // They are no studies of a scene.
-        Command::Validate { .. } | Command::Schema | Command::Init { .. } => Outcome::default(),
+        Command::Validate { .. }
+        | Command::View { .. }
+        | Command::Schema
+        | Command::Init { .. } => Outcome::default(),
     };
     let early_stop = None;
     Ok(TrajectoryOutcome {

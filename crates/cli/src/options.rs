@@ -239,6 +239,14 @@ pub(crate) enum Command {
         #[arg(long, default_value_t = 1, value_name = "NUMBER")]
         seed: u64,
     },
+    /// Write the live page with a scene, and open it in the browser: there every result follows the scene as it is edited
+    View {
+        /// The scene file, or `-` for standard input
+        scene: PathBuf,
+        /// The live page that `just web` builds (default: dwell.html beside this program, or in ../web)
+        #[arg(long, value_name = "FILE")]
+        page: Option<PathBuf>,
+    },
     /// Print the JSON schema of scene files, for editors
     Schema,
     /// Write a commented scene to begin with; an existing file is not replaced
@@ -263,7 +271,8 @@ impl Command {
             | Self::Runs { scene, .. }
             | Self::Symbolic { scene, .. }
             | Self::Calibrate { scene, .. }
-            | Self::Sweep { scene, .. } => Some(scene),
+            | Self::Sweep { scene, .. }
+            | Self::View { scene, .. } => Some(scene),
             Self::Export(arguments) => Some(&arguments.scene),
             Self::Kinematics(arguments)
             | Self::Statics(arguments)

@@ -3,11 +3,11 @@
 use crate::column_table::ColumnTable;
 use crate::error::Error;
 use crate::mechanism::Mechanism;
-use dwell_dynamics::{Method, Orbit};
-use dwell_study::free_motion::compute::FreeMotionProblem;
+use dwell_dynamics::Method;
 use dwell_study::trajectory::compute::ComputedTrajectory;
 use dwell_study::{
-    Analysis, MotionSolver, SolverSettings, compute_free_motion, compute_trajectory, no_progress,
+    Analysis, MotionSolver, SolverSettings, compute_free_motion, compute_period,
+    compute_trajectory, no_progress,
 };
 
 impl Mechanism {
@@ -109,18 +109,7 @@ impl Mechanism {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn period(&self) -> Result<Period, Error> {
-        let scene = self.scene.inner();
-        let Some(spec) = &scene.motion else {
-            let help = Some("add a motion".to_owned());
-            return Err(scene
-                .error("the scene has no [motion]".to_owned(), help, &[])
-                .into());
-        };
-        let problem = FreeMotionProblem::new(scene, scene, spec)?;
-        let start = problem.initial_reduced_state();
-        let orbit = Orbit::loaded(&problem.machine, start);
-        let plan = self.model.plan();
-        let orbit = orbit.map_err(|e| dwell_study::explain::explain_motion(scene, plan, &e))?;
+        let orbit = compute_period(self.scene.inner())?;
         Ok(Period {
             period: orbit.period,
             energy: orbit.energy,

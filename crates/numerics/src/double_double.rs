@@ -155,9 +155,11 @@ impl Scalar for DoubleDouble {
     }
 }
 
+// In WebAssembly these are calls: evaluations in these numbers would otherwise be most of the module.
 impl Add for DoubleDouble {
     type Output = Self;
-    #[inline]
+    #[cfg_attr(not(target_family = "wasm"), inline)]
+    #[cfg_attr(target_family = "wasm", inline(never))]
     fn add(self, o: Self) -> Self {
         let (hi, rest) = two_sum(self.hi, o.hi);
         let (lo, rest_lo) = two_sum(self.lo, o.lo);
@@ -176,7 +178,8 @@ impl Sub for DoubleDouble {
 
 impl Mul for DoubleDouble {
     type Output = Self;
-    #[inline]
+    #[cfg_attr(not(target_family = "wasm"), inline)]
+    #[cfg_attr(target_family = "wasm", inline(never))]
     fn mul(self, o: Self) -> Self {
         let (hi, rest) = two_product(self.hi, o.hi);
         Self::renormalized((hi, rest + (self.hi * o.lo + self.lo * o.hi)))
@@ -186,7 +189,8 @@ impl Mul for DoubleDouble {
 impl Div for DoubleDouble {
     type Output = Self;
     /// Long division: three quotients, each of what the ones before leave.
-    #[inline]
+    #[cfg_attr(not(target_family = "wasm"), inline)]
+    #[cfg_attr(target_family = "wasm", inline(never))]
     fn div(self, o: Self) -> Self {
         let first = self.hi / o.hi;
         if !first.is_finite() {

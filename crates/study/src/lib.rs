@@ -50,7 +50,6 @@ pub mod exported_runs;
 pub mod free_motion;
 pub mod linearise;
 pub mod reduce;
-#[cfg(feature = "output")]
 mod space;
 mod suspicious_units;
 pub mod sweep;
@@ -67,11 +66,15 @@ pub use equilibria::compute::compute_equilibria;
 pub use explain::{StudyError, SweepError};
 pub use export::{ExportRequest, compute_export};
 pub use exported_runs::{ColumnNames, ExportedTable, SampleInterpolation};
-pub use free_motion::compute::{MotionSolver, compute_free_motion};
+pub use free_motion::compute::{MotionSolver, compute_free_motion, compute_period};
 pub use linearise::compute::{OperatingPoint, compute_linearisation};
 pub use models::{PRESETS, PreparedScene, SolverSettings};
 pub use progress::{Progress, Step, no_progress};
 pub use reduce::compute::{TableRequest, compute_reduction};
+pub use space::{
+    PreparedSpaceScene, compute_reduction_in_space, reduction_page_in_space,
+    trajectory_page_in_space,
+};
 pub use sweep::{Shard, compute_sweep};
 pub use symbolic::compute::{compute_closed_form, symbolic_findings};
 pub use trajectory::compute::{Analysis, compute_trajectory};
@@ -89,8 +92,7 @@ pub use {
     output::{CommandResult, Outcome, PictureFormat, Pictures, add_page, add_summary},
     reduce::output::reduce,
     space::{
-        PreparedSpaceScene, analyse_in_space, check_in_space, export_in_space, reduce_in_space,
-        simulate_in_space,
+        analyse_in_space, check_in_space, export_in_space, reduce_in_space, simulate_in_space,
     },
     sweep::output::{ParameterSweep, RowStore, sweep},
     symbolic::output::{FormulaFormat, symbolic},

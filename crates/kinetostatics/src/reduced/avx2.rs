@@ -4,7 +4,7 @@
 //! single-dwell 37 for 59, four-bar 24 for 41, slider-crank 28 for 44. Compiling [`Lanes`] for AVX2 gains half of
 //! that at best: sums over several steps it takes apart into pieces of 8, 16 and 8 bytes.
 //!
-//! This is the only unsafe code of the project. It is sound as long as such numbers exist only on
+//! Unsafe code is in this file and in the symbols of `dwell-live` only. It is sound as long as such numbers exist only on
 //! processors with AVX2: the type is private, and [`run`] checks the processor first. No operation is fused
 //! with another, so each number has the bits of a scalar evaluation.
 #![allow(unsafe_code, reason = "the gain measured above")]

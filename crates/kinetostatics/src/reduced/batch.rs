@@ -178,8 +178,10 @@ impl Model {
     fn reduce_block<S: LaneScalar>(&self, mut slice: BatchSlice<'_>) -> BatchErrors {
         // For several poses at once, and for single ones where they diverge; few blocks need both.
         let mut lanes: Option<ReductionWorkspace<S>> = None;
-        // An inertia over an angle is looked up, one pose at a time.
-        let in_lanes = self.plan().supports_lanes() && self.pass_model.varying_inertias.is_empty();
+        // An inertia over an angle is looked up, one pose at a time. In WebAssembly four poses take longer than one by one.
+        let in_lanes = cfg!(not(target_family = "wasm"))
+            && self.plan().supports_lanes()
+            && self.pass_model.varying_inertias.is_empty();
         let mut scalar = None;
         let mut errors = Vec::new();
         let mut at = 0;

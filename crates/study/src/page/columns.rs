@@ -38,7 +38,6 @@ impl RowChoice {
     }
 
     /// The rows in memory that are shown.
-    #[cfg(feature = "output")]
     pub(crate) fn rows(&self) -> impl Iterator<Item = usize> {
         self.rows.iter().copied()
     }

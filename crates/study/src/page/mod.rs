@@ -7,16 +7,13 @@ mod plane;
 mod tables;
 
 pub(crate) use columns::{RowChoice, page_columns};
-#[cfg(feature = "output")]
-pub(crate) use tables::unit_group;
-pub(crate) use tables::{drawing_along, table_page};
+pub use tables::{drawing_along, table_page, unit_group};
 
 use crate::trajectory::column_extrema::sorted_extrema;
 use crate::trajectory::compute::ComputedTrajectory;
 use arrows::plane_arrows;
 use dwell_page::{DisplayUnit, Page, PageMessage, PageScene, Peak};
 use dwell_scene::{Scene, SceneError, SceneFile};
-#[cfg(feature = "output")]
 pub(crate) use plane::paint;
 use plane::plane_drawing;
 

@@ -12,7 +12,7 @@ use dwell_scene::Scene;
 
 /// A page with the rows of a table whose first column is the axis. `group` says what belongs in one chart with a column, and
 /// what the column is.
-pub(crate) fn table_page(
+pub fn table_page(
     page: Page,
     table: &Table,
     group: impl Fn(&str, &str) -> (String, String),
@@ -58,8 +58,7 @@ fn row_peak(table: &Table, column: usize) -> Option<Peak> {
 }
 
 /// What belongs in one chart, where only the unit tells.
-#[cfg(feature = "output")]
-pub(crate) fn unit_group(_: &str, unit: &str) -> (String, String) {
+pub fn unit_group(_: &str, unit: &str) -> (String, String) {
     let group = match unit {
         "rad" | "m" => "Coordinates",
         "rad/s" | "m/s" => "Speeds",
@@ -74,7 +73,7 @@ pub(crate) fn unit_group(_: &str, unit: &str) -> (String, String) {
 
 /// The mechanism in the rows of a page whose axis is the only actuator's coordinate; none where a position cannot be
 /// reached.
-pub(crate) fn drawing_along(scene: &Scene, page: &Page) -> Option<Drawing> {
+pub fn drawing_along(scene: &Scene, page: &Page) -> Option<Drawing> {
     let axis = page.columns.get(page.axis?)?;
     let model = loaded_model(scene).ok()?;
     let plan = model.plan();

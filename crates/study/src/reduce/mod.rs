@@ -10,4 +10,5 @@ mod page;
 pub(crate) use output::reduction_outcome;
 #[cfg(feature = "output")]
 pub(crate) use page::column_group;
+pub(crate) use page::page_of;
 pub use page::reduction_page;

@@ -1,9 +1,9 @@
 //! A scene in space with the exact reduced model of what it requests.
 
 use super::explain::{explain_loads, explain_model, explain_position, with_loads};
-use super::views::SpacePositions;
 use crate::explain::{StudyError, scene_error};
-use crate::number_format::{count, digits};
+use crate::number_format::count;
+#[cfg(feature = "output")]
 use crate::output::{indeterminate_note, symbol};
 use crate::ranges::equally_spaced;
 use crate::reduce::compute::{InertiaAt, ReducedLoad, ReducedScene, UnitLoadCurves};
@@ -19,8 +19,6 @@ use std::f64::consts::TAU;
 
 /// Part of the range that is left out at each limit position, where everything grows.
 const LIMIT_MARGIN: f64 = 1e-3;
-/// Intervals of a revolution, or of the range, from which paths are drawn.
-const DRAWN_INTERVALS: usize = 240;
 /// Half a stroke without limits, in sizes of the mechanism.
 const DEFAULT_STROKE: f64 = 0.5;
 
@@ -82,36 +80,7 @@ impl<'a> PreparedSpaceScene<'a> {
         coordinates.iter().map(|q| placements(*q)).collect()
     }
 
-    /// The mechanism over its range, for pictures: at the start, and in positions that follow each other.
-    pub(super) fn drawn_positions(&self) -> Result<SpacePositions<'a>, StudyError> {
-        let turns = match self.range() {
-            Range::Revolutions(count) => count as usize,
-            _ => 1,
-        };
-        let q = self.positions(DRAWN_INTERVALS * turns);
-        let describe = |q: f64| match self.is_angle() {
-            true => format!(
-                "{} = {:.1}°",
-                symbol(self.coordinate_name()),
-                q.to_degrees()
-            ),
-            false => format!("{} = {} m", symbol(self.coordinate_name()), digits(q, 4)),
-        };
-        let describe = |q: f64| describe(q).replace('-', "−");
-        let names = q.iter().map(|&q| describe(q));
-        let all: Vec<_> = self.placements(&q)?.into_iter().zip(names).collect();
-        let start = self.scene.assembly.q[0];
-        let drawn = self.placements(&[start])?.pop().unwrap_or_default();
-        Ok(SpacePositions {
-            scene: self.scene,
-            drawn,
-            drawn_at: describe(start),
-            provenance: format!("the mechanism at {}", count(all.len(), "position")),
-            all,
-        })
-    }
-
-    fn explain(&self, error: &PositionError) -> StudyError {
+    pub(super) fn explain(&self, error: &PositionError) -> StudyError {
         explain_position(self.scene, self.model.model().plan(), error)
     }
 }
@@ -284,6 +253,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
         Ok(Some(curves))
     }
 
+    #[cfg(feature = "output")]
     fn coordinate_label(&self) -> String {
         let actuator = &self.scene.mechanism.actuators[0];
         let joint = &self.scene.mechanism.joints[actuator.kind.joint().0].name;
@@ -291,6 +261,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
         format!("{what} {} of joint {joint}", symbol(&actuator.name))
     }
 
+    #[cfg(feature = "output")]
     fn notes(&self) -> String {
         let names = self.indeterminate.iter();
         indeterminate_note(names.map(|&r| self.scene.reaction_name(r)))

@@ -7,6 +7,7 @@ mod description;
 mod difference;
 mod error_estimate;
 mod motors;
+mod period;
 mod problem;
 mod quadrature;
 mod refinement;
@@ -17,6 +18,7 @@ mod tables;
 pub(crate) use difference::Difference;
 #[cfg(feature = "output")]
 pub(crate) use difference::pair_by_time;
+pub use period::compute_period;
 pub use problem::FreeMotionProblem;
 pub use segmented_motion::SegmentedMotion;
 pub(crate) use segmented_motion::{ComputedMotion, PlaceInMotion};

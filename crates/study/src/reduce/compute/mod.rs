@@ -2,7 +2,6 @@
 
 mod curves;
 mod known_reactions;
-#[cfg(feature = "output")]
 mod peak;
 mod reduced_scene;
 mod table;
@@ -11,7 +10,6 @@ mod unit_load_curves;
 pub(crate) use curves::flat;
 pub use curves::{ReducedCurves, Reduction, RoundingErrors, compute_reduction};
 pub(crate) use curves::{coefficient_units, inertia_units};
-#[cfg(feature = "output")]
 pub(crate) use peak::{Peak, fast_turns, peak_between_rows};
 pub use reduced_scene::{InertiaAt, ReducedScene};
 pub use table::{TableRequest, Tabulation, tabulate};

@@ -1,13 +1,16 @@
 //! What tables, figures and sentences of reduced parameters need of a scene with its model, in the plane or in space.
 
 use super::UnitLoadCurves;
-use crate::branch_note::branch_note;
 use crate::explain::{StudyError, explain_position};
-use crate::models::{PreparedScene, lists_reactions, requested_reactions};
-#[cfg(feature = "output")]
-use crate::output::{coordinate_label, indeterminate_note, separating_note};
+use crate::models::{PreparedScene, lists_reactions};
 use crate::ranges::equally_spaced;
 use crate::trajectory::compute::default_limits;
+#[cfg(feature = "output")]
+use crate::{
+    branch_note::branch_note,
+    models::requested_reactions,
+    output::{coordinate_label, indeterminate_note, separating_note},
+};
 use dwell_findings::Column;
 use dwell_geometry::Range;
 use dwell_kinetostatics::{Batch, Coefficients, ReducedModel as _};
@@ -160,7 +163,6 @@ impl ReducedScene for PreparedScene<'_> {
         self.reactions_of_varying_inertias(q)
     }
 
-    #[cfg(feature = "output")]
     fn fast_turns(&self, rows: &[f64]) -> Vec<[f64; 2]> {
         super::fast_turns(self, rows)
     }

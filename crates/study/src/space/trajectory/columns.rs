@@ -211,3 +211,16 @@ impl Columns<'_> {
         }
     }
 }
+
+/// Whether a column is in the tables of a scene that lists reactions.
+pub(crate) fn is_listed(quantity: Quantity, reactions: &JointReactions) -> bool {
+    match quantity {
+        Quantity::Time
+        | Quantity::ActuatorCoordinate(..)
+        | Quantity::ActuatorForce(_)
+        | Quantity::Reaction(_) => true,
+        Quantity::ForceMagnitude(joint) => reactions.lists_whole(joint)[0],
+        Quantity::MomentMagnitude(joint) => reactions.lists_whole(joint)[1],
+        _ => false,
+    }
+}

@@ -1,6 +1,5 @@
 //! Figures of a trajectory in space: rotations, points, reactions.
 
-use super::reactions::JointReactions;
 use crate::explain::StudyError;
 use crate::trajectory::compute::{Column, ComputedTrajectory, Quantity};
 use crate::trajectory::figures::{ChartContext, MAX_CURVES, PictureSpan};
@@ -166,18 +165,5 @@ impl SpaceFigures<'_> {
             self.charts
                 .figure("reactions", "Joint reactions", text, panels)
         })
-    }
-}
-
-/// Whether a column is in the tables of a scene that lists reactions.
-pub(crate) fn is_listed(quantity: Quantity, reactions: &JointReactions) -> bool {
-    match quantity {
-        Quantity::Time
-        | Quantity::ActuatorCoordinate(..)
-        | Quantity::ActuatorForce(_)
-        | Quantity::Reaction(_) => true,
-        Quantity::ForceMagnitude(joint) => reactions.lists_whole(joint)[0],
-        Quantity::MomentMagnitude(joint) => reactions.lists_whole(joint)[1],
-        _ => false,
     }
 }

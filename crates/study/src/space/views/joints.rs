@@ -1,6 +1,7 @@
 //! The symbols of joints in space.
 
-use super::drawing::{ARM, BEFORE, Scenery};
+use super::arrangement::{ARM, GUIDE_MARGIN};
+use super::drawing::{BEFORE, Scenery};
 use super::solids::{Axes, ball, block, cylinder, thread};
 use dwell_geometry::JointId;
 use dwell_geometry::space::{ActuatorKind, Joint, JointKind, Vec3};
@@ -13,8 +14,6 @@ const BALL_RADIUS: f64 = 0.55;
 const BLOCK: [f64; 2] = [0.8, 1.3];
 const SLEEVE: f64 = 1.3;
 const PLATE: [f64; 2] = [2.4, 0.08];
-/// How far a guide goes on beyond the travel, in the same.
-pub(super) const GUIDE_MARGIN: f64 = 2.6;
 /// Width of guides and massless rods, pixels.
 const ROD: f64 = 3.5;
 

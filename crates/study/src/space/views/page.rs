@@ -1,9 +1,8 @@
 //! A mechanism in space as the parts of a page, which can be turned there.
 
-use super::best_view;
-use super::drawing::SpaceDrawing;
-use super::joints::GUIDE_MARGIN;
-use super::paths::points_of;
+use super::arrangement::{GUIDE_MARGIN, SpaceDrawing};
+use super::direction::best_view;
+use super::points::points_of;
 use super::segments::{line_of, nearest_of_segment};
 use crate::page::paint;
 use crate::ranges::extent;

@@ -1,6 +1,6 @@
 //! Small bodies as they are seen: cylinders, boxes, balls, and the line of a thread.
 
-use super::projection::View;
+use super::direction::View;
 use dwell_geometry::space::Vec3;
 use dwell_report::{Paint, Pen, Shape};
 use std::f64::consts::TAU;

@@ -55,7 +55,6 @@ impl LongRows {
     }
 
     /// The number of the `k`th row in memory: every so many-th, and the last one.
-    #[cfg(feature = "output")]
     pub(crate) fn row_number(&self, k: usize) -> usize {
         (k * self.stride).min(self.table.len().saturating_sub(1))
     }

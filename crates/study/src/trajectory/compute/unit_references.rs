@@ -74,7 +74,6 @@ impl UnitReferences {
     }
 
     /// The largest magnitude of a unit, but for rounding.
-    #[cfg(feature = "output")]
     pub(crate) fn largest_of(&self, unit: &str, size: f64) -> f64 {
         let scales = self.scales(size);
         let alike = self.columns.iter().filter(|of| of.column.unit == unit);

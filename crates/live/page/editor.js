@@ -1,0 +1,172 @@
+// The scene's text: a text area over a copy of its text that is coloured, with what is wrong underlined.
+
+class Editor {
+  // `changed(text)` is called after every change.
+  constructor(root, changed) {
+    this.area = root.querySelector('textarea');
+    this.colours = root.querySelector('pre');
+    this.hint = root.querySelector('[data-part=hint]');
+    this.schema = null;
+    this.messages = [];
+    this.changed = changed;
+    this.completion = new Completion(this, root.querySelector('[data-part=completion]'));
+    this.slider = new NumberSlider(this, root.querySelector('[data-part=slider]'));
+    this.area.addEventListener('input', () => this.edited());
+    this.area.addEventListener('scroll', () => this.scrolled());
+    this.area.addEventListener('keydown', (event) => this.keyDown(event));
+    this.area.addEventListener('click', () => this.slider.openAt(this.area.selectionStart));
+    this.area.addEventListener('blur', () => this.completion.close());
+    document.addEventListener('selectionchange', () => {
+      if (document.activeElement === this.area) this.showHint();
+    });
+  }
+
+  get text() { return this.area.value; }
+
+  // Shows another text, without a call of `changed`.
+  open(text) {
+    this.area.value = text;
+    this.area.scrollTop = 0;
+    this.area.setSelectionRange(0, 0);
+    this.slider.close();
+    this.completion.close();
+    this.messages = [];
+    this.draw();
+  }
+
+  edited() {
+    this.slider.close();
+    this.messages = [];
+    this.draw();
+    this.completion.update(false);
+    this.changed(this.text);
+  }
+
+  // Replaces a part of the text, as a keyboard would, so that it can be undone.
+  type(from, to, text) {
+    this.area.focus();
+    this.area.setSelectionRange(from, to);
+    if (!document.execCommand('insertText', false, text)) {
+      this.area.setRangeText(text, from, to, 'end');
+      this.edited();
+    }
+  }
+
+  // The same from a slider, without a step of undo for each of its positions.
+  replace(from, to, text) {
+    this.area.setRangeText(text, from, to, 'preserve');
+    this.messages = [];
+    this.draw();
+    this.changed(this.text);
+  }
+
+  // Whether the scene is one in space: a point with three numbers.
+  get inSpace() { return /=\s*\[\s*[-+\d.e_]+\s*,\s*[-+\d.e_]+\s*,\s*[-+\d.e_]+\s*\]/.test(this.text.replace(/#.*$/gm, '')); }
+
+  show(messages) {
+    this.messages = messages;
+    this.draw();
+    this.showHint();
+  }
+
+  draw() {
+    const marks = this.messages.flatMap((message) => message.labels.map((label) => ({ ...label, severity: message.severity })));
+    const parts = document.createDocumentFragment();
+    follow(tokens(this.text), (token, role) => {
+      for (const [from, to] of cut(token, marks)) {
+        const span = document.createElement('span');
+        span.textContent = this.text.slice(from, to);
+        const hit = marks.filter((mark) => mark.from < to && Math.max(mark.to, mark.from + 1) > from);
+        const severity = hit.some((mark) => mark.severity === 'error') ? ' error' : hit.length ? ' warning' : '';
+        span.className = `${role || token.kind} ${role === 'value' ? token.kind : ''}${severity}`;
+        parts.append(span);
+      }
+    });
+    parts.append('\n');
+    this.colours.replaceChildren(parts);
+    this.scrolled();
+  }
+
+  scrolled() {
+    this.colours.scrollTop = this.area.scrollTop;
+    this.colours.scrollLeft = this.area.scrollLeft;
+    this.slider.place();
+    this.completion.place();
+  }
+
+  // Where a place of the text is on the screen, relative to the editor: at the character there, or behind the one before it.
+  rectangle(offset) {
+    const own = this.colours.parentElement.getBoundingClientRect();
+    for (const [at, side] of [[offset, 'left'], [offset - 1, 'right']]) {
+      const found = this.characterBox(at);
+      if (found && found.height) return { left: found[side] - own.left, top: found.top - own.top, bottom: found.bottom - own.top };
+    }
+    return { left: 0, top: 0, bottom: 20 };
+  }
+
+  characterBox(offset) {
+    const walker = document.createTreeWalker(this.colours, NodeFilter.SHOW_TEXT);
+    let left = offset;
+    for (let node = walker.nextNode(); node && left >= 0; node = walker.nextNode()) {
+      if (left < node.length) {
+        const range = document.createRange();
+        range.setStart(node, left);
+        range.setEnd(node, left + 1);
+        return range.getBoundingClientRect();
+      }
+      left -= node.length;
+    }
+    return null;
+  }
+
+  keyDown(event) {
+    if (this.completion.keyDown(event)) return;
+    if (event.key === 'Escape') this.slider.close();
+    if (event.key === ' ' && event.ctrlKey) {
+      event.preventDefault();
+      this.completion.update(true);
+    }
+  }
+
+  // What is wrong where the cursor is; else what the key there means.
+  showHint() {
+    const at = this.area.selectionStart;
+    const here = this.messages.find((m) => m.labels.some((l) => l.from <= at && at <= Math.max(l.to, l.from + 1)));
+    const wrong = here ? [here.message, here.help].filter(Boolean).join('; ') : '';
+    this.hint.className = here ? here.severity : '';
+    this.hint.textContent = [wrong, this.meaningAt(at)].filter(Boolean).join('\n');
+  }
+
+  meaningAt(offset) {
+    if (!this.schema) return '';
+    // To the end of the word in which the cursor is.
+    const rest = /^[\p{L}\p{N}_-]*/u.exec(this.text.slice(offset))[0].length;
+    const place = placeAt(this.text, offset + rest);
+    if (!place) return '';
+    const path = place.valued ? [...place.path, ...place.key] : [...place.path, ...(place.word ? [place.word] : [])];
+    const key = this.schema.describe(path.filter((step, k) => k < path.length - 1 || step !== '[]'), this.inSpace);
+    if (!key || !key.doc) return '';
+    return `${key.name}: ${key.doc}${key.example ? ` Example: ${key.example}` : ''}`;
+  }
+
+  select(label) {
+    this.area.focus();
+    this.area.setSelectionRange(label.from, Math.max(label.to, label.from));
+    const line = this.text.slice(0, label.from).split('\n').length;
+    const height = this.area.scrollHeight / this.text.split('\n').length;
+    this.area.scrollTop = Math.max(0, (line - 6) * height);
+    this.showHint();
+  }
+}
+
+// The parts of a token between the ends of marks.
+function cut(token, marks) {
+  const ends = new Set([token.from, token.to]);
+  for (const mark of marks) {
+    for (const end of [mark.from, Math.max(mark.to, mark.from + 1)]) {
+      if (end > token.from && end < token.to) ends.add(end);
+    }
+  }
+  const sorted = [...ends].sort((a, b) => a - b);
+  return sorted.slice(1).map((end, k) => [sorted[k], end]);
+}

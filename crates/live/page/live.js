@@ -1,0 +1,185 @@
+// The page: the scene at the side, and its results, which follow every change.
+
+// Seconds. What follows a change must be quick; what is asked for may take longer.
+const FOLLOW_LIMIT = 5;
+const ASKED_LIMIT = 60;
+const LINK_LIMIT = 5;
+
+// Name, command, and whether it is computed after every change.
+const COMMANDS = [
+  ['Motion and forces', 'motion', true],
+  ['Statics', 'statics', true],
+  ['Reduced model', 'reduce', true],
+  ['Simulate', 'simulate', false],
+  ['Cycle', 'cycle', false],
+  ['Equilibria', 'equilibria', false],
+];
+
+const element = (id) => document.getElementById(id);
+
+class Live {
+  constructor() {
+    const bytes = moduleBytes();
+    const worker = element('live-worker').textContent;
+    this.following = new Engine(bytes, worker);
+    this.asked = new Engine(bytes, worker);
+    this.page = DwellPage.create(element('page'), { hash: false });
+    this.editor = new Editor(element('live-editor'), () => this.edited());
+    this.command = 'motion';
+    this.version = 0;
+    this.buttons = COMMANDS.map(([name, command]) => this.tab(name, command));
+    document.querySelector('.live-tabs').append(...this.buttons);
+    element('live-again').addEventListener('click', () => this.work(this.ask()));
+    this.files = new SceneFiles(this);
+  }
+
+  tab(name, command) {
+    const button = document.createElement('button');
+    button.type = 'button';
+    button.textContent = name;
+    button.dataset.command = command;
+    button.addEventListener('click', () => this.choose(command));
+    return button;
+  }
+
+  async start() {
+    this.choose(this.command, true);
+    this.editor.open(await this.files.firstScene());
+    this.edited();
+    try {
+      const { answer } = await this.following.ask({ do: 'schema' }, FOLLOW_LIMIT);
+      this.editor.schema = new Schema(answer.schema);
+    } catch (error) {
+      this.say(`the module cannot be started: ${error.message}`);
+    }
+  }
+
+  follows(command) { return COMMANDS.find(([, name]) => name === command)[2]; }
+
+  choose(command, quietly) {
+    this.command = command;
+    for (const button of this.buttons) button.setAttribute('aria-pressed', String(button.dataset.command === command));
+    this.stale(false);
+    if (quietly) return;
+    if (this.follows(command)) this.edited();
+    else this.work(this.ask());
+  }
+
+  // After every change: what follows is computed for the newest text, one after the other.
+  edited() {
+    this.version += 1;
+    if (!this.follows(this.command)) this.stale(true);
+    if (this.busy) return;
+    this.busy = this.follow().finally(() => { this.busy = null; });
+    this.work(this.busy);
+  }
+
+  // Says in the document whether something is being computed.
+  work(task) {
+    this.working = (this.working || 0) + 1;
+    document.body.dataset.state = 'working';
+    return task.finally(() => {
+      this.working -= 1;
+      if (!this.working) document.body.dataset.state = 'settled';
+    });
+  }
+
+  async follow() {
+    for (let done = -1; done !== this.version;) {
+      done = this.version;
+      const { command } = this;
+      const shows = this.follows(command);
+      try {
+        const asked = { do: 'run', command: shows ? command : 'kinematics', text: this.editor.text };
+        const result = await this.following.ask(asked, FOLLOW_LIMIT);
+        if (done === this.version) this.show(result, shows && command === this.command);
+      } catch (error) {
+        if (done === this.version) this.failed(error, FOLLOW_LIMIT);
+      }
+    }
+  }
+
+  // Runs what is computed on request only.
+  async ask() {
+    const { command } = this;
+    const { version } = this;
+    this.stale(false);
+    this.asked.stop();
+    this.say('computing …');
+    try {
+      const result = await this.asked.ask({ do: 'run', command, text: this.editor.text }, ASKED_LIMIT);
+      if (command !== this.command) return;
+      this.show(result, true);
+      this.stale(version !== this.version);
+    } catch (error) {
+      if (command === this.command && error.message !== 'stopped') this.failed(error, ASKED_LIMIT);
+    }
+  }
+
+  show({ answer, numbers, ms }, results) {
+    this.messages(answer.messages);
+    if (!results) return;
+    const { page } = answer;
+    document.body.classList.toggle('live-old', !page);
+    if (!page) return this.say('not computed: see the messages beside');
+    const begun = performance.now();
+    this.page.show(page, numbers);
+    document.title = `${page.title} – Dwell`;
+    const drawn = performance.now() - begun;
+    this.say(`computed in ${ms.toFixed(1)} ms, drawn in ${drawn.toFixed(1)} ms`);
+  }
+
+  failed(error) {
+    document.body.classList.add('live-old');
+    this.messages([{ severity: 'error', message: `this scene could not be computed here: ${error.message}`, help: 'the command line may', labels: [] }]);
+    this.say('not computed');
+  }
+
+  messages(messages) {
+    this.editor.show(messages);
+    element('live-messages').replaceChildren(...messages.map((message) => this.message(message)));
+  }
+
+  message(message) {
+    const item = document.createElement('li');
+    item.className = message.severity;
+    const text = document.createElement('b');
+    text.textContent = message.message;
+    item.append(text);
+    for (const label of message.labels) {
+      const place = document.createElement('button');
+      place.type = 'button';
+      place.textContent = `line ${label.line}${label.remark ? `: ${label.remark}` : ''}`;
+      place.addEventListener('click', () => this.editor.select(label));
+      item.append(place);
+    }
+    if (message.help) {
+      const help = document.createElement('span');
+      help.textContent = message.help;
+      item.append(help);
+    }
+    return item;
+  }
+
+  stale(is) { element('live-stale').hidden = !is; }
+
+  say(text) { element('live-status').textContent = text; }
+
+  open(text) {
+    this.editor.open(text);
+    this.edited();
+    if (!this.follows(this.command)) this.choose('motion');
+  }
+}
+
+// The module: within the page, or beside it where the page is served.
+async function moduleBytes() {
+  const { textContent, dataset } = element('live-module');
+  if (!dataset.file) return carried(textContent);
+  const response = await fetch(dataset.file);
+  if (!response.ok) throw new Error(`${dataset.file}: ${response.status}`);
+  return new Uint8Array(await response.arrayBuffer());
+}
+
+const live = new Live();
+live.start();

@@ -1,0 +1,55 @@
+// In a worker: the module, one instance of it, and one request at a time. A request that fails in the module costs the instance.
+'use strict';
+
+let module = null;
+let instance = null;
+
+async function start(bytes) {
+  module = await WebAssembly.compile(bytes);
+  instance = await WebAssembly.instantiate(module, {});
+}
+
+// Text in, text and numbers out. Memory may have moved after every call: views on it are made anew, and what is kept is copied.
+function respond(request) {
+  const { memory, room, respond: answer, text_bytes: textBytes, numbers, number_count: numberCount } = instance.exports;
+  const bytes = new TextEncoder().encode(request);
+  const at = room(bytes.length);
+  new Uint8Array(memory.buffer, at, bytes.length).set(bytes);
+  const text = answer();
+  const decoded = new TextDecoder().decode(new Uint8Array(memory.buffer, text, textBytes()));
+  const values = new Float64Array(memory.buffer, numbers(), numberCount()).slice();
+  return { text: decoded, numbers: values };
+}
+
+// The text of a shared link, at most `most` bytes of it.
+async function inflate(bytes, most) {
+  const reader = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate-raw')).getReader();
+  const parts = [];
+  let size = 0;
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) break;
+    size += value.length;
+    if (size > most) throw new Error(`the scene of this link is longer than ${most} bytes`);
+    parts.push(value);
+  }
+  return new Blob(parts).text();
+}
+
+self.onmessage = async ({ data }) => {
+  try {
+    if (data.bytes) {
+      await start(data.bytes);
+      self.postMessage({ id: data.id });
+    } else if (data.packed) {
+      self.postMessage({ id: data.id, text: await inflate(data.packed, data.most) });
+    } else {
+      if (!instance) instance = await WebAssembly.instantiate(module, {});
+      const answer = respond(data.request);
+      self.postMessage({ id: data.id, ...answer }, [answer.numbers.buffer]);
+    }
+  } catch (error) {
+    if (error instanceof WebAssembly.RuntimeError || error instanceof RangeError) instance = null;
+    self.postMessage({ id: data.id, failure: String(error.message || error) });
+  }
+};

@@ -1,0 +1,104 @@
+//! What a page is answered.
+
+use crate::diagnostics::{self, MessageInText};
+use crate::request::{Command, Request};
+use crate::{export, runs};
+use dwell_page::EncodedPage;
+use dwell_scene::AnyScene;
+use serde::Serialize;
+
+/// An answer: JSON, and the numbers that it refers to.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Answer {
+    /// An object. `messages` are errors and warnings; `page` is there where the scene could be evaluated: the description that
+    /// [`dwell_page`] documents; `files` are pairs of a name and a text; `schema` is the schema.
+    pub text: String,
+    /// The rows of `page`: one column after the other.
+    pub numbers: Vec<f64>,
+}
+
+#[derive(Default, Serialize)]
+struct AnswerText {
+    messages: Vec<MessageInText>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    files: Vec<(String, String)>,
+}
+
+/// Answers a request.
+///
+/// ```
+/// let schema = dwell_live::answer(r#"{ "do": "schema" }"#);
+/// assert!(schema.text.contains("revolute"));
+/// let nonsense = dwell_live::answer("{}");
+/// assert!(nonsense.text.contains("cannot be read"));
+/// ```
+pub fn answer(request: &str) -> Answer {
+    match serde_json::from_str(request) {
+        Ok(Request::Schema) => Answer {
+            text: format!(r#"{{"messages":[],"schema":{}}}"#, dwell_scene::schema()),
+            numbers: Vec::new(),
+        },
+        Ok(Request::Run { command, text }) => run(command, &text),
+        Ok(Request::C { text }) => exported(&text),
+        Err(error) => {
+            let message = format!("the request cannot be read: {error}");
+            let error = dwell_scene::SceneError::without_labels(message, None);
+            of_messages(diagnostics::errors(&error), Vec::new())
+        }
+    }
+}
+
+/// The name of the text in messages that name it.
+const SOURCE_NAME: &str = "scene.toml";
+
+fn run(command: Command, text: &str) -> Answer {
+    let scene = match AnyScene::parse(SOURCE_NAME, text) {
+        Ok(scene) => scene.named("scene".to_owned()),
+        Err(error) => return of_messages(diagnostics::errors(&error), Vec::new()),
+    };
+    let mut messages = diagnostics::warnings(&scene.file().warnings);
+    let page = match runs::run(command, &scene) {
+        Ok(run) => {
+            messages.extend(run.early_stop.iter().flat_map(diagnostics::errors));
+            run.page.encode()
+        }
+        Err(error) => {
+            messages.extend(diagnostics::errors(&error));
+            return of_messages(messages, Vec::new());
+        }
+    };
+    match page {
+        Ok(EncodedPage {
+            description,
+            numbers,
+        }) => {
+            let Answer { mut text, .. } = of_messages(messages, Vec::new());
+            // The description is JSON already: it becomes the last member of the object.
+            text.pop();
+            text = format!(r#"{text},"page":{description}}}"#);
+            Answer { text, numbers }
+        }
+        Err(error) => {
+            let error = dwell_scene::SceneError::without_labels(error.to_string(), None);
+            messages.extend(diagnostics::errors(&error));
+            of_messages(messages, Vec::new())
+        }
+    }
+}
+
+fn exported(text: &str) -> Answer {
+    let exported = AnyScene::parse(SOURCE_NAME, text).and_then(|scene| export::c_files(&scene));
+    match exported {
+        Ok(files) => of_messages(Vec::new(), files),
+        Err(error) => of_messages(diagnostics::errors(&error), Vec::new()),
+    }
+}
+
+fn of_messages(messages: Vec<MessageInText>, files: Vec<(String, String)>) -> Answer {
+    let text = serde_json::to_string(&AnswerText { messages, files });
+    Answer {
+        // Text and numbers always have a form in JSON.
+        text: text.unwrap_or_else(|_| r#"{"messages":[]}"#.to_owned()),
+        numbers: Vec::new(),
+    }
+}

@@ -1,0 +1,28 @@
+//! A scene's machine in C.
+
+use crate::diagnostics::scene_error;
+use dwell_export::{Precision, Request, c_files as c_files_of};
+use dwell_scene::{AnyScene, SceneError};
+use dwell_study::{ExportRequest, compute_export};
+
+/// The accuracy that `dwell export` takes where none is given.
+const ACCURACY: f64 = 1e-9;
+
+/// Header and source: name and text of each.
+pub(crate) fn c_files(scene: &AnyScene) -> Result<Vec<(String, String)>, SceneError> {
+    let AnyScene::Plane(scene) = scene else {
+        let message = "this page exports mechanisms in the plane only".to_owned();
+        let help = "`dwell export --to c` exports those in space".to_owned();
+        return Err(SceneError::without_labels(message, Some(help)));
+    };
+    let asked = ExportRequest {
+        request: Request {
+            accuracy: ACCURACY,
+            precision: Precision::Double,
+        },
+        interval: None,
+        exact: false,
+    };
+    let export = compute_export(scene, &asked).map_err(scene_error)?;
+    Ok(c_files_of(&export).into())
+}

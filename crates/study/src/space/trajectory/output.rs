@@ -1,0 +1,90 @@
+//! Writes the results along a trajectory in space: tables, figures, page and animation.
+
+use super::evaluator::SpaceEvaluator;
+use super::page::space_page;
+use super::reactions::JointReactions;
+use super::rows::compute;
+use crate::explain::StudyError;
+use crate::number_format::digits;
+use crate::output::symbol;
+use crate::progress::Progress;
+use crate::space::views::SpacePositions;
+use crate::trajectory::compute::{Analysis, ComputedTrajectory, RowEvaluator as _};
+use crate::trajectory::document::Document;
+use crate::trajectory::figures::PictureSpan;
+use crate::trajectory::output::{TrajectoryOutcome, outcome_of};
+use dwell_geometry::space::ActuatorKind;
+use dwell_scene::SpaceScene;
+
+/// Positions from which paths are drawn.
+const DRAWN_POSITIONS: usize = 241;
+
+/// Analyses a scene in space along its prescribed motion, its sweep, or the range of its only actuator, at `points` positions
+/// (two or more) if given; curves show a part of it.
+///
+/// # Errors
+/// [`StudyError::Scene`] when the mechanism cannot be assembled, the scene gives no coordinates, or the first position cannot
+/// be reached.
+pub fn analyse_in_space(
+    scene: &SpaceScene,
+    analysis: Analysis,
+    points: Option<usize>,
+    span: PictureSpan,
+    progress: Progress<'_>,
+) -> Result<TrajectoryOutcome, StudyError> {
+    let (reactions, model) = JointReactions::new(scene)?;
+    let (computed, evaluator) = compute(scene, (&reactions, &model), (analysis, points), progress)?;
+    let size = model.plan().size();
+    let actuator = computed
+        .trajectory
+        .swept_actuator()
+        .map(|k| &scene.mechanism.actuators[k]);
+    let swept = actuator.map(|a| (a.name.as_str(), matches!(a.kind, ActuatorKind::Angle(_))));
+    let run = space_page(scene, size, &computed, (&reactions, evaluator.clone()));
+    let positions = drawn_positions(scene, &computed, evaluator, swept);
+    let mut figures = vec![positions.figure()];
+    figures.extend(super::figures::figures(scene, swept, &computed, span)?);
+    let document = Document::of_file(&scene.file, size, &computed);
+    let pictures = (figures, positions.animation());
+    let mut outcome = outcome_of(&scene.file, &computed, &document, pictures)?;
+    outcome.run = Some(Box::new(run));
+    Ok(TrajectoryOutcome {
+        outcome,
+        early_stop: computed.early_stop,
+    })
+}
+
+/// The mechanism along the part of a trajectory that was reached.
+pub(crate) fn drawn_positions<'a>(
+    scene: &'a SpaceScene,
+    computed: &ComputedTrajectory<'_>,
+    mut evaluator: SpaceEvaluator<'_>,
+    swept: Option<(&str, bool)>,
+) -> SpacePositions<'a> {
+    let trajectory = &computed.trajectory;
+    let last = trajectory.fraction_at(computed.results.len().saturating_sub(1));
+    let mut place = |fraction: f64| {
+        let sample = trajectory.sample_at(fraction);
+        evaluator
+            .evaluate(&sample, trajectory.load_time(&sample))
+            .ok()?;
+        let at = match swept {
+            Some((name, true)) => format!("{} = {:.1}°", symbol(name), sample.q[0].to_degrees()),
+            Some((name, false)) => format!("{} = {} m", symbol(name), digits(sample.q[0], 4)),
+            None => format!("time = {} s", digits(sample.t, 4)),
+        };
+        Some((evaluator.placements.clone(), at.replace('-', "−")))
+    };
+    let intervals = DRAWN_POSITIONS - 1;
+    let all: Vec<_> = (0..=intervals)
+        .filter_map(|k| place(last * k as f64 / intervals as f64))
+        .collect();
+    let (drawn, drawn_at) = all.first().cloned().unwrap_or_default();
+    SpacePositions {
+        scene,
+        drawn,
+        drawn_at,
+        all,
+        provenance: trajectory.method_text.clone(),
+    }
+}

@@ -1,0 +1,234 @@
+//! Pictures of a mechanism in space: from above, from the front and from the right, one axonometric view, and its animation.
+//!
+//! The views are those of the third angle: what is seen from above stands above the front view, and what is seen from the
+//! right on its right, all to one scale.
+
+use super::arrangement::SpaceDrawing;
+use super::direction::View;
+use super::direction::best_view;
+use super::drawing::Detail;
+use super::paths::paths;
+use super::points::points_of;
+use crate::output::figure;
+use crate::ranges::extent;
+use dwell_geometry::space::{Placement, Vec3};
+use dwell_report::{Animation, Axis, Drawing, Figure, Paint, Panel, Pen, Shape, TextPlacement};
+use dwell_scene::SpaceScene;
+
+/// The largest height of a panel, in its widths.
+const HEIGHT: f64 = 0.9;
+/// Length of the ground's axes in widths of the picture.
+const AXES: f64 = 0.1;
+/// Frames of the animation at most, the time of each, and its width.
+const MAX_FRAMES: usize = 60;
+const DELAY_MS: u32 = 60;
+const WIDTH_PX: u32 = 640;
+
+const CAPTION: &str = "Top view (x–y) above the front view (x–z), next to it the side view from the right (y–z), and an axonometric view, all \
+                       to one scale. Cylinders are hinges, long ones sleeves on rods, blocks slides, balls spherical joints, forks with a cross universal joints; \
+                       hatching is the ground, an arrow the driven joint, a quartered disc a centre of mass. Light lines are paths of points.";
+
+/// A mechanism in positions that follow each other.
+pub(crate) struct SpacePositions<'a> {
+    /// The scene.
+    pub(crate) scene: &'a SpaceScene,
+    /// The placements of all bodies in the position that is drawn.
+    pub(crate) drawn: Vec<Placement>,
+    /// What that position is, such as `q = 12°`.
+    pub(crate) drawn_at: String,
+    /// The placements in all positions, from which paths are drawn, and what each of them is.
+    pub(crate) all: Vec<(Vec<Placement>, String)>,
+    /// The method that computed the positions.
+    pub(crate) provenance: String,
+}
+
+/// What all views share.
+struct Views<'a> {
+    positions: &'a SpacePositions<'a>,
+    drawing: SpaceDrawing<'a>,
+    axonometric: View,
+    /// Everything that must be in view.
+    points: Vec<Vec3>,
+    /// Width of the part of space that each view shows, m.
+    width: f64,
+}
+
+impl SpacePositions<'_> {
+    /// The mechanism in three views and an axonometric one.
+    pub(crate) fn figure(&self) -> Figure {
+        let views = Views::new(self);
+        let axonometric = views.axonometric_panel(&self.drawn, true);
+        let panels = [
+            views.panel(View::TOP, "Top view", ["x", "y"]),
+            Panel::from(axonometric),
+            views.panel(View::FRONT, "Front view", ["x", "z"]),
+            views.panel(View::SIDE, "Side view, from the right", ["y", "z"]),
+        ];
+        let text = format!("Drawn at {}. {CAPTION}", self.drawn_at);
+        let (scene, title) = (self.scene, &self.scene.title);
+        let figure = figure(
+            &scene.file,
+            "mechanism",
+            title,
+            &text,
+            panels.into(),
+            &self.provenance,
+        );
+        Figure {
+            columns: 2,
+            ..figure
+        }
+    }
+
+    /// The axonometric view in motion.
+    pub(crate) fn animation(&self) -> Animation {
+        let views = Views::new(self);
+        let last = self.all.len().saturating_sub(1);
+        let count = MAX_FRAMES.min(self.all.len());
+        // Over a whole period the last position equals the first.
+        let steps = count.saturating_sub(usize::from(!self.is_closed()));
+        let frame = |i: usize| {
+            let (placements, at) = &self.all[(i * last) / steps.max(1)];
+            Drawing {
+                title: at.clone(),
+                ..views.axonometric_panel(placements, false)
+            }
+        };
+        Animation {
+            name: "mechanism".to_owned(),
+            frames: (0..count).map(frame).collect(),
+            delay_ms: DELAY_MS,
+            width_px: WIDTH_PX,
+            provenance: self.provenance.clone(),
+        }
+    }
+
+    /// Whether the last position equals the first.
+    fn is_closed(&self) -> bool {
+        let [(first, _), .., (last, _)] = &self.all[..] else {
+            return false;
+        };
+        let size = extent_size(first.iter().map(|p| p.position));
+        let same = |(a, b): (&Placement, &Placement)| {
+            let turned = (0..3).map(|k| (a.rotation.columns[k] - b.rotation.columns[k]).norm());
+            (a.position - b.position).norm() <= 1e-6 * size && turned.fold(0.0, f64::max) <= 1e-6
+        };
+        first.iter().zip(last).all(same)
+    }
+}
+
+impl<'a> Views<'a> {
+    fn new(positions: &'a SpacePositions<'a>) -> Self {
+        let (scene, all) = (positions.scene, &positions.all);
+        let mut points: Vec<Vec3> = all.iter().flat_map(|(p, _)| points_of(scene, p)).collect();
+        points.extend(points_of(scene, &positions.drawn));
+        let axonometric = best_view(&points_of(scene, &positions.drawn));
+        let mut width = 0.0_f64;
+        for view in [View::TOP, View::FRONT, View::SIDE, axonometric] {
+            let [[x0, x1], [y0, y1]] = bounds(view, &points);
+            width = width.max(x1 - x0).max((y1 - y0) / HEIGHT);
+        }
+        let width = if width > 0.0 { width } else { 1.0 };
+        Self {
+            drawing: SpaceDrawing::new(scene, all, width),
+            positions,
+            axonometric,
+            points,
+            width,
+        }
+    }
+
+    /// One of the three views.
+    fn panel(&self, view: View, title: &str, [x, y]: [&str; 2]) -> Panel {
+        // The axonometric view has the legend.
+        let detail = Detail {
+            named: false,
+            with_words: true,
+        };
+        let shapes = self.shapes(view, &self.positions.drawn, detail);
+        let [horizontal, vertical] = self.ranges(view);
+        Panel::from(Drawing {
+            title: title.to_owned(),
+            x: Axis::new(x, "m").with_range(horizontal[0], horizontal[1]),
+            y: Axis::new(y, "m").with_range(vertical[0], vertical[1]),
+            shapes,
+            ..Drawing::default()
+        })
+    }
+
+    /// The axonometric view, with the bodies in the legend and the axes of the ground in a corner.
+    fn axonometric_panel(&self, placements: &[Placement], with_words: bool) -> Drawing {
+        let view = self.axonometric;
+        let [[x0, x1], [y0, y1]] = self.ranges(view);
+        let y0 = y0 - 1.2 * AXES * self.width;
+        let mut shapes = self.legend();
+        let detail = Detail {
+            named: true,
+            with_words,
+        };
+        shapes.extend(self.shapes(view, placements, detail));
+        let corner = [x0 + AXES * self.width, y0];
+        for (name, axis) in ["x", "y", "z"].into_iter().zip(Vec3::AXES) {
+            let [u, v] = view.place(axis.scaled(AXES * self.width));
+            let to = [corner[0] + u, corner[1] + v];
+            shapes.push(Shape::Arrow {
+                from: corner,
+                to,
+                pen: Pen::new(Paint::Ink, 2.0),
+                name: None,
+            });
+            let placement = match (u.abs() > 2.0 * v.abs(), u > 0.0) {
+                (true, true) => TextPlacement::Right,
+                (true, false) => TextPlacement::Left,
+                (false, _) => TextPlacement::Above,
+            };
+            if with_words {
+                shapes.push(Shape::text(to, name, placement));
+            }
+        }
+        Drawing {
+            title: "Axonometric view".to_owned(),
+            x: Axis::default().with_range(x0, x1),
+            y: Axis::default().with_range(y0, y1),
+            shapes,
+            without_axes: true,
+        }
+    }
+
+    /// The bodies in the order of the scene, for the legend: they are drawn in another.
+    fn legend(&self) -> Vec<Shape> {
+        let scene = self.positions.scene;
+        let bodies = scene.mechanism.bodies.iter().enumerate();
+        let moving = bodies.filter(|(b, _)| *b != scene.mechanism.ground);
+        let entry = |(b, body): (usize, &dwell_geometry::Body)| {
+            let pen = Pen::new(self.drawing.color(dwell_geometry::BodyId(b)), 6.0);
+            Shape::line(Vec::new(), pen).named(&body.name)
+        };
+        moving.map(entry).collect()
+    }
+
+    fn shapes(&self, view: View, placements: &[Placement], detail: Detail) -> Vec<Shape> {
+        let mut shapes = paths(&self.positions.all, &self.drawing, view);
+        shapes.extend(self.drawing.drawn_from(view, placements, detail));
+        shapes
+    }
+
+    /// What a view shows: as wide as the others.
+    fn ranges(&self, view: View) -> [[f64; 2]; 2] {
+        let [[x0, x1], vertical] = bounds(view, &self.points);
+        let middle = 0.5 * (x0 + x1);
+        [
+            [middle - 0.5 * self.width, middle + 0.5 * self.width],
+            vertical,
+        ]
+    }
+}
+
+/// The extent of some points in a view.
+fn bounds(view: View, points: &[Vec3]) -> [[f64; 2]; 2] {
+    [0, 1].map(|k| extent(points.iter().map(|p| view.place(*p)[k])))
+}
+
+fn extent_size(points: impl Iterator<Item = Vec3>) -> f64 {
+    points.map(Vec3::norm).fold(0.0, f64::max)
+}

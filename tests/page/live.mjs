@@ -1,0 +1,332 @@
+// Tests of the live page in a real browser.
+//
+//     node live.mjs WEB PAGES
+//
+// WEB is the folder that `just web` fills, PAGES one for scenes, results and pictures.
+
+import { execFileSync, spawnSync } from 'node:child_process';
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { dirname, join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { deflateRawSync } from 'node:zlib';
+import { launch, open } from './browser.mjs';
+import { parse } from './csv.mjs';
+import { expect, same } from './expect.mjs';
+
+const [web, pages] = process.argv.slice(2);
+if (!web || !pages) {
+  console.error('usage: node live.mjs WEB PAGES');
+  process.exit(2);
+}
+const top = join(dirname(fileURLToPath(import.meta.url)), '../..');
+const dwell = join(top, 'target/release/dwell');
+const pictures = join(pages, 'pictures');
+const scratch = join(pages, 'live');
+mkdirSync(pictures, { recursive: true });
+mkdirSync(scratch, { recursive: true });
+const file = join(web, 'dwell.html');
+const caseText = name => readFileSync(join(top, 'validation', name, 'scene.toml'), 'utf8');
+
+const browser = await launch();
+const failures = [];
+let count = 0;
+
+// A test on the live page; what it throws is a failure, and so is a fault of the page.
+async function test(name, body, options = {}) {
+  count += 1;
+  const opened = await open(browser, options.file || file, { reducedMotion: 'reduce', ...options });
+  try {
+    await settled(opened.page);
+    await body(opened.page, opened);
+    const faults = opened.faults.filter(fault => !(options.allowed && options.allowed.test(fault)));
+    if (faults.length) throw new Error(faults.join('; '));
+  } catch (error) {
+    failures.push(name);
+    console.log(`FAIL ${name}: ${error.message.split('\n')[0]}`);
+  } finally {
+    await opened.context.close();
+  }
+}
+
+const settled = page => page.waitForFunction(() => document.body.dataset.state === 'settled', null, { timeout: 90000 });
+const area = '.live-editor textarea';
+const text = page => page.inputValue(area);
+const status = page => page.textContent('#live-status');
+
+async function write(page, scene) {
+  await page.fill(area, scene);
+  await settled(page);
+}
+
+async function saved(page, button) {
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click(button)]);
+  return { name: download.suggestedFilename(), text: readFileSync(await download.path(), 'utf8') };
+}
+
+// The table of a command on a text.
+function table(command, scene) {
+  const path = join(scratch, 'scene.toml');
+  writeFileSync(path, scene);
+  execFileSync(dwell, [command, path, '--pictures', 'none', '--name', 'cli', '--out', scratch], { stdio: 'ignore' });
+  const names = { simulate: 'motion', reduce: 'reduced' };
+  return parse(readFileSync(join(scratch, `cli-${names[command] || command}.csv`), 'utf8'));
+}
+
+// All columns of the command, to 1e-13 of the largest value of each unit.
+function compare(shown, expected, what) {
+  const unit = name => (/\[(.*)\]$/.exec(name) || ['', ''])[1];
+  const scales = new Map();
+  expected.header.forEach((name, k) => {
+    const largest = Math.max(...expected.rows.map(row => Math.abs(row[k])).filter(Number.isFinite));
+    scales.set(unit(name), Math.max(scales.get(unit(name)) || 0, largest));
+  });
+  same(shown.rows.length, expected.rows.length, `${what}: rows`);
+  expected.header.forEach((name, k) => {
+    const at = shown.header.indexOf(name);
+    expect(at >= 0, `${what}: no column ${name}`);
+    for (let row = 0; row < expected.rows.length; row++) {
+      const [a, b] = [shown.rows[row][at], expected.rows[row][k]];
+      const isSame = Number.isNaN(a) ? Number.isNaN(b) : Math.abs(a - b) <= 1e-13 * scales.get(unit(name));
+      expect(isSame, `${what}: ${name} in row ${row}: ${a} instead of ${b}`);
+    }
+  });
+}
+
+const SAVE_CSV = '.dwell-page button:text("all data")';
+
+await test('a changed length gives the numbers of the command line', async page => {
+  const scene = caseText('jansen').replace(/(points = \{[^}]*\[)(\d+\.?\d*)/, (_, before, number) => `${before}${Number(number) * 1.01}`);
+  await write(page, scene);
+  compare(parse((await saved(page, SAVE_CSV)).text), table('kinetostatics', scene), 'kinetostatics');
+  await page.screenshot({ path: join(pictures, 'live-jansen.png') });
+});
+
+await test('what is asked for gives the numbers of the command line', async page => {
+  const scene = caseText('single-dwell').replace('mass = 2.1', 'mass = 2.2');
+  await write(page, scene);
+  for (const command of ['reduce', 'simulate']) {
+    await page.click(`[data-command=${command}]`);
+    await settled(page);
+    // An integration adds up the roundings of its steps, which differ between processors.
+    const expected = table(command, scene);
+    if (command === 'reduce') {
+      // Rounding errors are themselves rounding.
+      const kept = expected.header.map((name, k) => k).filter(k => expected.header[k] !== 'relative_error');
+      compare(parse((await saved(page, SAVE_CSV)).text), { header: kept.map(k => expected.header[k]), rows: expected.rows.map(row => kept.map(k => row[k])) }, command);
+    } else {
+      const shown = parse((await saved(page, SAVE_CSV)).text);
+      const q = t => t.rows[t.rows.length - 1][t.header.indexOf('phi [rad]')];
+      expect(Math.abs(q(shown) - q(expected)) < 1e-7, `${command}: ${q(shown)} instead of ${q(expected)}`);
+    }
+  }
+  await page.screenshot({ path: join(pictures, 'live-simulate.png') });
+});
+
+await test('the page begins with the single-dwell mechanism, follows its crank, and is drawn', async page => {
+  await page.screenshot({ path: join(pictures, 'live.png') });
+  expect((await page.textContent('.dwell-page h1')).includes('ingle-dwell'), 'no title');
+  expect(/computed in/.test(await status(page)), await status(page));
+  const place = await page.textContent('.dwell-page output.place');
+  const slider = page.locator('.dwell-page input.slider');
+  await slider.focus();
+  await page.keyboard.press('ArrowRight');
+  expect(place !== await page.textContent('.dwell-page output.place'), 'the row does not move');
+  const box = await page.locator('.dwell-page svg.mechanism').boundingBox();
+  const crank = page.locator('.dwell-page svg.mechanism [data-body]').first();
+  const from = await crank.boundingBox();
+  const before = await page.textContent('.dwell-page output.place');
+  await page.mouse.move(from.x + from.width - 3, from.y + from.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width / 2, box.y + 20, { steps: 6 });
+  await page.mouse.up();
+  expect(before !== await page.textContent('.dwell-page output.place'), 'the crank is not dragged');
+  await page.emulateMedia({ colorScheme: 'dark' });
+  await page.screenshot({ path: join(pictures, 'live-dark.png') });
+});
+
+await test('what is wrong has the words of the command line, and its place', async page => {
+  const scene = caseText('single-dwell').replace('{ revolute', '{ revolte').replace('mass = 2.1', 'mass = -2.1');
+  await write(page, scene);
+  const path = join(scratch, 'wrong.toml');
+  writeFileSync(path, scene);
+  const printed = spawnSync(dwell, ['kinetostatics', path, '--out', scratch], { encoding: 'utf8' });
+  same(printed.status, 2, 'exit status');
+  const plain = words => words.replace(/[\s│╭╰─×·┬├╯▶]+/gu, '');
+  const messages = await page.locator('#live-messages li').all();
+  expect(messages.length >= 2, `${messages.length} messages`);
+  for (const message of messages) {
+    const words = await message.locator('b').textContent();
+    expect(plain(printed.stderr).includes(plain(words)), `the command line does not say: ${words}`);
+  }
+  const marked = await page.locator('.live-editor pre .error').allTextContents();
+  expect(marked.includes('revolte') || marked.join('').includes('revolte'), `underlined: ${marked}`);
+  await page.screenshot({ path: join(pictures, 'live-errors.png') });
+  await write(page, scene.replace('{ revolte', '{ revolute').replace('-2.1', '2.1'));
+  same(await page.locator('#live-messages li.error').count(), 0, 'messages that stay');
+});
+
+await test('a number has a slider, which everything follows', async page => {
+  const scene = await text(page);
+  const at = scene.search(/mass = \d/) + 'mass = '.length;
+  await page.evaluate(([selector, place]) => {
+    const field = document.querySelector(selector);
+    field.focus();
+    field.setSelectionRange(place, place);
+    field.click();
+  }, [area, at]);
+  const slider = page.locator('[data-part=slider] input');
+  expect(await slider.isVisible(), 'no slider');
+  await page.screenshot({ path: join(pictures, 'live-slider.png') });
+  await slider.focus();
+  for (let k = 0; k < 5; k++) await page.keyboard.press('ArrowRight');
+  await settled(page);
+  const changed = await text(page);
+  expect(changed !== scene && /computed in/.test(await status(page)), 'nothing followed');
+  // Only this number.
+  same(changed.slice(0, at), scene.slice(0, at), 'text before the number');
+});
+
+await test('keys are completed and explained', async page => {
+  await write(page, '[bodies.crank]\n');
+  await page.focus(area);
+  await page.keyboard.press('Control+End');
+  await page.keyboard.type('ine');
+  expect(await page.locator('[data-part=completion]').isVisible(), 'no list');
+  await page.screenshot({ path: join(pictures, 'live-keys.png') });
+  await page.keyboard.press('Enter');
+  same(await text(page), '[bodies.crank]\ninertia', 'completed text');
+  expect(/moment of inertia|inertia/i.test(await page.textContent('[data-part=hint]')), 'no explanation');
+});
+
+await test('200 random edits never leave it dead', async page => {
+  let seed = 20;
+  const random = bound => {
+    seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
+    return seed % bound;
+  };
+  const original = caseText('slider-crank');
+  const pieces = ['[', ']', '{', '}', '=', '"', '\n', '0', '-', '1e300', 'nan', '#', 'é', '𝜑', '.', ',', ' ', 'x'];
+  let scene = original;
+  for (let k = 0; k < 200; k++) {
+    const at = random(scene.length + 1);
+    const kind = random(3);
+    if (kind === 0) scene = scene.slice(0, at) + pieces[random(pieces.length)] + scene.slice(at);
+    else if (kind === 1) scene = scene.slice(0, at) + scene.slice(at + 1 + random(6));
+    else scene = scene.replace(/\d+\.?\d*/g, number => (random(12) === 0 ? String(Number(number) * (random(40) - 10)) : number));
+    if (k % 20 === 19) scene = original;
+    await page.fill(area, scene);
+    // Edits are faster than results: only some are waited for.
+    if (k % 10 !== 9) continue;
+    await settled(page);
+    expect((await status(page)).length > 0, `nothing is said after edit ${k}`);
+    expect((await page.locator('#live-messages li').count()) > 0 || /computed in/.test(await status(page)), `neither results nor messages after edit ${k}`);
+  }
+  await write(page, original);
+  expect(/computed in/.test(await status(page)), 'it does not compute any more');
+});
+
+await test('a hostile title is text', async page => {
+  const title = '</title><script>document.body.dataset.bad=1</script><img src=x onerror=document.body.dataset.bad=1>';
+  const scene = caseText('single-dwell').replace(/^title = .*$/m, `title = ${JSON.stringify(title)}`);
+  await write(page, scene);
+  same(await page.textContent('.dwell-page h1'), title, 'heading');
+  same(await page.evaluate(() => document.images.length + Number(document.body.dataset.bad || 0)), 0, 'pictures and marks');
+});
+
+await test('a link holds the scene', async page => {
+  const scene = caseText('four-bar').replace(/^title = .*$/m, 'title = "Linked é 𝜑"');
+  await write(page, scene);
+  await page.click('#live-share');
+  await page.waitForFunction(() => /link|address/.test(document.getElementById('live-status').textContent));
+  const address = page.url();
+  const other = await page.context().newPage();
+  await other.goto(address);
+  await settled(other);
+  same(await text(other), scene, 'the scene of the link');
+  expect(!other.url().includes('scene='), 'the address still holds the scene');
+});
+
+const linked = bytes => `#scene=${deflateRawSync(bytes).toString('base64url')}`;
+
+await test('a link that would fill the memory is refused', async page => {
+  expect(/longer than 1000000 bytes/.test(await text(page)), (await text(page)).slice(0, 200));
+}, { hash: linked(Buffer.alloc(300e6)) });
+
+await test('a damaged link is refused', async page => {
+  expect(/cannot be read/.test(await text(page)), (await text(page)).slice(0, 200));
+}, { hash: '#scene=____' });
+
+await test('a panic costs an instance, not the page', async page => {
+  const before = await text(page);
+  const worker = page.workers()[0];
+  // The address of more memory than there is: a panic within the module, in the way of the next request.
+  await worker.evaluate(() => {
+    const { exports } = instance;
+    instance = { exports: { ...exports, respond: () => exports.room(0xffffffff) } };
+  });
+  await write(page, before.replace('title = "', 'title = "Once '));
+  expect(/could not be computed here/.test(await page.textContent('#live-messages')), 'the panic is not said');
+  await write(page, before);
+  expect(/computed in/.test(await status(page)), `it does not recover: ${await status(page)}`);
+});
+
+await test('what takes too long is ended', async page => {
+  const scene = caseText('jansen').replace(/points = 361/, '') + '';
+  const long = /\[coordinate-sweep\]/.test(scene) ? scene.replace('[coordinate-sweep]', '[coordinate-sweep]\npoints = 1000000') : `${scene}\n[coordinate-sweep]\npoints = 1000000\n`;
+  await write(page, long);
+  expect(/not done after/.test(await page.textContent('#live-messages')), await page.textContent('#live-messages'));
+  await write(page, scene);
+  expect(/computed in/.test(await status(page)), 'it does not go on');
+});
+
+await test('the machine as C', async page => {
+  const downloads = [];
+  page.on('download', download => downloads.push(download.suggestedFilename()));
+  await page.click('#live-c');
+  await page.waitForFunction(() => /exported/.test(document.getElementById('live-status').textContent), null, { timeout: 60000 });
+  await page.waitForTimeout(500);
+  expect(downloads.some(name => name.endsWith('.h')) && downloads.some(name => name.endsWith('.c')), `saved: ${downloads}`);
+});
+
+await test('narrow screens', async page => {
+  await page.screenshot({ path: join(pictures, 'live-narrow.png'), fullPage: true });
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  expect(wide <= 1, `${wide} pixels too wide`);
+}, { viewport: { width: 400, height: 900 } });
+
+await test('examples', async page => {
+  const names = await page.locator('#live-example option').evaluateAll(all => all.map(one => one.value).filter(Boolean));
+  expect(names.length > 25, `${names.length} examples`);
+  for (const name of names) {
+    await page.selectOption('#live-example', name);
+    await settled(page);
+    const said = await status(page);
+    expect(/computed in/.test(said) || (await page.locator('#live-messages li').count()) > 0, `${name}: ${said}`);
+    if (!/computed in/.test(said)) console.log(`  ${name}: ${await page.locator('#live-messages li b').first().textContent()}`);
+  }
+});
+
+// What `dwell view` writes.
+spawnSync(dwell, ['view', join(top, 'validation/four-bar/scene.toml'), '--page', file, '--out', scratch], { stdio: 'ignore' });
+await test('dwell view opens its scene', async page => {
+  same(await text(page), caseText('four-bar'), 'the scene');
+  expect(/computed in/.test(await status(page)), await status(page));
+}, { file: join(scratch, 'four-bar-live.html') });
+
+await test('times', async page => {
+  const scene = caseText('jansen');
+  const number = /(points = \{[^}]*\[)(\d+\.?\d*)/.exec(scene);
+  const times = [];
+  for (let k = 0; k < 40; k++) {
+    await write(page, scene.replace(number[0], `${number[1]}${Number(number[2]) * (1 + 1e-4 * k)}`));
+    const said = /computed in ([\d.]+) ms, drawn in ([\d.]+) ms/.exec(await status(page));
+    if (said && k >= 10) times.push([Number(said[1]), Number(said[2])]);
+  }
+  const middle = which => times.map(pair => pair[which]).sort((a, b) => a - b)[times.length >> 1];
+  const least = which => Math.min(...times.map(pair => pair[which]));
+  console.log(`Jansen leg, a length changed: computed in ${middle(0)} ms, drawn in ${middle(1)} ms (medians of ${times.length}; least ${least(0)} and ${least(1)})`);
+});
+
+await browser.close();
+console.log(`${count - failures.length} of ${count} tests of the live page pass`);
+process.exit(failures.length ? 1 : 0);
