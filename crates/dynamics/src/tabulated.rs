@@ -175,7 +175,11 @@ impl TabulatedMachine {
         let entries = auxiliary.entries.clone();
         let columns = {
             let mut fill = |q: f64, out: &mut [_]| auxiliary.fill(q, out);
-            builder.columns(&entries, &|one, other| one == other, &mut fill)?
+            builder.columns(
+                &entries,
+                &|one, other| f64::from(u8::from(one == other)),
+                &mut fill,
+            )?
         };
         Ok(Self {
             inertia,

@@ -48,6 +48,7 @@ mod export;
 pub mod exported_runs;
 pub mod free_motion;
 pub mod linearise;
+pub mod machines;
 pub mod reduce;
 #[cfg(feature = "output")]
 mod space;

@@ -3,14 +3,13 @@
 use super::figures;
 use crate::equilibria::compute::{EquilibriaResults, SearchedRange, compute_equilibria};
 use crate::explain::StudyError;
-use crate::models::SceneMachine;
+use crate::machines::{MachineScene, SceneMachine};
 use crate::number_format::{coordinate_unit, count, digits, digits_within, force_unit, number};
 use crate::output::{Outcome, Picture, results_page};
 use crate::ranges::extent;
 use dwell_dynamics::{Equilibrium, Stability};
 use dwell_findings::Record;
 use dwell_report::TableExport as _;
-use dwell_scene::Scene;
 use std::f64::consts::TAU;
 
 /// The equilibria of a scene: with one coordinate all of its range, with several those that Newton's method finds from
@@ -18,7 +17,7 @@ use std::f64::consts::TAU;
 ///
 /// # Errors
 /// [`StudyError`] when a load depends on time, or with several coordinates none is found.
-pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
+pub fn equilibria<S: MachineScene>(scene: &S) -> Result<Outcome, StudyError> {
     let results = compute_equilibria(scene)?;
     let mut outcome = Outcome::default();
     let name = |rest: &str| format!("{}-equilibria.{rest}", scene.name);
@@ -38,7 +37,7 @@ pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
     Ok(outcome)
 }
 
-fn summary(results: &EquilibriaResults<'_>) -> String {
+fn summary(results: &EquilibriaResults<'_, impl MachineScene>) -> String {
     let (prepared, found) = (&results.prepared, &results.found);
     let title = &prepared.scene.title;
     let found_count = match found.len() {
@@ -90,7 +89,7 @@ fn summary(results: &EquilibriaResults<'_>) -> String {
 }
 
 /// The numbers of the summary.
-fn record(results: &EquilibriaResults<'_>) -> Record {
+fn record(results: &EquilibriaResults<'_, impl MachineScene>) -> Record {
     let (prepared, found) = (&results.prepared, &results.found);
     let mut record = Record::default();
     record.add_count("equilibria", found.len());
@@ -127,7 +126,10 @@ fn record(results: &EquilibriaResults<'_>) -> Record {
 }
 
 /// The name of a coordinate, and its unit.
-fn coordinate<'a>(prepared: &'a SceneMachine<'_>, i: usize) -> (&'a str, &'static str) {
+fn coordinate<'a>(
+    prepared: &'a SceneMachine<'_, impl MachineScene>,
+    i: usize,
+) -> (&'a str, &'static str) {
     (
         prepared.coordinate_name(i),
         coordinate_unit(prepared.is_angle(i)),
@@ -136,7 +138,7 @@ fn coordinate<'a>(prepared: &'a SceneMachine<'_>, i: usize) -> (&'a str, &'stati
 
 /// The numbers of an equilibrium, under names that begin with `of`.
 pub(crate) fn record_equilibrium(
-    prepared: &SceneMachine<'_>,
+    prepared: &SceneMachine<'_, impl MachineScene>,
     equilibrium: &Equilibrium,
     of: &str,
     record: &mut Record,
@@ -188,7 +190,11 @@ pub(crate) fn record_eigenvalues(
 }
 
 /// `phi between 10° and 20°`.
-fn interval_text(prepared: &SceneMachine<'_>, actuator: usize, interval: [f64; 2]) -> String {
+fn interval_text(
+    prepared: &SceneMachine<'_, impl MachineScene>,
+    actuator: usize,
+    interval: [f64; 2],
+) -> String {
     let [from, to] = interval.map(|q| match prepared.is_angle(actuator) {
         true => format!("{}°", digits(q.to_degrees(), 6)),
         false => format!("{} m", digits(q, 6)),
@@ -201,7 +207,7 @@ fn interval_text(prepared: &SceneMachine<'_>, actuator: usize, interval: [f64; 2
 
 /// An equilibrium as text.
 pub(crate) fn describe_equilibrium(
-    prepared: &SceneMachine<'_>,
+    prepared: &SceneMachine<'_, impl MachineScene>,
     equilibrium: &Equilibrium,
 ) -> String {
     let start = prepared.initial_state();
@@ -243,7 +249,10 @@ pub(crate) fn describe_equilibrium(
 }
 
 /// The directions in which equilibria go on.
-fn describe_neutral(prepared: &SceneMachine<'_>, equilibrium: &Equilibrium) -> String {
+fn describe_neutral(
+    prepared: &SceneMachine<'_, impl MachineScene>,
+    equilibrium: &Equilibrium,
+) -> String {
     let mut text = String::new();
     for neutral in &equilibrium.neutral {
         let free = prepared.machine.free().iter().zip(&neutral.direction);

@@ -6,4 +6,4 @@ pub mod figures;
 #[cfg(feature = "output")]
 pub(crate) mod output;
 #[cfg(feature = "output")]
-pub(crate) use output::reduction_outcome;
+pub(crate) use output::{add_table, reduction_outcome};

@@ -3,6 +3,7 @@
 mod check;
 mod explain;
 mod export;
+mod machine_scene;
 mod motion;
 mod prepared;
 mod trajectory;
@@ -16,17 +17,26 @@ pub use trajectory::analyse_in_space;
 
 use crate::explain::StudyError;
 use crate::output::{Outcome, Picture};
-use crate::reduce::compute::Reduction;
-use crate::reduce::reduction_outcome;
+use crate::reduce::compute::{Reduction, TableRequest};
+use crate::reduce::{add_table, reduction_outcome};
 use dwell_scene::SpaceScene;
 
-/// The reduced parameters of a scene in space over its range, at `points` positions (two or more) if given.
+/// The reduced parameters of a scene in space over its range, at `points` positions (two or more) if given, and an interpolation
+/// table if requested.
 ///
 /// # Errors
-/// [`StudyError`] when the mechanism cannot be assembled or has not one degree of freedom, or a position cannot be evaluated.
-pub fn reduce_in_space(scene: &SpaceScene, points: Option<usize>) -> Result<Outcome, StudyError> {
+/// [`StudyError`] when the mechanism cannot be assembled or has not one degree of freedom, a position cannot be evaluated, or the
+/// table cannot be built.
+pub fn reduce_in_space(
+    scene: &SpaceScene,
+    points: Option<usize>,
+    table: Option<TableRequest>,
+) -> Result<Outcome, StudyError> {
     let reduction = Reduction::new(PreparedSpaceScene::new(scene)?, points)?;
     let mut outcome = reduction_outcome(&reduction)?;
+    if let Some(request) = table {
+        add_table(&reduction.prepared, &request, &mut outcome)?;
+    }
     let positions = reduction.prepared.drawn_positions()?;
     let name = |rest: &str| format!("{}-mechanism.{rest}", scene.name);
     let figure = Picture::figure(scene, name("png"), true, positions.figure());
