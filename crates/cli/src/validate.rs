@@ -47,19 +47,8 @@ pub(crate) fn validate(
     let all_cases = names.is_empty() && folder == Path::new(DEFAULT_CASE_FOLDER);
     let read: Vec<&Scene> = scenes.iter().flatten().collect();
     let all = all_cases.then_some(&read[..]);
-    type Results = Vec<Result<Validation, SceneError>>;
-    let ((results, spatial), (studies, keys)): ((Results, _), _) = rayon::join(
-        || {
-            rayon::join(
-                || scenes.par_iter().zip(&cases).map(one).collect(),
-                || {
-                    in_space
-                        .par_iter()
-                        .map(|path| case_in_space(path))
-                        .collect()
-                },
-            )
-        },
+    let (results, (studies, keys)): (Vec<Result<Validation, SceneError>>, _) = rayon::join(
+        || scenes.par_iter().zip(&cases).map(one).collect(),
         || {
             rayon::join(
                 || studies(all, (slow, seed)),
@@ -67,6 +56,8 @@ pub(crate) fn validate(
             )
         },
     );
+    let spatial = in_space.par_iter().map(|path| case_in_space(path));
+    let spatial = spatial.collect();
     bar.finish_and_clear();
     let mut others = studies.map_err(as_scene_error)?;
     if let Some(keys) = keys {
@@ -78,16 +69,19 @@ pub(crate) fn validate(
     let (mut all, failures) = collect_reports(&cases, &scenes, results);
     let failures = add_cases_in_space(spatial, &mut all, failures);
     all.record.add_count("cases", cases.len() + in_space.len());
-    for added in others {
-        all.summary += &added.summary;
-        all.findings.extend(added.findings);
-        all.files.extend("", added.files);
-        all.pictures.extend(added.pictures);
-    }
+    others.into_iter().for_each(|added| add(&mut all, added));
     let failed = all.findings.iter().filter(|finding| !finding.pass);
     all.record.add_count("findings.failed", failed.count());
     all.record.add_count("findings", all.findings.len());
     Ok((all, failures))
+}
+
+/// Adds the results of a study or a case to all.
+fn add(all: &mut Outcome, added: Outcome) {
+    all.summary += &added.summary;
+    all.findings.extend(added.findings);
+    all.files.extend("", added.files);
+    all.pictures.extend(added.pictures);
 }
 
 /// The studies beside the cases: extreme parameters, and with all of Dwell's own cases what accuracy costs and what exported
@@ -143,12 +137,7 @@ fn add_cases_in_space(
         let overview = dwell_validation::index_in_space(&pairs);
         all.files.extend("", overview.files);
     }
-    for (_, one) in done {
-        all.summary += &one.outcome.summary;
-        all.findings.extend(one.outcome.findings);
-        all.files.extend("", one.outcome.files);
-        all.pictures.extend(one.outcome.pictures);
-    }
+    done.into_iter().for_each(|(_, one)| add(all, one.outcome));
     let failed = failed.into_iter().filter_map(Result::err);
     combined_error(failures.into_iter().chain(failed).collect())
 }

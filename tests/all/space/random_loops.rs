@@ -114,7 +114,7 @@ fn judge(made: &Assembled, random: &mut Random) -> Verdict {
                     .inverse_dynamics(&[q], &[q_dot], &[q_ddot], &mut work, &mut found)
                     .expect("a pose"),
             }
-            let mut compare = |rounding: &[f64]| {
+            let compare = |rounding: &[f64]| {
                 let both = (&truth, &found);
                 differ((plan, &pose), both, (&determined, rounding), q_dot > 0.0)
             };
