@@ -112,7 +112,7 @@ impl<'a> PreparedSpaceScene<'a> {
     }
 
     /// The part of the range that is shown, rad or m.
-    pub fn shown_range(&self) -> [f64; 2] {
+    pub fn drawn_range(&self) -> [f64; 2] {
         range_limits(self.scene, self.model.model().plan()).0
     }
 

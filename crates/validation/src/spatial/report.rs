@@ -115,7 +115,7 @@ fn snapshot(
     prepared: &PreparedSpaceScene<'_>,
     findings: &[Finding],
 ) -> Result<String, ValidationError> {
-    let [from, to] = prepared.shown_range();
+    let [from, to] = prepared.drawn_range();
     let at = |k: usize| from + (to - from) * (k as f64 + 0.5) / PRINTED as f64;
     let q: Vec<f64> = (0..PRINTED).map(at).collect();
     let all = prepared.coefficients(&q)?;

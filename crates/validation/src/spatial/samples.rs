@@ -67,7 +67,7 @@ impl<'a> Samples<'a> {
         let all: Vec<Reaction> = joints.flat_map(components).collect();
         let model = prepared.model_for(&all)?;
         // Between the ends of the range, and at no special place of it.
-        let ends = prepared.shown_range();
+        let ends = prepared.drawn_range();
         let at = |k: usize| ends[0] + (ends[1] - ends[0]) * (k as f64 + 0.43) / POSITIONS as f64;
         Ok(Self {
             scene,
