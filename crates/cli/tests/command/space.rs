@@ -39,26 +39,12 @@ fn checks_say_what_is_determined_and_what_turns_idly() {
 #[test]
 fn what_is_wrong_in_space_is_said_where_it_is() {
     let mut group = Group::new();
-    group.scene("closed forms", "symbolic", scene("rssr"));
     group.scene("nothing does work in a cycle", "cycle", scene("rssr"));
     let held = format!(
         "{}push = {{ joint-torque = \"A\", magnitude = 30 }}\n",
         scene("rssr")
     );
     group.scene("no balance", "linearise", held);
-    let sliding = changed("rssr", "q = { angle = \"A\" }", "q = { angle = \"D\" }");
-    let from = [
-        "reduce",
-        "scene.toml",
-        "--table-accuracy",
-        "1e-9",
-        "--table-from",
-        "0",
-        "--table-to",
-        "9",
-    ];
-    group.dir.put("scene.toml", sliding);
-    group.refused("a table beyond the range", &from);
     group.scene("two actuators", "reduce", scene("governor"));
     let undriven = changed("rssr", "q = { angle = \"A\" }\n", "");
     group.scene(
