@@ -1,7 +1,7 @@
 //! Random loops in space: one loop of any joints with one degree of freedom, or two, driven at a joint, by a length or through gears, assembled around a pose; each is solved with all
 //! truths of the dense equations, or refused as their singular values confirm.
 //!
-//! `DWELL_SEED` and `DWELL_LOOPS` choose others than the usual ones.
+//! `DWELL_SEED` and `DWELL_LOOPS` choose others than the usual ones, and `DWELL_FIRST` the number of the first.
 
 mod assembled;
 
