@@ -1,9 +1,12 @@
 //! Mechanisms in space: the thirteen references of `validation/spatial`, made by an independent program with 40 digits, and what
 //! must be refused.
 
+mod cases;
+mod extremes;
 mod hooke_joint;
 mod loads;
 mod motions;
+mod operating_points;
 mod random_loops;
 mod reference;
 mod scenes;

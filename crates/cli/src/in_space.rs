@@ -13,11 +13,18 @@ pub(crate) fn run_study(
     let outcome = match command {
         Command::Check { .. } => dwell_study::check_in_space(scene)?,
         Command::Reduce {
-            table_accuracy: None,
-            accuracy: None,
+            runs: None,
+            table_accuracy,
+            accuracy,
             points,
+            table_from,
+            table_to,
             ..
-        } => dwell_study::reduce_in_space(scene, points.map(|n| n as usize))?,
+        } => {
+            let accuracies = [*table_accuracy, *accuracy];
+            let table = crate::table_request(accuracies, [*table_from, *table_to]);
+            dwell_study::reduce_in_space(scene, points.map(|n| n as usize), table)?
+        }
         Command::Export(arguments) => crate::export::run_in_space(arguments, scene)?,
         Command::Kinematics(arguments) => {
             return run_trajectory(arguments, scene, Analysis::Kinematics, progress);
@@ -33,6 +40,17 @@ pub(crate) fn run_study(
             let times = times.as_deref();
             return dwell_study::simulate_in_space(scene, &solver, times, span, progress);
         }
+        Command::Cycle {
+            fluctuation,
+            method,
+            rtol,
+            ..
+        } => {
+            let settings = crate::cycle_settings(*method, *rtol);
+            return dwell_study::cycle(scene, &settings, *fluctuation);
+        }
+        Command::Equilibria { .. } => dwell_study::equilibria(scene)?,
+        Command::Linearise { about, .. } => dwell_study::linearise(scene, *about)?,
         _ => return Err(scene.planar_only().into()),
     };
     Ok(TrajectoryOutcome {

@@ -20,6 +20,7 @@ mod values;
 mod view;
 
 use clap::{CommandFactory as _, FromArgMatches as _};
+use dwell_dynamics::Method;
 use dwell_findings::all_pass;
 use dwell_report::{Files, OutputFolder, ReportError};
 use dwell_scene::{AnyScene, Scene, SceneError, SceneFile};
@@ -241,11 +242,8 @@ fn run_study(
             ..
         } => {
             let points = points.map(|n| n as usize);
-            let tabulation = table_accuracy.or(*accuracy).map(|accuracy| TableRequest {
-                accuracy,
-                interval: table_from.zip(*table_to),
-                required: table_accuracy.is_some(),
-            });
+            let accuracies = [*table_accuracy, *accuracy];
+            let tabulation = table_request(accuracies, [*table_from, *table_to]);
             dwell_study::reduce(scene, points, tabulation)?
         }
         Command::Simulate { .. } => {
@@ -258,12 +256,7 @@ fn run_study(
             rtol,
             ..
         } => {
-            let settings = SolverSettings {
-                method: *method,
-                rtol: *rtol,
-                atol: *rtol,
-                ..SolverSettings::default()
-            };
+            let settings = cycle_settings(*method, *rtol);
             return dwell_study::cycle(scene, &settings, *fluctuation);
         }
         Command::WorkPrecision { .. } => dwell_validation::work_precision(scene, &progress)?,
@@ -331,6 +324,29 @@ fn run_study(
         outcome,
         early_stop,
     })
+}
+
+/// The table that is asked for, by the accuracy of `--table-accuracy` or `--accuracy`, over an interval if it has both ends.
+fn table_request(
+    [table_accuracy, accuracy]: [Option<f64>; 2],
+    [from, to]: [Option<f64>; 2],
+) -> Option<TableRequest> {
+    let accuracy = table_accuracy.or(accuracy)?;
+    Some(TableRequest {
+        accuracy,
+        interval: from.zip(to),
+        required: table_accuracy.is_some(),
+    })
+}
+
+/// How a steady cycle is integrated.
+fn cycle_settings(method: Method, rtol: f64) -> SolverSettings {
+    SolverSettings {
+        method,
+        rtol,
+        atol: rtol,
+        ..SolverSettings::default()
+    }
 }
 
 /// Analyses a scene along its trajectory.

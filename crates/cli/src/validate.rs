@@ -3,7 +3,7 @@
 use crate::interface::interface;
 use crate::options::DEFAULT_CASE_FOLDER;
 use crate::{as_scene_error, cases, print_warnings, validation_error};
-use dwell_scene::{Scene, SceneError};
+use dwell_scene::{Scene, SceneError, SpaceScene};
 use dwell_study::{Outcome, Progress, Step, StudyError};
 use dwell_validation::manual::KeyStudy;
 use dwell_validation::{
@@ -22,7 +22,11 @@ pub(crate) fn validate(
     (slow, seed): (bool, u64),
     bar: &ProgressBar,
 ) -> Result<(Outcome, Option<SceneError>), Report> {
-    let cases = cases::find(names, folder)?;
+    let (in_space, others) = cases::find_in_space(names, folder);
+    let cases = match names.is_empty() || !others.is_empty() {
+        true => cases::find(&others, folder)?,
+        false => Vec::new(),
+    };
     let read = |case: &PathBuf| Scene::read(case.join("scene.toml"));
     let scenes: Vec<_> = cases.iter().map(read).collect();
     reject_duplicate_names(&cases, &scenes)?;
@@ -52,6 +56,8 @@ pub(crate) fn validate(
             )
         },
     );
+    let spatial = in_space.par_iter().map(|path| case_in_space(path));
+    let spatial = spatial.collect();
     bar.finish_and_clear();
     let mut others = studies.map_err(as_scene_error)?;
     if let Some(keys) = keys {
@@ -61,17 +67,21 @@ pub(crate) fn validate(
         others.push(keys.manual(&results, &extremes, &interface()));
     }
     let (mut all, failures) = collect_reports(&cases, &scenes, results);
-    all.record.add_count("cases", cases.len());
-    for added in others {
-        all.summary += &added.summary;
-        all.findings.extend(added.findings);
-        all.files.extend("", added.files);
-        all.pictures.extend(added.pictures);
-    }
+    let failures = add_cases_in_space(spatial, &mut all, failures);
+    all.record.add_count("cases", cases.len() + in_space.len());
+    others.into_iter().for_each(|added| add(&mut all, added));
     let failed = all.findings.iter().filter(|finding| !finding.pass);
     all.record.add_count("findings.failed", failed.count());
     all.record.add_count("findings", all.findings.len());
     Ok((all, failures))
+}
+
+/// Adds the results of a study or a case to all.
+fn add(all: &mut Outcome, added: Outcome) {
+    all.summary += &added.summary;
+    all.findings.extend(added.findings);
+    all.files.extend("", added.files);
+    all.pictures.extend(added.pictures);
 }
 
 /// The studies beside the cases: extreme parameters, and with all of Dwell's own cases what accuracy costs and what exported
@@ -102,6 +112,34 @@ fn validate_case(
         Some(program) => dwell_validation::validate_program(scene, case, program, progress),
         None => dwell_validation::validate(scene, case, progress),
     }
+}
+
+/// A scene in space with its validation, by the reference beside it if there is one.
+fn case_in_space(path: &Path) -> Result<(SpaceScene, Validation), SceneError> {
+    let scene = SpaceScene::read(path)?;
+    print_warnings(&scene);
+    let reference = path.with_extension("json");
+    let reference = reference.is_file().then_some(reference);
+    let done = dwell_validation::validate_in_space(&scene, reference.as_deref());
+    Ok((scene, done.map_err(validation_error)?))
+}
+
+/// Adds the results of the cases in space, with their table where there are several, and returns all failures.
+fn add_cases_in_space(
+    results: Vec<Result<(SpaceScene, Validation), SceneError>>,
+    all: &mut Outcome,
+    failures: Option<SceneError>,
+) -> Option<SceneError> {
+    let (done, failed): (Vec<_>, Vec<_>) = results.into_iter().partition(Result::is_ok);
+    let done: Vec<(SpaceScene, Validation)> = done.into_iter().flatten().collect();
+    if done.len() > 1 {
+        let pairs: Vec<_> = done.iter().map(|(scene, done)| (scene, done)).collect();
+        let overview = dwell_validation::index_in_space(&pairs);
+        all.files.extend("", overview.files);
+    }
+    done.into_iter().for_each(|(_, one)| add(all, one.outcome));
+    let failed = failed.into_iter().filter_map(Result::err);
+    combined_error(failures.into_iter().chain(failed).collect())
 }
 
 /// Refuses two cases of one name: they would write the same files.

@@ -175,7 +175,8 @@ impl TabulatedMachine {
         let entries = auxiliary.entries.clone();
         let columns = {
             let mut fill = |q: f64, out: &mut [_]| auxiliary.fill(q, out);
-            builder.columns(&entries, &|one, other| one == other, &mut fill)?
+            let relation = |one, other| if one == other { 1.0 } else { 0.0 };
+            builder.columns(&entries, &relation, &mut fill)?
         };
         Ok(Self {
             inertia,

@@ -19,7 +19,7 @@ mod sizing;
 pub use build::{ColumnSampler, SlopeSampler, TableBuilder};
 pub use file::{FileError, Labels};
 pub use piecewise::{IntegratedCurve, PiecewiseColumns};
-pub use sampler::InertiaSampler;
+pub use sampler::{InertiaSampler, TableModel};
 
 use crate::error::{KinetostaticsError, PositionResult};
 use crate::reduced::{Coefficients, ExactModel, Inertia, ReducedModel};
@@ -203,21 +203,25 @@ impl TabulatedModel {
     ///
     /// # Errors
     /// [`TableError`] for a domain that is empty or unbounded, or an accuracy that cannot be kept.
-    pub fn new(exact: &ExactModel, accuracy: f64, domain: TableDomain) -> Result<Self> {
-        let mut builder = TableBuilder::new(exact.range(), domain, accuracy)?;
+    pub fn new<M: TableModel>(
+        exact: &ExactModel<M>,
+        accuracy: f64,
+        domain: TableDomain,
+    ) -> Result<Self> {
+        let mut builder = TableBuilder::new(ReducedModel::range(exact), domain, accuracy)?;
         let mut sampler = ModelSampler::new(exact);
         let model = exact.model();
-        let counts = [model.reactions().len(), model.loads().len()];
+        let counts = [model.reaction_count(), model.loads().len()];
         let (both, reactions, loads) = table_quantities(counts);
         let inertia = builder.curve(both, &mut exact.inertia_sampler())?;
-        let same_kind = |one, other| sampler::same_kind(exact, one, other);
+        let relation = |one, other| sampler::relation(model, one, other);
         let mut columns = |quantities: &[TableQuantity]| {
             let mut sample = |q: f64, out: &mut [Dual]| sampler.sample(quantities, q, out);
-            builder.columns(quantities, &same_kind, &mut sample)
+            builder.columns(quantities, &relation, &mut sample)
         };
         Ok(Self {
             accuracy,
-            is_angle: model.plan().is_angle(0),
+            is_angle: model.is_angle(0),
             inertia,
             reactions: columns(&reactions)?,
             loads: columns(&loads)?,

@@ -49,6 +49,7 @@ mod export;
 pub mod exported_runs;
 pub mod free_motion;
 pub mod linearise;
+pub mod machines;
 pub mod reduce;
 mod space;
 mod suspicious_units;

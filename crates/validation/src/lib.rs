@@ -31,6 +31,7 @@ pub mod extremes;
 pub mod manual;
 mod overview;
 mod report_parts;
+mod spatial;
 pub mod work_precision;
 mod written;
 
@@ -40,4 +41,5 @@ pub use checked::multibody::{FreeMotionRun, free_motion_run};
 pub use checked::states::{CheckedStates, check_case};
 pub use error::ValidationError;
 pub use overview::{CaseResult, index};
+pub use spatial::{index_in_space, validate_in_space};
 pub use work_precision::work_precision;

@@ -86,7 +86,7 @@ impl TableBuilder {
         let per_revolution = TAU / self.grid.length;
         let scale = |largest: &[f64]| {
             let weighted = [largest[0], largest[1] / per_revolution];
-            let slope = sizing::scales(&weighted, &|_, _| true)[1];
+            let slope = sizing::scales(&weighted, &|_, _| 1.0)[1];
             vec![weighted[0], slope * per_revolution]
         };
         let mut values = |q: &[f64]| {
@@ -99,21 +99,22 @@ impl TableBuilder {
         })
     }
 
-    /// Columns side by side; `same_kind` compares the kinds of two quantities.
+    /// Columns side by side; `relation` says what the second of two quantities counts as one of the first: 1 if they are of one kind, 0 if they have
+    /// nothing in common.
     ///
     /// # Errors
     /// As [`TableBuilder::curve`].
     pub fn columns(
         &mut self,
         quantities: &[TableQuantity],
-        same_kind: &dyn Fn(TableQuantity, TableQuantity) -> bool,
+        relation: &dyn Fn(TableQuantity, TableQuantity) -> f64,
         sampler: &mut ColumnSampler<'_>,
     ) -> Result<PiecewiseColumns> {
         if quantities.is_empty() {
             return Ok(PiecewiseColumns::empty(self.grid));
         }
         let scale = |largest: &[f64]| {
-            sizing::scales(largest, &|i, j| same_kind(quantities[i], quantities[j]))
+            sizing::scales(largest, &|i, j| relation(quantities[i], quantities[j]))
         };
         let mut here = vec![Dual::default(); quantities.len()];
         let mut values = |q: &[f64]| {

@@ -67,11 +67,11 @@ pub(super) fn estimate_sizing(
     }
 }
 
-/// Scales from the largest of each value: no less than [`MIN_RELATIVE_SCALE`] of the largest of its kind.
-pub(super) fn scales(largest: &[f64], same_kind: &dyn Fn(usize, usize) -> bool) -> Vec<f64> {
+/// Scales from the largest of each value: no less than [`MIN_RELATIVE_SCALE`] of the largest of its kind, and of what others count beside it.
+pub(super) fn scales(largest: &[f64], relation: &dyn Fn(usize, usize) -> f64) -> Vec<f64> {
     let of_kind = |i: usize| {
-        let same = (0..largest.len()).filter(|&j| same_kind(i, j));
-        same.fold(0.0_f64, |s, j| s.max(largest[j]))
+        let all = largest.iter().enumerate();
+        all.fold(0.0_f64, |s, (j, largest)| s.max(relation(i, j) * largest))
     };
     (0..largest.len())
         .map(|i| largest[i].max(MIN_RELATIVE_SCALE * of_kind(i)))

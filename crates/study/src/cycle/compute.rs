@@ -3,15 +3,16 @@
 use crate::cycle::errors::MAX_SPEED_ERROR;
 pub use crate::cycle::errors::{CycleErrors, CycleStability};
 use crate::explain::{StudyError, labels};
-use crate::models::{SceneMachine, SolverSettings, source_name};
+use crate::machines::{MachineScene, SceneMachine};
+use crate::models::SolverSettings;
 use crate::number_format::{coordinate_unit, count, digits};
-use crate::trajectory::compute::reject_unknown_variables;
 use dwell_dynamics::{
-    Cycle, DynamicsError, Flywheel, Machine, OdeState, Options, initial_transient, size_flywheel,
-    steady_cycle,
+    Cycle, DynamicsError, Flywheel, Machine, MovingModel, OdeState, Options, initial_transient,
+    size_flywheel, steady_cycle,
 };
 use dwell_findings::{Column, Table};
 use dwell_geometry::ActuatorId;
+use dwell_kinetostatics::MachineModel as _;
 use dwell_scene::{Scene, SceneLocation};
 
 /// Revolutions from the initial state to the first guess.
@@ -35,7 +36,7 @@ fn in_first_revolution(mut cycle: Cycle) -> Cycle {
 }
 
 /// Rejects a machine whose free coordinate does not rotate fully.
-fn require_rotating(prepared: &SceneMachine<'_>) -> Result<(), StudyError> {
+fn require_rotating(prepared: &SceneMachine<'_, impl MachineScene>) -> Result<(), StudyError> {
     let free = prepared.machine.free();
     if prepared.machine.nonconservative_sources().is_empty() {
         return Err(prepared.error(
@@ -54,7 +55,7 @@ fn require_rotating(prepared: &SceneMachine<'_>) -> Result<(), StudyError> {
         ));
     }
     let (coordinate, is_angle) = prepared.first_free_coordinate();
-    let range = prepared.machine.model().plan().range();
+    let range = prepared.machine.model().range();
     let fault = match range.limits() {
         None if is_angle => return Ok(()),
         None => "is a length".to_owned(),
@@ -73,7 +74,7 @@ fn require_rotating(prepared: &SceneMachine<'_>) -> Result<(), StudyError> {
 
 /// Explains a machine that does not complete the first revolutions.
 fn run_up_error(
-    prepared: &SceneMachine<'_>,
+    prepared: &SceneMachine<'_, impl MachineScene>,
     error: &DynamicsError,
     max_step: Option<f64>,
 ) -> StudyError {
@@ -107,15 +108,20 @@ fn run_up_error(
 }
 
 /// A column for the work of each load and drive.
-fn work_columns(prepared: &SceneMachine<'_>) -> impl Iterator<Item = Column> {
+fn work_columns(prepared: &SceneMachine<'_, impl MachineScene>) -> impl Iterator<Item = Column> {
     let sources = prepared.machine.nonconservative_sources().iter();
-    sources.map(|&source| Column::new(format!("{}.work", source_name(prepared.scene, source)), "J"))
+    sources.map(|&source| {
+        Column::new(
+            format!("{}.work", prepared.scene.name_of_source(source)),
+            "J",
+        )
+    })
 }
 
 /// One cycle: time, states, acceleration and works since its start.
-fn cycle_table(
-    prepared: &SceneMachine<'_>,
-    machine: &Machine,
+fn cycle_table<S: MachineScene>(
+    prepared: &SceneMachine<'_, S>,
+    machine: &Machine<S::Model>,
     cycle: &Cycle,
 ) -> Result<Table, StudyError> {
     let (coordinate, _) = prepared.first_free_coordinate();
@@ -138,7 +144,7 @@ fn cycle_table(
 }
 
 /// The work of each load and drive over the cycle, and their sum.
-fn work_table(prepared: &SceneMachine<'_>, cycle: &Cycle) -> Table {
+fn work_table(prepared: &SceneMachine<'_, impl MachineScene>, cycle: &Cycle) -> Table {
     let mut columns: Vec<Column> = work_columns(prepared).collect();
     let mut row = cycle.works.clone();
     columns.push(Column::new("work_sum", "J"));
@@ -162,22 +168,22 @@ pub struct SizedFlywheel {
 }
 
 /// Whether a machine has a steady cycle.
-pub enum CycleSearch<'a> {
+pub enum CycleSearch<'a, S: MachineScene = Scene> {
     /// It was found.
-    Steady(Box<CycleResults<'a>>),
+    Steady(Box<CycleResults<'a, S>>),
     /// None was found, or its error is too large to say: why.
     NoCycle {
         /// The scene with its machine.
-        prepared: Box<SceneMachine<'a>>,
+        prepared: Box<SceneMachine<'a, S>>,
         /// Why not.
         reason: StudyError,
     },
 }
 
 /// A steady cycle with its tables, and with the flywheel if a fluctuation was required.
-pub struct CycleResults<'a> {
+pub struct CycleResults<'a, S: MachineScene = Scene> {
     /// The scene with its machine.
-    pub prepared: SceneMachine<'a>,
+    pub prepared: SceneMachine<'a, S>,
     /// The cycle.
     pub steady: Cycle,
     /// Its estimated errors.
@@ -196,12 +202,12 @@ pub struct CycleResults<'a> {
 ///
 /// # Errors
 /// As [`cycle`](crate::cycle()).
-pub fn compute_cycle<'a>(
-    scene: &'a Scene,
+pub fn compute_cycle<'a, S: MachineScene>(
+    scene: &'a S,
     settings: &SolverSettings,
     fluctuation: Option<f64>,
-) -> Result<CycleSearch<'a>, StudyError> {
-    reject_unknown_variables(scene)?;
+) -> Result<CycleSearch<'a, S>, StudyError> {
+    scene.reject_unknown_columns()?;
     let prepared = SceneMachine::new(scene)?;
     require_rotating(&prepared)?;
     prepared.require_autonomous("a steady cycle")?;
@@ -246,7 +252,7 @@ pub fn compute_cycle<'a>(
 
 /// The cycle from the scene's initial state, with its errors.
 fn find_cycle(
-    prepared: &SceneMachine<'_>,
+    prepared: &SceneMachine<'_, impl MachineScene>,
     options: &Options,
 ) -> Result<(Cycle, CycleErrors), StudyError> {
     // The guess need not be exact, and a coarse integration starts more easily from rest.
@@ -265,9 +271,9 @@ fn find_cycle(
 }
 
 /// The errors of a cycle, unless they are so large that there may be none.
-fn estimated_errors(
-    prepared: &SceneMachine<'_>,
-    machine: &Machine,
+fn estimated_errors<S: MachineScene>(
+    prepared: &SceneMachine<'_, S>,
+    machine: &Machine<S::Model>,
     cycle: &Cycle,
     options: &Options,
 ) -> Result<CycleErrors, StudyError> {
@@ -287,14 +293,14 @@ fn estimated_errors(
 }
 
 /// The machine with a flywheel added.
-fn with_flywheel(machine: &Machine, inertia: f64) -> Machine {
+fn with_flywheel<M: MovingModel>(machine: &Machine<M>, inertia: f64) -> Machine<M> {
     let inertia = machine.flywheel(0) + inertia;
     machine.clone().with_flywheel(0, inertia)
 }
 
 /// The flywheel for a coefficient of fluctuation, and its errors.
 fn size_for(
-    prepared: &SceneMachine<'_>,
+    prepared: &SceneMachine<'_, impl MachineScene>,
     steady: &Cycle,
     target: f64,
     options: &Options,

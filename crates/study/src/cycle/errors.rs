@@ -1,7 +1,7 @@
 //! The estimated errors of a steady cycle, from a second computation at a tenth of the tolerance.
 
 use crate::estimate;
-use dwell_dynamics::{Cycle, DynamicsError, Machine, Options, steady_cycle};
+use dwell_dynamics::{Cycle, DynamicsError, Machine, MovingModel, Options, steady_cycle};
 
 /// A cycle whose speeds err by more than this part of them has not been found.
 pub(crate) const MAX_SPEED_ERROR: f64 = 1e-3;
@@ -37,8 +37,8 @@ impl CycleErrors {
     ///
     /// # Errors
     /// As [`steady_cycle`], of the second computation.
-    pub(crate) fn new(
-        machine: &Machine,
+    pub(crate) fn new<M: MovingModel>(
+        machine: &Machine<M>,
         cycle: &Cycle,
         options: &Options,
     ) -> Result<Self, DynamicsError> {

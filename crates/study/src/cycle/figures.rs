@@ -1,6 +1,7 @@
 //! The steady cycle: speed over the coordinate, and acceleration over speed.
 
 use crate::cycle::compute::{CycleResults, CycleStability};
+use crate::machines::MachineScene;
 use crate::models::SolverSettings;
 use crate::number_format::digits_within;
 use crate::output::{chart, figure, symbol};
@@ -10,7 +11,10 @@ use dwell_report::{Axis, Figure, Mark, Series, Stroke, Table};
 const CONSTANT_FLUCTUATION: f64 = 1e-7;
 
 /// The cycle, and the same with the flywheel.
-pub(crate) fn cycle(results: &CycleResults<'_>, settings: &SolverSettings) -> Figure {
+pub(crate) fn cycle(
+    results: &CycleResults<'_, impl MachineScene>,
+    settings: &SolverSettings,
+) -> Figure {
     let (prepared, steady) = (&results.prepared, &results.steady);
     let (actuator, _) = prepared.first_free_coordinate();
     let name = symbol(prepared.coordinate_name(actuator));
@@ -55,7 +59,10 @@ pub(crate) fn cycle(results: &CycleResults<'_>, settings: &SolverSettings) -> Fi
 }
 
 /// A curve of the cycle, and of the cycle with the flywheel.
-fn curves(results: &CycleResults<'_>, of: fn(&[f64]) -> [f64; 2]) -> Vec<Series> {
+fn curves(
+    results: &CycleResults<'_, impl MachineScene>,
+    of: fn(&[f64]) -> [f64; 2],
+) -> Vec<Series> {
     let line = |name: &str, table: &Table| {
         Series::line(name, table.rows.iter().map(|row| of(row)).collect())
     };

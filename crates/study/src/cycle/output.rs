@@ -5,7 +5,8 @@ use crate::cycle::compute::{
     CycleErrors, CycleResults, CycleSearch, CycleStability, SizedFlywheel, compute_cycle,
 };
 use crate::explain::StudyError;
-use crate::models::{SceneMachine, SolverSettings, source_name};
+use crate::machines::{MachineScene, SceneMachine};
+use crate::models::SolverSettings;
 use crate::number_format::{count, digits, digits_within};
 use crate::output::{Outcome, Picture, results_page};
 use crate::page::{scene_page, table_page, unit_group};
@@ -13,7 +14,7 @@ use crate::trajectory::output::TrajectoryOutcome;
 use dwell_dynamics::Cycle;
 use dwell_findings::Record;
 use dwell_report::TableFormat;
-use dwell_scene::Scene;
+use dwell_scene::SceneFile;
 use std::f64::consts::{PI, TAU};
 
 /// The steady cycle of a scene, and the flywheel for a target coefficient of speed fluctuation if given. If no steady
@@ -21,8 +22,8 @@ use std::f64::consts::{PI, TAU};
 ///
 /// # Errors
 /// [`StudyError`] when the free coordinate does not rotate fully, nothing does work, or a load depends on time.
-pub fn cycle(
-    scene: &Scene,
+pub fn cycle<S: MachineScene>(
+    scene: &S,
     settings: &SolverSettings,
     fluctuation: Option<f64>,
 ) -> Result<TrajectoryOutcome, StudyError> {
@@ -77,14 +78,14 @@ pub fn cycle(
 }
 
 /// A speed in the scene's unit and in revolutions per minute, to the digits that its relative error leaves.
-fn speed_text(scene: &Scene, value: f64, relative_error: f64) -> String {
+fn speed_text(scene: &SceneFile, value: f64, relative_error: f64) -> String {
     let (in_unit, unit) = scene.to_scene_unit(value, true);
     let [in_unit, minute] = [in_unit, value * 30.0 / PI]
         .map(|value| digits_within(value, relative_error * value.abs(), 9));
     format!("{in_unit} {unit}/s ({minute} 1/min)")
 }
 
-pub(crate) fn summary(results: &CycleResults<'_>) -> String {
+pub(crate) fn summary(results: &CycleResults<'_, impl MachineScene>) -> String {
     let (prepared, cycle, errors) = (&results.prepared, &results.steady, &results.errors);
     let (coordinate, _) = prepared.first_free_coordinate();
     let revolutions = count((cycle.cycle_angle / TAU).round() as usize, "revolution");
@@ -116,7 +117,7 @@ pub(crate) fn summary(results: &CycleResults<'_>) -> String {
 }
 
 /// The numbers of the summary.
-fn record(results: &CycleResults<'_>) -> Record {
+fn record(results: &CycleResults<'_, impl MachineScene>) -> Record {
     let (prepared, cycle, errors) = (&results.prepared, &results.steady, &results.errors);
     let mut record = Record::default();
     let speed_of = |record: &mut Record, name: &str, speed: f64, error: f64| {
@@ -140,7 +141,7 @@ fn record(results: &CycleResults<'_>) -> Record {
     }
     let sources = prepared.machine.nonconservative_sources().iter();
     for (&source, &work) in sources.zip(&cycle.works) {
-        let name = source_name(prepared.scene, source);
+        let name = prepared.scene.name_of_source(source);
         record.add_within(format!("{name}.work"), "J", work, errors.work);
     }
     let sum: f64 = cycle.works.iter().sum();
@@ -190,11 +191,15 @@ fn stability_text(cycle: &Cycle, errors: &CycleErrors) -> String {
 }
 
 /// The works, what is left of their sum, and the errors of all numbers.
-fn work_text(prepared: &SceneMachine<'_>, cycle: &Cycle, errors: &CycleErrors) -> String {
+fn work_text(
+    prepared: &SceneMachine<'_, impl MachineScene>,
+    cycle: &Cycle,
+    errors: &CycleErrors,
+) -> String {
     let mut text = String::new();
     let sources = prepared.machine.nonconservative_sources().iter();
     for (&source, &work) in sources.zip(&cycle.works) {
-        let name = source_name(prepared.scene, source);
+        let name = prepared.scene.name_of_source(source);
         let work = digits_within(work, errors.work, 9);
         text += &format!("  work of {name} per cycle {work} J\n");
     }
@@ -214,7 +219,10 @@ fn work_text(prepared: &SceneMachine<'_>, cycle: &Cycle, errors: &CycleErrors) -
 }
 
 /// The flywheel and its effect.
-pub(crate) fn flywheel_text(prepared: &SceneMachine<'_>, sized: &SizedFlywheel) -> String {
+pub(crate) fn flywheel_text(
+    prepared: &SceneMachine<'_, impl MachineScene>,
+    sized: &SizedFlywheel,
+) -> String {
     let (flywheel, errors) = (&sized.flywheel, &sized.errors);
     let target = digits(sized.target, 6);
     if flywheel.inertia == 0.0 {

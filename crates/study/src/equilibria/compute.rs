@@ -1,14 +1,14 @@
 //! Finds equilibria and tabulates them.
 
 use crate::explain::StudyError;
-use crate::models::SceneMachine;
+use crate::machines::{MachineScene, SceneMachine};
 use crate::ranges::{equally_spaced, extent};
-use crate::trajectory::compute::reject_unknown_variables;
 use dwell_dynamics::{
     DynamicsError, Equilibrium, Stability, equilibria as equilibria_over, equilibria_from_starts,
     equilibrium_near, static_force_and_potential,
 };
 use dwell_findings::{Column, Table};
+use dwell_kinetostatics::MachineModel as _;
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
 
@@ -51,7 +51,7 @@ pub enum SearchedRange {
 
 /// Finds the equilibria.
 pub(crate) fn find_equilibria(
-    prepared: &SceneMachine<'_>,
+    prepared: &SceneMachine<'_, impl MachineScene>,
 ) -> Result<(Vec<Equilibrium>, SearchedRange), StudyError> {
     prepared.require_autonomous("an equilibrium")?;
     let (machine, start) = (&prepared.machine, prepared.initial_state());
@@ -68,7 +68,7 @@ pub(crate) fn find_equilibria(
 
 /// An equilibrium; where every position of an interval is one, that at the start if the start is within.
 fn nearest_to(
-    prepared: &SceneMachine<'_>,
+    prepared: &SceneMachine<'_, impl MachineScene>,
     found: Equilibrium,
 ) -> Result<Equilibrium, DynamicsError> {
     let start = prepared.initial_state();
@@ -88,29 +88,29 @@ fn nearest_to(
 
 /// The range of the only coordinate of the mechanism; if it is unlimited, one period around the start. With several
 /// coordinates one revolution around the start of each free angle, and lengths around the start.
-fn searched_range(prepared: &SceneMachine<'_>) -> SearchedRange {
-    let plan = prepared.machine.model().plan();
+fn searched_range(prepared: &SceneMachine<'_, impl MachineScene>) -> SearchedRange {
+    let model = prepared.machine.model();
     let start = prepared.initial_state();
-    if plan.actuators() == 1 {
-        let range = plan.range();
+    if model.actuators() == 1 {
+        let range = model.range();
         if let Some((from, to)) = range.limits() {
             let margin = MARGIN * (to - from);
             return SearchedRange::Interval([from + margin, to - margin]);
         }
-        let period = range.period().or(plan.is_angle(0).then_some(TAU));
+        let period = range.period().or(model.is_angle(0).then_some(TAU));
         if let Some(period) = period {
             let from = start[0] - CUT_FRACTION * period;
             return SearchedRange::Interval([from, from + period]);
         }
     }
-    let length = LENGTH_RANGE * prepared.scene.mechanism.size();
+    let length = LENGTH_RANGE * model.size();
     let sticks = prepared.machine.contact_loads().next().is_some();
-    if plan.actuators() == 1 && sticks {
+    if model.actuators() == 1 && sticks {
         // Friction that holds has intervals, which no search from single starts finds.
         return SearchedRange::Interval([start[0] - length, start[0] + length]);
     }
     let free = prepared.machine.free();
-    let range = |(&i, q): (&usize, &f64)| match plan.is_angle(i) {
+    let range = |(&i, q): (&usize, &f64)| match model.is_angle(i) {
         true => [q - CUT_FRACTION * TAU, q + (1.0 - CUT_FRACTION) * TAU],
         false => [q - length, q + length],
     };
@@ -123,7 +123,7 @@ fn searched_range(prepared: &SceneMachine<'_>) -> SearchedRange {
 
 /// The smallest and the largest static force (N·m or N) over an interval.
 pub(crate) fn force_extent(
-    prepared: &SceneMachine<'_>,
+    prepared: &SceneMachine<'_, impl MachineScene>,
     interval: [f64; 2],
 ) -> Result<[f64; 2], StudyError> {
     let values =
@@ -134,7 +134,10 @@ pub(crate) fn force_extent(
 
 /// One row per equilibrium.
 // Long because columns and rows have the same parts in one order.
-fn equilibrium_table(prepared: &SceneMachine<'_>, found: &[Equilibrium]) -> Table {
+fn equilibrium_table(
+    prepared: &SceneMachine<'_, impl MachineScene>,
+    found: &[Equilibrium],
+) -> Table {
     let start = prepared.initial_state();
     let free = prepared.machine.free().len();
     let states: Vec<Column> = prepared.state_columns();
@@ -202,9 +205,9 @@ fn zero_within(value: f64, error: f64) -> f64 {
 }
 
 /// The equilibria of a scene with their table, and the static force around them.
-pub struct EquilibriaResults<'a> {
+pub struct EquilibriaResults<'a, S: MachineScene = Scene> {
     /// The scene with its machine.
-    pub prepared: SceneMachine<'a>,
+    pub prepared: SceneMachine<'a, S>,
     /// The equilibria.
     pub found: Vec<Equilibrium>,
     /// Where they were looked for.
@@ -219,8 +222,10 @@ pub struct EquilibriaResults<'a> {
 ///
 /// # Errors
 /// As [`equilibria`](crate::equilibria()).
-pub fn compute_equilibria(scene: &Scene) -> Result<EquilibriaResults<'_>, StudyError> {
-    reject_unknown_variables(scene)?;
+pub fn compute_equilibria<S: MachineScene>(
+    scene: &S,
+) -> Result<EquilibriaResults<'_, S>, StudyError> {
+    scene.reject_unknown_columns()?;
     let prepared = SceneMachine::new(scene)?;
     let (found, searched) = find_equilibria(&prepared)?;
     let table = equilibrium_table(&prepared, &found);

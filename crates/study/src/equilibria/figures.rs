@@ -1,13 +1,17 @@
 //! Equilibria on the static force, and on the potential of a conservative machine.
 
 use crate::equilibria::compute::{EquilibriaResults, StaticCurves};
+use crate::machines::MachineScene;
 use crate::number_format::{count, force_unit};
 use crate::output::{chart, coordinate_axis, figure, symbol};
 use dwell_dynamics::Stability;
 use dwell_report::{Axis, Figure, Mark, Paint, Panel, Series, Stroke};
 
 /// The curves with the equilibria found.
-pub(crate) fn equilibria(results: &EquilibriaResults<'_>, curves: &StaticCurves) -> Figure {
+pub(crate) fn equilibria(
+    results: &EquilibriaResults<'_, impl MachineScene>,
+    curves: &StaticCurves,
+) -> Figure {
     let prepared = &results.prepared;
     let (actuator, angle) = prepared.first_free_coordinate();
     let name = symbol(prepared.coordinate_name(actuator));

@@ -3,16 +3,15 @@
 use super::figures;
 use crate::equilibria::compute::{EquilibriaResults, SearchedRange, compute_equilibria};
 use crate::explain::StudyError;
-use crate::models::SceneMachine;
+use crate::machines::{MachineScene, SceneMachine};
 use crate::number_format::{coordinate_unit, count, digits, digits_within, force_unit, number};
 use crate::output::{Outcome, Picture, results_page};
-use crate::page::{drawing_along, scene_page, table_page, unit_group};
+use crate::page::{scene_page, table_page, unit_group};
 use crate::ranges::extent;
 use dwell_dynamics::{Equilibrium, Stability};
 use dwell_findings::{Column, Record, Table};
 use dwell_page::Page;
 use dwell_report::TableExport as _;
-use dwell_scene::Scene;
 use std::f64::consts::TAU;
 
 /// The equilibria of a scene: with one coordinate all of its range, with several those that Newton's method finds from
@@ -20,7 +19,7 @@ use std::f64::consts::TAU;
 ///
 /// # Errors
 /// [`StudyError`] when a load depends on time, or with several coordinates none is found.
-pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
+pub fn equilibria<S: MachineScene>(scene: &S) -> Result<Outcome, StudyError> {
     let results = compute_equilibria(scene)?;
     let mut outcome = Outcome::default();
     let name = |rest: &str| format!("{}-equilibria.{rest}", scene.name);
@@ -43,7 +42,10 @@ pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
 
 /// The static force and the potential over the range of the only coordinate, with the mechanism, unless another one is
 /// prescribed.
-fn static_force_page(scene: &Scene, results: &EquilibriaResults<'_>) -> Option<Page> {
+fn static_force_page<S: MachineScene>(
+    scene: &S,
+    results: &EquilibriaResults<'_, S>,
+) -> Option<Page> {
     let curves = results.curves.as_ref()?;
     let (i, is_angle) = results.prepared.first_free_coordinate();
     let (name, unit) = coordinate(&results.prepared, i);
@@ -60,11 +62,11 @@ fn static_force_page(scene: &Scene, results: &EquilibriaResults<'_>) -> Option<P
     };
     let mut page = table_page(scene_page(scene, "equilibria"), &table, unit_group);
     page.subtitle = format!("static force and potential over {name}");
-    page.drawing = drawing_along(scene, &page);
+    page.drawing = scene.drawing_along(&page);
     Some(page)
 }
 
-fn summary(results: &EquilibriaResults<'_>) -> String {
+fn summary(results: &EquilibriaResults<'_, impl MachineScene>) -> String {
     let (prepared, found) = (&results.prepared, &results.found);
     let title = &prepared.scene.title;
     let found_count = match found.len() {
@@ -116,7 +118,7 @@ fn summary(results: &EquilibriaResults<'_>) -> String {
 }
 
 /// The numbers of the summary.
-fn record(results: &EquilibriaResults<'_>) -> Record {
+fn record(results: &EquilibriaResults<'_, impl MachineScene>) -> Record {
     let (prepared, found) = (&results.prepared, &results.found);
     let mut record = Record::default();
     record.add_count("equilibria", found.len());
@@ -153,7 +155,10 @@ fn record(results: &EquilibriaResults<'_>) -> Record {
 }
 
 /// The name of a coordinate, and its unit.
-fn coordinate<'a>(prepared: &'a SceneMachine<'_>, i: usize) -> (&'a str, &'static str) {
+fn coordinate<'a>(
+    prepared: &'a SceneMachine<'_, impl MachineScene>,
+    i: usize,
+) -> (&'a str, &'static str) {
     (
         prepared.coordinate_name(i),
         coordinate_unit(prepared.is_angle(i)),
@@ -162,7 +167,7 @@ fn coordinate<'a>(prepared: &'a SceneMachine<'_>, i: usize) -> (&'a str, &'stati
 
 /// The numbers of an equilibrium, under names that begin with `of`.
 pub(crate) fn record_equilibrium(
-    prepared: &SceneMachine<'_>,
+    prepared: &SceneMachine<'_, impl MachineScene>,
     equilibrium: &Equilibrium,
     of: &str,
     record: &mut Record,
@@ -214,7 +219,11 @@ pub(crate) fn record_eigenvalues(
 }
 
 /// `phi between 10° and 20°`.
-fn interval_text(prepared: &SceneMachine<'_>, actuator: usize, interval: [f64; 2]) -> String {
+fn interval_text(
+    prepared: &SceneMachine<'_, impl MachineScene>,
+    actuator: usize,
+    interval: [f64; 2],
+) -> String {
     let [from, to] = interval.map(|q| match prepared.is_angle(actuator) {
         true => format!("{}°", digits(q.to_degrees(), 6)),
         false => format!("{} m", digits(q, 6)),
@@ -227,7 +236,7 @@ fn interval_text(prepared: &SceneMachine<'_>, actuator: usize, interval: [f64; 2
 
 /// An equilibrium as text.
 pub(crate) fn describe_equilibrium(
-    prepared: &SceneMachine<'_>,
+    prepared: &SceneMachine<'_, impl MachineScene>,
     equilibrium: &Equilibrium,
 ) -> String {
     let start = prepared.initial_state();
@@ -269,7 +278,10 @@ pub(crate) fn describe_equilibrium(
 }
 
 /// The directions in which equilibria go on.
-fn describe_neutral(prepared: &SceneMachine<'_>, equilibrium: &Equilibrium) -> String {
+fn describe_neutral(
+    prepared: &SceneMachine<'_, impl MachineScene>,
+    equilibrium: &Equilibrium,
+) -> String {
     let mut text = String::new();
     for neutral in &equilibrium.neutral {
         let free = prepared.machine.free().iter().zip(&neutral.direction);

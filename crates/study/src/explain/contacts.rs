@@ -1,12 +1,12 @@
 //! Explains friction that holds, and end stops.
 
-use crate::explain::{StudyError, scene_error};
+use crate::explain::{NamedScene, StudyError, scene_error};
 use crate::number_format::{coordinate_unit, number};
-use dwell_geometry::{ActuatorId, Plan};
-use dwell_scene::{Scene, SceneLocation};
+use dwell_geometry::ActuatorId;
+use dwell_scene::SceneLocation;
 
 /// Explains a joint whose surfaces can neither hold nor slide.
-pub(super) fn explain_no_mode(scene: &Scene, load: usize) -> StudyError {
+pub(super) fn explain_no_mode(scene: &impl NamedScene, load: usize) -> StudyError {
     let name = joint_of(scene, load);
     let message = format!(
         "the surfaces of joint `{name}` can neither hold nor slide: no direction of sliding agrees with the forces, and to \
@@ -19,7 +19,7 @@ pub(super) fn explain_no_mode(scene: &Scene, load: usize) -> StudyError {
 }
 
 /// Explains an analysis of smooth motions in which friction would hold.
-pub(super) fn explain_sticking(scene: &Scene, load: usize, what: &str) -> StudyError {
+pub(super) fn explain_sticking(scene: &impl NamedScene, load: usize, what: &str) -> StudyError {
     let name = joint_of(scene, load);
     let message = format!("the dry friction of joint `{name}` holds at rest: {what}");
     let help = "give it a `regularization-speed`, with which it is smooth and does not hold; `dwell simulate` computes the \
@@ -29,12 +29,10 @@ pub(super) fn explain_sticking(scene: &Scene, load: usize, what: &str) -> StudyE
 }
 
 /// The motion starts beyond an end stop.
-pub(super) fn explain_beyond_stop(scene: &Scene, plan: &Plan, stop: usize, q: f64) -> StudyError {
-    let actuator = scene
-        .stops
-        .get(stop)
-        .map_or(ActuatorId(0), |stop| stop.actuator);
-    let unit = coordinate_unit(plan.is_angle(actuator.0));
+pub(super) fn explain_beyond_stop(scene: &impl NamedScene, stop: usize, q: f64) -> StudyError {
+    let (_, actuator) = scene.stop(stop).unwrap_or(("", ActuatorId(0)));
+    let is_angle = scene.actuator(actuator.0).is_some_and(|(_, angle)| angle);
+    let unit = coordinate_unit(is_angle);
     let name = stop_name(scene, stop);
     let message = format!(
         "the motion starts at {} {unit}, beyond end stop `{name}`",
@@ -49,7 +47,7 @@ pub(super) fn explain_beyond_stop(scene: &Scene, plan: &Plan, stop: usize, q: f6
 }
 
 /// Explains an analysis of motions that meet no end stop.
-pub(super) fn explain_stop(scene: &Scene, stop: usize, what: &str) -> StudyError {
+pub(super) fn explain_stop(scene: &impl NamedScene, stop: usize, what: &str) -> StudyError {
     let message = format!("end stop `{}`: {what}", stop_name(scene, stop));
     let help = "leave out [stops]; `dwell simulate` computes the motion with them";
     let place = (SceneLocation::Stop(stop), "this end stop");
@@ -57,19 +55,19 @@ pub(super) fn explain_stop(scene: &Scene, stop: usize, what: &str) -> StudyError
 }
 
 /// Explains impacts that follow each other without end.
-pub(super) fn explain_endless_impacts(scene: &Scene, stop: usize) -> StudyError {
+pub(super) fn explain_endless_impacts(scene: &impl NamedScene, stop: usize) -> StudyError {
     let name = stop_name(scene, stop);
     let message = format!("the impacts on end stop `{name}` follow each other without end");
     let place = (SceneLocation::Stop(stop), "this end stop");
     scene_error(scene, message, "give it a smaller restitution", [place])
 }
 
-fn stop_name(scene: &Scene, stop: usize) -> &str {
-    scene.stops.get(stop).map_or("", |stop| stop.name.as_str())
+fn stop_name(scene: &impl NamedScene, stop: usize) -> &str {
+    scene.stop(stop).map_or("", |(name, _)| name)
 }
 
 /// The joint of a friction.
-fn joint_of(scene: &Scene, load: usize) -> &str {
-    let name = scene.loads.get(load).map_or("", |load| load.name.as_str());
+fn joint_of(scene: &impl NamedScene, load: usize) -> &str {
+    let name = scene.load_name(load).unwrap_or_default();
     name.strip_suffix(".friction").unwrap_or(name)
 }

@@ -90,11 +90,3 @@ pub(crate) fn body_names_or_mechanism(mechanism: &Mechanism, bodies: &[BodyId]) 
 pub(crate) fn joint_names(mechanism: &Mechanism, joints: &[JointId]) -> String {
     quoted(joints.iter().map(|j| mechanism.joints[j.0].name.as_str()))
 }
-
-/// Where a scene gives its initial state: without `[motion]`, in its assembly.
-pub(crate) fn initial_state_location(scene: &Scene) -> SceneLocation {
-    match scene.motion {
-        Some(_) => SceneLocation::Motion,
-        None => SceneLocation::AssemblyCoordinate(ActuatorId(0)),
-    }
-}

@@ -5,6 +5,7 @@ mod contacts;
 mod coupling;
 mod labels;
 mod motion;
+mod named_scene;
 mod position;
 mod study_error;
 
@@ -13,12 +14,13 @@ pub use assembly::{explain_machine, explain_model};
 pub(crate) use coupling::{couplings, non_finite_coupling, non_finite_coupling_error};
 pub use labels::scene_error;
 pub(crate) use labels::{
-    Labels, actuator_labels, body_labels, body_names, body_names_or_mechanism,
-    initial_state_location, joint_labels, joint_names, labels, missing_section_label, start_labels,
+    Labels, actuator_labels, body_labels, body_names, body_names_or_mechanism, joint_labels,
+    joint_names, labels, missing_section_label, start_labels,
 };
 pub use motion::explain_motion;
-pub(crate) use motion::{StepLimits, explain_max_steps};
+pub(crate) use motion::{StepLimits, explain_any_motion, explain_max_steps};
+pub use named_scene::NamedScene;
 pub use position::explain_position;
 pub(crate) use position::explain_position_in;
-pub(crate) use position::{describe_coordinate, describe_ends, describe_limit, quoted_coordinate};
+pub(crate) use position::{describe_coordinate, describe_ends, describe_limit};
 pub use study_error::{StudyError, SweepError};

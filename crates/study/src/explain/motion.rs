@@ -4,12 +4,11 @@ use super::contacts::{
     explain_beyond_stop, explain_endless_impacts, explain_no_mode, explain_sticking, explain_stop,
 };
 use crate::explain::{
-    StudyError, body_names, explain_position, initial_state_location, joint_labels, labels,
-    quoted_coordinate, scene_error,
+    NamedScene, StudyError, body_names, explain_position, joint_labels, labels, scene_error,
 };
 use crate::number_format::{coordinate_unit, digits, force_unit, number};
 use dwell_dynamics::DynamicsError;
-use dwell_geometry::{ActuatorId, BodyId, Plan};
+use dwell_geometry::{ActuatorId, Plan};
 use dwell_kinetostatics::KinetostaticsError;
 use dwell_scene::{Scene, SceneFile, SceneLocation};
 use std::f64::consts::TAU;
@@ -18,11 +17,18 @@ use std::f64::consts::TAU;
 pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> StudyError {
     match error {
         DynamicsError::Position(position) => explain_position(scene, plan, position),
-        DynamicsError::Load(load) => explain_load(scene, *load),
         DynamicsError::LimitPosition { t, q } => explain_limit_position(scene, plan, *t, *q),
         DynamicsError::NearBranches { t, q, half_width } => {
             explain_near_branches(scene, plan, *t, [*q, *half_width])
         }
+        other => explain_any_motion(scene, other),
+    }
+}
+
+/// The same of what needs no plan, in the plane or in space: of everything but positions.
+pub(crate) fn explain_any_motion(scene: &impl NamedScene, error: &DynamicsError) -> StudyError {
+    match error {
+        DynamicsError::Load(load) => explain_load(scene, *load),
         DynamicsError::NoInertia { q, .. } => explain_no_inertia(scene, *q),
         DynamicsError::Unbalanced { actuator, force } => {
             explain_unbalanced(scene, *actuator, *force)
@@ -38,7 +44,7 @@ pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> Stud
             explain_several(scene, *source_index, *t)
         }
         DynamicsError::NoContactMode { source_index } => explain_no_mode(scene, *source_index),
-        DynamicsError::BeyondStop { stop, q } => explain_beyond_stop(scene, plan, *stop, *q),
+        DynamicsError::BeyondStop { stop, q } => explain_beyond_stop(scene, *stop, *q),
         DynamicsError::Stops { stop, what } => explain_stop(scene, *stop, what),
         DynamicsError::StopsWithoutEnd { stop } => explain_endless_impacts(scene, *stop),
         DynamicsError::Sticks { source_index, what } => {
@@ -96,12 +102,12 @@ pub(crate) fn explain_max_steps(
 /// Message, help, location and its label of an error that needs no more than its own numbers. One arm for each error,
 /// so longer than a screen.
 fn describe(
-    scene: &Scene,
+    scene: &impl NamedScene,
     error: &DynamicsError,
 ) -> (String, &'static str, SceneLocation, &'static str) {
-    let phi = quoted_coordinate(scene);
+    let phi = scene.quoted_coordinate();
     let speed = SceneLocation::InitialVelocity(ActuatorId(0));
-    let start = initial_state_location(scene);
+    let start = scene.initial_state_location();
     match error {
         DynamicsError::Interrupted => (
             "the computation was interrupted".to_owned(),
@@ -251,7 +257,7 @@ fn describe(
 
 /// The motion leaves its assembly mode at a limit position.
 fn explain_limit_position(scene: &Scene, plan: &Plan, t: f64, q: f64) -> StudyError {
-    let phi = quoted_coordinate(scene);
+    let phi = scene.quoted_coordinate();
     let limit = plan.range().limits().map(|(from, to)| {
         // In the revolution in which the motion is.
         let revolutions = TAU * ((q - from) / TAU).floor();
@@ -291,7 +297,7 @@ fn explain_near_branches(
          point within {} {unit}, and rounding does not show in which of them the motion continues",
         digits(t, 6),
         bodies.unwrap_or_else(|| "the mechanism".to_owned()),
-        quoted_coordinate(scene),
+        scene.quoted_coordinate(),
         number(q),
         digits(half_width, 2),
     );
@@ -306,10 +312,13 @@ fn explain_near_branches(
 }
 
 /// No equilibrium, because a force keeps its sign.
-fn explain_unbalanced(scene: &Scene, actuator: usize, [low, high]: [f64; 2]) -> StudyError {
-    let actuator_of = &scene.mechanism.actuators[actuator];
-    let unit = force_unit(actuator_of.coordinate().is_angle());
-    let name = &actuator_of.name;
+fn explain_unbalanced(
+    scene: &impl NamedScene,
+    actuator: usize,
+    [low, high]: [f64; 2],
+) -> StudyError {
+    let (name, is_angle) = scene.actuator(actuator).unwrap_or_default();
+    let unit = force_unit(is_angle);
     let forces = match [low, high].map(number) {
         [low, high] if low == high => format!("is {low} {unit}"),
         [low, high] => format!("stays between {low} and {high} {unit}"),
@@ -326,29 +335,28 @@ fn explain_unbalanced(scene: &Scene, actuator: usize, [low, high]: [f64; 2]) -> 
     scene_error(scene, message, help, [place])
 }
 
-fn explain_no_inertia(scene: &Scene, q: f64) -> StudyError {
-    let mechanism = &scene.mechanism;
+fn explain_no_inertia(scene: &impl NamedScene, q: f64) -> StudyError {
     let message = format!(
         "the generalised inertia m is zero at {} = {} rad: no body with mass moves there, so the acceleration is \
          undefined",
-        quoted_coordinate(scene),
+        scene.quoted_coordinate(),
         number(q)
     );
-    let moving = (0..mechanism.bodies.len()).filter(|&b| b != mechanism.ground);
-    let bodies = moving.take(8).map(|b| SceneLocation::Body(BodyId(b)));
+    let moving = scene.moving_bodies().into_iter();
+    let bodies = moving.take(8).map(SceneLocation::Body);
     let help = "give mass and inertia to the moving bodies";
     scene_error(scene, message, help, labels(bodies, "no mass or inertia"))
 }
 
 /// Explains a function of time that cannot be followed.
 fn explain_fast(
-    scene: &Scene,
+    scene: &impl NamedScene,
     source: usize,
     [width, t]: [f64; 2],
     max_steps: usize,
 ) -> StudyError {
-    let (what, place) = match scene.loads.get(source) {
-        Some(load) => (format!("load `{}`", load.name), SceneLocation::Load(source)),
+    let (what, place) = match scene.load_name(source) {
+        Some(name) => (format!("load `{name}`"), SceneLocation::Load(source)),
         None => ("a prescribed motion".to_owned(), SceneLocation::Motion),
     };
     let message = format!(
@@ -361,8 +369,8 @@ fn explain_fast(
 }
 
 /// Explains a load that holds the motion at its switch.
-fn explain_chatter(scene: &Scene, load: usize, t: f64) -> StudyError {
-    let name = scene.loads.get(load).map_or("", |l| l.name.as_str());
+fn explain_chatter(scene: &impl NamedScene, load: usize, t: f64) -> StudyError {
+    let name = scene.load_name(load).unwrap_or_default();
     let message = format!(
         "load `{name}` switches forth and back without end at t = {} s: on both sides of its switch it drives the motion \
          back to it",
@@ -375,8 +383,8 @@ fn explain_chatter(scene: &Scene, load: usize, t: f64) -> StudyError {
 }
 
 /// Explains a load that holds the motion at its switch while another switch or contact does so, too.
-fn explain_several(scene: &Scene, load: usize, t: f64) -> StudyError {
-    let name = scene.loads.get(load).map_or("", |l| l.name.as_str());
+fn explain_several(scene: &impl NamedScene, load: usize, t: f64) -> StudyError {
+    let name = scene.load_name(load).unwrap_or_default();
     let message = format!(
         "at t = {} s load `{name}` holds the motion at its switch while another switch, friction or end stop changes or holds \
          it there",
@@ -389,9 +397,9 @@ fn explain_several(scene: &Scene, load: usize, t: f64) -> StudyError {
 }
 
 /// Explains a load that is undefined.
-fn explain_load(scene: &Scene, error: KinetostaticsError) -> StudyError {
+fn explain_load(scene: &impl NamedScene, error: KinetostaticsError) -> StudyError {
     let load = error.load().unwrap_or(0);
-    let name = scene.loads.get(load).map_or("", |l| l.name.as_str());
+    let name = scene.load_name(load).unwrap_or_default();
     let (message, help, label) = match error {
         KinetostaticsError::SelfLocking { .. } => (
             "the mechanism is self-locking by friction: its effective inertia is not positive, so the \

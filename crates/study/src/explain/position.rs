@@ -1,18 +1,13 @@
 //! Explains positions that cannot be computed, and names those where a range ends.
 
 use crate::explain::{
-    StudyError, body_names, body_names_or_mechanism, joint_labels, labels, scene_error,
+    NamedScene as _, StudyError, body_names, body_names_or_mechanism, joint_labels, labels,
+    scene_error,
 };
 use crate::number_format::{coordinate_unit, digits, number};
 use dwell_geometry::{ActuatorId, Mechanism, Plan, PositionError, RangeLimit};
 use dwell_scene::{Scene, SceneLocation};
 use std::f64::consts::TAU;
-
-/// The name of the coordinate, quoted.
-pub(crate) fn quoted_coordinate(scene: &Scene) -> String {
-    let first = scene.mechanism.actuators.first();
-    first.map_or_else(|| "the coordinate".to_owned(), |a| format!("`{}`", a.name))
-}
 
 /// A coordinate with its name: `phi = 2.046915388 rad (117.28°)`. What is finer is rounding at the end of a range.
 pub(crate) fn describe_coordinate(name: &str, q: f64, is_angle: bool) -> String {
@@ -63,7 +58,7 @@ pub(crate) fn describe_ends(from: f64, to: f64, is_angle: bool) -> String {
 
 /// Explains a position that cannot be computed.
 pub fn explain_position(scene: &Scene, plan: &Plan, error: &PositionError) -> StudyError {
-    explain_position_in(&quoted_coordinate(scene), scene, plan, error)
+    explain_position_in(&scene.quoted_coordinate(), scene, plan, error)
 }
 
 /// The same in a coordinate of another name than the actuator's: that of the plan. One arm for each error, so longer than a

@@ -2,15 +2,13 @@
 
 use crate::equilibria::compute::{SearchedRange, find_equilibria, force_extent};
 use crate::explain::StudyError;
-use crate::models::{SceneMachine, build_machine, requested_reactions};
+use crate::machines::{CoordinateOf, MachineScene, SceneMachine};
 use crate::number_format::force_unit;
-use crate::trajectory::compute::reject_unknown_variables;
 use dwell_dynamics::{
     DynamicsError, Equilibrium, Machine, StateSpace, eigenvalues_about, is_equilibrium,
     linearise as linearise_about,
 };
 use dwell_findings::Column;
-use dwell_geometry::Reaction;
 use dwell_kinetostatics::{Drive, DriveKind};
 use dwell_scene::Scene;
 
@@ -24,7 +22,9 @@ pub enum OperatingPoint {
 }
 
 /// The equilibrium nearest to the start.
-fn nearest_equilibrium(prepared: &SceneMachine<'_>) -> Result<Equilibrium, StudyError> {
+fn nearest_equilibrium(
+    prepared: &SceneMachine<'_, impl MachineScene>,
+) -> Result<Equilibrium, StudyError> {
     let (found, searched) = find_equilibria(prepared)?;
     let (start, n) = (prepared.initial_state(), prepared.machine.free().len());
     let distance = |e: &Equilibrium| -> f64 {
@@ -58,11 +58,14 @@ pub struct StateSpaceNames {
 }
 
 impl StateSpaceNames {
-    pub(crate) fn new(prepared: &SceneMachine<'_>, machine: &Machine) -> Self {
+    pub(crate) fn new<S: MachineScene>(
+        prepared: &SceneMachine<'_, S>,
+        machine: &Machine<S::Model>,
+    ) -> Self {
         let scene = prepared.scene;
         let states = prepared.state_columns();
-        let input = |drive: &Drive| {
-            let angle = drive.coordinate.is_angle();
+        let input = |drive: &Drive<CoordinateOf<S>>| {
+            let angle = S::is_angle(drive.coordinate);
             let (what, unit) = match drive.kind {
                 DriveKind::AppliedForce(_) => ("applied_force", force_unit(angle)),
                 DriveKind::Motor(_) => ("voltage", "V"),
@@ -71,15 +74,13 @@ impl StateSpaceNames {
             Column::new(format!("{}.{what}", drive.name), unit)
         };
         let mut outputs = states[..2 * machine.free().len()].to_vec();
-        let reaction =
-            |&r: &Reaction| Column::new(scene.mechanism.reaction_name(r), r.component.unit());
-        outputs.extend(machine.model().reactions().iter().map(reaction));
-        outputs.extend(scene.drives.iter().map(|drive| {
-            let unit = force_unit(drive.coordinate.is_angle());
+        outputs.extend(scene.reaction_columns(machine.model()));
+        outputs.extend(scene.drives().iter().map(|drive| {
+            let unit = force_unit(S::is_angle(drive.coordinate));
             Column::new(format!("{}.actuator_force", drive.name), unit)
         }));
         Self {
-            inputs: scene.drives.iter().map(input).collect(),
+            inputs: scene.drives().iter().map(input).collect(),
             states,
             outputs,
         }
@@ -87,9 +88,9 @@ impl StateSpaceNames {
 }
 
 /// The linearised motion of a scene.
-pub struct LinearisedMotion<'a> {
+pub struct LinearisedMotion<'a, S: MachineScene = Scene> {
     /// The scene with its machine.
-    pub prepared: SceneMachine<'a>,
+    pub prepared: SceneMachine<'a, S>,
     /// The state about which it is linearised.
     pub state: Vec<f64>,
     /// The equilibrium there, if it was requested.
@@ -105,21 +106,21 @@ pub struct LinearisedMotion<'a> {
     /// Names and units of states, inputs and outputs.
     pub names: StateSpaceNames,
     /// Requested reactions that are statically indeterminate, and so no outputs.
-    pub omitted: Vec<Reaction>,
+    pub omitted: Vec<S::Reaction>,
 }
 
 /// Linearises the motion of a scene about a state.
 ///
 /// # Errors
 /// As [`linearise`](crate::linearise()).
-pub fn compute_linearisation(
-    scene: &Scene,
+pub fn compute_linearisation<S: MachineScene>(
+    scene: &S,
     point: OperatingPoint,
-) -> Result<LinearisedMotion<'_>, StudyError> {
-    reject_unknown_variables(scene)?;
+) -> Result<LinearisedMotion<'_, S>, StudyError> {
+    scene.reject_unknown_columns()?;
     let prepared = SceneMachine::new(scene)?;
-    let [reactions, omitted] = requested_reactions(scene, prepared.machine.model().plan());
-    let machine = build_machine(scene, &prepared.spec, &reactions)?;
+    let [reactions, omitted] = scene.sorted_reactions(prepared.machine.model())?;
+    let machine = scene.machine(&reactions)?;
     let (state, equilibrium) = match point {
         OperatingPoint::InitialState => (prepared.initial_state(), None),
         OperatingPoint::Equilibrium => {

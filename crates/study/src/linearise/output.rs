@@ -7,17 +7,17 @@ use crate::explain::StudyError;
 use crate::linearise::compute::{
     LinearisedMotion, OperatingPoint, StateSpaceNames, compute_linearisation,
 };
+use crate::machines::MachineScene;
 use crate::number_format::number;
 use crate::output::{Outcome, indeterminate_note, provenance_line};
 use dwell_findings::Record;
 use dwell_report::{Array, Block, Column, Document, npz};
-use dwell_scene::Scene;
 
 /// The motion of a scene linearised about a state.
 ///
 /// # Errors
 /// [`StudyError`] when no equilibrium is found, or the initial state cannot be evaluated.
-pub fn linearise(scene: &Scene, point: OperatingPoint) -> Result<Outcome, StudyError> {
+pub fn linearise<S: MachineScene>(scene: &S, point: OperatingPoint) -> Result<Outcome, StudyError> {
     let motion = compute_linearisation(scene, point)?;
     let mut outcome = Outcome::default();
     let name = |rest: &str| format!("{}-linear.{rest}", scene.name);
@@ -33,7 +33,7 @@ pub fn linearise(scene: &Scene, point: OperatingPoint) -> Result<Outcome, StudyE
 type NamedMatrix<'a> = (&'static str, &'a [Column], &'a [Column], &'a [Vec<f64>]);
 
 /// The four matrices with the names of their rows and columns.
-fn matrices<'a>(motion: &'a LinearisedMotion<'_>) -> [NamedMatrix<'a>; 4] {
+fn matrices<'a>(motion: &'a LinearisedMotion<'_, impl MachineScene>) -> [NamedMatrix<'a>; 4] {
     let (names, linear) = (&motion.names, &motion.linear);
     [
         ("A", &names.states, &names.states, &linear.a),
@@ -70,7 +70,7 @@ fn row_name(matrix: &str, column: &Column) -> String {
 }
 
 /// The numbers of the summary, and the state.
-fn record(motion: &LinearisedMotion<'_>) -> Record {
+fn record(motion: &LinearisedMotion<'_, impl MachineScene>) -> Record {
     let mut record = Record::default();
     match &motion.equilibrium {
         Some(found) => record_equilibrium(&motion.prepared, found, "equilibrium", &mut record),
@@ -86,7 +86,7 @@ fn record(motion: &LinearisedMotion<'_>) -> Record {
 }
 
 /// The printed summary.
-fn summary(motion: &LinearisedMotion<'_>) -> String {
+fn summary(motion: &LinearisedMotion<'_, impl MachineScene>) -> String {
     let (scene, names) = (motion.prepared.scene, &motion.names);
     let mut summary = format!("{}: linearised about ", scene.title);
     match &motion.equilibrium {
@@ -111,10 +111,10 @@ fn summary(motion: &LinearisedMotion<'_>) -> String {
     }
     let omitted = motion.omitted.iter();
     summary += &motion.prepared.branch_note();
-    summary + &indeterminate_note(omitted.map(|&r| scene.mechanism.reaction_name(r)))
+    summary + &indeterminate_note(omitted.map(|&r| scene.name_of_reaction(r)))
 }
 
-fn arrays(motion: &LinearisedMotion<'_>) -> Vec<(&'static str, Array)> {
+fn arrays(motion: &LinearisedMotion<'_, impl MachineScene>) -> Vec<(&'static str, Array)> {
     let (names, linear) = (&motion.names, &motion.linear);
     let matrix = |columns: usize, rows: Vec<Vec<f64>>| Array::Matrix { columns, rows };
     let matrices =
@@ -139,7 +139,7 @@ fn arrays(motion: &LinearisedMotion<'_>) -> Vec<(&'static str, Array)> {
 }
 
 /// CSV with one line per row of each matrix.
-fn csv(motion: &LinearisedMotion<'_>) -> String {
+fn csv(motion: &LinearisedMotion<'_, impl MachineScene>) -> String {
     let mut text = String::new();
     for (name, rows, columns, matrix) in matrices(motion) {
         // Names of a scene hold neither commas nor quotes.
@@ -155,7 +155,7 @@ fn csv(motion: &LinearisedMotion<'_>) -> String {
     text
 }
 
-fn document(motion: &LinearisedMotion<'_>) -> String {
+fn document(motion: &LinearisedMotion<'_, impl MachineScene>) -> String {
     let (scene, linear) = (motion.prepared.scene, &motion.linear);
     let mut blocks = vec![Block::Text(
         "δẋ = A δx + B δu and δz = C δx + D δu, of the states x, the inputs u and the outputs z, \

@@ -117,11 +117,20 @@ pub fn build_machine(
     spec: &FreeMotionSpec,
     reactions: &[Reaction],
 ) -> Result<Machine, StudyError> {
+    machine_with_laws(scene, &spec.laws, reactions)
+}
+
+/// The same with a law for each actuator that is prescribed.
+pub fn machine_with_laws(
+    scene: &Scene,
+    laws: &[Option<Law>],
+    reactions: &[Reaction],
+) -> Result<Machine, StudyError> {
     let mode = |law: &Option<Law>| match law {
         Some(law) => CoordinateMode::Prescribed(law.clone()),
         None => CoordinateMode::Free,
     };
-    let modes = spec.laws.iter().map(mode).collect();
+    let modes = laws.iter().map(mode).collect();
     let model = compile_model(scene, reactions)?;
     let machine = Machine::new(model, &scene.loads, modes, &scene.drives);
     let stops: Vec<EndStop> = scene.stops.iter().map(end_stop).collect();

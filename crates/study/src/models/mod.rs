@@ -3,12 +3,11 @@
 mod compile;
 mod drives;
 mod prepared_scene;
-mod scene_machine;
 mod solver_settings;
 
 pub use compile::{
-    build_machine, compile_model, indeterminate_reactions, loaded_model, reduced_model,
-    with_drive_loads,
+    build_machine, compile_model, indeterminate_reactions, loaded_model, machine_with_laws,
+    reduced_model, with_drive_loads,
 };
 pub(crate) use compile::{
     determinate_model, exact_model, lists_reactions, loaded_determinate_model,
@@ -19,5 +18,4 @@ pub(crate) use drives::states_of_drives;
 pub(crate) use drives::{drive_states, motor_columns, motor_of, source_name};
 pub use prepared_scene::PreparedScene;
 pub(crate) use prepared_scene::initial_reduced_state;
-pub use scene_machine::SceneMachine;
 pub use solver_settings::{PRESETS, SolverSettings};

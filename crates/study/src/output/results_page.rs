@@ -5,7 +5,7 @@ use super::provenance_line;
 use crate::number_format::{digits, digits_within};
 use dwell_findings::{Record, RecordedNumber};
 use dwell_report::{Block, Document, Figure};
-use dwell_scene::Scene;
+use dwell_scene::SceneFile;
 
 /// Digits of a number of the page; files have all of them.
 const DIGITS: usize = 9;
@@ -16,7 +16,7 @@ pub(super) const RESULTS_HEADER: [&str; 4] = ["quantity", "value", "unit", "esti
 /// The page of an analysis, from its summary (whose first line is the heading of the results), its numbers, and its
 /// figures with their files.
 pub(crate) fn results_page(
-    scene: &Scene,
+    scene: &SceneFile,
     analysis: &str,
     (summary, record): (&str, &Record),
     figures: &[(&Figure, String)],

@@ -36,14 +36,25 @@ pub fn reduce(
         run.drawing = drawing_along(scene, run);
     }
     if let Some(request) = table {
-        let tabulation = tabulate(&reduction.prepared, &request)?;
-        outcome.summary += &tabulation.summary;
-        outcome.record.extend(tabulation.record);
-        if let Some(text) = tabulation.text {
-            outcome.files.add(format!("{}.table", scene.name), text);
-        }
+        add_table(&reduction.prepared, &request, &mut outcome)?;
     }
     Ok(outcome)
+}
+
+/// Adds an interpolation table to the results.
+pub(crate) fn add_table(
+    prepared: &dyn ReducedScene,
+    request: &TableRequest,
+    outcome: &mut Outcome,
+) -> Result<(), StudyError> {
+    let tabulation = tabulate(prepared, request)?;
+    outcome.summary += &tabulation.summary;
+    outcome.record.extend(tabulation.record);
+    if let Some(text) = tabulation.text {
+        let name = format!("{}.table", prepared.file().name);
+        outcome.files.add(name, text);
+    }
+    Ok(())
 }
 
 /// The table, the figures and the summary of a reduction.

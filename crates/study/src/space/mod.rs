@@ -5,6 +5,7 @@ mod check;
 mod explain;
 #[cfg(feature = "output")]
 mod export;
+mod machine_scene;
 #[cfg(feature = "output")]
 mod motion;
 #[cfg(feature = "output")]

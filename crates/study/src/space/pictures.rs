@@ -6,21 +6,30 @@ use super::views::{SpacePositions, page_drawing};
 use crate::explain::StudyError;
 use crate::number_format::{count, digits};
 use crate::output::{Outcome, Picture, symbol};
-use crate::reduce::compute::ReducedScene as _;
-use crate::reduce::reduction_outcome;
+use crate::reduce::compute::{ReducedScene as _, TableRequest};
+use crate::reduce::{add_table, reduction_outcome};
 use dwell_geometry::Range;
+use dwell_report::Figure;
 use dwell_scene::SpaceScene;
 
 /// Intervals of a revolution, or of the range, from which paths are drawn.
 const DRAWN_INTERVALS: usize = 240;
 
-/// The reduced parameters of a scene in space over its range, at `points` positions (two or more) if given, with pictures.
+/// The reduced parameters of a scene in space over its range, at `points` positions (two or more) if given, with pictures, and an
+/// interpolation table if requested.
 ///
 /// # Errors
-/// As [`compute_reduction_in_space`](crate::compute_reduction_in_space()).
-pub fn reduce_in_space(scene: &SpaceScene, points: Option<usize>) -> Result<Outcome, StudyError> {
+/// As [`compute_reduction_in_space`](crate::compute_reduction_in_space()), and when the table cannot be built.
+pub fn reduce_in_space(
+    scene: &SpaceScene,
+    points: Option<usize>,
+    table: Option<TableRequest>,
+) -> Result<Outcome, StudyError> {
     let reduction = compute_reduction_in_space(scene, points)?;
     let mut outcome = reduction_outcome(&reduction)?;
+    if let Some(request) = table {
+        add_table(&reduction.prepared, &request, &mut outcome)?;
+    }
     if let Some(run) = &mut outcome.run {
         let rows = reduction.prepared.placements(&run.columns[0].values)?;
         run.drawing = Some(page_drawing(scene, rows, Vec::new()));
@@ -35,6 +44,14 @@ pub fn reduce_in_space(scene: &SpaceScene, points: Option<usize>) -> Result<Outc
 }
 
 impl<'a> PreparedSpaceScene<'a> {
+    /// The mechanism in three views and an axonometric one.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where a position of the range cannot be reached.
+    pub fn mechanism_figure(&self) -> Result<Figure, StudyError> {
+        Ok(self.drawn_positions()?.figure())
+    }
+
     /// The mechanism over its range, for pictures: at the start, and in positions that follow each other.
     fn drawn_positions(&self) -> Result<SpacePositions<'a>, StudyError> {
         let turns = match self.range() {

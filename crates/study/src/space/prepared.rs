@@ -1,6 +1,8 @@
 //! A scene in space with the exact reduced model of what it requests.
 
-use super::explain::{explain_loads, explain_model, explain_position, with_loads};
+use super::explain::{
+    explain_load_error, explain_loads, explain_model, explain_position, with_loads,
+};
 use crate::explain::{StudyError, scene_error};
 use crate::number_format::count;
 #[cfg(feature = "output")]
@@ -11,7 +13,8 @@ use dwell_geometry::space::{ActuatorKind, Placement, Plan};
 use dwell_geometry::{ActuatorId, PositionError, Range};
 use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};
 use dwell_kinetostatics::{
-    Coefficients, ExactModel, MachineModel as _, ReducedModel as _, reduction_rounding_errors,
+    Coefficients, ExactModel, KinetostaticsError, MachineModel as _, Magnitude, ReducedModel as _,
+    TableDomain, TableError, TabulatedModel, reduction_rounding_errors,
 };
 use dwell_scene::{SceneFile, SceneLocation, SpaceScene};
 use rayon::prelude::*;
@@ -80,7 +83,30 @@ impl<'a> PreparedSpaceScene<'a> {
         coordinates.iter().map(|q| placements(*q)).collect()
     }
 
-    pub(super) fn explain(&self, error: &PositionError) -> StudyError {
+    /// The model of the scene with other reactions.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] as [`PreparedSpaceScene::new`].
+    pub fn model_for(&self, reactions: &[Reaction]) -> Result<Model, StudyError> {
+        compile(self.scene, reactions)
+    }
+
+    /// The part of the range that is shown, rad or m.
+    pub fn drawn_range(&self) -> [f64; 2] {
+        range_limits(self.scene, self.model.model().plan()).0
+    }
+
+    /// The magnitude of the load `weight`, m/s², if it is a constant one.
+    pub fn weight(&self) -> Option<f64> {
+        let weight = self.scene.loads.iter().find(|load| load.name == "weight")?;
+        let Magnitude::Constant(magnitude) = weight.magnitude else {
+            return None;
+        };
+        Some(magnitude)
+    }
+
+    /// An error of a position in the names of the scene.
+    pub fn explain(&self, error: &PositionError) -> StudyError {
         explain_position(self.scene, self.model.model().plan(), error)
     }
 }
@@ -251,6 +277,29 @@ impl ReducedScene for PreparedSpaceScene<'_> {
             curves.potential.push(potential);
         }
         Ok(Some(curves))
+    }
+
+    fn tabulated(
+        &self,
+        accuracy: f64,
+        domain: TableDomain,
+    ) -> Result<Result<TabulatedModel, TableError>, StudyError> {
+        let model = self.model.model().clone();
+        // Drives are no part of a table.
+        let loaded = model.with_loads(self.scene.loads.clone());
+        let loaded = loaded.map_err(|error| explain_load_error(self.scene, &error))?;
+        // The model has one actuator, as the prepared one has.
+        let exact = ExactModel::new(loaded).unwrap_or_else(|| self.model.clone());
+        Ok(TabulatedModel::new(&exact, accuracy, domain))
+    }
+
+    fn load_names(&self) -> Vec<String> {
+        let loads = self.scene.loads.iter();
+        loads.map(|load| load.name.clone()).collect()
+    }
+
+    fn explain_evaluation(&self, error: &KinetostaticsError) -> StudyError {
+        explain_loads(self.scene, self.model.model().plan(), error)
     }
 
     #[cfg(feature = "output")]

@@ -46,7 +46,7 @@ fn of_scene(name: &&str) -> (Vec<String>, usize) {
         count += pictures;
     };
     // The reduced model needs one actuator.
-    if let Ok(done) = reduce_in_space(&scene, Some(61)) {
+    if let Ok(done) = reduce_in_space(&scene, Some(61), None) {
         add("reduce", &done.pictures);
     }
     for analysis in [

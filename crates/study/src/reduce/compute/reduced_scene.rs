@@ -1,8 +1,8 @@
 //! What tables, figures and sentences of reduced parameters need of a scene with its model, in the plane or in space.
 
 use super::UnitLoadCurves;
-use crate::explain::{StudyError, explain_position};
-use crate::models::{PreparedScene, lists_reactions};
+use crate::explain::{StudyError, explain_motion, explain_position};
+use crate::models::{PreparedScene, exact_model, lists_reactions, loaded_determinate_model};
 use crate::ranges::equally_spaced;
 use crate::trajectory::compute::default_limits;
 #[cfg(feature = "output")]
@@ -13,7 +13,10 @@ use crate::{
 };
 use dwell_findings::Column;
 use dwell_geometry::Range;
-use dwell_kinetostatics::{Batch, Coefficients, ReducedModel as _};
+use dwell_kinetostatics::{
+    Batch, Coefficients, KinetostaticsError, ReducedModel as _, TableDomain, TableError,
+    TabulatedModel,
+};
 use dwell_scene::SceneFile;
 
 /// m and ½m′ at a coordinate (rad or m); none where there is no pose.
@@ -68,6 +71,22 @@ pub trait ReducedScene: Sync {
     /// # Errors
     /// [`StudyError::Scene`] where one of them cannot be reached.
     fn unit_loads(&self, q: &[f64]) -> Result<Option<UnitLoadCurves>, StudyError>;
+
+    /// The reduced model as a table, with w and c of the loads; and if there is none, why.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where a load does not fit the mechanism.
+    fn tabulated(
+        &self,
+        accuracy: f64,
+        domain: TableDomain,
+    ) -> Result<Result<TabulatedModel, TableError>, StudyError>;
+
+    /// The names of the loads.
+    fn load_names(&self) -> Vec<String>;
+
+    /// Explains that the model cannot be evaluated at a state.
+    fn explain_evaluation(&self, error: &KinetostaticsError) -> StudyError;
 
     /// Columns of other reactions at coordinates, and their values.
     fn known_reactions(&self, _q: &[f64]) -> Vec<(Column, Vec<f64>)> {
@@ -157,6 +176,24 @@ impl ReducedScene for PreparedScene<'_> {
 
     fn unit_loads(&self, q: &[f64]) -> Result<Option<UnitLoadCurves>, StudyError> {
         UnitLoadCurves::new(self, q)
+    }
+
+    fn tabulated(
+        &self,
+        accuracy: f64,
+        domain: TableDomain,
+    ) -> Result<Result<TabulatedModel, TableError>, StudyError> {
+        let exact = exact_model(self.scene, loaded_determinate_model(self.scene)?)?;
+        Ok(TabulatedModel::new(&exact, accuracy, domain))
+    }
+
+    fn load_names(&self) -> Vec<String> {
+        let loads = self.scene.loads.iter();
+        loads.map(|load| load.name.clone()).collect()
+    }
+
+    fn explain_evaluation(&self, error: &KinetostaticsError) -> StudyError {
+        explain_motion(self.scene, self.model.model().plan(), &(*error).into())
     }
 
     fn known_reactions(&self, q: &[f64]) -> Vec<(Column, Vec<f64>)> {

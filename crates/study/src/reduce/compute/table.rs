@@ -1,13 +1,13 @@
 //! `dwell reduce --table-accuracy`: the whole reduced model as an interpolation table, usable without the mechanism.
 
-use crate::explain::{self, StudyError, explain_motion, scene_error};
-use crate::models::{PreparedScene, exact_model, loaded_determinate_model};
+use super::ReducedScene;
+use crate::explain::{self, StudyError, scene_error};
 use crate::number_format::number;
 use dwell_findings::Record;
-use dwell_geometry::{ActuatorId, Plan, Range};
+use dwell_geometry::{ActuatorId, Range};
 use dwell_kinetostatics::table::Labels;
 use dwell_kinetostatics::{TableDomain, TableError, TableQuantity, TabulatedModel};
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{SceneFile, SceneLocation};
 use std::f64::consts::TAU;
 
 /// The requested table.
@@ -34,10 +34,10 @@ pub struct Tabulation {
 /// Builds a table of m, ½m′, a and b of the requested reactions, and w and c of the loads, each to the required
 /// accuracy relative to its largest value.
 pub fn tabulate(
-    prepared: &PreparedScene<'_>,
+    prepared: &dyn ReducedScene,
     request: &TableRequest,
 ) -> Result<Tabulation, StudyError> {
-    let scene = prepared.scene;
+    let scene = prepared.file();
     if !prepared.is_angle() {
         return Err(scene_error(
             scene,
@@ -46,11 +46,9 @@ pub fn tabulate(
             [(SceneLocation::Actuator(ActuatorId(0)), "drives a length")],
         ));
     }
-    let exact = exact_model(scene, loaded_determinate_model(scene)?)?;
-    let plan = exact.model().plan();
     // Without a period the curves cover one revolution, and so does the table.
-    let si = |written: f64| scene.to_si(written, plan.is_angle(0));
-    let extent = match (request.interval, plan.range()) {
+    let si = |written: f64| scene.to_si(written, true);
+    let extent = match (request.interval, prepared.range()) {
         (Some((from, to)), _) => TableDomain::Between(si(from), si(to)),
         (None, Range::Unbounded) => TableDomain::Between(0.0, TAU),
         (None, _) => TableDomain::Full,
@@ -60,16 +58,16 @@ pub fn tabulate(
         scene: scene.hash(),
         coordinate: prepared.coordinate_name().to_owned(),
         reactions: reactions.map(|(name, _)| name).collect(),
-        loads: scene.loads.iter().map(|load| load.name.clone()).collect(),
+        loads: prepared.load_names(),
     };
     let accuracy = request.accuracy;
     let rows = format!("  accuracy {accuracy:e}: all rows evaluated exactly");
     let mut record = Record::default();
     record.add("table.accuracy", "", accuracy);
-    let table = match TabulatedModel::new(&exact, request.accuracy, extent) {
+    let table = match prepared.tabulated(request.accuracy, extent)? {
         Ok(table) => table,
         Err(error) => {
-            let error = explain_table_error(scene, plan, &labels, &error);
+            let error = explain_table_error(prepared, &labels, &error);
             return match request.required {
                 true => Err(error),
                 false => Ok(Tabulation {
@@ -94,7 +92,7 @@ pub fn tabulate(
 }
 
 /// Domain, cells, memory and error bound.
-fn describe_table(scene: &Scene, table: &TabulatedModel, record: &mut Record) -> String {
+fn describe_table(scene: &SceneFile, table: &TabulatedModel, record: &mut Record) -> String {
     let [from, to] = table.domain();
     record.add("table.from", "rad", from);
     record.add("table.to", "rad", to);
@@ -126,20 +124,20 @@ fn describe_table(scene: &Scene, table: &TabulatedModel, record: &mut Record) ->
 }
 
 /// An interval in the scene's unit.
-fn interval_text(scene: &Scene, from: f64, to: f64) -> String {
+fn interval_text(scene: &SceneFile, from: f64, to: f64) -> String {
     let [(from, unit), (to, _)] = [from, to].map(|q| scene.to_scene_unit(q, true));
     format!("from {} to {} {unit}", number(from), number(to))
 }
 
 /// Explains a table's error with names and locations of the scene.
 fn explain_table_error(
-    scene: &Scene,
-    plan: &Plan,
+    prepared: &dyn ReducedScene,
     labels: &Labels,
     error: &TableError,
 ) -> StudyError {
+    let scene = prepared.file();
     let (message, help) = match *error {
-        TableError::Exact(e) => return explain_motion(scene, plan, &e.into()),
+        TableError::Exact(e) => return prepared.explain_evaluation(&e),
         TableError::NotReached {
             what,
             reached,
@@ -164,7 +162,7 @@ fn explain_table_error(
             "require less accuracy, or a smaller part of the range with --table-from and --table-to, away from limit positions",
         ),
         TableError::Domain { from, to } => {
-            let reason = match plan.range().limits() {
+            let reason = match prepared.range().limits() {
                 Some((lower, upper)) if from < to => {
                     format!("the range is {}", interval_text(scene, lower, upper))
                 }

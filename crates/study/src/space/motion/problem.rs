@@ -1,17 +1,13 @@
 //! The initial value problem of a free motion of a scene in space.
 
 use crate::explain::{StudyError, missing_section_label, scene_error};
-use crate::space::explain::{explain_load_error, explain_loads, explain_position, with_loads};
+use crate::machines::MachineScene;
+use crate::space::explain::{explain_position, with_loads};
 use crate::space::prepared::compile;
 use crate::space::trajectory::JointReactions;
-use dwell_dynamics::{
-    CoordinateMode, DynamicsError, Event, EventKind, Machine, MachineError, OdeState, Orbit,
-    ReducedState,
-};
-use dwell_geometry::ActuatorId;
+use dwell_dynamics::{DynamicsError, Event, EventKind, Machine, OdeState, Orbit, ReducedState};
 use dwell_kinetostatics::MachineModel as _;
 use dwell_kinetostatics::space::{Coordinate, CoordinateFunction, Model, Reaction};
-use dwell_laws::Law;
 use dwell_scene::{EventTrigger, FreeMotionSpec, MotionDuration, SceneLocation, SpaceScene};
 use std::num::NonZeroUsize;
 
@@ -60,7 +56,7 @@ impl<'a> SpaceMotionProblem<'a> {
             spec,
             reactions,
             output_model,
-            machine: machine(scene, spec)?,
+            machine: scene.machine(&[])?,
             events: Vec::new(),
             event_model,
         };
@@ -182,52 +178,11 @@ impl<'a> SpaceMotionProblem<'a> {
 
     /// An error of its motion in the names of the scene.
     pub(super) fn explain(&self, error: &DynamicsError) -> StudyError {
-        let (scene, plan) = (self.scene, self.output_model.plan());
-        match error {
-            DynamicsError::Position(position) => explain_position(scene, plan, position),
-            DynamicsError::Load(load) => explain_loads(scene, plan, load),
-            DynamicsError::AtRest => scene_error(
-                scene,
-                "the free motion starts at rest, and no force moves the mechanism",
-                "give an `initial-velocity` in [motion]",
-                [(SceneLocation::InitialVelocity(ActuatorId(0)), "no speed")],
-            ),
-            other => scene_error(
-                scene,
-                other.to_string(),
-                "end the motion earlier, or change its start or its loads",
-                [(SceneLocation::Duration, "in this motion")],
-            ),
-        }
+        MachineScene::explain(self.scene, &self.output_model, error)
     }
 
     /// Whether a coordinate is an angle.
     pub(super) fn is_angle(&self, actuator: usize) -> bool {
         self.output_model.is_angle(actuator)
     }
-}
-
-/// The machine of a scene.
-fn machine(scene: &SpaceScene, spec: &Spec) -> Result<Machine<Model>, StudyError> {
-    let mode = |law: &Option<Law>| match law {
-        Some(law) => CoordinateMode::Prescribed(law.clone()),
-        None => CoordinateMode::Free,
-    };
-    let modes = spec.laws.iter().map(mode).collect();
-    let machine = Machine::new(compile(scene, &[])?, &scene.loads, modes, &scene.drives);
-    machine.map_err(|error| match error {
-        MachineError::Load(load) => explain_load_error(scene, &load),
-        MachineError::Drive(drive) => scene_error(
-            scene,
-            drive.to_string(),
-            "drive the coordinate of an actuator",
-            [(SceneLocation::Drive(drive.drive), "this drive")],
-        ),
-        MachineError::Stop(_) | MachineError::CoordinateModes => scene_error(
-            scene,
-            error.to_string(),
-            "",
-            [(SceneLocation::Motion, "this motion")],
-        ),
-    })
 }

@@ -3,12 +3,13 @@
 use super::problem::SpaceMotionProblem;
 use super::run::Run;
 use crate::free_motion::compute::sliding_at;
+use crate::machines::MachineScene as _;
 use crate::models::states_of_drives;
 use crate::number_format::coordinate_unit;
 use crate::trajectory::compute::{BALANCE, Column, KINETIC, POTENTIAL, Quantity, TrajectorySample};
 use dwell_dynamics::{
-    DenseOutput, DynamicsError, MachineOde, MachineWorkspace, NonconservativeSource, OdeState,
-    Options, Sliding, Solution, StepControl, integrate,
+    DenseOutput, DynamicsError, MachineOde, MachineWorkspace, OdeState, Options, Sliding, Solution,
+    StepControl, integrate,
 };
 use dwell_findings::{Column as TableColumn, Table};
 use dwell_kinetostatics::space::{Coordinate, Model};
@@ -156,7 +157,7 @@ impl SpaceMotionProblem<'_> {
         ];
         let sources = self.machine.nonconservative_sources().iter();
         all.extend(sources.map(|&source| {
-            let name = format!("{}.work", self.source_name(source));
+            let name = format!("{}.work", self.scene.name_of_source(source));
             (name, "J", "work since t = 0")
         }));
         let balance =
@@ -171,17 +172,6 @@ impl SpaceMotionProblem<'_> {
             meaning: meaning.to_owned(),
         };
         all.into_iter().enumerate().map(column).collect()
-    }
-
-    /// The name of what does work on the machine.
-    fn source_name(&self, source: NonconservativeSource) -> &str {
-        match source {
-            NonconservativeSource::Load(load) => &self.scene.loads[load].name,
-            NonconservativeSource::Drive(drive) => &self.scene.drives[drive].name,
-            NonconservativeSource::Prescribed(i) => &self.scene.mechanism.actuators[i].name,
-            // A scene in space has no end stops.
-            NonconservativeSource::Stop(_) => "",
-        }
     }
 
     /// The time of each event, and the actuator coordinates and speeds then.

@@ -1,35 +1,26 @@
 //! The machine of a scene, as `cycle`, `equilibria` and `linearise` use it.
 
-#[cfg(feature = "output")]
-use crate::branch_note::branch_note;
-use crate::explain::{
-    Labels, StudyError, explain_motion, initial_state_location, labels, scene_error,
-};
-use crate::models::{build_machine, drive_states, with_drive_loads};
+use super::machine_scene::{MachineScene, MotionStart};
+use crate::explain::{Labels, StudyError, labels, scene_error};
 use crate::number_format::{coordinate_unit, digits_within};
 use dwell_dynamics::{DynamicsError, Machine};
 use dwell_findings::Column;
 use dwell_geometry::ActuatorId;
-use dwell_kinetostatics::Signal;
-use dwell_scene::{FreeMotionSpec, MotionDuration, Scene, SceneLocation};
+use dwell_kinetostatics::{MachineModel as _, Signal};
+use dwell_scene::{Scene, SceneLocation};
 
-/// A scene with its machine and its initial state.
-pub struct SceneMachine<'a> {
+/// A scene, in the plane or in space, with its machine and its initial state.
+pub struct SceneMachine<'a, S: MachineScene = Scene> {
     /// The scene.
-    pub scene: &'a Scene,
-    /// The scene with the loads of its drives added.
-    loaded_scene: Scene,
-    pub(crate) spec: FreeMotionSpec,
+    pub scene: &'a S,
+    start: MotionStart,
     /// Its machine without reactions.
-    pub machine: Machine,
+    pub machine: Machine<S::Model>,
 }
 
-impl<'a> SceneMachine<'a> {
-    pub(crate) fn new(scene: &'a Scene) -> Result<Self, StudyError> {
-        let loaded_scene = with_drive_loads(scene)?;
-        let spec = scene.motion.clone();
-        let spec = spec.unwrap_or_else(|| motion_from_rest(scene));
-        let machine = build_machine(scene, &spec, &[])?;
+impl<'a, S: MachineScene> SceneMachine<'a, S> {
+    pub(crate) fn new(scene: &'a S) -> Result<Self, StudyError> {
+        let machine = scene.machine(&[])?;
         if machine.free().is_empty() {
             return Err(scene_error(
                 scene,
@@ -40,8 +31,7 @@ impl<'a> SceneMachine<'a> {
         }
         Ok(Self {
             scene,
-            loaded_scene,
-            spec,
+            start: scene.motion_start(),
             machine,
         })
     }
@@ -49,18 +39,18 @@ impl<'a> SceneMachine<'a> {
     /// Where the assembly mode in use is far from the approximate angles that the scene gives.
     #[cfg(feature = "output")]
     pub(crate) fn branch_note(&self) -> String {
-        branch_note(self.scene, self.machine.model().plan())
+        self.scene.assembly_note(self.machine.model())
     }
 
     /// The initial state of `[motion]`, or else the assembly configuration at rest.
     pub(crate) fn initial_state(&self) -> Vec<f64> {
-        let spec = &self.spec;
+        let start = &self.start;
         self.machine
-            .initial_state(&spec.initial_coordinates, &spec.initial_velocities)
+            .initial_state(&start.coordinates, &start.velocities)
     }
 
     pub(crate) fn explain(&self, error: &DynamicsError) -> StudyError {
-        explain_motion(&self.loaded_scene, self.machine.model().plan(), error)
+        self.scene.explain(self.machine.model(), error)
     }
 
     pub(crate) fn error(
@@ -74,7 +64,7 @@ impl<'a> SceneMachine<'a> {
 
     /// The label of the scene's initial state.
     pub(crate) fn initial_state_label(&self, text: &str) -> Labels {
-        labels([initial_state_location(self.scene)].into_iter(), text)
+        labels([self.scene.initial_state_location()].into_iter(), text)
     }
 
     /// Rejects a machine that depends explicitly on time.
@@ -82,10 +72,10 @@ impl<'a> SceneMachine<'a> {
         if !self.machine.depends_on_time() {
             return Ok(());
         }
-        let loads = self.loaded_scene.loads.iter().enumerate();
+        let loads = self.machine.model().loads().iter().enumerate();
         let loads = loads.filter(|(_, load)| load.magnitude.signals().contains(&Signal::Time));
         let loads = loads.map(|(k, _)| SceneLocation::Magnitude(k));
-        let laws = self.spec.laws.iter().enumerate();
+        let laws = self.start.laws.iter().enumerate();
         let laws = laws.filter(|(_, law)| law.is_some());
         let laws = laws.map(|(k, _)| SceneLocation::MotionLaw(ActuatorId(k)));
         let mut places = labels(loads, "depends on time");
@@ -99,11 +89,11 @@ impl<'a> SceneMachine<'a> {
     }
 
     pub(crate) fn coordinate_name(&self, actuator: usize) -> &str {
-        &self.scene.mechanism.actuators[actuator].name
+        self.scene.actuator(actuator).map_or("", |(name, _)| name)
     }
 
     pub(crate) fn is_angle(&self, actuator: usize) -> bool {
-        self.machine.model().plan().is_angle(actuator)
+        self.machine.model().is_angle(actuator)
     }
 
     /// The first free coordinate: (actuator, whether it is an angle).
@@ -149,21 +139,8 @@ impl<'a> SceneMachine<'a> {
             let name = format!("{}.velocity", self.coordinate_name(i));
             Column::new(name, format!("{}/s", unit(i)))
         };
-        let states = drive_states(self.scene).into_iter();
-        let states = states.map(|(name, unit, _)| Column::new(name, unit));
+        let states = self.scene.drive_state_columns();
         let coordinates = free.clone().map(coordinate).chain(free.map(speed));
         coordinates.chain(states).collect()
-    }
-}
-
-/// The motion of a scene without `[motion]`: every actuator free, at rest in the assembly configuration.
-fn motion_from_rest(scene: &Scene) -> FreeMotionSpec {
-    let start = scene.assembly.coordinates.clone();
-    FreeMotionSpec {
-        initial_velocities: vec![0.0; start.len()],
-        laws: vec![None; start.len()],
-        initial_coordinates: start,
-        duration: MotionDuration::Seconds(1.0),
-        events: Vec::new(),
     }
 }

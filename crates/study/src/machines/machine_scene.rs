@@ -1,0 +1,100 @@
+//! What a scene is to the analyses of its machine, in the plane or in space.
+
+use crate::explain::{NamedScene, StudyError};
+use dwell_dynamics::{DynamicsError, Machine, MovingModel, NonconservativeSource};
+use dwell_findings::Column;
+use dwell_kinetostatics::{Drive, MachineModel};
+use dwell_laws::Law;
+use dwell_page::{Drawing, Page};
+use dwell_scene::FreeMotionSpec;
+
+/// The description of a coordinate of a scene's machine.
+pub type CoordinateOf<S> = <<S as MachineScene>::Model as MachineModel>::Coordinate;
+
+/// Where a motion starts, by actuator.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionStart {
+    /// Coordinates, rad or m.
+    pub coordinates: Vec<f64>,
+    /// Speeds, rad/s or m/s.
+    pub velocities: Vec<f64>,
+    /// The laws of prescribed coordinates; none where it is free.
+    pub laws: Vec<Option<Law>>,
+}
+
+impl MotionStart {
+    /// That of a motion if there is one; else every actuator is free, at rest in the assembly configuration.
+    pub(crate) fn new<C, R>(motion: Option<&FreeMotionSpec<C, R>>, assembly: &[f64]) -> Self {
+        match motion {
+            Some(spec) => Self {
+                coordinates: spec.initial_coordinates.clone(),
+                velocities: spec.initial_velocities.clone(),
+                laws: spec.laws.clone(),
+            },
+            None => Self {
+                coordinates: assembly.to_vec(),
+                velocities: vec![0.0; assembly.len()],
+                laws: vec![None; assembly.len()],
+            },
+        }
+    }
+}
+
+/// A scene with a machine.
+pub trait MachineScene: NamedScene {
+    /// The model that moves.
+    type Model: MovingModel;
+    /// A component of a reaction.
+    type Reaction: std::fmt::Debug + Copy + PartialEq;
+
+    /// Where its motion starts.
+    fn motion_start(&self) -> MotionStart;
+
+    /// Its machine, with some reactions and those that friction needs.
+    ///
+    /// # Errors
+    /// [`StudyError`] when the mechanism cannot be assembled, or a load or a drive does not fit it.
+    fn machine(&self, reactions: &[Self::Reaction]) -> Result<Machine<Self::Model>, StudyError>;
+
+    /// The requested reactions: those that the loads determine, and the others.
+    ///
+    /// # Errors
+    /// [`StudyError`] where the mechanism has no pose.
+    fn sorted_reactions(&self, model: &Self::Model)
+    -> Result<[Vec<Self::Reaction>; 2], StudyError>;
+
+    /// Names and units of the reactions of a model.
+    fn reaction_columns(&self, model: &Self::Model) -> Vec<Column>;
+
+    /// The name of a reaction.
+    fn name_of_reaction(&self, reaction: Self::Reaction) -> String;
+
+    /// Its drives.
+    fn drives(&self) -> &[Drive<CoordinateOf<Self>>];
+
+    /// Whether a coordinate is an angle; otherwise it is a length.
+    fn is_angle(coordinate: CoordinateOf<Self>) -> bool;
+
+    /// Names and units of the states of the drives.
+    fn drive_state_columns(&self) -> Vec<Column>;
+
+    /// The name of what does work on the machine.
+    fn name_of_source(&self, source: NonconservativeSource) -> &str;
+
+    /// Rejects requested columns that no analysis has.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] at the first of them.
+    fn reject_unknown_columns(&self) -> Result<(), StudyError>;
+
+    /// The mechanism along the first column of a page, which is its coordinate; none where a page shows no mechanism.
+    fn drawing_along(&self, _page: &Page) -> Option<Drawing> {
+        None
+    }
+
+    /// Lines about the assembly configuration; mostly none.
+    fn assembly_note(&self, model: &Self::Model) -> String;
+
+    /// An error of its motion in the names of the scene.
+    fn explain(&self, model: &Self::Model, error: &DynamicsError) -> StudyError;
+}

@@ -1,0 +1,8 @@
+//! The machine of a scene, in the plane or in space, for the analyses that ask for what it does and not for what it is made of.
+
+mod in_plane;
+mod machine_scene;
+mod scene_machine;
+
+pub use machine_scene::{CoordinateOf, MachineScene, MotionStart};
+pub use scene_machine::SceneMachine;

@@ -1,0 +1,113 @@
+//! The machine of a scene in space.
+
+use super::explain::{explain_load_error, explain_loads, explain_position};
+use super::prepared::{compile, sort_reactions};
+use crate::explain::{StudyError, explain_any_motion, scene_error};
+use crate::machines::{MachineScene, MotionStart};
+use crate::models::states_of_drives;
+use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, MachineError, NonconservativeSource};
+use dwell_findings::Column;
+use dwell_kinetostatics::Drive;
+use dwell_kinetostatics::space::{Component, Coordinate, Model, Reaction};
+use dwell_laws::Law;
+use dwell_scene::{SceneLocation, SpaceScene};
+
+impl MachineScene for SpaceScene {
+    type Model = Model;
+    type Reaction = Reaction;
+
+    fn motion_start(&self) -> MotionStart {
+        MotionStart::new(self.motion.as_ref(), &self.assembly.q)
+    }
+
+    fn machine(&self, reactions: &[Reaction]) -> Result<Machine<Model>, StudyError> {
+        let mode = |law: &Option<Law>| match law {
+            Some(law) => CoordinateMode::Prescribed(law.clone()),
+            None => CoordinateMode::Free,
+        };
+        let modes = self.motion_start().laws.iter().map(mode).collect();
+        let machine = Machine::new(compile(self, reactions)?, &self.loads, modes, &self.drives);
+        machine.map_err(|error| explain_machine(self, &error))
+    }
+
+    fn sorted_reactions(&self, _: &Model) -> Result<[Vec<Reaction>; 2], StudyError> {
+        // The model of the machine has no reactions.
+        sort_reactions(self, &compile(self, &self.reactions)?)
+    }
+
+    fn reaction_columns(&self, model: &Model) -> Vec<Column> {
+        let column = |reaction: Reaction| {
+            let unit = match reaction.component {
+                Component::Force(..) => "N",
+                Component::Moment(..) => "N m",
+            };
+            Column::new(self.reaction_name(reaction), unit)
+        };
+        model.reactions().map(column).collect()
+    }
+
+    fn name_of_reaction(&self, reaction: Reaction) -> String {
+        self.reaction_name(reaction)
+    }
+
+    fn drives(&self) -> &[Drive<Coordinate>] {
+        &self.drives
+    }
+
+    fn is_angle(coordinate: Coordinate) -> bool {
+        coordinate.is_angle()
+    }
+
+    fn drive_state_columns(&self) -> Vec<Column> {
+        let states = states_of_drives(&self.drives, Coordinate::is_angle).into_iter();
+        states
+            .map(|(name, unit, _)| Column::new(name, unit))
+            .collect()
+    }
+
+    fn name_of_source(&self, source: NonconservativeSource) -> &str {
+        match source {
+            NonconservativeSource::Load(load) => &self.loads[load].name,
+            NonconservativeSource::Drive(drive) => &self.drives[drive].name,
+            NonconservativeSource::Prescribed(i) => &self.mechanism.actuators[i].name,
+            // A scene in space has no end stops.
+            NonconservativeSource::Stop(_) => "",
+        }
+    }
+
+    fn reject_unknown_columns(&self) -> Result<(), StudyError> {
+        // It names no columns.
+        Ok(())
+    }
+
+    fn assembly_note(&self, _: &Model) -> String {
+        String::new()
+    }
+
+    fn explain(&self, model: &Model, error: &DynamicsError) -> StudyError {
+        match error {
+            DynamicsError::Position(position) => explain_position(self, model.plan(), position),
+            DynamicsError::Load(load) => explain_loads(self, model.plan(), load),
+            other => explain_any_motion(self, other),
+        }
+    }
+}
+
+/// Explains a machine that cannot be built.
+fn explain_machine(scene: &SpaceScene, error: &MachineError) -> StudyError {
+    match error {
+        MachineError::Load(load) => explain_load_error(scene, load),
+        MachineError::Drive(drive) => scene_error(
+            scene,
+            drive.to_string(),
+            "drive the coordinate of an actuator",
+            [(SceneLocation::Drive(drive.drive), "this drive")],
+        ),
+        MachineError::Stop(_) | MachineError::CoordinateModes => scene_error(
+            scene,
+            error.to_string(),
+            "",
+            [(SceneLocation::Motion, "this motion")],
+        ),
+    }
+}

@@ -1,0 +1,201 @@
+//! The report of a case in space: findings, what is determined, pictures, and the values that every machine reproduces.
+
+use super::findings::findings;
+use super::reference::Reference;
+use crate::case_report::validate::Validation;
+use crate::error::ValidationError;
+use crate::overview::{CheckCell, check_cells};
+use crate::report_parts::{figure_blocks, findings_text, pass_or_fail, table};
+use dwell_findings::{Check, Finding, all_pass};
+use dwell_kinetostatics::Coefficients;
+use dwell_report::{Block, Document, Figure, Files, markdown_text};
+use dwell_scene::SpaceScene;
+use dwell_study::number_format::count;
+use dwell_study::output::{Picture, provenance_line};
+use dwell_study::reduce::compute::ReducedCurves;
+use dwell_study::reduce::compute::ReducedScene as _;
+use dwell_study::{Outcome, PreparedSpaceScene, reduce};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Positions in the snapshot.
+const PRINTED: usize = 8;
+
+/// Validates a scene in space of one coordinate, with the reference in a file if there is one. The files are `NAME.md` and `NAME.txt`.
+///
+/// # Errors
+/// [`ValidationError`] when the scene or the reference cannot be used. A failed check is no error.
+pub fn validate_in_space(
+    scene: &SpaceScene,
+    reference: Option<&Path>,
+) -> Result<Validation, ValidationError> {
+    let reference = reference.map(Reference::read).transpose()?;
+    let prepared = PreparedSpaceScene::new(scene)?;
+    let findings = findings(&prepared, reference.as_ref())?;
+    let curves = ReducedCurves::new(&prepared, None)?;
+    let is_rounding = curves.rounding(&prepared);
+    let mut figures = vec![prepared.mechanism_figure()?];
+    figures.push(reduce::figures::reduced(&prepared, &curves, &is_rounding));
+    figures.extend(reduce::figures::coefficients(&prepared, &curves, &is_rounding).0);
+    let snapshot = snapshot(&prepared, &findings)?;
+    let document = document(&prepared, (reference.as_ref(), &findings), &figures);
+    let name = &scene.name;
+    let mut files = Files::new();
+    files.add(format!("{name}.txt"), snapshot.clone());
+    files.add(format!("{name}.md"), document.markdown());
+    let picture = |figure: Figure| {
+        let path = format!("{name}/{}.png", figure.name);
+        Picture::figure(scene, path, true, figure)
+    };
+    Ok(Validation {
+        outcome: Outcome {
+            summary: findings_text(name, &findings, ""),
+            files,
+            findings,
+            pictures: figures.into_iter().map(picture).collect(),
+            ..Outcome::default()
+        },
+        snapshot,
+        ..Validation::default()
+    })
+}
+
+fn document(
+    prepared: &PreparedSpaceScene<'_>,
+    (reference, findings): (Option<&Reference>, &[Finding]),
+    figures: &[Figure],
+) -> Document {
+    let scene = prepared.scene;
+    let mut blocks: Vec<Block> = scene.note.iter().cloned().map(Block::Words).collect();
+    let passed = findings.iter().filter(|f| f.pass).count();
+    blocks.push(Block::Text(format!(
+        "{passed} of {} findings pass.",
+        findings.len()
+    )));
+    if let Some(reference) = reference {
+        let source = markdown_text(reference.source());
+        blocks.push(Block::Text(format!("Reference of 25 digits: {source}.")));
+    }
+    let mobility = prepared.model.model().plan().mobility();
+    if mobility.redundant_count > 0 {
+        let redundant = count(mobility.redundant_count, "constraint");
+        let mut text = format!("The mechanism is overconstrained by {redundant}.");
+        let open: Vec<String> = prepared
+            .indeterminate
+            .iter()
+            .map(|&r| scene.reaction_name(r))
+            .collect();
+        if !open.is_empty() {
+            text += &format!(
+                " So these reactions are statically indeterminate and are given nowhere: {}.",
+                markdown_text(&open.join(", "))
+            );
+        }
+        let named = prepared.reaction_units().into_iter().map(|(name, _)| name);
+        let named: Vec<String> = named.collect();
+        text += &match named.is_empty() {
+            true => " No component along the axes of the ground is determined.".to_owned(),
+            false => format!(" Determined are {}.", markdown_text(&named.join(", "))),
+        };
+        blocks.push(Block::Text(text));
+    }
+    blocks.push(Block::Heading("Findings".to_owned()));
+    blocks.push(Block::Findings(findings.to_vec()));
+    blocks.push(Block::Heading("Figures".to_owned()));
+    blocks.extend(figure_blocks(&scene.name, figures, true));
+    blocks.push(Block::Text(provenance_line(scene)));
+    Document {
+        title: scene.title.clone(),
+        blocks,
+    }
+}
+
+/// The reduced model at eight positions, to seven digits after the first of the largest value of its kind, and which findings pass.
+fn snapshot(
+    prepared: &PreparedSpaceScene<'_>,
+    findings: &[Finding],
+) -> Result<String, ValidationError> {
+    let [from, to] = prepared.drawn_range();
+    let at = |k: usize| from + (to - from) * (k as f64 + 0.5) / PRINTED as f64;
+    let q: Vec<f64> = (0..PRINTED).map(at).collect();
+    let all = prepared.coefficients(&q)?;
+    let names = prepared.reaction_units();
+    let m_max = all.iter().fold(0.0_f64, |max, at| max.max(at.m));
+    let of_unit = |unit: &str| {
+        let of_row = |at: &Coefficients| {
+            let pairs = names.iter().zip(at.a.iter().zip(&at.b));
+            let own = pairs.filter(|((_, of), _)| *of == unit);
+            own.fold(0.0_f64, |max, (_, (a, b))| max.max(a.abs()).max(b.abs()))
+        };
+        all.iter().map(of_row).fold(0.0, f64::max)
+    };
+    let [forces, moments] = ["N", "N m"].map(of_unit);
+    let mut text = format!("{}\n\n", prepared.scene.title);
+    // Writing to a string cannot fail.
+    for (q, at) in q.iter().zip(&all) {
+        let [m, half_dm] = [at.m, at.half_dm].map(|value| rounded(value, m_max));
+        let _ = writeln!(text, "q = {q:.7}  m = {m}  half_dm = {half_dm}");
+        for (k, (name, unit)) in names.iter().enumerate() {
+            let scale = if *unit == "N" { forces } else { moments };
+            let [a, b] = [at.a[k], at.b[k]].map(|value| rounded(value, scale));
+            let _ = writeln!(text, "    {name}  a = {a}  b = {b}");
+        }
+    }
+    text.push('\n');
+    for f in findings {
+        let result = if f.pass { "pass" } else { "FAIL" };
+        let _ = writeln!(text, "{result}  {}  [{}]", f.key, f.check);
+    }
+    Ok(text)
+}
+
+/// To seven digits after the first of the largest, without a sign on zero.
+fn rounded(value: f64, largest: f64) -> String {
+    let magnitude = if largest > 0.0 {
+        largest.log10().floor()
+    } else {
+        0.0
+    };
+    let decimals = (7.0 - magnitude).clamp(0.0, 30.0) as usize;
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.trim_matches(['0', '.']).is_empty() => digits.to_owned(),
+        _ => text,
+    }
+}
+
+/// All cases in space in one table, `space.md`: agreeing digits by case and check.
+pub fn index_in_space(results: &[(&SpaceScene, &Validation)]) -> Outcome {
+    let checks: Vec<Check> = Check::ALL
+        .into_iter()
+        .filter(|check| {
+            let all = results.iter().flat_map(|(_, done)| &done.outcome.findings);
+            all.into_iter().any(|finding| finding.check == *check)
+        })
+        .collect();
+    let heads: Vec<String> = checks.iter().map(Check::to_string).collect();
+    let mut header = vec!["Case", "Result"];
+    header.extend(heads.iter().map(String::as_str));
+    let rows = results.iter().map(|(scene, done)| {
+        let cells = check_cells(done);
+        let mut row = vec![
+            format!("[{}]({}.md)", markdown_text(&scene.title), scene.name),
+            pass_or_fail(all_pass(&done.outcome.findings)).to_owned(),
+        ];
+        row.extend(checks.iter().map(|check| match &cells[check.number()] {
+            CheckCell::Digits(digits) => format!("{digits:.1}"),
+            CheckCell::Failed(key) => format!("**FAIL** {key}"),
+            CheckCell::NotApplicable(_) => String::new(),
+        }));
+        row
+    });
+    let text = "Agreeing decimal digits of the worst finding of each check; double precision has 15.7. Check 2 and a part of check 8 are limited by \
+                differences. No digits where the reference has no such value.";
+    let document = Document {
+        title: "Cases in space".to_owned(),
+        blocks: vec![table(&header, rows), Block::Text(text.to_owned())],
+    };
+    let mut outcome = Outcome::default();
+    outcome.files.add("space.md", document.markdown());
+    outcome
+}
