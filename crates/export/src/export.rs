@@ -88,7 +88,7 @@ impl Export {
         ];
         let scales = measure::scales(&machine, &scaled);
         let [motion, reactions, positions] = code;
-        let motion = with_slopes(&motion, rotor_columns(&machine));
+        let motion = with_slopes(&motion, &rotor_columns(&machine));
         let code = [motion, reactions, positions];
         let measurable = Measurable::Code(&code);
         let measured = measure(&machine, &measurable, scales, (precision, sampler));
@@ -185,12 +185,10 @@ impl Export {
 }
 
 /// By column of motion: which output it is, and whether its slope is needed, since it moves a rotor.
-fn rotor_columns(
-    machine: &MachineDescription,
-) -> impl Iterator<Item = (usize, bool)> + Clone + use<'_> {
+fn rotor_columns(machine: &MachineDescription) -> Vec<(usize, bool)> {
     let first = 2 * machine.curves(PartKind::Motion).len();
     let columns = machine.loads.iter();
     let columns = columns.filter(|load| !load.effect.is_conservative());
     let columns = columns.map(|load| has_rotor(&load.effect)).enumerate();
-    columns.map(move |(k, rotor)| (first + k, rotor))
+    columns.map(|(k, rotor)| (first + k, rotor)).collect()
 }

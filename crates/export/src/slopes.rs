@@ -9,22 +9,19 @@ use std::convert::Infallible;
 use std::ops::{Add, Div, Mul, Sub};
 
 /// Appends to the outputs of a code the slopes of some of them: of others zero.
-pub(crate) fn with_slopes(
-    code: &StraightLine,
-    outputs: impl Iterator<Item = (usize, bool)> + Clone,
-) -> StraightLine {
+pub(crate) fn with_slopes(code: &StraightLine, outputs: &[(usize, bool)]) -> StraightLine {
     let evaluate = |q: RecordedNumber| {
         let one = RecordedNumber::from_f64(1.0);
         let all = code.evaluate(Sloped {
             value: q,
             slope: one,
         });
-        let slope = |(k, wanted): (usize, bool)| match all.get(k).filter(|_| wanted) {
+        let slope = |&(k, wanted): &(usize, bool)| match all.get(k).filter(|_| wanted) {
             Some(of) => of.slope,
             None => RecordedNumber::from_f64(0.0),
         };
         let values = all.iter().map(|of| of.value);
-        Ok(values.chain(outputs.clone().map(slope)).collect())
+        Ok(values.chain(outputs.iter().map(slope)).collect())
     };
     let found: Result<StraightLine, RecordingError<Infallible>> = record(&[0.5], evaluate);
     // Operations of a code make no decision and have no other function.
@@ -163,7 +160,7 @@ mod tests {
             ],
             outputs: vec![Result(8), Result(3), Constant(4.0)],
         };
-        let sloped = with_slopes(&code, [(0, true), (1, false), (2, true)].into_iter());
+        let sloped = with_slopes(&code, &[(0, true), (1, false), (2, true)]);
         assert_eq!(sloped.outputs.len(), 6);
         for q in [-1.0_f64, 0.3, 2.0] {
             let [value, _, _, slope, unwanted, of_constant] = sloped.evaluate(q)[..] else {
