@@ -243,7 +243,7 @@ pub(crate) enum Command {
     View {
         /// The scene file, or `-` for standard input
         scene: PathBuf,
-        /// The live page that `just web` builds (default: dwell.html beside this program, or in ../web)
+        /// The live page that `just web` builds (default: dwell.html in the folder of this program, or in ../web)
         #[arg(long, value_name = "FILE")]
         page: Option<PathBuf>,
     },

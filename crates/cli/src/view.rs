@@ -71,7 +71,7 @@ fn found() -> Result<PathBuf, Report> {
     places.find(|path| path.is_file()).ok_or_else(|| {
         miette!(
             help = "build it with `just web` (it needs the target wasm32-unknown-unknown of Rust), or give its file with --page",
-            "the live page is not built: there is no `{PAGE}` beside this program"
+            "the live page is not built: `{PAGE}` is not in the folder of this program"
         )
     })
 }

@@ -10,6 +10,7 @@
 //! bodies.bob = { points = { O = [0, 0] }, mass = 2.0, center = [0.5, 0] }
 //! joints.O = { revolute = ["ground.O", "bob.O"] }
 //! actuators.phi = { angle = ["ground", "bob"] }
+//! prescribed = { duration = 1.0, phi = { speed = 1.0 } }
 //! "#;
 //! let request = serde_json::json!({ "do": "run", "command": "kinetostatics", "text": text });
 //! let answer = dwell_live::answer(&request.to_string());

@@ -14,7 +14,7 @@ const TERMS: usize = 8;
 /// Parts have at most this h |λ|, as far as their number allows.
 const PART_STIFFNESS: f64 = 1.5;
 /// Below this h |λ| the polynomial of a step is as good as the step.
-const LEAST_STIFFNESS: f64 = 3.0;
+const MIN_STIFFNESS: f64 = 3.0;
 const MAX_PARTS: usize = 8;
 
 /// The states within a step.
@@ -48,7 +48,7 @@ impl Interpolant {
         [from, to]: [&OdeState; 2],
         stiffness: f64,
     ) -> Result<()> {
-        self.parts = match stiffness > LEAST_STIFFNESS {
+        self.parts = match stiffness > MIN_STIFFNESS {
             true => ((stiffness / PART_STIFFNESS).ceil() as usize).clamp(2, MAX_PARTS),
             false => 1,
         };
