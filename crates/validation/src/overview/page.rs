@@ -8,11 +8,16 @@ use std::fmt::Write as _;
 const STYLE: &str = include_str!("page.css");
 
 /// The other reports, each with what it holds.
-const REPORTS: [(&str, &str, &str); 6] = [
+const REPORTS: [(&str, &str, &str); 7] = [
     (
         "manual.html",
         "Verification manual",
         "what is required, and the evidence for each capability",
+    ),
+    (
+        "space.html",
+        "Mechanisms in space",
+        "linkages in space against the dense equations and references",
     ),
     (
         "extremes.html",

@@ -42,7 +42,7 @@ pub fn validate_in_space(
     let name = &scene.name;
     let mut files = Files::new();
     files.add(format!("{name}.txt"), snapshot.clone());
-    files.add(format!("{name}.md"), document.markdown());
+    files.add_document(name, &document);
     let picture = |figure: Figure| {
         let path = format!("{name}/{}.png", figure.name);
         Picture::figure(scene, path, true, figure)
@@ -196,6 +196,6 @@ pub fn index_in_space(results: &[(&SpaceScene, &Validation)]) -> Outcome {
         blocks: vec![table(&header, rows), Block::Text(text.to_owned())],
     };
     let mut outcome = Outcome::default();
-    outcome.files.add("space.md", document.markdown());
+    outcome.files.add_document("space", &document);
     outcome
 }
