@@ -12,5 +12,5 @@ rm -rf "$top/target/wheels"
 "$env/bin/pip" install --quiet --disable-pip-version-check --force-reinstall --no-deps "$top"/target/wheels/dwell-*.whl
 "$env/bin/python" -m pytest --pyargs dwell tests
 "$env/bin/python" -m mypy --strict python/dwell typed
-"$env/bin/python" -m mypy.stubtest dwell --allowlist tests/stubtest.txt
+"$env/bin/python" -m mypy.stubtest dwell --allowlist tests/stubtest.txt --mypy-config-file pyproject.toml
 "$env/bin/python" benchmark.py

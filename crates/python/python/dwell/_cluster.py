@@ -95,12 +95,14 @@ def _by_ray(study: _Study, blocks: int) -> None:
 
 
 def _by_dask(study: _Study, blocks: int) -> None:
-    from distributed import Client, get_client
+    import distributed
 
+    # Its functions have no types.
+    dask: Any = distributed
     try:
-        client, own = get_client(), False
+        client, own = dask.get_client(), False
     except ValueError:
-        client, own = Client(threads_per_worker=1), True
+        client, own = dask.Client(threads_per_worker=1), True
     try:
         client.gather([client.submit(_block, study, k, blocks, pure=False) for k in range(1, blocks + 1)])
     finally:
