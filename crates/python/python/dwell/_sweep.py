@@ -28,6 +28,7 @@ def sweep(
     samples: int | None = None,
     seed: int = 0,
     engine: None = None,
+    folder: None = None,
 ) -> SweepResults: ...
 
 
