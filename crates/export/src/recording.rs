@@ -92,7 +92,7 @@ enum Recorded {
     #[default]
     Constant,
     Coordinate,
-    Result(u32),
+    Result(usize),
 }
 
 /// A number of which each operation is recorded.
@@ -107,7 +107,7 @@ impl RecordedNumber {
         match self.operand {
             Recorded::Constant => Operand::Constant(self.value),
             Recorded::Coordinate => Operand::Coordinate,
-            Recorded::Result(k) => Operand::Result(k as usize),
+            Recorded::Result(k) => Operand::Result(k),
         }
     }
 
@@ -137,8 +137,7 @@ impl RecordedNumber {
         });
         Self {
             value,
-            // No machine's code has so many operations that this could be cut.
-            operand: Recorded::Result(u32::try_from(index).unwrap_or(u32::MAX)),
+            operand: Recorded::Result(index),
         }
     }
 }

@@ -37,15 +37,16 @@ impl CWriter<'_> {
         let operations = format!(
             "Additions, multiplications and divisions, the worst case at any q: {motion} of the terms of motion, {all} with those of the reactions, {step} of a step"
         );
-        match self.export.functions() {
-            _ if self.export.code.is_none() => {
+        match self.export.code {
+            None => {
                 let bytes = self.export.constant_bytes();
                 line(&format!("constants: {bytes} bytes. {operations}"));
                 line(
                     "No function allocates, recurses, keeps anything between calls or calls a library.",
                 );
             }
-            [motion, all] => {
+            Some(_) => {
+                let [motion, all] = self.export.functions();
                 line(&operations);
                 line(&format!(
                     "Square roots, sines, cosines and angles: {motion} of the terms of motion, {all} with those of the reactions, {} of a step",

@@ -33,9 +33,9 @@ static int is_finite(@p@_real x)
 
 impl CWriter<'_> {
     pub(super) fn source(&self) -> String {
-        let library = match self.export.functions() {
-            [_, 0] if self.export.code.is_none() => "",
-            _ => "\n#include <math.h>\n",
+        let library = match self.export.code {
+            None => "",
+            Some(_) => "\n#include <math.h>\n",
         };
         let mut text = format!(
             "#include \"@p@.h\"\n{library}\n#ifdef __FAST_MATH__\n#error \"-ffast-math drops the sums that carry their rounding\"\n#endif\n\n#define ZERO {}\n\n",
