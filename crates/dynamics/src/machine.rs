@@ -53,6 +53,9 @@ pub enum CoordinateMode {
 pub enum NonconservativeSource {
     /// A load, by its index in the model.
     Load(usize),
+    /// All nonconservative loads together, where they are more than 32: each work is a state of the integration, and an implicit method solves
+    /// for all states at once.
+    Loads,
     /// A drive, by its index in the machine.
     Drive(usize),
     /// The prescribed motion of an actuator.
@@ -60,6 +63,9 @@ pub enum NonconservativeSource {
     /// An end stop, by its index: what its impacts lose.
     Stop(usize),
 }
+
+/// So many loads have works of their own.
+const MAX_SEPARATE_WORKS: usize = 32;
 
 /// A machine, in the plane or in space: constant, shared between threads.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,6 +81,8 @@ pub struct Machine<M: MovingModel = Model> {
     /// Number of the drives' states.
     drive_state_count: usize,
     nonconservative_sources: Vec<NonconservativeSource>,
+    /// The loads of [`NonconservativeSource::Loads`].
+    pub(crate) summed_loads: Vec<usize>,
     /// Where it crosses change points.
     pub(crate) fit_windows: Vec<M::FitWindow>,
     /// Frictions that hold at rest.
@@ -130,8 +138,15 @@ impl<M: MovingModel> Machine<M> {
         let model = model.with_loads(all)?;
         let drives = CompiledDrive::compile_all(&model, drives, loads.len())?;
         let nonconservative = (0..loads.len()).filter(|&l| !model.is_conservative(l));
-        let mut sources: Vec<NonconservativeSource> =
-            nonconservative.map(NonconservativeSource::Load).collect();
+        let nonconservative: Vec<usize> = nonconservative.collect();
+        let are_summed = nonconservative.len() > MAX_SEPARATE_WORKS;
+        let mut sources = match are_summed {
+            true => vec![NonconservativeSource::Loads],
+            false => {
+                let loads = nonconservative.iter().copied();
+                loads.map(NonconservativeSource::Load).collect()
+            }
+        };
         sources.extend((0..drives.len()).map(NonconservativeSource::Drive));
         let prescribed = (0..modes.len()).filter(|i| !is_free(i));
         sources.extend(prescribed.map(NonconservativeSource::Prescribed));
@@ -151,6 +166,11 @@ impl<M: MovingModel> Machine<M> {
             free,
             drives,
             nonconservative_sources: sources,
+            summed_loads: if are_summed {
+                nonconservative
+            } else {
+                Vec::new()
+            },
             fit_windows: Vec::new(),
         })
     }

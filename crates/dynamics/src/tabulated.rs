@@ -76,6 +76,9 @@ pub struct TabulatedMachine {
     column_count: usize,
     /// In the order of the works.
     tabulated_loads: Vec<TabulatedLoad>,
+    /// By load: the place of its work, or of the sum that it belongs to, among the works.
+    work_places: Vec<usize>,
+    work_count: usize,
     /// Number of the drives' states.
     drive_state_count: usize,
     time_features: Arc<Features>,
@@ -161,9 +164,12 @@ impl TabulatedMachine {
         let potential = TotalPotential::new(machine);
         let potential = potential.map(|mut source| builder.curve(both, &mut source));
         let potential = potential.transpose()?;
-        let sources = machine.nonconservative_sources().iter();
-        let loads = sources.filter_map(|&source| load_of(machine, source));
-        let loads: Vec<usize> = loads.collect();
+        let mut loads = Vec::new();
+        let mut work_places = Vec::new();
+        for (place, &source) in machine.nonconservative_sources().iter().enumerate() {
+            loads.extend(loads_of(machine, source));
+            work_places.resize(loads.len(), place);
+        }
         let mut auxiliary = AuxiliaryColumns::new(machine, &builder, &loads);
         let mut tabulated_loads = Vec::with_capacity(loads.len());
         for &load in &loads {
@@ -184,6 +190,8 @@ impl TabulatedMachine {
             columns,
             column_count: entries.len(),
             tabulated_loads,
+            work_places,
+            work_count: machine.nonconservative_sources().len(),
             drive_state_count: machine.work_offset() - 2,
             domain: builder.domain(),
             period: builder.period(),
@@ -238,12 +246,13 @@ impl TabulatedMachine {
     }
 }
 
-/// The load of a nonconservative source.
-fn load_of(machine: &Machine, source: NonconservativeSource) -> Option<usize> {
+/// The loads of a nonconservative source.
+fn loads_of(machine: &Machine, source: NonconservativeSource) -> Vec<usize> {
     match source {
-        NonconservativeSource::Load(load) => Some(load),
-        NonconservativeSource::Drive(drive) => machine.drives.get(drive).map(|drive| drive.load),
-        NonconservativeSource::Prescribed(_) | NonconservativeSource::Stop(_) => None,
+        NonconservativeSource::Load(load) => vec![load],
+        NonconservativeSource::Loads => machine.summed_loads.clone(),
+        NonconservativeSource::Drive(drive) => vec![machine.drives[drive].load],
+        NonconservativeSource::Prescribed(_) | NonconservativeSource::Stop(_) => Vec::new(),
     }
 }
 

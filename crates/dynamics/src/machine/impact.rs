@@ -72,6 +72,7 @@ impl<M: MovingModel> Machine<M> {
                 }
                 NonconservativeSource::Stop(_)
                 | NonconservativeSource::Load(_)
+                | NonconservativeSource::Loads
                 | NonconservativeSource::Drive(_) => {}
             }
         }

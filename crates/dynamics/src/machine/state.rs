@@ -88,6 +88,11 @@ impl<T: Scalar, M: MovingModel> MachineState<'_, T, M> {
         for (power, &source) in powers.iter_mut().zip(&machine.nonconservative_sources) {
             *power = match source {
                 NonconservativeSource::Load(load) => self.forces.load_power(load),
+                NonconservativeSource::Loads => {
+                    let powers = machine.summed_loads.iter();
+                    let powers = powers.map(|&load| self.forces.load_power(load));
+                    powers.fold(T::from_f64(0.0), |sum, power| sum + power)
+                }
                 NonconservativeSource::Drive(d) => {
                     let [_, speed] = self.coordinate(machine.drives[d].measured);
                     equation.drive_forces[d] * speed

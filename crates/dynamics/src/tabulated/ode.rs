@@ -70,7 +70,7 @@ struct LoadContribution<T> {
 impl TabulatedMachine {
     /// Number of states: q, q̇, those of the drives, the works.
     pub fn state_count(&self) -> usize {
-        2 + self.drive_state_count + self.tabulated_loads.len()
+        2 + self.drive_state_count + self.work_count
     }
 
     /// The ODE system of the table, from a state whose energies are the scale of the works; so is the `largest_work`, J,
@@ -117,10 +117,11 @@ impl TabulatedMachine {
             force += half_dv * T::from_f64(-2.0);
         }
         self.columns.eval(q, &mut workspace.columns, &mut [])?;
-        for k in 0..self.tabulated_loads.len() {
+        out[2 + self.drive_state_count..].fill(T::from_f64(0.0));
+        for (k, place) in self.work_places.iter().enumerate() {
             let contribution = self.load_contribution(k, t, y, workspace)?;
             force += contribution.generalised_force;
-            out[2 + self.drive_state_count + k] = contribution.generalised_force * q_dot;
+            out[2 + self.drive_state_count + place] += contribution.generalised_force * q_dot;
             if let Some((place, rate)) = contribution.drive_state_rate {
                 out[2 + place] = rate;
             }

@@ -5,7 +5,7 @@ use super::{Model, Workspace};
 use crate::drive::Drive;
 use crate::error::{LoadError, PositionResult, Result};
 use crate::friction::{self, FrictionState};
-use crate::load::{ForceSource, Friction, Load, LoadKind, Magnitude, Signal};
+use crate::load::{AppliedWrench, ForceSource, Friction, Load, LoadKind, Magnitude, Signal};
 use crate::pass::{AtRest, GivenMotion, InverseDynamics, UnitAcceleration};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Coordinate, Range};
@@ -254,12 +254,15 @@ impl MachineModel for Model {
     #[inline]
     fn load_power<T: Scalar>(&self, load: usize, workspace: &Workspace<T>) -> T {
         let Workspace { states, loads, .. } = workspace;
-        let mut sum = T::from_f64(0.0);
-        let source = ForceSource::Load(load);
-        for wrench in loads.wrenches.iter().filter(|w| w.source == source) {
-            sum += wrench.power(states);
-        }
-        sum
+        // They are in the order of the loads.
+        let load_of = |wrench: &AppliedWrench<T>| match wrench.source {
+            ForceSource::Load(of) => of,
+            ForceSource::Joint(_) | ForceSource::Actuator(_) => usize::MAX,
+        };
+        let first = loads.wrenches.partition_point(|w| load_of(w) < load);
+        let own = loads.wrenches[first..].iter();
+        let own = own.take_while(|wrench| load_of(wrench) == load);
+        own.fold(T::from_f64(0.0), |sum, wrench| sum + wrench.power(states))
     }
 
     fn kinetic_energy(&self, workspace: &Workspace<f64>) -> f64 {

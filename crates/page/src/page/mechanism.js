@@ -144,7 +144,7 @@ function createMechanism(state, onMove, onTurn) {
   }
 
   function createMark(part, at, w) {
-    const shape = svg('g', { class: `mark mark-${part.look} ${colored(part.at.body)}` }, svg('title', {}, part.title), markElements(part.look), !frames.isPlane && part.on_ground && part.look !== 'center-of-mass' ? groundMark() : null);
+    const shape = svg('g', { class: `mark mark-${part.look} ${colored(part.at.body)}`, 'data-body': part.at.body }, svg('title', {}, part.title), markElements(part.look), !frames.isPlane && part.on_ground && part.look !== 'center-of-mass' ? groundMark() : null);
     const label = part.label ? svg('text', { class: 'label' }, part.label) : null;
     layers.marks.append(shape);
     if (label) layers.words.append(label);

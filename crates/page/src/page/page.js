@@ -137,6 +137,8 @@ function create(root, options = {}) {
     const { target } = event;
     if (event.ctrlKey || event.metaKey || event.altKey || !run || !run.axis) return;
     if (target.closest && target.closest('input:not([type=range]), textarea, select, [contenteditable]')) return;
+    // A slider of another part of the document has its own keys.
+    if (target.closest && target.closest('input') && !root.contains(target)) return;
     const isButton = target.closest && target.closest('button, summary, a');
     const step = event.shiftKey ? 10 : 1;
     const rows = { ArrowRight: row + step, ArrowLeft: row - step, Home: 0, End: run.rows - 1, PageUp: row + 25, PageDown: row - 25 }[event.key];

@@ -61,6 +61,7 @@ pub(crate) fn motor_columns(scene: &Scene) -> Vec<(String, &'static str, &'stati
 pub(crate) fn source_name(scene: &Scene, source: NonconservativeSource) -> &str {
     match source {
         NonconservativeSource::Load(load) => &scene.loads[load].name,
+        NonconservativeSource::Loads => "loads",
         NonconservativeSource::Drive(drive) => &scene.drives[drive].name,
         NonconservativeSource::Stop(stop) => &scene.stops[stop].name,
         NonconservativeSource::Prescribed(actuator) => &scene.mechanism.actuators[actuator].name,

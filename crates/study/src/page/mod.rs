@@ -141,7 +141,12 @@ pub(crate) fn run_page(scene: &SceneFile, size: f64, computed: &ComputedTrajecto
         columns: page_columns(results, &choice),
         rows_note: choice.note(reached),
         peaks: extrema.into_iter().filter_map(peak).collect(),
-        peaks_note: (!results.extrema.are_between_rows).then(|| of_rows.to_owned()),
+        peaks_note: match results.extrema.are_between_rows() {
+            false => Some(of_rows.to_owned()),
+            true => Some(results.names_of_rows(&results.written))
+                .filter(|names| !names.is_empty())
+                .map(|names| format!("Of the rows only: {names}.")),
+        },
         ..scene_page(scene, trajectory.analysis.command())
     }
 }

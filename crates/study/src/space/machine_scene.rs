@@ -68,6 +68,7 @@ impl MachineScene for SpaceScene {
     fn name_of_source(&self, source: NonconservativeSource) -> &str {
         match source {
             NonconservativeSource::Load(load) => &self.loads[load].name,
+            NonconservativeSource::Loads => "loads",
             NonconservativeSource::Drive(drive) => &self.drives[drive].name,
             NonconservativeSource::Prescribed(i) => &self.mechanism.actuators[i].name,
             // A scene in space has no end stops.

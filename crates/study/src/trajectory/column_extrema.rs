@@ -13,6 +13,9 @@ pub(crate) struct ColumnExtrema {
     pub(crate) ends: [Extremum; 2],
     /// The estimated error of its values, in its unit.
     pub(crate) error: f64,
+    /// Whether they are those of the rows, between which there may be larger ones.
+    #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for texts"))]
+    pub(crate) of_rows: bool,
     /// Extent of the abscissa.
     #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for texts"))]
     span: f64,
@@ -53,6 +56,7 @@ impl ColumnExtrema {
                 at: end.at * at_factor,
             }),
             error: self.error * factor,
+            of_rows: self.of_rows,
             span: self.span * at_factor,
             unit: self.unit,
         }
@@ -101,6 +105,7 @@ pub(crate) fn sorted_extrema(
                 .get(k)
                 .copied()
                 .unwrap_or_else(|| rounding(unit)),
+            of_rows: results.extrema.of_rows[k],
             span: to - from,
         })
     };

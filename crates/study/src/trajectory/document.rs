@@ -6,13 +6,15 @@ use crate::ranges::extent;
 use crate::trajectory::column_extrema::{ColumnExtrema, sorted_extrema};
 use crate::trajectory::compute::{
     Analysis, ComputedTrajectory, Extremum, Quantity, SectionedLink, Trajectory, TrajectoryResults,
-    is_searched_in_rows,
 };
 use crate::trajectory::highlights::Movement;
 use dwell_findings::{Column, Record, RecordedExtrema};
 use dwell_kinetostatics::{Distribution, Section};
 use dwell_report::{Block, Document as Page, Figure};
 use dwell_scene::{Scene, SceneFile};
+
+/// Relative error up to which a value is printed with all six digits.
+const ALL_DIGITS: f64 = 1e-7;
 
 /// Extrema of one unit that the summary lists.
 const MAX_LISTED: usize = 3;
@@ -256,11 +258,15 @@ impl<'a> Document<'a> {
             let (factor, shown_unit) = self.in_scene_unit(1.0, unit);
             let shown = of.scaled(factor, at_factor);
             let [value, at] = shown.texts(shown.largest());
+            let of_rows = match of.of_rows && self.results.extrema.are_between_rows() {
+                true => ", of the rows only",
+                false => "",
+            };
             text += &match is_known {
                 true => {
                     largest_error = largest_error.max(of.error / size);
                     format!(
-                        "  {name} reaches {value} {shown_unit} at {abscissa} = {at} {abscissa_unit}\n"
+                        "  {name} reaches {value} {shown_unit} at {abscissa} = {at} {abscissa_unit}{of_rows}\n"
                     )
                 }
                 false => {
@@ -271,13 +277,15 @@ impl<'a> Document<'a> {
                 }
             };
         }
-        if largest_error > 0.0 && self.trajectory.analysis == Analysis::FreeMotion {
+        // Along a prescribed motion it is that of rounding, which seldom takes a digit.
+        let is_free = self.trajectory.analysis == Analysis::FreeMotion;
+        if largest_error > if is_free { 0.0 } else { ALL_DIGITS } {
             record.add("error.printed_extrema", "", largest_error);
             text += &format!(
                 "  estimated error of these values: at most {largest_error:.1e} of each\n"
             );
         }
-        if !text.is_empty() && !self.results.extrema.are_between_rows {
+        if !text.is_empty() && !self.results.extrema.are_between_rows() {
             text += &format!("  {LARGEST_OF_ROWS}\n");
         }
         text
@@ -372,7 +380,7 @@ impl<'a> Document<'a> {
             caption: String::new(),
         }));
         blocks.push(Block::Heading("Peaks".to_owned()));
-        let where_found = match self.results.extrema.are_between_rows {
+        let where_found = match self.results.extrema.are_between_rows() {
             true => "Smallest and largest values, also between the rows of the table.",
             false => {
                 "Smallest and largest values in the rows of the table: between them there may be larger ones."
@@ -407,16 +415,12 @@ impl<'a> Document<'a> {
 
     /// The sentence about the columns whose extrema are those of the rows although others are looked for between them.
     fn searched_in_rows(&self) -> String {
-        if !self.results.extrema.are_between_rows {
+        if !self.results.extrema.are_between_rows() {
             return String::new();
         }
-        let columns = self.selected.iter().map(|&k| &self.results.columns[k]);
-        let names = columns
-            .filter(|c| is_searched_in_rows(c))
-            .map(|c| c.name.as_str());
-        match names.collect::<Vec<_>>().as_slice() {
-            [] => String::new(),
-            names => format!(" Of the rows only: {}.", names.join(", ")),
+        match self.results.names_of_rows(&self.selected) {
+            names if names.is_empty() => String::new(),
+            names => format!(" Of the rows only: {names}."),
         }
     }
 

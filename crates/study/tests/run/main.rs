@@ -9,6 +9,7 @@ mod forces;
 mod former_names;
 mod gears;
 mod machines;
+mod many_loads;
 mod mechanical_advantage;
 mod motion;
 mod pruning;

@@ -85,6 +85,8 @@ pub(crate) struct PositionForces<'a> {
     scene: &'a Scene,
     body_forces: FreeBodyForces,
     wrenches: Vec<AppliedWrench>,
+    /// By load: the place among the wrenches of that on its second body, if it acts between two.
+    on_second_bodies: Vec<Option<usize>>,
     /// By load: its magnitude and its power.
     magnitudes: Vec<f64>,
     load_powers: Vec<f64>,
@@ -102,6 +104,7 @@ impl<'a> PositionForces<'a> {
             body_forces: FreeBodyForces::new(model).map_err(|e| explain_model(scene, &e))?,
             scene,
             wrenches: Vec::new(),
+            on_second_bodies: vec![None; scene.loads.len()],
             magnitudes: vec![0.0; scene.loads.len()],
             load_powers: vec![0.0; scene.loads.len()],
             joint_forces: vec![Vec2::ZERO; scene.mechanism.joints.len()],
@@ -116,11 +119,20 @@ impl<'a> PositionForces<'a> {
         let (body_forces, wrenches) = (&self.body_forces, &mut self.wrenches);
         body_forces.wrenches(state, wrenches);
         self.joint_forces.fill(Vec2::ZERO);
-        for wrench in &*wrenches {
-            if let ForceSource::Joint(j) = wrench.source
-                && wrench.body == self.scene.mechanism.joints[j.0].bodies[1]
-            {
-                self.joint_forces[j.0] += wrench.force;
+        self.on_second_bodies.fill(None);
+        for (place, wrench) in wrenches.iter().enumerate() {
+            match wrench.source {
+                ForceSource::Joint(j)
+                    if wrench.body == self.scene.mechanism.joints[j.0].bodies[1] =>
+                {
+                    self.joint_forces[j.0] += wrench.force;
+                }
+                ForceSource::Load(k)
+                    if second_body(&self.scene.loads[k].kind) == Some(wrench.body) =>
+                {
+                    self.on_second_bodies[k].get_or_insert(place);
+                }
+                _ => {}
             }
         }
         let shaking = body_forces.shaking_force(state, wrenches);
@@ -136,6 +148,22 @@ impl<'a> PositionForces<'a> {
         let forces = links.map(|l| body_forces.link_forces(state, l.body, l.points, wrenches));
         self.link_forces.clear();
         self.link_forces.extend(forces);
+    }
+}
+
+/// The second body of a load whose force follows from the motion of two.
+fn second_body(load: &LoadKind) -> Option<BodyId> {
+    match load {
+        LoadKind::Spring { bodies, .. }
+        | LoadKind::Damper { bodies, .. }
+        | LoadKind::TorsionSpring { bodies, .. }
+        | LoadKind::RotationalDamper { bodies } => Some(bodies[1]),
+        LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => Some(guide.bodies[1]),
+        LoadKind::Gravity { .. }
+        | LoadKind::Force { .. }
+        | LoadKind::Torque { .. }
+        | LoadKind::PointToPointForce { .. }
+        | LoadKind::SeparatingForce(_) => None,
     }
 }
 
@@ -198,10 +226,8 @@ impl<'a> PositionEvaluator<'a> {
     /// The force of a load along its direction or line, or its moment on its second body.
     fn load_force(&self, k: usize) -> f64 {
         let states = &self.forces.body_states;
-        let on = |body: BodyId| {
-            let mut wrenches = self.position.wrenches.iter();
-            wrenches.find(|w| w.source == ForceSource::Load(k) && w.body == body)
-        };
+        let on_second =
+            self.position.on_second_bodies[k].map(|place| self.position.wrenches[place]);
         match self.scene.loads[k].kind {
             LoadKind::Gravity { .. }
             | LoadKind::Force { .. }
@@ -210,16 +236,15 @@ impl<'a> PositionEvaluator<'a> {
             | LoadKind::SeparatingForce(_) => self.position.magnitudes[k],
             LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } => {
                 let line = states.separation(bodies, points).direction;
-                let force_and_line = on(bodies[1]).zip(line);
+                let force_and_line = on_second.zip(line);
                 force_and_line.map_or(0.0, |(wrench, line)| wrench.force.dot(line))
             }
-            LoadKind::TorsionSpring { bodies, .. } | LoadKind::RotationalDamper { bodies } => {
-                on(bodies[1]).map_or(0.0, |wrench| wrench.couple)
+            LoadKind::TorsionSpring { .. } | LoadKind::RotationalDamper { .. } => {
+                on_second.map_or(0.0, |wrench| wrench.couple)
             }
             LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
-                let [first, second] = guide.bodies;
-                let axis = guide.axis.rotate(states.body(first).rotation);
-                on(second).map_or(0.0, |wrench| wrench.force.dot(axis))
+                let axis = guide.axis.rotate(states.body(guide.bodies[0]).rotation);
+                on_second.map_or(0.0, |wrench| wrench.force.dot(axis))
             }
         }
     }

@@ -23,6 +23,7 @@ pub(crate) fn extra_columns(loaded_scene: &Scene, machine: &Machine) -> Vec<Colu
             NonconservativeSource::Drive(_) => {
                 "work since t = 0, before the rotor: what the rotor stores does not reach the bodies"
             }
+            NonconservativeSource::Loads => "work of all loads without a potential since t = 0",
             NonconservativeSource::Load(_)
             | NonconservativeSource::Prescribed(_)
             | NonconservativeSource::Stop(_) => "work since t = 0",

@@ -17,6 +17,10 @@ const MIN_POSITIONS: usize = 720;
 /// Highest number of local extrema of a column that are found exactly; of all columns together.
 const MAX_REFINED: usize = 3;
 const MAX_REFINED_OF_ALL: usize = 1500;
+/// Columns that are searched between the rows, times all columns: what one position costs grows with the columns, so that without a bound a
+/// mechanism with thousands of loads would cost their square. At least so many are searched.
+const MAX_SEARCHED_TIMES_ALL: usize = 600_000;
+const MIN_SEARCHED: usize = 100;
 /// Highest number of evaluations for one extremum.
 const MAX_EVALUATIONS: usize = 40;
 /// Width of the interval, relative to the first, at which an extremum is found, and the relative gain that is none.
@@ -41,8 +45,15 @@ pub(crate) struct Extremum {
 pub(crate) struct Extrema {
     /// By column: the smallest and the largest value, if it has any.
     pub(crate) of_columns: Vec<Option<[Extremum; 2]>>,
-    /// Whether they are those of the trajectory; otherwise those of its rows.
-    pub(crate) are_between_rows: bool,
+    /// By column: whether they are those of the rows, between which there may be larger ones.
+    pub(crate) of_rows: Vec<bool>,
+}
+
+impl Extrema {
+    /// Whether extrema are those of the trajectory, but for some columns.
+    pub(crate) fn are_between_rows(&self) -> bool {
+        self.of_rows.contains(&false)
+    }
 }
 
 /// How a position between others is computed.
@@ -133,7 +144,7 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
             of_columns: (0..self.columns.len())
                 .map(both)
                 .collect::<io::Result<_>>()?,
-            are_between_rows: false,
+            of_rows: vec![true; self.columns.len()],
         })
     }
 
@@ -144,8 +155,12 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
         between: &BetweenRows<'_>,
     ) -> io::Result<Extrema> {
         let mut extrema = self.in_rows()?;
-        let is_searched = |&k: &usize| is_continuous(&self.columns[k]);
-        let wanted: Vec<usize> = wanted.iter().copied().filter(is_searched).collect();
+        let [wanted, left_out] = self.searched(wanted);
+        for (of_rows, column) in extrema.of_rows.iter_mut().zip(self.columns) {
+            // Time has its extrema at the ends.
+            *of_rows = column.quantity != Quantity::Time && !is_continuous(column);
+        }
+        left_out.iter().for_each(|&k| extrema.of_rows[k] = true);
         let points = KnownPoints::new(between, self.evaluate_all(&wanted, &between.further));
         let refined = (MAX_REFINED_OF_ALL / wanted.len().max(1)).clamp(1, MAX_REFINED);
         let known: Vec<(usize, usize)> = wanted.iter().copied().enumerate().collect();
@@ -182,8 +197,18 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
                 }
             }
         }
-        extrema.are_between_rows = true;
         Ok(extrema)
+    }
+
+    /// Of the wanted columns those that are searched between the rows, and those that are too many for it: the forces and powers of loads are
+    /// the last.
+    fn searched(&self, wanted: &[usize]) -> [Vec<usize>; 2] {
+        let is_searched = |&k: &usize| is_continuous(&self.columns[k]);
+        let mut searched: Vec<usize> = wanted.iter().copied().filter(is_searched).collect();
+        searched.sort_by_key(|&k| is_of_load(&self.columns[k]));
+        let most = (MAX_SEARCHED_TIMES_ALL / self.columns.len().max(1)).max(MIN_SEARCHED);
+        let left_out = searched.split_off(most.min(searched.len()));
+        [searched, left_out]
     }
 
     /// Some columns at many positions, on all cores.
@@ -342,10 +367,12 @@ fn is_continuous(column: &Column) -> bool {
         )
 }
 
-/// Whether the extrema of a column, but for the abscissa, are always those of the rows.
-#[cfg(feature = "output")]
-pub(crate) fn is_searched_in_rows(column: &Column) -> bool {
-    column.quantity != Quantity::Time && !is_continuous(column)
+/// Whether a column is of one load.
+fn is_of_load(column: &Column) -> bool {
+    matches!(
+        column.quantity,
+        Quantity::LoadForce(_) | Quantity::LoadPower(_)
+    )
 }
 
 /// The highest point of a function that is known at some points, also between them: it is evaluated about its local

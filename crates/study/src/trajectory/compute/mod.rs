@@ -33,8 +33,6 @@ pub(crate) use early_stop::{
 pub(crate) use evaluator::{ForceEvaluator, PositionEvaluator};
 pub(crate) use extra_columns::extra_columns;
 pub(crate) use extrema::Extremum;
-#[cfg(feature = "output")]
-pub(crate) use extrema::is_searched_in_rows;
 pub(crate) use extrema::{
     BetweenRows, Extrema, ExtremaSearch, Point, SamplePrecision, Sampler, highest_between,
 };
