@@ -47,7 +47,7 @@ class Live {
     this.editor.open(await this.files.firstScene());
     this.edited();
     try {
-      const { answer } = await this.following.ask({ do: 'schema' }, FOLLOW_LIMIT);
+      const { answer } = await this.work(this.following.ask({ do: 'schema' }, FOLLOW_LIMIT));
       this.editor.schema = new Schema(answer.schema);
     } catch (error) {
       this.say(`the module cannot be started: ${error.message}`);
