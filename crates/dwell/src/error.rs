@@ -62,6 +62,12 @@ pub enum Error {
     /// A table that cannot be made or written.
     #[error("{0}")]
     Table(String),
+    /// Closed forms that do not agree with the reduced model, with the largest difference relative to the largest value.
+    #[error("the closed forms differ from the reduced model by {difference:.1e}")]
+    ClosedForm {
+        /// The difference.
+        difference: f64,
+    },
     /// A coordinate beyond a table's domain.
     #[error("{q} is not in the table, which reaches from {from} to {to}")]
     OutOfTable {
@@ -91,6 +97,7 @@ impl Error {
             | Self::State { .. }
             | Self::GivenTwice { .. }
             | Self::Table(_)
+            | Self::ClosedForm { .. }
             | Self::OutOfTable { .. } => None,
         }
     }

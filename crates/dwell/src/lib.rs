@@ -44,6 +44,7 @@
 //! | where does it rest, how does it vibrate? | [`Mechanism::equilibria`], [`Mechanism::linearise`] |
 //! | how steadily does it run, which flywheel does it need? | [`Mechanism::cycle`] |
 //! | what if its dimensions vary? | [`Sweep`] |
+//! | the same as code for a controller, or as formulas | [`Scene::export`], [`Scene::closed_form`] |
 //!
 //! # Conventions
 //!
@@ -63,6 +64,7 @@ mod batch;
 mod column_table;
 mod equation;
 mod error;
+mod export;
 mod machine;
 mod mechanism;
 mod motion;
@@ -94,8 +96,17 @@ pub use dwell_dynamics::Mode;
 /// # }
 /// ```
 pub use dwell_dynamics::Stability;
+/// A language of [`Scene::closed_form`].
+///
+/// ```
+/// let scene = dwell::Scene::read("../../docs/slider.toml")?;
+/// assert!(scene.closed_form(dwell::Language::C, Some("B.x"))?.contains("#include <math.h>"));
+/// # Ok::<(), dwell::Error>(())
+/// ```
+pub use dwell_study::Language;
 pub use equation::EquationOfMotion;
 pub use error::Error;
+pub use export::ExportTarget;
 pub use machine::{Cycle, Equilibrium, StateSpace};
 pub use mechanism::Mechanism;
 pub use mechanism::builder::{BodyBuilder, MechanismBuilder};

@@ -13,6 +13,8 @@ mod interrupt;
 mod machine;
 mod mechanism;
 mod motion;
+#[cfg(all(target_os = "linux", target_arch = "x86_64", target_env = "gnu"))]
+mod oldest_hypot;
 mod reduced;
 mod scene;
 mod sweep;

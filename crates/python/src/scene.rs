@@ -2,6 +2,8 @@
 
 use crate::errors::{Raise as _, keep};
 use crate::mechanism::Mechanism;
+use dwell::{ExportTarget, Language};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -72,6 +74,34 @@ impl Scene {
         let scene = self.scene.with_function(load, &names, called);
         let scene = scene.or_raise(py)?;
         Ok(Self { scene })
+    }
+
+    /// Files of an export: path and content of each.
+    fn export(
+        &self,
+        py: Python<'_>,
+        target: &str,
+        accuracy: f64,
+    ) -> PyResult<Vec<(String, Vec<u8>)>> {
+        let target = match target {
+            "c" => ExportTarget::C,
+            "exact-c" => ExportTarget::ExactC,
+            "rust" => ExportTarget::Rust,
+            "matlab" => ExportTarget::Matlab,
+            other => {
+                let message = format!("there is no target `{other}`");
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        py.detach(|| self.scene.export(target, accuracy))
+            .or_raise(py)
+    }
+
+    /// The closed forms as a function in Python.
+    #[pyo3(signature = (reaction))]
+    fn closed_form(&self, py: Python<'_>, reaction: Option<&str>) -> PyResult<String> {
+        py.detach(|| self.scene.closed_form(Language::Python, reaction))
+            .or_raise(py)
     }
 
     fn check(&self, py: Python<'_>) -> PyResult<String> {

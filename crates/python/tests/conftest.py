@@ -7,18 +7,18 @@ import subprocess
 import pytest
 
 TOP = pathlib.Path(__file__).resolve().parents[3]
+COMMAND = pathlib.Path(os.environ.get("DWELL_COMMAND", TOP / "target/release/dwell"))
 CASES = sorted(path.parent.name for path in (TOP / "validation").glob("*/scene.toml"))
 
 
 @pytest.fixture(scope="session")
 def command():
     """Runs the `dwell` command; skipped where it is not built."""
-    program = pathlib.Path(os.environ.get("DWELL_COMMAND", TOP / "target/release/dwell"))
-    if not program.exists():
+    if not COMMAND.exists():
         pytest.skip("the command is not built: cargo build --release -p dwell-cli")
 
     def run(*arguments):
-        return subprocess.run([program, *arguments], capture_output=True, text=True, env={**os.environ, "NO_COLOR": "1"})
+        return subprocess.run([COMMAND, *arguments], capture_output=True, text=True, env={**os.environ, "NO_COLOR": "1"})
 
     return run
 

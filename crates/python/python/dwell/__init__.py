@@ -20,6 +20,7 @@ installed.
 from __future__ import annotations
 
 from ._builder import Builder
+from ._closed_form import ClosedForm
 from ._cluster import StoredSweep
 from ._mechanism import Cycle, Equilibrium, Mechanism, Period, State, StateSpace
 from ._native import DwellError, SceneError, __version__
@@ -27,9 +28,11 @@ from ._reduced import Coefficients, ReducedModel, Table
 from ._results import Motion, Results
 from ._scene import Scene
 from ._sweep import sweep
+from ._validate import validate
 
 __all__ = [
     "Builder",
+    "ClosedForm",
     "Coefficients",
     "Cycle",
     "DwellError",
@@ -48,6 +51,7 @@ __all__ = [
     "__version__",
     "read",
     "sweep",
+    "validate",
 ]
 
 

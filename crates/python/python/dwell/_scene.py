@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import os
+import pathlib
 import warnings
 from typing import TYPE_CHECKING, Callable, Sequence
 
 import numpy.typing as npt
 
 from . import _native
+from ._closed_form import ClosedForm, closed_form
 from ._mechanism import Mechanism
 
 if TYPE_CHECKING:
     from ._reduced import Coefficients
     from ._results import Motion, Results
+
+#: What ``Scene.export`` writes.
+EXPORT_TARGETS = ("c", "exact-c", "rust", "matlab")
 
 
 class Scene:
@@ -82,6 +87,38 @@ class Scene:
                 stacklevel=2,
             )
         return Scene._of(self._native.with_function(load, list(signals), function))
+
+    def export(self, target: str, folder: str | os.PathLike[str] = ".", *, accuracy: float = 1e-9) -> list[pathlib.Path]:
+        """Writes the machine as code into a folder, and returns the files: ``"c"`` (C99), ``"exact-c"`` (the model's own operations),
+        ``"rust"`` (a crate without the standard library) or ``"matlab"`` (also for Octave).
+
+        In cells every function of the coordinate is within ``accuracy`` of its largest value; exact code has that of rounding. An FMU is
+        compiled: ``dwell export --to fmu`` writes it. Raises SceneError where the machine cannot be exported, with what to change.
+
+        >>> import dwell, tempfile
+        >>> m = dwell.Builder("Pendulum")
+        >>> m.body("ground", O=(0, 0))
+        >>> m.body("bob", O=(0, 0), P=(0, -0.5), mass=2.0, center="P")
+        >>> scene = m.pin("O", "ground", "bob").actuator("phi", angle=("ground", "bob")).scene()
+        >>> [path.name for path in scene.export("c", tempfile.mkdtemp())]
+        ['scene.h', 'scene.c']
+        """
+        if target not in EXPORT_TARGETS:
+            raise ValueError(f"there is no target {target!r}: there are {', '.join(map(repr, EXPORT_TARGETS))}")
+        written = []
+        for name, content in self._native.export(target, accuracy):
+            path = pathlib.Path(folder) / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(content)
+            written.append(path)
+        return written
+
+    def symbolic(self, reaction: str | None = None) -> ClosedForm:
+        """Closed forms of positions, m, half_dm, and a and b of a reaction (of the first that the scene requests), as SymPy objects.
+
+        For mechanisms made of dyads. Needs SymPy. Raises SceneError where there is no closed form.
+        """
+        return closed_form(self._native.closed_form(reaction))
 
     def check(self) -> str:
         """What ``dwell check`` prints: degrees of freedom, range, groups, assembly modes, loads and requests."""

@@ -1,0 +1,94 @@
+//! A mechanism as code: its reduced model for controllers, and its closed forms.
+
+use crate::error::Error;
+use crate::mechanism::scene::Scene;
+use dwell_export::{Precision, Request, c_files, matlab_files, rust_files};
+use dwell_study::{ExportRequest, compute_closed_form, compute_export};
+
+/// What [`Scene::export`] writes, in double precision.
+///
+/// ```
+/// assert_ne!(dwell::ExportTarget::C, dwell::ExportTarget::ExactC);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExportTarget {
+    /// C99, a header and a source that need no library: the functions of the coordinate in cells of polynomials.
+    C,
+    /// The same with the model's own operations instead of cells: exact to rounding, with square roots, sines and cosines.
+    ExactC,
+    /// A crate without the standard library, allocation or unsafe code, in cells.
+    Rust,
+    /// A MAT-file with the cells, and functions for MATLAB and Octave.
+    Matlab,
+}
+
+impl Scene {
+    /// The machine as code: the path and content of each file, as `dwell export` writes them. In cells every function of the coordinate is
+    /// within `accuracy` of its largest value (1e-13 to 1e-2); exact code has that of rounding.
+    ///
+    /// # Errors
+    /// [`Error::Study`] where the machine cannot be exported, with the reason and what to change: it has several freedoms, passes change
+    /// points, or sticks.
+    ///
+    /// ```
+    /// use dwell::ExportTarget;
+    /// let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let files = scene.export(ExportTarget::C, 1e-9)?;
+    /// let (path, content) = &files[0];
+    /// assert_eq!(path, "slider.h");
+    /// assert!(String::from_utf8_lossy(content).contains("slider_coefficients("));
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn export(
+        &self,
+        target: ExportTarget,
+        accuracy: f64,
+    ) -> Result<Vec<(String, Vec<u8>)>, Error> {
+        let asked = ExportRequest {
+            request: Request {
+                accuracy,
+                precision: Precision::Double,
+            },
+            exact: target == ExportTarget::ExactC,
+            interval: None,
+        };
+        let export = compute_export(self.inner(), &asked)?;
+        let texts = |files: Vec<(String, String)>| {
+            let file = |(path, text): (String, String)| (path, text.into_bytes());
+            files.into_iter().map(file).collect()
+        };
+        Ok(match target {
+            ExportTarget::C | ExportTarget::ExactC => texts(c_files(&export).into()),
+            ExportTarget::Rust => texts(rust_files(&export).into_iter().flatten().collect()),
+            ExportTarget::Matlab => matlab_files(&export).unwrap_or_default(),
+        })
+    }
+
+    /// The closed forms of a mechanism made of dyads: a function `reduced` of the coordinate in a language, that gives the positions, m, ½m′, and a
+    /// and b of a reaction (without a name, of the first that the scene requests). They agree with the reduced model to 1e-12 at 24
+    /// positions.
+    ///
+    /// # Errors
+    /// [`Error::Study`] where the mechanism is not made of dyads, has several actuators, or has no such reaction;
+    /// [`Error::ClosedForm`] where they do not agree.
+    ///
+    /// ```
+    /// let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let code = scene.closed_form(dwell::Language::Python, Some("B.x"))?;
+    /// assert!(code.contains("def reduced(phi):"));
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn closed_form(
+        &self,
+        language: crate::Language,
+        reaction: Option<&str>,
+    ) -> Result<String, Error> {
+        let (form, findings) = compute_closed_form(self.inner(), reaction)?;
+        if let Some(finding) = findings.iter().find(|finding| !finding.pass) {
+            return Err(Error::ClosedForm {
+                difference: finding.relative_difference,
+            });
+        }
+        Ok(form.code(language, "reduced", self.title()))
+    }
+}

@@ -1,0 +1,28 @@
+"""The verification of an installation."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+
+from ._native import DwellError
+
+
+def validate(
+    *cases: str, repository: str | os.PathLike[str] = ".", folder: str | os.PathLike[str] = "reports", command: str = "dwell"
+) -> str:
+    """Runs ``dwell validate`` on the cases of a repository of Dwell, or on the named ones, against independent truths; reports and the
+    verification manual go into ``folder``. Returns what the command prints. Raises DwellError where a finding fails, with the same.
+
+    ``command`` is the installed command or its path: cases, truths and pictures are not in this package.
+    """
+    arguments = [shutil.which(command) or command, "validate", *cases, "--out", os.path.abspath(folder)]
+    environment = {**os.environ, "NO_COLOR": "1"}
+    try:
+        done = subprocess.run(arguments, capture_output=True, text=True, env=environment, cwd=repository)
+    except OSError as error:
+        raise DwellError(f"`{command}` cannot be run: {error}; install the command, or give its path as `command`") from None
+    if done.returncode != 0:
+        raise DwellError(f"\n{done.stdout}{done.stderr.strip()}")
+    return done.stdout
