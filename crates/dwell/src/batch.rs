@@ -8,6 +8,8 @@ use rayon::prelude::*;
 
 /// Coordinates that one thread evaluates with one working memory.
 const BLOCK: usize = 1024;
+/// So few coordinates are evaluated one by one: working memory for lanes takes longer to allocate.
+const FEW: usize = 16;
 
 /// The coefficients at many coordinates, each kind in one piece. Reactions are in the order of
 /// [`ReducedModel::reactions`], loads in that of [`ReducedModel::loads`].
@@ -51,6 +53,9 @@ impl ReducedModel {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn batch(&self, q: &[f64]) -> Result<CoefficientBatch, Error> {
+        if q.len() <= FEW {
+            return self.one_by_one(q);
+        }
         let mut inertial = Batch::default();
         self.exact.reduce_batch(q, &mut inertial);
         let first = inertial.errors.iter().min_by_key(|(index, _)| *index);
@@ -67,6 +72,23 @@ impl ReducedModel {
             w,
             c,
         })
+    }
+
+    /// The coefficients at few coordinates, in memory that is there already.
+    fn one_by_one(&self, q: &[f64]) -> Result<CoefficientBatch, Error> {
+        let mut batch = CoefficientBatch::default();
+        let mut evaluator = self.evaluator();
+        for &q in q {
+            let at = evaluator.at(q)?;
+            batch.m.push(at.m);
+            batch.half_dm.push(at.half_dm);
+            batch.a.extend(&at.a);
+            batch.b.extend(&at.b);
+            batch.w.extend(&at.w);
+            batch.c.extend(at.c.iter().flatten());
+        }
+        evaluator.release();
+        Ok(batch)
     }
 
     /// w and c at many coordinates.
@@ -93,6 +115,7 @@ impl ReducedModel {
                     c[(k * loads + load) * reactions..][..reactions].copy_from_slice(share);
                 }
             }
+            evaluator.release();
             Ok(())
         });
         done.collect::<Result<(), Error>>()?;

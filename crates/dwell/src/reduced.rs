@@ -9,6 +9,7 @@ use dwell_kinetostatics::{
 };
 use dwell_study::explain::{explain_motion, explain_position};
 use dwell_study::models::{compile_model, reduced_model};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 impl Mechanism {
     /// The reduced model with some reactions: joints (`A` for all its components) or components (`guide.normal`).
@@ -71,6 +72,18 @@ pub struct ReducedModel {
     /// With the loads, if there are any; its reactions may be followed by those that friction needs.
     pub(crate) loaded: Option<Model>,
     pub(crate) reactions: Vec<Reaction>,
+    idle: IdleMemory,
+}
+
+/// Working memory that no evaluator has at present: to allocate it takes longer than to evaluate a position. Copies of a model share it.
+#[derive(Debug, Clone, Default)]
+struct IdleMemory(Arc<Mutex<Vec<EvaluatorMemory>>>);
+
+impl IdleMemory {
+    /// A thread that panicked with the lock left whole memory.
+    fn all(&self) -> MutexGuard<'_, Vec<EvaluatorMemory>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
 }
 
 /// The coefficients at one coordinate; those of the reactions are in the order of [`ReducedModel::reactions`], those of the
@@ -115,6 +128,7 @@ impl ReducedModel {
             exact,
             loaded,
             reactions,
+            idle: IdleMemory::default(),
         })
     }
 
@@ -145,7 +159,7 @@ impl ReducedModel {
         loads.map(|load| load.name.as_str()).collect()
     }
 
-    /// The coefficients at `q`, rad or m. For many positions an [`evaluator`](Self::evaluator) allocates nothing.
+    /// The coefficients at `q`, rad or m. For many positions an [`evaluator`](Self::evaluator) allocates nothing at all.
     ///
     /// # Errors
     /// [`Error::Study`] where the mechanism cannot reach `q`.
@@ -158,7 +172,9 @@ impl ReducedModel {
     /// ```
     pub fn at(&self, q: f64) -> Result<Coefficients, Error> {
         let mut evaluator = self.evaluator();
-        evaluator.at(q).cloned()
+        let found = evaluator.at(q).cloned();
+        evaluator.release();
+        found
     }
 
     /// Working memory for many evaluations in one thread.
@@ -175,14 +191,30 @@ impl ReducedModel {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn evaluator(&self) -> Evaluator<'_> {
+        let idle = self.idle.all().pop();
         Evaluator {
             reduced: self,
-            workspace: self.exact.workspace(),
-            exact: self.exact.model().coefficient_buffer(),
-            loaded: self
-                .loaded
-                .as_ref()
-                .map(|m| (m.workspace(), m.result_buffer())),
+            memory: idle.unwrap_or_else(|| EvaluatorMemory::new(self)),
+        }
+    }
+}
+
+/// What an evaluation works in.
+#[derive(Debug)]
+struct EvaluatorMemory {
+    workspace: ExactWorkspace,
+    exact: dwell_kinetostatics::Coefficients,
+    loaded: Option<(Workspace<f64>, InverseDynamics<f64>)>,
+    found: Coefficients,
+}
+
+impl EvaluatorMemory {
+    fn new(of: &ReducedModel) -> Self {
+        let loaded = of.loaded.as_ref();
+        Self {
+            workspace: of.exact.workspace(),
+            exact: of.exact.model().coefficient_buffer(),
+            loaded: loaded.map(|m| (m.workspace(), m.result_buffer())),
             found: Coefficients::default(),
         }
     }
@@ -201,13 +233,15 @@ impl ReducedModel {
 #[derive(Debug)]
 pub struct Evaluator<'m> {
     reduced: &'m ReducedModel,
-    workspace: ExactWorkspace,
-    exact: dwell_kinetostatics::Coefficients,
-    loaded: Option<(Workspace<f64>, InverseDynamics<f64>)>,
-    found: Coefficients,
+    memory: EvaluatorMemory,
 }
 
 impl Evaluator<'_> {
+    /// Leaves its memory to the next.
+    pub(crate) fn release(self) {
+        self.reduced.idle.all().push(self.memory);
+    }
+
     /// The coefficients at `q`, rad or m.
     ///
     /// # Errors
@@ -221,13 +255,13 @@ impl Evaluator<'_> {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn at(&mut self, q: f64) -> Result<&Coefficients, Error> {
-        let Self {
-            reduced,
+        let reduced = self.reduced;
+        let EvaluatorMemory {
             workspace,
             exact,
             loaded,
             found,
-        } = self;
+        } = &mut self.memory;
         let scene = reduced.scene.inner();
         let evaluated = reduced.exact.coefficients(q, workspace, exact);
         evaluated.map_err(|e| explain_position(scene, reduced.exact.model().plan(), &e))?;

@@ -44,16 +44,17 @@ class ReducedModel:
 
     def __init__(self, native: _native.ReducedModel) -> None:
         self._native = native
+        self._reactions, self._loads = native.reactions, native.loads
 
     @property
     def reactions(self) -> list[str]:
         """Names of the reactions."""
-        return self._native.reactions
+        return list(self._reactions)
 
     @property
     def loads(self) -> list[str]:
         """Names of the loads."""
-        return self._native.loads
+        return list(self._loads)
 
     def __call__(self, q: npt.ArrayLike, *, threads: int = 0) -> Coefficients:
         """The coefficients at coordinates q (rad or m) of any shape, on all cores or on ``threads`` of them. The arrays of one
@@ -64,21 +65,22 @@ class ReducedModel:
         wanted = np.asarray(q, dtype=np.float64)
         flat = np.ascontiguousarray(wanted).reshape(-1)
         m, half_dm, a, b, w, c = self._native.coefficients(flat, threads)
-        shape, names, loads = wanted.shape, self.reactions, self.loads
+        shape, names, loads = wanted.shape, self._reactions, self._loads
 
-        def by_reaction(values: Array) -> dict[str, Array]:
+        def by_name(values: Array, names: Sequence[str]) -> dict[str, Array]:
+            if len(names) == 1:
+                return {names[0]: values.reshape(shape)}
             columns = values.reshape(*shape, len(names))
             return {name: columns[..., k] for k, name in enumerate(names)}
 
-        shares = c.reshape(*shape, len(loads), len(names))
-        weights = w.reshape(*shape, len(loads))
+        shares = c.reshape(*shape, len(loads), len(names)) if loads else c
         return Coefficients(
             q=wanted,
             m=m.reshape(shape),
             half_dm=half_dm.reshape(shape),
-            a=by_reaction(a),
-            b=by_reaction(b),
-            w={load: weights[..., k] for k, load in enumerate(loads)},
+            a=by_name(a, names),
+            b=by_name(b, names),
+            w=by_name(w, loads) if loads else {},
             c={load: {name: shares[..., k, r] for r, name in enumerate(names)} for k, load in enumerate(loads)},
         )
 
