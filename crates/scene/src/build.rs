@@ -4,7 +4,7 @@ use crate::assembly::ParsedAssembly;
 use crate::bodies::Bodies;
 use crate::coordinates::{NamedActuator, ParsedCoordinate, ParsedCoordinates, actuators, is_same};
 use crate::diagnostics::Diagnostics;
-use crate::drives::{DriveReader, reject_drives_of_prescribed};
+use crate::drives::{DriveReader, reject_drives_of_prescribed, reject_shared_names};
 use crate::error::{SceneError, Source};
 use crate::events::EventReader;
 use crate::file::SceneFile;
@@ -139,7 +139,10 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     let prescribed = prescribed.and_then(|f| prescribed_motion(&f, &by_name, &start));
     let sweep = section("coordinate-sweep");
     let sweep = sweep.and_then(|f| coordinate_sweep(&f, &by_name, &start));
-    let mut loads = section("loads").map_or_else(Vec::new, |f| names.loads(&f));
+    let load_fields = section("loads");
+    let mut loads = load_fields
+        .as_ref()
+        .map_or_else(Vec::new, |f| names.loads(f));
     if let Some(f) = section("friction") {
         add_friction(&f, &joints, &mut loads);
     }
@@ -148,7 +151,9 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
         coordinates: &named,
         magnitudes: &names.magnitudes,
     };
-    let drives = section("drives").map_or_else(Vec::new, |f| reader.drives(&f, loads.len()));
+    let drive_fields = section("drives");
+    reject_shared_names(&drive_fields, &load_fields);
+    let drives = drive_fields.map_or_else(Vec::new, |f| reader.drives(&f, loads.len()));
     if let Some(motion) = &motion {
         let coordinates = named.list[..named.actuators].iter().map(|c| c.coordinate);
         reject_drives_of_prescribed(&drives, motion, by_name.iter().zip(coordinates), is_same);

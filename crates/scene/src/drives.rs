@@ -1,6 +1,6 @@
 //! The drives of a free motion.
 
-use crate::coordinates::{AnyCoordinate, NamedActuator, ParsedCoordinates};
+use crate::coordinates::{AnyCoordinate, NamedActuator, ParsedCoordinates, report_ambiguous_name};
 use crate::diagnostics::Span;
 use crate::keys;
 use crate::kind::{kind, reject_unread_kind};
@@ -59,6 +59,21 @@ impl<C: AnyCoordinate> DriveReader<'_, C> {
             kind: kind?,
         };
         Some((drive, kind_entry.value.span()))
+    }
+}
+
+/// A drive and a load of one name are an error: columns of results are called by it.
+pub(crate) fn reject_shared_names(
+    drives: &Option<TableReader<'_>>,
+    loads: &Option<TableReader<'_>>,
+) {
+    let Some((drives, loads)) = drives.as_ref().zip(loads.as_ref()) else {
+        return;
+    };
+    for drive in &drives.entries {
+        if let Some(load) = loads.entries.iter().find(|load| load.name == drive.name) {
+            report_ambiguous_name(drive, (&load.key, "a load"), "a drive", "results");
+        }
     }
 }
 

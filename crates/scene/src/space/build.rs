@@ -12,7 +12,7 @@ use crate::bodies::Bodies;
 use crate::build::is_filled;
 use crate::coordinates::{NamedActuator, ParsedCoordinate};
 use crate::diagnostics::Diagnostics;
-use crate::drives::{DriveReader, reject_drives_of_prescribed};
+use crate::drives::{DriveReader, reject_drives_of_prescribed, reject_shared_names};
 use crate::error::{SceneError, Source};
 use crate::events::EventReader;
 use crate::file::SceneFile;
@@ -113,12 +113,17 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
         joints: &joints,
         magnitudes: &magnitudes,
     };
-    let loads = section("loads").map_or_else(Vec::new, |f| reader.loads(&f));
+    let load_fields = section("loads");
+    let loads = load_fields
+        .as_ref()
+        .map_or_else(Vec::new, |f| reader.loads(f));
     let reader = DriveReader {
         coordinates: &named,
         magnitudes: &magnitudes,
     };
-    let drives = section("drives").map_or_else(Vec::new, |f| reader.drives(&f, loads.len()));
+    let drive_fields = section("drives");
+    reject_shared_names(&drive_fields, &load_fields);
+    let drives = drive_fields.map_or_else(Vec::new, |f| reader.drives(&f, loads.len()));
     if let Some(motion) = &motion {
         let coordinates = named.list[..named.actuators].iter().map(|c| c.coordinate);
         let actuators = by_name.iter().zip(coordinates);

@@ -84,7 +84,7 @@ pub(crate) fn sorted_extrema(
 ) -> Vec<ColumnExtrema> {
     let [from, to] = extent(results.rows.iter().map(|row| row[abscissa]));
     // Of the forces along a prescribed motion the rounding is known, relative to the largest of their unit.
-    let rounding = |unit: &str| {
+    let largest_of = |unit: &str| {
         let columns = results.columns.iter().zip(&results.extrema.of_columns);
         let alike =
             columns.filter(|(column, _)| column.unit == unit && matches!(unit, "N" | "N m"));
@@ -92,7 +92,17 @@ pub(crate) fn sorted_extrema(
         let sizes = sizes
             .flatten()
             .chain([results.references.largest_of(unit, size)]);
-        results.rounding_error.unwrap_or(0.0) * sizes.fold(0.0, f64::max)
+        sizes.fold(0.0, f64::max)
+    };
+    let mut largest: Vec<(&str, f64)> = Vec::new();
+    for column in listed.iter().map(|&k| &results.columns[k]) {
+        if largest.iter().all(|(unit, _)| *unit != column.unit) {
+            largest.push((column.unit, largest_of(column.unit)));
+        }
+    }
+    let rounding = |unit: &str| {
+        let of_unit = largest.iter().find(|(known, _)| *known == unit);
+        results.rounding_error.unwrap_or(0.0) * of_unit.map_or(0.0, |(_, largest)| *largest)
     };
     let entry = |&k: &usize| {
         let unit = results.columns[k].unit;

@@ -9,6 +9,7 @@ use crate::trajectory::compute::{
 };
 use SamplePrecision::{Exact, Interpolated};
 use rayon::prelude::*;
+use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::io;
 
@@ -21,6 +22,8 @@ const MAX_REFINED_OF_ALL: usize = 1500;
 /// mechanism with thousands of loads would cost their square. At least so many are searched.
 const MAX_SEARCHED_TIMES_ALL: usize = 600_000;
 const MIN_SEARCHED: usize = 100;
+/// Values of columns that are kept in a search, of a thread.
+const MAX_KEPT: usize = 1 << 20;
 /// Highest number of evaluations for one extremum.
 const MAX_EVALUATIONS: usize = 40;
 /// Width of the interval, relative to the first, at which an extremum is found, and the relative gain that is none.
@@ -169,16 +172,22 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
             let mut search = ColumnSearch {
                 trajectory: self.trajectory,
                 columns: self.columns,
-                abscissa: self.abscissa,
+                searched: columns
+                    .iter()
+                    .map(|(_, k)| *k)
+                    .chain([self.abscissa])
+                    .collect(),
                 evaluators: self.evaluators.to_vec(),
                 sample: (between.sampler)(),
+                evaluated: HashMap::new(),
             };
-            let column = |&(i, k): &(usize, usize)| {
+            let column = |(place, &(i, k)): (usize, &(usize, usize))| {
                 let points = points.of_column(i, (self.values)(k)?, self.columns[k].unwraps());
-                let mut found = |sign| search.largest(k, sign, (&points, refined));
+                let mut found = |sign| search.largest(place, sign, (&points, refined));
                 io::Result::Ok((k, [found(-1.0), found(1.0)]))
             };
-            columns.iter().map(column).collect::<io::Result<Vec<_>>>()
+            let columns = columns.iter().enumerate();
+            columns.map(column).collect::<io::Result<Vec<_>>>()
         });
         for part in parts.collect::<Vec<_>>() {
             for (k, found) in part? {
@@ -271,31 +280,43 @@ impl<'b> KnownPoints<'b> {
     }
 }
 
-/// The search for extrema of one column after another.
+/// The search for extrema of one column after another. Columns of one point of two bodies, or of one force in two frames, are looked at in the
+/// same positions: what was evaluated is kept.
 struct ColumnSearch<'a, 's, E> {
     trajectory: &'a Trajectory<'a>,
     columns: &'a [Column],
-    abscissa: usize,
+    /// The columns, and the abscissa.
+    searched: Vec<usize>,
     evaluators: Vec<E>,
     sample: Sampler<'s>,
+    /// By the bits of a parameter, and whether it may be interpolated: the searched columns.
+    evaluated: HashMap<(u64, bool), Option<Vec<f64>>>,
 }
 
 impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
-    /// Some columns at a position.
+    /// A searched column and the abscissa at a position.
     fn evaluate(
         &mut self,
-        columns: &[usize],
+        place: usize,
         (u, precision): (f64, SamplePrecision),
-    ) -> Option<Vec<f64>> {
-        let sample = (self.sample)(u, precision)?;
-        let all = (self.columns, columns);
-        evaluate(self.trajectory, &mut self.evaluators, all, &sample)
+    ) -> Option<[f64; 2]> {
+        if self.evaluated.len() * self.searched.len() > MAX_KEPT {
+            self.evaluated.clear();
+        }
+        let (sample, evaluators) = (&mut self.sample, &mut self.evaluators);
+        let key = (u.to_bits(), precision == Interpolated);
+        let values = self.evaluated.entry(key).or_insert_with(|| {
+            let all = (self.columns, &self.searched[..]);
+            evaluate(self.trajectory, evaluators, all, &sample(u, precision)?)
+        });
+        let values = values.as_ref()?;
+        Some([values[place], *values.last()?])
     }
 
     /// The largest value times `sign` of a column; `points` are some of its values.
     fn largest(
         &mut self,
-        k: usize,
+        place: usize,
         sign: f64,
         (points, refined): (&[Point], usize),
     ) -> Option<Extremum> {
@@ -305,13 +326,10 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         let scale = points.iter().map(|[_, v]| v.abs()).fold(0.0, f64::max);
         // Each with its abscissa, where that is known.
         let mut found: Vec<(Point, Option<f64>)> = vec![(largest, None)];
-        let unwraps = self.columns[k].unwraps();
+        let unwraps = self.columns[self.searched[place]].unwraps();
         for (near, bracket) in promising(&points, largest[1], refined) {
-            let columns = [k, self.abscissa];
             let mut value = |u: f64, precision: SamplePrecision| {
-                let [mut value, at] = self.evaluate(&columns, (u, precision))?[..] else {
-                    return None;
-                };
+                let [mut value, at] = self.evaluate(place, (u, precision))?;
                 if unwraps {
                     value += TAU * ((sign * near - value) / TAU).round();
                 }
@@ -331,7 +349,7 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         let ([u, value], at) = *first.min_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]))?;
         let at = match at {
             Some(at) => at,
-            None => *self.evaluate(&[self.abscissa], (u, Exact))?.first()?,
+            None => self.evaluate(place, (u, Exact))?[1],
         };
         Some(Extremum {
             value: sign * value,
