@@ -9,7 +9,6 @@ use crate::trajectory::compute::{
 };
 use SamplePrecision::{Exact, Interpolated};
 use rayon::prelude::*;
-use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::io;
 
@@ -22,8 +21,6 @@ const MAX_REFINED_OF_ALL: usize = 1500;
 /// mechanism with thousands of loads would cost their square. At least so many are searched.
 const MAX_SEARCHED_TIMES_ALL: usize = 600_000;
 const MIN_SEARCHED: usize = 100;
-/// Values of columns that are kept in a search, of a thread.
-const MAX_KEPT: usize = 1 << 20;
 /// Highest number of evaluations for one extremum.
 const MAX_EVALUATIONS: usize = 40;
 /// Width of the interval, relative to the first, at which an extremum is found, and the relative gain that is none.
@@ -172,22 +169,16 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
             let mut search = ColumnSearch {
                 trajectory: self.trajectory,
                 columns: self.columns,
-                searched: columns
-                    .iter()
-                    .map(|(_, k)| *k)
-                    .chain([self.abscissa])
-                    .collect(),
+                abscissa: self.abscissa,
                 evaluators: self.evaluators.to_vec(),
                 sample: (between.sampler)(),
-                evaluated: HashMap::new(),
             };
-            let column = |(place, &(i, k)): (usize, &(usize, usize))| {
+            let column = |&(i, k): &(usize, usize)| {
                 let points = points.of_column(i, (self.values)(k)?, self.columns[k].unwraps());
-                let mut found = |sign| search.largest(place, sign, (&points, refined));
+                let mut found = |sign| search.largest(k, sign, (&points, refined));
                 io::Result::Ok((k, [found(-1.0), found(1.0)]))
             };
-            let columns = columns.iter().enumerate();
-            columns.map(column).collect::<io::Result<Vec<_>>>()
+            columns.iter().map(column).collect::<io::Result<Vec<_>>>()
         });
         for part in parts.collect::<Vec<_>>() {
             for (k, found) in part? {
@@ -280,43 +271,31 @@ impl<'b> KnownPoints<'b> {
     }
 }
 
-/// The search for extrema of one column after another. Columns of one point of two bodies, or of one force in two frames, are looked at in the
-/// same positions: what was evaluated is kept.
+/// The search for extrema of one column after another.
 struct ColumnSearch<'a, 's, E> {
     trajectory: &'a Trajectory<'a>,
     columns: &'a [Column],
-    /// The columns, and the abscissa.
-    searched: Vec<usize>,
+    abscissa: usize,
     evaluators: Vec<E>,
     sample: Sampler<'s>,
-    /// By the bits of a parameter, and whether it may be interpolated: the searched columns.
-    evaluated: HashMap<(u64, bool), Option<Vec<f64>>>,
 }
 
 impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
-    /// A searched column and the abscissa at a position.
+    /// Some columns at a position.
     fn evaluate(
         &mut self,
-        place: usize,
+        columns: &[usize],
         (u, precision): (f64, SamplePrecision),
-    ) -> Option<[f64; 2]> {
-        if self.evaluated.len() * self.searched.len() > MAX_KEPT {
-            self.evaluated.clear();
-        }
-        let (sample, evaluators) = (&mut self.sample, &mut self.evaluators);
-        let key = (u.to_bits(), precision == Interpolated);
-        let values = self.evaluated.entry(key).or_insert_with(|| {
-            let all = (self.columns, &self.searched[..]);
-            evaluate(self.trajectory, evaluators, all, &sample(u, precision)?)
-        });
-        let values = values.as_ref()?;
-        Some([values[place], *values.last()?])
+    ) -> Option<Vec<f64>> {
+        let sample = (self.sample)(u, precision)?;
+        let all = (self.columns, columns);
+        evaluate(self.trajectory, &mut self.evaluators, all, &sample)
     }
 
     /// The largest value times `sign` of a column; `points` are some of its values.
     fn largest(
         &mut self,
-        place: usize,
+        k: usize,
         sign: f64,
         (points, refined): (&[Point], usize),
     ) -> Option<Extremum> {
@@ -326,10 +305,13 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         let scale = points.iter().map(|[_, v]| v.abs()).fold(0.0, f64::max);
         // Each with its abscissa, where that is known.
         let mut found: Vec<(Point, Option<f64>)> = vec![(largest, None)];
-        let unwraps = self.columns[self.searched[place]].unwraps();
+        let unwraps = self.columns[k].unwraps();
         for (near, bracket) in promising(&points, largest[1], refined) {
+            let columns = [k, self.abscissa];
             let mut value = |u: f64, precision: SamplePrecision| {
-                let [mut value, at] = self.evaluate(place, (u, precision))?;
+                let [mut value, at] = self.evaluate(&columns, (u, precision))?[..] else {
+                    return None;
+                };
                 if unwraps {
                     value += TAU * ((sign * near - value) / TAU).round();
                 }
@@ -349,7 +331,7 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         let ([u, value], at) = *first.min_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]))?;
         let at = match at {
             Some(at) => at,
-            None => self.evaluate(place, (u, Exact))?[1],
+            None => *self.evaluate(&[self.abscissa], (u, Exact))?.first()?,
         };
         Some(Extremum {
             value: sign * value,
