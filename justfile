@@ -76,10 +76,11 @@ bench:
     cargo bench -p dwell-cli --bench wait
     cargo bench -p dwell-study --bench export
 
-# Beside Exudyn, Pinocchio and MuJoCo: installs them into a scratch environment; reports/peers.md and .png
+# Beside Exudyn, Pinocchio and MuJoCo: installs them into a scratch environment; reports/peers.md and .png. Then the Python package, the newest wheel in target/wheels, beside pylinkage, Exudyn and SymPy: tables in docs/performance.md
 [group('care')]
 peers:
     python3 validation/peers/run.py
+    python3 validation/peers/python.py --write
 
 # The paper's MATLAB part in GNU Octave, on exported runs of Dwell and of Exudyn, against `dwell reduce --from`. Installs Octave where it is missing
 [group('care')]

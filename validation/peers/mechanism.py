@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+# Lengths in metres.
+UNITS = {"mm": 1e-3, "in": 0.0254}
+
 
 @dataclass
 class Body:
@@ -74,7 +77,7 @@ def read(folder):
     """The mechanism of a case, at its start."""
     scene = tomllib.loads((folder / "scene.toml").read_text(encoding="utf-8"))
     case = tomllib.loads((folder / "case.toml").read_text(encoding="utf-8"))
-    unit = 1e-3 if scene.get("units", {}).get("length") == "mm" else 1.0
+    unit = UNITS.get(scene.get("units", {}).get("length"), 1.0)
     points = {
         f"{name}.{point}": unit * np.array(at, float)
         for name, body in scene["bodies"].items()
