@@ -72,16 +72,16 @@ pub struct ReducedModel {
     /// With the loads, if there are any; its reactions may be followed by those that friction needs.
     pub(crate) loaded: Option<Model>,
     pub(crate) reactions: Vec<Reaction>,
-    idle: IdleMemory,
+    idle: IdleWorkspaces,
 }
 
 /// Working memory that no evaluator has at present: to allocate it takes longer than to evaluate a position. Copies of a model share it.
 #[derive(Debug, Clone, Default)]
-struct IdleMemory(Arc<Mutex<Vec<EvaluatorMemory>>>);
+struct IdleWorkspaces(Arc<Mutex<Vec<EvaluatorWorkspace>>>);
 
-impl IdleMemory {
+impl IdleWorkspaces {
     /// A thread that panicked with the lock left whole memory.
-    fn all(&self) -> MutexGuard<'_, Vec<EvaluatorMemory>> {
+    fn all(&self) -> MutexGuard<'_, Vec<EvaluatorWorkspace>> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -128,7 +128,7 @@ impl ReducedModel {
             exact,
             loaded,
             reactions,
-            idle: IdleMemory::default(),
+            idle: IdleWorkspaces::default(),
         })
     }
 
@@ -194,21 +194,21 @@ impl ReducedModel {
         let idle = self.idle.all().pop();
         Evaluator {
             reduced: self,
-            memory: idle.unwrap_or_else(|| EvaluatorMemory::new(self)),
+            own: idle.unwrap_or_else(|| EvaluatorWorkspace::new(self)),
         }
     }
 }
 
 /// What an evaluation works in.
 #[derive(Debug)]
-struct EvaluatorMemory {
+struct EvaluatorWorkspace {
     workspace: ExactWorkspace,
     exact: dwell_kinetostatics::Coefficients,
     loaded: Option<(Workspace<f64>, InverseDynamics<f64>)>,
     found: Coefficients,
 }
 
-impl EvaluatorMemory {
+impl EvaluatorWorkspace {
     fn new(of: &ReducedModel) -> Self {
         let loaded = of.loaded.as_ref();
         Self {
@@ -233,13 +233,13 @@ impl EvaluatorMemory {
 #[derive(Debug)]
 pub struct Evaluator<'m> {
     reduced: &'m ReducedModel,
-    memory: EvaluatorMemory,
+    own: EvaluatorWorkspace,
 }
 
 impl Evaluator<'_> {
     /// Leaves its memory to the next.
     pub(crate) fn release(self) {
-        self.reduced.idle.all().push(self.memory);
+        self.reduced.idle.all().push(self.own);
     }
 
     /// The coefficients at `q`, rad or m.
@@ -256,12 +256,12 @@ impl Evaluator<'_> {
     /// ```
     pub fn at(&mut self, q: f64) -> Result<&Coefficients, Error> {
         let reduced = self.reduced;
-        let EvaluatorMemory {
+        let EvaluatorWorkspace {
             workspace,
             exact,
             loaded,
             found,
-        } = &mut self.memory;
+        } = &mut self.own;
         let scene = reduced.scene.inner();
         let evaluated = reduced.exact.coefficients(q, workspace, exact);
         evaluated.map_err(|e| explain_position(scene, reduced.exact.model().plan(), &e))?;

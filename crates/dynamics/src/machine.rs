@@ -20,6 +20,7 @@ mod impact;
 mod on_fit;
 mod sliding;
 mod state;
+mod works;
 mod workspace;
 
 use crate::contact::{Contact, ContactMode, Stop, Unloaded, solve_contacts};
@@ -37,6 +38,7 @@ pub use on_fit::NoFit;
 pub use sliding::SlidingForces;
 pub use state::MachineState;
 use std::sync::Arc;
+pub use works::NonconservativeSource;
 pub use workspace::{EquationWorkspace, MachineWorkspace};
 
 /// How a coordinate moves.
@@ -47,25 +49,6 @@ pub enum CoordinateMode {
     /// A law of time.
     Prescribed(Law),
 }
-
-/// Something that does work for which no potential accounts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NonconservativeSource {
-    /// A load, by its index in the model.
-    Load(usize),
-    /// All nonconservative loads together, where they are more than 32: each work is a state of the integration, and an implicit method solves
-    /// for all states at once.
-    Loads,
-    /// A drive, by its index in the machine.
-    Drive(usize),
-    /// The prescribed motion of an actuator.
-    Prescribed(usize),
-    /// An end stop, by its index: what its impacts lose.
-    Stop(usize),
-}
-
-/// So many loads have works of their own.
-const MAX_SEPARATE_WORKS: usize = 32;
 
 /// A machine, in the plane or in space: constant, shared between threads.
 #[derive(Debug, Clone, PartialEq)]
@@ -138,15 +121,7 @@ impl<M: MovingModel> Machine<M> {
         let model = model.with_loads(all)?;
         let drives = CompiledDrive::compile_all(&model, drives, loads.len())?;
         let nonconservative = (0..loads.len()).filter(|&l| !model.is_conservative(l));
-        let nonconservative: Vec<usize> = nonconservative.collect();
-        let are_summed = nonconservative.len() > MAX_SEPARATE_WORKS;
-        let mut sources = match are_summed {
-            true => vec![NonconservativeSource::Loads],
-            false => {
-                let loads = nonconservative.iter().copied();
-                loads.map(NonconservativeSource::Load).collect()
-            }
-        };
+        let (mut sources, summed_loads) = works::of_loads(nonconservative.collect());
         sources.extend((0..drives.len()).map(NonconservativeSource::Drive));
         let prescribed = (0..modes.len()).filter(|i| !is_free(i));
         sources.extend(prescribed.map(NonconservativeSource::Prescribed));
@@ -166,11 +141,7 @@ impl<M: MovingModel> Machine<M> {
             free,
             drives,
             nonconservative_sources: sources,
-            summed_loads: if are_summed {
-                nonconservative
-            } else {
-                Vec::new()
-            },
+            summed_loads,
             fit_windows: Vec::new(),
         })
     }

@@ -164,12 +164,7 @@ impl TabulatedMachine {
         let potential = TotalPotential::new(machine);
         let potential = potential.map(|mut source| builder.curve(both, &mut source));
         let potential = potential.transpose()?;
-        let mut loads = Vec::new();
-        let mut work_places = Vec::new();
-        for (place, &source) in machine.nonconservative_sources().iter().enumerate() {
-            loads.extend(loads_of(machine, source));
-            work_places.resize(loads.len(), place);
-        }
+        let (loads, work_places) = loads_and_works(machine);
         let mut auxiliary = AuxiliaryColumns::new(machine, &builder, &loads);
         let mut tabulated_loads = Vec::with_capacity(loads.len());
         for &load in &loads {
@@ -244,6 +239,16 @@ impl TabulatedMachine {
         let [potential, _] = self.potential(q)?;
         Ok([0.5 * m * q_dot * q_dot, potential])
     }
+}
+
+/// The loads that do work, and by load the place of its work among the works.
+fn loads_and_works(machine: &Machine) -> (Vec<usize>, Vec<usize>) {
+    let (mut loads, mut places) = (Vec::new(), Vec::new());
+    for (place, &source) in machine.nonconservative_sources().iter().enumerate() {
+        loads.extend(loads_of(machine, source));
+        places.resize(loads.len(), place);
+    }
+    (loads, places)
 }
 
 /// The loads of a nonconservative source.

@@ -9,7 +9,7 @@ mod tables;
 pub(crate) use columns::{RowChoice, page_columns};
 pub use tables::{drawing_along, table_page, unit_group};
 
-use crate::trajectory::column_extrema::sorted_extrema;
+use crate::trajectory::column_extrema::{ColumnExtrema, names_of_rows, sorted_extrema};
 use crate::trajectory::compute::ComputedTrajectory;
 use arrows::plane_arrows;
 use dwell_page::{DisplayUnit, Page, PageMessage, PageScene, Peak};
@@ -116,7 +116,7 @@ pub(crate) fn run_page(scene: &SceneFile, size: f64, computed: &ComputedTrajecto
     let choice = RowChoice::new(results);
     let abscissa = results.abscissa(trajectory);
     let extrema = sorted_extrema(results, &results.written, abscissa, size);
-    let peak = |of: crate::trajectory::column_extrema::ColumnExtrema| {
+    let peak = |of: ColumnExtrema| {
         let column = results.written.iter();
         let mut column = column.map(|&k| &results.columns[k].name);
         Some(Peak {
@@ -143,7 +143,7 @@ pub(crate) fn run_page(scene: &SceneFile, size: f64, computed: &ComputedTrajecto
         peaks: extrema.into_iter().filter_map(peak).collect(),
         peaks_note: match results.extrema.are_between_rows() {
             false => Some(of_rows.to_owned()),
-            true => Some(results.names_of_rows(&results.written))
+            true => Some(names_of_rows(results, &results.written))
                 .filter(|names| !names.is_empty())
                 .map(|names| format!("Of the rows only: {names}.")),
         },

@@ -5,6 +5,9 @@ use crate::number_format::{digits_within, number};
 use crate::ranges::extent;
 use crate::trajectory::compute::{Extremum, TrajectoryResults};
 
+/// So many columns are named one by one.
+const MAX_NAMED: usize = 40;
+
 /// The minimum and maximum of a column, and where they occur.
 pub(crate) struct ColumnExtrema {
     pub(crate) name: String,
@@ -72,6 +75,17 @@ impl ColumnExtrema {
         } else {
             max
         }
+    }
+}
+
+/// The names of those of some columns whose extrema are those of the rows, the first of them one by one.
+pub(crate) fn names_of_rows(results: &TrajectoryResults, columns: &[usize]) -> String {
+    let of_rows = columns.iter().filter(|&&k| results.extrema.of_rows[k]);
+    let mut names = of_rows.map(|&k| results.columns[k].name.as_str());
+    let first: Vec<&str> = names.by_ref().take(MAX_NAMED).collect();
+    match names.count() {
+        0 => first.join(", "),
+        others => format!("{} and {others} others", first.join(", ")),
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::number_format::{count, number};
 use crate::output::{indeterminate_note, provenance_line};
 use crate::ranges::extent;
-use crate::trajectory::column_extrema::{ColumnExtrema, sorted_extrema};
+use crate::trajectory::column_extrema::{ColumnExtrema, names_of_rows, sorted_extrema};
 use crate::trajectory::compute::{
     Analysis, ComputedTrajectory, Extremum, Quantity, SectionedLink, Trajectory, TrajectoryResults,
 };
@@ -223,6 +223,30 @@ impl<'a> Document<'a> {
         )
     }
 
+    /// The line about the largest value of a column.
+    fn largest_value(&self, of: &ColumnExtrema) -> String {
+        let (name, unit) = (&of.name, of.unit);
+        let is_known = of.error < of.largest().value.abs();
+        if !is_known {
+            return format!(
+                "  {name}: its largest value is not known, as its estimated error is {:.1e} {unit}\n",
+                of.error
+            );
+        }
+        let (abscissa, abscissa_unit) = self.abscissa;
+        let (at_factor, abscissa_unit) = self.in_scene_unit(1.0, abscissa_unit);
+        let (factor, shown_unit) = self.in_scene_unit(1.0, unit);
+        let shown = of.scaled(factor, at_factor);
+        let [value, at] = shown.texts(shown.largest());
+        let of_rows = match of.of_rows && self.results.extrema.are_between_rows() {
+            true => ", of the rows only",
+            false => "",
+        };
+        format!(
+            "  {name} reaches {value} {shown_unit} at {abscissa} = {at} {abscissa_unit}{of_rows}\n"
+        )
+    }
+
     /// The lines about the largest values of each unit.
     fn largest_values(&self, record: &mut Record) -> String {
         let mut text = String::new();
@@ -230,8 +254,6 @@ impl<'a> Document<'a> {
             Analysis::Kinematics => matches!(unit, "rad/s" | "m/s" | "rad/s2" | "m/s2"),
             _ => matches!(unit, "N" | "N m" | "W"),
         };
-        let (abscissa, abscissa_unit) = self.abscissa;
-        let (at_factor, abscissa_unit) = self.in_scene_unit(1.0, abscissa_unit);
         let mut listed: Vec<(&str, f64)> = Vec::new();
         let mut largest_error = 0.0_f64;
         for of in &self.extrema {
@@ -254,28 +276,10 @@ impl<'a> Document<'a> {
                 continue;
             }
             listed.push((unit, value));
-            let is_known = of.error < size;
-            let (factor, shown_unit) = self.in_scene_unit(1.0, unit);
-            let shown = of.scaled(factor, at_factor);
-            let [value, at] = shown.texts(shown.largest());
-            let of_rows = match of.of_rows && self.results.extrema.are_between_rows() {
-                true => ", of the rows only",
-                false => "",
-            };
-            text += &match is_known {
-                true => {
-                    largest_error = largest_error.max(of.error / size);
-                    format!(
-                        "  {name} reaches {value} {shown_unit} at {abscissa} = {at} {abscissa_unit}{of_rows}\n"
-                    )
-                }
-                false => {
-                    format!(
-                        "  {name}: its largest value is not known, as its estimated error is {:.1e} {unit}\n",
-                        of.error
-                    )
-                }
-            };
+            if of.error < size {
+                largest_error = largest_error.max(of.error / size);
+            }
+            text += &self.largest_value(of);
         }
         // Along a prescribed motion it is that of rounding, which seldom takes a digit.
         let is_free = self.trajectory.analysis == Analysis::FreeMotion;
@@ -418,7 +422,7 @@ impl<'a> Document<'a> {
         if !self.results.extrema.are_between_rows() {
             return String::new();
         }
-        match self.results.names_of_rows(&self.selected) {
+        match names_of_rows(self.results, &self.selected) {
             names if names.is_empty() => String::new(),
             names => format!(" Of the rows only: {names}."),
         }

@@ -19,9 +19,6 @@ use dwell_scene::Scene;
 use std::f64::consts::TAU;
 use std::io;
 
-/// So many columns are named one by one.
-const MAX_NAMED: usize = 40;
-
 /// What is evaluated at the positions of a trajectory.
 pub struct TrajectoryResults {
     /// The columns of the analysis that the scene requests, and those that its pictures need.
@@ -272,17 +269,6 @@ impl TrajectoryResults {
         let residuals =
             residuals.map(|&[residual, scale]| relative(residual, error_scale(scale, power)));
         self.power_residual = residuals.fold(0.0, f64::max);
-    }
-
-    /// The names of those of some columns whose extrema are those of the rows, the first of them.
-    pub(crate) fn names_of_rows(&self, columns: &[usize]) -> String {
-        let of_rows = columns.iter().filter(|&&k| self.extrema.of_rows[k]);
-        let mut names = of_rows.map(|&k| self.columns[k].name.as_str());
-        let first: Vec<&str> = names.by_ref().take(MAX_NAMED).collect();
-        match names.count() {
-            0 => first.join(", "),
-            others => format!("{} and {others} others", first.join(", ")),
-        }
     }
 
     /// The index of the column of a quantity.
