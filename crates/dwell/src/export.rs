@@ -24,11 +24,11 @@ pub enum ExportTarget {
 
 impl Scene {
     /// The machine as code: the path and content of each file, as `dwell export` writes them. In cells every function of the coordinate is
-    /// within `accuracy` of its largest value (1e-13 to 1e-2); exact code has that of rounding.
+    /// within `accuracy` of its largest value (1e-14 to 1e-2); exact code has that of rounding.
     ///
     /// # Errors
     /// [`Error::Study`] where the machine cannot be exported, with the reason and what to change: it has several freedoms, passes change
-    /// points, or sticks.
+    /// points, or sticks. [`Error::Table`] for another accuracy.
     ///
     /// ```
     /// use dwell::ExportTarget;
@@ -44,6 +44,11 @@ impl Scene {
         target: ExportTarget,
         accuracy: f64,
     ) -> Result<Vec<(String, Vec<u8>)>, Error> {
+        if target != ExportTarget::ExactC && !(1e-14..=1e-2).contains(&accuracy) {
+            let message =
+                format!("the accuracy must be between 1e-14 and 1e-2, and not {accuracy}");
+            return Err(Error::Table(message));
+        }
         let asked = ExportRequest {
             request: Request {
                 accuracy,

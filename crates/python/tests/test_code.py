@@ -32,6 +32,9 @@ def test_what_cannot_be_exported_says_why(tmp_path):
         dwell.Scene.read(TOP / "validation/five-bar/scene.toml").export("c", tmp_path)
     with pytest.raises(ValueError, match="'exact-c'"):
         dwell.Scene.read(FOUR_BAR).export("fortran", tmp_path)
+    for accuracy in (0.0, -1.0, float("nan"), 5.0):
+        with pytest.raises(dwell.DwellError, match="between 1e-14 and 1e-2"):
+            dwell.Scene.read(FOUR_BAR).export("c", tmp_path, accuracy=accuracy)
     assert not list(tmp_path.iterdir())
 
 
