@@ -55,6 +55,18 @@ def test_closed_forms_are_the_reduced_model():
     assert forms.expressions["x_B"] == sympy.cos(forms.coordinate) * sympy.Symbol("l_1", real=True)
 
 
+def test_the_words_of_a_scene_are_not_run():
+    pytest.importorskip("sympy")
+    text = FOUR_BAR.read_text().replace('title = "Four-bar of a textbook"', r'title = """x\"\"\" + __import__("os")\n    m = 0"""')
+    forms = dwell.Scene(text).symbolic("B.x")
+    plain = dwell.Scene.read(FOUR_BAR).symbolic("B.x")
+    assert forms.expressions == plain.expressions and forms.constants == plain.constants and len(plain.constants) > 10
+    hostile = 'def reduced(q):\n    x = __import__("os").system("true")\n    y = cos.__class__\n    z = 2.0 * cos(q)\n        "z": z,\n'
+    from dwell._closed_form import closed_form
+
+    assert set(closed_form(hostile).expressions) == {"z"}
+
+
 def test_no_closed_form_says_why():
     pytest.importorskip("sympy")
     with pytest.raises(dwell.SceneError):

@@ -6,10 +6,13 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-#: A constant of the mechanism in the code: name, value, meaning.
-_CONSTANT = re.compile(r"^    (\w+) = (-?[\d.e+-]+)  # (.*)$", re.MULTILINE)
+#: A line of the function that gives a name a value, with what the name means if it is a constant of the mechanism. A value is numbers, names,
+#: operators and parentheses: the text of a scene, which stands in comments, is not run whatever it holds.
+_ASSIGNMENT = re.compile(r"^    ([A-Za-z]\w*) = ((?:[A-Za-z]\w*|[\d.]+(?:e[+-]?\d+)?|[-+*/(), ])+?)(?:  # (.*))?$", re.MULTILINE)
 #: A quantity in the description of the function: name, meaning.
 _QUANTITY = re.compile(r"^    (\w+): (.*)$", re.MULTILINE)
+#: A quantity that it returns.
+_RETURNED = re.compile(r'^        "(\w+)": \1,$', re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -32,21 +35,25 @@ class ClosedForm:
 
 
 def closed_form(code: str) -> ClosedForm:
-    """The function that the native half wrote, called with symbols."""
+    """The function that the native half wrote, evaluated with symbols."""
     import sympy
 
-    signature = re.search(r"def reduced\((\w+)\):", code)
+    signature = re.search(r"^def reduced\((\w+)\):$", code, re.MULTILINE)
     if signature is None:
         raise ValueError("the code has no function `reduced`")
+    body = code[signature.end() :]
     coordinate = sympy.Symbol(signature[1], real=True)
-    found = _CONSTANT.findall(code)
-    symbols = {name: sympy.Symbol(name, real=True) for name, _, _ in found}
-    description, body = code.split('"""')[1:3]
-    # Constants are left as symbols: their lines are not run.
-    function = code.replace(body, _CONSTANT.sub("", body)).replace("from math import atan2, cos, sin, sqrt", "")
-    names: dict[str, Any] = {name: getattr(sympy, name) for name in ("atan2", "cos", "sin", "sqrt")} | symbols
-    exec(compile(function, "<closed forms>", "exec"), names)  # noqa: S102 - code that this package wrote
-    expressions = {name: sympy.sympify(value) for name, value in names["reduced"](coordinate).items()}
-    meanings = dict(_QUANTITY.findall(description)) | {name: meaning for name, _, meaning in found}
-    constants = {symbols[name]: float(value) for name, value, _ in found}
+    names: dict[str, Any] = {name: getattr(sympy, name) for name in ("atan2", "cos", "sin", "sqrt")}
+    names |= {signature[1]: coordinate, "__builtins__": {}}
+    meanings = dict(_QUANTITY.findall(body))
+    constants: dict[Any, float] = {}
+    for name, value, meaning in _ASSIGNMENT.findall(body):
+        if meaning:
+            # A constant stays a symbol.
+            names[name] = sympy.Symbol(name, real=True)
+            constants[names[name]] = float(value)
+            meanings[name] = meaning
+        else:
+            names[name] = eval(value, names)  # noqa: S307 - arithmetic only, by the pattern above
+    expressions = {name: sympy.sympify(names[name]) for name in _RETURNED.findall(body)}
     return ClosedForm(coordinate, expressions, constants, meanings, code)
