@@ -34,13 +34,8 @@ const ERROR_EXPONENT: f64 = -(0.125 - 0.2 * PREVIOUS_ERROR_EXPONENT);
 const PREVIOUS_ERROR_EXPONENT: f64 = 0.04;
 /// An error below this part of the tolerance does not control the step.
 const MIN_ERROR: f64 = 1e-4;
-/// The next step is to have at most this h |λ|. On the real axis the method is stable up to 6.1 (Hairer and Wanner 1996, IV.2), but there a
-/// decaying part of the motion is multiplied by nearly one in each step, and (2) shows less than a step errs by.
-const MAX_STIFFNESS: f64 = 4.0;
-/// From this h |λ| on a step that its error allows to be longer is limited by stability.
-const STIFF: f64 = 3.0;
-/// A step of a motion that decays is not this stiff: here the rounding of states that hardly differ is measured.
-const ROUNDING_STIFFNESS: f64 = 9.0;
+/// h |λ| up to which the method is stable on the real axis (Hairer and Wanner 1996, IV.2).
+const STABILITY_LIMIT: f64 = 6.1;
 /// The factor of a step in which an evaluation failed.
 const FAILURE_REDUCTION: f64 = 0.25;
 /// A step that ends within this part of itself before the end is stretched to it.
@@ -172,10 +167,8 @@ impl Stepper<'_> {
                 self.previous_error = error.max(MIN_ERROR);
                 self.statistics.steps += 1;
                 self.stiffness = self.stages.stiffness(h, (self.tolerance.1, &self.to.y));
-                let (factor, stable) = (factor.clamp(MIN_FACTOR, max_factor), self.stable_factor());
-                let is_stiff = self.stiffness > STIFF && factor > stable;
-                self.statistics.stiff_steps += usize::from(is_stiff);
-                return Ok(factor.min(stable) * h);
+                self.statistics.stiff_steps += usize::from(self.stiffness > STABILITY_LIMIT);
+                return Ok(factor.clamp(MIN_FACTOR, max_factor) * h);
             }
             self.statistics.rejected_steps += 1;
             let shorter = if error.is_finite() {
@@ -184,15 +177,6 @@ impl Stepper<'_> {
                 FAILURE_REDUCTION
             };
             (h, max_factor) = (shorter * h, 1.0);
-        }
-    }
-
-    /// The largest factor of the next step that stability allows.
-    fn stable_factor(&self) -> f64 {
-        if self.stiffness < ROUNDING_STIFFNESS {
-            MAX_STIFFNESS / self.stiffness
-        } else {
-            f64::INFINITY
         }
     }
 
