@@ -227,6 +227,10 @@ def extrema_bound_rows(run):
         # A force that is zero but for rounding has no direction.
         if low == high == 0 and ".direction" in name:
             continue
+        # Beside larger numbers that are not in the file it is said.
+        zero = re.search(rf"^  zero but for rounding:.*[ ;]{re.escape(name)}, at most ({NUMBER}) ", run.out, re.M)
+        if low == high == 0 and zero and max(map(abs, cells)) <= 1.1 * float(zero[1]):
+            continue
         # What is zero but for rounding is zero among the extrema: beside the largest number, which may be an energy, or, where
         # the mechanism is a million metres large, beside a moment that is a force times that.
         rounding = max(1e-11 * largest, 1e-6 * largest_of_unit(extrema, row["unit"])) if low == high == 0 else 0

@@ -36,6 +36,11 @@ const PREVIOUS_ERROR_EXPONENT: f64 = 0.04;
 const MIN_ERROR: f64 = 1e-4;
 /// h |λ| up to which the method is stable on the real axis (Hairer and Wanner 1996, IV.2).
 const STABILITY_LIMIT: f64 = 6.1;
+/// h |λ| above which a step is repeated, shorter: a part that decays fast is multiplied by nearly one in it, and (2), of whose
+/// parts the one of order 5 is then the smaller, shows less than the step errs by.
+const MAX_STIFFNESS: f64 = 4.0;
+/// No decay is this stiff in a step that (2) accepts: here the rounding of two states that hardly differ is measured.
+const ROUNDING_STIFFNESS: f64 = 9.0;
 /// The factor of a step in which an evaluation failed.
 const FAILURE_REDUCTION: f64 = 0.25;
 /// A step that ends within this part of itself before the end is stretched to it.
@@ -143,6 +148,7 @@ impl Stepper<'_> {
         let t = self.from.t;
         let mut max_factor = MAX_FACTOR;
         let mut failure = None;
+        let mut is_repeated = false;
         loop {
             let end = end.filter(|end| end - t <= (1.0 + STRETCH_FRACTION) * h);
             self.to.t = end.unwrap_or(t + h);
@@ -161,12 +167,19 @@ impl Stepper<'_> {
             let error = self.stages.error_norm(h, self.tolerance, ends);
             // NaN is not accepted.
             if error <= 1.0 {
+                self.stiffness = self.stages.stiffness(h, (self.tolerance.1, &self.to.y));
+                let is_stiff = (MAX_STIFFNESS..ROUNDING_STIFFNESS).contains(&self.stiffness);
+                let stable = MAX_STIFFNESS / self.stiffness;
+                if is_stiff && error > MIN_ERROR && !is_repeated {
+                    self.statistics.rejected_steps += 1;
+                    (h, max_factor, is_repeated) = (stable * h, 1.0, true);
+                    continue;
+                }
                 let factor = SAFETY
                     * error.powf(ERROR_EXPONENT)
                     * self.previous_error.powf(PREVIOUS_ERROR_EXPONENT);
                 self.previous_error = error.max(MIN_ERROR);
                 self.statistics.steps += 1;
-                self.stiffness = self.stages.stiffness(h, (self.tolerance.1, &self.to.y));
                 self.statistics.stiff_steps += usize::from(self.stiffness > STABILITY_LIMIT);
                 return Ok(factor.clamp(MIN_FACTOR, max_factor) * h);
             }

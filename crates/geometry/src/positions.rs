@@ -222,9 +222,11 @@ impl Plan {
             return Ok(());
         }
         let nearest = match initial_iterate {
-            InitialIterate::StoredPose if assur.uses_stored_poses => {
-                Some(assur.stored_poses.nearest(pose.q[0].value(), self.range)?)
-            }
+            InitialIterate::StoredPose if assur.uses_stored_poses => Some(
+                assur
+                    .stored_poses
+                    .nearest(pose.first_coordinate(), self.range)?,
+            ),
             _ => None,
         };
         for (i, &unknown) in assur.group.unknowns.iter().enumerate() {

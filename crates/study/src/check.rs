@@ -45,12 +45,12 @@ fn description(scene: &Scene, record: &mut Record) -> Result<String, StudyError>
     let notes = check_variables(scene, &model)?;
     let plan = model.plan();
     let mut text = format!(
-        "{}\n  {}, {}, {}, driven by {}\n",
+        "{}\n  {}, {}, {}{}\n",
         scene.title,
         count(mechanism.bodies.len() - 1, "moving body"),
         count(mechanism.joints.len(), "joint"),
         count(plan.actuators(), "degree of freedom"),
-        list(mechanism.actuators.iter().map(|a| a.name.as_str())),
+        driven_by(mechanism.actuators.iter().map(|a| a.name.as_str())),
     );
     record.add_count("moving_bodies", mechanism.bodies.len() - 1);
     record.add_count("joints", mechanism.joints.len());
@@ -68,6 +68,14 @@ fn description(scene: &Scene, record: &mut Record) -> Result<String, StudyError>
         text += &format!("  note: {note}\n");
     }
     Ok(text + &notes)
+}
+
+/// What drives the mechanism.
+pub(crate) fn driven_by<'a>(actuators: impl Iterator<Item = &'a str>) -> String {
+    match list(actuators).as_str() {
+        "" => ": a structure, in which nothing moves".to_owned(),
+        names => format!(", driven by {names}"),
+    }
 }
 
 /// Names separated by commas; `none` if there are none.
@@ -124,9 +132,13 @@ fn describe_freedom(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
 
 /// The range of the actuator.
 fn describe_range(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> String {
-    let [actuator] = mechanism.actuators.as_slice() else {
-        return "  several actuators: limit positions are found along a motion or a sweep only\n"
-            .to_owned();
+    let actuator = match mechanism.actuators.as_slice() {
+        [] => return String::new(),
+        [actuator] => actuator,
+        _ => {
+            return "  several actuators: limit positions are found along a motion or a sweep only\n"
+                .to_owned();
+        }
     };
     let name = &actuator.name;
     let angle = plan.is_angle(0);
@@ -245,7 +257,10 @@ fn describe_branch(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> S
         let unit = coordinate_unit(plan.is_angle(i));
         format!("{} = {} {unit}", a.name, number(q))
     });
-    let mut text = format!("  body angles at {}:\n", at.collect::<Vec<_>>().join(", "));
+    let mut text = match at.collect::<Vec<_>>().join(", ").as_str() {
+        "" => "  body angles:\n".to_owned(),
+        at => format!("  body angles at {at}:\n"),
+    };
     let bodies = plan.moving_bodies().iter().map(|c| c.body);
     let bodies = bodies.filter(|&b| b < mechanism.bodies.len()).map(BodyId);
     let widths = bodies.clone().map(|b| mechanism.body_name(b).chars());

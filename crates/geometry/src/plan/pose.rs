@@ -28,6 +28,11 @@ pub struct Pose<T> {
 }
 
 impl<T: Scalar> Pose<T> {
+    /// The coordinate of the first actuator, rad or m; 0 of a structure, which has none.
+    pub(crate) fn first_coordinate(&self) -> f64 {
+        self.q.first().map_or(0.0, |q| q.value())
+    }
+
     /// Takes the unknowns of another pose, from which Newton's method can start.
     pub(crate) fn start_from(&mut self, other: &Pose<f64>) {
         for (value, rotation) in self.rotation.iter_mut().zip(&other.rotation) {

@@ -60,7 +60,7 @@ pub(super) fn rrr_dyad_positions<T: Scalar>(
     // (2 × area)² by factors that keep their digits near a stretched or folded triangle.
     let rest = (sum_squared - square) * (square - difference_squared);
     let size = |lane| square.lane(lane) * square.lane(lane);
-    let q = pose.q[0].value();
+    let q = pose.first_coordinate();
     let missing = || {
         let distance = square.value().sqrt();
         (distance - dyad.sum_squared.sqrt()).max(dyad.difference_squared.sqrt() - distance)
@@ -124,7 +124,7 @@ pub(super) fn guided_point_positions<T: Scalar>(
 ) -> Result<(), PositionError> {
     let known = vector_sum(guided.fixed, &guided.known, &pose.vector);
     let branch = T::from_f64(guided.branch);
-    let q = pose.q[0].value();
+    let q = pose.first_coordinate();
     let (constant_direction, local) = (unit(guided.unit.cast::<T>()), guided.local.cast::<T>());
     let (direction, slope) = if guided.line_rotates {
         // n·D = −n₀·w with n₀, w constant in the turning frame.

@@ -59,7 +59,7 @@ impl Plan {
                 let offset = from.cross(along);
                 let square = radius.dot(radius);
                 let missing = || offset.value().abs() - square.value().sqrt();
-                let q = pose.q[0].value();
+                let q = pose.first_coordinate();
                 let size = |l| square.lane(l).max(offset.lane(l) * offset.lane(l));
                 let half_chord =
                     branch * checked_sqrt(square - offset * offset, size, group, q, missing)?;
@@ -90,7 +90,7 @@ impl Plan {
                     (-normal.dot(known), class_part.dot(class_part))
                 };
                 let missing = || kappa.value().abs() - square.value().sqrt();
-                let q = pose.q[0].value();
+                let q = pose.first_coordinate();
                 let size = |l| square.lane(l).max(kappa.lane(l) * kappa.lane(l));
                 let half_chord =
                     branch * checked_sqrt(square - kappa * kappa, size, group, q, missing)?;
@@ -195,7 +195,7 @@ fn triangle<T: Scalar>(
         let distance = square.value().sqrt();
         (distance - sum.value()).max(gap.value().abs() - distance)
     };
-    let q = pose.q[0].value();
+    let q = pose.first_coordinate();
     let size = |lane| square.lane(lane) * square.lane(lane);
     let double_area = checked_sqrt(rest, size, group, q, missing)? * half * branch;
     let across = known.perp() * double_area;

@@ -138,7 +138,7 @@ impl Plan {
         if initial_iterate == InitialIterate::StoredPose
             && outcome.determinant_sign * factored_group.branch <= 0.0
         {
-            let q = pose.q[0].value();
+            let q = pose.first_coordinate();
             return Err(PositionError::OtherBranch { group, q });
         }
         for &l in &self.groups[group].group.loops {
@@ -159,7 +159,7 @@ impl Plan {
                 && !factored_group.is_overdetermined()
                 && self.determinant_sign(factored_group, pose) * factored_group.branch <= 0.0
             {
-                let q = pose.q[0].value();
+                let q = pose.first_coordinate();
                 return Err(PositionError::OtherBranch { group, q });
             }
         }
@@ -190,7 +190,7 @@ impl Plan {
         pose: &mut Pose<T>,
     ) -> Result<(), PositionError> {
         let stored_poses = &self.groups[group].stored_poses;
-        let enclosing = stored_poses.enclosing(pose.q[0].value(), self.range)?;
+        let enclosing = stored_poses.enclosing(pose.first_coordinate(), self.range)?;
         // The derivative of the prediction does not matter: Newton's last step replaces it.
         for (i, &unknown) in self.groups[group].group.unknowns.iter().enumerate() {
             match unknown {
@@ -249,7 +249,7 @@ impl Plan {
                 return self.factor_jacobian(group, factored_group, pose);
             }
         }
-        let q = pose.q[0].value();
+        let q = pose.first_coordinate();
         Err(PositionError::NotConverged { group, q, residual })
     }
 
@@ -268,7 +268,7 @@ impl Plan {
         let angles = classes.map(|c| pose.angle[self.class_frame(c)].value().abs());
         let tolerance = REDUNDANT_RESIDUAL.max(64.0 * T::EPSILON) * angles.fold(1.0, f64::max);
         let residual = self.residual(group, pose);
-        let q = pose.q[0].value();
+        let q = pose.first_coordinate();
         match residual <= tolerance * self.groups[group].size {
             true => Ok(()),
             false => Err(PositionError::NotConverged { group, q, residual }),
@@ -295,7 +295,7 @@ impl Plan {
             .apply_newton_step(group, factored_group, pose)
             .is_finite()
         {
-            let q = pose.q[0].value();
+            let q = pose.first_coordinate();
             return Err(PositionError::NotFinite { q });
         }
         self.rotate_group(group, pose);

@@ -66,6 +66,8 @@ struct Cell {
     /// By expression and operation: what is decided.
     sides: Vec<Vec<Sides>>,
     restart: bool,
+    /// The source that bounds it, if one does.
+    source: Option<usize>,
 }
 
 /// A piece, and by expression and operation what is decided in it.
@@ -136,6 +138,7 @@ impl<'f> Scan<'f> {
             to,
             sides: self.features.expressions.iter().map(undecided).collect(),
             restart,
+            source: None,
         })
     }
 
@@ -203,7 +206,7 @@ impl<'f> Scan<'f> {
     /// The piece of a smooth cell, with the laws that are smooth over shorter lengths.
     fn piece(&self, cell: &Cell, source: Option<usize>) -> Piece {
         let middle = 0.5 * (cell.from + cell.to);
-        let (mut width, mut source) = (cell.to - cell.from, source);
+        let (mut width, mut source) = (cell.to - cell.from, source.or(cell.source));
         for bands in &self.features.bands {
             let k = bands.partition_point(|band| band.to < middle);
             if let Some(band) = bands.get(k).filter(|band| band.from <= middle)
@@ -301,6 +304,7 @@ impl Scan<'_> {
                 }
                 Examined::Halve(source) => {
                     last = source;
+                    cell.source = Some(source);
                     let middle = 0.5 * (cell.from + cell.to);
                     let first = Cell {
                         to: middle,
@@ -317,6 +321,7 @@ impl Scan<'_> {
                     sides,
                 } => {
                     last = self.features.expressions[expression].0;
+                    cell.source = Some(last);
                     let mut first = Cell {
                         to: before,
                         restart: true,

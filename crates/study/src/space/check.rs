@@ -1,6 +1,7 @@
 //! `dwell check` of a scene in space: degrees of freedom, range, groups, placements and reactions, before anything moves.
 
 use super::prepared::{compile, is_angle, sort_reactions};
+use crate::check::driven_by;
 use crate::explain::{StudyError, describe_ends};
 use crate::number_format::{coordinate_unit, count, number};
 use crate::output::Outcome;
@@ -22,12 +23,12 @@ pub fn check_in_space(scene: &SpaceScene) -> Result<Outcome, StudyError> {
     let plan = model.plan();
     let names = mechanism.actuators.iter().map(|a| a.name.as_str());
     let mut text = format!(
-        "{}\n  in space: {}, {}, {}, driven by {}\n",
+        "{}\n  in space: {}, {}, {}{}\n",
         scene.title,
         count(mechanism.bodies.len() - 1, "moving body"),
         count(mechanism.joints.len(), "joint"),
         count(plan.actuators(), "degree of freedom"),
-        names.collect::<Vec<_>>().join(", "),
+        driven_by(names),
     );
     record.add_count("moving_bodies", mechanism.bodies.len() - 1);
     record.add_count("joints", mechanism.joints.len());
@@ -79,8 +80,13 @@ fn describe_freedom(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Str
 
 /// The range of the actuator.
 fn describe_range(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> String {
-    let [actuator] = scene.mechanism.actuators.as_slice() else {
-        return "  several actuators: limit positions are found along a motion only\n".to_owned();
+    let actuator = match scene.mechanism.actuators.as_slice() {
+        [] => return String::new(),
+        [actuator] => actuator,
+        _ => {
+            return "  several actuators: limit positions are found along a motion only\n"
+                .to_owned();
+        }
     };
     let (name, is_angle) = (&actuator.name, is_angle(scene));
     let unit = coordinate_unit(is_angle);

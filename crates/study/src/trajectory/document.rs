@@ -323,9 +323,9 @@ impl<'a> Document<'a> {
         })
     }
 
-    /// The rounding error, the reactions that no table has, and the bodies that are not modelled; empty where there is
-    /// nothing to say.
-    fn remarks(&self) -> [String; 3] {
+    /// The rounding error, what is shown as zero, the reactions that no table has, and the bodies that are not modelled; empty
+    /// where there is nothing to say.
+    fn remarks(&self) -> [String; 4] {
         // Rounded up to a power of ten.
         let rounding = match self.results.rounding_error {
             Some(error) if error > 0.0 => format!(
@@ -334,6 +334,10 @@ impl<'a> Document<'a> {
                 10_f64.powf(error.log10().ceil())
             ),
             _ => String::new(),
+        };
+        let zero = match self.results.shown_as_zero.as_slice() {
+            [] => String::new(),
+            columns => format!("  zero but for rounding: {}\n", columns.join("; ")),
         };
         let indeterminate = match self.trajectory.analysis {
             Analysis::Kinematics => String::new(),
@@ -346,7 +350,7 @@ impl<'a> Document<'a> {
                 bodies.join(", ")
             ),
         };
-        [rounding, indeterminate, unmodelled]
+        [rounding, zero, indeterminate, unmodelled]
     }
 
     fn power_balance_text(&self) -> String {

@@ -16,6 +16,7 @@ mod pruning;
 mod quadrature;
 mod requests;
 mod rounding;
+mod structures;
 mod table;
 mod time_loads;
 mod variables;

@@ -133,3 +133,17 @@ fn rows_within_long_steps_are_as_good_as_their_ends() {
         assert!(error < 50.0 * tolerance, "{tolerance:e}: {error:e}");
     }
 }
+
+/// What switches too often for a motion is named, not the weight beside it.
+#[test]
+fn the_load_that_switches_too_often_is_named() {
+    let loads = "weight = { gravity = [0, -9.81] }\nsquare = { torque = \"shaft\", magnitude = \"if(sin(314*t) > 0.9, 1, 0)\" }\n";
+    let text = format!(
+        "[bodies.ground]\npoints = {{ A = [0, 0] }}\n[bodies.shaft]\npoints = {{ A = [0, 0] }}\nmass = 2\ncenter = [0.1, 0]\n\
+         inertia = 1\n[joints]\nA = {{ revolute = [\"ground.A\", \"shaft.A\"] }}\n[actuators]\n\
+         phi = {{ angle = [\"ground\", \"shaft\"] }}\n[loads]\n{loads}[motion]\nduration = 86400\n"
+    );
+    let refused = simulate(&scene(&text), &SolverSettings::default(), &|_| {});
+    let refused = refused.err().unwrap().to_string();
+    assert!(refused.contains("load `square` varies within"), "{refused}");
+}

@@ -160,7 +160,7 @@ impl FreeMotionProblem<'_> {
                 }
                 None => {
                     record.add(first_name, "s", first);
-                    format!("{} s", digits(first, 3))
+                    format!("{} s", digits(first, 6))
                 }
             };
             if let Some(others) = others.filter(|others| others.len() != count) {

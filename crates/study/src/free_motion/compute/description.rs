@@ -407,7 +407,7 @@ fn event_text(
         }
         None => {
             record.add(first_name, "s", first);
-            format!(", first at t = {} s", digits(first, 3))
+            format!(", first at t = {} s", digits(first, 6))
         }
     }
 }

@@ -82,7 +82,7 @@ impl SpaceMotionProblem<'_> {
             }
             None => {
                 record.add(key, "s", first);
-                format!(", first at t = {} s", digits(first, 3))
+                format!(", first at t = {} s", digits(first, 6))
             }
         }
     }

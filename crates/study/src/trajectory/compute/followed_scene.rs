@@ -41,6 +41,12 @@ impl<'a> FollowedScene<'a> {
 
     /// The error of a scene that prescribes no actuator coordinates.
     pub(super) fn no_trajectory(&self, analysis: Analysis) -> StudyError {
+        if self.coordinates.is_empty() {
+            let message = "the scene has no actuators, so nothing moves";
+            let help = "declare an independent coordinate, as in `[actuators.phi]`; a structure, which has none, is described by \
+                        `dwell check`";
+            return scene_error(self.file, message, help, missing_section_label("actuators"));
+        }
         let message = match analysis {
             Analysis::Kinetostatics => {
                 "the scene prescribes no motion, so there are no accelerations".to_owned()
@@ -56,13 +62,10 @@ impl<'a> FollowedScene<'a> {
              [coordinate-sweep] with a range for one of them, as in `{example} = [0.0, 1.0]`"
         );
         let actuators = (0..self.coordinates.len()).map(ActuatorId);
-        let places = match labels(
+        let places = labels(
             actuators.map(SceneLocation::Actuator),
             "no coordinate is given",
-        ) {
-            none if none.is_empty() => missing_section_label("actuators"),
-            places => places,
-        };
+        );
         scene_error(self.file, message, help, places)
     }
 

@@ -3,6 +3,9 @@
 
 use crate::trajectory::compute::{Column, Quantity, UnitScales};
 
+/// Above this part of the largest number of a table a number does not look like rounding.
+const CONSPICUOUS: f64 = 1e-11;
+
 /// The columns of an analysis with the largest magnitude that each has had so far.
 pub(crate) struct UnitReferences {
     columns: Vec<Reference>,
@@ -71,6 +74,24 @@ impl UnitReferences {
                 };
         }
         is_rounding
+    }
+
+    /// The requested columns that are shown as zero although their rows do not look like rounding, each with its largest
+    /// magnitude and that of its unit: what exceeds it so far need not be requested.
+    pub(crate) fn shown_as_zero(&self, scales: &UnitScales, is_rounding: &[bool]) -> Vec<String> {
+        let requested = || self.columns.iter().filter(|of| of.kept.is_some());
+        let largest = requested().fold(1.0, |largest: f64, of| largest.max(of.largest));
+        let conspicuous = requested().filter(|of| {
+            of.kept.is_some_and(|k| is_rounding[k]) && of.largest > CONSPICUOUS * largest
+        });
+        let note = |of: &Reference| {
+            let (Column { name, unit, .. }, scale) = (&of.column, scales.of(of.column.unit));
+            format!(
+                "{name}, at most {:.1e} {unit} beside {scale:.1e} {unit}",
+                of.largest
+            )
+        };
+        conspicuous.map(note).collect()
     }
 
     /// The largest magnitude of a unit, but for rounding.

@@ -52,10 +52,10 @@ impl UnitScales {
         let kinetic = columns.iter().find(|(column, _)| is_kinetic(column));
         let kinetic = kinetic.map_or(0.0, |&(_, value)| value);
         let [velocity, angular] = with_arm(size, ["m/s", "rad/s"].map(of_unit));
-        let [acceleration, angular_acceleration] = with_arm(
-            size,
-            [of_unit("m/s2"), of_unit("rad/s2").max(angular * angular)],
-        );
+        // Centripetal, by what rotates: a point far outside the mechanism is faster, and no measure of it.
+        let centripetal = of_unit("rad/s").powi(2);
+        let [acceleration, angular_acceleration] =
+            with_arm(size, [of_unit("m/s2"), of_unit("rad/s2").max(centripetal)]);
         let [force, moment] = force_scales(size, ["N", "N m"].map(of_unit), kinetic);
         let power = of_unit("W").max(force * velocity);
         Self(BTreeMap::from([

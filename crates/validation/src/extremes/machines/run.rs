@@ -134,3 +134,20 @@ fn compared(accuracy: f64, found: &FreeMotion, reference: &Reference) -> Machine
         estimate: found.estimated_error.unwrap_or(f64::NAN),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A motor, a controller and a force whose switches limit the steps of a part of the motion: there two runs erred alike,
+    /// and their difference was a third of the error.
+    #[test]
+    fn estimates_hold_where_switches_limit_the_steps() {
+        let machine = machine_result(1, 32);
+        assert_eq!(machine.without_reference, None);
+        for run in &machine.runs {
+            let ratio = run.estimate_ratio().unwrap_or(1.0);
+            assert!(ratio >= 1.0 && run.refused.is_none(), "{run:?}");
+        }
+    }
+}
