@@ -198,6 +198,9 @@ def positions(case):
     whole, setup = assembled(case)
     names = [f"{body}.{point}" for body, point in case.wanted]
 
+    path = partial(whole.paths, names, q)
+    yield "Dwell: `paths(points, q)`", setup, partial(least, path), deviation(path(), truth)
+
     def one_by_one():
         return [[state.position(name) for name in names] for state in map(whole.at, q)]
 
@@ -272,7 +275,7 @@ def table(title, task, base, cases):
 
 def measure(out):
     cases, begin = [read("four-bar"), read("single-dwell")], os.getloadavg()[0]
-    lines = table(f"{POSITIONS} positions", positions, lambda k: 3, cases)
+    lines = table(f"{POSITIONS} positions", positions, lambda k: 4, cases)
     lines += table(f"free motion, {TURNS} revolutions and {BEYOND:g} rad", motion, lambda k: 2, cases)
     lines += table("m and ½m′", equations, lambda k: k | 1, cases)
     versions = [f"{name} {version(name)}" for name in ("pylinkage", "numba", "exudyn", "sympy", "numpy", "dwell")]

@@ -3,6 +3,7 @@
 pub(crate) mod builder;
 pub(crate) mod kinematics;
 pub(crate) mod parts;
+mod paths;
 pub(crate) mod scene;
 
 use crate::error::Error;

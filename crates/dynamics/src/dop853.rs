@@ -180,7 +180,8 @@ impl Stepper<'_> {
                     * self.previous_error.powf(PREVIOUS_ERROR_EXPONENT);
                 self.previous_error = error.max(MIN_ERROR);
                 self.statistics.steps += 1;
-                self.statistics.stiff_steps += usize::from(self.stiffness > STABILITY_LIMIT);
+                let is_limited = is_repeated || self.stiffness > STABILITY_LIMIT;
+                self.statistics.stiff_steps += usize::from(is_limited);
                 return Ok(factor.clamp(MIN_FACTOR, max_factor) * h);
             }
             self.statistics.rejected_steps += 1;

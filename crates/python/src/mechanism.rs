@@ -5,6 +5,7 @@ use crate::interrupt::run;
 use crate::machine::{Cycle, Equation, Equilibrium, Linear};
 use crate::motion::{Rows, solver};
 use crate::reduced::ReducedModel;
+use numpy::{IntoPyArray as _, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 /// An assembled mechanism: constant, shared between threads.
@@ -61,6 +62,19 @@ impl Mechanism {
         Ok(State {
             forces: forces.or_raise(py)?,
         })
+    }
+
+    /// x and y of points at many positions, whose coordinates follow one another.
+    fn paths<'py>(
+        &self,
+        py: Python<'py>,
+        points: Vec<String>,
+        q: PyReadonlyArray1<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let q = q.as_slice()?;
+        let names = points.iter().map(String::as_str);
+        let found = py.detach(|| self.mechanism.paths(names, q)).or_raise(py)?;
+        Ok(found.into_flattened().into_pyarray(py))
     }
 
     fn reduced(&self, py: Python<'_>, reactions: Vec<String>) -> PyResult<ReducedModel> {

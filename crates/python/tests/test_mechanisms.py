@@ -50,6 +50,30 @@ def test_the_reduced_model_is_that_of_single_positions(slider):
     assert abs(normal - state.reaction("guide.normal")) < 1e-9
 
 
+def test_paths_are_those_of_single_positions(slider, single_dwell):
+    for mechanism, names in ((slider, ["crank.B", "piston.C"]), (single_dwell, ["coupler.P"])):
+        q = np.linspace(-3.0, 9.0, 24).reshape(4, 6)
+        paths = mechanism.paths(names, q)
+        assert paths.shape == (4, 6, len(names), 2)
+        for k, name in enumerate(names):
+            single = [[mechanism.at(value).position(name) for value in row] for row in q]
+            assert np.array_equal(paths[:, :, k], single)
+            assert np.array_equal(mechanism.paths(name, q), paths[:, :, k])
+    # The crank's pin runs on a circle.
+    assert np.allclose(slider.paths("crank.B", 0.7), 0.08 * np.array([np.cos(0.7), np.sin(0.7)]), rtol=0, atol=1e-15)
+    with pytest.raises(dwell.DwellError, match="did you mean|points"):
+        slider.paths("crank.X", 0.0)
+
+
+def test_paths_of_two_coordinates():
+    arm = dwell.read(str(TOP / "validation/double-pendulum/scene.toml"))
+    body, points = [item for item in arm.points.items() if item[0] != "ground"][-1]
+    name, q = f"{body}.{points[-1]}", np.array([[0.1, 0.2], [0.3, -0.4], [2.0, 1.0]])
+    assert np.array_equal(arm.paths(name, q), [arm.at(row).position(name) for row in q])
+    with pytest.raises(ValueError, match="2 actuators"):
+        arm.paths(name, [0.1, 0.2, 0.3])
+
+
 def test_arrays_come_as_they_are_given(slider):
     reduced = slider.reduced([])
     q = np.linspace(0, 6, 1001)

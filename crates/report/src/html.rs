@@ -9,7 +9,7 @@ const STYLE: &str = "body{font:10.5pt/1.4 Georgia,serif;margin:2em auto;max-widt
 h1{font-size:1.7em}h2{font-size:1.25em;margin-top:2em;border-bottom:1px solid #999}\
 table{border-collapse:collapse;width:100%;font:8.5pt/1.3 Helvetica,Arial,sans-serif;margin:.8em 0}\
 th,td{border:1px solid #bbb;padding:.25em .4em;text-align:left;vertical-align:top;overflow-wrap:anywhere}\
-th{background:#eee}code{font-size:.95em}td strong,.fail{color:#a00}\
+th{background:#eee;overflow-wrap:normal}code{font-size:.95em}td strong,.fail{color:#a00}\
 figure{margin:1em 0}figure img{max-width:100%;height:auto}figcaption{font-style:italic}.words{white-space:pre-line}.table{overflow-x:auto}\
 @media print{@page{size:A4 landscape;margin:14mm}body{margin:0;max-width:none;font-size:9.5pt}\
 h2{break-after:avoid}tr{break-inside:avoid}thead{display:table-header-group}a{color:inherit;text-decoration:none}}";

@@ -143,26 +143,16 @@ impl Kinematics {
     }
 
     fn body(&self, name: &str) -> Result<BodyId, Error> {
-        let bodies = &self.scene.inner().mechanism.bodies;
-        let found = bodies.iter().position(|b| b.name == name).map(BodyId);
-        let names = bodies.iter().map(|b| b.name.as_str());
-        found.ok_or_else(|| Error::unknown("body", "bodies", name, names))
+        self.scene.body(name)
     }
 
     fn point(&self, name: &str) -> Result<PointState, Error> {
-        let scene = self.scene.inner();
-        let (body, point) = name.split_once('.').unwrap_or((name, ""));
-        let id = self.body(body)?;
-        let points = &scene.points[id.0];
-        let found = points.iter().find(|(known, _)| known == point);
-        let all: Vec<String> = points.iter().map(|(p, _)| format!("{body}.{p}")).collect();
-        let names = all.iter().map(String::as_str);
-        let (_, at) = found.ok_or_else(|| Error::unknown("point", "points", name, names))?;
-        Ok(self.states.point(id, *at))
+        let (body, at) = self.scene.point(name)?;
+        Ok(self.states.point(body, at))
     }
 }
 
-fn pair(vector: Vec2) -> [f64; 2] {
+pub(super) fn pair(vector: Vec2) -> [f64; 2] {
     [vector.x, vector.y]
 }
 

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::mechanism::Mechanism;
+use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::MagnitudeFunction;
 use std::path::Path;
 use std::sync::Arc;
@@ -170,6 +171,26 @@ impl Scene {
 
     pub(crate) fn inner(&self) -> &dwell_scene::Scene {
         &self.0
+    }
+
+    /// A body by its name.
+    pub(super) fn body(&self, name: &str) -> Result<BodyId, Error> {
+        let bodies = &self.0.mechanism.bodies;
+        let found = bodies.iter().position(|b| b.name == name).map(BodyId);
+        let names = bodies.iter().map(|b| b.name.as_str());
+        found.ok_or_else(|| Error::unknown("body", "bodies", name, names))
+    }
+
+    /// A point `body.point`: its body, and where it is in that body's frame, m.
+    pub(super) fn point(&self, name: &str) -> Result<(BodyId, Vec2), Error> {
+        let (body, point) = name.split_once('.').unwrap_or((name, ""));
+        let id = self.body(body)?;
+        let points = &self.0.points[id.0];
+        let found = points.iter().find(|(known, _)| known == point);
+        let all: Vec<String> = points.iter().map(|(p, _)| format!("{body}.{p}")).collect();
+        let names = all.iter().map(String::as_str);
+        let (_, at) = found.ok_or_else(|| Error::unknown("point", "points", name, names))?;
+        Ok((id, *at))
     }
 
     /// The same scene with the magnitude of a load computed by a function.

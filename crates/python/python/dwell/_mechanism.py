@@ -173,6 +173,25 @@ class Mechanism:
 
         return State(self._native.at(all_of(q), all_of(q_dot), all_of(q_ddot), float(t)))
 
+    def paths(self, points: str | Sequence[str], q: npt.ArrayLike) -> Array:
+        """Where points ``body.point`` are at many positions, m. Only positions are computed.
+
+        q: coordinates of any shape, rad or m; with several actuators its last axis has one coordinate for each. The result has the shape
+        of the positions, then an axis for the points (absent for one name), then x and y::
+
+            x, y = mechanism.paths("coupler.P", np.linspace(0, 2 * np.pi, 361)).T
+
+        Raises DwellError for an unknown point, and for the first position that the mechanism cannot reach.
+        """
+        names = [points] if isinstance(points, str) else list(points)
+        wanted = np.ascontiguousarray(q, dtype=np.float64)
+        count = len(self.actuators)
+        shape = wanted.shape if count == 1 else wanted.shape[:-1]
+        if count != 1 and wanted.shape[-1:] != (count,):
+            raise ValueError(f"the last axis of q must have the coordinates of {count} actuators: {', '.join(self.actuators)}")
+        found = self._native.paths(names, wanted.reshape(-1)).reshape(*shape, len(names), 2)
+        return found[..., 0, :] if isinstance(points, str) else found
+
     def reduced(self, reactions: Sequence[str] | None = None) -> ReducedModel:
         """The reduced model with these reactions: joints (``A``) or components (``guide.normal``); without a list, all of them.
 

@@ -335,7 +335,7 @@ impl<'a> Document<'a> {
             ),
             _ => String::new(),
         };
-        let zero = match self.results.shown_as_zero.as_slice() {
+        let zero = match self.results.noted_zeros.as_slice() {
             [] => String::new(),
             columns => format!("  zero but for rounding: {}\n", columns.join("; ")),
         };

@@ -53,7 +53,7 @@ pub struct TrajectoryResults {
     /// By column: whether it is zero in every row but for rounding.
     pub(crate) is_rounding: Vec<bool>,
     /// Those of them whose rows do not look like it.
-    pub(crate) shown_as_zero: Vec<String>,
+    pub(crate) noted_zeros: Vec<String>,
     /// The extrema of the columns.
     pub(crate) extrema: Extrema,
     /// By column: the estimated error of its values, in its unit; empty where nothing is known of it.
@@ -108,7 +108,7 @@ impl TrajectoryResults {
             indeterminate: Vec::new(),
             modelled: Vec::new(),
             is_rounding: Vec::new(),
-            shown_as_zero: Vec::new(),
+            noted_zeros: Vec::new(),
             extrema: Extrema::default(),
             errors: Vec::new(),
         }
@@ -266,7 +266,7 @@ impl TrajectoryResults {
     fn find_rounding(&mut self, size: f64) {
         let scales = self.references.scales(size);
         self.is_rounding = self.references.is_rounding(&scales, self.columns.len());
-        self.shown_as_zero = self.references.shown_as_zero(&scales, &self.is_rounding);
+        self.noted_zeros = self.references.noted_zeros(&scales, &self.is_rounding);
         let power = self.power_terms.iter().map(|[_, scale]| *scale);
         let power = power.fold(scales.of("W"), f64::max);
         let terms = self.power_terms.iter();

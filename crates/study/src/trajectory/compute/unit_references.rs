@@ -76,9 +76,9 @@ impl UnitReferences {
         is_rounding
     }
 
-    /// The requested columns that are shown as zero although their rows do not look like rounding, each with its largest
+    /// The requested columns that count as zero although their rows do not look like rounding, each with its largest
     /// magnitude and that of its unit: what exceeds it so far need not be requested.
-    pub(crate) fn shown_as_zero(&self, scales: &UnitScales, is_rounding: &[bool]) -> Vec<String> {
+    pub(crate) fn noted_zeros(&self, scales: &UnitScales, is_rounding: &[bool]) -> Vec<String> {
         let requested = || self.columns.iter().filter(|of| of.kept.is_some());
         let largest = requested().fold(1.0, |largest: f64, of| largest.max(of.largest));
         let conspicuous = requested().filter(|of| {
@@ -87,7 +87,7 @@ impl UnitReferences {
         let note = |of: &Reference| {
             let (Column { name, unit, .. }, scale) = (&of.column, scales.of(of.column.unit));
             format!(
-                "{name}, at most {:.1e} {unit} beside {scale:.1e} {unit}",
+                "{name}, at most {:.1e} {unit}, compared with {scale:.1e} {unit}",
                 of.largest
             )
         };
