@@ -112,7 +112,15 @@ impl FreeMotionProblem<'_> {
             samples.push(sample);
         }
         if let [only] = samples.as_slice() {
-            samples.push(only.clone());
+            // The end has no row within the window of a change point's fit.
+            let start = Some(0.0).filter(|&start| start < only.t);
+            match start.and_then(|start| sampler.sample_at(start)) {
+                Some(mut start) => {
+                    start.extra_values[index] = 0.0;
+                    samples.insert(0, start);
+                }
+                None => samples.push(only.clone()),
+            }
         }
         Ok(samples)
     }
