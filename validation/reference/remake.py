@@ -237,7 +237,10 @@ def ratios(case, data, machine):
 
 
 SPECIAL = {"single-dwell": unloaded, "crank-rocker": unloaded, "pendulum-a01": pendulum, "n-four-bar-a02": windows,
-           "double-pendulum": double, "andrews": squeezer, "four-bar": textbook, "planetary": ratios, "whitworth": ratios}
+           "double-pendulum": double, "andrews": squeezer, "four-bar": textbook, "planetary": ratios, "whitworth": ratios,
+           "exported-model": unloaded}
+# Cases whose scene is a reduced model that was exported: the mechanism from which it came.
+ORIGINALS = {"exported-model": "crank-rocker"}
 
 
 def remake(folder):
@@ -247,6 +250,9 @@ def remake(folder):
         return []
     if case not in SPECIAL and data.keys() & {"free_motion", "published"}:
         raise ValueError(f"{case}: nothing remakes its free motion or published values")
+    if case in ORIGINALS:
+        folder = folder.parent / ORIGINALS[case]
+        data["definition"] = tomllib.loads((folder / "case.toml").read_text())["definition"]
     machine, found = Machine(Scene(folder)), []
     if "definition" in data:
         exact_definition(data, machine)
