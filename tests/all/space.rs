@@ -3,6 +3,7 @@
 
 mod cases;
 mod extremes;
+mod flyball;
 mod hooke_joint;
 mod loads;
 mod motions;

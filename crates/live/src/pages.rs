@@ -3,14 +3,15 @@
 use dwell_findings::{Column, RecordedEvent, RecordedNumber, Table};
 use dwell_page::{Page, PageColumn};
 use dwell_scene::Scene;
-use dwell_study::cycle::compute::CycleResults;
+use dwell_study::cycle::compute::{COORDINATE_COLUMN, CycleResults};
 use dwell_study::equilibria::compute::EquilibriaResults;
-use dwell_study::page::{drawing_along, scene_page, table_page, unit_group};
+use dwell_study::machines::MachineScene;
+use dwell_study::page::{scene_page, table_page, unit_group};
 use dwell_study::reduce::compute::ReducedScene as _;
 use dwell_study::{PreparedScene, compute_period};
 
 /// One steady cycle.
-pub(crate) fn cycle(scene: &Scene, found: &CycleResults<'_>) -> Page {
+pub(crate) fn cycle<S: MachineScene>(scene: &S, found: &CycleResults<'_, S>) -> Page {
     let (steady, errors) = (&found.steady, &found.errors);
     let of_speed = |value: f64| Some(errors.speed * value.abs());
     let fluctuation = steady.fluctuation;
@@ -35,15 +36,17 @@ pub(crate) fn cycle(scene: &Scene, found: &CycleResults<'_>) -> Page {
         .iter()
         .zip(found.works.rows.iter().flatten());
     numbers.extend(works.map(|(of, &work)| number(&of.name, &of.unit, work, Some(errors.work))));
+    let page = table_page(scene_page(scene, "cycle"), &found.samples, unit_group);
     Page {
         subtitle: "one steady cycle".to_owned(),
         numbers,
-        ..table_page(scene_page(&scene.file, "cycle"), &found.samples, unit_group)
+        drawing: scene.drawing_along(&page.columns[COORDINATE_COLUMN].values),
+        ..page
     }
 }
 
 /// The equilibria, and the static force around them.
-pub(crate) fn equilibria(scene: &Scene, results: &EquilibriaResults<'_>) -> Page {
+pub(crate) fn equilibria<S: MachineScene>(scene: &S, results: &EquilibriaResults<'_, S>) -> Page {
     let rows = results.table.rows.iter().enumerate();
     let numbers = rows.flat_map(|(k, row)| {
         let values = results.table.columns.iter().zip(row);
@@ -62,10 +65,10 @@ pub(crate) fn equilibria(scene: &Scene, results: &EquilibriaResults<'_>) -> Page
         found => format!("{found} equilibria"),
     };
     let page = match static_forces(results) {
-        None => scene_page(&scene.file, "equilibria"),
+        None => scene_page(scene, "equilibria"),
         Some(table) => {
-            let mut page = table_page(scene_page(&scene.file, "equilibria"), &table, unit_group);
-            page.drawing = drawing_along(scene, &page);
+            let mut page = table_page(scene_page(scene, "equilibria"), &table, unit_group);
+            page.drawing = scene.drawing_along(&page.columns[0].values);
             page
         }
     };
@@ -77,7 +80,7 @@ pub(crate) fn equilibria(scene: &Scene, results: &EquilibriaResults<'_>) -> Page
 }
 
 /// Static force and potential over the coordinate.
-fn static_forces(results: &EquilibriaResults<'_>) -> Option<Table> {
+fn static_forces(results: &EquilibriaResults<'_, impl MachineScene>) -> Option<Table> {
     let curves = results.curves.as_ref()?;
     let coordinate = results.table.columns.first()?.clone();
     let force = if coordinate.unit == "rad" { "N m" } else { "N" };

@@ -5,12 +5,14 @@ use crate::pages;
 use crate::request::Command;
 use dwell_page::Page;
 use dwell_scene::{AnyScene, CoordinateSweep, PrescribedMotion, Scene, SceneError, SpaceScene};
+use dwell_study::machines::MachineScene;
 use dwell_study::page::trajectory_page;
 use dwell_study::reduce::reduction_page;
 use dwell_study::{
     Analysis, CycleSearch, MotionSolver, SolverSettings, StudyError, compute_cycle,
     compute_equilibria, compute_free_motion, compute_reduction, compute_reduction_in_space,
-    compute_trajectory, no_progress, reduction_page_in_space, trajectory_page_in_space,
+    compute_trajectory, free_motion_page_in_space, no_progress, reduction_page_in_space,
+    trajectory_page_in_space,
 };
 
 /// What a command came to.
@@ -48,11 +50,16 @@ fn in_space(command: Command, scene: &SpaceScene) -> Result<Run, StudyError> {
             let reduction = compute_reduction_in_space(scene, None)?;
             return Ok(reduction_page_in_space(&reduction)?.into());
         }
-        Command::Simulate | Command::Cycle | Command::Equilibria => {
-            let message = "this page does not compute this of a mechanism in space".to_owned();
-            let help = "the command line does, of some".to_owned();
-            return Err(SceneError::without_labels(message, Some(help)).into());
+        Command::Simulate => {
+            let solver = MotionSolver::Settings(SolverSettings::default());
+            let (page, early_stop) = free_motion_page_in_space(scene, &solver, &no_progress)?;
+            return Ok(Run {
+                page,
+                early_stop: early_stop.map(scene_error),
+            });
         }
+        Command::Cycle => return cycle(scene),
+        Command::Equilibria => return equilibria(scene),
     };
     let (page, early_stop) = trajectory_page_in_space(scene, analysis, &no_progress)?;
     Ok(Run {
@@ -83,12 +90,20 @@ fn in_plane(command: Command, scene: &Scene) -> Result<Run, StudyError> {
                 early_stop: motion.computed.early_stop.map(scene_error),
             })
         }
-        Command::Cycle => match compute_cycle(scene, &SolverSettings::default(), None)? {
-            CycleSearch::Steady(found) => Ok(pages::cycle(scene, &found).into()),
-            CycleSearch::NoCycle { reason, .. } => Err(reason),
-        },
-        Command::Equilibria => Ok(pages::equilibria(scene, &compute_equilibria(scene)?).into()),
+        Command::Cycle => cycle(scene),
+        Command::Equilibria => equilibria(scene),
     }
+}
+
+fn cycle(scene: &impl MachineScene) -> Result<Run, StudyError> {
+    match compute_cycle(scene, &SolverSettings::default(), None)? {
+        CycleSearch::Steady(found) => Ok(pages::cycle(scene, &found).into()),
+        CycleSearch::NoCycle { reason, .. } => Err(reason),
+    }
+}
+
+fn equilibria(scene: &impl MachineScene) -> Result<Run, StudyError> {
+    Ok(pages::equilibria(scene, &compute_equilibria(scene)?).into())
 }
 
 /// What is computed along the motion of a scene: its forces, where it has one.

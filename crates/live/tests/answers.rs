@@ -6,7 +6,11 @@ use std::path::PathBuf;
 
 fn text_of(case: &str) -> String {
     let validation = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation"));
-    std::fs::read_to_string(validation.join(case).join("scene.toml")).unwrap()
+    let file = match case.ends_with(".toml") {
+        true => validation.join(case),
+        false => validation.join(case).join("scene.toml"),
+    };
+    std::fs::read_to_string(file).unwrap()
 }
 
 /// The answer to a command, and its columns by name.
@@ -143,4 +147,56 @@ fn texts_that_are_no_scenes_are_answered() {
         );
         assert!(numbers.is_empty());
     }
+}
+
+#[test]
+fn a_mechanism_in_space_moves_back_after_its_published_period() {
+    // IFToMM A04: released at rest, it is there again after 4.9917115136887 s.
+    let period = 4.991_711_513_688_7;
+    let text = text_of("spatial/bricard-a04.toml") + &format!("\n[motion]\nduration = {period}\n");
+    let (answer, numbers) = run("simulate", &text);
+    assert_eq!(answer["messages"], json!([]));
+    let [q, speed] = ["q", "q.velocity"].map(|name| column(&answer, &numbers, name));
+    assert_eq!(column(&answer, &numbers, "t").last(), Some(&period));
+    let turns = (q.last().unwrap() - q[0]) / std::f64::consts::TAU;
+    assert!((turns - turns.round()).abs() < 1e-6, "{turns} turns");
+    assert!(speed.last().unwrap().abs() < 1e-4, "{speed:?}");
+    assert!(speed.iter().any(|speed| speed.abs() > 1.0));
+    assert!(answer["page"]["drawing"].is_object());
+}
+
+#[test]
+fn the_equilibria_of_a_mechanism_in_space_are_where_its_potential_is_flat() {
+    let text = text_of("spatial/bricard-a04.toml");
+    let (answer, numbers) = run("equilibria", &text);
+    assert_eq!(answer["messages"], json!([]));
+    let [q, potential] = ["q", "potential"].map(|name| column(&answer, &numbers, name));
+    let shown = answer["page"]["numbers"].as_array().unwrap();
+    let at = |k: usize| {
+        let name = format!("equilibrium.{k}.q");
+        let found = shown.iter().find(|n| n["name"] == name)?;
+        found["value"].as_f64()
+    };
+    let found: Vec<f64> = (1..).map_while(at).collect();
+    assert!(!found.is_empty());
+    // Between two rows around each the potential has no slope: it changes by the square of a step.
+    for at in found {
+        let k = q.windows(2).position(|pair| pair[0] <= at && at <= pair[1]);
+        let k = k.unwrap();
+        let step = q[k + 1] - q[k];
+        let slope = (potential[k + 1] - potential[k]) / step;
+        assert!(slope.abs() < 20.0 * step, "{at}: {slope}");
+    }
+    assert!(answer["page"]["drawing"].is_object());
+}
+
+#[test]
+fn the_mechanism_of_a_cycle_is_drawn_at_the_coordinates_of_its_rows() {
+    let (answer, numbers) = run("cycle", &text_of("four-bar"));
+    assert_eq!(answer["messages"], json!([]));
+    let page = &answer["page"];
+    let coordinate = page["columns"][1]["key"].as_str().unwrap();
+    let coordinate = column(&answer, &numbers, coordinate);
+    assert!(coordinate.len() > 10);
+    assert!(page["drawing"].is_object());
 }

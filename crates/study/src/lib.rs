@@ -73,8 +73,8 @@ pub use models::{PRESETS, PreparedScene, SolverSettings};
 pub use progress::{Progress, Step, no_progress};
 pub use reduce::compute::{TableRequest, compute_reduction};
 pub use space::{
-    PreparedSpaceScene, compute_reduction_in_space, reduction_page_in_space,
-    trajectory_page_in_space,
+    PreparedSpaceScene, compute_reduction_in_space, free_motion_page_in_space,
+    reduction_page_in_space, trajectory_page_in_space,
 };
 pub use sweep::{Shard, compute_sweep};
 pub use symbolic::compute::{compute_closed_form, symbolic_findings};

@@ -1,5 +1,6 @@
 //! `dwell simulate` of scenes in space: the files that it writes against the references and against balances of energy.
 
+use super::flyball;
 use super::reference::{Reference, number, vector};
 use dwell_dynamics::Method;
 use dwell_findings::Table;
@@ -216,4 +217,31 @@ fn motions_in_space_that_cannot_be_are_refused() {
     assert!(refused("").contains("no [motion]"));
     let open = "\n[motion]\nduration = 1\nevents.a = { reaction = \"P2.x\", value = 1 }\n";
     assert!(refused(open).contains("do not determine the reaction `P2.x`"));
+}
+
+/// The governor A05 with spring-dampers, ten seconds from a spin of 2π rad/s: four coordinates within 1e-7 of Lagrange's equations, its
+/// springs decaying in 40 µs.
+#[test]
+fn the_governor_with_spring_dampers_moves_as_by_lagranges_equations() {
+    let scene = scene("governor-a05", "");
+    let solver = MotionSolver::Settings(SolverSettings {
+        sample_interval: Some(2.5),
+        ..SolverSettings::default()
+    });
+    let done = simulated(&scene, &solver, None);
+    let table = written(&done, "-motion.csv");
+    let spin = std::f64::consts::TAU;
+    let [coarse, wanted] = [40_000, 80_000].map(|steps| flyball::states(spin, 2.5, 4, steps));
+    for (k, (state, half)) in wanted.iter().zip(&coarse).enumerate() {
+        for (i, name) in ["spin", "alpha1", "alpha2", "s"].into_iter().enumerate() {
+            let found = column(&table, name)(k + 1);
+            assert!((state[i] - half[i]).abs() < 1e-9, "{name}: no reference");
+            let off = (found - state[i]).abs();
+            assert!(
+                off < 1e-7,
+                "{name} at {} s: {off:.1e}",
+                2.5 * (k + 1) as f64
+            );
+        }
+    }
 }

@@ -118,6 +118,9 @@ fn work_columns(prepared: &SceneMachine<'_, impl MachineScene>) -> impl Iterator
     })
 }
 
+/// The column of the coordinate in the samples of a cycle, where it is the only one.
+pub const COORDINATE_COLUMN: usize = 1;
+
 /// One cycle: time, states, acceleration and works since its start.
 fn cycle_table<S: MachineScene>(
     prepared: &SceneMachine<'_, S>,

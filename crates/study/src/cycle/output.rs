@@ -2,7 +2,8 @@
 
 use super::figures;
 use crate::cycle::compute::{
-    CycleErrors, CycleResults, CycleSearch, CycleStability, SizedFlywheel, compute_cycle,
+    COORDINATE_COLUMN, CycleErrors, CycleResults, CycleSearch, CycleStability, SizedFlywheel,
+    compute_cycle,
 };
 use crate::explain::StudyError;
 use crate::machines::{MachineScene, SceneMachine};
@@ -53,6 +54,7 @@ pub fn cycle<S: MachineScene>(
         "one steady cycle in {}",
         count(results.samples.rows.len(), "position")
     );
+    page_of_rows.drawing = scene.drawing_along(&page_of_rows.columns[COORDINATE_COLUMN].values);
     outcome.run = Some(Box::new(page_of_rows));
     let files = &mut outcome.files;
     files.add_table(&name(""), &results.samples, &TableFormat::ALL)?;

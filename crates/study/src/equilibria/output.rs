@@ -62,7 +62,7 @@ fn static_force_page<S: MachineScene>(
     };
     let mut page = table_page(scene_page(scene, "equilibria"), &table, unit_group);
     page.subtitle = format!("static force and potential over {name}");
-    page.drawing = scene.drawing_along(&page);
+    page.drawing = scene.drawing_along(&page.columns[0].values);
     Some(page)
 }
 

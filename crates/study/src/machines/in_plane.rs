@@ -12,7 +12,7 @@ use dwell_dynamics::{DynamicsError, Machine, NonconservativeSource};
 use dwell_findings::Column;
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::{Drive, Model};
-use dwell_page::{Drawing, Page};
+use dwell_page::Drawing;
 use dwell_scene::Scene;
 
 impl MachineScene for Scene {
@@ -66,8 +66,8 @@ impl MachineScene for Scene {
         reject_unknown_variables(self)
     }
 
-    fn drawing_along(&self, page: &Page) -> Option<Drawing> {
-        drawing_along(self, page)
+    fn drawing_along(&self, coordinate: &[f64]) -> Option<Drawing> {
+        drawing_along(self, coordinate)
     }
 
     fn assembly_note(&self, model: &Model) -> String {

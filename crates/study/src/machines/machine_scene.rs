@@ -5,7 +5,7 @@ use dwell_dynamics::{DynamicsError, Machine, MovingModel, NonconservativeSource}
 use dwell_findings::Column;
 use dwell_kinetostatics::{Drive, MachineModel};
 use dwell_laws::Law;
-use dwell_page::{Drawing, Page};
+use dwell_page::Drawing;
 use dwell_scene::FreeMotionSpec;
 
 /// The description of a coordinate of a scene's machine.
@@ -87,10 +87,9 @@ pub trait MachineScene: NamedScene {
     /// [`StudyError::Scene`] at the first of them.
     fn reject_unknown_columns(&self) -> Result<(), StudyError>;
 
-    /// The mechanism along the first column of a page, which is its coordinate; none where a page shows no mechanism.
-    fn drawing_along(&self, _page: &Page) -> Option<Drawing> {
-        None
-    }
+    /// The mechanism at values of its only coordinate, rad or m, one for each row of a page; none where it has several, or a
+    /// position cannot be reached.
+    fn drawing_along(&self, coordinate: &[f64]) -> Option<Drawing>;
 
     /// Lines about the assembly configuration; mostly none.
     fn assembly_note(&self, model: &Self::Model) -> String;

@@ -71,10 +71,9 @@ pub fn unit_group(_: &str, unit: &str) -> (String, String) {
     (group.to_owned(), String::new())
 }
 
-/// The mechanism in the rows of a page whose axis is the only actuator's coordinate; none where a position cannot be
-/// reached.
-pub fn drawing_along(scene: &Scene, page: &Page) -> Option<Drawing> {
-    let axis = page.columns.get(page.axis?)?;
+/// The mechanism at values of the only actuator's coordinate, rad or m, one for each row of a page; none where a position cannot
+/// be reached.
+pub fn drawing_along(scene: &Scene, coordinate: &[f64]) -> Option<Drawing> {
     let model = loaded_model(scene).ok()?;
     let plan = model.plan();
     let mut pose = plan.pose();
@@ -84,8 +83,8 @@ pub fn drawing_along(scene: &Scene, page: &Page) -> Option<Drawing> {
     if plan.actuators() != rest.len() {
         return None;
     }
-    let mut poses: Vec<Vec<BodyPose>> = Vec::with_capacity(axis.values.len());
-    for &q in &axis.values {
+    let mut poses: Vec<Vec<BodyPose>> = Vec::with_capacity(coordinate.len());
+    for &q in coordinate {
         plan.positions(&[q], &mut pose).ok()?;
         plan.velocities(&pose, &rest, &mut motion);
         states.fill_velocities(plan, &pose, &motion);

@@ -33,7 +33,7 @@ pub fn reduce(
     let reduction = compute_reduction(scene, points)?;
     let mut outcome = reduction_outcome(&reduction)?;
     if let Some(run) = &mut outcome.run {
-        run.drawing = drawing_along(scene, run);
+        run.drawing = drawing_along(scene, &run.columns[0].values);
     }
     if let Some(request) = table {
         add_table(&reduction.prepared, &request, &mut outcome)?;

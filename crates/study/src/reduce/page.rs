@@ -29,7 +29,7 @@ const M_COLUMN: usize = 1;
 pub fn reduction_page(reduction: &Reduction<PreparedScene<'_>>) -> Page {
     let peak = peak_between_rows(&reduction.prepared, &reduction.curves);
     let mut page = page_of(reduction, &reduction.table(), peak);
-    page.drawing = drawing_along(reduction.prepared.scene, &page);
+    page.drawing = drawing_along(reduction.prepared.scene, &page.columns[0].values);
     page
 }
 

@@ -1,7 +1,8 @@
 //! The machine of a scene in space.
 
 use super::explain::{explain_load_error, explain_loads, explain_position};
-use super::prepared::{compile, sort_reactions};
+use super::prepared::{PreparedSpaceScene, compile, sort_reactions};
+use super::views::page_drawing;
 use crate::explain::{StudyError, explain_any_motion, scene_error};
 use crate::machines::{MachineScene, MotionStart};
 use crate::models::states_of_drives;
@@ -10,6 +11,7 @@ use dwell_findings::Column;
 use dwell_kinetostatics::Drive;
 use dwell_kinetostatics::space::{Component, Coordinate, Model, Reaction};
 use dwell_laws::Law;
+use dwell_page::Drawing;
 use dwell_scene::{SceneLocation, SpaceScene};
 
 impl MachineScene for SpaceScene {
@@ -79,6 +81,11 @@ impl MachineScene for SpaceScene {
     fn reject_unknown_columns(&self) -> Result<(), StudyError> {
         // It names no columns.
         Ok(())
+    }
+
+    fn drawing_along(&self, coordinate: &[f64]) -> Option<Drawing> {
+        let rows = PreparedSpaceScene::new(self).ok()?.placements(coordinate);
+        Some(page_drawing(self, rows.ok()?, Vec::new()))
     }
 
     fn assembly_note(&self, _: &Model) -> String {

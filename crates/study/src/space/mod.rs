@@ -6,7 +6,6 @@ mod explain;
 #[cfg(feature = "output")]
 mod export;
 mod machine_scene;
-#[cfg(feature = "output")]
 mod motion;
 #[cfg(feature = "output")]
 mod pictures;
@@ -19,6 +18,7 @@ mod views;
 pub use check::check_in_space;
 #[cfg(feature = "output")]
 pub use export::export_in_space;
+pub use motion::free_motion_page_in_space;
 #[cfg(feature = "output")]
 pub use motion::simulate_in_space;
 #[cfg(feature = "output")]

@@ -30,7 +30,7 @@ pub fn unit_runs(
         "the two kinetostatic runs and their combination at {}",
         count(table.rows.len(), "position")
     );
-    run.drawing = drawing_along(scene, &run);
+    run.drawing = drawing_along(scene, &run.columns[0].values);
     run.tables.push(PageTable {
         title: COMPARED.to_owned(),
         header: COMPARISON_HEADER.map(str::to_owned).into(),

@@ -16,16 +16,13 @@ mod simulation;
 mod tables;
 
 pub(crate) use difference::Difference;
-#[cfg(feature = "output")]
 pub(crate) use difference::pair_by_time;
 pub use period::compute_period;
 pub use problem::FreeMotionProblem;
 pub use segmented_motion::SegmentedMotion;
 pub(crate) use segmented_motion::{ComputedMotion, PlaceInMotion};
 #[cfg(feature = "output")]
-pub(crate) use simulation::{
-    DEFAULT_SAMPLES, check_sample_interval, check_times, compute_free_motion_at,
-};
+pub(crate) use simulation::compute_free_motion_at;
+pub(crate) use simulation::{DEFAULT_SAMPLES, check_sample_interval, check_times};
 pub use simulation::{FreeMotion, MotionSolver, compute_free_motion};
-#[cfg(feature = "output")]
 pub(crate) use tables::sliding_at;

@@ -1,15 +1,19 @@
-//! `dwell simulate` of scenes in space.
+//! The free motion of scenes in space: its rows, what is said of it, and its page.
 
+#[cfg(feature = "output")]
+mod output;
 mod problem;
 mod run;
 mod summary;
 mod tables;
 
+#[cfg(feature = "output")]
+pub use self::output::simulate_in_space;
+
 use self::problem::SpaceMotionProblem;
 use self::run::Run;
 use super::trajectory::{
-    SpaceEvaluator, add_rows, all_columns, drawn_positions, explain_stop, figures, is_listed,
-    space_page,
+    SpaceEvaluator, add_rows, all_columns, explain_stop, is_listed, space_page,
 };
 use crate::explain::StudyError;
 use crate::free_motion::compute::{MotionSolver, check_times};
@@ -18,81 +22,94 @@ use crate::trajectory::compute::{
     Analysis, ComputedTrajectory, FreeTrajectory, Quantity, RowStorage, Trajectory,
     TrajectoryResults, TrajectorySample,
 };
-use crate::trajectory::document::Document;
-use crate::trajectory::figures::PictureSpan;
-use crate::trajectory::output::{TrajectoryOutcome, outcome_of};
 use dwell_findings::RecordedEvent;
-use dwell_report::TableExport as _;
+use dwell_page::Page;
 use dwell_scene::SpaceScene;
 
-/// The free motion of a scene in space, with rows at wanted `times` (s, ascending) and at its end, or else equally spaced;
-/// curves show a part of it.
+/// The free motion of a scene in space as a page, and why it ended early or misses the required accuracy.
 ///
 /// # Errors
-/// [`StudyError`] when the scene has no motion, or its initial state cannot be evaluated. An error later in the motion, or an
-/// accuracy that is not reached, is in [`TrajectoryOutcome::early_stop`].
-pub fn simulate_in_space(
+/// [`StudyError`] when the scene has no motion, or its initial state cannot be evaluated.
+///
+/// ```
+/// use dwell_study::{MotionSolver, SolverSettings, free_motion_page_in_space, no_progress};
+///
+/// let text = r#"
+/// bodies.ground.points = { O = [0, 0, 0] }
+/// bodies.bob = { points = { O = [0, 0, 0] }, mass = 2.0, center = [0.5, 0, 0] }
+/// joints.O = { revolute = ["ground.O", "bob.O"], axis = [0, 1, 0] }
+/// actuators.phi = { angle = "O" }
+/// assembly.phi = 0.0
+/// loads.weight = { gravity = [0, 0, -9.81] }
+/// motion.duration = 1.0
+/// "#;
+/// let scene = dwell_scene::SpaceScene::parse("pendulum.toml", text)?;
+/// let solver = MotionSolver::Settings(SolverSettings::default());
+/// let (page, early_stop) = free_motion_page_in_space(&scene, &solver, &no_progress)?;
+/// assert!(page.drawing.is_some() && early_stop.is_none());
+/// # Ok::<(), dwell_study::StudyError>(())
+/// ```
+pub fn free_motion_page_in_space(
     scene: &SpaceScene,
     solver: &MotionSolver,
-    times: Option<&[f64]>,
-    span: PictureSpan,
     progress: Progress<'_>,
-) -> Result<TrajectoryOutcome, StudyError> {
+) -> Result<(Page, Option<StudyError>), StudyError> {
     let problem = SpaceMotionProblem::new(scene)?;
-    let duration = problem.duration()?;
-    times.map_or(Ok(()), |times| check_times(times, duration))?;
-    let run = problem.run(solver, duration)?;
-    let reached = run.solution.steps.last().map_or(0.0, |step| step.t);
-    if let (Some(error), true) = (&run.solution.error, reached == 0.0) {
-        return Err(problem.explain(error));
-    }
-    let samples = match times {
-        None => problem.samples(&run.solution),
-        Some(times) => problem.samples_at(&run, times),
-    };
-    let samples = samples.map_err(|e| problem.explain(&e))?;
-    let (mut computed, evaluator) = problem.rows(&run, samples, progress)?;
-    let second = run.second.as_ref().filter(|_| times.is_none());
-    let second = second.and_then(|second| problem.samples(second).ok());
-    let second = second.and_then(|samples| problem.rows(&run, samples, &no_progress).ok());
-    computed.set_errors(second.as_ref().map(|(computed, _)| computed));
-    let shortfall = problem.shortfall(&run, solver);
-    computed.early_stop = shortfall.or(computed.early_stop);
-    let size = problem.output_model.plan().size();
-    let page = space_page(
-        scene,
-        size,
-        &computed,
-        (&problem.reactions, evaluator.clone()),
-    );
-    let positions = drawn_positions(scene, &computed, evaluator, None);
-    let mut all_figures = vec![positions.figure()];
-    all_figures.extend(figures(scene, None, &computed, span)?);
-    let document = Document::of_file(&scene.file, problem.output_model.plan().size(), &computed);
-    let pictures = (all_figures, positions.animation());
-    let mut outcome = outcome_of(&scene.file, &computed, &document, pictures)?;
-    outcome.run = Some(Box::new(page));
-    if !run.solution.event_occurrences.is_empty() {
-        let name = format!("{}-motion-events.csv", scene.name);
-        outcome
-            .files
-            .add(name, problem.event_table(&run.solution).csv()?);
-    }
-    let (summary, record) = problem.summary(&run, duration);
-    outcome.summary += &summary;
-    outcome.record.extend(record);
-    let event = |occurrence: &dwell_dynamics::EventOccurrence| RecordedEvent {
-        name: problem.spec.events[occurrence.event].name.clone(),
-        t: occurrence.state.t,
-    };
-    outcome.record.events = run.solution.event_occurrences.iter().map(event).collect();
-    Ok(TrajectoryOutcome {
-        outcome,
-        early_stop: computed.early_stop,
-    })
+    let (run, computed, evaluator) = problem.simulate(solver, None, progress)?;
+    let mut page = problem.page(&computed, evaluator);
+    let (summary, record) = problem.summary(&run, problem.duration()?);
+    page.printed = summary;
+    page.numbers = record.numbers;
+    page.events = problem.recorded_events(&run);
+    Ok((page, computed.early_stop))
 }
 
 impl SpaceMotionProblem<'_> {
+    /// The motion by a solver, with rows at wanted `times` (s, ascending) and at its end, or else equally spaced, their errors, and
+    /// what evaluates further ones.
+    fn simulate(
+        &self,
+        solver: &MotionSolver,
+        times: Option<&[f64]>,
+        progress: Progress<'_>,
+    ) -> Result<(Run, ComputedTrajectory<'static>, SpaceEvaluator<'_>), StudyError> {
+        let duration = self.duration()?;
+        times.map_or(Ok(()), |times| check_times(times, duration))?;
+        let run = self.run(solver, duration)?;
+        let reached = run.solution.steps.last().map_or(0.0, |step| step.t);
+        if let (Some(error), true) = (&run.solution.error, reached == 0.0) {
+            return Err(self.explain(error));
+        }
+        let samples = match times {
+            None => self.samples(&run.solution),
+            Some(times) => self.samples_at(&run, times),
+        };
+        let samples = samples.map_err(|e| self.explain(&e))?;
+        let (mut computed, evaluator) = self.rows(&run, samples, progress)?;
+        let second = run.second.as_ref().filter(|_| times.is_none());
+        let second = second.and_then(|second| self.samples(second).ok());
+        let second = second.and_then(|samples| self.rows(&run, samples, &no_progress).ok());
+        computed.set_errors(second.as_ref().map(|(computed, _)| computed));
+        let shortfall = self.shortfall(&run, solver);
+        computed.early_stop = shortfall.or(computed.early_stop);
+        Ok((run, computed, evaluator))
+    }
+
+    /// The rows and the mechanism in them.
+    fn page(&self, computed: &ComputedTrajectory<'_>, evaluator: SpaceEvaluator<'_>) -> Page {
+        let size = self.output_model.plan().size();
+        space_page(self.scene, size, computed, (&self.reactions, evaluator))
+    }
+
+    /// The events that happened, with their times.
+    fn recorded_events(&self, run: &Run) -> Vec<RecordedEvent> {
+        let event = |occurrence: &dwell_dynamics::EventOccurrence| RecordedEvent {
+            name: self.spec.events[occurrence.event].name.clone(),
+            t: occurrence.state.t,
+        };
+        run.solution.event_occurrences.iter().map(event).collect()
+    }
+
     /// The rows of a motion.
     fn rows(
         &self,

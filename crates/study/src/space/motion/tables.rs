@@ -5,12 +5,14 @@ use super::run::Run;
 use crate::free_motion::compute::sliding_at;
 use crate::machines::MachineScene as _;
 use crate::models::states_of_drives;
+#[cfg(feature = "output")]
 use crate::number_format::coordinate_unit;
 use crate::trajectory::compute::{BALANCE, Column, KINETIC, POTENTIAL, Quantity, TrajectorySample};
 use dwell_dynamics::{
     DenseOutput, DynamicsError, MachineOde, MachineWorkspace, OdeState, Options, Sliding, Solution,
     StepControl, integrate,
 };
+#[cfg(feature = "output")]
 use dwell_findings::{Column as TableColumn, Table};
 use dwell_kinetostatics::space::{Coordinate, Model};
 
@@ -175,6 +177,7 @@ impl SpaceMotionProblem<'_> {
     }
 
     /// The time of each event, and the actuator coordinates and speeds then.
+    #[cfg(feature = "output")]
     pub(super) fn event_table(&self, solution: &Solution) -> Table {
         let mut columns = vec![TableColumn::new("t", "s"), TableColumn::new("event", "")];
         for (i, actuator) in self.scene.mechanism.actuators.iter().enumerate() {

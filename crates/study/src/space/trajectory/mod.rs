@@ -12,9 +12,7 @@ mod reactions;
 mod rows;
 mod totals;
 
-#[cfg(feature = "output")]
 pub(super) use self::columns::{all_columns, is_listed};
-#[cfg(feature = "output")]
 pub(super) use self::evaluator::SpaceEvaluator;
 #[cfg(feature = "output")]
 pub(super) use self::figures::figures;
@@ -22,10 +20,7 @@ pub(super) use self::figures::figures;
 pub use self::output::analyse_in_space;
 #[cfg(feature = "output")]
 pub(super) use self::output::drawn_positions;
-#[cfg(feature = "output")]
 pub(super) use self::page::space_page;
-#[cfg(feature = "output")]
 pub(super) use self::reactions::JointReactions;
 pub use self::rows::trajectory_page_in_space;
-#[cfg(feature = "output")]
 pub(super) use self::rows::{add_rows, explain_stop};

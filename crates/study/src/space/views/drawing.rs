@@ -2,12 +2,16 @@
 
 use super::arrangement::SpaceDrawing;
 use super::direction::View;
+use super::loads::link_of;
 use super::points::placed;
 use super::projection::Picture;
 use super::segments::{line_of, nearest_of_segment};
 use super::solids::{center_of_mass, circle, hull};
-use dwell_geometry::BodyId;
+use crate::symbols::spring_outline;
 use dwell_geometry::space::{JointKind, Placement, Vec3};
+use dwell_geometry::{BodyId, vec2};
+use dwell_kinetostatics::space::LoadKind;
+use dwell_page::LinkLook;
 use dwell_report::{Paint, Pen, Shape, TextPlacement};
 
 /// Parts of a bar that are sorted by their distance.
@@ -15,6 +19,8 @@ const PARTS: usize = 12;
 /// Width of bars, and of the white rim that interrupts what is behind them, pixels.
 const BAR: f64 = 6.0;
 const RIM: f64 = 4.0;
+/// Half the width of a spring, in lengths of a hinge.
+const SPRING: f64 = 0.6;
 /// How far joints are drawn before the bars that they connect, in lengths of a hinge.
 pub(super) const BEFORE: f64 = 2.0;
 
@@ -70,6 +76,9 @@ impl SpaceDrawing<'_> {
         }
         for actuator in &self.scene.mechanism.actuators {
             scenery.driven(actuator.kind);
+        }
+        for load in &self.scene.loads {
+            scenery.load(&load.kind);
         }
         let mut marks = Vec::new();
         for body in bodies {
@@ -190,6 +199,29 @@ impl<'a> Scenery<'a> {
                 }
             }
         }
+    }
+
+    /// A spring or a damper between two points, as in the plane.
+    fn load(&mut self, load: &LoadKind) {
+        let Some((look, ends)) = link_of(load) else {
+            return;
+        };
+        let view = self.picture.view;
+        let ends = ends.map(|(body, point)| self.at(body, point));
+        let [a, b] = ends.map(|end| view.place(end));
+        let pen = Pen::new(Paint::Ink, 2.0).lightness(0.35);
+        let line = match look {
+            LinkLook::Spring => {
+                let [from, to] = [a, b].map(|[x, y]| vec2(x, y));
+                let zigzag = spring_outline(from, to, SPRING * self.drawing.unit);
+                Shape::line(zigzag.iter().map(|p| [p.x, p.y]).collect(), pen)
+            }
+            LinkLook::Damper | LinkLook::Rod | LinkLook::Cylinder => {
+                Shape::line(vec![a, b], pen.dashed())
+            }
+        };
+        let middle = (ends[0] + ends[1]).scaled(0.5);
+        self.picture.add(view.nearness(middle), vec![line]);
     }
 
     /// A body of one point: a ring about it.

@@ -6,6 +6,7 @@ mod direction;
 mod drawing;
 #[cfg(feature = "output")]
 mod joints;
+mod loads;
 mod page;
 #[cfg(feature = "output")]
 mod paths;

@@ -2,6 +2,7 @@
 
 use super::arrangement::{GUIDE_MARGIN, SpaceDrawing};
 use super::direction::best_view;
+use super::loads::link_of;
 use super::points::points_of;
 use super::segments::{line_of, nearest_of_segment};
 use crate::page::paint;
@@ -127,6 +128,17 @@ impl SpaceParts<'_> {
         for (j, joint) in scene.mechanism.joints.iter().enumerate() {
             self.guide(j, joint);
             self.joint(j, joint);
+        }
+        for load in &scene.loads {
+            let Some((look, ends)) = link_of(&load.kind) else {
+                continue;
+            };
+            self.parts.push(Part::Link {
+                look,
+                ends: ends.map(|(body, point)| anchor(body, point)),
+                bodies: [None; 2],
+                title: load.name.clone(),
+            });
         }
     }
 

@@ -7,6 +7,7 @@ use super::arrangement::SpaceDrawing;
 use super::direction::View;
 use super::direction::best_view;
 use super::drawing::Detail;
+use super::loads::link_of;
 use super::paths::paths;
 use super::points::points_of;
 use crate::output::figure;
@@ -27,6 +28,8 @@ const WIDTH_PX: u32 = 640;
 const CAPTION: &str = "Top view (x–y) above the front view (x–z), next to it the side view from the right (y–z), and an axonometric view, all \
                        to one scale. Cylinders are hinges, long ones sleeves on rods, blocks slides, balls spherical joints, forks with a cross universal joints; \
                        hatching is the ground, an arrow the driven joint, a quartered disc a centre of mass. Light lines are paths of points.";
+/// What is added where the scene has them.
+const SPRINGS: &str = " Zigzag lines are springs, dashed ones dampers.";
 
 /// A mechanism in positions that follow each other.
 pub(crate) struct SpacePositions<'a> {
@@ -64,7 +67,12 @@ impl SpacePositions<'_> {
             views.panel(View::FRONT, "Front view", ["x", "z"]),
             views.panel(View::SIDE, "Side view, from the right", ["y", "z"]),
         ];
-        let text = format!("Drawn at {}. {CAPTION}", self.drawn_at);
+        let mut loads = self.scene.loads.iter();
+        let springs = match loads.any(|load| link_of(&load.kind).is_some()) {
+            true => SPRINGS,
+            false => "",
+        };
+        let text = format!("Drawn at {}. {CAPTION}{springs}", self.drawn_at);
         let (scene, title) = (self.scene, &self.scene.title);
         let figure = figure(
             &scene.file,
