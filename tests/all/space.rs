@@ -12,6 +12,7 @@ mod random_loops;
 mod reference;
 mod scenes;
 mod simulate;
+mod sweeps;
 mod tilted;
 
 use dwell_geometry::space::{

@@ -2,29 +2,19 @@
 
 use crate::options::{Command, TrajectoryArgs};
 use dwell_scene::SpaceScene;
-use dwell_study::{Analysis, PictureSpan, Progress, StudyError, TrajectoryOutcome};
+use dwell_study::{Analysis, Outcome, PictureSpan, Progress, StudyError, TrajectoryOutcome};
+use std::path::Path;
 
 /// Runs a study of a scene in space.
 pub(crate) fn run_study(
     command: &Command,
     scene: &SpaceScene,
+    out: &Path,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
     let outcome = match command {
         Command::Check { .. } => dwell_study::check_in_space(scene)?,
-        Command::Reduce {
-            runs: None,
-            table_accuracy,
-            accuracy,
-            points,
-            table_from,
-            table_to,
-            ..
-        } => {
-            let accuracies = [*table_accuracy, *accuracy];
-            let table = crate::table_request(accuracies, [*table_from, *table_to]);
-            dwell_study::reduce_in_space(scene, points.map(|n| n as usize), table)?
-        }
+        Command::Reduce { runs: None, .. } => reduce(command, scene)?,
         Command::Export(arguments) => crate::export::run_in_space(arguments, scene)?,
         Command::Kinematics(arguments) => {
             return run_trajectory(arguments, scene, Analysis::Kinematics, progress);
@@ -51,12 +41,42 @@ pub(crate) fn run_study(
         }
         Command::Equilibria { .. } => dwell_study::equilibria(scene)?,
         Command::Linearise { about, .. } => dwell_study::linearise(scene, *about)?,
+        Command::Calibrate {
+            parameter, period, ..
+        } => {
+            if let Some(path) = parameter {
+                crate::sweep::note_former_path(scene, path);
+            }
+            dwell_study::calibrate(scene, parameter.as_deref(), *period)?
+        }
+        Command::Sweep { .. } => {
+            let sweep = crate::sweep::parameter_sweep(command, scene, out);
+            dwell_study::sweep(scene, &sweep, progress)?
+        }
         _ => return Err(scene.planar_only().into()),
     };
     Ok(TrajectoryOutcome {
         outcome,
         early_stop: None,
     })
+}
+
+/// The reduced parameters, with a table if it is asked for.
+fn reduce(command: &Command, scene: &SpaceScene) -> Result<Outcome, StudyError> {
+    let Command::Reduce {
+        table_accuracy,
+        accuracy,
+        points,
+        table_from,
+        table_to,
+        ..
+    } = command
+    else {
+        return Err(scene.planar_only().into());
+    };
+    let accuracies = [*table_accuracy, *accuracy];
+    let table = crate::table_request(accuracies, [*table_from, *table_to]);
+    dwell_study::reduce_in_space(scene, points.map(|n| n as usize), table)
 }
 
 /// Analyses a scene along its trajectory.

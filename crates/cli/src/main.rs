@@ -14,6 +14,7 @@ mod interface;
 mod long_runs;
 mod options;
 mod simulation;
+mod sweep;
 mod times;
 mod validate;
 mod values;
@@ -25,9 +26,8 @@ use dwell_findings::all_pass;
 use dwell_report::{Files, OutputFolder, ReportError};
 use dwell_scene::{AnyScene, Scene, SceneError, SceneFile};
 use dwell_study::{
-    Analysis, CommandResult, Outcome, ParameterSweep, PictureFormat, PictureSpan, Pictures, Shard,
-    SolverSettings, Step, StudyError, TableRequest, TrajectoryOutcome, add_page, add_summary,
-    no_progress,
+    Analysis, CommandResult, Outcome, PictureFormat, PictureSpan, Pictures, Shard, SolverSettings,
+    Step, StudyError, TableRequest, TrajectoryOutcome, add_page, add_summary, no_progress,
 };
 use dwell_validation::ValidationError;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -107,7 +107,9 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
                 let done = match &scene {
                     AnyScene::Plane(scene) => run_study(study, scene, &options.out, &bar),
                     AnyScene::Space(scene) => {
-                        in_space::run_study(study, scene, &|step| show_step(&bar, step))
+                        in_space::run_study(study, scene, &options.out, &|step| {
+                            show_step(&bar, step)
+                        })
                     }
                 };
                 times.add("computing");
@@ -283,34 +285,12 @@ fn run_study(
             parameter, period, ..
         } => {
             if let Some(path) = parameter {
-                note_former_path(scene, path);
+                sweep::note_former_path(scene, path);
             }
             dwell_study::calibrate(scene, parameter.as_deref(), *period)?
         }
-        Command::Sweep {
-            vary,
-            samples,
-            seed,
-            results,
-            shard,
-            export,
-            store,
-            ..
-        } => {
-            for axis in vary {
-                let path = axis.split(['=', '~', '±']).next().unwrap_or_default();
-                note_former_path(scene, path.trim());
-            }
-            let sweep = ParameterSweep {
-                vary,
-                samples: *samples,
-                seed: *seed,
-                requests: results,
-                shard: *shard,
-                export: *export,
-                store: *store,
-                folder: out,
-            };
+        Command::Sweep { .. } => {
+            let sweep = sweep::parameter_sweep(command, scene, out);
             dwell_study::sweep(scene, &sweep, &progress)?
         }
         // They are no studies of a scene.
@@ -459,15 +439,8 @@ fn print_warnings(scene: &SceneFile) {
     }
 }
 
-/// Says on standard error that the path of a number has a former name of a key.
-fn note_former_path(scene: &Scene, path: &str) {
-    if let Some(current) = scene.renamed_path(path) {
-        print_note(&format!("note: {path} is now {current}"));
-    }
-}
-
 /// Prints a line on standard error.
-fn print_note(text: &str) {
+pub(crate) fn print_note(text: &str) {
     // A closed standard error is no reason to panic.
     let _ = writeln!(std::io::stderr(), "{text}");
 }

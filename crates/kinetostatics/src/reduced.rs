@@ -149,6 +149,11 @@ impl<M: ReducibleModel> ExactModel<M> {
     pub fn model(&self) -> &M {
         &self.model
     }
+
+    /// A buffer for its coefficients.
+    pub fn coefficient_buffer(&self) -> Coefficients {
+        Coefficients::buffer(self.model.reaction_count())
+    }
 }
 
 impl<T: Scalar> Coefficients<T> {

@@ -15,7 +15,7 @@ use crate::keys::table;
 use crate::loads::add_separating_forces;
 use crate::magnitude::{Magnitudes, Names};
 use crate::motion::{ParsedMotion, calibration};
-use crate::number_paths::{body_numbers, section_numbers};
+use crate::number_paths::body_numbers;
 use crate::prescribed::{coordinate_sweep, prescribed_motion};
 use crate::requests::requests;
 use crate::scene::{Assembly, NamedCoordinate, Scene};
@@ -201,8 +201,8 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
         file: SceneFile::new(
             (name, source),
             (title.map(one_line), note.map(printable)),
-            fields.units(),
-            log,
+            fields,
+            body_numbers,
         ),
         masses: bodies.list.iter().map(|b| b.mass).collect(),
         varying_inertias,
@@ -222,8 +222,6 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
         stops,
         requests,
         calibration,
-        body_numbers,
-        section_numbers: section_numbers(fields),
     })
 }
 

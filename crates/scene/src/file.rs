@@ -1,8 +1,9 @@
 //! The file of a scene: its name, its text, and where in the text its things are.
 
-use crate::diagnostics::Diagnostics;
 use crate::error::{SceneError, SceneWarning, Source};
+use crate::number_paths::{SceneNumber, section_numbers};
 use crate::spans::{SceneLocation, SceneSpans};
+use crate::table_reader::TableReader;
 use crate::units::Units;
 use miette::NamedSource;
 use sha2::{Digest, Sha256};
@@ -24,6 +25,9 @@ pub struct SceneFile {
     pub warnings: Vec<SceneWarning>,
     pub(crate) units: Units,
     pub(crate) spans: SceneSpans,
+    pub(crate) body_numbers: Vec<SceneNumber>,
+    /// Those outside the bodies.
+    pub(crate) section_numbers: Vec<SceneNumber>,
 }
 
 impl SceneFile {
@@ -31,17 +35,20 @@ impl SceneFile {
     pub(crate) fn new(
         (name, source): (String, &Source),
         (title, note): (Option<String>, Option<String>),
-        units: &Units,
-        log: &Diagnostics,
+        fields: &TableReader<'_>,
+        body_numbers: Vec<SceneNumber>,
     ) -> Self {
+        let log = fields.log();
         Self {
             title: title.unwrap_or_else(|| name.clone()),
             name,
             note,
             source: Source::clone(source),
             warnings: log.warnings(),
-            units: units.clone(),
+            units: fields.units().clone(),
             spans: log.take_spans(),
+            body_numbers,
+            section_numbers: section_numbers(fields),
         }
     }
 

@@ -3,6 +3,7 @@
 
 use crate::bodies::Bodies;
 use crate::diagnostics::Span;
+use crate::dimensions::Dimensions;
 use crate::former_keys::schemas_of;
 use crate::keys::{KeySchema, ValueShape, table};
 use crate::spans::SceneLocation;
@@ -61,7 +62,10 @@ pub(crate) fn section_numbers(root: &TableReader<'_>) -> Vec<SceneNumber> {
 }
 
 /// The numbers of the bodies; the ground has its points alone, since its mass has no effect.
-pub(crate) fn body_numbers(bodies: &Bodies<'_>, fields: &TableReader<'_>) -> Vec<SceneNumber> {
+pub(crate) fn body_numbers<D: Dimensions>(
+    bodies: &Bodies<'_, D>,
+    fields: &TableReader<'_>,
+) -> Vec<SceneNumber> {
     let mut found = Vec::new();
     for (k, (body, entry)) in bodies.list.iter().zip(&fields.entries).enumerate() {
         let (id, body_table) = (BodyId(k), entry.value.get());

@@ -2,16 +2,18 @@
 //! scene with one of them changed.
 
 use crate::diagnostics::Span;
-use crate::error::SceneError;
+use crate::error::{SceneError, Source};
+use crate::file::SceneFile;
 use crate::number_paths::{SceneNumber, no_number};
 use crate::scene::Scene;
+use crate::space::SpaceScene;
 use crate::spans::SceneLocation;
 use miette::NamedSource;
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-impl Scene {
-    /// The path of every number that [`value`](Self::value) and [`with_value`](Self::with_value)
+impl SceneFile {
+    /// The path of every number that [`value`](Self::value) and [`with_value`](crate::Scene::with_value)
     /// know, in the order of the file: `crank.mass`, `crank.inertia`, `crank.center[0]` (when it is
     /// written as [x, y]), `crank.points.B[1]`. Only what the file writes down has a path. The
     /// ground has its points alone, since its mass has no effect.
@@ -46,23 +48,8 @@ impl Scene {
         }
     }
 
-    /// The same scene with the number at `path` replaced by `value`, in the scene's own unit.
-    ///
-    /// The number is replaced in the text and the text read again: whatever follows from the
-    /// number follows here too, and a message about it shows the number it is about.
-    ///
-    /// # Errors
-    /// As [`with_values`](Self::with_values).
-    pub fn with_value(&self, path: &str, value: f64) -> Result<Self, SceneError> {
-        self.with_values(&[(path, value)])
-    }
-
-    /// The same with several numbers replaced at once; the text is read again but once.
-    ///
-    /// # Errors
-    /// [`SceneError`] when a path leads nowhere or is named twice, a value is not finite, or the scene makes
-    /// no sense with these numbers.
-    pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
+    /// The text with the numbers at some paths replaced by values in the scene's own unit.
+    fn source_with(&self, values: &[(&str, f64)]) -> Result<Source, SceneError> {
         let mut changes = Vec::with_capacity(values.len());
         for &(path, value) in values {
             let span = self.find_number(path)?.span.clone();
@@ -86,10 +73,7 @@ impl Scene {
             from = span.end;
         }
         text += old.get(from..).unwrap_or_default();
-        let source = Arc::new(NamedSource::new(self.source.name(), text));
-        let mut scene = Self::build(self.name.clone(), &source)?;
-        scene.keep_functions(&self.loads);
-        Ok(scene)
+        Ok(Arc::new(NamedSource::new(self.source.name(), text)))
     }
 
     fn error_at(&self, message: String, span: Span, label: &str) -> SceneError {
@@ -112,5 +96,40 @@ impl Scene {
             let (message, help) = no_number(path, all);
             SceneError::without_labels(message, Some(help))
         })
+    }
+}
+
+impl Scene {
+    /// The same scene with the number at `path` replaced by `value`, in the scene's own unit.
+    ///
+    /// The number is replaced in the text and the text read again: whatever follows from the
+    /// number follows here too, and a message about it shows the number it is about.
+    ///
+    /// # Errors
+    /// As [`with_values`](Self::with_values).
+    pub fn with_value(&self, path: &str, value: f64) -> Result<Self, SceneError> {
+        self.with_values(&[(path, value)])
+    }
+
+    /// The same with several numbers replaced at once; the text is read again but once.
+    ///
+    /// # Errors
+    /// [`SceneError`] when a path leads nowhere or is named twice, a value is not finite, or the scene makes
+    /// no sense with these numbers.
+    pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
+        let mut scene = Self::build(self.name.clone(), &self.source_with(values)?)?;
+        scene.keep_functions(&self.loads);
+        Ok(scene)
+    }
+}
+
+impl SpaceScene {
+    /// The same scene with some numbers replaced, in its own units: as of [`Scene::with_values`].
+    ///
+    /// # Errors
+    /// [`SceneError`] when a path leads nowhere or is named twice, a value is not finite, or the scene makes
+    /// no sense with these numbers.
+    pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
+        Self::build(self.name.clone(), &self.source_with(values)?)
     }
 }

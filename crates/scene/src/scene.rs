@@ -1,7 +1,6 @@
 //! The scene as plain data.
 
 use crate::file::SceneFile;
-use crate::number_paths::SceneNumber;
 use dwell_geometry::{
     ActuatorId, AssemblyConfiguration, BodyId, Coordinate, Mechanism, Reaction, Vec2,
 };
@@ -44,9 +43,6 @@ pub struct Scene {
     pub motion: Option<FreeMotionSpec>,
     /// The one fitted number.
     pub calibration: Option<Calibration>,
-    pub(crate) body_numbers: Vec<SceneNumber>,
-    /// Those outside the bodies.
-    pub(crate) section_numbers: Vec<SceneNumber>,
 }
 
 impl Deref for Scene {

@@ -1,22 +1,21 @@
 //! `dwell calibrate`: the scene value that gives a required period of the free motion.
 
 use crate::estimate;
-use crate::explain::{
-    StudyError, explain_machine, explain_motion, missing_section_label, scene_error,
-};
-use crate::models::{compile_model, initial_reduced_state, reduced_model};
+use crate::explain::{StudyError, explain_machine, missing_section_label, scene_error};
+use crate::machines::MachineScene;
+use crate::models::{compile_model, reduced_model};
 use crate::number_format::{digits, number};
 use crate::ranges::extent;
-use crate::trajectory::compute::reject_unknown_variables;
+use crate::space::PreparedSpaceScene;
+use crate::sweep::compute::SweptScene;
 #[cfg(feature = "output")]
-use crate::{branch_note::branch_note, number_format::digits_within, output::Outcome};
-use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Orbit, ReducedState};
+use crate::{number_format::digits_within, output::Outcome};
+use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, MovingModel, Orbit, ReducedState};
 #[cfg(feature = "output")]
 use dwell_findings::Record;
-use dwell_geometry::Plan;
-use dwell_kinetostatics::{ExactModel, Load};
+use dwell_kinetostatics::{ExactModel, Load, Magnitude, Model, space};
 use dwell_numerics::root;
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{Scene, SceneLocation, SpaceScene};
 
 /// A calibrated value.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,7 +68,11 @@ const BISECTIONS: usize = 12;
 /// # Errors
 /// [`StudyError::Scene`] when there is no such value, the motion has no period, or no value between
 /// a millionth and a million times the present one gives it.
-pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationResult, StudyError> {
+pub fn find_value(
+    scene: &impl CalibratedScene,
+    path: &str,
+    period: f64,
+) -> Result<CalibrationResult, StudyError> {
     let current = scene.value(path)?;
     let unit = scene.unit_of(path).to_owned();
     let refuse = |message: String, help: &str| {
@@ -84,9 +87,9 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationR
             [(SceneLocation::Calibration, "the period of this motion")],
         ));
     }
-    reject_unknown_variables(scene)?;
+    scene.reject_unknown_columns()?;
     let (current_period, current_period_error) = period_with_error(scene)?;
-    let period_with = |value: f64| period_of(&scene.with_value(path, value)?);
+    let period_with = |value: f64| period_of(&scene.varied(&[(path, value)])?);
     let result = |value: f64| {
         Ok(CalibrationResult {
             path: path.to_owned(),
@@ -125,10 +128,15 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationR
 }
 
 /// The error of a value that gives a period (s): that of the period over its change with the value.
-fn value_error(scene: &Scene, path: &str, value: f64, period: f64) -> Result<f64, StudyError> {
-    let (_, error) = period_with_error(&scene.with_value(path, value)?)?;
+fn value_error(
+    scene: &impl CalibratedScene,
+    path: &str,
+    value: f64,
+    period: f64,
+) -> Result<f64, StudyError> {
+    let (_, error) = period_with_error(&scene.varied(&[(path, value)])?)?;
     let step = DIFFERENCE * value.abs().max(f64::MIN_POSITIVE);
-    let period_with = |value: f64| period_of(&scene.with_value(path, value)?);
+    let period_with = |value: f64| period_of(&scene.varied(&[(path, value)])?);
     let slope = match (period_with(value + step), period_with(value - step)) {
         (Ok(above), Ok(below)) => 0.5 * (above - below).abs() / step,
         // Next to a value without a period.
@@ -221,82 +229,146 @@ impl BracketSearch {
     }
 }
 
-fn period_of(scene: &Scene) -> Result<f64, StudyError> {
+fn period_of(scene: &impl CalibratedScene) -> Result<f64, StudyError> {
     Ok(orbit_of(scene)?.0.period)
 }
 
-/// The equation of motion of a scene without losses, drives and prescribed motions.
-enum ConservativeMotion {
-    /// That of a driven angle without loads.
-    Unloaded(Box<ExactModel>),
-    /// That of a length, or with loads, all of which have a potential.
-    Loaded(Box<Machine>),
+/// A scene that can be calibrated.
+pub trait CalibratedScene: SweptScene + MachineScene {
+    /// The equation of motion of its only coordinate, without losses, drives and prescribed motions.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where it has drives or losses, or several coordinates.
+    fn conservative_motion(&self) -> Result<ConservativeMotion<Self::Model>, StudyError>;
+
+    /// The path and the period, s, of its `[calibration]`.
+    fn calibration(&self) -> Option<(&str, f64)>;
 }
 
-impl ConservativeMotion {
-    fn new(scene: &Scene) -> Result<Self, StudyError> {
-        // A separating force changes no motion.
-        let is_loaded = scene.loads.iter().any(Load::does_work);
-        if let Some(drive) = (0..scene.drives.len()).next() {
-            return Err(scene_error(
-                scene,
-                "calibration needs the period of a motion without drives",
-                "remove the drives, or try values with `dwell simulate` or `dwell sweep --result cycle`",
-                [(SceneLocation::Drive(drive), "this drive would be ignored")],
-            ));
-        }
-        let has_no_potential = |load: &Load| load.does_work() && !load.is_conservative();
-        if let Some(load) = scene.loads.iter().position(has_no_potential) {
-            return Err(scene_error(
-                scene,
-                format!(
-                    "calibration needs the period of a motion without losses: `{}` has no potential",
-                    scene.loads[load].name
-                ),
-                "remove it, or try values with `dwell sweep --result motion`",
-                [(SceneLocation::Load(load), "no potential")],
-            ));
-        }
-        let exact = reduced_model(scene, &[])?;
-        if !is_loaded && exact.model().plan().is_angle(0) {
-            return Ok(Self::Unloaded(Box::new(exact)));
-        }
-        let model = compile_model(scene, &[])?;
-        let machine = Machine::new(model, &scene.loads, vec![CoordinateMode::Free], &[]);
-        let machine = machine.map_err(|e| explain_machine(scene, e))?;
-        Ok(Self::Loaded(Box::new(machine)))
-    }
+/// The equation of motion of a scene without losses, drives and prescribed motions.
+#[derive(Debug)]
+pub enum ConservativeMotion<M: MovingModel> {
+    /// That of a driven angle without loads.
+    Unloaded(Box<ExactModel>),
+    /// That of a length, or with loads, all of which have a potential; or in space.
+    Loaded(Box<Machine<M>>),
+}
 
+impl<M: MovingModel> ConservativeMotion<M> {
     fn orbit(&self, start: ReducedState) -> Result<Orbit, DynamicsError> {
         match self {
             Self::Unloaded(exact) => Orbit::new(exact.as_ref(), start),
             Self::Loaded(machine) => Orbit::loaded(machine, start),
         }
     }
+}
 
-    fn plan(&self) -> &Plan {
-        match self {
-            Self::Unloaded(exact) => exact.model().plan(),
-            Self::Loaded(machine) => machine.model().plan(),
+impl CalibratedScene for Scene {
+    fn conservative_motion(&self) -> Result<ConservativeMotion<Model>, StudyError> {
+        // A separating force changes no motion.
+        let is_loaded = self.loads.iter().any(Load::does_work);
+        refuse_drives(self)?;
+        let has_no_potential = |load: &Load| load.does_work() && !load.is_conservative();
+        if let Some(load) = self.loads.iter().position(has_no_potential) {
+            return Err(without_potential(self, load));
         }
+        let exact = reduced_model(self, &[])?;
+        if !is_loaded && exact.model().plan().is_angle(0) {
+            return Ok(ConservativeMotion::Unloaded(Box::new(exact)));
+        }
+        let model = compile_model(self, &[])?;
+        let machine = Machine::new(model, &self.loads, vec![CoordinateMode::Free], &[]);
+        let machine = machine.map_err(|e| explain_machine(self, e))?;
+        Ok(ConservativeMotion::Loaded(Box::new(machine)))
+    }
+
+    fn calibration(&self) -> Option<(&str, f64)> {
+        let section = self.calibration.as_ref()?;
+        Some((&section.path, section.period))
+    }
+}
+
+impl CalibratedScene for SpaceScene {
+    fn conservative_motion(&self) -> Result<ConservativeMotion<space::Model>, StudyError> {
+        refuse_drives(self)?;
+        let has_no_potential = |load: &space::Load| {
+            !(load.kind.is_conservative() && matches!(load.magnitude, Magnitude::Constant(_)))
+        };
+        if let Some(load) = self.loads.iter().position(has_no_potential) {
+            return Err(without_potential(self, load));
+        }
+        // Its error names the actuators where there are several.
+        PreparedSpaceScene::new(self)?;
+        Ok(ConservativeMotion::Loaded(Box::new(self.machine(&[])?)))
+    }
+
+    fn calibration(&self) -> Option<(&str, f64)> {
+        None
+    }
+}
+
+fn refuse_drives(scene: &impl MachineScene) -> Result<(), StudyError> {
+    match scene.drives().is_empty() {
+        true => Ok(()),
+        false => Err(scene_error(
+            scene,
+            "calibration needs the period of a motion without drives",
+            "remove the drives, or try values with `dwell simulate` or `dwell sweep --result cycle`",
+            [(SceneLocation::Drive(0), "this drive would be ignored")],
+        )),
+    }
+}
+
+fn without_potential(scene: &impl MachineScene, load: usize) -> StudyError {
+    scene_error(
+        scene,
+        format!(
+            "calibration needs the period of a motion without losses: `{}` has no potential",
+            scene.load_name(load).unwrap_or_default()
+        ),
+        "remove it, or try values with `dwell sweep --result motion`",
+        [(SceneLocation::Load(load), "no potential")],
+    )
+}
+
+/// An error of the motion in the names of the scene.
+fn explained<S: CalibratedScene>(
+    scene: &S,
+    motion: &ConservativeMotion<S::Model>,
+    error: &DynamicsError,
+) -> StudyError {
+    match motion {
+        ConservativeMotion::Loaded(machine) => scene.explain(machine.model(), error),
+        ConservativeMotion::Unloaded(_) => match scene.machine(&[]) {
+            Ok(machine) => scene.explain(machine.model(), error),
+            Err(other) => other,
+        },
     }
 }
 
 /// The period of a scene's motion, and its error, s.
-fn period_with_error(scene: &Scene) -> Result<(f64, f64), StudyError> {
+fn period_with_error(scene: &impl CalibratedScene) -> Result<(f64, f64), StudyError> {
     let (orbit, motion, start) = orbit_of(scene)?;
     let perturbed = |factor: f64| {
         let q_dot = start.q_dot * factor;
         motion.orbit(ReducedState { q_dot, ..start })
     };
     let error = estimate::of_period(&orbit, perturbed);
-    let error = error.map_err(|e| explain_motion(scene, motion.plan(), &e))?;
+    let error = error.map_err(|e| explained(scene, &motion, &e))?;
     Ok((orbit.period, error))
 }
 
-fn orbit_of(scene: &Scene) -> Result<(Orbit, ConservativeMotion, ReducedState), StudyError> {
-    let motion = ConservativeMotion::new(scene)?;
-    let Some(start) = initial_reduced_state(scene) else {
+/// An orbit, its equation of motion, and where it starts.
+type FoundOrbit<M> = (Orbit, ConservativeMotion<M>, ReducedState);
+
+fn orbit_of<S: CalibratedScene>(scene: &S) -> Result<FoundOrbit<S::Model>, StudyError> {
+    let motion = scene.conservative_motion()?;
+    let start = scene.motion_start();
+    let (true, Some(&q), Some(&q_dot)) = (
+        scene.has_motion(),
+        start.coordinates.first(),
+        start.velocities.first(),
+    ) else {
         return Err(scene_error(
             scene,
             "a period needs a [motion]",
@@ -304,8 +376,9 @@ fn orbit_of(scene: &Scene) -> Result<(Orbit, ConservativeMotion, ReducedState), 
             missing_section_label("motion"),
         ));
     };
+    let start = ReducedState { t: 0.0, q, q_dot };
     let orbit = motion.orbit(start);
-    let orbit = orbit.map_err(|e| explain_motion(scene, motion.plan(), &e))?;
+    let orbit = orbit.map_err(|e| explained(scene, &motion, &e))?;
     Ok((orbit, motion, start))
 }
 
@@ -315,16 +388,16 @@ fn orbit_of(scene: &Scene) -> Result<(Orbit, ConservativeMotion, ReducedState), 
 /// As [`find_value`]; when neither the caller nor the scene gives path and period; when there are drives, or loads without
 /// a potential.
 #[cfg(feature = "output")]
-pub fn calibrate(
-    scene: &Scene,
+pub fn calibrate<S: CalibratedScene>(
+    scene: &S,
     path: Option<&str>,
     period: Option<f64>,
 ) -> Result<Outcome, StudyError> {
-    let motion = ConservativeMotion::new(scene)?;
-    let note = branch_note(scene, motion.plan());
-    let section = scene.calibration.as_ref();
-    let path = path.or(section.map(|c| c.path.as_str()));
-    let period = period.or(section.map(|c| c.period));
+    scene.conservative_motion()?;
+    let note = scene.assembly_note(scene.machine(&[])?.model());
+    let section = scene.calibration();
+    let path = path.or(section.map(|(path, _)| path));
+    let period = period.or(section.map(|(_, period)| period));
     let (Some(path), Some(period)) = (path, period) else {
         return Err(scene_error(
             scene,

@@ -19,6 +19,7 @@ use crate::file::SceneFile;
 use crate::keys::table;
 use crate::magnitude::Magnitudes;
 use crate::motion::ParsedMotion;
+use crate::number_paths::body_numbers;
 use crate::prescribed::{coordinate_sweep, prescribed_motion};
 use crate::scene::NamedCoordinate;
 use crate::sections::{
@@ -71,7 +72,9 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
     let section = |key| section(fields, key);
     let (title, note) = (title(fields), text_of(fields, "note"));
     // Without bodies every other name would be unknown: one message is enough.
-    let bodies: Bodies<'_, Space> = Bodies::read(&needed_section(fields, "bodies")?);
+    let bodies_section = needed_section(fields, "bodies")?;
+    let bodies: Bodies<'_, Space> = Bodies::read(&bodies_section);
+    let body_numbers = body_numbers(&bodies, &bodies_section);
     let joints = Joints::read(needed_section(fields, "joints").as_ref(), &bodies, log);
     let actuators = section("actuators").map_or_else(Vec::new, |f| actuators(&f, &bodies, &joints));
     require_lengths(&joints, &actuators);
@@ -183,8 +186,8 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
         file: SceneFile::new(
             (name, source),
             (title.map(one_line), note.map(printable)),
-            fields.units(),
-            log,
+            fields,
+            body_numbers,
         ),
     })
 }

@@ -102,7 +102,7 @@ impl MachineScene for SpaceScene {
 }
 
 /// Explains a machine that cannot be built.
-fn explain_machine(scene: &SpaceScene, error: &MachineError) -> StudyError {
+pub(super) fn explain_machine(scene: &SpaceScene, error: &MachineError) -> StudyError {
     match error {
         MachineError::Load(load) => explain_load_error(scene, load),
         MachineError::Drive(drive) => scene_error(

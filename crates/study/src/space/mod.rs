@@ -11,6 +11,7 @@ mod motion;
 mod pictures;
 mod prepared;
 mod reduction;
+mod sweep;
 mod trajectory;
 mod views;
 

@@ -3,6 +3,7 @@
 use crate::explain::StudyError;
 use crate::number_format::{count, digits, digits_within, number};
 use crate::output::{Outcome, Picture};
+use crate::sweep::compute::SweptScene;
 use crate::sweep::compute::{Row, SweepQuantity};
 use crate::sweep::figure::{Drawn, figure};
 use crate::sweep::output::{PreparedSweep, RowStore};
@@ -28,8 +29,8 @@ struct Statistics {
 }
 
 /// What the summary and its record tell.
-struct SweepReport<'a> {
-    prepared: &'a PreparedSweep<'a>,
+struct SweepReport<'a, S> {
+    prepared: &'a PreparedSweep<'a, S>,
     path: &'a Path,
     counts: Counts,
     /// Number of stored points.
@@ -40,7 +41,7 @@ struct SweepReport<'a> {
 }
 
 pub(crate) fn report_sweep(
-    prepared: &PreparedSweep<'_>,
+    prepared: &PreparedSweep<'_, impl SweptScene>,
     path: &Path,
     stored: &dyn StoredResults,
     counts: Counts,
@@ -108,7 +109,7 @@ impl Statistics {
 }
 
 /// The table as arrays, with the index of each row and whether it has a message.
-fn npz(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Result<Vec<u8>, StudyError> {
+fn npz(prepared: &PreparedSweep<'_, impl SweptScene>, rows: &[Row]) -> Result<Vec<u8>, StudyError> {
     let mut table = prepared.requested.table(&prepared.design, rows);
     table.columns.insert(0, Column::new("index", ""));
     table.columns.push(Column::new("has_message", ""));
@@ -120,7 +121,7 @@ fn npz(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Result<Vec<u8>, StudyError
 }
 
 /// The table with the index of each row before it and its message behind it.
-fn csv(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Result<String, StudyError> {
+fn csv(prepared: &PreparedSweep<'_, impl SweptScene>, rows: &[Row]) -> Result<String, StudyError> {
     let numbers = prepared.requested.table(&prepared.design, rows).csv()?;
     let mut lines = numbers.lines();
     let mut text = format!("index,{},message\n", lines.next().unwrap_or_default());
@@ -135,7 +136,7 @@ fn csv(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Result<String, StudyError>
     Ok(text)
 }
 
-impl SweepReport<'_> {
+impl<S: SweptScene> SweepReport<'_, S> {
     /// The printed summary.
     fn summary(&self) -> String {
         let (prepared, counts) = (self.prepared, self.counts);

@@ -3,6 +3,7 @@
 use crate::explain::SweepError;
 use crate::number_format::{count, number};
 use crate::output::{self, scene_caption};
+use crate::sweep::compute::SweptScene;
 use crate::sweep::compute::{Axis as SweepAxis, SweepQuantity};
 use crate::sweep::output::PreparedSweep;
 use crate::sweep::spread::Spread;
@@ -33,7 +34,7 @@ pub(crate) enum Drawn {
 
 /// The figure of a sweep.
 pub(crate) fn figure(
-    prepared: &PreparedSweep<'_>,
+    prepared: &PreparedSweep<'_, impl SweptScene>,
     stored: &dyn StoredResults,
     failed: usize,
 ) -> Result<Drawn, SweepError> {
@@ -87,7 +88,11 @@ const HISTOGRAM: &str = "Histogram of each result; the band from the 2.5 % to th
 
 const BAND: &str = "Mean of the samples at each value, with the band between the 2.5 % and the 97.5 % quantile, which holds 95 % of them.";
 
-fn method_text(prepared: &PreparedSweep<'_>, stored: usize, failed: usize) -> String {
+fn method_text(
+    prepared: &PreparedSweep<'_, impl SweptScene>,
+    stored: usize,
+    failed: usize,
+) -> String {
     let points = count(stored, "point");
     let seed = match prepared.design.is_random() {
         true => format!(", seed {}", prepared.design.seed),
@@ -186,12 +191,12 @@ fn chosen_values(mut values: Vec<f64>) -> Vec<f64> {
 }
 
 /// The curves of a sweep over lists.
-struct SweptCurves<'a> {
-    prepared: &'a PreparedSweep<'a>,
+struct SweptCurves<'a, S> {
+    prepared: &'a PreparedSweep<'a, S>,
     stored: &'a dyn StoredResults,
 }
 
-impl SweptCurves<'_> {
+impl<S: SweptScene> SweptCurves<'_, S> {
     /// The values of an axis at all stored points.
     fn inputs(&self, axis: usize) -> Vec<f64> {
         let design = &self.prepared.design;

@@ -12,14 +12,14 @@ use crate::explain::{StudyError, SweepError};
 use crate::output::Outcome;
 use crate::progress::{Progress, Step};
 use crate::sweep::compute::{
-    Axis, Design, RequestedQuantities, Row, Shard, VariantFamily, VariationKind, block_length,
+    Axis, Design, RequestedQuantities, Row, Shard, SweptScene, VariationKind, block_length,
 };
 use crate::sweep::parts::PartFolder;
 use crate::sweep::store::{SCENE_TEXT, SHARD, Store, StoreFault, StudyIdentity};
 use crate::sweep::store_check::ExpectedPoints;
 use crate::sweep::stored::{LoadedRows, StoredResults as _};
 use dwell_report::{Column, TableFormat};
-use dwell_scene::Scene;
+use dwell_scene::SceneFile;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::fs;
@@ -74,8 +74,8 @@ pub struct ParameterSweep<'a> {
 }
 
 /// A validated sweep, ready to compute.
-pub(crate) struct PreparedSweep<'a> {
-    pub(crate) scene: &'a Scene,
+pub(crate) struct PreparedSweep<'a, S> {
+    pub(crate) scene: &'a S,
     pub(crate) sweep: &'a ParameterSweep<'a>,
     pub(crate) design: Design,
     pub(crate) requested: RequestedQuantities,
@@ -85,8 +85,8 @@ pub(crate) struct PreparedSweep<'a> {
     pub(crate) store: RowStore,
 }
 
-impl<'a> PreparedSweep<'a> {
-    fn new(scene: &'a Scene, sweep: &'a ParameterSweep<'_>) -> Result<Self, StudyError> {
+impl<'a, S: SweptScene> PreparedSweep<'a, S> {
+    fn new(scene: &'a S, sweep: &'a ParameterSweep<'_>) -> Result<Self, StudyError> {
         let design = Design::new(scene, sweep.vary, sweep.samples, sweep.seed)?;
         let requested = RequestedQuantities::new(scene, sweep.requests)?;
         let columns = requested.columns(&design);
@@ -198,7 +198,7 @@ impl<'a> PreparedSweep<'a> {
 /// [`StudyError`] where the sweep is invalid, the unchanged scene cannot be assembled, or the file holds another
 /// study or cannot be written. A point that cannot be computed is no error: its row holds the message.
 pub fn sweep(
-    scene: &Scene,
+    scene: &impl SweptScene,
     sweep: &ParameterSweep<'_>,
     progress: Progress<'_>,
 ) -> Result<Outcome, StudyError> {
@@ -216,7 +216,7 @@ pub fn sweep(
 
 /// A sweep whose rows go to an SQLite file.
 fn sweep_to_sqlite(
-    prepared: &PreparedSweep<'_>,
+    prepared: &PreparedSweep<'_, impl SweptScene>,
     progress: Progress<'_>,
 ) -> Result<Outcome, StudyError> {
     let (scene, sweep) = (prepared.scene, prepared.sweep);
@@ -255,11 +255,11 @@ fn sweep_to_sqlite(
 
 /// A sweep whose rows go to Parquet files: a thread that has computed a part writes it.
 fn sweep_to_parquet(
-    prepared: &PreparedSweep<'_>,
+    prepared: &PreparedSweep<'_, impl SweptScene>,
     progress: Progress<'_>,
 ) -> Result<Outcome, StudyError> {
     let (design, requested) = (&prepared.design, &prepared.requested);
-    let family = VariantFamily::new(prepared.scene, design, requested);
+    let family = prepared.scene.family(design, requested);
     let length = PART_LENGTHS[usize::from(family.is_none())];
     let mut study = prepared.study.clone();
     study.retain(|(key, _)| *key != SHARD);
@@ -307,13 +307,13 @@ fn sweep_to_parquet(
 
 /// Computes points on all cores; a single writer stores them as they arrive.
 fn compute(
-    prepared: &PreparedSweep<'_>,
+    prepared: &PreparedSweep<'_, impl SweptScene>,
     store: &mut Store<'_>,
     pending: &[u64],
     progress: Progress<'_>,
 ) -> Result<(), StudyError> {
     let (requested, design) = (&prepared.requested, &prepared.design);
-    let family = VariantFamily::new(prepared.scene, design, requested);
+    let family = prepared.scene.family(design, requested);
     let study = (prepared.scene, design, family.as_ref());
     write_from(store, |sender| {
         let blocks = pending.par_chunks(block_length(family.as_ref()));
@@ -348,7 +348,7 @@ fn write_from(
 }
 
 /// The files of shards of this scene in a folder, each with its part: `1/3`.
-fn shard_files(scene: &Scene, folder: &Path) -> Vec<(PathBuf, Shard)> {
+fn shard_files(scene: &SceneFile, folder: &Path) -> Vec<(PathBuf, Shard)> {
     let Ok(entries) = fs::read_dir(folder) else {
         return Vec::new();
     };

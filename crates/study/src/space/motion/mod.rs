@@ -10,8 +10,8 @@ mod tables;
 #[cfg(feature = "output")]
 pub use self::output::simulate_in_space;
 
-use self::problem::SpaceMotionProblem;
-use self::run::Run;
+pub(super) use self::problem::SpaceMotionProblem;
+pub(super) use self::run::Run;
 use super::trajectory::{
     SpaceEvaluator, add_rows, all_columns, explain_stop, is_listed, space_page,
 };
@@ -67,7 +67,7 @@ pub fn free_motion_page_in_space(
 impl SpaceMotionProblem<'_> {
     /// The motion by a solver, with rows at wanted `times` (s, ascending) and at its end, or else equally spaced, their errors, and
     /// what evaluates further ones.
-    fn simulate(
+    pub(super) fn simulate(
         &self,
         solver: &MotionSolver,
         times: Option<&[f64]>,

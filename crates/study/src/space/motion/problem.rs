@@ -15,7 +15,7 @@ use std::num::NonZeroUsize;
 pub(super) type Spec = FreeMotionSpec<Coordinate, Reaction>;
 
 /// The initial value problem of a scene's free motion.
-pub(super) struct SpaceMotionProblem<'a> {
+pub(crate) struct SpaceMotionProblem<'a> {
     pub(super) scene: &'a SpaceScene,
     pub(super) spec: &'a Spec,
     /// The reactions of the model for outputs, and that model with all loads.
@@ -33,7 +33,7 @@ impl<'a> SpaceMotionProblem<'a> {
     ///
     /// # Errors
     /// [`StudyError::Scene`] when it has no motion, or its machine cannot be built.
-    pub(super) fn new(scene: &'a SpaceScene) -> Result<Self, StudyError> {
+    pub(crate) fn new(scene: &'a SpaceScene) -> Result<Self, StudyError> {
         let Some(spec) = &scene.motion else {
             return Err(scene_error(
                 scene,

@@ -18,7 +18,7 @@ const TOLERANCES: [f64; 5] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5];
 const MIN_TOLERANCE: f64 = 1e-14;
 
 /// A computed motion.
-pub(super) struct Run {
+pub(crate) struct Run {
     pub(super) solution: Solution,
     /// The second run, whose difference shows the errors.
     pub(super) second: Option<Solution>,

@@ -23,4 +23,4 @@ pub(super) use self::output::drawn_positions;
 pub(super) use self::page::space_page;
 pub(super) use self::reactions::JointReactions;
 pub use self::rows::trajectory_page_in_space;
-pub(super) use self::rows::{add_rows, explain_stop};
+pub(super) use self::rows::{add_rows, computed_rows, explain_stop};

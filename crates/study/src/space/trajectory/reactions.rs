@@ -22,7 +22,7 @@ const COMPONENTS: [Component; 6] = [
 #[derive(Debug, Clone)]
 pub(crate) struct JointReactions {
     /// The requested ones that the loads determine.
-    pub(super) requested: Vec<Reaction>,
+    pub(crate) requested: Vec<Reaction>,
     /// The requested ones that redundant constraints leave open.
     pub(crate) indeterminate: Vec<Reaction>,
     /// By joint: whether its force and its moment have a magnitude that the loads determine.

@@ -9,8 +9,8 @@ use crate::explain::{StudyError, scene_error};
 use crate::progress::{Progress, Step};
 use crate::space::explain::{explain_loads, explain_position};
 use crate::trajectory::compute::{
-    Analysis, ComputedTrajectory, POSITIONS_PER_STEP, RowEvaluator as _, RowStorage, StopCause,
-    Trajectory, TrajectoryResults,
+    Analysis, ComputedTrajectory, POSITIONS_PER_STEP, Quantity, RowEvaluator as _, RowStorage,
+    StopCause, Trajectory, TrajectoryResults,
 };
 use dwell_geometry::space::Plan;
 use dwell_kinetostatics::KinetostaticsError;
@@ -29,11 +29,33 @@ pub(super) fn compute<'a, 'm>(
 where
     'a: 'm,
 {
+    let all = |_: Quantity| true;
+    computed_rows(
+        scene,
+        (reactions, model),
+        (analysis, points),
+        &all,
+        progress,
+    )
+}
+
+/// The same with some columns alone, among which is the abscissa.
+pub(crate) fn computed_rows<'a, 'm>(
+    scene: &'a SpaceScene,
+    (reactions, model): (&'m JointReactions, &'m Model),
+    (analysis, points): (Analysis, Option<usize>),
+    is_wanted: &dyn Fn(Quantity) -> bool,
+    progress: Progress<'_>,
+) -> Result<(ComputedTrajectory<'a>, SpaceEvaluator<'m>), StudyError>
+where
+    'a: 'm,
+{
     let followed = followed_scene(scene, model.plan());
     let trajectory = Trajectory::new(&followed, analysis, points)?;
     trajectory.check_laws(&followed)?;
     let is_limited = scene.lists_reactions && analysis != Analysis::Kinematics;
-    let all = all_columns(scene, reactions, (analysis, trajectory.is_timed()));
+    let mut all = all_columns(scene, reactions, (analysis, trajectory.is_timed()));
+    all.retain(|column| is_wanted(column.quantity));
     let mut columns = all.clone();
     columns.retain(|c| !is_limited || is_listed(c.quantity, reactions));
     let written = (0..columns.len()).collect();

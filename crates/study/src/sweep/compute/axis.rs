@@ -2,7 +2,7 @@
 
 use crate::explain::SweepError;
 use crate::sweep::compute::{normal, uniform};
-use dwell_scene::Scene;
+use dwell_scene::SceneFile;
 
 /// Maximum number of values of a grid.
 const MAX_VALUES: u64 = 1_000_000;
@@ -35,7 +35,7 @@ impl Axis {
     ///
     /// # Errors
     /// [`SweepError::Axis`].
-    pub(crate) fn parse(scene: &Scene, given: &str) -> Result<Self, SweepError> {
+    pub(crate) fn parse(scene: &SceneFile, given: &str) -> Result<Self, SweepError> {
         Self::read(scene, given).map_err(|Fault(reason, help)| SweepError::Axis {
             given: given.to_owned(),
             reason,
@@ -43,7 +43,7 @@ impl Axis {
         })
     }
 
-    fn read(scene: &Scene, given: &str) -> Result<Self, Fault> {
+    fn read(scene: &SceneFile, given: &str) -> Result<Self, Fault> {
         let separators = ["=", "~", "±", "+-"].into_iter();
         let found = separators.filter_map(|s| Some((given.find(s)?, s)));
         let Some((at, separator)) = found.min_by_key(|(at, _)| *at) else {

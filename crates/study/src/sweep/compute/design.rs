@@ -3,7 +3,7 @@
 
 use crate::explain::SweepError;
 use crate::sweep::compute::Axis;
-use dwell_scene::Scene;
+use dwell_scene::SceneFile;
 
 /// Maximum number of points: a result of all of them, 8 bytes each, is in memory for its mean and quantiles.
 const MAX_POINTS: u64 = 1_000_000_000;
@@ -11,7 +11,7 @@ const MAX_POINTS: u64 = 1_000_000_000;
 /// The points of a sweep: every combination of listed values, the first axis varying slowest, and for each the
 /// same random samples, so that combinations compare without noise.
 #[derive(Debug)]
-pub(crate) struct Design {
+pub struct Design {
     pub(crate) axes: Vec<Axis>,
     /// 1 if nothing is random.
     pub(crate) samples: u64,
@@ -23,7 +23,7 @@ impl Design {
     /// # Errors
     /// [`SweepError::Axis`] or [`SweepError::Design`].
     pub(crate) fn new(
-        scene: &Scene,
+        scene: &SceneFile,
         vary: &[String],
         samples: Option<u64>,
         seed: u64,

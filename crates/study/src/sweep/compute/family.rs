@@ -25,7 +25,7 @@ const OF_START: usize = 2;
 
 /// The variants of a sweep that share one structure.
 #[derive(Debug)]
-pub(crate) struct VariantFamily {
+pub struct VariantFamily {
     model: VariantModel,
     numbers: AffineNumbers,
     /// The reactions of the model, by their index among those of the mechanism.

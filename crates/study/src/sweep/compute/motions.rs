@@ -2,10 +2,12 @@
 
 use crate::cycle::compute::{CycleResults, CycleSearch, compute_cycle};
 use crate::explain::StudyError;
-use crate::free_motion::compute::{FreeMotion, MotionSolver, compute_free_motion};
-use crate::models::{SolverSettings, source_name};
+use crate::free_motion::compute::{MotionSolver, compute_free_motion};
+use crate::machines::MachineScene;
+use crate::models::SolverSettings;
 use crate::number_format::{coordinate_unit, force_unit};
 use crate::progress::no_progress;
+use crate::trajectory::compute::ComputedTrajectory;
 use dwell_kinetostatics::Model;
 use dwell_scene::{Scene, SceneError};
 
@@ -13,7 +15,7 @@ use dwell_scene::{Scene, SceneError};
 pub(crate) type NamedUnit = (String, String);
 
 /// What is computed of a column of a motion.
-const STATISTICS: [&str; 4] = ["end", "max_abs", "mean", "rms"];
+pub(crate) const STATISTICS: [&str; 4] = ["end", "max_abs", "mean", "rms"];
 
 /// The columns of a free motion whose results can be swept: coordinates with their speeds, requested reactions, forces and
 /// powers of drives.
@@ -64,17 +66,26 @@ pub(crate) fn motion_values(scene: &Scene, model: &Model) -> Result<Vec<f64>, St
     if let Some(error) = motion.computed.early_stop.take() {
         return Err(error);
     }
-    let times = column(&motion, "t")?;
+    let columns = motion_columns(scene, model);
+    statistics(&motion.computed, columns.iter().map(|(name, _)| name))
+}
+
+/// The end of a motion, s, and of each of some columns the [`STATISTICS`].
+pub(crate) fn statistics<'n>(
+    motion: &ComputedTrajectory<'_>,
+    names: impl Iterator<Item = &'n String>,
+) -> Result<Vec<f64>, StudyError> {
+    let times = column(motion, "t")?;
     let mut values = vec![times.last().copied().unwrap_or(f64::NAN)];
-    for (name, _) in motion_columns(scene, model) {
-        values.extend(statistics(&motion, &name, &times)?);
+    for name in names {
+        values.extend(statistics_of_column(motion, name, &times)?);
     }
     Ok(values)
 }
 
 /// A column of a motion, by row.
-fn column(motion: &FreeMotion, name: &str) -> Result<Vec<f64>, StudyError> {
-    let results = &motion.computed.results;
+fn column(motion: &ComputedTrajectory<'_>, name: &str) -> Result<Vec<f64>, StudyError> {
+    let results = &motion.results;
     let found = results.columns.iter().position(|c| c.name == name);
     let found = found.ok_or_else(|| {
         let message = format!("the motion has no column `{name}`");
@@ -84,9 +95,13 @@ fn column(motion: &FreeMotion, name: &str) -> Result<Vec<f64>, StudyError> {
 }
 
 /// The last value of a column, its largest magnitude, also between the rows, its mean over time, and its root mean square.
-fn statistics(motion: &FreeMotion, name: &str, times: &[f64]) -> Result<[f64; 4], StudyError> {
+fn statistics_of_column(
+    motion: &ComputedTrajectory<'_>,
+    name: &str,
+    times: &[f64],
+) -> Result<[f64; 4], StudyError> {
     let values = column(motion, name)?;
-    let results = &motion.computed.results;
+    let results = &motion.results;
     let columns = results.columns.iter().zip(&results.extrema.of_columns);
     let extrema = columns.filter(|(column, _)| column.name == name);
     let between = extrema.filter_map(|(_, ends)| *ends).flatten();
@@ -118,14 +133,14 @@ const CYCLE: [(&str, &str); 5] = [
 ];
 
 /// The results of the steady cycle, in their order.
-pub(crate) fn cycle_quantities(scene: &Scene) -> Vec<NamedUnit> {
-    if scene.drives.is_empty() {
+pub(crate) fn cycle_quantities<S: MachineScene>(scene: &S) -> Vec<NamedUnit> {
+    if scene.drives().is_empty() {
         return Vec::new();
     }
     let all = CYCLE.map(|(name, unit)| (name.to_owned(), unit.to_owned()));
     let mut all = Vec::from(all);
-    for drive in &scene.drives {
-        let unit = force_unit(drive.coordinate.is_angle()).to_owned();
+    for drive in scene.drives() {
+        let unit = force_unit(S::is_angle(drive.coordinate)).to_owned();
         all.push((format!("cycle.{}.max_abs", drive.name), unit));
         all.push((format!("cycle.{}.work", drive.name), "J".to_owned()));
     }
@@ -136,7 +151,7 @@ pub(crate) fn cycle_quantities(scene: &Scene) -> Vec<NamedUnit> {
 ///
 /// # Errors
 /// [`StudyError`] where there is no steady cycle.
-pub(crate) fn cycle_values(scene: &Scene) -> Result<Vec<f64>, StudyError> {
+pub(crate) fn cycle_values(scene: &impl MachineScene) -> Result<Vec<f64>, StudyError> {
     let settings = SolverSettings::default();
     let found = match compute_cycle(scene, &settings, None)? {
         CycleSearch::Steady(found) => found,
@@ -152,16 +167,16 @@ pub(crate) fn cycle_values(scene: &Scene) -> Result<Vec<f64>, StudyError> {
     ];
     let peaks = peak_forces(&found)?;
     let sources = found.prepared.machine.nonconservative_sources();
-    for (drive, peak) in scene.drives.iter().zip(peaks) {
+    for (drive, peak) in scene.drives().iter().zip(peaks) {
         let mut works = sources.iter().zip(&cycle.works);
-        let work = works.find(|(source, _)| source_name(scene, **source) == drive.name);
+        let work = works.find(|(source, _)| scene.name_of_source(**source) == drive.name);
         values.extend([peak, work.map_or(f64::NAN, |(_, work)| *work)]);
     }
     Ok(values)
 }
 
 /// The largest magnitude of the force of each drive at the samples of a cycle.
-fn peak_forces(found: &CycleResults<'_>) -> Result<Vec<f64>, StudyError> {
+fn peak_forces(found: &CycleResults<'_, impl MachineScene>) -> Result<Vec<f64>, StudyError> {
     let machine = &found.prepared.machine;
     let mut workspace = machine.workspace();
     let mut peaks = vec![0.0_f64; machine.drives()];

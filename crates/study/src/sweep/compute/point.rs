@@ -1,25 +1,16 @@
 //! One point of a sweep: the scene with its input values, and the results.
 
-use crate::branch_note::branch_note;
-use crate::explain::{StudyError, SweepError, explain_machine, explain_motion};
+use crate::explain::{StudyError, SweepError};
 use crate::former_names;
-use crate::models::{compile_model, initial_reduced_state, with_loads};
-use crate::number_format::{coordinate_unit, force_unit};
-use crate::sweep::compute::extremes::{ExtremeValues, RangeCurves};
-use crate::sweep::compute::motions::{
-    cycle_quantities, cycle_values, motion_quantities, motion_values,
-};
-use crate::trajectory::compute::{
-    Analysis, WantedForces, check_variables, is_prefix_of, peak_forces,
-};
-use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Orbit, ReducedState};
-use dwell_kinetostatics::Model;
-use dwell_scene::Scene;
+use crate::sweep::compute::SweptScene;
+use crate::sweep::compute::available::Available;
+use crate::sweep::compute::extremes::ExtremeValues;
+use crate::trajectory::compute::is_prefix_of;
 use std::collections::BTreeSet;
 
 /// What a result is computed with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ResultKind {
+pub(crate) enum ResultKind {
     /// Smallest and largest m, smallest and largest ½m′.
     Inertia,
     /// The coordinates at which they occur: only on request.
@@ -47,9 +38,9 @@ pub(super) enum ResultKind {
 pub(crate) struct SweepQuantity {
     pub(crate) name: String,
     /// The name it had before it was renamed, which a request may still use.
-    former: Option<String>,
+    pub(super) former: Option<String>,
     pub(crate) unit: String,
-    pub(super) kind: ResultKind,
+    pub(crate) kind: ResultKind,
     /// Its index among the results of its kind.
     pub(super) index: usize,
 }
@@ -88,7 +79,7 @@ impl SweepQuantity {
 
 /// The results to compute at every point.
 #[derive(Debug)]
-pub(crate) struct RequestedQuantities {
+pub struct RequestedQuantities {
     pub(crate) quantities: Vec<SweepQuantity>,
     /// A line for each request that uses a former name, and for each body far from its approximate angle.
     pub(crate) notes: String,
@@ -115,10 +106,11 @@ impl RequestedQuantities {
     ///
     /// # Errors
     /// [`StudyError`] where the unchanged scene cannot be assembled; [`SweepError::Result`].
-    pub(crate) fn new(scene: &Scene, requests: &[String]) -> Result<Self, StudyError> {
-        let model = compile_model(scene, &scene.mechanism.reactions())?;
-        check_variables(scene, &model)?;
-        let mut quantities = available_quantities(scene, &model);
+    pub(crate) fn new(scene: &impl SweptScene, requests: &[String]) -> Result<Self, StudyError> {
+        let Available {
+            mut quantities,
+            notes: of_scene,
+        } = scene.available_quantities()?;
         for request in requests {
             if !quantities.iter().any(|q| q.matches(request)) {
                 let name = request.clone();
@@ -140,7 +132,7 @@ impl RequestedQuantities {
             former_names::note(request, renamed.map(|q| &q.name))
         });
         let mut notes: String = notes.collect();
-        notes += &branch_note(scene, model.plan());
+        notes += &of_scene;
         quantities.retain(|q| match requests {
             [] => q.kind.on_request().is_none(),
             requests => requests.iter().any(|request| q.matches(request)),
@@ -153,81 +145,30 @@ impl RequestedQuantities {
     }
 
     /// Computes them with some numbers of the scene replaced. What fails has no value, but a message.
-    pub(crate) fn evaluate(&self, scene: &Scene, values: &[(&str, f64)]) -> PointResult {
+    pub(crate) fn evaluate(&self, scene: &impl SweptScene, values: &[(&str, f64)]) -> PointResult {
         let mut result = PointResult {
             values: vec![f64::NAN; self.quantities.len()],
             message: None,
         };
-        let varied = scene.with_values(values).map_err(StudyError::from);
-        let done = varied.and_then(|scene| self.compute(&scene, &mut result.values));
+        let mut results = Results {
+            quantities: &self.quantities,
+            cells: &mut result.values,
+            failed: None,
+        };
+        let varied = scene.varied(values).map_err(StudyError::from);
+        let done = varied.and_then(|scene| scene.compute_results(self, &mut results));
+        let done = done.and_then(|()| results.failed.map_or(Ok(()), Err));
         result.message = done.err().map(|error| first_message(&error));
         result
     }
 
-    /// Compiles the mechanism once, for all requested quantities. Returns the first error, with the values of the
-    /// others.
-    fn compute(&self, scene: &Scene, cells: &mut [f64]) -> Result<(), StudyError> {
-        let model = compile_model(scene, &scene.mechanism.reactions())?;
-        let includes = |kind: ResultKind| self.quantities.iter().any(|q| q.kind == kind);
-        let mut results = Results {
-            quantities: &self.quantities,
-            cells,
-            failed: None,
-        };
-        if let Some((from, to)) = model.plan().range().limits() {
-            results.set(ResultKind::Range, Ok(vec![from, to]));
-        }
-        if includes(ResultKind::Motion) {
-            results.set(ResultKind::Motion, motion_values(scene, &model));
-        }
-        if includes(ResultKind::Cycle) {
-            results.set(ResultKind::Cycle, cycle_values(scene));
-        }
-        if includes(ResultKind::Inertia) || includes(ResultKind::InertiaPlace) {
-            let extremes = RangeCurves::of_inertia(scene, &model).map(|curves| curves.extremes());
-            results.set_points([ResultKind::Inertia, ResultKind::InertiaPlace], extremes);
-        }
-        self.compute_orbit(scene, &model, &mut results);
-        if (includes(ResultKind::Reaction) || includes(ResultKind::ActuatorForce))
-            && let Some(analysis) = peak_analysis(scene)
-        {
-            let wanted = WantedForces {
-                reactions: self.indices(&[ResultKind::Reaction]),
-                actuators: self.indices(&[ResultKind::ActuatorForce]),
-            };
-            match peak_forces(scene, &with_loads(scene, model)?, analysis, &wanted) {
-                Ok(peaks) => {
-                    results.set(ResultKind::Reaction, Ok(peaks.reactions));
-                    results.set(ResultKind::ActuatorForce, Ok(peaks.tau));
-                }
-                Err(error) => results.set(ResultKind::Reaction, Err(error)),
-            }
-        }
-        results.failed.map_or(Ok(()), Err)
-    }
-
-    /// The results of the conservative free motion.
-    fn compute_orbit(&self, scene: &Scene, model: &Model, results: &mut Results<'_>) {
-        let kinds = [ResultKind::FreeReaction, ResultKind::FreeReactionPlace];
-        let reactions = self.indices(&kinds);
-        let is_requested = self.quantities.iter().any(|q| q.kind == ResultKind::Orbit);
-        let start = initial_reduced_state(scene);
-        let Some(start) = start.filter(|_| is_requested || !reactions.is_empty()) else {
-            return;
-        };
-        let orbit = orbit(scene, start, model);
-        if !reactions.is_empty()
-            && let Ok(orbit) = &orbit
-        {
-            let curves = RangeCurves::of_free_reactions(scene, model, &reactions, orbit.energy);
-            results.set_points(kinds, curves.map(|curves| curves.largest(&reactions)));
-        }
-        let values = orbit.map(|orbit| vec![orbit.period, orbit.energy]);
-        results.set(ResultKind::Orbit, values);
+    /// Whether a quantity of a kind is requested.
+    pub(crate) fn includes(&self, kind: ResultKind) -> bool {
+        self.quantities.iter().any(|q| q.kind == kind)
     }
 
     /// The indices of the requested quantities of some kinds.
-    fn indices(&self, kinds: &[ResultKind]) -> Vec<usize> {
+    pub(crate) fn indices(&self, kinds: &[ResultKind]) -> Vec<usize> {
         let quantities = self.quantities.iter().filter(|q| kinds.contains(&q.kind));
         let indices: BTreeSet<usize> = quantities.map(|q| q.index).collect();
         indices.into_iter().collect()
@@ -235,14 +176,14 @@ impl RequestedQuantities {
 }
 
 /// The results of a point as they are computed, and the first error.
-struct Results<'a> {
+pub struct Results<'a> {
     quantities: &'a [SweepQuantity],
     cells: &'a mut [f64],
     failed: Option<StudyError>,
 }
 
 impl Results<'_> {
-    fn set(&mut self, kind: ResultKind, computed: Result<Vec<f64>, StudyError>) {
+    pub(crate) fn set(&mut self, kind: ResultKind, computed: Result<Vec<f64>, StudyError>) {
         match computed {
             Err(error) => {
                 self.failed.get_or_insert(error);
@@ -256,8 +197,26 @@ impl Results<'_> {
         }
     }
 
+    /// Values by the names of their quantities: of a kind whose quantities are not the same in every variant.
+    pub(crate) fn set_named(
+        &mut self,
+        kind: ResultKind,
+        computed: Result<Vec<(String, f64)>, StudyError>,
+    ) {
+        match computed {
+            Err(error) => self.set(kind, Err(error)),
+            Ok(values) => {
+                let cells = self.quantities.iter().zip(&mut *self.cells);
+                for (quantity, cell) in cells.filter(|(q, _)| q.kind == kind) {
+                    let named = values.iter().find(|(name, _)| *name == quantity.name);
+                    *cell = named.map_or(f64::NAN, |(_, value)| *value);
+                }
+            }
+        }
+    }
+
     /// Values with their places.
-    fn set_points(
+    pub(crate) fn set_points(
         &mut self,
         [values, places]: [ResultKind; 2],
         computed: Result<ExtremeValues, StudyError>,
@@ -281,112 +240,4 @@ fn first_message(error: &StudyError) -> String {
         }
         other => other.to_string(),
     }
-}
-
-/// The analysis for peak forces: along the scene's motion or sweep, or statics over its range.
-fn peak_analysis(scene: &Scene) -> Option<Analysis> {
-    if scene.prescribed.is_some() || scene.sweep.is_some() {
-        return Some(Analysis::Kinetostatics);
-    }
-    let single = scene.mechanism.actuators.len() == 1;
-    (single && !scene.loads.is_empty()).then_some(Analysis::Statics)
-}
-
-/// Every quantity that the sections of a scene allow.
-fn available_quantities(scene: &Scene, model: &Model) -> Vec<SweepQuantity> {
-    let mut all = Vec::new();
-    let mut add = |name: String, unit: &str, kind, index| {
-        all.push(SweepQuantity {
-            former: former_names::former_result(&name),
-            name,
-            unit: unit.to_owned(),
-            kind,
-            index,
-        });
-    };
-    if model.plan().actuators() == 1 {
-        let angle = model.plan().is_angle(0);
-        let (m, half_dm) = if angle {
-            ("kg m2", "kg m2/rad")
-        } else {
-            ("kg", "kg/m")
-        };
-        let place_unit = coordinate_unit(angle);
-        for (k, (name, unit)) in [("m", m), ("half_dm", half_dm)].into_iter().enumerate() {
-            for (index, end) in [(2 * k, "min"), (2 * k + 1, "max")] {
-                add(format!("{name}.{end}"), unit, ResultKind::Inertia, index);
-                let place = format!("place.{name}.{end}");
-                add(place, place_unit, ResultKind::InertiaPlace, index);
-            }
-        }
-        add("range.lower".to_owned(), place_unit, ResultKind::Range, 0);
-        add("range.upper".to_owned(), place_unit, ResultKind::Range, 1);
-        if is_conservative(scene, model) {
-            add("period".to_owned(), "s", ResultKind::Orbit, 0);
-            add("energy".to_owned(), "J", ResultKind::Orbit, 1);
-            if peak_analysis(scene).is_none() {
-                for (k, name, unit) in determinate_reactions(scene, model) {
-                    add(format!("{name}.max_abs"), unit, ResultKind::FreeReaction, k);
-                    let place = format!("place.{name}.max_abs");
-                    add(place, place_unit, ResultKind::FreeReactionPlace, k);
-                }
-            }
-        }
-    }
-    if peak_analysis(scene).is_some() {
-        for (k, actuator) in scene.mechanism.actuators.iter().enumerate() {
-            let unit = force_unit(model.plan().is_angle(k));
-            let name = format!("{}.actuator_force.max_abs", actuator.name);
-            add(name, unit, ResultKind::ActuatorForce, k);
-        }
-        for (k, name, unit) in determinate_reactions(scene, model) {
-            add(format!("{name}.max_abs"), unit, ResultKind::Reaction, k);
-        }
-    }
-    for (kind, quantities) in [
-        (ResultKind::Motion, motion_quantities(scene, model)),
-        (ResultKind::Cycle, cycle_quantities(scene)),
-    ] {
-        for (index, (name, unit)) in quantities.into_iter().enumerate() {
-            add(name, &unit, kind, index);
-        }
-    }
-    all
-}
-
-/// The requested reactions that are results, with their index in the model, name and unit: not those that are statically
-/// indeterminate.
-fn determinate_reactions(scene: &Scene, model: &Model) -> Vec<(usize, String, &'static str)> {
-    let all = model.reactions().iter().enumerate();
-    let determinate = all.filter(|&(k, reaction)| {
-        model.plan().is_determinate(k) && scene.requests.reactions.contains(reaction)
-    });
-    let named = determinate.map(|(k, reaction)| {
-        let name = scene.mechanism.reaction_name(*reaction);
-        (k, name, reaction.component.unit())
-    });
-    named.collect()
-}
-
-/// Whether the scene has a conservative free motion.
-fn is_conservative(scene: &Scene, model: &Model) -> bool {
-    let laws = scene.motion.iter().flat_map(|spec| &spec.laws);
-    let is_free = laws.into_iter().all(Option::is_none) && scene.drives.is_empty();
-    let Some(start) = initial_reduced_state(scene).filter(|_| is_free) else {
-        return false;
-    };
-    orbit_machine(scene, model).is_ok_and(|machine| {
-        let orbit = Orbit::loaded(&machine, start);
-        !matches!(orbit, Err(DynamicsError::NotConservative { .. }))
-    })
-}
-
-fn orbit_machine(scene: &Scene, model: &Model) -> Result<Machine, StudyError> {
-    let (model, modes) = (model.without_reactions(), vec![CoordinateMode::Free]);
-    Machine::new(model, &scene.loads, modes, &scene.drives).map_err(|e| explain_machine(scene, e))
-}
-
-fn orbit(scene: &Scene, start: ReducedState, model: &Model) -> Result<Orbit, StudyError> {
-    let machine = orbit_machine(scene, model)?;
-    Orbit::loaded(&machine, start).map_err(|e| explain_motion(scene, model.plan(), &e))
 }

@@ -2,10 +2,9 @@
 
 use crate::explain::StudyError;
 use crate::sweep::compute::point::PointResult;
-use crate::sweep::compute::{Design, RequestedQuantities, Row, VariantFamily};
+use crate::sweep::compute::{Design, RequestedQuantities, Row, SweptScene, VariantFamily};
 use dwell_dynamics::interruption;
 use dwell_findings::{Column, Table};
-use dwell_scene::Scene;
 use rayon::prelude::*;
 
 /// The points of a sweep.
@@ -26,7 +25,7 @@ pub struct ComputedSweep {
 /// [`StudyError`] where the sweep is invalid or the unchanged scene cannot be assembled. A point that cannot be
 /// computed is no error: it has a message.
 pub fn compute_sweep(
-    scene: &Scene,
+    scene: &impl SweptScene,
     vary: &[String],
     samples: Option<u64>,
     seed: u64,
@@ -34,7 +33,7 @@ pub fn compute_sweep(
 ) -> Result<ComputedSweep, StudyError> {
     let design = Design::new(scene, vary, samples, seed)?;
     let requested = RequestedQuantities::new(scene, requests)?;
-    let family = VariantFamily::new(scene, &design, &requested);
+    let family = scene.family(&design, &requested);
     let indices: Vec<u64> = (0..design.points).collect();
     let blocks = indices.par_chunks(block_length(family.as_ref()));
     let blocks = blocks.map(|block| {
@@ -87,7 +86,7 @@ impl RequestedQuantities {
     /// compilation of its own where there is none or a point does not fit it.
     pub(crate) fn points(
         &self,
-        (scene, design, family): (&Scene, &Design, Option<&VariantFamily>),
+        (scene, design, family): (&impl SweptScene, &Design, Option<&VariantFamily>),
         indices: &[u64],
         done: &mut dyn FnMut(Row),
     ) {

@@ -1,0 +1,81 @@
+//! The quantities that a scene may be swept for, in the order of their columns.
+
+use crate::former_names;
+use crate::number_format::{coordinate_unit, force_unit};
+use crate::sweep::compute::motions::NamedUnit;
+use crate::sweep::compute::point::{ResultKind, SweepQuantity};
+
+/// A reaction: its index among the results of its kind, its name and its unit.
+pub(crate) type IndexedReaction = (usize, String, &'static str);
+
+/// Every quantity of a scene.
+#[derive(Debug, Default)]
+pub struct Available {
+    pub(crate) quantities: Vec<SweepQuantity>,
+    /// What is said of the scene's assembly.
+    pub(crate) notes: String,
+}
+
+impl Available {
+    fn add(&mut self, name: String, unit: &str, kind: ResultKind, index: usize) {
+        self.quantities.push(SweepQuantity {
+            former: former_names::former_result(&name),
+            name,
+            unit: unit.to_owned(),
+            kind,
+            index,
+        });
+    }
+
+    /// Smallest and largest m and ½m′ with their places, and the ends of the range.
+    pub(crate) fn add_inertia(&mut self, is_angle: bool) {
+        let [m, half_dm] = match is_angle {
+            true => ["kg m2", "kg m2/rad"],
+            false => ["kg", "kg/m"],
+        };
+        let place_unit = coordinate_unit(is_angle);
+        for (k, (name, unit)) in [("m", m), ("half_dm", half_dm)].into_iter().enumerate() {
+            for (index, end) in [(2 * k, "min"), (2 * k + 1, "max")] {
+                self.add(format!("{name}.{end}"), unit, ResultKind::Inertia, index);
+                let place = format!("place.{name}.{end}");
+                self.add(place, place_unit, ResultKind::InertiaPlace, index);
+            }
+        }
+        self.add("range.lower".to_owned(), place_unit, ResultKind::Range, 0);
+        self.add("range.upper".to_owned(), place_unit, ResultKind::Range, 1);
+    }
+
+    /// Period and energy of the conservative motion, and the largest reactions in it with their places.
+    pub(crate) fn add_orbit(&mut self, is_angle: bool, reactions: Vec<IndexedReaction>) {
+        self.add("period".to_owned(), "s", ResultKind::Orbit, 0);
+        self.add("energy".to_owned(), "J", ResultKind::Orbit, 1);
+        for (k, name, unit) in reactions {
+            self.add(format!("{name}.max_abs"), unit, ResultKind::FreeReaction, k);
+            let place = format!("place.{name}.max_abs");
+            let unit = coordinate_unit(is_angle);
+            self.add(place, unit, ResultKind::FreeReactionPlace, k);
+        }
+    }
+
+    /// The largest actuator forces (by actuator its name, and whether it drives an angle) and reactions.
+    pub(crate) fn add_peaks<'a>(
+        &mut self,
+        actuators: impl Iterator<Item = (&'a str, bool)>,
+        reactions: Vec<IndexedReaction>,
+    ) {
+        for (k, (name, is_angle)) in actuators.enumerate() {
+            let name = format!("{name}.actuator_force.max_abs");
+            self.add(name, force_unit(is_angle), ResultKind::ActuatorForce, k);
+        }
+        for (k, name, unit) in reactions {
+            self.add(format!("{name}.max_abs"), unit, ResultKind::Reaction, k);
+        }
+    }
+
+    /// Quantities of a kind in their order.
+    pub(crate) fn add_all(&mut self, kind: ResultKind, all: Vec<NamedUnit>) {
+        for (index, (name, unit)) in all.into_iter().enumerate() {
+            self.add(name, &unit, kind, index);
+        }
+    }
+}
