@@ -73,8 +73,9 @@ pub use models::{PRESETS, PreparedScene, SolverSettings};
 pub use progress::{Progress, Step, no_progress};
 pub use reduce::compute::{TableRequest, compute_reduction};
 pub use space::{
-    PreparedSpaceScene, compute_reduction_in_space, free_motion_page_in_space,
-    reduction_page_in_space, trajectory_page_in_space,
+    FreeMotionInSpace, PreparedSpaceScene, compute_free_motion_in_space, compute_period_in_space,
+    compute_reduction_in_space, compute_trajectory_in_space, free_motion_page_in_space,
+    loaded_model_in_space, reduction_page_in_space, trajectory_page_in_space,
 };
 pub use sweep::{Shard, compute_sweep};
 pub use symbolic::compute::{compute_closed_form, symbolic_findings};

@@ -19,13 +19,16 @@ mod views;
 pub use check::check_in_space;
 #[cfg(feature = "output")]
 pub use export::export_in_space;
-pub use motion::free_motion_page_in_space;
 #[cfg(feature = "output")]
 pub use motion::simulate_in_space;
+pub use motion::{
+    FreeMotionInSpace, compute_free_motion_in_space, compute_period_in_space,
+    free_motion_page_in_space,
+};
 #[cfg(feature = "output")]
 pub use pictures::reduce_in_space;
-pub use prepared::PreparedSpaceScene;
+pub use prepared::{PreparedSpaceScene, loaded_model_in_space};
 pub use reduction::{compute_reduction_in_space, reduction_page_in_space};
 #[cfg(feature = "output")]
 pub use trajectory::analyse_in_space;
-pub use trajectory::trajectory_page_in_space;
+pub use trajectory::{compute_trajectory_in_space, trajectory_page_in_space};

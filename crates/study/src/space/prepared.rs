@@ -117,6 +117,17 @@ pub(super) fn compile(scene: &SpaceScene, reactions: &[Reaction]) -> Result<Mode
         .map_err(|e| explain_model(scene, &e))
 }
 
+/// A model of a scene for some reactions, with its loads, and those through which its drives act.
+///
+/// # Errors
+/// [`StudyError::Scene`] when the mechanism cannot be assembled, or a load does not fit it.
+pub fn loaded_model_in_space(
+    scene: &SpaceScene,
+    reactions: &[Reaction],
+) -> Result<Model, StudyError> {
+    with_loads(scene, compile(scene, reactions)?)
+}
+
 /// The reactions of a model: those that the loads determine, and those that redundant constraints leave open.
 pub(super) fn sort_reactions(
     scene: &SpaceScene,

@@ -14,6 +14,7 @@ mod refinement;
 mod segmented_motion;
 mod simulation;
 mod tables;
+mod within_steps;
 
 pub(crate) use difference::Difference;
 pub(crate) use difference::pair_by_time;
@@ -26,3 +27,4 @@ pub(crate) use simulation::compute_free_motion_at;
 pub(crate) use simulation::{DEFAULT_SAMPLES, check_sample_interval, check_times};
 pub use simulation::{FreeMotion, MotionSolver, compute_free_motion};
 pub(crate) use tables::sliding_at;
+pub(crate) use within_steps::{MAX_STEPS, StatesWithinSteps, exact_state};

@@ -1,5 +1,6 @@
 //! The free motion of scenes in space: its rows, what is said of it, and its page.
 
+mod between_rows;
 #[cfg(feature = "output")]
 mod output;
 mod problem;
@@ -10,6 +11,7 @@ mod tables;
 #[cfg(feature = "output")]
 pub use self::output::simulate_in_space;
 
+use self::between_rows::MotionSampler;
 pub(super) use self::problem::SpaceMotionProblem;
 pub(super) use self::run::Run;
 use super::trajectory::{
@@ -19,12 +21,53 @@ use crate::explain::StudyError;
 use crate::free_motion::compute::{MotionSolver, check_times};
 use crate::progress::{Progress, no_progress};
 use crate::trajectory::compute::{
-    Analysis, ComputedTrajectory, FreeTrajectory, Quantity, RowStorage, Trajectory,
-    TrajectoryResults, TrajectorySample,
+    Analysis, ComputedTrajectory, FreeTrajectory, MotionBetweenRows, Quantity, RowStorage, Sampler,
+    Trajectory, TrajectoryResults, TrajectorySample,
 };
+use dwell_dynamics::Orbit;
 use dwell_findings::RecordedEvent;
 use dwell_page::Page;
 use dwell_scene::SpaceScene;
+
+/// A free motion in space, up to where it ended.
+pub struct FreeMotionInSpace {
+    /// Coordinates, energies and forces at the samples, and why the motion ended early or misses the required accuracy.
+    pub computed: ComputedTrajectory<'static>,
+    /// By event that happened: its time, s, and its name.
+    pub events: Vec<(f64, String)>,
+    /// The estimated error, in the sense of [`MotionSolver::Accuracy`], where an accuracy was required.
+    pub estimated_error: Option<f64>,
+}
+
+/// The free motion of a scene in space.
+///
+/// # Errors
+/// [`StudyError`] when the scene has no motion, or its initial state cannot be evaluated. What ends it later is in
+/// [`ComputedTrajectory::early_stop`].
+pub fn compute_free_motion_in_space(
+    scene: &SpaceScene,
+    solver: &MotionSolver,
+    progress: Progress<'_>,
+) -> Result<FreeMotionInSpace, StudyError> {
+    let problem = SpaceMotionProblem::new(scene)?;
+    let (run, computed, _) = problem.simulate(solver, None, progress)?;
+    let events = problem.recorded_events(&run).into_iter();
+    let errors = run.accuracy.and_then(|_| problem.errors(&run));
+    Ok(FreeMotionInSpace {
+        computed,
+        events: events.map(|event| (event.t, event.name)).collect(),
+        estimated_error: errors.map(|errors| errors.largest),
+    })
+}
+
+/// The orbit of the conservative free motion of one coordinate of a scene in space: its period and its energy.
+///
+/// # Errors
+/// [`StudyError`] when the scene has no motion, or it is not conservative.
+pub fn compute_period_in_space(scene: &SpaceScene) -> Result<Orbit, StudyError> {
+    let problem = SpaceMotionProblem::new(scene)?;
+    problem.orbit(1.0).map_err(|error| problem.explain(&error))
+}
 
 /// The free motion of a scene in space as a page, and why it ended early or misses the required accuracy.
 ///
@@ -85,10 +128,20 @@ impl SpaceMotionProblem<'_> {
             Some(times) => self.samples_at(&run, times),
         };
         let samples = samples.map_err(|e| self.explain(&e))?;
-        let (mut computed, evaluator) = self.rows(&run, samples, progress)?;
+        let sampler = || -> Sampler<'_> {
+            let mut sampler = MotionSampler::new(self, &run);
+            Box::new(move |t, precision| sampler.sample_at(t, precision))
+        };
+        let between = self
+            .steps_as_samples(&run)
+            .map(|further| MotionBetweenRows {
+                further,
+                sampler: &sampler,
+            });
+        let (mut computed, evaluator) = self.rows(&run, samples, between, progress)?;
         let second = run.second.as_ref().filter(|_| times.is_none());
         let second = second.and_then(|second| self.samples(second).ok());
-        let second = second.and_then(|samples| self.rows(&run, samples, &no_progress).ok());
+        let second = second.and_then(|samples| self.rows(&run, samples, None, &no_progress).ok());
         computed.set_errors(second.as_ref().map(|(computed, _)| computed));
         let shortfall = self.shortfall(&run, solver);
         computed.early_stop = shortfall.or(computed.early_stop);
@@ -115,6 +168,7 @@ impl SpaceMotionProblem<'_> {
         &self,
         run: &Run,
         samples: Vec<TrajectorySample>,
+        between: Option<MotionBetweenRows<'_>>,
         progress: Progress<'_>,
     ) -> Result<(ComputedTrajectory<'static>, SpaceEvaluator<'_>), StudyError> {
         let (scene, model) = (self.scene, &self.output_model);
@@ -152,7 +206,8 @@ impl SpaceMotionProblem<'_> {
             early_stop => early_stop,
         };
         results.finish_rows()?;
-        results.find_extrema(model.plan().size(), &trajectory, &[evaluator.clone()], None)?;
+        let evaluators = [evaluator.clone()];
+        results.find_extrema(model.plan().size(), &trajectory, &evaluators, between)?;
         let computed = ComputedTrajectory {
             table: results.table(),
             early_stop,

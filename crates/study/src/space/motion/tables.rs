@@ -93,7 +93,7 @@ impl SpaceMotionProblem<'_> {
 
     /// A state of the machine with its accelerations, drive magnitudes and energies; with the balance of energies and works in
     /// place of its error.
-    fn sample(
+    pub(super) fn sample(
         &self,
         point: &OdeState,
         sliding: Option<&Sliding>,

@@ -83,6 +83,21 @@ where
     Ok((computed, evaluator))
 }
 
+/// An analysis of a scene in space along its prescribed motion, its sweep, or the range of its only actuator.
+///
+/// # Errors
+/// [`StudyError::Scene`] when the mechanism cannot be assembled, the scene gives no coordinates, or the first position cannot
+/// be reached.
+pub fn compute_trajectory_in_space<'a>(
+    scene: &'a SpaceScene,
+    analysis: Analysis,
+    progress: Progress<'_>,
+) -> Result<ComputedTrajectory<'a>, StudyError> {
+    let (reactions, model) = JointReactions::new(scene)?;
+    let (computed, _) = compute(scene, (&reactions, &model), (analysis, None), progress)?;
+    Ok(computed)
+}
+
 /// The page of an analysis of a scene in space along its prescribed motion, its sweep, or the range of its only actuator, and why it
 /// ended early, if it did.
 ///

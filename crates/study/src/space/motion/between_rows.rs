@@ -1,0 +1,88 @@
+//! A motion in space between its rows: at its steps, and at any time within a step.
+
+use super::problem::SpaceMotionProblem;
+use super::run::Run;
+use crate::free_motion::compute::{MAX_STEPS, StatesWithinSteps, exact_state, sliding_at};
+use crate::trajectory::compute::{SamplePrecision, TrajectorySample};
+use dwell_dynamics::{MachineOde, MachineWorkspace, OdeState};
+use dwell_kinetostatics::space::Model;
+
+impl SpaceMotionProblem<'_> {
+    /// The motion at its steps; none if there are too many of them.
+    pub(super) fn steps_as_samples(&self, run: &Run) -> Option<Vec<(f64, TrajectorySample)>> {
+        let steps = &run.solution.steps;
+        if steps.len() > MAX_STEPS {
+            return None;
+        }
+        let mut workspace = self.machine.workspace();
+        let samples = steps.iter().map(|step| {
+            let sliding = sliding_at(&run.solution, step.t);
+            let sample = self.sample(step, sliding, &mut workspace).ok()?;
+            Some((step.t, sample))
+        });
+        samples.collect()
+    }
+}
+
+/// A motion at any of its times, with the working memory to compute it.
+pub(super) struct MotionSampler<'m> {
+    problem: &'m SpaceMotionProblem<'m>,
+    run: &'m Run,
+    ode: Option<MachineOde<'m, Model>>,
+    workspace: MachineWorkspace<f64, Model>,
+    within_steps: StatesWithinSteps<usize>,
+}
+
+impl<'m> MotionSampler<'m> {
+    pub(super) fn new(problem: &'m SpaceMotionProblem<'m>, run: &'m Run) -> Self {
+        let steps = &run.solution.steps;
+        let ends = steps.first().zip(steps.last());
+        let ode = ends.and_then(|(first, last)| {
+            MachineOde::until(&problem.machine, first.t, &first.y, Some(last.t)).ok()
+        });
+        Self {
+            problem,
+            run,
+            ode,
+            workspace: problem.machine.workspace(),
+            within_steps: StatesWithinSteps::default(),
+        }
+    }
+
+    /// The motion at a time, s: from its orbit, or from the step before, which is integrated once more up to there. None where that is
+    /// not possible.
+    pub(super) fn sample_at(
+        &mut self,
+        t: f64,
+        precision: SamplePrecision,
+    ) -> Option<TrajectorySample> {
+        let steps = &self.run.solution.steps;
+        let step = steps.partition_point(|step| step.t <= t).checked_sub(1)?;
+        let point = match &self.run.orbit {
+            _ if steps[step].t == t => steps[step].clone(),
+            Some((orbit, _)) => OdeState::from(orbit.state_at(t)),
+            None => self.state_within(step, t, precision)?,
+        };
+        let sliding = sliding_at(&self.run.solution, t);
+        let sample = self.problem.sample(&point, sliding, &mut self.workspace);
+        sample.ok()
+    }
+
+    /// The state at a time (s) within a step.
+    fn state_within(
+        &mut self,
+        step: usize,
+        t: f64,
+        precision: SamplePrecision,
+    ) -> Option<OdeState> {
+        let (ode, steps) = (self.ode.as_mut()?, &self.run.solution.steps);
+        let ends = [&steps[step], steps.get(step + 1)?];
+        match precision {
+            SamplePrecision::Interpolated => self.within_steps.interpolated(ode, step, ends, t),
+            SamplePrecision::Exact => {
+                let before = self.within_steps.before(&step, t);
+                exact_state(ode, &before.unwrap_or_else(|| ends[0].clone()), t)
+            }
+        }
+    }
+}
