@@ -102,6 +102,23 @@ impl Error {
         }
     }
 
+    /// Whether coordinates, velocities and accelerations are one for each actuator.
+    pub(crate) fn check_counts(lists: [&[f64]; 3], actuators: usize) -> Result<(), Self> {
+        let names = ["coordinates", "velocities", "accelerations"];
+        match lists
+            .iter()
+            .zip(names)
+            .find(|(list, _)| list.len() != actuators)
+        {
+            None => Ok(()),
+            Some((list, what)) => Err(Self::Count {
+                what,
+                given: list.len(),
+                actuators,
+            }),
+        }
+    }
+
     pub(crate) fn unknown<'n>(
         what: &'static str,
         kind: &str,

@@ -1,4 +1,4 @@
-//! Kinematics, forces, the reduced model and the motion of planar mechanisms.
+//! Kinematics, forces, the reduced model and the motion of mechanisms, in the plane and in [`space`].
 //!
 //! A mechanism is built in a program, or read from a scene file; it is assembled, and then its results are computed.
 //!
@@ -44,6 +44,7 @@
 //! | where does it rest, how does it vibrate? | [`Mechanism::equilibria`], [`Mechanism::linearise`] |
 //! | how steadily does it run, which flywheel does it need? | [`Mechanism::cycle`] |
 //! | what if its dimensions vary? | [`Sweep`] |
+//! | the same of a mechanism in space | [`space`] |
 //! | the same as code for a controller, or as formulas | [`Scene::export`], [`Scene::closed_form`] |
 //!
 //! # Conventions
@@ -69,6 +70,7 @@ mod machine;
 mod mechanism;
 mod motion;
 mod reduced;
+pub mod space;
 mod sweep;
 mod table;
 mod value;
@@ -117,7 +119,7 @@ pub use mechanism::parts::{
 pub use mechanism::scene::Scene;
 pub use motion::{MotionResults, Period, Solver};
 pub use reduced::{Coefficients, Evaluator, ReducedModel};
-pub use sweep::{Sweep, SweepResults};
+pub use sweep::{Sweep, SweepResults, VariedScene};
 pub use table::Table;
 pub use value::Value;
 

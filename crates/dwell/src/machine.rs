@@ -5,6 +5,7 @@ use crate::mechanism::Mechanism;
 use crate::motion::Solver;
 use dwell_dynamics::Stability;
 use dwell_findings::Column;
+use dwell_study::machines::MachineScene;
 use dwell_study::{
     CycleSearch, CycleStability, OperatingPoint, compute_cycle, compute_equilibria,
     compute_linearisation,
@@ -32,15 +33,7 @@ impl Mechanism {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn equilibria(&self) -> Result<Vec<Equilibrium>, Error> {
-        let results = compute_equilibria(self.scene.inner())?;
-        let free = self.free_count();
-        let equilibrium = |e: &dwell_dynamics::Equilibrium| Equilibrium {
-            coordinates: e.y[..free].to_vec(),
-            stability: e.stability,
-            modes: e.modes(),
-            eigenvalues: e.eigenvalues.clone(),
-        };
-        Ok(results.found.iter().map(equilibrium).collect())
+        equilibria_of(self.scene.inner())
     }
 
     /// Small motions about the equilibrium nearest to the initial state, as ẋ = A x + B u, z = C x + D u.
@@ -63,19 +56,7 @@ impl Mechanism {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn linearise(&self) -> Result<StateSpace, Error> {
-        let found = compute_linearisation(self.scene.inner(), OperatingPoint::Equilibrium)?;
-        let named = |columns: &[Column]| columns.iter().map(heading).collect();
-        Ok(StateSpace {
-            states: named(&found.names.states),
-            inputs: named(&found.names.inputs),
-            outputs: named(&found.names.outputs),
-            operating_point: found.state[..found.names.states.len()].to_vec(),
-            a: found.linear.a,
-            b: found.linear.b,
-            c: found.linear.c,
-            d: found.linear.d,
-            eigenvalues: found.eigenvalues,
-        })
+        linearisation_of(self.scene.inner())
     }
 
     /// The steady cycle of a rotating machine, and the flywheel that keeps its coefficient of fluctuation to
@@ -101,36 +82,67 @@ impl Mechanism {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn cycle(&self, solver: &Solver, fluctuation: Option<f64>) -> Result<Cycle, Error> {
-        let search = compute_cycle(self.scene.inner(), &solver.settings(), fluctuation)?;
-        let found = match search {
-            CycleSearch::Steady(found) => found,
-            CycleSearch::NoCycle { reason, .. } => return Err(reason.into()),
-        };
-        let works = found
-            .works
-            .columns
-            .iter()
-            .zip(found.works.rows.iter().flatten());
-        Ok(Cycle {
-            period: found.steady.period,
-            mean_speed: found.steady.mean_speed,
-            fluctuation: found.steady.fluctuation,
-            is_stable: found.errors.stability(&found.steady) == CycleStability::Stable,
-            works: works
-                .map(|(column, work)| (column.name.clone(), *work))
-                .collect(),
-            flywheel: found.flywheel.map(|sized| sized.flywheel.inertia),
-        })
+        cycle_of(self.scene.inner(), solver, fluctuation)
     }
+}
 
-    fn free_count(&self) -> usize {
-        let scene = self.scene.inner();
-        let prescribed = scene
-            .motion
-            .as_ref()
-            .map_or(0, |m| m.laws.iter().flatten().count());
-        scene.mechanism.actuators.len() - prescribed
-    }
+/// The equilibria of a machine in the plane or in space.
+pub(crate) fn equilibria_of<S: MachineScene>(scene: &S) -> Result<Vec<Equilibrium>, Error> {
+    let results = compute_equilibria(scene)?;
+    let start = scene.motion_start();
+    let free = start.laws.iter().filter(|law| law.is_none()).count();
+    let equilibrium = |e: &dwell_dynamics::Equilibrium| Equilibrium {
+        coordinates: e.y[..free].to_vec(),
+        stability: e.stability,
+        modes: e.modes(),
+        eigenvalues: e.eigenvalues.clone(),
+    };
+    Ok(results.found.iter().map(equilibrium).collect())
+}
+
+/// Small motions of a machine in the plane or in space.
+pub(crate) fn linearisation_of<S: MachineScene>(scene: &S) -> Result<StateSpace, Error> {
+    let found = compute_linearisation(scene, OperatingPoint::Equilibrium)?;
+    let named = |columns: &[Column]| columns.iter().map(heading).collect();
+    Ok(StateSpace {
+        states: named(&found.names.states),
+        inputs: named(&found.names.inputs),
+        outputs: named(&found.names.outputs),
+        operating_point: found.state[..found.names.states.len()].to_vec(),
+        a: found.linear.a,
+        b: found.linear.b,
+        c: found.linear.c,
+        d: found.linear.d,
+        eigenvalues: found.eigenvalues,
+    })
+}
+
+/// The steady cycle of a machine in the plane or in space.
+pub(crate) fn cycle_of<S: MachineScene>(
+    scene: &S,
+    solver: &Solver,
+    fluctuation: Option<f64>,
+) -> Result<Cycle, Error> {
+    let search = compute_cycle(scene, &solver.settings(), fluctuation)?;
+    let found = match search {
+        CycleSearch::Steady(found) => found,
+        CycleSearch::NoCycle { reason, .. } => return Err(reason.into()),
+    };
+    let works = found
+        .works
+        .columns
+        .iter()
+        .zip(found.works.rows.iter().flatten());
+    Ok(Cycle {
+        period: found.steady.period,
+        mean_speed: found.steady.mean_speed,
+        fluctuation: found.steady.fluctuation,
+        is_stable: found.errors.stability(&found.steady) == CycleStability::Stable,
+        works: works
+            .map(|(column, work)| (column.name.clone(), *work))
+            .collect(),
+        flywheel: found.flywheel.map(|sized| sized.flywheel.inertia),
+    })
 }
 
 /// A column's name with its unit.

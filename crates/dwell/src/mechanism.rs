@@ -212,18 +212,6 @@ impl Mechanism {
 
     fn check_counts(&self, lists: [&[f64]; 3]) -> Result<(), Error> {
         let actuators = self.model.plan().actuators();
-        let names = ["coordinates", "velocities", "accelerations"];
-        match lists
-            .iter()
-            .zip(names)
-            .find(|(list, _)| list.len() != actuators)
-        {
-            None => Ok(()),
-            Some((list, what)) => Err(Error::Count {
-                what,
-                given: list.len(),
-                actuators,
-            }),
-        }
+        Error::check_counts(lists, actuators)
     }
 }

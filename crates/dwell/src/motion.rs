@@ -141,7 +141,7 @@ pub struct Period {
 /// let by_method = Solver::method(Method::Dop853, 1e-12).sample_interval(0.01);
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Solver(MotionSolver);
+pub struct Solver(pub(crate) MotionSolver);
 
 impl Solver {
     /// The cheapest method that reaches an accuracy: it bounds the error of angles in rad, of lengths relative to their
@@ -222,7 +222,7 @@ pub struct MotionResults {
 }
 
 impl MotionResults {
-    fn new(computed: ComputedTrajectory<'_>) -> Self {
+    pub(crate) fn new(computed: ComputedTrajectory<'_>) -> Self {
         Self {
             table: ColumnTable {
                 columns: computed.table.columns,

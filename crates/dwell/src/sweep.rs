@@ -3,6 +3,7 @@
 use crate::column_table::ColumnTable;
 use crate::error::Error;
 use crate::mechanism::scene::Scene;
+use crate::space;
 use dwell_study::sweep::compute_sweep;
 
 /// A parameter sweep: numbers of a scene over grids, lists or at random, and results of every combination, computed on all
@@ -20,7 +21,7 @@ use dwell_study::sweep::compute_sweep;
 /// ```
 #[derive(Debug, Clone)]
 pub struct Sweep {
-    scene: Scene,
+    scene: VariedScene,
     vary: Vec<String>,
     samples: Option<u64>,
     seed: u64,
@@ -35,9 +36,9 @@ impl Sweep {
     /// let sweep = dwell::Sweep::new(&scene);
     /// # Ok::<(), dwell::Error>(())
     /// ```
-    pub fn new(scene: &Scene) -> Self {
+    pub fn new(scene: impl Into<VariedScene>) -> Self {
         Self {
-            scene: scene.clone(),
+            scene: scene.into(),
             vary: Vec::new(),
             samples: None,
             seed: 0,
@@ -98,8 +99,15 @@ impl Sweep {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn run(&self) -> Result<SweepResults, Error> {
-        let scene = self.scene.inner();
-        let swept = compute_sweep(scene, &self.vary, self.samples, self.seed, &self.results)?;
+        let (vary, results) = (&self.vary, &self.results);
+        let swept = match &self.scene {
+            VariedScene::Plane(scene) => {
+                compute_sweep(scene.inner(), vary, self.samples, self.seed, results)
+            }
+            VariedScene::Space(scene) => {
+                compute_sweep(scene.inner(), vary, self.samples, self.seed, results)
+            }
+        }?;
         Ok(SweepResults {
             table: ColumnTable {
                 columns: swept.table.columns,
@@ -107,6 +115,35 @@ impl Sweep {
             },
             messages: swept.messages,
         })
+    }
+}
+
+/// A scene whose numbers vary: in the plane or in space.
+///
+/// ```
+/// let scene = dwell::space::Scene::read("../../validation/spatial/rssr.toml")?;
+/// let table = dwell::Sweep::new(&scene).vary("crank.mass", "=0.8,0.9").result("m.max").run()?;
+/// let largest = table.column("m.max")?;
+/// assert!(largest[1] > largest[0]);
+/// # Ok::<(), dwell::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub enum VariedScene {
+    /// In the plane.
+    Plane(Scene),
+    /// In space.
+    Space(space::Scene),
+}
+
+impl From<&Scene> for VariedScene {
+    fn from(scene: &Scene) -> Self {
+        Self::Plane(scene.clone())
+    }
+}
+
+impl From<&space::Scene> for VariedScene {
+    fn from(scene: &space::Scene) -> Self {
+        Self::Space(scene.clone())
     }
 }
 

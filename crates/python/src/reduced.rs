@@ -14,7 +14,7 @@ pub(crate) struct ReducedModel {
 }
 
 /// m, ½m′, and by position a, b, w and c.
-type Arrays<'py> = [Bound<'py, PyArray1<f64>>; 6];
+pub(crate) type Arrays<'py> = [Bound<'py, PyArray1<f64>>; 6];
 
 #[pymethods]
 impl ReducedModel {
@@ -46,15 +46,7 @@ impl ReducedModel {
                 &copied
             }
         };
-        let pool = match threads {
-            0 => None,
-            count => Some(pool(count)?),
-        };
-        let batch = py.detach(|| match &pool {
-            Some(pool) => pool.install(|| self.reduced.batch(q)),
-            None => self.reduced.batch(q),
-        });
-        let batch = batch.or_raise(py)?;
+        let batch = with_threads(py, threads, || self.reduced.batch(q))?.or_raise(py)?;
         let all = [batch.m, batch.half_dm, batch.a, batch.b, batch.w, batch.c];
         Ok(all.map(|values| values.into_pyarray(py)))
     }
@@ -64,6 +56,22 @@ impl ReducedModel {
         let table = py.detach(|| self.reduced.table(accuracy)).or_raise(py)?;
         Ok(Table { table })
     }
+}
+
+/// What is computed by so many threads, or by all.
+pub(crate) fn with_threads<T: Send>(
+    py: Python<'_>,
+    threads: usize,
+    compute: impl FnOnce() -> T + Send,
+) -> PyResult<T> {
+    let pool = match threads {
+        0 => None,
+        count => Some(pool(count)?),
+    };
+    Ok(py.detach(|| match &pool {
+        Some(pool) => pool.install(compute),
+        None => compute(),
+    }))
 }
 
 /// The threads that compute, by their number: making them takes longer than a small batch.

@@ -3,6 +3,7 @@
 use crate::errors::Raise as _;
 use crate::interrupt::run;
 use crate::scene::Scene;
+use crate::space::SpaceScene;
 use numpy::{IntoPyArray as _, PyArray1};
 use pyo3::prelude::*;
 
@@ -17,13 +18,16 @@ type Columns<'py> = (
 #[pyo3(signature = (scene, vary, results, samples, seed))]
 pub(crate) fn sweep<'py>(
     py: Python<'py>,
-    scene: &Scene,
+    scene: &Bound<'py, PyAny>,
     vary: Vec<(String, String)>,
     results: Vec<String>,
     samples: Option<u64>,
     seed: u64,
 ) -> PyResult<Columns<'py>> {
-    let mut sweep = dwell::Sweep::new(&scene.scene);
+    let mut sweep = match scene.cast::<SpaceScene>() {
+        Ok(scene) => dwell::Sweep::new(&scene.get().scene),
+        Err(_) => dwell::Sweep::new(&scene.cast::<Scene>()?.get().scene),
+    };
     for (path, variation) in &vary {
         sweep = sweep.vary(path, variation);
     }

@@ -1,4 +1,4 @@
-"""Kinematics, forces, the reduced model and motions of planar mechanisms.
+"""Kinematics, forces, the reduced model and motions of mechanisms, in the plane and in ``dwell.space``.
 
 A mechanism is read from a scene file, or built; it is assembled, and then asked:
 
@@ -22,7 +22,9 @@ from __future__ import annotations
 from ._builder import Builder
 from ._closed_form import ClosedForm
 from ._cluster import StoredSweep
-from ._mechanism import Cycle, Equilibrium, Mechanism, Period, State, StateSpace
+from . import space
+from ._mechanism import Mechanism, State
+from ._moving import Cycle, Equilibrium, Period, StateSpace
 from ._native import DwellError, SceneError, __version__
 from ._reduced import Coefficients, ReducedModel, Table
 from ._results import Motion, Results
@@ -50,6 +52,7 @@ __all__ = [
     "Table",
     "__version__",
     "read",
+    "space",
     "sweep",
     "validate",
 ]

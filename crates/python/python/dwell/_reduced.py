@@ -42,7 +42,7 @@ class ReducedModel:
     (array([0.32, 0.32]), array([-0.2,  0. ]))
     """
 
-    def __init__(self, native: _native.ReducedModel) -> None:
+    def __init__(self, native: _native.ReducedModel | _native.SpaceReducedModel) -> None:
         self._native = native
         self._reactions, self._loads = native.reactions, native.loads
 
@@ -85,7 +85,8 @@ class ReducedModel:
         )
 
     def table(self, accuracy: float = 1e-9) -> Table:
-        """The model as piecewise polynomials: every coefficient to an accuracy relative to its largest value."""
+        """The model as piecewise polynomials: every coefficient to an accuracy relative to its largest value. Raises DwellError for a
+        mechanism in space: ``dwell reduce --table-accuracy`` writes its table."""
         return Table(self._native.table(accuracy), self.reactions, self.loads)
 
 

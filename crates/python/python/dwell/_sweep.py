@@ -10,6 +10,7 @@ from ._cluster import StoredSweep, sweep_on
 from ._results import Results
 
 if TYPE_CHECKING:
+    from . import space
     from ._scene import Scene
 
 
@@ -21,7 +22,7 @@ class SweepResults(Results):
 
 @overload
 def sweep(
-    scene: Scene,
+    scene: Scene | space.Scene,
     vary: Mapping[str, str | Sequence[float]],
     results: Sequence[str] = (),
     *,
@@ -34,7 +35,7 @@ def sweep(
 
 @overload
 def sweep(
-    scene: Scene,
+    scene: Scene | space.Scene,
     vary: Mapping[str, str | Sequence[float]],
     results: Sequence[str] = (),
     *,
@@ -48,7 +49,7 @@ def sweep(
 
 
 def sweep(
-    scene: Scene,
+    scene: Scene | space.Scene,
     vary: Mapping[str, str | Sequence[float]],
     results: Sequence[str] = (),
     *,

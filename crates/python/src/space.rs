@@ -1,0 +1,269 @@
+//! Scenes and mechanisms in space.
+
+use crate::errors::{DwellError, Raise as _};
+use crate::interrupt::run;
+use crate::machine::{Cycle, Equilibrium, Linear};
+use crate::motion::{Rows, solver};
+use crate::reduced::{Arrays, with_threads};
+use numpy::{IntoPyArray as _, PyReadonlyArray1};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// The description of a mechanism in space, read and checked.
+#[pyclass(frozen, module = "dwell._native")]
+pub(crate) struct SpaceScene {
+    pub(crate) scene: dwell::space::Scene,
+}
+
+#[pymethods]
+impl SpaceScene {
+    #[new]
+    fn new(py: Python<'_>, text: &str) -> PyResult<Self> {
+        let scene = dwell::space::Scene::parse(text).or_raise(py)?;
+        Ok(Self { scene })
+    }
+
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let scene = dwell::space::Scene::read(path).or_raise(py)?;
+        Ok(Self { scene })
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        self.scene.title()
+    }
+
+    #[getter]
+    fn text(&self) -> &str {
+        self.scene.text()
+    }
+
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        self.scene.warnings().map(str::to_owned).collect()
+    }
+
+    fn value(&self, py: Python<'_>, path: &str) -> PyResult<f64> {
+        self.scene.value(path).or_raise(py)
+    }
+
+    fn with_value(&self, py: Python<'_>, path: &str, value: f64) -> PyResult<Self> {
+        let scene = self.scene.with_value(path, value).or_raise(py)?;
+        Ok(Self { scene })
+    }
+
+    fn assemble(&self, py: Python<'_>) -> PyResult<SpaceMechanism> {
+        let mechanism = py.detach(|| self.scene.assemble()).or_raise(py)?;
+        Ok(SpaceMechanism { mechanism })
+    }
+}
+
+/// An assembled mechanism in space: constant, shared between threads.
+#[pyclass(frozen, module = "dwell._native")]
+pub(crate) struct SpaceMechanism {
+    mechanism: dwell::space::Mechanism,
+}
+
+#[pymethods]
+impl SpaceMechanism {
+    #[getter]
+    fn actuators(&self) -> Vec<String> {
+        let names = self.mechanism.actuators().into_iter();
+        names.map(str::to_owned).collect()
+    }
+
+    #[getter]
+    fn reactions(&self) -> Vec<String> {
+        self.mechanism.reactions()
+    }
+
+    /// The reactions that redundant constraints do not leave open.
+    #[getter]
+    fn determined_reactions(&self) -> Vec<String> {
+        self.mechanism.determined_reactions()
+    }
+
+    #[getter]
+    fn limits(&self) -> Option<(f64, f64)> {
+        self.mechanism.limits()
+    }
+
+    #[getter]
+    fn points(&self) -> Vec<(String, Vec<String>)> {
+        let owned = |names: Vec<&str>| names.into_iter().map(str::to_owned).collect();
+        let bodies = self.mechanism.points().into_iter();
+        bodies
+            .map(|(body, points)| (body.to_owned(), owned(points)))
+            .collect()
+    }
+
+    #[getter]
+    fn start(&self) -> Vec<f64> {
+        self.mechanism.start()
+    }
+
+    #[pyo3(signature = (q, q_dot, q_ddot, t))]
+    fn at(
+        &self,
+        py: Python<'_>,
+        q: Vec<f64>,
+        q_dot: Vec<f64>,
+        q_ddot: Vec<f64>,
+        t: f64,
+    ) -> PyResult<SpaceState> {
+        let forces = self.mechanism.inverse_dynamics(t, &q, &q_dot, &q_ddot);
+        Ok(SpaceState {
+            forces: forces.or_raise(py)?,
+        })
+    }
+
+    fn reduced(&self, py: Python<'_>, reactions: Vec<String>) -> PyResult<SpaceReducedModel> {
+        let names = reactions.iter().map(String::as_str);
+        let reduced = self.mechanism.reduced(names).or_raise(py)?;
+        Ok(SpaceReducedModel { reduced })
+    }
+
+    fn kinematics(&self, py: Python<'_>) -> PyResult<Rows> {
+        let found = run(py, || self.mechanism.kinematics_along_motion())?;
+        Ok(Rows(found.or_raise(py)?))
+    }
+
+    fn statics(&self, py: Python<'_>) -> PyResult<Rows> {
+        let found = run(py, || self.mechanism.statics_along_motion())?;
+        Ok(Rows(found.or_raise(py)?))
+    }
+
+    fn kinetostatics(&self, py: Python<'_>) -> PyResult<Rows> {
+        let found = run(py, || self.mechanism.kinetostatics())?;
+        Ok(Rows(found.or_raise(py)?))
+    }
+
+    #[pyo3(signature = (accuracy, method, tolerance, sample_interval))]
+    fn simulate(
+        &self,
+        py: Python<'_>,
+        accuracy: Option<f64>,
+        method: Option<&str>,
+        tolerance: f64,
+        sample_interval: Option<f64>,
+    ) -> PyResult<Rows> {
+        let solver = solver(accuracy, method, tolerance, sample_interval)?;
+        let found = run(py, || self.mechanism.simulate(&solver))?;
+        Ok(Rows(found.or_raise(py)?))
+    }
+
+    fn period(&self, py: Python<'_>) -> PyResult<(f64, f64)> {
+        let found = run(py, || self.mechanism.period())?.or_raise(py)?;
+        Ok((found.period, found.energy))
+    }
+
+    fn equilibria(&self, py: Python<'_>) -> PyResult<Vec<Equilibrium>> {
+        let found = run(py, || self.mechanism.equilibria())?.or_raise(py)?;
+        Ok(found.into_iter().map(Equilibrium::from).collect())
+    }
+
+    fn linearise(&self, py: Python<'_>) -> PyResult<Linear> {
+        let found = run(py, || self.mechanism.linearise())?.or_raise(py)?;
+        Ok(Linear::from(found))
+    }
+
+    #[pyo3(signature = (accuracy, method, tolerance, fluctuation))]
+    fn cycle(
+        &self,
+        py: Python<'_>,
+        accuracy: Option<f64>,
+        method: Option<&str>,
+        tolerance: f64,
+        fluctuation: Option<f64>,
+    ) -> PyResult<Cycle> {
+        let solver = solver(accuracy, method, tolerance, None)?;
+        let found = run(py, || self.mechanism.cycle(&solver, fluctuation))?;
+        Ok(Cycle::from(found.or_raise(py)?))
+    }
+}
+
+/// The state of all bodies in space and all forces at one position.
+#[pyclass(frozen, module = "dwell._native")]
+pub(crate) struct SpaceState {
+    forces: dwell::space::InverseDynamics,
+}
+
+#[pymethods]
+impl SpaceState {
+    fn position(&self, py: Python<'_>, point: &str) -> PyResult<[f64; 3]> {
+        self.forces.kinematics().position(point).or_raise(py)
+    }
+
+    fn velocity(&self, py: Python<'_>, point: &str) -> PyResult<[f64; 3]> {
+        self.forces.kinematics().velocity(point).or_raise(py)
+    }
+
+    fn acceleration(&self, py: Python<'_>, point: &str) -> PyResult<[f64; 3]> {
+        self.forces.kinematics().acceleration(point).or_raise(py)
+    }
+
+    /// By axis of the body its components in the axes of the ground.
+    fn axes(&self, py: Python<'_>, body: &str) -> PyResult<[[f64; 3]; 3]> {
+        self.forces.kinematics().axes(body).or_raise(py)
+    }
+
+    fn angular_velocity(&self, py: Python<'_>, body: &str) -> PyResult<[f64; 3]> {
+        self.forces.kinematics().angular_velocity(body).or_raise(py)
+    }
+
+    fn angular_acceleration(&self, py: Python<'_>, body: &str) -> PyResult<[f64; 3]> {
+        let found = self.forces.kinematics().angular_acceleration(body);
+        found.or_raise(py)
+    }
+
+    fn reaction(&self, py: Python<'_>, name: &str) -> PyResult<f64> {
+        self.forces.reaction(name).or_raise(py)
+    }
+
+    fn actuator_force(&self, py: Python<'_>, name: &str) -> PyResult<f64> {
+        self.forces.actuator_force(name).or_raise(py)
+    }
+}
+
+/// The exact reduced model of a mechanism in space: constant, shared between threads.
+#[pyclass(frozen, module = "dwell._native")]
+pub(crate) struct SpaceReducedModel {
+    reduced: dwell::space::ReducedModel,
+}
+
+#[pymethods]
+impl SpaceReducedModel {
+    #[getter]
+    fn reactions(&self) -> Vec<String> {
+        self.reduced.reactions()
+    }
+
+    #[getter]
+    fn loads(&self) -> Vec<String> {
+        let names = self.reduced.loads().into_iter();
+        names.map(str::to_owned).collect()
+    }
+
+    /// As of a mechanism in the plane.
+    #[pyo3(signature = (q, threads))]
+    fn coefficients<'py>(
+        &self,
+        py: Python<'py>,
+        q: PyReadonlyArray1<'py, f64>,
+        threads: usize,
+    ) -> PyResult<Arrays<'py>> {
+        let q = q.as_array().to_vec();
+        let batch = with_threads(py, threads, || self.reduced.batch(&q))?.or_raise(py)?;
+        let all = [batch.m, batch.half_dm, batch.a, batch.b, batch.w, batch.c];
+        Ok(all.map(|values| values.into_pyarray(py)))
+    }
+
+    /// There is none here.
+    #[pyo3(signature = (_accuracy))]
+    fn table(&self, _accuracy: f64) -> PyResult<crate::reduced::Table> {
+        Err(DwellError::new_err(
+            "tables of mechanisms in space are written by `dwell reduce --table-accuracy`",
+        ))
+    }
+}
