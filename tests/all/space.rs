@@ -14,6 +14,7 @@ mod scenes;
 mod simulate;
 mod sweeps;
 mod tilted;
+mod unit_runs;
 
 use dwell_geometry::space::{
     Actuator, ActuatorKind, Assembly, Joint, JointKind, Mechanism, Plan, Side, Vec3,

@@ -49,6 +49,10 @@ pub(crate) fn run_study(
             }
             dwell_study::calibrate(scene, parameter.as_deref(), *period)?
         }
+        Command::Runs { points, .. } => {
+            let points = points.map(|n| n as usize);
+            return dwell_study::unit_runs(scene, points, progress);
+        }
         Command::Sweep { .. } => {
             let sweep = crate::sweep::parameter_sweep(command, scene, out);
             dwell_study::sweep(scene, &sweep, progress)?

@@ -13,6 +13,7 @@ mod prepared;
 mod reduction;
 mod sweep;
 mod trajectory;
+mod unit_runs;
 mod views;
 
 #[cfg(feature = "output")]

@@ -11,14 +11,13 @@
 
 use crate::estimate::relative;
 use crate::explain::StudyError;
+use crate::machines::MachineScene;
 use crate::models::{PreparedScene, loaded_model};
 use crate::progress::Progress;
 use crate::reduce::compute::{
-    ReducedCurves, RoundingErrors, coefficient_units, flat, inertia_units,
+    ReducedCurves, ReducedScene, RoundingErrors, coefficient_units, flat, inertia_units,
 };
-use crate::trajectory::compute::{
-    Analysis, Spacing, Trajectory, compute_along, default_limits, reject_unknown_variables,
-};
+use crate::trajectory::compute::{Analysis, Spacing, Trajectory, compute_along, default_limits};
 use dwell_findings::{Column, Table};
 use dwell_kinetostatics::Coefficients;
 use dwell_laws::{Law, Polynomial};
@@ -34,9 +33,9 @@ const TOLERANCE: f64 = 1e-12;
 const ROUNDINGS: f64 = 100.0;
 
 /// The runs, what follows from them, and the reduced model at the same positions.
-pub struct UnitRuns<'a> {
-    /// The scene and its model.
-    pub prepared: PreparedScene<'a>,
+pub struct UnitRuns<P> {
+    /// The scene and its model without loads.
+    pub prepared: P,
     /// All columns of run i (unit speed) and of run ii (unit acceleration).
     pub runs: [Table; 2],
     /// What the runs give: half_dm and b are ½m₁q₁ and m_e2, m and a are m₁ and m_e1.
@@ -51,16 +50,16 @@ pub struct UnitRuns<'a> {
 ///
 /// # Errors
 /// [`StudyError`] when the mechanism cannot be assembled, has several actuators, or a position cannot be reached.
-pub fn compute_unit_runs<'a>(
-    scene: &'a Scene,
+pub fn compute_unit_runs<'a, S: UnitRunScene>(
+    scene: &'a S,
     points: Option<usize>,
     progress: Progress<'_>,
-) -> Result<UnitRuns<'a>, StudyError> {
-    reject_unknown_variables(scene)?;
-    let prepared = PreparedScene::without_loads(scene)?;
+) -> Result<UnitRuns<S::Prepared<'a>>, StudyError> {
+    scene.reject_unknown_columns()?;
+    let prepared = scene.prepared_without_loads()?;
     let points = points.unwrap_or(DEFAULT_POINTS).max(2);
-    let runs = [Run::UnitSpeed, Run::UnitAcceleration];
-    let [one, two] = runs.map(|run| run.table(scene, points, progress));
+    let runs = [UnitRun::Speed, UnitRun::Acceleration];
+    let [one, two] = runs.map(|run| scene.run_table(run, points, progress));
     let runs = [one?, two?];
     let combined = combine(&prepared, &runs);
     let reduced = ReducedCurves::at(&prepared, combined.q.clone())?;
@@ -76,38 +75,23 @@ pub fn compute_unit_runs<'a>(
 
 /// One of the two runs.
 #[derive(Debug, Clone, Copy)]
-enum Run {
-    UnitSpeed,
-    UnitAcceleration,
+pub enum UnitRun {
+    /// With unit speed.
+    Speed,
+    /// With unit acceleration, from rest.
+    Acceleration,
 }
 
-impl Run {
-    /// All columns of the mechanism with its masses alone: what loads do, is not part of the coefficients.
-    fn table(
-        self,
-        scene: &Scene,
-        points: usize,
-        progress: Progress<'_>,
-    ) -> Result<Table, StudyError> {
-        let mut scene = scene.clone();
-        scene.loads.clear();
-        scene.drives.clear();
-        scene.stops.clear();
-        scene.motion = None;
-        scene.sweep = None;
-        scene.requests = Requests {
-            reactions: scene.requests.reactions.clone(),
-            ..Requests::default()
-        };
-        let model = loaded_model(&scene)?;
-        let ([from, to], ..) = default_limits(&scene, model.plan());
+impl UnitRun {
+    /// The motion from the lower to the upper end of a range, rad or m, and how its positions are spaced.
+    pub(crate) fn motion(self, [from, to]: [f64; 2], points: usize) -> (PrescribedMotion, Spacing) {
         let (law, duration, spacing) = match self {
-            Self::UnitSpeed => (
+            Self::Speed => (
                 Polynomial::motion(from, 1.0, 0.0),
                 to - from,
                 Spacing::EqualTimes,
             ),
-            Self::UnitAcceleration => (
+            Self::Acceleration => (
                 Polynomial::motion(from, 0.0, 1.0),
                 (2.0 * (to - from)).sqrt(),
                 Spacing::FromRest,
@@ -118,7 +102,62 @@ impl Run {
             points,
             laws: vec![Law::Polynomial(law)],
         };
+        (motion, spacing)
+    }
+}
+
+/// A scene of which the runs can be made.
+pub trait UnitRunScene: MachineScene {
+    /// The scene with its model.
+    type Prepared<'a>: ReducedScene
+    where
+        Self: 'a;
+
+    /// The scene with its model without loads.
+    ///
+    /// # Errors
+    /// [`StudyError`] when the mechanism cannot be assembled or has several actuators.
+    fn prepared_without_loads(&self) -> Result<Self::Prepared<'_>, StudyError>;
+
+    /// All columns of a run of the mechanism with its masses alone: what loads do, is not part of the coefficients.
+    ///
+    /// # Errors
+    /// [`StudyError`] where a position cannot be reached.
+    fn run_table(
+        &self,
+        run: UnitRun,
+        points: usize,
+        progress: Progress<'_>,
+    ) -> Result<Table, StudyError>;
+}
+
+impl UnitRunScene for Scene {
+    type Prepared<'a> = PreparedScene<'a>;
+
+    fn prepared_without_loads(&self) -> Result<PreparedScene<'_>, StudyError> {
+        PreparedScene::without_loads(self)
+    }
+
+    fn run_table(
+        &self,
+        run: UnitRun,
+        points: usize,
+        progress: Progress<'_>,
+    ) -> Result<Table, StudyError> {
+        let mut scene = self.clone();
+        scene.loads.clear();
+        scene.drives.clear();
+        scene.stops.clear();
+        scene.motion = None;
+        scene.sweep = None;
+        scene.requests = Requests {
+            reactions: scene.requests.reactions.clone(),
+            ..Requests::default()
+        };
+        let model = loaded_model(&scene)?;
         let plan = model.plan();
+        let (limits, ..) = default_limits(&scene, plan);
+        let (motion, spacing) = run.motion(limits, points);
         let trajectory = Trajectory::prescribed(
             (&motion, spacing),
             plan.range().period(),
@@ -143,7 +182,7 @@ pub(crate) fn values(table: &Table, name: &str) -> Vec<f64> {
 }
 
 /// The coefficients from the exported columns of both runs alone.
-fn combine(prepared: &PreparedScene<'_>, runs: &[Table; 2]) -> ReducedCurves {
+fn combine(prepared: &impl ReducedScene, runs: &[Table; 2]) -> ReducedCurves {
     let coordinate = prepared.coordinate_name();
     let [q, speed, acceleration] =
         ["", ".velocity", ".acceleration"].map(|rest| format!("{coordinate}{rest}"));
@@ -193,7 +232,7 @@ pub struct ComparedCoefficient {
     pub tolerance: f64,
 }
 
-impl UnitRuns<'_> {
+impl<P: ReducedScene> UnitRuns<P> {
     /// Each coefficient, compared over the range.
     pub fn comparison(&self) -> Vec<ComparedCoefficient> {
         let rounding = self.rounding.max_errors.iter().copied().fold(0.0, f64::max);

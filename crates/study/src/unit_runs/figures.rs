@@ -2,9 +2,8 @@
 
 use super::compute::{UnitRuns, values};
 use crate::number_format::count;
-use crate::output::{chart, coordinate_axis, coordinate_label, figure, inner_range, range_caption};
-use crate::reduce::compute::ReducedScene as _;
-use crate::reduce::compute::{coefficient_units, inertia_units};
+use crate::output::{chart, coordinate_axis, figure, inner_range, range_caption};
+use crate::reduce::compute::{ReducedScene, coefficient_units, inertia_units};
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Axis, Figure, Panel, Series, Stroke};
 
@@ -13,7 +12,7 @@ const MAX_REACTIONS: usize = 3;
 /// About how many positions of the reduced model are marked.
 const MARKS: usize = 24;
 
-impl UnitRuns<'_> {
+impl<P: ReducedScene> UnitRuns<P> {
     /// Both runs, then m₁ and ½m₁q₁, then m_e1 and m_e2 of the first requested reactions.
     pub(super) fn figures(&self) -> Vec<Figure> {
         let mut figures = vec![self.runs_figure(), self.inertia_figure()];
@@ -34,7 +33,7 @@ impl UnitRuns<'_> {
     fn panel(&self, title: &str, label: &str, unit: &str, series: Vec<Series>) -> Panel {
         let mut y = Axis::new(label, unit.replace('2', "²"));
         y.range = inner_range(self.prepared.range(), &series);
-        let x = coordinate_axis(&coordinate_label(&self.prepared), self.prepared.is_angle());
+        let x = coordinate_axis(&self.prepared.coordinate_label(), self.prepared.is_angle());
         chart(title, x, y, series).into()
     }
 
@@ -42,7 +41,7 @@ impl UnitRuns<'_> {
         let text = range_caption(self.prepared.has_limits(), text);
         let positions = count(self.combined.q.len(), "position");
         let provenance = format!("two kinetostatic runs, at {positions}");
-        figure(self.prepared.scene, name, title, &text, panels, provenance)
+        figure(self.prepared.file(), name, title, &text, panels, provenance)
     }
 
     /// The actuator's moment and the first reactions of both runs.

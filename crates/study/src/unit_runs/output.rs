@@ -1,15 +1,16 @@
 //! Writes the two unit runs and their combination: tables, figures, page and summary.
 
-use super::compute::{ComparedCoefficient, UnitRuns, compute_unit_runs};
+use super::compute::{ComparedCoefficient, UnitRunScene, UnitRuns, compute_unit_runs};
 use crate::explain::{Labels, StudyError, scene_error};
 use crate::number_format::{coordinate_unit, count, digits};
 use crate::output::{Outcome, Picture, provenance_line};
-use crate::page::{drawing_along, scene_page, table_page, unit_group};
+use crate::page::{scene_page, table_page, unit_group};
 use crate::progress::Progress;
+use crate::reduce::compute::ReducedScene;
 use crate::trajectory::output::TrajectoryOutcome;
 use dwell_page::PageTable;
 use dwell_report::{Block, Document, Figure, Files, TableFormat};
-use dwell_scene::Scene;
+use dwell_scene::SceneFile;
 
 /// The two kinetostatic runs of a scene over the range of its only actuator, at `points` positions (two or more) if given,
 /// and the reduced parameters that they give. It stops with an error where these are not those of the reduced model.
@@ -17,8 +18,8 @@ use dwell_scene::Scene;
 /// # Errors
 /// [`StudyError`] when the mechanism cannot be assembled, has several actuators, or a position cannot be
 /// reached.
-pub fn unit_runs(
-    scene: &Scene,
+pub fn unit_runs<S: UnitRunScene>(
+    scene: &S,
     points: Option<usize>,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
@@ -30,7 +31,7 @@ pub fn unit_runs(
         "the two kinetostatic runs and their combination at {}",
         count(table.rows.len(), "position")
     );
-    run.drawing = drawing_along(scene, &run.columns[0].values);
+    run.drawing = scene.drawing_along(&run.columns[0].values);
     run.tables.push(PageTable {
         title: COMPARED.to_owned(),
         header: COMPARISON_HEADER.map(str::to_owned).into(),
@@ -67,7 +68,7 @@ fn worst(comparison: &[ComparedCoefficient]) -> Option<&ComparedCoefficient> {
     comparison.iter().max_by(|a, b| part(a).total_cmp(&part(b)))
 }
 
-fn difference_error(scene: &Scene, comparison: &[ComparedCoefficient]) -> Option<StudyError> {
+fn difference_error(scene: &SceneFile, comparison: &[ComparedCoefficient]) -> Option<StudyError> {
     let worst = worst(comparison)?;
     let agree = worst.relative_difference <= worst.tolerance;
     (!agree).then(|| {
@@ -80,7 +81,7 @@ fn difference_error(scene: &Scene, comparison: &[ComparedCoefficient]) -> Option
     })
 }
 
-fn summary(runs: &UnitRuns<'_>, comparison: &[ComparedCoefficient]) -> String {
+fn summary(runs: &UnitRuns<impl ReducedScene>, comparison: &[ComparedCoefficient]) -> String {
     let (prepared, table) = (&runs.prepared, &runs.runs);
     let name = prepared.coordinate_name();
     let unit = coordinate_unit(prepared.is_angle());
@@ -89,7 +90,7 @@ fn summary(runs: &UnitRuns<'_>, comparison: &[ComparedCoefficient]) -> String {
     let [from, to] = range.map(|q| digits(q.copied().unwrap_or(0.0), 6));
     let mut text = format!(
         "{}: two kinetostatic runs, {positions} of {name} from {from} to {to} {unit}, without loads\n",
-        prepared.scene.title
+        prepared.file().title
     );
     for (run, table, what) in [
         ("i", &table[0], format!("speed 1 {unit}/s, no acceleration")),
@@ -145,7 +146,7 @@ fn comparison_rows(comparison: &[ComparedCoefficient]) -> Vec<Vec<String>> {
 }
 
 fn page(
-    runs: &UnitRuns<'_>,
+    runs: &UnitRuns<impl ReducedScene>,
     comparison: &[ComparedCoefficient],
     figures: &[Figure],
     file: &dyn Fn(&Figure) -> String,
@@ -174,9 +175,9 @@ fn page(
         alt: figure.title.clone(),
         caption: figure.caption.clone(),
     }));
-    blocks.push(Block::Text(provenance_line(runs.prepared.scene)));
+    blocks.push(Block::Text(provenance_line(runs.prepared.file())));
     Document {
-        title: format!("{}: kinetostatic runs", runs.prepared.scene.title),
+        title: format!("{}: kinetostatic runs", runs.prepared.file().title),
         blocks,
     }
 }

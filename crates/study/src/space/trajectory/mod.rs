@@ -22,5 +22,5 @@ pub use self::output::analyse_in_space;
 pub(super) use self::output::drawn_positions;
 pub(super) use self::page::space_page;
 pub(super) use self::reactions::JointReactions;
-pub(super) use self::rows::{add_rows, computed_rows, explain_stop};
+pub(super) use self::rows::{add_rows, computed_rows, explain_stop, rows_along};
 pub use self::rows::{compute_trajectory_in_space, trajectory_page_in_space};

@@ -53,6 +53,18 @@ where
     let followed = followed_scene(scene, model.plan());
     let trajectory = Trajectory::new(&followed, analysis, points)?;
     trajectory.check_laws(&followed)?;
+    rows_along(scene, (reactions, model), trajectory, is_wanted, progress)
+}
+
+/// The rows along a trajectory.
+pub(crate) fn rows_along<'a, 'm>(
+    scene: &'m SpaceScene,
+    (reactions, model): (&'m JointReactions, &'m Model),
+    trajectory: Trajectory<'a>,
+    is_wanted: &dyn Fn(Quantity) -> bool,
+    progress: Progress<'_>,
+) -> Result<(ComputedTrajectory<'a>, SpaceEvaluator<'m>), StudyError> {
+    let analysis = trajectory.analysis;
     let is_limited = scene.lists_reactions && analysis != Analysis::Kinematics;
     let mut all = all_columns(scene, reactions, (analysis, trajectory.is_timed()));
     all.retain(|column| is_wanted(column.quantity));
