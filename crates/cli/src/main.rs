@@ -108,7 +108,7 @@ fn run(options: &Options, name: &str) -> Result<bool, Report> {
                     AnyScene::Plane(scene) => run_study(study, scene, &options.out, &bar),
                     AnyScene::Space(scene) => {
                         in_space::run_study(study, scene, &options.out, &|step| {
-                            show_step(&bar, step)
+                            show_step(&bar, step);
                         })
                     }
                 };
