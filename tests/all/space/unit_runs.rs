@@ -30,8 +30,9 @@ fn both_runs_give_the_reduced_model() {
             2 + 2 * runs.prepared.reaction_units().len()
         );
         for of in comparison {
+            // A small couple of the RSUR loses three digits: run ii has it beside a large one of q̇².
             assert!(
-                of.relative_difference <= of.tolerance.min(1e-12),
+                of.relative_difference <= of.tolerance.min(1e-11),
                 "{name}: {} differs by {:.1e}, {:.1e} allowed",
                 of.symbol,
                 of.relative_difference,
