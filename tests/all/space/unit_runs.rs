@@ -7,13 +7,15 @@ use dwell_study::unit_runs::compute::compute_unit_runs;
 
 #[test]
 fn both_runs_give_the_reduced_model() {
-    for name in [
-        "rssr",
-        "rsur",
-        "slider-crank-haug",
-        "bricard-a04",
-        "double-hooke",
-    ] {
+    // A small couple of the RSUR stands in run ii beside a large one of q̇²; the range of the Bricard linkage ends at dead points.
+    let cases = [
+        ("rssr", 1e-12),
+        ("slider-crank-haug", 1e-12),
+        ("double-hooke", 1e-12),
+        ("rsur", 1e-11),
+        ("bricard-a04", 1e-9),
+    ];
+    for (name, largest) in cases {
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../validation/spatial");
         let scene = SpaceScene::read(format!("{folder}/{name}.toml")).expect("a scene");
         let runs = compute_unit_runs(&scene, Some(73), &no_progress);
@@ -30,9 +32,8 @@ fn both_runs_give_the_reduced_model() {
             2 + 2 * runs.prepared.reaction_units().len()
         );
         for of in comparison {
-            // A small couple of the RSUR loses three digits: run ii has it beside a large one of q̇².
             assert!(
-                of.relative_difference <= of.tolerance.min(1e-11),
+                of.relative_difference <= of.tolerance.min(largest),
                 "{name}: {} differs by {:.1e}, {:.1e} allowed",
                 of.symbol,
                 of.relative_difference,
