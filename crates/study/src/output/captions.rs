@@ -122,6 +122,9 @@ pub fn coordinate_label(prepared: &PreparedScene<'_>) -> String {
     }
 }
 
+/// A spread below this part of the values is rounding.
+const MIN_SPREAD: f64 = 1e-12;
+
 /// The vertical extent of the curves. Towards a limit position they grow without bound, so there the extent
 /// is that of the inner nine tenths of the range.
 pub(crate) fn inner_range(range: Range, curves: &[Series]) -> Option<[f64; 2]> {
@@ -134,7 +137,9 @@ pub(crate) fn inner_range(range: Range, curves: &[Series]) -> Option<[f64; 2]> {
     };
     let [low, high] = extent(curves.iter().flat_map(inner).map(|[_, v]| v));
     let margin = 0.08 * (high - low);
-    (high > low).then_some([low - margin, high + margin])
+    // Of a constant the axis shows its size, not the rounding of its last digit.
+    let varies = high - low > MIN_SPREAD * low.abs().max(high.abs());
+    varies.then_some([low - margin, high + margin])
 }
 
 /// The line of a summary that names the statically indeterminate reactions; empty if there are none.
@@ -165,6 +170,18 @@ pub(crate) fn separating_note(scene: &Scene) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_rounding_of_a_constant_is_no_range() {
+        let curve = |values: &[f64]| {
+            let points = (0..).zip(values).map(|(k, v)| [f64::from(k), *v]);
+            Series::line("m", points.collect())
+        };
+        let constant = curve(&[2.5, 2.5 * (1.0 + f64::EPSILON), 2.5]);
+        assert_eq!(inner_range(Range::Revolutions(6), &[constant]), None);
+        let varying = curve(&[2.5, 2.6, 2.5]);
+        assert!(inner_range(Range::Revolutions(6), &[varying]).is_some());
+    }
 
     #[test]
     fn named_reactions_are_all_drawn_and_too_many_others_are_not() {
