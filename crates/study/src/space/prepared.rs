@@ -238,6 +238,11 @@ impl ReducedScene for PreparedSpaceScene<'_> {
 
     fn rounding_errors(&self, q: f64, at: &Coefficients) -> Result<Coefficients, StudyError> {
         let model = self.model.model();
+        // In 32 digits there is no prediction: whole periods away from the start, teeth would not mesh.
+        let q = match model.plan().range() {
+            Range::Revolutions(count) => q.rem_euclid(TAU * f64::from(count)),
+            _ => q,
+        };
         let (mut workspace, mut errors) = (model.workspace(), model.coefficient_buffer());
         reduction_rounding_errors(model, q, at, &mut workspace, &mut errors)
             .map_err(|e| self.explain(&e))?;

@@ -376,3 +376,12 @@ fn what_redundant_constraints_share_is_not_written() {
     let names: Vec<_> = of_joints.map(|c| c.name.as_str()).collect();
     assert!(names.is_empty(), "{names:?}");
 }
+
+#[test]
+fn gears_are_reduced_over_their_whole_period() {
+    // Both ends of six revolutions are one position; its rounding is found in 32 digits.
+    let scene = scene("bevel-differential-held", "");
+    let reduction = dwell_study::compute_reduction_in_space(&scene, Some(7)).unwrap();
+    let all = &reduction.curves.coefficients;
+    assert!((all[0].m - all[6].m).abs() < 1e-14 * all[0].m);
+}
