@@ -27,6 +27,14 @@ def test_exact_code_is_that_of_the_command(tmp_path):
     assert all(path.read_bytes() == (tmp_path / "there" / path.name).read_bytes() for path in written)
 
 
+@pytest.mark.parametrize("target, options", [("fmu", []), ("exact-fmu", ["--exact"]), ("fmu2", [])])
+def test_fmus_are_those_of_the_command(target, options, tmp_path):
+    (written,) = dwell.Scene.read(FOUR_BAR).export(target, tmp_path / "here")
+    arguments = [COMMAND, "export", FOUR_BAR, "--to", target.removeprefix("exact-"), *options, "--out", tmp_path / "there"]
+    subprocess.run(arguments, check=True, capture_output=True)
+    assert written.read_bytes() == (tmp_path / "there" / written.name).read_bytes()
+
+
 def test_what_cannot_be_exported_says_why(tmp_path):
     with pytest.raises(dwell.SceneError, match="five-bar|freedom|actuators"):
         dwell.Scene.read(TOP / "validation/five-bar/scene.toml").export("c", tmp_path)

@@ -1,8 +1,7 @@
 //! Writes an export.
 
 use crate::explain::{StudyError, scene_error};
-use crate::export::fmu_archive::fmu_archive;
-use crate::export::{ExportRequest, compute_export};
+use crate::export::{ExportRequest, compute_export, fmu_archive};
 use crate::number_format::count;
 use crate::output::Outcome;
 use crate::reduce::compute::compute_reduction;
