@@ -4,11 +4,13 @@ use crate::error::Error;
 use crate::mechanism::scene::Scene;
 use crate::space;
 use dwell_export::{
-    Export, FmiVersion, Identifiers, Precision, Request, c_files, matlab_files, rust_files,
+    Export, FmiVersion, Identifiers, Precision, Request, c_files, c_files_of_several_freedoms,
+    matlab_files, rust_files,
 };
 use dwell_scene::SceneFile;
 use dwell_study::{
-    ExportRequest, compute_closed_form, compute_export, compute_export_in_space, fmu_archive,
+    ExportRequest, compute_closed_form, compute_export, compute_export_in_space,
+    compute_export_of_several_freedoms, fmu_archive,
 };
 
 /// What [`Scene::export`] writes, in double precision.
@@ -42,11 +44,12 @@ impl ExportTarget {
 
 impl Scene {
     /// The machine as code: the path and content of each file, as `dwell export` writes them. In cells every function of the coordinate is
-    /// within `accuracy` of its largest value (1e-14 to 1e-2); exact code has that of rounding.
+    /// within `accuracy` of its largest value (1e-14 to 1e-2); exact code has that of rounding. A machine of several freedoms has exact code,
+    /// in C.
     ///
     /// # Errors
-    /// [`Error::Study`] where the machine cannot be exported, with the reason and what to change: it has several freedoms, passes change
-    /// points, or sticks. [`Error::Table`] for another accuracy.
+    /// [`Error::Study`] where the machine cannot be exported, with the reason and what to change: it has several freedoms and the target
+    /// is not C, passes change points, or sticks. [`Error::Table`] for another accuracy.
     ///
     /// ```
     /// use dwell::ExportTarget;
@@ -63,6 +66,11 @@ impl Scene {
         accuracy: f64,
     ) -> Result<Vec<(String, Vec<u8>)>, Error> {
         let asked = request(target, accuracy)?;
+        let is_c = matches!(target, ExportTarget::C | ExportTarget::ExactC);
+        if is_c && self.inner().mechanism.actuators.len() > 1 {
+            let export = compute_export_of_several_freedoms(self.inner(), &asked)?;
+            return Ok(texts(c_files_of_several_freedoms(&export).into()));
+        }
         files(self.inner(), target, &compute_export(self.inner(), &asked)?)
     }
 
@@ -145,10 +153,6 @@ fn files(
     target: ExportTarget,
     export: &Export,
 ) -> Result<Vec<(String, Vec<u8>)>, Error> {
-    let texts = |files: Vec<(String, String)>| {
-        let file = |(path, text): (String, String)| (path, text.into_bytes());
-        files.into_iter().map(file).collect()
-    };
     Ok(match target {
         ExportTarget::C | ExportTarget::ExactC => texts(c_files(export).into()),
         ExportTarget::Rust => texts(rust_files(export).into_iter().flatten().collect()),
@@ -159,4 +163,9 @@ fn files(
             vec![(format!("{identifier}.fmu"), bytes)]
         }
     })
+}
+
+fn texts(files: Vec<(String, String)>) -> Vec<(String, Vec<u8>)> {
+    let file = |(path, text): (String, String)| (path, text.into_bytes());
+    files.into_iter().map(file).collect()
 }

@@ -6,9 +6,11 @@ mod fmu_archive;
 #[cfg(feature = "output")]
 pub(crate) mod output;
 pub(crate) mod sampler;
+mod several_freedoms;
 
 #[cfg(feature = "fmu")]
 pub use fmu_archive::fmu_archive;
+pub use several_freedoms::compute_export_of_several_freedoms;
 
 use crate::explain::{StudyError, explain_motion, scene_error};
 use crate::number_format::number;
