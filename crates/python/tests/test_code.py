@@ -37,7 +37,7 @@ def test_fmus_are_those_of_the_command(target, options, tmp_path):
 
 def test_what_cannot_be_exported_says_why(tmp_path):
     with pytest.raises(dwell.SceneError, match="five-bar|freedom|actuators"):
-        dwell.Scene.read(TOP / "validation/five-bar/scene.toml").export("c", tmp_path)
+        dwell.Scene.read(TOP / "validation/five-bar/scene.toml").export("rust", tmp_path)
     with pytest.raises(ValueError, match="'exact-c'"):
         dwell.Scene.read(FOUR_BAR).export("fortran", tmp_path)
     for accuracy in (0.0, -1.0, float("nan"), 5.0):
