@@ -10,10 +10,11 @@ from conftest import COMMAND, TOP
 FOUR_BAR = TOP / "validation/four-bar/scene.toml"
 
 
-@pytest.mark.parametrize("target", ["c", "rust", "matlab"])
-def test_files_are_those_of_the_command(target, tmp_path):
-    written = dwell.Scene.read(FOUR_BAR).export(target, tmp_path / "here", accuracy=1e-7)
-    arguments = [COMMAND, "export", FOUR_BAR, "--to", target, "--accuracy", "1e-7", "--out", tmp_path / "there"]
+@pytest.mark.parametrize("case, target", [("four-bar", "c"), ("four-bar", "rust"), ("four-bar", "matlab"), ("five-bar", "c")])
+def test_files_are_those_of_the_command(case, target, tmp_path):
+    path = TOP / f"validation/{case}/scene.toml"
+    written = dwell.Scene.read(path).export(target, tmp_path / "here", accuracy=1e-7)
+    arguments = [COMMAND, "export", path, "--to", target, "--accuracy", "1e-7", "--out", tmp_path / "there"]
     subprocess.run(arguments, check=True, capture_output=True)
     assert len(written) >= 2
     for path in written:
