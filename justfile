@@ -125,6 +125,12 @@ export:
     cargo build --release --workspace --bins
     python3 validation/fmu/run.py
 
+# FMUs of two cases in a second importer, fmi-rs, against `dwell simulate`. Builds it in a scratch folder, which takes minutes and needs libclang
+[group('care')]
+fmi-rs:
+    cargo build --release --workspace --bins
+    python3 validation/fmu/second_importer.py
+
 # Exported C and Rust on an emulated Cortex-M4F: self-tests, instructions of a call, a million steps. Installs compiler and emulator
 [group('care')]
 cortex:
@@ -164,7 +170,7 @@ nightly-fuzz part="0" seed=`date +%j`:
 
 # Of `nightly`: ten million designs, other programs, the reference values, the dependencies' advisories. Installs what these need
 [group('care')]
-nightly-others: peers deny octave designs reference export cortex engines
+nightly-others: peers deny octave designs reference export fmi-rs cortex engines
 
 # What the build server runs
 [group('care')]

@@ -6,7 +6,7 @@ cd "$(dirname "$0")"
 top=$(cd ../.. && pwd)
 env="${1:-$top/target/python}"
 [ -x "$env/bin/python" ] || python3 -m venv "$env"
-"$env/bin/pip" install --quiet --disable-pip-version-check 'maturin>=1.9.4,<2' numpy scipy pandas pandas-stubs matplotlib sympy pytest mypy 'dask[distributed]' pyarrow
+"$env/bin/pip" install --quiet --disable-pip-version-check 'maturin>=1.9.4,<2' numpy scipy pandas pandas-stubs matplotlib sympy tqdm pytest mypy 'dask[distributed]' pyarrow
 rm -rf "$top/target/wheels"
 "$env/bin/maturin" build --quiet --release --compression-level 9 --out "$top/target/wheels"
 "$env/bin/pip" install --quiet --disable-pip-version-check --force-reinstall --no-deps "$top"/target/wheels/dwell-*.whl

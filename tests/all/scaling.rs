@@ -12,7 +12,6 @@ use std::f64::consts::{PI, TAU};
 fn config() -> ProptestConfig {
     let failures = FileFailurePersistence::Direct("proptest-regressions/scaling.txt");
     ProptestConfig {
-        cases: 256,
         failure_persistence: Some(Box::new(failures)),
         ..ProptestConfig::default()
     }

@@ -24,6 +24,7 @@ fn order(method: Method) -> Option<f64> {
 
 fn effort(tolerances: &[i32], tables: &[f64]) -> Effort {
     Effort {
+        exported_code: false,
         tolerance_exponents: tolerances.to_vec(),
         table_accuracies: tables.to_vec(),
         max_steps: 5_000,

@@ -142,7 +142,7 @@ def compare_with_simulate(dwell, scene, results, stop, allowed):
     shutil.rmtree(out)
     found = {}
     for kind, result in results.items():
-        common = [name for name in result.dtype.names if name in columns and name != "time"]
+        common = [name for name in result if name in columns and name != "time"]
         assert len(common) > 1, f"{scene.stem}: only {common} can be compared"
         # At an event an importer writes two rows of one instant: the last of them counts.
         row = {round(20 * t / stop, 6): k for k, t in enumerate(result["time"])}
@@ -175,6 +175,7 @@ def judge_one(dwell, scene, version, out, target, stop, allowed):
         values = {"parameters.max_step": MAX_STEP.get(scene.stem, 1e-3)}
         result = simulate_fmu(
             fmu, fmi_type=kind, stop_time=stop, output_interval=stop / 600, relative_tolerance=1e-10, start_values=values)
+        result = {name: result[name] for name in result.dtype.names}
         results[kind] = result
         if scene.stem == "single-dwell":
             error = passage(result, coordinate, 6.283185307179586) - PERIOD

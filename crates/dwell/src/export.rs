@@ -2,13 +2,22 @@
 
 use crate::error::Error;
 use crate::mechanism::scene::Scene;
-use dwell_export::{Precision, Request, c_files, matlab_files, rust_files};
-use dwell_study::{ExportRequest, compute_closed_form, compute_export};
+use crate::space;
+use dwell_export::{
+    Export, FmiVersion, Identifiers, Precision, Request, c_files, c_files_of_several_freedoms,
+    matlab_files, rust_files,
+};
+use dwell_scene::SceneFile;
+use dwell_study::{
+    ExportRequest, compute_closed_form, compute_export, compute_export_in_space,
+    compute_export_of_several_freedoms, fmu_archive,
+};
 
 /// What [`Scene::export`] writes, in double precision.
 ///
 /// ```
-/// assert_ne!(dwell::ExportTarget::C, dwell::ExportTarget::ExactC);
+/// use dwell::{ExportTarget, FmiVersion};
+/// assert_ne!(ExportTarget::Fmu(FmiVersion::Three), ExportTarget::ExactFmu(FmiVersion::Three));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExportTarget {
@@ -20,15 +29,27 @@ pub enum ExportTarget {
     Rust,
     /// A MAT-file with the cells, and functions for MATLAB and Octave.
     Matlab,
+    /// An FMU for model exchange and co-simulation, in cells: sources, and a library for this platform where a C compiler is found.
+    Fmu(FmiVersion),
+    /// The same with the model's own operations.
+    ExactFmu(FmiVersion),
+}
+
+impl ExportTarget {
+    /// Whether it has the model's own operations instead of cells.
+    fn is_exact(self) -> bool {
+        matches!(self, Self::ExactC | Self::ExactFmu(_))
+    }
 }
 
 impl Scene {
     /// The machine as code: the path and content of each file, as `dwell export` writes them. In cells every function of the coordinate is
-    /// within `accuracy` of its largest value (1e-14 to 1e-2); exact code has that of rounding.
+    /// within `accuracy` of its largest value (1e-14 to 1e-2); exact code has that of rounding. A machine of several freedoms has exact code,
+    /// in C.
     ///
     /// # Errors
-    /// [`Error::Study`] where the machine cannot be exported, with the reason and what to change: it has several freedoms, passes change
-    /// points, or sticks. [`Error::Table`] for another accuracy.
+    /// [`Error::Study`] where the machine cannot be exported, with the reason and what to change: it has several freedoms and the target
+    /// is not C, passes change points, or sticks. [`Error::Table`] for another accuracy.
     ///
     /// ```
     /// use dwell::ExportTarget;
@@ -44,29 +65,13 @@ impl Scene {
         target: ExportTarget,
         accuracy: f64,
     ) -> Result<Vec<(String, Vec<u8>)>, Error> {
-        if target != ExportTarget::ExactC && !(1e-14..=1e-2).contains(&accuracy) {
-            let message =
-                format!("the accuracy must be between 1e-14 and 1e-2, and not {accuracy}");
-            return Err(Error::Table(message));
+        let asked = request(target, accuracy)?;
+        let is_c = matches!(target, ExportTarget::C | ExportTarget::ExactC);
+        if is_c && self.inner().mechanism.actuators.len() > 1 {
+            let export = compute_export_of_several_freedoms(self.inner(), &asked)?;
+            return Ok(texts(c_files_of_several_freedoms(&export).into()));
         }
-        let asked = ExportRequest {
-            request: Request {
-                accuracy,
-                precision: Precision::Double,
-            },
-            exact: target == ExportTarget::ExactC,
-            interval: None,
-        };
-        let export = compute_export(self.inner(), &asked)?;
-        let texts = |files: Vec<(String, String)>| {
-            let file = |(path, text): (String, String)| (path, text.into_bytes());
-            files.into_iter().map(file).collect()
-        };
-        Ok(match target {
-            ExportTarget::C | ExportTarget::ExactC => texts(c_files(&export).into()),
-            ExportTarget::Rust => texts(rust_files(&export).into_iter().flatten().collect()),
-            ExportTarget::Matlab => matlab_files(&export).unwrap_or_default(),
-        })
+        files(self.inner(), target, &compute_export(self.inner(), &asked)?)
     }
 
     /// The closed forms of a mechanism made of dyads: a function `reduced` of the coordinate in a language, that gives the positions, m, ½m′, and a
@@ -96,4 +101,71 @@ impl Scene {
         }
         Ok(form.code(language, "reduced", self.title()))
     }
+}
+
+impl space::Scene {
+    /// The machine as code, as [`Scene::export`](crate::Scene::export) of a mechanism in the plane. Loops in space are closed by Newton's
+    /// method: they have no exact code.
+    ///
+    /// # Errors
+    /// [`Error::Study`] where the machine cannot be exported, with the reason and what to change. [`Error::Table`] for another
+    /// accuracy.
+    ///
+    /// ```
+    /// use dwell::ExportTarget;
+    /// let scene = dwell::space::Scene::read("../../validation/spatial/rssr.toml")?;
+    /// let files = scene.export(ExportTarget::C, 1e-6)?;
+    /// assert_eq!(files[1].0, "rssr.c");
+    /// assert!(scene.export(ExportTarget::ExactC, 1e-6).is_err());
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn export(
+        &self,
+        target: ExportTarget,
+        accuracy: f64,
+    ) -> Result<Vec<(String, Vec<u8>)>, Error> {
+        let asked = request(target, accuracy)?;
+        let export = compute_export_in_space(self.inner(), &asked)?;
+        files(&self.inner().file, target, &export)
+    }
+}
+
+/// What a target asks for.
+fn request(target: ExportTarget, accuracy: f64) -> Result<ExportRequest, Error> {
+    let exact = target.is_exact();
+    if !exact && !(1e-14..=1e-2).contains(&accuracy) {
+        let message = format!("the accuracy must be between 1e-14 and 1e-2, and not {accuracy}");
+        return Err(Error::Table(message));
+    }
+    Ok(ExportRequest {
+        request: Request {
+            accuracy,
+            precision: Precision::Double,
+        },
+        exact,
+        interval: None,
+    })
+}
+
+/// The files of a target.
+fn files(
+    scene: &SceneFile,
+    target: ExportTarget,
+    export: &Export,
+) -> Result<Vec<(String, Vec<u8>)>, Error> {
+    Ok(match target {
+        ExportTarget::C | ExportTarget::ExactC => texts(c_files(export).into()),
+        ExportTarget::Rust => texts(rust_files(export).into_iter().flatten().collect()),
+        ExportTarget::Matlab => matlab_files(export).unwrap_or_default(),
+        ExportTarget::Fmu(version) | ExportTarget::ExactFmu(version) => {
+            let (bytes, _) = fmu_archive(scene, export, version)?;
+            let identifier = Identifiers::new(&export.machine).prefix;
+            vec![(format!("{identifier}.fmu"), bytes)]
+        }
+    })
+}
+
+fn texts(files: Vec<(String, String)>) -> Vec<(String, Vec<u8>)> {
+    let file = |(path, text): (String, String)| (path, text.into_bytes());
+    files.into_iter().map(file).collect()
 }

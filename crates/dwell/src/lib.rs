@@ -98,6 +98,17 @@ pub use dwell_dynamics::Mode;
 /// # }
 /// ```
 pub use dwell_dynamics::Stability;
+/// A version of the Functional Mock-up Interface; see [`ExportTarget`].
+///
+/// ```no_run
+/// use dwell::{ExportTarget, FmiVersion};
+/// let scene = dwell::Scene::read("../../docs/slider.toml")?;
+/// for (path, content) in scene.export(ExportTarget::Fmu(FmiVersion::Three), 1e-9)? {
+///     std::fs::write(path, content).expect("slider.fmu can be written");
+/// }
+/// # Ok::<(), dwell::Error>(())
+/// ```
+pub use dwell_export::FmiVersion;
 /// A language of [`Scene::closed_form`].
 ///
 /// ```

@@ -4,7 +4,9 @@ use crate::column_table::ColumnTable;
 use crate::error::Error;
 use crate::mechanism::scene::Scene;
 use crate::space;
+use dwell_study::Step;
 use dwell_study::sweep::compute_sweep;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A parameter sweep: numbers of a scene over grids, lists or at random, and results of every combination, computed on all
 /// cores. The results are those of `dwell sweep`: `m.min`, `m.max`, `period`, `phi.actuator_force.max_abs`,
@@ -99,13 +101,35 @@ impl Sweep {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn run(&self) -> Result<SweepResults, Error> {
+        self.run_with_progress(&|_, _| {})
+    }
+
+    /// The same, calling `progress` after each block of combinations, from any thread, with the number of blocks that are done and that of
+    /// all.
+    ///
+    /// # Errors
+    /// As of [`run`](Self::run).
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let sweep = dwell::Sweep::new(&scene).vary("rod.mass", "=1,1.2").result("m.max");
+    /// sweep.run_with_progress(&|done, all| eprintln!("{done} of {all}"))?;
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn run_with_progress(
+        &self,
+        progress: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<SweepResults, Error> {
         let (vary, results) = (&self.vary, &self.results);
+        let (samples, seed) = (self.samples, self.seed);
+        let done = AtomicUsize::new(0);
+        let step = |step: Step<'_>| progress(done.fetch_add(1, Ordering::Relaxed) + 1, step.total);
         let swept = match &self.scene {
             VariedScene::Plane(scene) => {
-                compute_sweep(scene.inner(), vary, self.samples, self.seed, results)
+                compute_sweep(scene.inner(), vary, samples, seed, results, &step)
             }
             VariedScene::Space(scene) => {
-                compute_sweep(scene.inner(), vary, self.samples, self.seed, results)
+                compute_sweep(scene.inner(), vary, samples, seed, results, &step)
             }
         }?;
         Ok(SweepResults {

@@ -47,7 +47,7 @@ fn pulse(shape: usize, at: f64, width: f64) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(400) })]
+    #![proptest_config(ProptestConfig { cases: ProptestConfig::default().cases.max(400), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// No pulse is missed by any method at any tolerance, however narrow, and its effect is that of its impulse.
     #[test]

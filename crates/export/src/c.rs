@@ -8,8 +8,9 @@ mod source;
 mod step;
 mod tables;
 
+pub(crate) use code::Statements;
+
 use crate::export::Export;
-use crate::part::Precision;
 use crate::writer::Writer;
 use std::ops::Deref;
 
@@ -45,9 +46,6 @@ impl CWriter<'_> {
 
     /// A number of the exported kind.
     fn number(&self, value: f64) -> String {
-        match self.export.request.precision {
-            Precision::Double => format!("{value:e}"),
-            Precision::Float => format!("{:e}f", value as f32),
-        }
+        self.statements().number(value)
     }
 }

@@ -1,6 +1,6 @@
 //! Names of a scene as identifiers: different names stay different, and none can be a word of a language.
 
-use crate::machine::MachineDescription;
+use crate::machine::{LoadDescription, MachineDescription};
 use std::collections::HashSet;
 
 /// The identifiers of an export.
@@ -21,18 +21,33 @@ pub struct Identifiers {
 impl Identifiers {
     /// Those of a machine.
     pub fn new(machine: &MachineDescription) -> Self {
-        let mut prefix = plain(&machine.name).to_ascii_lowercase();
+        Self::of(
+            &machine.name,
+            &machine.loads,
+            &machine.reactions,
+            &machine.points,
+        )
+    }
+
+    /// Those of a machine with this name and these parts.
+    pub(crate) fn of(
+        name: &str,
+        loads: &[LoadDescription],
+        reactions: &[(String, &'static str)],
+        points: &[String],
+    ) -> Self {
+        let mut prefix = plain(name).to_ascii_lowercase();
         if !prefix.starts_with(|c: char| c.is_ascii_alphabetic()) {
             prefix.insert_str(0, "machine_");
         }
-        let reactions: Vec<_> = machine.reactions.iter().map(|(name, _)| name).collect();
-        let loads: Vec<_> = machine.loads.iter().map(|load| &load.name).collect();
+        let reactions: Vec<_> = reactions.iter().map(|(name, _)| name).collect();
+        let loads: Vec<_> = loads.iter().map(|load| &load.name).collect();
         Self {
             capitals: prefix.to_ascii_uppercase(),
             prefix,
             loads: distinct(&loads),
             reactions: distinct(&reactions),
-            points: distinct(&machine.points.iter().collect::<Vec<_>>()),
+            points: distinct(&points.iter().collect::<Vec<_>>()),
         }
     }
 }
@@ -51,7 +66,7 @@ fn plain(name: &str) -> String {
 }
 
 /// As [`plain`], with a number behind those that would be like another.
-fn distinct(names: &[&String]) -> Vec<String> {
+pub(crate) fn distinct(names: &[&String]) -> Vec<String> {
     let mut used = HashSet::new();
     let mut all = Vec::with_capacity(names.len());
     for name in names {

@@ -3,7 +3,8 @@
 //! Plain data and a sampler of exact functions come in; [`Export::new`] fits cells of uneven width and measures what they are
 //! worth, or [`Export::exact`] takes the operations of the exact functions, [recorded](record) once; each target then makes
 //! texts or bytes of them: [`c_files`], [`rust_files`], [`fmu_files`], [`matlab_files`]. The
-//! [`Evaluator`] is the exported code in Rust, operation by operation.
+//! [`Evaluator`] is the exported code in Rust, operation by operation. A machine of several degrees of freedom has its equations of
+//! motion in C, by [`SeveralFreedomsExport`].
 //!
 //! A crank whose inertia is 2 + cos q, kg m², as C in single precision:
 //!
@@ -65,6 +66,7 @@ mod part;
 mod real;
 mod recording;
 mod rust;
+mod several_freedoms;
 mod slopes;
 mod straight_line;
 mod writer;
@@ -84,6 +86,10 @@ pub use matlab::matlab_files;
 pub use measure::{Errors, Measured, STATED_STEP, SelfTestMotion, SelfTestRow};
 pub use part::{Column, Part, Precision};
 pub use real::Real;
-pub use recording::{RecordedNumber, RecordingError, record};
+pub use recording::{RecordedNumber, RecordingError, record, record_at};
 pub use rust::rust_files;
+pub use several_freedoms::{
+    FreeCoordinate, SampledState, SeveralFreedomsDescription, SeveralFreedomsErrors,
+    SeveralFreedomsEvaluator, SeveralFreedomsExport, c_files_of_several_freedoms,
+};
 pub use straight_line::{Operand, Operation, StraightLine};

@@ -20,13 +20,13 @@ pub enum RecordingError<E> {
     /// A function is known by its values alone.
     #[error("a function is known by its values alone")]
     Function,
-    /// Other operations at another coordinate.
-    #[error("the operations at {first} and {second} differ")]
+    /// Other operations at another position.
+    #[error("the operations at {first:?} and {second:?} differ")]
     Differs {
-        /// A coordinate, rad or m.
-        first: f64,
-        /// Another one.
-        second: f64,
+        /// The coordinates of a position, rad or m.
+        first: Vec<f64>,
+        /// Those of another one.
+        second: Vec<f64>,
     },
 }
 
@@ -55,13 +55,29 @@ pub fn record<E>(
     coordinates: &[f64],
     mut evaluate: impl FnMut(RecordedNumber) -> Result<Vec<RecordedNumber>, E>,
 ) -> Result<StraightLine, RecordingError<E>> {
-    let mut first: Option<(f64, StraightLine)> = None;
-    for &q in coordinates {
+    let positions: Vec<Vec<f64>> = coordinates.iter().map(|&q| vec![q]).collect();
+    record_at(&positions, |q| evaluate(q[0]))
+}
+
+/// The operations of functions of several coordinates, recorded at each of the positions.
+///
+/// # Errors
+/// [`RecordingError`].
+pub fn record_at<E>(
+    positions: &[Vec<f64>],
+    mut evaluate: impl FnMut(&[RecordedNumber]) -> Result<Vec<RecordedNumber>, E>,
+) -> Result<StraightLine, RecordingError<E>> {
+    let mut first: Option<(&Vec<f64>, StraightLine)> = None;
+    for position in positions {
         RECORD.take();
-        let outputs = evaluate(RecordedNumber {
-            value: q,
-            operand: Recorded::Coordinate,
-        });
+        let coordinates = position
+            .iter()
+            .enumerate()
+            .map(|(k, &value)| RecordedNumber {
+                value,
+                operand: Recorded::Coordinate(k),
+            });
+        let outputs = evaluate(&coordinates.collect::<Vec<_>>());
         let record = RECORD.take();
         let outputs = outputs.map_err(RecordingError::Evaluation)?;
         if record.has_function {
@@ -73,12 +89,12 @@ pub fn record<E>(
         };
         let code = code.without_unused();
         match &first {
-            None => first = Some((q, code)),
+            None => first = Some((position, code)),
             Some((_, same)) if *same == code => {}
             Some((other, _)) => {
                 return Err(RecordingError::Differs {
-                    first: *other,
-                    second: q,
+                    first: (*other).clone(),
+                    second: position.clone(),
                 });
             }
         }
@@ -91,7 +107,7 @@ pub fn record<E>(
 enum Recorded {
     #[default]
     Constant,
-    Coordinate,
+    Coordinate(usize),
     Result(usize),
 }
 
@@ -106,7 +122,7 @@ impl RecordedNumber {
     fn operand(&self) -> Operand {
         match self.operand {
             Recorded::Constant => Operand::Constant(self.value),
-            Recorded::Coordinate => Operand::Coordinate,
+            Recorded::Coordinate(k) => Operand::Coordinate(k),
             Recorded::Result(k) => Operand::Result(k),
         }
     }
@@ -159,7 +175,7 @@ fn kind(operation: &Operation) -> u8 {
 fn key(operand: Operand) -> OperandKey {
     match operand {
         Operand::Constant(value) => (0, value.to_bits()),
-        Operand::Coordinate => (1, 0),
+        Operand::Coordinate(k) => (1, k as u64),
         Operand::Result(k) => (2, k as u64),
     }
 }
@@ -318,7 +334,7 @@ mod tests {
         let code = code.expect("code");
         // sin, cos, sin², cos², their sum, 6 sin², −q.
         assert_eq!(code.operations.len(), 7);
-        let [one, six, minus] = code.evaluate(0.8_f64)[..] else {
+        let [one, six, minus] = code.evaluate(&[0.8_f64])[..] else {
             panic!("three outputs");
         };
         assert!((one - 1.0).abs() < 1e-15);
@@ -334,8 +350,8 @@ mod tests {
         };
         assert!(record(&[0.5, 0.7], absolute).is_ok());
         let differs = RecordingError::Differs {
-            first: 0.5,
-            second: -0.5,
+            first: vec![0.5],
+            second: vec![-0.5],
         };
         assert_eq!(record(&[0.5, -0.5], absolute), Err(differs));
     }

@@ -12,10 +12,10 @@ use std::ops::{Add, Div, Mul, Sub};
 pub(crate) fn with_slopes(code: &StraightLine, outputs: &[(usize, bool)]) -> StraightLine {
     let evaluate = |q: RecordedNumber| {
         let one = RecordedNumber::from_f64(1.0);
-        let all = code.evaluate(Sloped {
+        let all = code.evaluate(&[Sloped {
             value: q,
             slope: one,
-        });
+        }]);
         let slope = |&(k, wanted): &(usize, bool)| match all.get(k).filter(|_| wanted) {
             Some(of) => of.slope,
             None => RecordedNumber::from_f64(0.0),
@@ -148,13 +148,13 @@ mod tests {
         use Operand::{Constant, Coordinate, Result};
         let code = StraightLine {
             operations: vec![
-                Operation::Sine(Coordinate),
-                Operation::Cosine(Coordinate),
+                Operation::Sine(Coordinate(0)),
+                Operation::Cosine(Coordinate(0)),
                 Operation::Add(Result(1), Constant(2.0)),
                 Operation::SquareRoot(Result(2)),
                 Operation::Divide(Result(0), Result(3)),
                 Operation::Angle(Result(4), Result(2)),
-                Operation::Multiply(Result(5), Coordinate),
+                Operation::Multiply(Result(5), Coordinate(0)),
                 Operation::Negate(Result(6)),
                 Operation::Subtract(Result(7), Result(4)),
             ],
@@ -163,12 +163,12 @@ mod tests {
         let sloped = with_slopes(&code, &[(0, true), (1, false), (2, true)]);
         assert_eq!(sloped.outputs.len(), 6);
         for q in [-1.0_f64, 0.3, 2.0] {
-            let [value, _, _, slope, unwanted, of_constant] = sloped.evaluate(q)[..] else {
+            let [value, _, _, slope, unwanted, of_constant] = sloped.evaluate(&[q])[..] else {
                 panic!("six outputs");
             };
             let h = 1e-5;
-            let [before, after] = [q - h, q + h].map(|q| code.evaluate(q)[0]);
-            assert_eq!(value, code.evaluate(q)[0]);
+            let [before, after] = [q - h, q + h].map(|q| code.evaluate(&[q])[0]);
+            assert_eq!(value, code.evaluate(&[q])[0]);
             assert!((slope - (after - before) / (2.0 * h)).abs() < 1e-9, "{q}");
             assert_eq!([unwanted, of_constant], [0.0, 0.0]);
         }

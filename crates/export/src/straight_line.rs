@@ -5,8 +5,8 @@ use crate::real::Real;
 /// What an operation works on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Operand {
-    /// The coordinate.
-    Coordinate,
+    /// A coordinate, by its place.
+    Coordinate(usize),
     /// A constant.
     Constant(f64),
     /// The result of an operation, by its index.
@@ -110,7 +110,7 @@ impl StraightLine {
         let mut operations = Vec::new();
         let renamed = |operand: Operand, new_index: &[usize]| match operand {
             Operand::Result(k) => Operand::Result(new_index[k]),
-            other @ (Operand::Coordinate | Operand::Constant(_)) => other,
+            other @ (Operand::Coordinate(_) | Operand::Constant(_)) => other,
         };
         for (k, operation) in self.operations.iter().enumerate() {
             if needed[k] {
@@ -126,11 +126,11 @@ impl StraightLine {
         }
     }
 
-    /// The outputs at a coordinate, rad or m.
-    pub fn evaluate<R: Real>(&self, q: R) -> Vec<R> {
+    /// The outputs at coordinates, rad or m.
+    pub fn evaluate<R: Real>(&self, q: &[R]) -> Vec<R> {
         let mut results: Vec<R> = Vec::with_capacity(self.operations.len());
         let value = |operand: Operand, results: &[R]| match operand {
-            Operand::Coordinate => q,
+            Operand::Coordinate(k) => q[k],
             Operand::Constant(value) => R::of(value),
             Operand::Result(k) => results[k],
         };
@@ -164,7 +164,7 @@ impl StraightLine {
         let all = used.chain(self.outputs.iter().copied());
         all.filter_map(|operand| match operand {
             Operand::Constant(value) => Some(value),
-            Operand::Coordinate | Operand::Result(_) => None,
+            Operand::Coordinate(_) | Operand::Result(_) => None,
         })
     }
 }
@@ -178,16 +178,16 @@ mod tests {
         use Operand::{Constant, Coordinate, Result};
         let code = StraightLine {
             operations: vec![
-                Operation::Sine(Coordinate),
-                Operation::Cosine(Coordinate),
+                Operation::Sine(Coordinate(0)),
+                Operation::Cosine(Coordinate(0)),
                 Operation::Multiply(Result(1), Constant(2.0)),
             ],
-            outputs: vec![Result(2), Coordinate],
+            outputs: vec![Result(2), Coordinate(0)],
         };
         let short = code.clone().without_unused();
         assert_eq!(short.operations.len(), 2);
-        assert_eq!(short.evaluate(0.7), code.evaluate(0.7));
-        assert_eq!(short.evaluate(0.7), [2.0 * 0.7_f64.cos(), 0.7]);
+        assert_eq!(short.evaluate(&[0.7]), code.evaluate(&[0.7]));
+        assert_eq!(short.evaluate(&[0.7]), [2.0 * 0.7_f64.cos(), 0.7]);
         assert_eq!(short.functions(), 1);
     }
 }

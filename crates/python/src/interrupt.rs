@@ -1,7 +1,8 @@
-//! Long computations: other Python threads go on meanwhile, and Ctrl-C ends them.
+//! Long computations: other Python threads go on meanwhile, Ctrl-C ends them, and their progress is shown.
 
 use dwell_dynamics::interruption;
 use pyo3::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::thread;
 use std::time::Duration;
@@ -9,14 +10,39 @@ use std::time::Duration;
 /// How often signals are looked at while a computation runs.
 const BETWEEN_LOOKS: Duration = Duration::from_millis(50);
 
+/// The steps of a computation that are done, of how many; none while it is not known.
+#[derive(Default)]
+pub(crate) struct Steps {
+    done: AtomicUsize,
+    all: AtomicUsize,
+}
+
+impl Steps {
+    /// So many are done.
+    pub(crate) fn show(&self, done: usize, all: usize) {
+        self.all.store(all, Ordering::Relaxed);
+        self.done.fetch_max(done, Ordering::Relaxed);
+    }
+
+    fn get(&self) -> (usize, usize) {
+        let [done, all] = [&self.done, &self.all].map(|n| n.load(Ordering::Relaxed));
+        (done, all)
+    }
+}
+
 /// Runs a computation in a thread of its own. On Ctrl-C all running computations of this process end, and KeyboardInterrupt is
-/// raised.
-pub(crate) fn run<T: Send>(py: Python<'_>, compute: impl FnOnce() -> T + Send) -> PyResult<T> {
+/// raised. `progress` is a Python function of what is done and of how much; it is called while the computation runs.
+pub(crate) fn run<T: Send>(
+    py: Python<'_>,
+    progress: &Bound<'_, PyAny>,
+    compute: impl FnOnce(&Steps) -> T + Send,
+) -> PyResult<T> {
     let (sender, mut receiver) = sync_channel(1);
+    let steps = &Steps::default();
     thread::scope(|scope| {
         let worker = scope.spawn(move || {
             // The receiver lives until this thread has ended.
-            let _ = sender.send(compute());
+            let _ = sender.send(compute(steps));
         });
         loop {
             let looked_at = &mut receiver;
@@ -26,7 +52,8 @@ pub(crate) fn run<T: Send>(py: Python<'_>, compute: impl FnOnce() -> T + Send) -
                 Err(RecvTimeoutError::Disconnected) => break,
                 Err(RecvTimeoutError::Timeout) => {}
             }
-            if let Err(signal) = py.check_signals() {
+            let shown = progress.call1(steps.get()).map(drop);
+            if let Err(signal) = py.check_signals().and(shown) {
                 interruption::request();
                 let ended = py.detach(|| worker.join());
                 interruption::clear();

@@ -83,22 +83,22 @@ impl Mechanism {
         Ok(ReducedModel { reduced })
     }
 
-    fn kinematics(&self, py: Python<'_>) -> PyResult<Rows> {
-        let found = run(py, || self.mechanism.kinematics_along_motion())?;
+    fn kinematics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        let found = run(py, progress, |_| self.mechanism.kinematics_along_motion())?;
         Ok(Rows(found.or_raise(py)?))
     }
 
-    fn statics(&self, py: Python<'_>) -> PyResult<Rows> {
-        let found = run(py, || self.mechanism.statics_along_motion())?;
+    fn statics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        let found = run(py, progress, |_| self.mechanism.statics_along_motion())?;
         Ok(Rows(found.or_raise(py)?))
     }
 
-    fn kinetostatics(&self, py: Python<'_>) -> PyResult<Rows> {
-        let found = run(py, || self.mechanism.kinetostatics())?;
+    fn kinetostatics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        let found = run(py, progress, |_| self.mechanism.kinetostatics())?;
         Ok(Rows(found.or_raise(py)?))
     }
 
-    #[pyo3(signature = (accuracy, method, tolerance, sample_interval))]
+    #[pyo3(signature = (accuracy, method, tolerance, sample_interval, progress))]
     fn simulate(
         &self,
         py: Python<'_>,
@@ -106,28 +106,33 @@ impl Mechanism {
         method: Option<&str>,
         tolerance: f64,
         sample_interval: Option<f64>,
+        progress: &Bound<'_, PyAny>,
     ) -> PyResult<Rows> {
         let solver = solver(accuracy, method, tolerance, sample_interval)?;
-        let found = run(py, || self.mechanism.simulate(&solver))?;
+        let found = run(py, progress, |_| self.mechanism.simulate(&solver))?;
         Ok(Rows(found.or_raise(py)?))
     }
 
-    fn period(&self, py: Python<'_>) -> PyResult<(f64, f64)> {
-        let found = run(py, || self.mechanism.period())?.or_raise(py)?;
+    fn period(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
+        let found = run(py, progress, |_| self.mechanism.period())?.or_raise(py)?;
         Ok((found.period, found.energy))
     }
 
-    fn equilibria(&self, py: Python<'_>) -> PyResult<Vec<Equilibrium>> {
-        let found = run(py, || self.mechanism.equilibria())?.or_raise(py)?;
+    fn equilibria(
+        &self,
+        py: Python<'_>,
+        progress: &Bound<'_, PyAny>,
+    ) -> PyResult<Vec<Equilibrium>> {
+        let found = run(py, progress, |_| self.mechanism.equilibria())?.or_raise(py)?;
         Ok(found.into_iter().map(Equilibrium::from).collect())
     }
 
-    fn linearise(&self, py: Python<'_>) -> PyResult<Linear> {
-        let found = run(py, || self.mechanism.linearise())?.or_raise(py)?;
+    fn linearise(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Linear> {
+        let found = run(py, progress, |_| self.mechanism.linearise())?.or_raise(py)?;
         Ok(Linear::from(found))
     }
 
-    #[pyo3(signature = (accuracy, method, tolerance, fluctuation))]
+    #[pyo3(signature = (accuracy, method, tolerance, fluctuation, progress))]
     fn cycle(
         &self,
         py: Python<'_>,
@@ -135,9 +140,10 @@ impl Mechanism {
         method: Option<&str>,
         tolerance: f64,
         fluctuation: Option<f64>,
+        progress: &Bound<'_, PyAny>,
     ) -> PyResult<Cycle> {
         let solver = solver(accuracy, method, tolerance, None)?;
-        let found = run(py, || self.mechanism.cycle(&solver, fluctuation))?;
+        let found = run(py, progress, |_| self.mechanism.cycle(&solver, fluctuation))?;
         Ok(Cycle::from(found.or_raise(py)?))
     }
 

@@ -91,7 +91,7 @@ fn pool(threads: usize) -> PyResult<Arc<ThreadPool>> {
 /// A reduced model as piecewise polynomials.
 #[pyclass(frozen, module = "dwell._native")]
 pub(crate) struct Table {
-    table: dwell::Table,
+    pub(crate) table: dwell::Table,
 }
 
 #[pymethods]

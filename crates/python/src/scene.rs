@@ -2,7 +2,7 @@
 
 use crate::errors::{Raise as _, keep};
 use crate::mechanism::Mechanism;
-use dwell::{ExportTarget, Language};
+use dwell::{ExportTarget, FmiVersion, Language};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -83,16 +83,7 @@ impl Scene {
         target: &str,
         accuracy: f64,
     ) -> PyResult<Vec<(String, Vec<u8>)>> {
-        let target = match target {
-            "c" => ExportTarget::C,
-            "exact-c" => ExportTarget::ExactC,
-            "rust" => ExportTarget::Rust,
-            "matlab" => ExportTarget::Matlab,
-            other => {
-                let message = format!("there is no target `{other}`");
-                return Err(PyValueError::new_err(message));
-            }
-        };
+        let target = export_target(target)?;
         py.detach(|| self.scene.export(target, accuracy))
             .or_raise(py)
     }
@@ -112,4 +103,22 @@ impl Scene {
         let mechanism = py.detach(|| self.scene.assemble()).or_raise(py)?;
         Ok(Mechanism { mechanism })
     }
+}
+
+/// A target of exports by its name.
+pub(crate) fn export_target(name: &str) -> PyResult<ExportTarget> {
+    Ok(match name {
+        "c" => ExportTarget::C,
+        "exact-c" => ExportTarget::ExactC,
+        "rust" => ExportTarget::Rust,
+        "matlab" => ExportTarget::Matlab,
+        "fmu" => ExportTarget::Fmu(FmiVersion::Three),
+        "exact-fmu" => ExportTarget::ExactFmu(FmiVersion::Three),
+        "fmu2" => ExportTarget::Fmu(FmiVersion::Two),
+        "exact-fmu2" => ExportTarget::ExactFmu(FmiVersion::Two),
+        other => {
+            let message = format!("there is no target `{other}`");
+            return Err(PyValueError::new_err(message));
+        }
+    })
 }

@@ -1,10 +1,11 @@
 //! Scenes and mechanisms in space.
 
-use crate::errors::{DwellError, Raise as _};
+use crate::errors::Raise as _;
 use crate::interrupt::run;
 use crate::machine::{Cycle, Equilibrium, Linear};
 use crate::motion::{Rows, solver};
-use crate::reduced::{Arrays, with_threads};
+use crate::reduced::{Arrays, Table, with_threads};
+use crate::scene::export_target;
 use numpy::{IntoPyArray as _, PyReadonlyArray1};
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -51,6 +52,22 @@ impl SpaceScene {
     fn with_value(&self, py: Python<'_>, path: &str, value: f64) -> PyResult<Self> {
         let scene = self.scene.with_value(path, value).or_raise(py)?;
         Ok(Self { scene })
+    }
+
+    /// Files of an export: path and content of each.
+    fn export(
+        &self,
+        py: Python<'_>,
+        target: &str,
+        accuracy: f64,
+    ) -> PyResult<Vec<(String, Vec<u8>)>> {
+        let target = export_target(target)?;
+        py.detach(|| self.scene.export(target, accuracy))
+            .or_raise(py)
+    }
+
+    fn check(&self, py: Python<'_>) -> PyResult<String> {
+        py.detach(|| self.scene.describe()).or_raise(py)
     }
 
     fn assemble(&self, py: Python<'_>) -> PyResult<SpaceMechanism> {
@@ -124,22 +141,22 @@ impl SpaceMechanism {
         Ok(SpaceReducedModel { reduced })
     }
 
-    fn kinematics(&self, py: Python<'_>) -> PyResult<Rows> {
-        let found = run(py, || self.mechanism.kinematics_along_motion())?;
+    fn kinematics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        let found = run(py, progress, |_| self.mechanism.kinematics_along_motion())?;
         Ok(Rows(found.or_raise(py)?))
     }
 
-    fn statics(&self, py: Python<'_>) -> PyResult<Rows> {
-        let found = run(py, || self.mechanism.statics_along_motion())?;
+    fn statics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        let found = run(py, progress, |_| self.mechanism.statics_along_motion())?;
         Ok(Rows(found.or_raise(py)?))
     }
 
-    fn kinetostatics(&self, py: Python<'_>) -> PyResult<Rows> {
-        let found = run(py, || self.mechanism.kinetostatics())?;
+    fn kinetostatics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        let found = run(py, progress, |_| self.mechanism.kinetostatics())?;
         Ok(Rows(found.or_raise(py)?))
     }
 
-    #[pyo3(signature = (accuracy, method, tolerance, sample_interval))]
+    #[pyo3(signature = (accuracy, method, tolerance, sample_interval, progress))]
     fn simulate(
         &self,
         py: Python<'_>,
@@ -147,28 +164,33 @@ impl SpaceMechanism {
         method: Option<&str>,
         tolerance: f64,
         sample_interval: Option<f64>,
+        progress: &Bound<'_, PyAny>,
     ) -> PyResult<Rows> {
         let solver = solver(accuracy, method, tolerance, sample_interval)?;
-        let found = run(py, || self.mechanism.simulate(&solver))?;
+        let found = run(py, progress, |_| self.mechanism.simulate(&solver))?;
         Ok(Rows(found.or_raise(py)?))
     }
 
-    fn period(&self, py: Python<'_>) -> PyResult<(f64, f64)> {
-        let found = run(py, || self.mechanism.period())?.or_raise(py)?;
+    fn period(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
+        let found = run(py, progress, |_| self.mechanism.period())?.or_raise(py)?;
         Ok((found.period, found.energy))
     }
 
-    fn equilibria(&self, py: Python<'_>) -> PyResult<Vec<Equilibrium>> {
-        let found = run(py, || self.mechanism.equilibria())?.or_raise(py)?;
+    fn equilibria(
+        &self,
+        py: Python<'_>,
+        progress: &Bound<'_, PyAny>,
+    ) -> PyResult<Vec<Equilibrium>> {
+        let found = run(py, progress, |_| self.mechanism.equilibria())?.or_raise(py)?;
         Ok(found.into_iter().map(Equilibrium::from).collect())
     }
 
-    fn linearise(&self, py: Python<'_>) -> PyResult<Linear> {
-        let found = run(py, || self.mechanism.linearise())?.or_raise(py)?;
+    fn linearise(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Linear> {
+        let found = run(py, progress, |_| self.mechanism.linearise())?.or_raise(py)?;
         Ok(Linear::from(found))
     }
 
-    #[pyo3(signature = (accuracy, method, tolerance, fluctuation))]
+    #[pyo3(signature = (accuracy, method, tolerance, fluctuation, progress))]
     fn cycle(
         &self,
         py: Python<'_>,
@@ -176,9 +198,10 @@ impl SpaceMechanism {
         method: Option<&str>,
         tolerance: f64,
         fluctuation: Option<f64>,
+        progress: &Bound<'_, PyAny>,
     ) -> PyResult<Cycle> {
         let solver = solver(accuracy, method, tolerance, None)?;
-        let found = run(py, || self.mechanism.cycle(&solver, fluctuation))?;
+        let found = run(py, progress, |_| self.mechanism.cycle(&solver, fluctuation))?;
         Ok(Cycle::from(found.or_raise(py)?))
     }
 }
@@ -259,11 +282,9 @@ impl SpaceReducedModel {
         Ok(all.map(|values| values.into_pyarray(py)))
     }
 
-    /// There is none here.
-    #[pyo3(signature = (_accuracy))]
-    fn table(&self, _accuracy: f64) -> PyResult<crate::reduced::Table> {
-        Err(DwellError::new_err(
-            "tables of mechanisms in space are written by `dwell reduce --table-accuracy`",
-        ))
+    /// The table of an accuracy.
+    fn table(&self, py: Python<'_>, accuracy: f64) -> PyResult<Table> {
+        let table = py.detach(|| self.reduced.table(accuracy)).or_raise(py)?;
+        Ok(Table { table })
     }
 }

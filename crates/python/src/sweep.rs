@@ -15,7 +15,7 @@ type Columns<'py> = (
 
 /// Every combination of what varies.
 #[pyfunction]
-#[pyo3(signature = (scene, vary, results, samples, seed))]
+#[pyo3(signature = (scene, vary, results, samples, seed, progress))]
 pub(crate) fn sweep<'py>(
     py: Python<'py>,
     scene: &Bound<'py, PyAny>,
@@ -23,6 +23,7 @@ pub(crate) fn sweep<'py>(
     results: Vec<String>,
     samples: Option<u64>,
     seed: u64,
+    progress: &Bound<'py, PyAny>,
 ) -> PyResult<Columns<'py>> {
     let mut sweep = match scene.cast::<SpaceScene>() {
         Ok(scene) => dwell::Sweep::new(&scene.get().scene),
@@ -37,7 +38,10 @@ pub(crate) fn sweep<'py>(
     if let Some(samples) = samples {
         sweep = sweep.samples(samples, seed);
     }
-    let found = run(py, || sweep.run())?.or_raise(py)?;
+    let found = run(py, progress, |steps| {
+        sweep.run_with_progress(&|done, all| steps.show(done, all))
+    });
+    let found = found?.or_raise(py)?;
     let names: Vec<_> = found
         .columns()
         .map(|(name, unit)| (name.to_owned(), unit.to_owned()))

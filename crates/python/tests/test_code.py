@@ -10,10 +10,11 @@ from conftest import COMMAND, TOP
 FOUR_BAR = TOP / "validation/four-bar/scene.toml"
 
 
-@pytest.mark.parametrize("target", ["c", "rust", "matlab"])
-def test_files_are_those_of_the_command(target, tmp_path):
-    written = dwell.Scene.read(FOUR_BAR).export(target, tmp_path / "here", accuracy=1e-7)
-    arguments = [COMMAND, "export", FOUR_BAR, "--to", target, "--accuracy", "1e-7", "--out", tmp_path / "there"]
+@pytest.mark.parametrize("case, target", [("four-bar", "c"), ("four-bar", "rust"), ("four-bar", "matlab"), ("five-bar", "c")])
+def test_files_are_those_of_the_command(case, target, tmp_path):
+    path = TOP / f"validation/{case}/scene.toml"
+    written = dwell.Scene.read(path).export(target, tmp_path / "here", accuracy=1e-7)
+    arguments = [COMMAND, "export", path, "--to", target, "--accuracy", "1e-7", "--out", tmp_path / "there"]
     subprocess.run(arguments, check=True, capture_output=True)
     assert len(written) >= 2
     for path in written:
@@ -27,9 +28,17 @@ def test_exact_code_is_that_of_the_command(tmp_path):
     assert all(path.read_bytes() == (tmp_path / "there" / path.name).read_bytes() for path in written)
 
 
+@pytest.mark.parametrize("target, options", [("fmu", []), ("exact-fmu", ["--exact"]), ("fmu2", [])])
+def test_fmus_are_those_of_the_command(target, options, tmp_path):
+    (written,) = dwell.Scene.read(FOUR_BAR).export(target, tmp_path / "here")
+    arguments = [COMMAND, "export", FOUR_BAR, "--to", target.removeprefix("exact-"), *options, "--out", tmp_path / "there"]
+    subprocess.run(arguments, check=True, capture_output=True)
+    assert written.read_bytes() == (tmp_path / "there" / written.name).read_bytes()
+
+
 def test_what_cannot_be_exported_says_why(tmp_path):
     with pytest.raises(dwell.SceneError, match="five-bar|freedom|actuators"):
-        dwell.Scene.read(TOP / "validation/five-bar/scene.toml").export("c", tmp_path)
+        dwell.Scene.read(TOP / "validation/five-bar/scene.toml").export("rust", tmp_path)
     with pytest.raises(ValueError, match="'exact-c'"):
         dwell.Scene.read(FOUR_BAR).export("fortran", tmp_path)
     for accuracy in (0.0, -1.0, float("nan"), 5.0):

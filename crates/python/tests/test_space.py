@@ -38,8 +38,10 @@ def test_a_pendulum_has_its_closed_form():
     found = model(np.array([[0.0, q]]))
     assert found.m.shape == (1, 2) and np.allclose(found.m, 0.8, rtol=1e-15)
     assert abs(found.w["weight"][0, 1] + 2.0 * 0.5 * np.cos(q)) < 1e-14
-    with pytest.raises(dwell.DwellError, match="table-accuracy"):
-        model.table()
+    table = model.table(1e-9)
+    assert table.error_bound <= 1e-9 and abs(table(q).m - 0.8) < 1e-9 and abs(table(q).w["weight"] + np.cos(q)) < 1e-9
+    with pytest.raises(dwell.DwellError):
+        model.table(1e-30)
 
 
 def test_a_motion_its_period_and_its_equilibria():
@@ -74,6 +76,34 @@ def test_columns_are_those_of_the_command(case, command, tmp_path):
         assert len(compared) > 3
         for column in compared:
             assert np.array_equal(written[column], results[column], equal_nan=True), (case, name, column)
+
+
+def test_it_is_checked_and_exported_as_by_the_command(command, tmp_path):
+    path = SPATIAL / "rssr.toml"
+    scene = dwell.space.Scene.read(path)
+    assert scene.check() == command("check", str(path)).stdout
+    written = scene.export("c", tmp_path / "here", accuracy=1e-7)
+    assert command("export", str(path), "--to", "c", "--accuracy", "1e-7", "--out", str(tmp_path / "there")).returncode == 0
+    assert len(written) == 2
+    for file in written:
+        assert file.read_bytes() == (tmp_path / "there" / file.name).read_bytes(), file
+    with pytest.raises(dwell.SceneError, match="Newton"):
+        scene.export("exact-c", tmp_path)
+
+
+def test_it_is_drawn(tmp_path):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    rssr = dwell.space.read(SPATIAL / "rssr.toml")
+    axes = rssr.plot(0.5)
+    assert axes.name == "3d" and [line.get_label() for line in axes.get_lines() if line.get_label()[0] != "_"] == list(rssr.points)[1:]
+    # The coupler's line has the coupler's length.
+    x, y, z = next(line for line in axes.get_lines() if line.get_label() == "coupler").get_data_3d()
+    state = rssr.at(0.5)
+    length = np.linalg.norm(state.position("coupler.B") - state.position("coupler.C"))
+    assert abs(np.linalg.norm(np.diff([x, y, z])[:, 0]) - length) < 1e-12
+    assert rssr._repr_svg_().count("<polygon") == 3
+    rssr.animate(frames=4).save(tmp_path / "rssr.gif")
 
 
 def test_a_sweep_varies_an_axis():

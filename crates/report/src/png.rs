@@ -277,7 +277,6 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(128))]
         #[test]
         fn no_text_is_cut_or_lies_on_another(
             panels in prop::collection::vec(prop_oneof![3 => chart(6).prop_map(Panel::from), 1 => drawing(), 1 => stack(), 1 => grid()], 0..5),

@@ -65,7 +65,9 @@ pub use cycle::compute::{CycleSearch, CycleStability, compute_cycle};
 pub use dwell_symbolic::Language;
 pub use equilibria::compute::compute_equilibria;
 pub use explain::{StudyError, SweepError};
-pub use export::{ExportRequest, compute_export};
+#[cfg(feature = "fmu")]
+pub use export::fmu_archive;
+pub use export::{ExportRequest, compute_export, compute_export_of_several_freedoms};
 pub use exported_runs::{ColumnNames, ExportedTable, SampleInterpolation};
 pub use free_motion::compute::{MotionSolver, compute_free_motion, compute_period};
 pub use linearise::compute::{OperatingPoint, compute_linearisation};
@@ -73,9 +75,10 @@ pub use models::{PRESETS, PreparedScene, SolverSettings};
 pub use progress::{Progress, Step, no_progress};
 pub use reduce::compute::{TableRequest, compute_reduction};
 pub use space::{
-    FreeMotionInSpace, PreparedSpaceScene, compute_free_motion_in_space, compute_period_in_space,
-    compute_reduction_in_space, compute_trajectory_in_space, free_motion_page_in_space,
-    loaded_model_in_space, reduction_page_in_space, trajectory_page_in_space,
+    FreeMotionInSpace, PreparedSpaceScene, compute_export_in_space, compute_free_motion_in_space,
+    compute_period_in_space, compute_reduction_in_space, compute_trajectory_in_space,
+    describe_scene_in_space, free_motion_page_in_space, loaded_model_in_space,
+    reduction_page_in_space, trajectory_page_in_space,
 };
 pub use sweep::{Shard, compute_sweep};
 pub use symbolic::compute::{compute_closed_form, symbolic_findings};

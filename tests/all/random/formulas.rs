@@ -8,8 +8,6 @@ use proptest::test_runner::{FileFailurePersistence, TestRunner};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-/// Mechanisms of one run.
-const COUNT: u32 = 250;
 /// What is allowed of the largest quantity: roundings, of which a long chain makes many.
 const TOLERANCE: f64 = 1e-12;
 /// And of what one unit of rounding in the lengths does to the forms themselves.
@@ -81,7 +79,6 @@ fn check(built: &BuiltMechanism, coverage: &mut Coverage) -> Result<(), String> 
 fn random_dyads_agree_with_their_closed_forms() {
     let failures = FileFailurePersistence::Direct("proptest-regressions/formulas.txt");
     let mut runner = TestRunner::new(ProptestConfig {
-        cases: COUNT,
         failure_persistence: Some(Box::new(failures)),
         max_shrink_iters: 300,
         ..ProptestConfig::default()
@@ -104,5 +101,8 @@ fn random_dyads_agree_with_their_closed_forms() {
     if let Err(error) = result {
         panic!("{error}");
     }
-    assert!(coverage.checked * 8 >= COUNT, "{coverage:?}");
+    assert!(
+        coverage.checked * 8 >= ProptestConfig::default().cases,
+        "{coverage:?}"
+    );
 }

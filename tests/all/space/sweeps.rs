@@ -3,7 +3,7 @@
 use dwell_scene::{Scene, SpaceScene};
 use dwell_study::reduce::compute::ReducedScene as _;
 use dwell_study::sweep::compute::ComputedSweep;
-use dwell_study::{PreparedSpaceScene, compute_sweep, find_value};
+use dwell_study::{PreparedSpaceScene, compute_sweep, find_value, no_progress};
 
 const IN_PLANE: &str = r#"
 bodies.ground.points = { O = [0, 0] }
@@ -55,8 +55,8 @@ fn a_pendulum_has_the_sweep_that_it_has_in_the_plane() {
         "motion.phi",
         "motion.O",
     ]);
-    let plane = compute_sweep(&plane, &vary, None, 1, &results).expect("a sweep");
-    let space = compute_sweep(&space, &vary, None, 1, &results).expect("a sweep");
+    let plane = compute_sweep(&plane, &vary, None, 1, &results, &no_progress).expect("a sweep");
+    let space = compute_sweep(&space, &vary, None, 1, &results, &no_progress).expect("a sweep");
     assert!(plane.messages.iter().all(Option::is_none));
     assert!(
         space.messages.iter().all(Option::is_none),
@@ -99,7 +99,7 @@ fn columns_of_a_sweep_are_their_own_reactions_in_every_variant() {
     let scene = SpaceScene::parse("rssr.toml", &text).expect("a scene");
     let vary = texts(&["joints.A.axis[0]=-0.01,0,0.01"]);
     let results = texts(&["energy", "B", "D.moment-x"]);
-    let swept = compute_sweep(&scene, &vary, None, 1, &results).expect("a sweep");
+    let swept = compute_sweep(&scene, &vary, None, 1, &results, &no_progress).expect("a sweep");
     assert!(
         swept.messages.iter().all(Option::is_none),
         "{:?}",
@@ -155,7 +155,8 @@ fn a_variant_in_space_that_cannot_be_assembled_has_its_message() {
     );
     let scene = SpaceScene::read(path).expect("a scene");
     let vary = texts(&["crank.points.B[0]=0.1,0.9"]);
-    let swept = compute_sweep(&scene, &vary, None, 1, &texts(&["m", "B.x"])).expect("a sweep");
+    let swept = compute_sweep(&scene, &vary, None, 1, &texts(&["m", "B.x"]), &no_progress)
+        .expect("a sweep");
     assert!(swept.messages[0].is_none());
     assert!(swept.messages[1].is_some());
     assert!(column(&swept, "m.max")[1].is_nan());

@@ -21,8 +21,10 @@ fn blocks(page: &str) -> Vec<(String, String)> {
 #[test]
 fn every_command_of_the_page_works() {
     let dir = TestDir::new();
-    let scene = home().join("validation/single-dwell/scene.toml");
-    dir.put("single-dwell.toml", fs::read(scene).unwrap());
+    for name in ["single-dwell", "five-bar"] {
+        let scene = home().join(format!("validation/{name}/scene.toml"));
+        dir.put(&format!("{name}.toml"), fs::read(scene).unwrap());
+    }
     let page = fs::read_to_string(home().join("docs/real-time.md")).unwrap();
     let has_compiler = Command::new("cc").arg("--version").output().is_ok();
     if !has_compiler {

@@ -77,8 +77,8 @@ impl Mechanism {
 /// ```
 #[derive(Debug, Clone)]
 pub struct ReducedModel {
-    scene: Scene,
-    exact: ExactModel<Model>,
+    pub(crate) scene: Scene,
+    pub(crate) exact: ExactModel<Model>,
     reactions: Vec<Reaction>,
 }
 

@@ -113,6 +113,20 @@ impl Scene {
         Ok(Self(Arc::new(scene)))
     }
 
+    /// What `dwell check` prints of it.
+    ///
+    /// # Errors
+    /// [`Error::Study`] where it cannot be assembled.
+    ///
+    /// ```
+    /// # let scene = dwell::space::Scene::read("../../validation/spatial/bricard-a04.toml")?;
+    /// assert!(scene.describe()?.contains("redundant"));
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn describe(&self) -> Result<String, Error> {
+        Ok(dwell_study::describe_scene_in_space(&self.0)?)
+    }
+
     /// Assembles its mechanism.
     ///
     /// # Errors

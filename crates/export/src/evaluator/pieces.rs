@@ -43,7 +43,7 @@ impl<R: Real> Functions<R> {
                 curves,
                 columns,
             } => Found::Values {
-                values: code.evaluate(q),
+                values: code.evaluate(&[q]),
                 curves: *curves,
                 columns: *columns,
             },

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Any, Callable, Sequence
 
 from ._native import DwellError
+from ._progress import Progress
 
 #: How often a block is tried again on another worker.
 RETRIES = 5
@@ -84,17 +85,21 @@ def _block(study: _Study, number: int, of: int) -> int:
     return number
 
 
-def _by_ray(study: _Study, blocks: int) -> None:
+def _by_ray(study: _Study, blocks: int, progress: Progress) -> None:
     import ray
 
     if not ray.is_initialized():
         ray.init(log_to_driver=False, include_dashboard=False)
     # A worker that dies takes no block with it; what the command says is no reason to try again.
     task = ray.remote(max_retries=RETRIES)(_block)
-    ray.get([task.remote(study, k, blocks) for k in range(1, blocks + 1)])
+    pending = [task.remote(study, k, blocks) for k in range(1, blocks + 1)]
+    while pending:
+        done, pending = ray.wait(pending, timeout=0.5)
+        ray.get(done)
+        progress(blocks - len(pending), blocks)
 
 
-def _by_dask(study: _Study, blocks: int) -> None:
+def _by_dask(study: _Study, blocks: int, progress: Progress) -> None:
     import distributed
 
     # Its functions have no types.
@@ -104,13 +109,16 @@ def _by_dask(study: _Study, blocks: int) -> None:
     except ValueError:
         client, own = dask.Client(threads_per_worker=1), True
     try:
-        client.gather([client.submit(_block, study, k, blocks, pure=False) for k in range(1, blocks + 1)])
+        tasks = [client.submit(_block, study, k, blocks, pure=False) for k in range(1, blocks + 1)]
+        for done, task in enumerate(dask.as_completed(tasks), 1):
+            task.result()
+            progress(done, blocks)
     finally:
         if own:
             client.close()
 
 
-ENGINES: dict[str, Callable[[_Study, int], None]] = {"ray": _by_ray, "dask": _by_dask}
+ENGINES: dict[str, Callable[[_Study, int, Progress], None]] = {"ray": _by_ray, "dask": _by_dask}
 
 
 def sweep_on(
@@ -125,7 +133,8 @@ def sweep_on(
     study = _Study(shutil.which(command) or command, tuple(options), str(place))
     place.mkdir(parents=True, exist_ok=True)
     study.scene.write_text(scene, encoding="utf-8")
-    ENGINES[engine](study, blocks)
+    with Progress("sweep") as progress:
+        ENGINES[engine](study, blocks, progress)
     # All parts are there: this computes nothing, checks every file and finds the extremes.
     study.run()
     summary = json.loads((place / "study-sweep.json").read_text(encoding="utf-8"))

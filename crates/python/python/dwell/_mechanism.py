@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Callable, Sequence
+from typing import TYPE_CHECKING, Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _native
 from ._moving import AssembledMechanism
-from ._results import Results
 
 if TYPE_CHECKING:
     from ._scene import Scene
@@ -120,23 +119,6 @@ class Mechanism(AssembledMechanism[_native.Mechanism]):
             return equation.jacobian(t, np.asarray(y, dtype=np.float64)).reshape(states, states)
 
         return f, jacobian, equation.initial_state
-
-    def plot(self, q: float | Sequence[float] | None = None, **options: Any) -> Any:
-        """Draws the mechanism with matplotlib at coordinates q (absent: at assembly). Returns the axes."""
-        from ._drawing import plot_mechanism
-
-        return plot_mechanism(self, q, **options)
-
-    def animate(self, motion: Results | None = None, *, frames: int = 120, interval: float = 40.0) -> Any:
-        """A matplotlib animation over a motion, or over the range of the only coordinate. interval: ms between frames."""
-        from ._drawing import animate_mechanism
-
-        return animate_mechanism(self, motion, frames, interval)
-
-    def _repr_svg_(self) -> str:
-        from ._drawing import svg
-
-        return svg(self)
 
     def __repr__(self) -> str:
         return f"Mechanism({self.scene.title!r}, driven by {', '.join(self.actuators)})"

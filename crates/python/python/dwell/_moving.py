@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Generic, Sequence, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Sequence, TypeVar
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _native
+from ._progress import Progress
 from ._reduced import Coefficients, ReducedModel
 from ._results import Motion, Results
+
+if TYPE_CHECKING:
+    from ._drawing import Drawn
 
 Array = npt.NDArray[np.float64]
 
@@ -74,7 +78,10 @@ Native = TypeVar("Native", bound="_native.Mechanism | _native.SpaceMechanism")
 
 
 class AssembledMechanism(Generic[Native]):
-    """An assembled mechanism: constant, and safe to use in several threads. Coordinates are those of the actuators, in their order."""
+    """An assembled mechanism: constant, and safe to use in several threads. Coordinates are those of the actuators, in their order.
+
+    In a notebook it shows itself as a picture; ``plot()`` draws it with matplotlib.
+    """
 
     _native: Native
 
@@ -117,15 +124,18 @@ class AssembledMechanism(Generic[Native]):
     def kinematics(self) -> Results:
         """Positions, velocities and accelerations along the scene's prescribed motion or coordinate sweep: the columns of
         ``dwell kinematics``."""
-        return Motion(self._native.kinematics()).check()
+        with Progress("kinematics") as progress:
+            return Motion(self._native.kinematics(progress)).check()
 
     def statics(self) -> Results:
         """Actuator forces and reactions at rest in every position of the prescribed motion or coordinate sweep."""
-        return Motion(self._native.statics()).check()
+        with Progress("statics") as progress:
+            return Motion(self._native.statics(progress)).check()
 
     def kinetostatics(self) -> Results:
         """Everything of ``kinematics`` and the forces that the motion needs."""
-        return Motion(self._native.kinetostatics()).check()
+        with Progress("kinetostatics") as progress:
+            return Motion(self._native.kinetostatics(progress)).check()
 
     def simulate(
         self,
@@ -140,22 +150,26 @@ class AssembledMechanism(Generic[Native]):
         accuracy: the cheapest method that reaches it, with an error estimate. Otherwise ``method`` ("bdf", "esdirk34", "tr-bdf2",
         "tsit45", "dop853") with a relative and absolute tolerance; without either, BDF at 1e-10, as the command. sample_interval: s; absent, a thousandth of the duration.
         """
-        return Motion(self._native.simulate(accuracy, method, tolerance, sample_interval))
+        with Progress("simulate") as progress:
+            return Motion(self._native.simulate(accuracy, method, tolerance, sample_interval, progress))
 
     def period(self) -> Period:
         """Period and energy of the free motion, by quadrature: one free coordinate, conservative loads."""
-        return Period(*self._native.period())
+        with Progress("period") as progress:
+            return Period(*self._native.period(progress))
 
     def equilibria(self) -> list[Equilibrium]:
         """The equilibria, with stability and modes."""
+        with Progress("equilibria") as progress:
+            found = self._native.equilibria(progress)
         return [
-            Equilibrium(np.array(e["coordinates"]), e["stability"], e["modes"], _complex(e["eigenvalues"]))
-            for e in self._native.equilibria()
+            Equilibrium(np.array(e["coordinates"]), e["stability"], e["modes"], _complex(e["eigenvalues"])) for e in found
         ]
 
     def linearise(self) -> StateSpace:
         """Small motions about the equilibrium nearest to the initial state."""
-        found = self._native.linearise()
+        with Progress("linearise") as progress:
+            found = self._native.linearise(progress)
         states, inputs, outputs = found["states"], found["inputs"], found["outputs"]
 
         def matrix(rows: list[list[float]], height: int, width: int) -> Array:
@@ -182,7 +196,8 @@ class AssembledMechanism(Generic[Native]):
         fluctuation: float | None = None,
     ) -> Cycle:
         """The steady cycle of a rotating machine, and the flywheel that keeps its coefficient of fluctuation to ``fluctuation``."""
-        found = self._native.cycle(accuracy, method, tolerance, fluctuation)
+        with Progress("cycle") as progress:
+            found = self._native.cycle(accuracy, method, tolerance, fluctuation, progress)
         return Cycle(
             period=found["period"],
             mean_speed=found["mean_speed"],
@@ -191,6 +206,23 @@ class AssembledMechanism(Generic[Native]):
             works=dict(found["works"]),
             flywheel=found["flywheel"],
         )
+
+    def plot(self: Drawn, q: float | Sequence[float] | None = None, **options: Any) -> Any:
+        """Draws the mechanism with matplotlib at coordinates q (absent: at assembly). Returns the axes."""
+        from ._drawing import plot_mechanism
+
+        return plot_mechanism(self, q, **options)
+
+    def animate(self: Drawn, motion: Results | None = None, *, frames: int = 120, interval: float = 40.0) -> Any:
+        """A matplotlib animation over a motion, or over the range of the only coordinate. interval: ms between frames."""
+        from ._drawing import animate_mechanism
+
+        return animate_mechanism(self, motion, frames, interval)
+
+    def _repr_svg_(self: Drawn) -> str:
+        from ._drawing import svg
+
+        return svg(self)
 
     def _all_reactions(self) -> list[str]:
         """The reactions of a reduced model for which none are named."""

@@ -85,8 +85,8 @@ class ReducedModel:
         )
 
     def table(self, accuracy: float = 1e-9) -> Table:
-        """The model as piecewise polynomials: every coefficient to an accuracy relative to its largest value. Raises DwellError for a
-        mechanism in space: ``dwell reduce --table-accuracy`` writes its table."""
+        """The model as piecewise polynomials: every coefficient to an accuracy relative to its largest value. Raises DwellError where
+        no table reaches it."""
         return Table(self._native.table(accuracy), self.reactions, self.loads)
 
 

@@ -11,14 +11,12 @@ import numpy.typing as npt
 
 from . import _native
 from ._closed_form import ClosedForm, closed_form
+from ._export import write_export
 from ._mechanism import Mechanism
 
 if TYPE_CHECKING:
     from ._reduced import Coefficients
     from ._results import Motion, Results
-
-#: What ``Scene.export`` writes.
-EXPORT_TARGETS = ("c", "exact-c", "rust", "matlab")
 
 
 class Scene:
@@ -90,10 +88,11 @@ class Scene:
 
     def export(self, target: str, folder: str | os.PathLike[str] = ".", *, accuracy: float = 1e-9) -> list[pathlib.Path]:
         """Writes the machine as code into a folder, and returns the files: ``"c"`` (C99), ``"exact-c"`` (the model's own operations),
-        ``"rust"`` (a crate without the standard library) or ``"matlab"`` (also for Octave).
+        ``"rust"`` (a crate without the standard library), ``"matlab"`` (also for Octave), ``"fmu"`` (FMI 3.0; ``"fmu2"``: FMI 2.0) or
+        ``"exact-fmu"`` (``"exact-fmu2"``). An FMU has a library for this platform where a C compiler is found, else sources only.
 
-        In cells every function of the coordinate is within ``accuracy`` of its largest value; exact code has that of rounding. An FMU is
-        compiled: ``dwell export --to fmu`` writes it. Raises SceneError where the machine cannot be exported, with what to change.
+        In cells every function of the coordinate is within ``accuracy`` of its largest value; exact code has that of rounding. Raises
+        SceneError where the machine cannot be exported, with what to change.
 
         >>> import dwell, tempfile
         >>> m = dwell.Builder("Pendulum")
@@ -103,15 +102,7 @@ class Scene:
         >>> [path.name for path in scene.export("c", tempfile.mkdtemp())]
         ['scene.h', 'scene.c']
         """
-        if target not in EXPORT_TARGETS:
-            raise ValueError(f"there is no target {target!r}: there are {', '.join(map(repr, EXPORT_TARGETS))}")
-        written = []
-        for name, content in self._native.export(target, accuracy):
-            path = pathlib.Path(folder) / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content)
-            written.append(path)
-        return written
+        return write_export(self._native, target, folder, accuracy)
 
     def symbolic(self, reaction: str | None = None) -> ClosedForm:
         """Closed forms of positions, m, half_dm, and a and b of a reaction (of the first that the scene requests), as SymPy objects.

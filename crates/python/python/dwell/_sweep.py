@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal, Mapping, Sequence, overload
 
 from . import _native
 from ._cluster import StoredSweep, sweep_on
+from ._progress import Progress
 from ._results import Results
 
 if TYPE_CHECKING:
@@ -85,7 +86,8 @@ def sweep(
         options += [word for result in results for word in ("--result", result)]
         options += [] if samples is None else ["--samples", str(samples), "--seed", str(seed)]
         return sweep_on(engine, scene.text, options, folder, blocks, command)
-    columns, messages = _native.sweep(scene._native, varied, list(results), samples, seed)
+    with Progress("sweep") as progress:
+        columns, messages = _native.sweep(scene._native, varied, list(results), samples, seed, progress)
     found = SweepResults({name: values for name, _, values in columns}, {name: unit for name, unit, _ in columns})
     found.messages = messages
     return found

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 
 from ._native import DwellError
+from ._progress import Progress
 
 
 def validate(
@@ -20,9 +21,22 @@ def validate(
     arguments = [shutil.which(command) or command, "validate", *cases, "--out", os.path.abspath(folder)]
     environment = {**os.environ, "NO_COLOR": "1"}
     try:
-        done = subprocess.run(arguments, capture_output=True, text=True, env=environment, cwd=repository)
+        child = subprocess.Popen(
+            arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, cwd=repository
+        )
     except OSError as error:
         raise DwellError(f"`{command}` cannot be run: {error}; install the command, or give its path as `command`") from None
-    if done.returncode != 0:
-        raise DwellError(f"\n{done.stdout}{done.stderr.strip()}")
-    return done.stdout
+    with Progress("validate") as progress, child:
+        try:
+            while True:
+                try:
+                    out, errors = child.communicate(timeout=0.2)
+                    break
+                except subprocess.TimeoutExpired:
+                    progress(0, 0)
+        except BaseException:
+            child.terminate()
+            raise
+    if child.returncode != 0:
+        raise DwellError(f"\n{out}{errors.strip()}")
+    return out

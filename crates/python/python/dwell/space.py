@@ -15,12 +15,13 @@
 (-9.81, [0.5, 0.0, 0.0])
 
 The calls and the units are those of mechanisms in the plane; positions, velocities, accelerations and rotations have three numbers, in
-the axes of the ground. Scenes are written as text: there is no builder, and there are no pictures.
+the axes of the ground. Scenes are written as text: there is no builder.
 """
 
 from __future__ import annotations
 
 import os
+import pathlib
 import warnings
 from typing import Sequence
 
@@ -28,6 +29,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
+from ._export import write_export
 from ._moving import AssembledMechanism
 from ._reduced import Coefficients
 from ._results import Motion, Results
@@ -136,6 +138,15 @@ class Scene:
     def with_value(self, path: str, value: float) -> Scene:
         """The same scene with a number replaced."""
         return Scene("", _native_scene=self._native.with_value(path, value))
+
+    def export(self, target: str, folder: str | os.PathLike[str] = ".", *, accuracy: float = 1e-9) -> list[pathlib.Path]:
+        """Writes the machine as code into a folder, and returns the files, as ``dwell.Scene.export`` does. Loops in space have no exact
+        code."""
+        return write_export(self._native, target, folder, accuracy)
+
+    def check(self) -> str:
+        """What ``dwell check`` prints: degrees of freedom, range, groups, placements and reactions."""
+        return self._native.check()
 
     def assemble(self) -> Mechanism:
         """Assembles its mechanism. Raises SceneError where it cannot be assembled or a load does not fit it."""

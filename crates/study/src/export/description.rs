@@ -36,17 +36,7 @@ impl<'a> ExportedScene<'a> {
         if scene.mechanism.actuators.len() != 1 {
             return Err(not_one_actuator(scene));
         }
-        reject_contacts(scene)?;
-        let loaded = with_drive_loads(scene)?;
-        let mut unit_loads = loaded.loads.clone();
-        for load in &mut unit_loads {
-            if matches!(load.magnitude, Magnitude::Constant(_)) {
-                load.magnitude = Magnitude::Constant(1.0);
-            }
-        }
-        let model = determinate_model(scene)?
-            .with_loads(unit_loads)
-            .map_err(|e| explain_machine(scene, e.into()))?;
+        let (loaded, model) = with_unit_loads(scene)?;
         let plan = model.plan();
         let domain = domain(scene, plan.range(), plan.is_angle(0), interval)?;
         reject_change_points(scene, domain)?;
@@ -63,6 +53,25 @@ impl<'a> ExportedScene<'a> {
     pub(crate) fn sampler(&self) -> SceneSampler<'_> {
         SceneSampler::new(self)
     }
+}
+
+/// A scene with the loads of its drives, and its model with the requested reactions, in which every constant magnitude is one.
+///
+/// # Errors
+/// [`StudyError::Scene`] where the scene has dry friction, separating forces or end stops.
+pub(super) fn with_unit_loads(scene: &Scene) -> Result<(Scene, Model), StudyError> {
+    reject_contacts(scene)?;
+    let loaded = with_drive_loads(scene)?;
+    let mut unit_loads = loaded.loads.clone();
+    for load in &mut unit_loads {
+        if matches!(load.magnitude, Magnitude::Constant(_)) {
+            load.magnitude = Magnitude::Constant(1.0);
+        }
+    }
+    let model = determinate_model(scene)?
+        .with_loads(unit_loads)
+        .map_err(|e| explain_machine(scene, e.into()))?;
+    Ok((loaded, model))
 }
 
 /// Rejects what has no function of the coordinate alone.
@@ -194,28 +203,8 @@ fn describe(scene: &Scene, loaded: &Scene, model: &Model, domain: Domain) -> Mac
     let mechanism = &scene.mechanism;
     let reactions = model.reactions().iter();
     let reactions = reactions.map(|&r| (mechanism.reaction_name(r), r.component.unit()));
-    let drives = scene.drives.iter().map(|drive| &drive.kind);
-    let kinds = std::iter::repeat_n(None, scene.loads.len()).chain(drives.map(Some));
     let mut left_out = left_out(scene, model);
-    let loads = loaded.loads.iter().zip(kinds).map(|(load, drive)| {
-        let (effect, unit) = match drive {
-            Some(drive) => {
-                let is_couple = matches!(load.kind, LoadKind::Torque { .. });
-                let force = if is_couple { "N m" } else { "N" };
-                drive_effect((&load.name, force), drive, &mut left_out)
-            }
-            None => {
-                left_out.extend(varying_input("the load", &load.name, &load.magnitude));
-                load_effect(load)
-            }
-        };
-        LoadDescription {
-            name: load.name.clone(),
-            effect,
-            unit,
-        }
-    });
-    let loads = loads.collect();
+    let loads = describe_loads(scene, loaded, &mut left_out);
     let points = scene.requests.paths.iter();
     let points = points.map(|p| format!("{}.{}", mechanism.body_name(p.body), p.name));
     MachineDescription {
@@ -235,8 +224,37 @@ fn describe(scene: &Scene, loaded: &Scene, model: &Model, domain: Domain) -> Mac
     }
 }
 
+/// The loads, and the drives behind them.
+pub(super) fn describe_loads(
+    scene: &Scene,
+    loaded: &Scene,
+    left_out: &mut Vec<String>,
+) -> Vec<LoadDescription> {
+    let drives = scene.drives.iter().map(|drive| &drive.kind);
+    let kinds = std::iter::repeat_n(None, scene.loads.len()).chain(drives.map(Some));
+    let loads = loaded.loads.iter().zip(kinds).map(|(load, drive)| {
+        let (effect, unit) = match drive {
+            Some(drive) => {
+                let is_couple = matches!(load.kind, LoadKind::Torque { .. });
+                let force = if is_couple { "N m" } else { "N" };
+                drive_effect((&load.name, force), drive, left_out)
+            }
+            None => {
+                left_out.extend(varying_input("the load", &load.name, &load.magnitude));
+                load_effect(load)
+            }
+        };
+        LoadDescription {
+            name: load.name.clone(),
+            effect,
+            unit,
+        }
+    });
+    loads.collect()
+}
+
 /// Sentences about what is not exported.
-fn left_out(scene: &Scene, model: &Model) -> Vec<String> {
+pub(super) fn left_out(scene: &Scene, model: &Model) -> Vec<String> {
     let mut all = Vec::new();
     let known = model.reactions();
     let missing = scene

@@ -6,6 +6,7 @@ use dwell_scene::{SceneFile, SceneLocation};
 use std::io::{Cursor, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
@@ -13,7 +14,10 @@ use zip::{CompressionMethod, ZipWriter};
 const COMPILERS: [&str; 3] = ["cc", "gcc", "clang"];
 
 /// The bytes of an FMU, and a sentence about its library.
-pub(super) fn fmu_archive(
+///
+/// # Errors
+/// [`StudyError::Scene`] where it cannot be packed.
+pub fn fmu_archive(
     scene: &SceneFile,
     export: &Export,
     version: FmiVersion,
@@ -71,7 +75,9 @@ impl Drop for Scratch {
 
 /// The library, by the first compiler that makes one.
 fn compile(files: &FmuFiles) -> Option<(&'static str, Vec<u8>)> {
-    let unique = format!("dwell-fmu-{}-{}", std::process::id(), files.identifier);
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let number = COUNT.fetch_add(1, Ordering::Relaxed);
+    let unique = format!("dwell-fmu-{}-{number}", std::process::id());
     let scratch = Scratch(std::env::temp_dir().join(unique));
     for (path, text) in &files.texts {
         let path = scratch.0.join(path);

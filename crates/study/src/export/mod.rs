@@ -1,11 +1,16 @@
 //! `dwell export`: a machine of one degree of freedom as code for controllers and simulations.
 
 pub(crate) mod description;
-#[cfg(feature = "output")]
+#[cfg(feature = "fmu")]
 mod fmu_archive;
 #[cfg(feature = "output")]
 pub(crate) mod output;
 pub(crate) mod sampler;
+mod several_freedoms;
+
+#[cfg(feature = "fmu")]
+pub use fmu_archive::fmu_archive;
+pub use several_freedoms::compute_export_of_several_freedoms;
 
 use crate::explain::{StudyError, explain_motion, scene_error};
 use crate::number_format::number;

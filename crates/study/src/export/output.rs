@@ -1,13 +1,15 @@
 //! Writes an export.
 
-use crate::explain::{StudyError, scene_error};
-use crate::export::fmu_archive::fmu_archive;
-use crate::export::{ExportRequest, compute_export};
+use crate::explain::{StudyError, actuator_labels, scene_error};
+use crate::export::{
+    ExportRequest, compute_export, compute_export_of_several_freedoms, fmu_archive,
+};
 use crate::number_format::count;
 use crate::output::Outcome;
 use crate::reduce::compute::compute_reduction;
 use dwell_export::{
-    Export, FmiVersion, Identifiers, PartKind, Precision, c_files, matlab_files, rust_files,
+    Export, FmiVersion, Identifiers, PartKind, Precision, c_files, c_files_of_several_freedoms,
+    matlab_files, rust_files,
 };
 use dwell_findings::{Column, Record, Table};
 use dwell_report::{Number, TableFormat, json};
@@ -39,8 +41,70 @@ pub fn export(
     target: ExportTarget,
     asked: &ExportRequest,
 ) -> Result<Outcome, StudyError> {
+    if scene.mechanism.actuators.len() > 1 {
+        return export_several_freedoms(scene, target, asked);
+    }
     let table = || Ok(compute_reduction(scene, None)?.table());
     export_machine(scene, target, asked, table, || compute_export(scene, asked))
+}
+
+/// Writes the equations of motion of a scene with several actuators.
+fn export_several_freedoms(
+    scene: &Scene,
+    target: ExportTarget,
+    asked: &ExportRequest,
+) -> Result<Outcome, StudyError> {
+    if target != ExportTarget::C {
+        let given = count(scene.mechanism.actuators.len(), "actuator");
+        return Err(scene_error(
+            scene,
+            format!("the scene has {given}: several degrees of freedom are exported as C alone"),
+            "export to `c`; or give exactly one actuator in [actuators]",
+            actuator_labels(scene, "drives it"),
+        ));
+    }
+    let export = compute_export_of_several_freedoms(scene, asked)?;
+    let (machine, errors) = (&export.machine, export.errors);
+    let names: Vec<&str> = machine
+        .coordinates
+        .iter()
+        .map(|c| c.name.as_str())
+        .collect();
+    let operations = export.code.each_ref().map(|code| code.operations.len());
+    let functions = export.code.each_ref().map(|code| code.functions());
+    let mut outcome = Outcome {
+        summary: format!(
+            "{}: equations of motion over {}\n  the model's own operations; largest error {:.1e} of the largest value of each kind of term\n  operations: {} of the terms of motion, {} of those of the reactions; square roots, sines, cosines and angles among them: {} and {}\n",
+            machine.title,
+            names.join(", "),
+            errors.max(),
+            operations[0],
+            operations[1],
+            functions[0],
+            functions[1],
+        ),
+        ..Outcome::default()
+    };
+    for sentence in &machine.left_out {
+        outcome.summary += &format!("  left out: {sentence}\n");
+    }
+    let record = &mut outcome.record;
+    record.add("error", "", errors.max());
+    record.add("error.mass_matrix", "", errors.mass_matrix);
+    record.add("error.velocity_terms", "", errors.velocity_terms);
+    record.add("error.loads", "", errors.loads);
+    record.add("error.reactions", "", errors.reactions);
+    for (name, count) in ["motion", "reactions", "positions"]
+        .into_iter()
+        .zip(operations)
+    {
+        record.add_count(format!("operations.{name}"), count);
+    }
+    for (path, text) in c_files_of_several_freedoms(&export) {
+        outcome.summary += &format!("  written: {path}\n");
+        outcome.files.add(path, text.into_bytes());
+    }
+    Ok(outcome)
 }
 
 /// Writes what a target needs of a machine: its rows, or its fitted functions.

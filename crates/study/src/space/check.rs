@@ -4,6 +4,7 @@ use super::prepared::{compile, is_angle, sort_reactions};
 use crate::check::driven_by;
 use crate::explain::{StudyError, describe_ends};
 use crate::number_format::{coordinate_unit, count, number};
+#[cfg(feature = "output")]
 use crate::output::Outcome;
 use dwell_findings::Record;
 use dwell_geometry::Range;
@@ -15,9 +16,26 @@ use dwell_scene::SpaceScene;
 ///
 /// # Errors
 /// [`StudyError::Scene`] when the mechanism cannot be assembled.
+#[cfg(feature = "output")]
 pub fn check_in_space(scene: &SpaceScene) -> Result<Outcome, StudyError> {
-    let mechanism = &scene.mechanism;
     let mut record = Record::default();
+    Ok(Outcome {
+        summary: description(scene, &mut record)?,
+        record,
+        ..Outcome::default()
+    })
+}
+
+/// The text of [`check_in_space`].
+///
+/// # Errors
+/// [`StudyError::Scene`] when the mechanism cannot be assembled.
+pub fn describe_scene_in_space(scene: &SpaceScene) -> Result<String, StudyError> {
+    description(scene, &mut Record::default())
+}
+
+fn description(scene: &SpaceScene, record: &mut Record) -> Result<String, StudyError> {
+    let mechanism = &scene.mechanism;
     let model = compile(scene, &scene.reactions)?;
     let sorted = sort_reactions(scene, &model)?;
     let plan = model.plan();
@@ -33,19 +51,15 @@ pub fn check_in_space(scene: &SpaceScene) -> Result<Outcome, StudyError> {
     record.add_count("moving_bodies", mechanism.bodies.len() - 1);
     record.add_count("joints", mechanism.joints.len());
     record.add_count("degrees_of_freedom", plan.actuators());
-    text += &describe_freedom(scene, plan, &mut record);
-    text += &describe_range(scene, plan, &mut record);
-    text += &describe_groups(scene, plan, &mut record);
-    text += &describe_placements(scene, &model, &mut record);
-    text += &describe_reactions(scene, &sorted, &mut record);
+    text += &describe_freedom(scene, plan, record);
+    text += &describe_range(scene, plan, record);
+    text += &describe_groups(scene, plan, record);
+    text += &describe_placements(scene, &model, record);
+    text += &describe_reactions(scene, &sorted, record);
     if let Some(note) = &scene.note {
         text += &format!("  note: {note}\n");
     }
-    Ok(Outcome {
-        summary: text,
-        record,
-        ..Outcome::default()
-    })
+    Ok(text)
 }
 
 /// Redundant constraints and idle rotations, which counting does not show.

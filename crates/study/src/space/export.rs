@@ -1,13 +1,17 @@
-//! `dwell export` of a scene in space.
+//! `dwell export` of a scene in space: its fitted functions, and the files of a target.
 
 use super::explain::explain_position;
 use super::prepared::PreparedSpaceScene;
 use crate::explain::StudyError;
 use crate::export::description::{domain, drive_effect, magnitude_effect, varying_input};
+#[cfg(feature = "output")]
 use crate::export::output::{ExportTarget, export_machine};
 use crate::export::{ExportRequest, explain_fit, no_operations};
+#[cfg(feature = "output")]
 use crate::output::Outcome;
-use crate::reduce::compute::{ReducedScene as _, Reduction};
+use crate::reduce::compute::ReducedScene as _;
+#[cfg(feature = "output")]
+use crate::reduce::compute::Reduction;
 use dwell_export::{
     Domain, Export, FitError, Function, FunctionSampler, LoadDescription, MachineDescription,
     PartKind, ReferenceSizes,
@@ -21,17 +25,26 @@ use dwell_scene::SpaceScene;
 ///
 /// # Errors
 /// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
+#[cfg(feature = "output")]
 pub fn export_in_space(
     scene: &SpaceScene,
     target: ExportTarget,
     asked: &ExportRequest,
 ) -> Result<Outcome, StudyError> {
     let table = || Ok(Reduction::new(PreparedSpaceScene::new(scene)?, None)?.table());
-    export_machine(scene, target, asked, table, || fitted(scene, asked))
+    export_machine(scene, target, asked, table, || {
+        compute_export_in_space(scene, asked)
+    })
 }
 
-/// The fitted functions.
-fn fitted(scene: &SpaceScene, asked: &ExportRequest) -> Result<Export, StudyError> {
+/// Fits the functions of a machine in space for export.
+///
+/// # Errors
+/// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
+pub fn compute_export_in_space(
+    scene: &SpaceScene,
+    asked: &ExportRequest,
+) -> Result<Export, StudyError> {
     let prepared = PreparedSpaceScene::new(scene)?;
     let domain = domain(
         &scene.file,

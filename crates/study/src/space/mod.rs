@@ -1,9 +1,7 @@
 //! Scenes of mechanisms in space: what can be said of them before they move, and their reduced parameters.
 
-#[cfg(feature = "output")]
 mod check;
 mod explain;
-#[cfg(feature = "output")]
 mod export;
 mod machine_scene;
 mod motion;
@@ -18,6 +16,8 @@ mod views;
 
 #[cfg(feature = "output")]
 pub use check::check_in_space;
+pub use check::describe_scene_in_space;
+pub use export::compute_export_in_space;
 #[cfg(feature = "output")]
 pub use export::export_in_space;
 #[cfg(feature = "output")]

@@ -6,5 +6,6 @@ mod cases;
 mod exact;
 mod machines;
 mod refusals;
+mod several_freedoms;
 mod single_dwell;
 mod toolchain;

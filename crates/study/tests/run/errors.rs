@@ -3,7 +3,7 @@
 use crate::table::{PENDULUM, scene};
 use dwell_dynamics::Method;
 use dwell_study::{
-    OperatingPoint, SolverSettings, compute_sweep, equilibria, linearise, simulate,
+    OperatingPoint, SolverSettings, compute_sweep, equilibria, linearise, no_progress, simulate,
     simulate_to_accuracy,
 };
 use std::f64::consts::FRAC_PI_2;
@@ -276,7 +276,7 @@ fn the_peaks_of_a_sweep_are_those_between_its_positions() {
     let text = PENDULUM.replace("center = [0.3, 0]", &format!("center = [0.3, {offset}]"));
     let vary = ["bar.inertia=0.05,0.06".to_owned()];
     let requests = ["phi.actuator_force".to_owned()];
-    let found = compute_sweep(&scene(&text), &vary, None, 0, &requests).unwrap();
+    let found = compute_sweep(&scene(&text), &vary, None, 0, &requests, &no_progress).unwrap();
     let expected = 2.0 * 9.81 * 0.3_f64.hypot(offset);
     for row in &found.table.rows {
         assert!(

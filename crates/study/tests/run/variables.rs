@@ -36,7 +36,10 @@ fn analyses(scene: &Scene) -> Vec<(&'static str, Result<(), StudyError>)> {
         ("equilibria", compute_equilibria(scene).map(drop)),
         ("linearise", compute_linearisation(scene, start).map(drop)),
         ("symbolic", compute_closed_form(scene, None).map(drop)),
-        ("sweep", compute_sweep(scene, &vary, None, 0, &[]).map(drop)),
+        (
+            "sweep",
+            compute_sweep(scene, &vary, None, 0, &[], &no_progress).map(drop),
+        ),
         ("calibrate", find_value(scene, "bar.mass", 1.0).map(drop)),
     ]
 }

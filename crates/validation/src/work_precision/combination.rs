@@ -1,5 +1,6 @@
 //! Combinations of evaluation, integrator and tolerance, and their results: plain data.
 
+use super::exported_code::ExportedCode;
 use super::fixed_step::FixedStep;
 use dwell_dynamics::Method;
 use dwell_study::number_format::digits;
@@ -208,6 +209,8 @@ pub struct WorkPrecision {
     pub points: Vec<CombinationResult>,
     /// The classical Runge–Kutta method at a fixed step of 1 ms, where it reaches the end.
     pub fixed_step: Option<FixedStep>,
+    /// The exported code with steps of a millisecond.
+    pub exported_code: Vec<ExportedCode>,
     /// What was not run or not finished, and why.
     pub omitted: Vec<String>,
     /// The reference of the errors.
@@ -311,6 +314,8 @@ pub struct Effort {
     pub max_steps: usize,
     /// Runs of which the least time counts; at least one.
     pub repetitions: usize,
+    /// Whether exported code is compiled and measured.
+    pub exported_code: bool,
 }
 
 impl Effort {
@@ -321,6 +326,7 @@ impl Effort {
             table_accuracies: vec![1e-4, 1e-6, 1e-8, 1e-10, 1e-12],
             max_steps: 20_000,
             repetitions: 3,
+            exported_code: true,
         }
     }
 
@@ -331,6 +337,7 @@ impl Effort {
             table_accuracies: vec![1e-6, 1e-10],
             max_steps: 5_000,
             repetitions: 3,
+            exported_code: false,
         }
     }
 }

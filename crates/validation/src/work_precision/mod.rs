@@ -4,6 +4,7 @@
 mod combination;
 mod command_times;
 mod evaluator;
+mod exported_code;
 mod figure;
 mod fixed_step;
 mod reference_solution;
@@ -17,6 +18,7 @@ pub use combination::{
     Integrator, ReferenceInfo, WorkPrecision,
 };
 pub use evaluator::{Evaluator, ModelEvaluator, ReactionFn};
+pub use exported_code::ExportedCode;
 pub use fixed_step::FixedStep;
 pub use selected_cases::selected_case_reports;
 
@@ -50,7 +52,9 @@ pub fn work_precision(scene: &Scene, progress: Progress<'_>) -> Result<Outcome, 
     let times = command_times::command_times(scene)?;
     let name = format!("{}-work-precision", scene.name);
     let mut outcome = Outcome {
-        summary: report::summary(scene, &found) + &report::command_summary(&times),
+        summary: report::summary(scene, &found)
+            + &report::exported_code_summary(&found)
+            + &report::command_summary(&times),
         record: report::record(&found),
         ..Outcome::default()
     };
@@ -61,6 +65,7 @@ pub fn work_precision(scene: &Scene, progress: Progress<'_>) -> Result<Outcome, 
     files.add(format!("{name}.csv"), report::csv(&found)?);
     files.add(format!("{name}.npz"), report::table(&found).npz()?);
     let mut document = report::document(scene, &found, &name);
+    document.blocks.extend(report::exported_code_blocks(&found));
     document.blocks.extend(report::command_blocks(&times));
     outcome.page = Some((format!("{name}.md"), document));
     Ok(outcome)
@@ -130,9 +135,15 @@ pub fn measure_with(
     let fixed_step = fixed_step_result(&mut reference, exact, &subject, evaluation_time);
     let fixed_step = fixed_step.map_err(|e| omitted.push(format!("fixed step: {e}")));
     let points = results(&mut reference, trials, evaluation_time, &mut omitted);
+    let exported_code = match effort.exported_code {
+        true => exported_code::exported_code(&mut reference, exact, &subject, evaluation_time),
+        false => Ok(Vec::new()),
+    };
+    let exported_code = exported_code.map_err(|e| omitted.push(format!("exported code: {e}")));
     Ok(WorkPrecision {
         points,
         fixed_step: fixed_step.ok(),
+        exported_code: exported_code.unwrap_or_default(),
         omitted,
         reference: ReferenceInfo {
             method: reference.method,

@@ -5,6 +5,7 @@ use super::combination::{
     digits_or_dash,
 };
 use super::command_times::CommandTime;
+use super::exported_code::ExportedCode;
 use crate::report_parts;
 use dwell_dynamics::Method;
 use dwell_findings::Record;
@@ -270,6 +271,59 @@ fn fixed_step(found: &WorkPrecision) -> Option<String> {
         digits(fixed.time, 3),
         found.unit,
     ))
+}
+
+/// The exported code, a line each.
+pub(super) fn exported_code_summary(found: &WorkPrecision) -> String {
+    let line = |code: &ExportedCode| {
+        let [[coefficients, worst], [step, worst_step]] =
+            code.times.map(|pair| pair.map(|t| digits(t, 2)));
+        format!(
+            "  exported code, {}, steps of 1 ms: {} {} off; coefficients {coefficients} evaluations (worst {worst}), a step {step} (worst {worst_step})\n",
+            code.name,
+            digits_or_dash(code.errors.coordinate, 2),
+            found.unit,
+        )
+    };
+    found.exported_code.iter().map(line).collect()
+}
+
+/// The exported code, as a part of the document.
+pub(super) fn exported_code_blocks(found: &WorkPrecision) -> Vec<Block> {
+    if found.exported_code.is_empty() {
+        return Vec::new();
+    }
+    let header = [
+        "exported C, steps of 1 ms",
+        "error of the coefficients",
+        "error of the coordinate",
+        "energy drift",
+        "all coefficients: mean",
+        "worst",
+        "a step: mean",
+        "worst",
+    ];
+    let row = |code: &ExportedCode| {
+        let errors = [
+            code.coefficients,
+            code.errors.coordinate,
+            code.errors.energy,
+        ];
+        let mut row = vec![code.name.to_owned()];
+        row.extend(errors.map(|error| digits_or_dash(error, 2)));
+        row.extend(code.times.as_flattened().iter().map(|&t| digits(t, 2)));
+        row
+    };
+    vec![
+        Block::Heading("Exported code".to_owned()),
+        Block::Text(format!(
+            "`dwell export --to c`, compiled here and run through the motion by its own step, of a millisecond at most. Errors of the coefficients are relative to \
+             the largest value of each, that of the coordinate is in {}, the drift relative to the largest kinetic energy. Times are in units of one exact evaluation; \
+             of each of 2000 calls the least of seven counts, the worst is the largest of these.",
+            found.unit
+        )),
+        report_parts::table(&header, found.exported_code.iter().map(row)),
+    ]
 }
 
 /// The seconds of the whole command, as lines of the summary.

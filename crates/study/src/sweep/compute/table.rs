@@ -1,6 +1,7 @@
 //! A whole sweep in memory.
 
 use crate::explain::StudyError;
+use crate::progress::{Progress, Step};
 use crate::sweep::compute::point::PointResult;
 use crate::sweep::compute::{Design, RequestedQuantities, Row, SweptScene, VariantFamily};
 use dwell_dynamics::interruption;
@@ -19,7 +20,7 @@ pub struct ComputedSweep {
 }
 
 /// Computes all points of a sweep on all cores: `vary` and `requests` are those of
-/// `dwell sweep`, `samples` the number of random samples.
+/// `dwell sweep`, `samples` the number of random samples. Every computed block of points is a step of progress.
 ///
 /// # Errors
 /// [`StudyError`] where the sweep is invalid or the unchanged scene cannot be assembled. A point that cannot be
@@ -30,19 +31,25 @@ pub fn compute_sweep(
     samples: Option<u64>,
     seed: u64,
     requests: &[String],
+    progress: Progress<'_>,
 ) -> Result<ComputedSweep, StudyError> {
     let design = Design::new(scene, vary, samples, seed)?;
     let requested = RequestedQuantities::new(scene, requests)?;
     let family = scene.family(&design, &requested);
     let indices: Vec<u64> = (0..design.points).collect();
-    let blocks = indices.par_chunks(block_length(family.as_ref()));
-    let blocks = blocks.map(|block| {
+    let length = block_length(family.as_ref());
+    let total = indices.len().div_ceil(length);
+    let blocks = indices.par_chunks(length).map(|block| {
         let mut rows = Vec::with_capacity(block.len());
         if interruption::is_requested() {
             return rows;
         }
         let study = (scene, &design, family.as_ref());
         requested.points(study, block, &mut |row| rows.push(row));
+        progress(Step {
+            total,
+            done: "points",
+        });
         rows
     });
     let rows: Vec<Row> = blocks.flatten_iter().collect();

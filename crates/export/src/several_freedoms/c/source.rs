@@ -1,0 +1,371 @@
+//! The source: a template for any machine, and what is its own: the operations, the loads and the self-test.
+
+use super::Writer;
+use crate::evaluator::has_rotor;
+use crate::machine::LoadEffect;
+use crate::part::Precision;
+use crate::several_freedoms::measure::MOTION;
+use crate::straight_line::StraightLine;
+use std::fmt::Write as _;
+
+const SOURCE: &str = include_str!("../template.c");
+const REACTION_TERMS: &str = include_str!("../reactions.c");
+const SELF_TEST: &str = include_str!("../self_test.c");
+
+impl Writer<'_> {
+    pub(super) fn source(&self) -> String {
+        let machine = &self.export.machine;
+        let order = 2 * machine.freedoms() + self.currents().len();
+        let with = |there: bool, text: &str| {
+            if there {
+                text.to_owned()
+            } else {
+                String::new()
+            }
+        };
+        let loads = self.has_loads();
+        let own = [
+            ("order", order.to_string()),
+            ("zero", self.number(0.0)),
+            ("half", self.number(0.5)),
+            ("two", self.number(2.0)),
+            ("six", self.number(6.0)),
+            ("motion", self.motion()),
+            (
+                "loads_finite",
+                with(
+                    loads,
+                    " && all_finite(terms->w, @U@_LOAD_COUNT * N) && all_finite(terms->v, @U@_LOAD_COUNT)",
+                ),
+            ),
+            (
+                "loads_clear",
+                with(
+                    loads,
+                    "        clear(terms->w, @U@_LOAD_COUNT * N);\n        clear(terms->v, @U@_LOAD_COUNT);\n",
+                ),
+            ),
+            ("reactions_at", self.reaction_terms()),
+            ("positions_at", self.positions()),
+            ("scene", self.scene()),
+            ("f_member", with(loads, "\n    @p@_real f[@U@_LOAD_COUNT];")),
+            ("forces", self.forces()),
+            ("resistance", self.resistance()),
+            ("current_rates", self.current_rates()),
+            ("reactions", self.reactions()),
+            ("potentials", self.potentials()),
+            (
+                "move_currents",
+                self.each_current("    to->@c@ = from->@c@ + h * rates[@k@];\n"),
+            ),
+            (
+                "add_currents",
+                self.each_current("    add(&s.@c@, &s.carry[@k@], k1[@k@]);\n"),
+            ),
+        ];
+        let mut text = SOURCE.to_owned();
+        for (name, own) in own {
+            text = text.replace(&format!("@{name}@"), &own);
+        }
+        text + &self.self_test()
+    }
+
+    /// A line for each current: `@c@` is its member, `@k@` its place.
+    fn each_current(&self, line: &str) -> String {
+        let lines = self.currents().into_iter().map(|(load, place)| {
+            let member = format!("current_{}", self.names.loads[load]);
+            line.replace("@c@", &member)
+                .replace("@k@", &place.to_string())
+        });
+        lines.collect()
+    }
+
+    /// The operations of a code, and what its outputs are assigned to.
+    fn assignments(&self, code: &StraightLine, targets: &[String]) -> String {
+        let mut text = String::new();
+        self.statements.operations(code, &mut text);
+        for (target, &output) in targets.iter().zip(&code.outputs) {
+            _ = writeln!(text, "    {target} = {};", self.statements.operand(output));
+        }
+        text
+    }
+
+    fn motion(&self) -> String {
+        let machine = &self.export.machine;
+        let (n, pairs) = (machine.freedoms(), machine.pairs());
+        let upper = pairs.iter().map(|[i, j]| match i == j {
+            true => format!("terms->m[{}]", i * n + j),
+            false => format!("terms->m[{}] = terms->m[{}]", j * n + i, i * n + j),
+        });
+        let h = (0..pairs.len() * n).map(|k| format!("terms->h[{k}]"));
+        let w = (0..machine.loads.len() * n).map(|k| format!("terms->w[{k}]"));
+        let v = (0..machine.loads.len()).map(|k| format!("terms->v[{k}]"));
+        let targets: Vec<String> = upper.chain(h).chain(w).chain(v).collect();
+        self.assignments(&self.export.code[0], &targets)
+    }
+
+    fn reaction_terms(&self) -> String {
+        if !self.has_reactions() {
+            return String::new();
+        }
+        let machine = &self.export.machine;
+        let r = machine.reactions.len();
+        let array = |name: &'static str, count: usize| {
+            (0..count * r).map(move |k| format!("terms->{name}[{k}]"))
+        };
+        let a = array("a", machine.freedoms());
+        let targets = a
+            .chain(array("b", machine.pairs().len()))
+            .chain(array("c", machine.loads.len()));
+        let targets: Vec<String> = targets.collect();
+        let terms = self.assignments(&self.export.code[1], &targets);
+        let [finite, clear] = match self.has_loads() {
+            true => [
+                " && all_finite(terms->c, @U@_LOAD_COUNT * @U@_REACTION_COUNT)",
+                "        clear(terms->c, @U@_LOAD_COUNT * @U@_REACTION_COUNT);\n",
+            ],
+            false => ["", ""],
+        };
+        REACTION_TERMS
+            .replace("@reaction_terms@", &terms)
+            .replace("@c_finite@", finite)
+            .replace("@c_clear@", clear)
+    }
+
+    fn positions(&self) -> String {
+        let count = 2 * self.export.machine.points.len();
+        if count == 0 {
+            return String::new();
+        }
+        let targets: Vec<String> = (0..count).map(|k| format!("xy[{k}]")).collect();
+        let body = self.assignments(&self.export.code[2], &targets);
+        format!(
+            "@p@_status @p@_positions(const @p@_real q[@U@_COORDINATE_COUNT], @p@_real xy[2 * @U@_POINT_COUNT])\n{{\n{body}    if (!all_finite(xy, 2 * @U@_POINT_COUNT)) {{\n        clear(xy, 2 * @U@_POINT_COUNT);\n        return all_finite(q, N) ? @U@_OUT_OF_RANGE : @U@_NOT_FINITE;\n    }}\n    return @U@_OK;\n}}\n\n"
+        )
+    }
+
+    fn scene(&self) -> String {
+        let machine = &self.export.machine;
+        let mut text = String::from(
+            "void @p@_scene(@p@_parameters *parameters, @p@_inputs *inputs, @p@_state *state)\n{\n    clear(parameters->added_inertia, N);\n",
+        );
+        for (name, value, _) in self.parameters() {
+            _ = writeln!(text, "    parameters->{name} = {};", self.number(value));
+        }
+        let inputs = self.inputs();
+        for (_, name, value, _) in &inputs {
+            _ = writeln!(text, "    inputs->{name} = {};", self.number(*value));
+        }
+        if inputs.is_empty() {
+            text += "    inputs->none = ZERO;\n";
+        }
+        for (k, coordinate) in machine.coordinates.iter().enumerate() {
+            let [q, q_dot] = coordinate.initial.map(|x| self.number(x));
+            _ = writeln!(
+                text,
+                "    state->q[{k}] = {q};\n    state->q_dot[{k}] = {q_dot};"
+            );
+        }
+        text += &self.each_current("    state->@c@ = ZERO;\n");
+        text + "    clear(state->carry, ORDER);\n}\n"
+    }
+
+    /// w q̇ of a load.
+    fn velocity(&self, load: usize, terms: &str, state: &str) -> String {
+        let n = self.export.machine.freedoms();
+        let each = (0..n).map(|i| format!("{terms}w[{}] * {state}[{i}]", load * n + i));
+        format!("({})", each.collect::<Vec<_>>().join(" + "))
+    }
+
+    fn forces(&self) -> String {
+        let machine = &self.export.machine;
+        let mut text = String::new();
+        let (mut uses_inputs, mut uses_state) = (false, false);
+        let n = machine.freedoms();
+        for (k, load) in machine.loads.iter().enumerate() {
+            let name = &self.names.loads[k];
+            let velocity = self.velocity(k, "t->", "s->q_dot");
+            let value = match &load.effect {
+                LoadEffect::Conservative { .. } | LoadEffect::Constant { .. } => {
+                    format!("p->magnitude_{name}")
+                }
+                LoadEffect::Input { .. } => {
+                    uses_inputs = true;
+                    format!("in->load_{name}")
+                }
+                LoadEffect::Damper { .. } => {
+                    uses_state = true;
+                    format!("ZERO - p->damping_{name} * {velocity}")
+                }
+                LoadEffect::VariableDamper { .. } => {
+                    (uses_inputs, uses_state) = (true, true);
+                    format!("ZERO - in->damping_{name} * {velocity}")
+                }
+                LoadEffect::Motor(motor) => {
+                    uses_state = true;
+                    let constant = format!("(p->gear_ratio_{name} * p->torque_constant_{name})");
+                    match motor.inductance > 0.0 {
+                        true => format!("{constant} * s->current_{name}"),
+                        false => {
+                            uses_inputs = true;
+                            format!(
+                                "{constant} * (in->voltage_{name} - {constant} * {velocity}) / p->resistance_{name}"
+                            )
+                        }
+                    }
+                }
+            };
+            _ = writeln!(text, "    out->f[{k}] = {value};");
+            if has_rotor(&load.effect) {
+                let first = k * n;
+                _ = writeln!(
+                    text,
+                    "    for (i = 0; i < N * N; i++) {{\n        out->m[i] = out->m[i] + {} * t->w[{first} + i / N] * t->w[{first} + i % N];\n    }}",
+                    reflected(name)
+                );
+            }
+        }
+        for (used, name) in [(uses_inputs, "in"), (uses_state, "s")] {
+            if !used {
+                _ = writeln!(text, "    (void){name};");
+            }
+        }
+        text
+    }
+
+    fn resistance(&self) -> String {
+        match self.has_loads() {
+            true => "    for (k = 0; k < @U@_LOAD_COUNT; k++) {\n        for (i = 0; i < N; i++) {\n            sum[i] = sum[i] - f->f[k] * t->w[k * N + i];\n        }\n    }\n".to_owned(),
+            false => "    (void)f;\n".to_owned(),
+        }
+    }
+
+    fn current_rates(&self) -> String {
+        let lines = self.currents().into_iter().map(|(load, place)| {
+            let name = &self.names.loads[load];
+            let velocity = self.velocity(load, "terms.", "s->q_dot");
+            format!(
+                "    rates[{place}] = (in->voltage_{name} - p->resistance_{name} * s->current_{name} - (p->gear_ratio_{name} * p->torque_constant_{name}) * {velocity}) / p->inductance_{name};\n"
+            )
+        });
+        lines.collect()
+    }
+
+    fn reactions(&self) -> String {
+        if !self.has_reactions() {
+            return String::new();
+        }
+        let machine = &self.export.machine;
+        let mut rotors = String::new();
+        for (k, load) in machine.loads.iter().enumerate() {
+            if has_rotor(&load.effect) {
+                let acceleration = self.velocity(k, "terms.", "q_ddot");
+                let reflected = reflected(&self.names.loads[k]).replace("p->", "parameters->");
+                _ = writeln!(
+                    rotors,
+                    "    f.f[{k}] = f.f[{k}] - {reflected} * {acceleration};"
+                );
+            }
+        }
+        let loads = match self.has_loads() {
+            true => {
+                "        for (i = 0; i < @U@_LOAD_COUNT; i++) {\n            sum = sum + of.c[i * @U@_REACTION_COUNT + k] * f.f[i];\n        }\n"
+            }
+            false => "",
+        };
+        format!(
+            "@p@_status @p@_reactions(const @p@_parameters *parameters, const @p@_inputs *inputs, const @p@_state *state, const @p@_real q_ddot[@U@_COORDINATE_COUNT], @p@_real reactions[@U@_REACTION_COUNT])\n{{\n    @p@_motion_terms terms;\n    @p@_reaction_terms of;\n    forces f;\n    int i, j, k;\n    @p@_status status = @p@_motion_terms_at(state->q, &terms);\n    if (status == @U@_OK) {{\n        status = @p@_reaction_terms_at(state->q, &of);\n    }}\n    if (status != @U@_OK) {{\n        clear(reactions, @U@_REACTION_COUNT);\n        return status;\n    }}\n    forces_of(parameters, inputs, &terms, state, &f);\n{rotors}    for (k = 0; k < @U@_REACTION_COUNT; k++) {{\n        @p@_real sum = ZERO;\n        int pair = 0;\n        for (i = 0; i < N; i++) {{\n            sum = sum + of.a[i * @U@_REACTION_COUNT + k] * q_ddot[i];\n            for (j = i; j < N; j++) {{\n                sum = sum + of.b[pair * @U@_REACTION_COUNT + k] * (state->q_dot[i] * state->q_dot[j]);\n                pair++;\n            }}\n        }}\n{loads}        reactions[k] = sum;\n    }}\n    if (!all_finite(reactions, @U@_REACTION_COUNT)) {{\n        clear(reactions, @U@_REACTION_COUNT);\n        return @U@_NOT_FINITE;\n    }}\n    return @U@_OK;\n}}\n\n"
+        )
+    }
+
+    fn potentials(&self) -> String {
+        let loads = self.export.machine.loads.iter().enumerate();
+        let conservative = loads.filter(|(_, load)| load.effect.is_conservative());
+        let lines = conservative
+            .map(|(k, _)| format!("    energies[1] = energies[1] + f.f[{k}] * terms.v[{k}];\n"));
+        lines.collect()
+    }
+
+    fn self_test(&self) -> String {
+        let machine = &self.export.machine;
+        let n = machine.freedoms();
+        let most = machine.reactions.len().max(2 * n).max(2);
+        let mut checks = String::new();
+        for (s, state) in self.export.states.iter().enumerate() {
+            let code = 10 * (s + 1);
+            checks += "    @p@_scene(&parameters, &inputs, &state);\n";
+            for k in 0..n {
+                let [q, q_dot] = [state.y[k], state.y[n + k]].map(|x| self.number(x));
+                _ = writeln!(
+                    checks,
+                    "    state.q[{k}] = {q};\n    state.q_dot[{k}] = {q_dot};"
+                );
+            }
+            for (load, place) in self.currents() {
+                let (name, current) = (&self.names.loads[load], self.number(state.y[place]));
+                _ = writeln!(checks, "    state.current_{name} = {current};");
+            }
+            if let Some(values) = &state.values {
+                let calls = [
+                    "@p@_acceleration(&parameters, &inputs, &state, found)",
+                    "@p@_reactions(&parameters, &inputs, &state, q_ddot, found)",
+                    "@p@_energies(&parameters, &inputs, &state, found)",
+                    "@p@_required_forces(&parameters, &inputs, &state, q_ddot, found)",
+                ];
+                for (k, (values, call)) in values.iter().zip(calls).enumerate() {
+                    if !values.is_empty() {
+                        self.check(&mut checks, call, values, (state.tolerances[k], code + k));
+                    }
+                    checks += match k {
+                        0 => {
+                            "    for (k = 0; k < N; k++) {\n        q_ddot[k] = found[k];\n    }\n"
+                        }
+                        2 => "    clear(q_ddot, N);\n",
+                        _ => "",
+                    };
+                }
+            }
+            if let Some(end) = &state.end {
+                let (steps, step) = (MOTION.0, self.number(MOTION.1));
+                _ = writeln!(
+                    checks,
+                    "    for (k = 0; k < {steps}; k++) {{\n        if (@p@_step(&parameters, &inputs, {step}, &state) != @U@_OK) {{\n            return {};\n        }}\n    }}\n    for (k = 0; k < N; k++) {{\n        found[k] = state.q[k];\n        found[N + k] = state.q_dot[k];\n    }}",
+                    code + 8
+                );
+                let (end, tolerance) = (&end[..2 * n], state.tolerances[4]);
+                self.check(&mut checks, "@U@_OK", end, (tolerance, code + 9));
+            }
+        }
+        // Its square is no number.
+        let huge = match self.export.precision {
+            Precision::Double => 1e300,
+            Precision::Float => 1e30,
+        };
+        SELF_TEST
+            .replace("@most@", &most.to_string())
+            .replace("@no_inertia@", &self.number(-1e30))
+            .replace("@huge@", &self.number(huge))
+            .replace("@checks@", &checks)
+    }
+
+    /// A call whose results in `found` must be these.
+    fn check(
+        &self,
+        text: &mut String,
+        call: &str,
+        values: &[f64],
+        (tolerance, code): (f64, usize),
+    ) {
+        let list: Vec<String> = values.iter().map(|&x| self.number(x)).collect();
+        let (count, list, tolerance) = (values.len(), list.join(", "), self.number(tolerance));
+        _ = writeln!(
+            text,
+            "    {{\n        static const @p@_real expected[{count}] = {{{list}}};\n        if ({call} != @U@_OK || differs(found, expected, {count}, {tolerance})) {{\n            return {code};\n        }}\n    }}"
+        );
+    }
+}
+
+/// N² J of a motor.
+fn reflected(name: &str) -> String {
+    format!("(p->gear_ratio_{name} * p->gear_ratio_{name} * p->rotor_inertia_{name})")
+}

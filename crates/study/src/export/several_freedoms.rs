@@ -1,0 +1,212 @@
+//! The equations of motion of a scene with several degrees of freedom, as the model's own operations.
+
+use super::description::{describe_loads, left_out, with_unit_loads};
+use super::{ExportRequest, SEARCHED, no_operations};
+use crate::explain::{StudyError, explain_motion, scene_error};
+use dwell_dynamics::DynamicsError;
+use dwell_export::{
+    FreeCoordinate, Precision, RecordedNumber, RecordingError, SeveralFreedomsDescription,
+    SeveralFreedomsExport, StraightLine, record_at,
+};
+use dwell_geometry::ActuatorId;
+use dwell_kinetostatics::{InverseDynamics, Model};
+use dwell_numerics::Scalar;
+use dwell_scene::{Scene, SceneLocation};
+
+/// Positions at which the operations are compared with the model, and how many of them record the operations.
+const MEASURED: usize = 64;
+const RECORDED: usize = 4;
+/// How far from the initial position they are: rad, and parts of the mechanism's size.
+const AROUND: [f64; 2] = [0.5, 0.15];
+/// The largest difference that is rounding. Operations of another assembly mode are off by much more.
+const ROUNDING: f64 = 1e-7;
+
+/// The operations of the equations of motion and of all reactions of a scene with several actuators, each of which is a free
+/// coordinate.
+///
+/// # Errors
+/// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
+pub fn compute_export_of_several_freedoms(
+    scene: &Scene,
+    asked: &ExportRequest,
+) -> Result<SeveralFreedomsExport, StudyError> {
+    if asked.interval.is_some() {
+        return Err(scene_error(
+            scene,
+            "an interval is of one coordinate, and this scene has several",
+            "leave --from and --until out: the equations of motion hold wherever the mechanism can be assembled",
+            [(SceneLocation::Actuator(ActuatorId(0)), "one of them")],
+        ));
+    }
+    let (loaded, model) = with_unit_loads(scene)?;
+    let machine = describe(scene, &loaded, &model);
+    let explain = |error| explain_motion(&loaded, model.plan(), &error);
+    let positions = positions(&machine, &model, scene.mechanism.size());
+    let sampled = |q: &[f64]| functions::<f64>(scene, &model, q);
+    let code = recorded(scene, &model, &positions).map_err(|error| match error {
+        RecordingError::Evaluation(error) => explain(error),
+        RecordingError::Function => no_operations(
+            scene,
+            "a law of a cam, of a joint or of an inertia is known by its values alone",
+        ),
+        RecordingError::Differs { .. } => no_operations(scene, SEARCHED),
+    })?;
+    if let Some(load) = SeveralFreedomsExport::unsupported_rotor(&machine, &code[0]) {
+        let drive = load - scene.loads.len();
+        return Err(scene_error(
+            scene,
+            format!(
+                "no export: the rotor of {} turns with a coordinate that is no actuator's",
+                machine.loads[load].name
+            ),
+            "leave the inertia of its rotor out, or drive an actuator",
+            [(SceneLocation::Drive(drive), "this motor")],
+        ));
+    }
+    let measured = |precision, code: [StraightLine; 3]| {
+        let machine = machine.clone();
+        SeveralFreedomsExport::new(machine, precision, code, &positions, sampled).map_err(explain)
+    };
+    let export = measured(Precision::Double, code)?;
+    let error = export.errors.max();
+    if error.is_nan() || error > ROUNDING {
+        return Err(no_operations(scene, SEARCHED));
+    }
+    match asked.request.precision {
+        Precision::Double => Ok(export),
+        Precision::Float => measured(Precision::Float, export.code),
+    }
+}
+
+fn describe(scene: &Scene, loaded: &Scene, model: &Model) -> SeveralFreedomsDescription {
+    let mechanism = &scene.mechanism;
+    let reactions = model.reactions().iter();
+    let reactions = reactions.map(|&r| (mechanism.reaction_name(r), r.component.unit()));
+    let points = scene.requests.paths.iter();
+    let points = points.map(|p| format!("{}.{}", mechanism.body_name(p.body), p.name));
+    let mut left_out = left_out(scene, model);
+    let loads = describe_loads(scene, loaded, &mut left_out);
+    let spec = scene.motion.as_ref();
+    let coordinates = mechanism.actuators.iter().enumerate().map(|(k, actuator)| {
+        let at = |of: &[f64]| of.get(k).copied();
+        let assembly = at(&scene.assembly.coordinates).unwrap_or(0.0);
+        if spec.is_some_and(|spec| spec.laws[k].is_some()) {
+            left_out.push(format!(
+                "the law of {}: it is a free coordinate here",
+                actuator.name
+            ));
+        }
+        FreeCoordinate {
+            name: actuator.name.clone(),
+            is_angle: model.plan().is_angle(k),
+            initial: match spec {
+                Some(spec) => [
+                    at(&spec.initial_coordinates).unwrap_or(assembly),
+                    at(&spec.initial_velocities).unwrap_or(0.0),
+                ],
+                None => [assembly, 0.0],
+            },
+        }
+    });
+    SeveralFreedomsDescription {
+        coordinates: coordinates.collect(),
+        name: scene.name.clone(),
+        title: scene.title.clone(),
+        scene_hash: scene.hash(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        loads,
+        reactions: reactions.collect(),
+        points: points.collect(),
+        left_out,
+    }
+}
+
+/// Positions around the initial one that the mechanism can reach.
+fn positions(machine: &SeveralFreedomsDescription, model: &Model, size: f64) -> Vec<Vec<f64>> {
+    // A sequence that fills the square evenly, each coordinate by its own irrational step.
+    let spread = |k: usize, i: usize| {
+        let step = f64::from(2 + 3 * i as u32 + (i * i) as u32).sqrt();
+        2.0 * (0.37 + step * k as f64).fract() - 1.0
+    };
+    let mut pose = model.plan().pose();
+    let around = |k: usize| -> Vec<f64> {
+        let coordinates = machine.coordinates.iter().enumerate();
+        let one = |(i, c): (usize, &FreeCoordinate)| {
+            let width = if c.is_angle {
+                AROUND[0]
+            } else {
+                AROUND[1] * size
+            };
+            // The first are near: they must be reached.
+            let width = width * if k < RECORDED { 0.1 } else { 1.0 };
+            c.initial[0] + width * spread(k, i)
+        };
+        coordinates.map(one).collect()
+    };
+    let all = (0..MEASURED).map(around);
+    all.enumerate()
+        .filter(|(k, q)| *k < RECORDED || model.plan().positions(q, &mut pose).is_ok())
+        .map(|(_, q)| q)
+        .collect()
+}
+
+/// The functions of motion, reactions and positions, in the order of [`SeveralFreedomsExport::code`].
+fn functions<T: Scalar>(
+    scene: &Scene,
+    model: &Model,
+    q: &[T],
+) -> Result<[Vec<T>; 3], DynamicsError> {
+    let n = q.len();
+    let rest = vec![T::from_f64(0.0); n];
+    let mut workspace = model.workspace();
+    let mut state = model.kinematic_state(q, &rest, &mut workspace)?;
+    let mut result: InverseDynamics<T> = model.result_buffer();
+    let mut reactions = Vec::new();
+    let mut m = Vec::new();
+    for i in 0..n {
+        state.mass_matrix_column(i, &mut result);
+        m.extend_from_slice(&result.tau[i..]);
+        reactions.extend_from_slice(&result.reactions);
+    }
+    let mut motion = m;
+    for i in 0..n {
+        for j in i..n {
+            state.christoffel_terms([i, j], &mut result);
+            motion.extend_from_slice(&result.tau);
+            reactions.extend_from_slice(&result.reactions);
+        }
+    }
+    let mut potentials = Vec::new();
+    for load in 0..model.loads().len() {
+        state.unit_load_response(load, &mut result)?;
+        motion.extend(result.tau.iter().map(|&tau| -tau));
+        reactions.extend_from_slice(&result.reactions);
+        let potential = state
+            .potential(load)
+            .filter(|_| model.is_conservative(load));
+        potentials.push(potential.unwrap_or(T::from_f64(0.0)));
+    }
+    motion.extend(potentials);
+    let bodies = state.bodies_at(&rest);
+    let points = scene.requests.paths.iter().flat_map(|point| {
+        let at = bodies.point(point.body, point.at).position;
+        [at.x, at.y]
+    });
+    let positions = points.collect();
+    Ok([motion, reactions, positions])
+}
+
+/// The operations of all functions, by part.
+fn recorded(
+    scene: &Scene,
+    model: &Model,
+    positions: &[Vec<f64>],
+) -> Result<[StraightLine; 3], RecordingError<DynamicsError>> {
+    let one = |part: usize| {
+        record_at(&positions[..RECORDED], |q| {
+            let mut parts = functions::<RecordedNumber>(scene, model, q)?;
+            Ok(std::mem::take(&mut parts[part]))
+        })
+    };
+    Ok([one(0)?, one(1)?, one(2)?])
+}
