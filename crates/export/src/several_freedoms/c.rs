@@ -3,7 +3,7 @@
 mod header;
 mod source;
 
-use super::SeveralFreedomsExport;
+use super::export::SeveralFreedomsExport;
 use crate::c::Statements;
 use crate::identifiers::{Identifiers, distinct};
 use crate::machine::LoadEffect;

@@ -1,8 +1,8 @@
 //! The exported code of several degrees of freedom in Rust, in one kind of number.
 
-use super::SeveralFreedomsDescription;
+use super::description::SeveralFreedomsDescription;
 use crate::evaluator::{Status, has_rotor, scene_value};
-use crate::machine::LoadEffect;
+use crate::machine::{LoadDescription, LoadEffect};
 use crate::real::Real;
 use crate::straight_line::StraightLine;
 
@@ -82,7 +82,7 @@ impl<'a> SeveralFreedomsEvaluator<'a> {
     fn forces<R: Real>(&self, terms: &[R], y: &[R]) -> Vec<R> {
         let n = self.machine.freedoms();
         let loads = self.machine.loads.iter().enumerate();
-        let force = |(k, load): (usize, &crate::machine::LoadDescription)| {
+        let force = |(k, load): (usize, &LoadDescription)| {
             let value = R::of(scene_value(&load.effect));
             let velocity = self.along(terms, k, &y[n..2 * n]);
             match &load.effect {

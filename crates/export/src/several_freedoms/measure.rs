@@ -1,6 +1,7 @@
 //! The operations against the model, and the states of the self-test.
 
-use super::{SeveralFreedomsDescription, SeveralFreedomsEvaluator};
+use super::description::{FreeCoordinate, SeveralFreedomsDescription};
+use super::evaluator::SeveralFreedomsEvaluator;
 use crate::real::Real;
 use crate::straight_line::StraightLine;
 
@@ -142,7 +143,7 @@ fn states<R: Real>(
     let all = std::iter::once(initial).chain(others).enumerate();
     all.map(|(k, q)| {
         // Of the others, some velocities that differ.
-        let velocity = |(i, c): (usize, &super::FreeCoordinate)| match k {
+        let velocity = |(i, c): (usize, &FreeCoordinate)| match k {
             0 => c.initial[1],
             _ => 0.5 * (1.3 * k as f64 + 0.7 * i as f64).sin(),
         };

@@ -48,12 +48,12 @@ pub(super) fn exported_code(
     if subject.initial_state.y.len() != 2 {
         return Err("it has other states than this motion".to_owned());
     }
-    let compiler = COMPILERS.into_iter().find(|c| is_there(c));
+    let compiler = COMPILERS.into_iter().find(is_there);
     let compiler = compiler.ok_or("there is no C compiler here")?;
     let mut all = Vec::new();
     let mut reason = None;
     for (name, accuracy, precision, is_exact) in EXPORTS {
-        let one = || {
+        let mut one = || {
             let export = export(scene, accuracy, precision, is_exact)?;
             let (states, times) = run(&export, subject, compiler)?;
             let errors = reference.errors(&states, &mut exact.reactions());
@@ -65,7 +65,6 @@ pub(super) fn exported_code(
                 times: times.map(|pair| pair.map(in_evaluations)),
             })
         };
-        let mut one = one;
         match one() {
             Ok(found) => all.push(found),
             Err(error) => reason = reason.or(Some(error)),

@@ -132,18 +132,12 @@ pub fn measure_with(
     let timed = || done("times");
     let unit_times = time_runs(&subject, &reference, exact, &mut trials, effort, &timed);
     let [evaluation_time, jacobian_time] = unit_times.map_err(|e| subject.explain(&e))?;
-    let fixed_step = fixed_step_result(&mut reference, exact, &subject, evaluation_time);
-    let fixed_step = fixed_step.map_err(|e| omitted.push(format!("fixed step: {e}")));
+    let timed = (exact, &subject, evaluation_time);
     let points = results(&mut reference, trials, evaluation_time, &mut omitted);
-    let exported_code = match effort.exported_code {
-        true => exported_code::exported_code(&mut reference, exact, &subject, evaluation_time),
-        false => Ok(Vec::new()),
-    };
-    let exported_code = exported_code.map_err(|e| omitted.push(format!("exported code: {e}")));
     Ok(WorkPrecision {
         points,
-        fixed_step: fixed_step.ok(),
-        exported_code: exported_code.unwrap_or_default(),
+        fixed_step: fixed_step_result(&mut reference, timed, &mut omitted),
+        exported_code: exported_code_results(&mut reference, timed, effort, &mut omitted),
         omitted,
         reference: ReferenceInfo {
             method: reference.method,
@@ -158,19 +152,42 @@ pub fn measure_with(
     })
 }
 
+/// The exact evaluator, the motion, and the seconds of one exact evaluation.
+type Timed<'a> = (&'a dyn Evaluator, &'a Subject, f64);
+
 /// The error and the cost of fixed steps.
 fn fixed_step_result(
     reference: &mut ReferenceSolution<'_>,
-    exact: &dyn Evaluator,
-    subject: &Subject,
-    evaluation_time: f64,
-) -> Result<FixedStep, DynamicsError> {
-    let (states, steps, seconds) = fixed_step::solve(exact, subject)?;
-    Ok(FixedStep {
-        steps,
-        time: seconds / evaluation_time,
-        errors: reference.errors(&states, &mut exact.reactions())?,
-    })
+    (exact, subject, evaluation_time): Timed<'_>,
+    omitted: &mut Vec<String>,
+) -> Option<FixedStep> {
+    let mut solve = || {
+        let (states, steps, seconds) = fixed_step::solve(exact, subject)?;
+        Ok::<_, DynamicsError>(FixedStep {
+            steps,
+            time: seconds / evaluation_time,
+            errors: reference.errors(&states, &mut exact.reactions())?,
+        })
+    };
+    let found = solve();
+    found
+        .map_err(|e| omitted.push(format!("fixed step: {e}")))
+        .ok()
+}
+
+/// The errors and the costs of the exported code, if it is wanted.
+fn exported_code_results(
+    reference: &mut ReferenceSolution<'_>,
+    (exact, subject, evaluation_time): Timed<'_>,
+    effort: &Effort,
+    omitted: &mut Vec<String>,
+) -> Vec<ExportedCode> {
+    if !effort.exported_code {
+        return Vec::new();
+    }
+    let found = exported_code::exported_code(reference, exact, subject, evaluation_time);
+    let found = found.map_err(|e| omitted.push(format!("exported code: {e}")));
+    found.unwrap_or_default()
 }
 
 /// Errors and costs of all runs. A run that left the range of an evaluator or of the mechanism has no error.

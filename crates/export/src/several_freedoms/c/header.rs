@@ -158,18 +158,9 @@ impl Writer<'_> {
         if inputs.is_empty() {
             member(text, "none", "there is no input");
         }
-        *text += "} @p@_inputs;\n\n/* A state; set `carry` to zero when you set the others. */\ntypedef struct {\n";
-        member(text, "q[@U@_COORDINATE_COUNT]", "rad or m");
-        member(text, "q_dot[@U@_COORDINATE_COUNT]", "rad/s or m/s");
-        let currents = self.currents();
-        for &(load, _) in &currents {
-            let name = format!("current_{}", self.names.loads[load]);
-            member(text, &name, "A: current of the motor");
-        }
-        let order = 2 * self.export.machine.freedoms() + currents.len();
-        let carry = format!("carry[{order}]");
-        member(text, &carry, "what the sums have lost by rounding");
-        *text += "} @p@_state;\n\n/* M q'' + sum of h q_dot[i] q_dot[j] = sum of w F over the loads */\ntypedef struct {\n";
+        *text += "} @p@_inputs;\n\n";
+        self.state_type(text);
+        *text += "/* M q'' + sum of h q_dot[i] q_dot[j] = sum of w F over the loads */\ntypedef struct {\n";
         let all = "@U@_COORDINATE_COUNT";
         member(
             text,
@@ -205,6 +196,21 @@ impl Writer<'_> {
             }
             *text += "} @p@_reaction_terms;\n\n";
         }
+    }
+
+    fn state_type(&self, text: &mut String) {
+        *text += "/* A state; set `carry` to zero when you set the others. */\ntypedef struct {\n";
+        member(text, "q[@U@_COORDINATE_COUNT]", "rad or m");
+        member(text, "q_dot[@U@_COORDINATE_COUNT]", "rad/s or m/s");
+        let currents = self.currents();
+        for &(load, _) in &currents {
+            let name = format!("current_{}", self.names.loads[load]);
+            member(text, &name, "A: current of the motor");
+        }
+        let order = 2 * self.export.machine.freedoms() + currents.len();
+        let carry = format!("carry[{order}]");
+        member(text, &carry, "what the sums have lost by rounding");
+        *text += "} @p@_state;\n\n";
     }
 }
 

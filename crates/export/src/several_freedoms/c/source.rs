@@ -4,7 +4,7 @@ use super::Writer;
 use crate::evaluator::has_rotor;
 use crate::machine::LoadEffect;
 use crate::part::Precision;
-use crate::several_freedoms::measure::MOTION;
+use crate::several_freedoms::measure::{MOTION, SampledState};
 use crate::straight_line::StraightLine;
 use std::fmt::Write as _;
 
@@ -305,26 +305,7 @@ impl Writer<'_> {
                 let (name, current) = (&self.names.loads[load], self.number(state.y[place]));
                 _ = writeln!(checks, "    state.current_{name} = {current};");
             }
-            if let Some(values) = &state.values {
-                let calls = [
-                    "@p@_acceleration(&parameters, &inputs, &state, found)",
-                    "@p@_reactions(&parameters, &inputs, &state, q_ddot, found)",
-                    "@p@_energies(&parameters, &inputs, &state, found)",
-                    "@p@_required_forces(&parameters, &inputs, &state, q_ddot, found)",
-                ];
-                for (k, (values, call)) in values.iter().zip(calls).enumerate() {
-                    if !values.is_empty() {
-                        self.check(&mut checks, call, values, (state.tolerances[k], code + k));
-                    }
-                    checks += match k {
-                        0 => {
-                            "    for (k = 0; k < N; k++) {\n        q_ddot[k] = found[k];\n    }\n"
-                        }
-                        2 => "    clear(q_ddot, N);\n",
-                        _ => "",
-                    };
-                }
-            }
+            self.check_values(&mut checks, state, code);
             if let Some(end) = &state.end {
                 let (steps, step) = (MOTION.0, self.number(MOTION.1));
                 _ = writeln!(
@@ -346,6 +327,29 @@ impl Writer<'_> {
             .replace("@no_inertia@", &self.number(-1e30))
             .replace("@huge@", &self.number(huge))
             .replace("@checks@", &checks)
+    }
+
+    /// Accelerations, reactions, energies and required forces at a state.
+    fn check_values(&self, checks: &mut String, state: &SampledState, code: usize) {
+        let Some(values) = &state.values else {
+            return;
+        };
+        let calls = [
+            "@p@_acceleration(&parameters, &inputs, &state, found)",
+            "@p@_reactions(&parameters, &inputs, &state, q_ddot, found)",
+            "@p@_energies(&parameters, &inputs, &state, found)",
+            "@p@_required_forces(&parameters, &inputs, &state, q_ddot, found)",
+        ];
+        for (k, (values, call)) in values.iter().zip(calls).enumerate() {
+            if !values.is_empty() {
+                self.check(checks, call, values, (state.tolerances[k], code + k));
+            }
+            *checks += match k {
+                0 => "    for (k = 0; k < N; k++) {\n        q_ddot[k] = found[k];\n    }\n",
+                2 => "    clear(q_ddot, N);\n",
+                _ => "",
+            };
+        }
     }
 
     /// A call whose results in `found` must be these.
