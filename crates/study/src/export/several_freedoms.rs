@@ -1,8 +1,8 @@
 //! The equations of motion of a scene with several degrees of freedom, as the model's own operations.
 
 use super::description::{describe_loads, left_out, with_unit_loads};
-use super::{ExportRequest, SEARCHED, no_operations};
-use crate::explain::{StudyError, explain_motion, scene_error};
+use super::{ExportRequest, SEARCHED};
+use crate::explain::{StudyError, actuator_labels, explain_motion, scene_error};
 use dwell_dynamics::DynamicsError;
 use dwell_export::{
     FreeCoordinate, Precision, RecordedNumber, RecordingError, SeveralFreedomsDescription,
@@ -45,11 +45,11 @@ pub fn compute_export_of_several_freedoms(
     let sampled = |q: &[f64]| functions::<f64>(scene, &model, q);
     let code = recorded(scene, &model, &positions).map_err(|error| match error {
         RecordingError::Evaluation(error) => explain(error),
-        RecordingError::Function => no_operations(
+        RecordingError::Function => without_operations(
             scene,
             "a law of a cam, of a joint or of an inertia is known by its values alone",
         ),
-        RecordingError::Differs { .. } => no_operations(scene, SEARCHED),
+        RecordingError::Differs { .. } => without_operations(scene, SEARCHED),
     })?;
     if let Some(load) = SeveralFreedomsExport::unsupported_rotor(&machine, &code[0]) {
         let drive = load - scene.loads.len();
@@ -70,12 +70,22 @@ pub fn compute_export_of_several_freedoms(
     let export = measured(Precision::Double, code)?;
     let error = export.errors.max();
     if error.is_nan() || error > ROUNDING {
-        return Err(no_operations(scene, SEARCHED));
+        return Err(without_operations(scene, SEARCHED));
     }
     match asked.request.precision {
         Precision::Double => Ok(export),
         Precision::Float => measured(Precision::Float, export.code),
     }
+}
+
+/// Refuses a machine whose functions have no operations that hold everywhere, with the reason.
+fn without_operations(scene: &Scene, reason: &str) -> StudyError {
+    scene_error(
+        scene,
+        format!("no export: {reason}"),
+        "several degrees of freedom are exported as the model's own operations, which mechanisms made of dyads have; give exactly one actuator for a table",
+        actuator_labels(scene, "drives it"),
+    )
 }
 
 fn describe(scene: &Scene, loaded: &Scene, model: &Model) -> SeveralFreedomsDescription {

@@ -1,6 +1,6 @@
 //! Machines of several degrees of freedom as C: compiled, and held against the machine that integrates.
 
-use super::toolchain::{Scratch, c_compiler, case, compile, request, run};
+use super::toolchain::{Scratch, c_compiler, case, cases, compile, request, run};
 use dwell_export::{Precision, SeveralFreedomsEvaluator, c_files_of_several_freedoms};
 use dwell_scene::Scene;
 use dwell_study::models::build_machine;
@@ -181,6 +181,38 @@ fn steps_keep_the_energy() {
     };
     let [coarse, fine] = [drift(4e-3, 500), drift(2e-3, 1000)];
     assert!(fine < 1e-7 && coarse / fine > 10.0, "{coarse:e} {fine:e}");
+}
+
+/// A pendulum beside a mechanism that is closed by Newton's method.
+#[test]
+fn what_is_searched_is_refused_by_name() {
+    let text = std::fs::read_to_string(cases().join("class-three-six-bar/scene.toml")).unwrap();
+    let bob = r#"[bodies.bob]
+points = { O = [0, 0] }
+mass = 1.0
+center = [0.1, 0]
+inertia = 0.01
+
+[joints]
+hinge = { revolute = ["ground.A", "bob.O"] }
+"#;
+    let swing = r#"[actuators.swing]
+angle = ["ground", "bob"]
+
+[assembly]
+swing = 0.3
+"#;
+    let text = text
+        .replacen("[joints]\n", bob, 1)
+        .replacen("[assembly]\n", swing, 1);
+    let scene = Scene::parse("two.toml", &text).unwrap();
+    let asked = request(1e-9, Precision::Double);
+    let found = export(&scene, ExportTarget::C, &asked).unwrap_err();
+    let found = found.to_string();
+    assert!(
+        found.contains("no export") && found.contains("Newton's method"),
+        "{found}"
+    );
 }
 
 #[test]
