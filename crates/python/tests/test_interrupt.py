@@ -7,7 +7,9 @@ import textwrap
 import time
 
 PROGRAM = """
-    import dwell, sys
+    import dwell, signal
+    # In the background a shell has it ignored.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     m = dwell.Builder("Pendulum")
     m.body("ground", O=(0, 0))
     m.body("bob", O=(0, 0), P=(0.5, 0), mass=2.0, center="P", inertia=0.0)

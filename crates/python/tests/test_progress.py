@@ -2,6 +2,7 @@
 
 import io
 import sys
+import types
 
 import dwell
 import pytest
@@ -25,13 +26,14 @@ def terminal(request, monkeypatch):
     else:
         monkeypatch.setitem(sys.modules, "tqdm.auto", None)
     shown = Terminal()
-    monkeypatch.setattr(sys, "stderr", shown)
+    # pytest itself exchanges sys.stderr before a test begins.
+    monkeypatch.setattr(_progress, "sys", types.SimpleNamespace(stderr=shown, modules=sys.modules))
     monkeypatch.setattr(_progress, "SILENT", 0.0)
     return shown
 
 
 def test_a_sweep_shows_how_far_it_is(terminal):
-    found = dwell.sweep(dwell.Scene.read(FOUR_BAR), SHARES, ["m", "B.magnitude"])
+    found = dwell.sweep(dwell.Scene.read(FOUR_BAR), SHARES, ["m", "B.x.max_abs"])
     assert found.rows == 90000
     lines = [line for line in terminal.getvalue().split("\r") if "%" in line]
     parts = [int(line.split("%")[0].split()[-1]) for line in lines]

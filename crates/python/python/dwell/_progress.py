@@ -27,7 +27,8 @@ class Progress:
         if not self._is_seen or time.monotonic() - self._begin < SILENT:
             return
         if self._bar is None:
-            self._bar = self._tqdm(of) or _Line(self._name)
+            bar = self._tqdm(of)
+            self._bar = _Line(self._name) if bar is None else bar
         self._bar.total, self._bar.n = of or None, done
         self._bar.refresh()
 
