@@ -208,6 +208,11 @@ def plot_mechanism(mechanism: Drawn, q: float | Sequence[float] | None, axes: An
     axes.set_ylabel("y (m)")
     if size == 3:
         axes.set_zlabel("z (m)")
+        axes.xaxis.labelpad = axes.yaxis.labelpad = 10
+        # Of an axis that is short, as many numbers as have room.
+        extents = np.ptp([at for points in bodies.values() for at in points.values()], axis=0)
+        for name, extent in zip("xyz", extents):
+            axes.locator_params(axis=name, nbins=max(1, round(6 * extent / max(extents.max(), 1e-9))))
     axes.set_title(mechanism.scene.title)
     if labels:
         axes.legend(frameon=False, loc="center left", bbox_to_anchor=(1.15 if size == 3 else 1.0, 0.5))
