@@ -67,7 +67,8 @@ fn plain(name: &str) -> String {
 
 /// As [`plain`], with a number behind those that would be like another.
 pub(crate) fn distinct(names: &[&String]) -> Vec<String> {
-    let mut used = HashSet::new();
+    // How many there are is called `…_COUNT`.
+    let mut used = HashSet::from(["COUNT".to_owned()]);
     let mut all = Vec::with_capacity(names.len());
     for name in names {
         let plain = plain(name);
@@ -111,11 +112,13 @@ mod tests {
             "A",
             "a",
             "a_2",
+            "count",
         ];
         let owned: Vec<String> = names.iter().map(|&n| n.to_owned()).collect();
         let found = distinct(&owned.iter().collect::<Vec<_>>());
         let capitals: HashSet<_> = found.iter().map(|n| n.to_ascii_uppercase()).collect();
         assert_eq!(capitals.len(), names.len(), "{found:?}");
+        assert!(!capitals.contains("COUNT"), "{found:?}");
     }
 
     #[test]
