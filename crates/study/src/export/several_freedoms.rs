@@ -42,6 +42,12 @@ pub fn compute_export_of_several_freedoms(
     let machine = describe(scene, &loaded, &model);
     let explain = |error| explain_motion(&loaded, model.plan(), &error);
     let positions = positions(&machine, &model, scene.mechanism.size());
+    if positions.is_empty() {
+        return Err(without_operations(
+            scene,
+            "the mechanism cannot move from its initial position",
+        ));
+    }
     let sampled = |q: &[f64]| functions::<f64>(scene, &model, q);
     let code = recorded(scene, &model, &positions).map_err(|error| match error {
         RecordingError::Evaluation(error) => explain(error),
@@ -139,7 +145,7 @@ fn positions(machine: &SeveralFreedomsDescription, model: &Model, size: f64) -> 
         2.0 * (0.37 + step * k as f64).fract() - 1.0
     };
     let mut pose = model.plan().pose();
-    let around = |k: usize| -> Vec<f64> {
+    let mut around = |k: usize, part: f64| -> Option<Vec<f64>> {
         let coordinates = machine.coordinates.iter().enumerate();
         let one = |(i, c): (usize, &FreeCoordinate)| {
             let width = if c.is_angle {
@@ -147,17 +153,20 @@ fn positions(machine: &SeveralFreedomsDescription, model: &Model, size: f64) -> 
             } else {
                 AROUND[1] * size
             };
-            // The first are near: they must be reached.
-            let width = width * if k < RECORDED { 0.1 } else { 1.0 };
-            c.initial[0] + width * spread(k, i)
+            c.initial[0] + part * width * spread(k, i)
         };
-        coordinates.map(one).collect()
+        let q: Vec<f64> = coordinates.map(one).collect();
+        let is_reached = model.plan().positions(&q, &mut pose).is_ok();
+        is_reached.then_some(q)
     };
-    let all = (0..MEASURED).map(around);
-    all.enumerate()
-        .filter(|(k, q)| *k < RECORDED || model.plan().positions(q, &mut pose).is_ok())
-        .map(|(_, q)| q)
-        .collect()
+    let mut all: Vec<Vec<f64>> = Vec::with_capacity(MEASURED);
+    for k in 0..RECORDED {
+        // Next to a limit position only the nearest are reached.
+        let near = [0.1, 1e-2, 1e-3].into_iter();
+        all.extend(near.filter_map(|part| around(k, part)).take(1));
+    }
+    all.extend((RECORDED..MEASURED).filter_map(|k| around(k, 1.0)));
+    all
 }
 
 /// The functions of motion, reactions and positions, in the order of [`SeveralFreedomsExport::code`].
@@ -213,7 +222,7 @@ fn recorded(
     positions: &[Vec<f64>],
 ) -> Result<[StraightLine; 3], RecordingError<DynamicsError>> {
     let one = |part: usize| {
-        record_at(&positions[..RECORDED], |q| {
+        record_at(&positions[..RECORDED.min(positions.len())], |q| {
             let mut parts = functions::<RecordedNumber>(scene, model, q)?;
             Ok(std::mem::take(&mut parts[part]))
         })
