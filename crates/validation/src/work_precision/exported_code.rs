@@ -11,6 +11,7 @@ use dwell_scene::Scene;
 use dwell_study::{ExportRequest, compute_export};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The exports that are measured: their names, accuracies and numbers; the last two are the model's own operations.
 const EXPORTS: [(&str, f64, Precision, bool); 4] = [
@@ -123,7 +124,9 @@ impl Drop for Scratch {
 type Ran = (Vec<Vec<f64>>, [[f64; 2]; 2]);
 
 fn run(export: &Export, subject: &Subject, compiler: &str) -> Result<Ran, String> {
-    let name = format!("dwell-exported-code-{}", std::process::id());
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let number = COUNT.fetch_add(1, Ordering::Relaxed);
+    let name = format!("dwell-exported-code-{}-{number}", std::process::id());
     let folder = Scratch(std::env::temp_dir().join(name));
     let failed = |what: &str, why: &dyn std::fmt::Display| format!("{what} failed: {why}");
     std::fs::create_dir_all(&folder.0).map_err(|e| failed("writing it", &e))?;
