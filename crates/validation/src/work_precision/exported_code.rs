@@ -62,7 +62,7 @@ pub(super) fn exported_code(
             Ok::<_, String>(ExportedCode {
                 name,
                 coefficients: export.measured.errors.max(),
-                errors: errors.map_err(|e| e.to_string())?,
+                errors: errors.map_err(|e| super::run::reason(&e))?,
                 times: times.map(|pair| pair.map(in_evaluations)),
             })
         };

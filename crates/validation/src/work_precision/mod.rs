@@ -171,7 +171,7 @@ fn fixed_step_result(
     };
     let found = solve();
     found
-        .map_err(|e| omitted.push(format!("fixed step: {e}")))
+        .map_err(|e| omitted.push(format!("fixed step: {}", run::reason(&e))))
         .ok()
 }
 
@@ -205,7 +205,7 @@ fn results(
                 errors,
                 cost: cost(evaluator, &run, evaluation_time),
             }),
-            Err(error) => omitted.push(format!("{}: {error}", combination.name())),
+            Err(error) => omitted.push(format!("{}: {}", combination.name(), run::reason(&error))),
         }
     }
     points

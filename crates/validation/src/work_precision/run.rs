@@ -7,6 +7,7 @@ use dwell_dynamics::{
     DenseOutput, DynamicsError, Method, OdeState, Options, Orbit, ReducedState, Statistics,
     StepControl, integrate,
 };
+use dwell_geometry::PositionError;
 use std::time::Instant;
 
 /// Other evaluators than the exact one may take so many times its steps: their values are not
@@ -68,6 +69,16 @@ pub(super) fn solve(
             statistics: termination.statistics,
             seconds,
         }),
+    }
+}
+
+/// Why a run is left out. A coordinate that is no number is not printed as one.
+pub(super) fn reason(error: &DynamicsError) -> String {
+    match error {
+        DynamicsError::Position(PositionError::NotFinite { .. }) => {
+            "its coordinates grow beyond all numbers".to_owned()
+        }
+        other => other.to_string(),
     }
 }
 
@@ -138,7 +149,7 @@ impl ToleranceSeries {
                     series.omitted.push(too_many_steps());
                     break;
                 }
-                Err(error) => series.omitted.push(format!("{name}: {error}")),
+                Err(error) => series.omitted.push(format!("{name}: {}", reason(&error))),
             }
         }
         series
