@@ -9,6 +9,7 @@ use dwell_kinetostatics::{
     SpeedController,
 };
 use dwell_scene::Scene;
+use dwell_tests::cases::CASES;
 use dwell_tests::fixtures::scene;
 
 /// The machine of a scene, all coordinates free, with more loads and drives.
@@ -48,6 +49,53 @@ pub(crate) fn final_state(
 
 pub(crate) fn parse(text: &str) -> Scene {
     Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e:?}"))
+}
+
+/// What a machine without loads does by its two unit runs alone is what inverse dynamics and its mass matrix say, and so is the
+/// Jacobian.
+#[test]
+fn without_loads_the_unit_runs_are_enough() {
+    let mut largest = [0.0_f64; 2];
+    for case in CASES {
+        let scene = case.scene();
+        let start = scene.assembly.to_configuration();
+        let model = Model::new(&scene.mechanism, &scene.masses, &start, &[]).expect("a model");
+        let q = scene.assembly.coordinates[0];
+        for flywheel in [0.0, 0.04] {
+            let machine = Machine::new(model.clone(), &[], vec![CoordinateMode::Free], &[]);
+            let machine = machine.expect("a machine").with_flywheel(0, flywheel);
+            // With a load that is zero it is evaluated as any other machine.
+            let nothing = Load {
+                name: "nothing".to_owned(),
+                kind: LoadKind::Gravity {
+                    direction: dwell_geometry::vec2(1.0, 0.0),
+                },
+                magnitude: Magnitude::Constant(0.0),
+            };
+            let loaded = Machine::new(model.clone(), &[nothing], vec![CoordinateMode::Free], &[]);
+            let loaded = loaded.expect("a machine").with_flywheel(0, flywheel);
+            for q_dot in [-2.5, 0.0, 1.3] {
+                let y = [q, q_dot];
+                let values = [&machine, &loaded].map(|machine| {
+                    let mut ode = MachineOde::new(machine, 0.0, &y).expect("a start");
+                    let (mut rates, mut jacobian) = ([0.0; 2], [0.0; 4]);
+                    ode.rhs(0.0, &y, &mut rates).expect("rates");
+                    ode.jacobian(0.0, &y, &mut jacobian).expect("a Jacobian");
+                    (rates, jacobian)
+                });
+                let [(one, of_one), (two, of_two)] = values;
+                let relative = |a: &[f64], b: &[f64]| {
+                    let scale = b.iter().fold(1e-300, |scale: f64, b| scale.max(b.abs()));
+                    let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs() / scale);
+                    differences.fold(0.0, f64::max)
+                };
+                largest[0] = largest[0].max(relative(&one, &two));
+                largest[1] = largest[1].max(relative(&of_one, &of_two));
+            }
+        }
+    }
+    println!("{largest:?}");
+    assert!(largest[0] < 1e-14 && largest[1] < 1e-13, "{largest:?}");
 }
 
 /// Andrews' squeezer at 0.03 s against the 25-digit values of an energy quadrature.

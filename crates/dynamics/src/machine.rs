@@ -20,6 +20,7 @@ mod impact;
 mod on_fit;
 mod sliding;
 mod state;
+mod unloaded;
 mod works;
 mod workspace;
 

@@ -105,6 +105,10 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
 
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         interruption::check()?;
+        let (machine, workspace) = (self.machine, &mut self.workspace);
+        if machine.unloaded_derivative(y, workspace, out)? {
+            return Ok(());
+        }
         let state = self.machine.evaluate(t, y, &mut self.workspace)?;
         state.derivative(out);
         Ok(())
@@ -115,7 +119,9 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
         let columns = machine.drive_states().end;
         // Nothing depends on the works, and nothing smoothly on the modes of contacts.
         let rhs = |y: &[Dual], workspace: &mut MachineWorkspace<Dual, M>, out: &mut [Dual]| {
-            machine.evaluate(t, y, workspace)?.derivative(out);
+            if !machine.unloaded_derivative(y, workspace, out)? {
+                machine.evaluate(t, y, workspace)?.derivative(out);
+            }
             Ok(())
         };
         self.dual_workspace.jacobian(columns, y, out, rhs)

@@ -154,6 +154,12 @@ impl<T: Scalar> BodyStates<T> {
         }
     }
 
+    /// Takes over the states of others of the same plan.
+    pub fn copy_from(&mut self, others: &Self) {
+        self.origin = others.origin;
+        self.bodies.clone_from(&others.bodies);
+    }
+
     /// Fills the states from a pose and a motion with accelerations.
     pub fn fill(&mut self, plan: &Plan, pose: &Pose<T>, motion: &Motion<T>) {
         self.fill_velocities(plan, pose, motion);

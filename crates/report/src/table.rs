@@ -89,16 +89,14 @@ pub(crate) fn csv_header(columns: &[Column]) -> Result<String, ReportError> {
 /// Rows as CSV, some lines at a time, made on all cores: most of the time of a large table is that of its digits.
 pub(crate) fn csv_lines(rows: &[Vec<f64>]) -> Vec<String> {
     let lines = |rows: &[Vec<f64>]| {
-        let mut text = String::new();
+        let (mut text, mut digits) = (String::new(), zmij::Buffer::new());
         for row in rows {
             for (k, value) in row.iter().enumerate() {
                 if k > 0 {
                     text.push(',');
                 }
                 if !value.is_nan() {
-                    // `Debug` of a float is its shortest exact form, with an exponent where that is shorter. It is
-                    // written to a string, which never refuses.
-                    let _ = write!(text, "{value:?}");
+                    push_number(&mut text, &mut digits, *value);
                 }
             }
             if matches!(row.as_slice(), [only] if only.is_nan()) {
@@ -112,9 +110,36 @@ pub(crate) fn csv_lines(rows: &[Vec<f64>]) -> Vec<String> {
     rows.par_chunks(ROWS_AT_ONCE).map(lines).collect()
 }
 
+/// Adds the shortest exact form of a number, as `Debug` writes it: with an exponent where that is shorter.
+fn push_number(text: &mut String, digits: &mut zmij::Buffer, value: f64) {
+    // Outside this range the two differ in where an exponent begins.
+    if (1e-4..1e16).contains(&value.abs()) {
+        *text += digits.format_finite(value);
+    } else {
+        // A string never refuses.
+        let _ = write!(text, "{value:?}");
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The digits are those of `Debug`, of numbers of all sizes and of short ones.
+        #[test]
+        fn numbers_are_written_as_debug_writes_them(bits: u64, short in -100_000..100_000_i32, exponent in -8..18_i32) {
+            let (mut text, mut digits) = (String::new(), zmij::Buffer::new());
+            let short = f64::from(short) * 10_f64.powi(exponent);
+            let near = f64::from_bits((bits >> 12) | ((1023 - 20 + (bits % 80)) << 52));
+            for value in [f64::from_bits(bits), short, near, 1e-4, 1e16, 1e15] {
+                text.clear();
+                push_number(&mut text, &mut digits, value);
+                prop_assert_eq!(&text, &format!("{value:?}"));
+            }
+        }
+    }
 
     #[test]
     fn every_bit_comes_back() {

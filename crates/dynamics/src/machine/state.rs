@@ -1,7 +1,7 @@
 //! A machine at one time and state, evaluated.
 
 use super::workspace::EquationWorkspace;
-use super::{Machine, MovingModel, NonconservativeSource};
+use super::{Machine, MachineWorkspace, MovingModel, NonconservativeSource};
 use crate::error::Result;
 use dwell_geometry::body_states::BodyStates;
 use dwell_kinetostatics::{EvaluatedState, ForceState, InverseDynamics, KinematicState, Model};
@@ -120,23 +120,48 @@ impl<T: Scalar> MachineState<'_, T> {
     }
 }
 
+impl<M: MovingModel> Machine<M> {
+    /// [`MachineState::energy`] at time `t` (s) and state `y`, for which no force is computed.
+    ///
+    /// # Errors
+    /// [`DynamicsError`](crate::DynamicsError) where there is no pose.
+    pub fn energy(
+        &self,
+        t: f64,
+        y: &[f64],
+        workspace: &mut MachineWorkspace<f64, M>,
+    ) -> Result<[f64; 2]> {
+        if !self.fit_windows.is_empty() {
+            return Ok(self.evaluate(t, y, workspace)?.energy());
+        }
+        let MachineWorkspace {
+            inner, equation, ..
+        } = workspace;
+        self.set_actuator_motion(t, y, equation);
+        let at = [&equation.q[..], &equation.q_dot[..]];
+        let state = KinematicState::new(&self.model, at, inner)?;
+        Ok(self.energy_of(&state, &equation.q_dot))
+    }
+
+    /// The kinetic and the potential energy of a state at speeds of the coordinates, J.
+    fn energy_of(&self, state: &KinematicState<'_, f64, M>, q_dot: &[f64]) -> [f64; 2] {
+        let rotors = self.drives.iter().map(|drive| {
+            let [_, speed] = state.coordinate(drive.measured);
+            0.5 * drive.reflected_inertia * speed * speed
+        });
+        let wheels = self.free.iter().zip(&self.flywheels);
+        let wheels = wheels.map(|(&i, inertia)| 0.5 * inertia * q_dot[i] * q_dot[i]);
+        let kinetic = state.kinetic_energy() + rotors.sum::<f64>() + wheels.sum::<f64>();
+        let loads = 0..self.model.loads().len();
+        let potentials = loads.filter_map(|load| state.potential_energy(load));
+        [kinetic, potentials.sum()]
+    }
+}
+
 impl<M: MovingModel> MachineState<'_, f64, M> {
     /// The kinetic energy, with that of rotors and flywheels, and the potential of the conservative loads, J.
     pub fn energy(&self) -> [f64; 2] {
-        let machine = self.machine;
-        let rotors = machine.drives.iter().map(|drive| {
-            let [_, speed] = self.coordinate(drive.measured);
-            0.5 * drive.reflected_inertia * speed * speed
-        });
-        let wheels = machine.free.iter().zip(&machine.flywheels);
-        let wheels = wheels.map(|(&i, inertia)| {
-            let speed = self.equation.q_dot[i];
-            0.5 * inertia * speed * speed
-        });
-        let kinetic = self.kinetic_energy() + rotors.sum::<f64>() + wheels.sum::<f64>();
-        let loads = 0..machine.model.loads().len();
-        let potentials = loads.filter_map(|load| self.potential_energy(load));
-        [kinetic, potentials.sum()]
+        self.machine.energy_of(&self.forces, &self.equation.q_dot)
     }
 
     /// The impulses that changes of the free coordinates' speeds take: by actuator, along its coordinate, N·m·s or N·s; by

@@ -7,6 +7,7 @@ use crate::error::{LoadError, PositionResult, Result};
 use crate::friction::{self, FrictionState};
 use crate::load::{AppliedWrench, ForceSource, Friction, Load, LoadKind, Magnitude, Signal};
 use crate::pass::{AtRest, GivenMotion, InverseDynamics, UnitAcceleration};
+use crate::reduced::{Coefficients, ReducibleModel};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Coordinate, Range};
 use dwell_laws::HeldPieces;
@@ -20,6 +21,16 @@ impl MachineModel for Model {
 
     fn pass_workspace<T: Scalar>(&self) -> Workspace<T> {
         self.workspace()
+    }
+
+    fn reduced_inertia<T: Scalar>(
+        &self,
+        q: T,
+        workspace: &mut Workspace<T>,
+    ) -> PositionResult<[T; 2]> {
+        let mut out = Coefficients::default();
+        self.reduce_at(q, workspace, &mut out)?;
+        Ok([out.m, out.half_dm])
     }
 
     fn actuators(&self) -> usize {

@@ -27,6 +27,16 @@ pub trait MachineModel: Debug + Clone + PartialEq + Send + Sync + 'static {
     /// Such memory.
     fn pass_workspace<T: Scalar>(&self) -> Self::Workspace<T>;
 
+    /// m and ½m′ of the only coordinate at `q` (rad or m), by the two unit runs, of a model without reactions.
+    ///
+    /// # Errors
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
+    fn reduced_inertia<T: Scalar>(
+        &self,
+        q: T,
+        workspace: &mut Self::Workspace<T>,
+    ) -> PositionResult<[T; 2]>;
+
     /// Number of actuators.
     fn actuators(&self) -> usize;
 

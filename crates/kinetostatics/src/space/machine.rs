@@ -16,6 +16,7 @@ use crate::error::{KinetostaticsError, LoadError, PositionResult, Result};
 use crate::load::{Friction, Magnitude, Signal};
 use crate::model::{EvaluatedState, KinematicState, MachineModel};
 use crate::pass::InverseDynamics;
+use crate::reduced::{Coefficients, ReducibleModel};
 use dwell_geometry::space::{BodyMotion, Coordinate, CoordinateFunction, Wrench};
 use dwell_geometry::{PositionError, Range};
 use dwell_laws::HeldPieces;
@@ -82,6 +83,16 @@ impl MachineModel for Model {
 
     fn pass_workspace<T: Scalar>(&self) -> Workspace<T> {
         self.workspace()
+    }
+
+    fn reduced_inertia<T: Scalar>(
+        &self,
+        q: T,
+        workspace: &mut Workspace<T>,
+    ) -> PositionResult<[T; 2]> {
+        let mut out = Coefficients::default();
+        self.reduce_at(q, workspace, &mut out)?;
+        Ok([out.m, out.half_dm])
     }
 
     fn actuators(&self) -> usize {

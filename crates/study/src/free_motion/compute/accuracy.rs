@@ -187,6 +187,7 @@ impl ComputedMotion {
             accuracy: Some([accuracy, difference.largest()]),
             inaccuracy: None,
             comparison: None,
+            evaluated: [None, None],
             delay: None,
         }
     }

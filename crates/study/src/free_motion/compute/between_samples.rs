@@ -2,25 +2,38 @@
 
 use crate::free_motion::compute::tables::sliding_at;
 use crate::free_motion::compute::within_steps::{MAX_STEPS, StatesWithinSteps, exact_state};
-use crate::free_motion::compute::{FreeMotionProblem, PlaceInMotion, SegmentedMotion};
+use crate::free_motion::compute::{
+    FreeMotionProblem, MotionSolver, PlaceInMotion, SegmentedMotion,
+};
 use crate::trajectory::compute::TrajectorySample;
-use dwell_dynamics::{Machine, MachineOde, MachineWorkspace, OdeState};
+use dwell_dynamics::{Machine, MachineOde, MachineWorkspace, Method, OdeState};
 use dwell_geometry::body_states::CoordinateFunction;
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::f64::consts::TAU;
 impl FreeMotionProblem<'_> {
-    /// The motion at its steps; none if there are too many of them.
+    /// The motion at its steps, of which so many may be left out between two; none if there are too many of them.
     pub(crate) fn steps_as_samples(
         &self,
         motion: &SegmentedMotion,
+        most_skipped: usize,
     ) -> Option<Vec<(f64, TrajectorySample)>> {
         if motion.steps().count() > MAX_STEPS {
             return None;
         }
         let coordinates = &motion.actuator_coordinates.steps;
-        self.evaluated(motion, |solution| &solution.steps, coordinates)
-            .ok()
+        let mut thinning = Thinning {
+            most_skipped,
+            skipped: 0,
+        };
+        let mut is_kept = |steps: &[OdeState], k: usize| thinning.keeps(steps, k);
+        self.evaluated(
+            motion,
+            |solution| &solution.steps,
+            &mut is_kept,
+            coordinates,
+        )
+        .ok()
     }
 
     /// Whether a time (s) is in a step that begins or ends within the window of a change point's fit.
@@ -44,6 +57,52 @@ impl FreeMotionProblem<'_> {
     }
 }
 
+/// Steps are thinned as if this had been the tolerance: their accuracy is finer than what the search for extrema needs.
+const SEARCH_TOLERANCE: f64 = 1e-6;
+/// Most steps of which one is kept.
+const MOST_STEPS: f64 = 3.0;
+/// Steps whose lengths differ by more than this factor are kept: something begins or ends there.
+const ALIKE: f64 = 2.0;
+
+/// How many steps may be left out between two that are kept, in the search for extrema between rows. What is interpolated over n
+/// steps of a method of order p has n^(p+1) times the error of a step. Steps of DOP853 are long.
+pub(super) fn most_skipped(solver: &MotionSolver) -> usize {
+    let MotionSolver::Settings(settings) = solver else {
+        return 0;
+    };
+    let order = match settings.method {
+        Method::Bdf | Method::Tsit45 => 5,
+        Method::Esdirk34 => 3,
+        Method::TrBdf2 => 2,
+        Method::Dop853 => return 0,
+    };
+    let steps = (SEARCH_TOLERANCE / settings.rtol).powf(1.0 / f64::from(order + 1));
+    steps.clamp(1.0, MOST_STEPS) as usize - 1
+}
+
+/// Steps of which at most so many are left out between two, where their lengths are alike.
+struct Thinning {
+    most_skipped: usize,
+    /// Those that have been left out since the last one.
+    skipped: usize,
+}
+
+impl Thinning {
+    /// Whether the `k`th step is kept, after those before it.
+    fn keeps(&mut self, steps: &[OdeState], k: usize) -> bool {
+        let around = k.checked_sub(1).and_then(|before| steps.get(before..k + 2));
+        let is_alike = around.is_some_and(|around| {
+            let [before, after] = [around[1].t - around[0].t, around[2].t - around[1].t];
+            before < ALIKE * after && after < ALIKE * before
+        });
+        self.skipped = match is_alike && self.skipped < self.most_skipped {
+            true => self.skipped + 1,
+            false => 0,
+        };
+        self.skipped == 0
+    }
+}
+
 /// A motion at any of its times, with the working memory to compute it, by chart.
 pub(crate) struct MotionSampler<'m> {
     problem: &'m FreeMotionProblem<'m>,
@@ -59,6 +118,10 @@ impl<'m> MotionSampler<'m> {
     pub(crate) fn sample_at(&mut self, t: f64) -> Option<TrajectorySample> {
         let place = self.motion.place_of(t)?;
         let key = (place.segment, place.step);
+        let resolved = self.within_steps.resolved(&key, t);
+        if let Some(point) = resolved.filter(|_| self.motion.orbit.is_none()) {
+            return self.sample_of(&place, &point);
+        }
         let before = self.within_steps.before(&key, t);
         let before = before.unwrap_or_else(|| place.steps()[place.step].clone());
         let point = match (before.t == t, &self.motion.orbit) {

@@ -144,7 +144,7 @@ impl FreeMotionProblem<'_> {
         errors
     }
 
-    pub(crate) fn summary(
+    pub(super) fn summary(
         &self,
         computed: &ComputedMotion,
         duration: f64,
@@ -253,8 +253,7 @@ impl FreeMotionProblem<'_> {
             let machine = self.machine(motion, chart);
             workspaces.resize_with(workspaces.len().max(chart + 1), || None);
             let workspace = workspaces[chart].get_or_insert_with(|| machine.workspace());
-            let state = machine.evaluate(point.t, &point.y, workspace).ok()?;
-            let [kinetic, potential] = state.energy();
+            let [kinetic, potential] = machine.energy(point.t, &point.y, workspace).ok()?;
             let works = &point.y[machine.work_offset()..];
             Some(Energies {
                 t: point.t,

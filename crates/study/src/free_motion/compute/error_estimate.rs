@@ -25,6 +25,8 @@ pub(crate) struct ErrorEstimate {
     pub(crate) inaccuracy: Option<String>,
     /// The second run.
     pub(crate) second: Option<SegmentedMotion>,
+    /// The samples of the motion and of the second run, evaluated.
+    pub(crate) samples: [Option<Vec<TrajectorySample>>; 2],
 }
 
 /// A sample of each of two runs at the same time.
@@ -53,14 +55,14 @@ impl FreeMotionProblem<'_> {
             format!("the same tolerance by {}", finer.method.name())
         };
         // The last samples may be missing if an event ends one of the runs earlier.
-        let others = others.unwrap_or_default();
-        let pairs: Vec<SamplePair<'_>> = pair_by_time(&samples, &others);
+        let pairs: Vec<SamplePair<'_>> = pair_by_time(&samples, others.as_deref().unwrap_or(&[]));
         let Some((last, _)) = pairs.last() else {
             let text = format!("  no error estimate: a second run, at {refinement}, fails\n");
             let inaccuracy = "its error cannot be estimated: a second run fails".to_owned();
             return Ok(ErrorEstimate {
                 text,
                 inaccuracy: Some(inaccuracy),
+                samples: [Some(samples), None],
                 ..ErrorEstimate::default()
             });
         };
@@ -88,6 +90,7 @@ impl FreeMotionProblem<'_> {
             record,
             inaccuracy: large.or(ends),
             second,
+            samples: [Some(samples), others],
         })
     }
 

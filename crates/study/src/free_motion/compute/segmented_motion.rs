@@ -1,5 +1,6 @@
 //! A free motion as a sequence of segments.
 
+use crate::trajectory::compute::TrajectorySample;
 use dwell_dynamics::atlas::{Chart, CoordinateHistory};
 use dwell_dynamics::{DynamicsError, EventOccurrence, OdeState, Orbit, Solution, Statistics};
 use dwell_findings::Record;
@@ -19,6 +20,8 @@ pub(crate) struct ComputedMotion {
     pub(crate) inaccuracy: Option<String>,
     /// A second computation, whose difference shows the errors.
     pub(crate) comparison: Option<SegmentedMotion>,
+    /// The samples of the motion and of the second computation, where they have been evaluated already.
+    pub(crate) evaluated: [Option<Vec<TrajectorySample>>; 2],
     /// The relative error of all times, where the second computation is the same motion delayed.
     pub(crate) delay: Option<f64>,
 }

@@ -4,12 +4,14 @@ use crate::estimate;
 use crate::explain::{
     StepLimits, StudyError, explain_max_steps, missing_section_label, scene_error,
 };
+use crate::free_motion::compute::between_samples::most_skipped;
 use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
 use crate::models::{SolverSettings, with_drive_loads};
 use crate::number_format::digits;
-use crate::progress::{Progress, no_progress};
+use crate::progress::Progress;
 use crate::trajectory::compute::{
-    ComputedTrajectory, MotionBetweenRows, SamplePrecision, Sampler, Trajectory, compute_along,
+    ComputedTrajectory, MotionBetweenRows, SamplePrecision, Sampler, SecondRows, Trajectory,
+    TrajectorySample, compute_along,
 };
 use dwell_dynamics::{DynamicsError, EventOccurrence, Options};
 use dwell_findings::{Record, Table};
@@ -53,8 +55,13 @@ pub struct FreeMotion {
     pub record: Record,
 }
 
-/// A motion at its rows, and what is known between them.
-type Followed<'s> = (Trajectory<'static>, Option<MotionBetweenRows<'s>>);
+/// What has been evaluated of a motion before its rows.
+struct KnownMotion<'s> {
+    /// The motion at its rows, and what is known between them.
+    followed: (Trajectory<'static>, Option<MotionBetweenRows<'s>>),
+    /// The samples of the second computation.
+    others: Option<Vec<TrajectorySample>>,
+}
 
 /// The free motion of a scene.
 ///
@@ -88,7 +95,8 @@ pub(crate) fn compute_free_motion_at(
     let problem = FreeMotionProblem::new(scene, &loaded_scene, spec)?;
     let duration = problem.duration()?;
     times.map_or(Ok(()), |times| check_times(times, duration))?;
-    let integrated = problem.integrate(scene, solver, duration)?;
+    let mut integrated = problem.integrate(scene, solver, duration)?;
+    let [evaluated, others] = std::mem::take(&mut integrated.evaluated);
     let motion = &integrated.motion;
     // Where branches are too close at the start, the scene is a valid one.
     let is_refused = |error: &&DynamicsError| !matches!(error, DynamicsError::NearBranches { .. });
@@ -97,8 +105,8 @@ pub(crate) fn compute_free_motion_at(
         return Err(problem.explain(error));
     }
     let (trajectory, steps) = rayon::join(
-        || problem.trajectory(motion, &integrated.method_text, times),
-        || problem.steps_as_samples(motion),
+        || problem.trajectory(motion, evaluated, &integrated.method_text, times),
+        || problem.steps_as_samples(motion, most_skipped(solver)),
     );
     let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
     let sampler = || -> Sampler<'_> {
@@ -112,8 +120,11 @@ pub(crate) fn compute_free_motion_at(
         further,
         sampler: &sampler,
     });
-    let followed = (trajectory, between);
-    let rows = problem.rows_and_summary(&integrated, (followed, times), duration, progress);
+    let known = KnownMotion {
+        followed: (trajectory, between),
+        others,
+    };
+    let rows = problem.rows_and_summary(&integrated, (known, times), duration, progress);
     let (mut computed, (mut summary, mut record)) = rows?;
     let shortfall = problem.shortfall(scene, &integrated, solver);
     computed.early_stop = shortfall.or(computed.early_stop);
@@ -267,6 +278,7 @@ impl FreeMotionProblem<'_> {
             accuracy: None,
             inaccuracy: unstable.or(estimate.inaccuracy),
             comparison: estimate.second,
+            evaluated: estimate.samples,
             delay: None,
             motion,
         })
@@ -276,15 +288,16 @@ impl FreeMotionProblem<'_> {
     fn rows_and_summary(
         &self,
         integrated: &ComputedMotion,
-        (followed, times): (Followed<'_>, Option<&[f64]>),
+        (known, times): (KnownMotion<'_>, Option<&[f64]>),
         duration: f64,
         progress: Progress<'_>,
     ) -> Result<(ComputedTrajectory<'static>, (String, Record)), StudyError> {
         let mut beside = None;
+        let KnownMotion { followed, others } = known;
         let computed = rayon::in_place_scope(|scope| {
             // On another core: the rows of the second computation, and the summary.
             scope.spawn(|_| {
-                let second = self.comparison_rows(integrated, times);
+                let second = self.second_rows(integrated, others, times);
                 let mut record = Record::default();
                 let text = self.summary(integrated, duration, &mut record);
                 beside = Some((second, (text, record)));
@@ -299,16 +312,15 @@ impl FreeMotionProblem<'_> {
     }
 
     /// The rows of a motion's second computation, at the same times; none where it has none.
-    fn comparison_rows(
+    fn second_rows(
         &self,
         integrated: &ComputedMotion,
+        evaluated: Option<Vec<TrajectorySample>>,
         times: Option<&[f64]>,
-    ) -> Option<ComputedTrajectory<'static>> {
+    ) -> Option<SecondRows> {
         let second = integrated.comparison.as_ref()?;
-        let second = self.trajectory(second, &integrated.method_text, times);
-        let (scene, model) = (self.loaded_scene, &self.output_model);
-        let followed = (second.ok()?, None);
-        compute_along(scene, model, followed, String::new(), &no_progress).ok()
+        let second = self.trajectory(second, evaluated, &integrated.method_text, times);
+        SecondRows::in_plane(self.loaded_scene, &self.output_model, &second.ok()?)
     }
 
     /// Why a motion is not what was required: it ended early, or is less accurate.

@@ -12,19 +12,22 @@ use dwell_findings::{Column, Table};
 use dwell_geometry::body_states::CoordinateFunction;
 
 impl FreeMotionProblem<'_> {
-    /// A computed motion as a trajectory, with its samples or else with wanted times (s) as rows.
+    /// A computed motion as a trajectory, with its samples, which may have been `evaluated` already, or else with wanted times
+    /// (s) as rows.
     pub(crate) fn trajectory(
         &self,
         motion: &SegmentedMotion,
+        evaluated: Option<Vec<TrajectorySample>>,
         method_text: &str,
         times: Option<&[f64]>,
     ) -> Result<Trajectory<'static>, DynamicsError> {
         let end = motion.end_time();
         let charts = motion.charts.iter();
         let motion = FreeTrajectory {
-            samples: match times {
-                None => self.samples(motion)?,
-                Some(times) => self.samples_at(motion, times)?,
+            samples: match (times, evaluated) {
+                (None, Some(samples)) => samples,
+                (None, None) => self.samples(motion)?,
+                (Some(times), _) => self.samples_at(motion, times)?,
             },
             extra_columns: extra_columns(self.loaded_scene, &self.machine),
             prescribed: self.spec.laws.iter().map(Option::is_some).collect(),
@@ -43,7 +46,12 @@ impl FreeMotionProblem<'_> {
         motion: &SegmentedMotion,
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let coordinates = &motion.actuator_coordinates.samples;
-        let evaluated = self.evaluated(motion, |solution| &solution.samples, coordinates)?;
+        let evaluated = self.evaluated(
+            motion,
+            |solution| &solution.samples,
+            &mut |_, _| true,
+            coordinates,
+        )?;
         let mut samples: Vec<_> = evaluated.into_iter().map(|(_, sample)| sample).collect();
         let mut initial_balance: Option<f64> = None;
         for sample in &mut samples {
@@ -57,20 +65,22 @@ impl FreeMotionProblem<'_> {
         Ok(samples)
     }
 
-    /// The states of a motion that are picked, each with its time, s, evaluated: without those within the window of a change
-    /// point's fit. `coordinates` are those of the actuator, by segment.
+    /// Those of a motion's picked states that are kept, each with its time, s, evaluated: without those within the window of a
+    /// change point's fit. `coordinates` are those of the actuator, by segment.
     pub(super) fn evaluated(
         &self,
         motion: &SegmentedMotion,
         picked: fn(&Solution) -> &[OdeState],
+        is_kept: &mut dyn FnMut(&[OdeState], usize) -> bool,
         coordinates: &[Vec<[f64; 3]>],
     ) -> Result<Vec<(f64, TrajectorySample)>, DynamicsError> {
         let mut all = Vec::new();
         for (segment, (chart, solution)) in motion.segments.iter().enumerate() {
             let machine = self.machine(motion, *chart);
             let mut workspace = machine.workspace();
-            for (k, point) in picked(solution).iter().enumerate() {
-                if machine.is_in_fit_window(&point.y) {
+            let points = picked(solution);
+            for (k, point) in points.iter().enumerate() {
+                if !is_kept(points, k) || machine.is_in_fit_window(&point.y) {
                     continue;
                 }
                 let sliding = sliding_at(solution, point.t);
@@ -142,9 +152,11 @@ impl FreeMotionProblem<'_> {
         extra_values.extend(works);
         extra_values.push(kinetic + potential - works.iter().sum::<f64>());
         extra_values.extend(&point.y[machine.drive_states()]);
-        let mut rates = vec![0.0; machine.state_count()];
-        state.derivative(&mut rates);
-        extra_values.extend(self.motor_values(machine, &state, (&point.y, &rates)));
+        if machine.drives() > 0 {
+            let mut rates = vec![0.0; machine.state_count()];
+            state.derivative(&mut rates);
+            extra_values.extend(self.motor_values(machine, &state, (&point.y, &rates)));
+        }
         let (drives, magnitudes) = (loads - machine.drives()..loads, state.magnitudes());
         let given = drives.chain(machine.contact_loads());
         let mut sample = TrajectorySample {
@@ -170,7 +182,7 @@ impl FreeMotionProblem<'_> {
     }
 
     /// Where the error of the energy balance is among [`TrajectorySample::extra_values`].
-    fn balance_index(&self) -> usize {
+    pub(crate) fn balance_index(&self) -> usize {
         2 + self.machine.nonconservative_sources().len()
     }
 

@@ -18,6 +18,8 @@ pub(crate) const MAX_STEPS: usize = 50_000;
 const NODES: usize = 8;
 /// Numbers that the polynomials of all steps may have, 32 MB; then they are forgotten.
 const MAX_STORED: usize = 1 << 22;
+/// A coefficient of this part of the largest value is rounding.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Method, tolerance and highest number of steps from the beginning of a step to a time within it; the second where a
 /// stiff motion needs too many of the first.
 const METHODS: [(Method, f64, usize); 2] =
@@ -46,6 +48,13 @@ impl<K: Ord> StatesWithinSteps<K> {
         let parts = self.interpolated.get(key)?.iter();
         let part = parts.rev().find(|part| part.start.t <= t);
         part.map(|part| part.start.clone())
+    }
+
+    /// The state at a time (s) by interpolation, where that is exact but for rounding.
+    pub(crate) fn resolved(&self, key: &K, t: f64) -> Option<OdeState> {
+        let mut parts = self.interpolated.get(key)?.iter();
+        let part = parts.find(|part| part.start.t <= t && t <= part.end)?;
+        part.is_resolved.then(|| OdeState { t, y: part.at(t) })
     }
 
     /// The state at a time (s) between two states of a step, but for the error of interpolation.
@@ -113,6 +122,8 @@ struct Polynomials {
     end: f64,
     /// The points, s, each with the states there.
     nodes: Vec<(f64, Vec<f64>)>,
+    /// Whether the last coefficients of the polynomials are rounding.
+    is_resolved: bool,
 }
 
 /// The motion from a state until a time (s), integrated once more.
@@ -130,15 +141,35 @@ fn polynomials_of<M: MovingModel>(
             let mut y = now.y.clone();
             dense(t, &mut y).map(|()| (t, y))
         };
+        let nodes = (0..NODES).map(&mut node).collect::<Result<Vec<_>, _>>()?;
         parts.push(Polynomials {
             start: before.clone(),
             end: now.t,
-            nodes: (0..NODES).map(&mut node).collect::<Result<_, _>>()?,
+            is_resolved: is_resolved(&nodes),
+            nodes,
         });
         Ok(StepControl::Continue)
     };
     state_after(ode, before, end, options, &mut observer)?;
     Some(parts)
+}
+
+/// Whether each state's polynomial through values at Chebyshev points ends in two coefficients that are rounding: the next ones
+/// would be smaller yet.
+fn is_resolved(nodes: &[(f64, Vec<f64>)]) -> bool {
+    let states = nodes.first().map_or(0, |(_, y)| y.len());
+    let coefficient = |state: usize, degree: usize| {
+        let terms = nodes.iter().enumerate().map(|(k, (_, y))| {
+            let angle = PI * (k as f64 + 0.5) / nodes.len() as f64;
+            y[state] * (degree as f64 * angle).cos()
+        });
+        2.0 / nodes.len() as f64 * terms.sum::<f64>().abs()
+    };
+    (0..states).all(|state| {
+        let largest = nodes.iter().map(|(_, y)| y[state].abs());
+        let rounding = ROUNDING * largest.fold(0.0, f64::max);
+        (nodes.len() - 2..nodes.len()).all(|degree| coefficient(state, degree) <= rounding)
+    })
 }
 
 impl Polynomials {

@@ -22,7 +22,7 @@ use crate::free_motion::compute::{MotionSolver, check_times};
 use crate::progress::{Progress, no_progress};
 use crate::trajectory::compute::{
     Analysis, ComputedTrajectory, FreeTrajectory, MotionBetweenRows, Quantity, RowStorage, Sampler,
-    Trajectory, TrajectoryResults, TrajectorySample,
+    SecondRows, Trajectory, TrajectoryResults, TrajectorySample,
 };
 use dwell_dynamics::Orbit;
 use dwell_findings::RecordedEvent;
@@ -142,7 +142,8 @@ impl SpaceMotionProblem<'_> {
         let second = run.second.as_ref().filter(|_| times.is_none());
         let second = second.and_then(|second| self.samples(second).ok());
         let second = second.and_then(|samples| self.rows(&run, samples, None, &no_progress).ok());
-        computed.set_errors(second.as_ref().map(|(computed, _)| computed));
+        let second = second.map(|(computed, _)| SecondRows::of(computed));
+        computed.set_errors(second.as_ref());
         let shortfall = self.shortfall(&run, solver);
         computed.early_stop = shortfall.or(computed.early_stop);
         Ok((run, computed, evaluator))

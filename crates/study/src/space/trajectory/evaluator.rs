@@ -71,6 +71,9 @@ impl<'a> SpaceEvaluator<'a> {
 }
 
 impl RowEvaluator for SpaceEvaluator<'_> {
+    // Little of it could be left out.
+    fn limit_to(&mut self, _: impl Iterator<Item = Quantity>) {}
+
     fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
         let rest = vec![0.0; sample.q.len()];
         let at = match self.analysis {

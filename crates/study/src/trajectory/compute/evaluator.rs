@@ -22,6 +22,8 @@ pub(crate) struct ForceEvaluator<'a> {
     workspace: Workspace<f64>,
     pub(crate) results: InverseDynamics<f64>,
     pose: Pose<f64>,
+    /// Whether something is computed from the pose that the forces do not need.
+    keeps_poses: bool,
     motion_buffer: Motion<f64>,
     /// The bodies at the velocities of the trajectory, whatever the analysis.
     body_states: BodyStates,
@@ -36,6 +38,7 @@ impl<'a> ForceEvaluator<'a> {
             workspace: model.workspace(),
             results: model.result_buffer(),
             pose: model.plan().pose(),
+            keeps_poses: false,
             motion_buffer: model.plan().motion(),
             body_states: BodyStates::new(model.plan()),
             monitor: TrajectoryMonitor::new(scene),
@@ -64,17 +67,25 @@ impl<'a> ForceEvaluator<'a> {
                 state.evaluate(q_ddot, results)?
             }
         };
-        self.pose.clone_from(state.pose());
+        if self.analysis == Analysis::Statics || self.keeps_poses {
+            self.pose.clone_from(state.pose());
+        }
+        if self.analysis != Analysis::Statics {
+            self.body_states.copy_from(state.bodies());
+        }
         self.monitor.check_tables(t, state.bodies())?;
         Ok(Some(state))
     }
 
-    /// Computes the states of the bodies at the velocities of the sample; fails where a coupling jumps.
+    /// Computes the states of the bodies at the velocities of the sample, unless the forces were evaluated at them; fails where a
+    /// coupling jumps.
     pub(crate) fn fill_states(&mut self, sample: &TrajectorySample) -> Result<(), StopCause> {
-        let (plan, pose) = (self.model.plan(), &self.pose);
-        plan.velocities(pose, &sample.q_dot, &mut self.motion_buffer);
-        plan.accelerations(pose, &sample.q_ddot, &mut self.motion_buffer);
-        self.body_states.fill(plan, pose, &self.motion_buffer);
+        if matches!(self.analysis, Analysis::Statics | Analysis::Kinematics) {
+            let (plan, pose) = (self.model.plan(), &self.pose);
+            plan.velocities(pose, &sample.q_dot, &mut self.motion_buffer);
+            plan.accelerations(pose, &sample.q_ddot, &mut self.motion_buffer);
+            self.body_states.fill(plan, pose, &self.motion_buffer);
+        }
         self.monitor.check_couplings(&self.body_states)
     }
 }
@@ -176,6 +187,23 @@ fn is_quotient(column: &Column) -> bool {
     )
 }
 
+/// Whether a quantity is computed from the forces on all bodies, beyond actuator forces and reactions.
+fn needs_forces_on_bodies(quantity: Quantity) -> bool {
+    use Quantity::{
+        BodyFrameForce, ForceDirection, ForceMagnitude, LoadForce, LoadPower, Power, ShakingForce,
+    };
+    matches!(
+        quantity,
+        BodyFrameForce(..)
+            | ForceMagnitude(_)
+            | ForceDirection(_)
+            | ShakingForce(_)
+            | Power(_)
+            | LoadForce(_)
+            | LoadPower(_)
+    )
+}
+
 /// Evaluates all quantities at one position after another.
 #[derive(Clone)]
 pub(crate) struct PositionEvaluator<'a> {
@@ -186,6 +214,8 @@ pub(crate) struct PositionEvaluator<'a> {
     whole_mechanism: Option<(&'a Plan, Pose<f64>)>,
     /// Whether a requested quantity is a quotient of velocities.
     has_quotients: bool,
+    /// Whether the forces on all bodies are computed.
+    has_forces_on_bodies: bool,
     /// The bodies at q̇ = 1 of a single actuator.
     unit_speed_states: BodyStates,
     /// Size of the mechanism, m; and the scales at q̇ = 1 of a single actuator, and along the trajectory.
@@ -203,12 +233,16 @@ impl<'a> PositionEvaluator<'a> {
     ) -> Result<Self, StudyError> {
         let is_pruned = model.plan().pruned_groups().contains(&true);
         let checks_whole = is_pruned && whole_plan.actuators() > 1;
+        let has_quotients = columns.iter().any(is_quotient);
+        let mut forces = ForceEvaluator::new(scene, model, analysis);
+        forces.keeps_poses = has_quotients;
         Ok(Self {
             position: PositionForces::new(scene, model)?,
             scene,
-            forces: ForceEvaluator::new(scene, model, analysis),
+            forces,
+            has_forces_on_bodies: true,
             whole_mechanism: checks_whole.then(|| (whole_plan, whole_plan.pose())),
-            has_quotients: columns.iter().any(is_quotient),
+            has_quotients,
             size: scene.mechanism.size(),
             speed_scales: [SpeedScale::default(); 2],
             unit_speed_states: BodyStates::new(model.plan()),
@@ -261,11 +295,16 @@ impl<'a> PositionEvaluator<'a> {
 }
 
 impl RowEvaluator for PositionEvaluator<'_> {
+    fn limit_to(&mut self, mut quantities: impl Iterator<Item = Quantity>) {
+        self.has_forces_on_bodies = quantities.any(needs_forces_on_bodies);
+    }
+
     fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
         if let Some((whole_plan, pose)) = &mut self.whole_mechanism {
             whole_plan.positions(&sample.q, pose)?;
         }
-        if let Some(state) = self.forces.evaluate(sample, t)? {
+        let state = self.forces.evaluate(sample, t)?;
+        if let Some(state) = state.filter(|_| self.has_forces_on_bodies) {
             self.position.compute(&state);
         }
         let forces = &mut self.forces;

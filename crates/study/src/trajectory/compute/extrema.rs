@@ -221,6 +221,7 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
         let part = positions.len().div_ceil(rayon::current_num_threads());
         let parts = positions.par_chunks(part.max(1)).map(|positions| {
             let mut evaluators = evaluators.to_vec();
+            limit(&mut evaluators, (all, columns));
             let mut value = |(u, sample): &(f64, TrajectorySample)| {
                 let values = evaluate(trajectory, &mut evaluators, (all, columns), sample);
                 Some((*u, values?))
@@ -299,6 +300,7 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         sign: f64,
         (points, refined): (&[Point], usize),
     ) -> Option<Extremum> {
+        limit(&mut self.evaluators, (self.columns, &[k, self.abscissa]));
         let points: Vec<Point> = points.iter().map(|[u, v]| [*u, sign * v]).collect();
         let values = points.iter().filter(|point| !point[1].is_nan());
         let largest = *values.reduce(|a, b| if b[1] > a[1] { b } else { a })?;
@@ -337,6 +339,13 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
             value: sign * value,
             at,
         })
+    }
+}
+
+/// Only some of all columns are evaluated.
+fn limit(evaluators: &mut [impl RowEvaluator], (all, columns): (&[Column], &[usize])) {
+    for evaluator in evaluators {
+        evaluator.limit_to(columns.iter().map(|&k| all[k].quantity));
     }
 }
 

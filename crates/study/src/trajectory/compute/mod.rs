@@ -17,6 +17,7 @@ mod requested_columns;
 mod results;
 mod rounding_error;
 mod row_evaluator;
+mod second_rows;
 mod sectioned_link;
 mod selection;
 mod trajectory;
@@ -48,6 +49,7 @@ pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
 pub(crate) use results::{MotionBetweenRows, compute_along};
 pub(crate) use rounding_error::RoundingError;
 pub(crate) use row_evaluator::RowEvaluator;
+pub(crate) use second_rows::SecondRows;
 pub use sectioned_link::SectionedLink;
 pub(crate) use selection::{
     check_variables, prune_model, reject_unknown_variables, requested_bodies,

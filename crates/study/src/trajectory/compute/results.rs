@@ -2,7 +2,7 @@
 
 use crate::bodies::BodyPose;
 use crate::branch_note::branch_note;
-use crate::estimate::{self, error_scale, relative};
+use crate::estimate::{error_scale, relative};
 use crate::explain::StudyError;
 use crate::models::loaded_model;
 use crate::progress::{Progress, Step};
@@ -61,7 +61,7 @@ pub struct TrajectoryResults {
 }
 
 impl TrajectoryResults {
-    fn new(scene: &Scene, model: &Model, all: Vec<Column>, analysis: Analysis) -> Self {
+    pub(super) fn new(scene: &Scene, model: &Model, all: Vec<Column>, analysis: Analysis) -> Self {
         let requested = RequestedColumns::new(scene, model.reactions(), analysis);
         let is_kept = |c: &&Column| requested.are_with(c) || requested.draw(c);
         let columns: Vec<Column> = all.iter().filter(is_kept).cloned().collect();
@@ -199,16 +199,7 @@ impl TrajectoryResults {
         sample: &TrajectorySample,
         (poses, power_terms): (Vec<BodyPose>, [f64; 2]),
     ) {
-        let value = |(column, last): (&Column, &mut Option<[f64; 3]>)| {
-            let value = evaluator.value(column.quantity, sample);
-            if !column.unwraps() {
-                return value;
-            }
-            let speed = evaluator.angular_velocity(column.quantity);
-            unwrap_angle(last, value, speed, sample.t)
-        };
-        let columns = self.columns.iter().zip(&mut self.last_angles);
-        let row: Vec<f64> = columns.map(value).collect();
+        let row = self.next_row(evaluator, sample);
         self.references
             .add_row(&row, &|quantity| evaluator.value(quantity, sample));
         let kept = match &mut self.long_rows {
@@ -220,6 +211,24 @@ impl TrajectoryResults {
             self.body_poses.push(poses);
         }
         self.power_terms.push(power_terms);
+    }
+
+    /// The row of the position that was evaluated last.
+    pub(super) fn next_row(
+        &mut self,
+        evaluator: &impl RowEvaluator,
+        sample: &TrajectorySample,
+    ) -> Vec<f64> {
+        let value = |(column, last): (&Column, &mut Option<[f64; 3]>)| {
+            let value = evaluator.value(column.quantity, sample);
+            if !column.unwraps() {
+                return value;
+            }
+            let speed = evaluator.angular_velocity(column.quantity);
+            unwrap_angle(last, value, speed, sample.t)
+        };
+        let columns = self.columns.iter().zip(&mut self.last_angles);
+        columns.map(value).collect()
     }
 }
 
@@ -234,7 +243,11 @@ fn unwrap_angle(last: &mut Option<[f64; 3]>, value: f64, speed: f64, t: f64) -> 
 }
 
 /// All columns of an analysis along a trajectory, of the bodies that `model` places.
-fn computed_columns(scene: &Scene, model: &Model, trajectory: &Trajectory<'_>) -> Vec<Column> {
+pub(super) fn computed_columns(
+    scene: &Scene,
+    model: &Model,
+    trajectory: &Trajectory<'_>,
+) -> Vec<Column> {
     let modelled = model.plan().placed_bodies();
     let is_modelled = |column: &Column| {
         let bodies = column.quantity.bodies(scene, model.reactions());
@@ -341,38 +354,6 @@ pub struct ComputedTrajectory<'a> {
     pub early_stop: Option<StudyError>,
     /// A line for each requested column that is called by a former name.
     pub notes: String,
-}
-
-impl ComputedTrajectory<'_> {
-    /// Sets the errors of a motion's columns from their differences in another computation at the same times; where there
-    /// is none, or a column never has values in both, nothing is known.
-    pub(crate) fn set_errors(&mut self, other: Option<&ComputedTrajectory<'_>>) {
-        let Some(other) = other else { return };
-        let [own, others] = [&self.trajectory, &other.trajectory].map(|trajectory| {
-            let motion = trajectory.free_motion();
-            motion.map_or(&[][..], |motion| &motion.samples)
-        });
-        let (rows, other_rows) = (&self.results.rows, &other.results.rows);
-        let mut others = others.iter().zip(other_rows).peekable();
-        let mut pairs: Vec<(&Vec<f64>, &Vec<f64>)> = Vec::new();
-        for (sample, row) in own.iter().zip(rows) {
-            while others.next_if(|(other, _)| other.t < sample.t).is_some() {}
-            if let Some((_, other)) = others.next_if(|(other, _)| other.t == sample.t) {
-                pairs.push((row, other));
-            }
-        }
-        let error = |k: usize| {
-            let values = pairs.iter().map(|(a, b)| (a[k], b[k]));
-            // Next to a change point a reaction may be undefined.
-            let known = values.filter(|(a, b)| a.is_finite() && b.is_finite());
-            let (one, two): (Vec<f64>, Vec<f64>) = known.unzip();
-            match one.is_empty() {
-                true => f64::INFINITY,
-                false => estimate::over_motion(&one, &two, 0.0),
-            }
-        };
-        self.results.errors = (0..self.results.columns.len()).map(error).collect();
-    }
 }
 
 /// Analyses a scene along its prescribed motion, its sweep, or the range of its only actuator, at `points` positions

@@ -4,6 +4,9 @@ use crate::trajectory::compute::{Quantity, StopCause, TrajectorySample};
 
 /// Evaluates all quantities at one position after another.
 pub(crate) trait RowEvaluator: Clone + Send + Sync {
+    /// From now on only some quantities are asked for: what they do not need may be left out.
+    fn limit_to(&mut self, quantities: impl Iterator<Item = Quantity>);
+
     /// Evaluates the position of a sample, with the loads at time `t`.
     fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause>;
 

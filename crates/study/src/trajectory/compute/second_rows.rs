@@ -1,0 +1,94 @@
+//! The rows of a second computation of a motion, from which the errors of its columns are estimated.
+
+use crate::estimate;
+use crate::trajectory::compute::results::computed_columns;
+use crate::trajectory::compute::{
+    ComputedTrajectory, PositionEvaluator, RowEvaluator, Trajectory, TrajectoryResults, prune_model,
+};
+use dwell_kinetostatics::Model;
+use dwell_scene::Scene;
+
+/// The rows of a second computation, and the time of each, s.
+pub(crate) struct SecondRows {
+    times: Vec<f64>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl SecondRows {
+    /// Along a motion of a scene in the plane, up to where it can be evaluated; nothing else than its rows is computed. None where
+    /// a column cannot be evaluated.
+    pub(crate) fn in_plane(
+        scene: &Scene,
+        full_model: &Model,
+        trajectory: &Trajectory<'_>,
+    ) -> Option<Self> {
+        let (plan, analysis) = (full_model.plan(), trajectory.analysis);
+        let model = &prune_model(scene, full_model);
+        let charts = match trajectory.charts() {
+            [] => std::slice::from_ref(model),
+            charts => charts,
+        };
+        let columns = computed_columns(scene, model, trajectory);
+        let mut results = TrajectoryResults::new(scene, model, columns, analysis);
+        let evaluators = charts.iter().map(|chart| {
+            let columns = &results.columns;
+            let mut evaluator = PositionEvaluator::new(scene, plan, chart, analysis, columns)?;
+            evaluator.limit_to(columns.iter().map(|column| column.quantity));
+            Ok::<_, crate::explain::StudyError>(evaluator)
+        });
+        let mut evaluators = evaluators.collect::<Result<Vec<_>, _>>().ok()?;
+        let mut rows = Vec::new();
+        // Where it ends early the errors of the other rows are known.
+        let _ = trajectory.follow(plan, |_, sample| {
+            let evaluator = &mut evaluators[sample.chart];
+            evaluator.evaluate(sample, trajectory.load_time(sample))?;
+            rows.push(results.next_row(evaluator, sample));
+            Ok(())
+        });
+        let times = times_of(trajectory);
+        Some(Self { times, rows })
+    }
+
+    /// Those of a motion that has been computed like the first.
+    pub(crate) fn of(computed: ComputedTrajectory<'_>) -> Self {
+        Self {
+            times: times_of(&computed.trajectory),
+            rows: computed.results.rows,
+        }
+    }
+}
+
+/// The times of a motion's samples, s.
+fn times_of(trajectory: &Trajectory<'_>) -> Vec<f64> {
+    let motion = trajectory.free_motion();
+    let samples = motion.map_or(&[][..], |motion| &motion.samples);
+    samples.iter().map(|sample| sample.t).collect()
+}
+
+impl ComputedTrajectory<'_> {
+    /// Sets the errors of a motion's columns from their differences in a second computation at the same times; where there
+    /// is none, or a column never has values in both, nothing is known.
+    pub(crate) fn set_errors(&mut self, other: Option<&SecondRows>) {
+        let Some(other) = other else { return };
+        let own = times_of(&self.trajectory);
+        let mut others = other.times.iter().zip(&other.rows).peekable();
+        let mut pairs: Vec<(&Vec<f64>, &Vec<f64>)> = Vec::new();
+        for (t, row) in own.iter().zip(&self.results.rows) {
+            while others.next_if(|(other, _)| *other < t).is_some() {}
+            if let Some((_, other)) = others.next_if(|(other, _)| *other == t) {
+                pairs.push((row, other));
+            }
+        }
+        let error = |k: usize| {
+            let values = pairs.iter().map(|(a, b)| (a[k], b[k]));
+            // Next to a change point a reaction may be undefined.
+            let known = values.filter(|(a, b)| a.is_finite() && b.is_finite());
+            let (one, two): (Vec<f64>, Vec<f64>) = known.unzip();
+            match one.is_empty() {
+                true => f64::INFINITY,
+                false => estimate::over_motion(&one, &two, 0.0),
+            }
+        };
+        self.results.errors = (0..self.results.columns.len()).map(error).collect();
+    }
+}
