@@ -133,33 +133,12 @@ pub(super) fn sort_reactions(
     scene: &SpaceScene,
     model: &Model,
 ) -> Result<[Vec<Reaction>; 2], StudyError> {
-    let workspace = &mut model.workspace();
-    let mut determined = model
-        .determined(&scene.assembly.q, workspace)
+    let determined = model
+        .determined_throughout()
         .map_err(|e| explain_position(scene, model.plan(), &e))?;
-    // A symmetric start may hide what is open elsewhere.
-    for q in elsewhere(scene, model) {
-        if let Ok(there) = model.determined(&[q], workspace) {
-            (determined.iter_mut().zip(there)).for_each(|(all, here)| *all &= here);
-        }
-    }
     let all = model.reactions().zip(determined);
     let (determined, others): (Vec<_>, Vec<_>) = all.partition(|(_, determined)| *determined);
     Ok([determined, others].map(|some| some.into_iter().map(|(reaction, _)| reaction).collect()))
-}
-
-/// Other coordinates of a mechanism with one actuator, within its range.
-fn elsewhere(scene: &SpaceScene, model: &Model) -> Vec<f64> {
-    let [start] = scene.assembly.q[..] else {
-        return Vec::new();
-    };
-    let step = match model.plan().range().limits() {
-        None => 1.0,
-        Some((from, to)) => 0.2 * (to - from),
-    };
-    [-1.13, -0.41, 0.37, 1.21]
-        .map(|parts| start + parts * step)
-        .to_vec()
 }
 
 /// Units of w along an angle, and of c of a force and of a moment.
@@ -262,6 +241,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
         let model = self.model.model();
         let loaded = with_loads(self.scene, model.clone())?;
         let (mut workspace, mut response) = (loaded.workspace(), loaded.result_buffer());
+        let requested = model.reactions().len();
         let mut curves = UnitLoadCurves {
             loads: loads
                 .iter()
@@ -286,7 +266,8 @@ impl ReducedScene for PreparedSpaceScene<'_> {
                 responded.map_err(|e| explain_loads(self.scene, loaded.plan(), &e))?;
                 potential += state.potential_energy(load).unwrap_or_default();
                 let mut values = vec![-response.tau[0]];
-                values.extend(&response.reactions);
+                // Without those on which friction alone depends.
+                values.extend(&response.reactions[..requested]);
                 row.push(values);
             }
             curves.rows.push(row);
