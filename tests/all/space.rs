@@ -4,6 +4,8 @@
 mod cases;
 mod extremes;
 mod flyball;
+mod friction;
+mod friction_in_motion;
 mod hooke_joint;
 mod loads;
 mod motions;

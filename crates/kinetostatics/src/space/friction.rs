@@ -167,9 +167,9 @@ impl JointFriction {
                     coordinates,
                     levers,
                 },
-                Some(fade),
+                Some(slow),
             ) => {
-                let speed = |k: usize| rate(coordinates[k]) * T::from_f64(levers[k] / fade);
+                let speed = |k: usize| rate(coordinates[k]) * T::from_f64(levers[k] / slow);
                 let [own, other] = [speed(0), speed(1)];
                 own * tanh_quotient(own * own + other * other) * T::from_f64(friction.coefficient)
             }

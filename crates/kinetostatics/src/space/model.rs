@@ -209,6 +209,15 @@ impl Model {
         model
     }
 
+    /// The same for the responses to a unit of each load alone: no friction is solved, and no reaction is computed for it besides
+    /// the requested ones.
+    #[must_use]
+    pub fn for_unit_loads(mut self) -> Self {
+        self.reactions.truncate(self.requested);
+        self.frictions.clear();
+        self
+    }
+
     /// The same mechanism for its inertia alone: no reaction and no load.
     pub(super) fn inertia_only(&self) -> Self {
         Self {

@@ -239,9 +239,8 @@ impl ReducedScene for PreparedSpaceScene<'_> {
             return Ok(None);
         }
         let model = self.model.model();
-        let loaded = with_loads(self.scene, model.clone())?;
+        let loaded = with_loads(self.scene, model.clone())?.for_unit_loads();
         let (mut workspace, mut response) = (loaded.workspace(), loaded.result_buffer());
-        let requested = model.reactions().len();
         let mut curves = UnitLoadCurves {
             loads: loads
                 .iter()
@@ -266,8 +265,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
                 responded.map_err(|e| explain_loads(self.scene, loaded.plan(), &e))?;
                 potential += state.potential_energy(load).unwrap_or_default();
                 let mut values = vec![-response.tau[0]];
-                // Without those on which friction alone depends.
-                values.extend(&response.reactions[..requested]);
+                values.extend(&response.reactions);
                 row.push(values);
             }
             curves.rows.push(row);
@@ -285,6 +283,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
         // Drives are no part of a table.
         let loaded = model.with_loads(self.scene.loads.clone());
         let loaded = loaded.map_err(|error| explain_load_error(self.scene, &error))?;
+        let loaded = loaded.for_unit_loads();
         // The model has one actuator, as the prepared one has.
         let exact = ExactModel::new(loaded).unwrap_or_else(|| self.model.clone());
         Ok(TabulatedModel::new(&exact, accuracy, domain))
