@@ -263,7 +263,7 @@ fn a_machine_with_friction_moves_in_an_oblique_plane_as_in_the_plane() {
         one.1,
         other.1
     );
-    // Without motor, with friction that holds: it comes to rest, within the same time.
+    // Without motor, with friction that holds: the gas drives it back and forth, and it stops and lets go dozens of times.
     let text = std::fs::read_to_string(format!(
         "{}/../validation/slider-crank-friction/scene.toml",
         env!("CARGO_MANIFEST_DIR")
@@ -293,7 +293,7 @@ fn a_machine_with_friction_moves_in_an_oblique_plane_as_in_the_plane() {
         compare(&space, 3.0, [0.5, 12.0]),
     ];
     assert!(
-        one.2.len() >= 2 && one.2.len() == other.2.len(),
+        one.2.len() >= 20 && one.2.len() == other.2.len(),
         "{:?} {:?}",
         one.2,
         other.2
@@ -312,8 +312,8 @@ fn a_machine_with_friction_moves_in_an_oblique_plane_as_in_the_plane() {
         one.2.len(),
         one.2.last()
     );
-    assert!(largest < 1e-8, "{largest:.1e}");
-    assert_eq!(other.0[1], 0.0);
+    // Seen: 6e-9 at the end and in the times of 78 changes.
+    assert!(largest < 5e-7, "{largest:.1e}");
 }
 
 /// The state at the end of a motion, without works; the error of its energy; and the times of all changes of contacts.
@@ -356,9 +356,9 @@ fn energy_balances_close_with_friction() {
         let off = energy_error(&machine, &solution.steps);
         let last = solution.steps.last().expect("steps");
         let works = &last.y[machine.work_offset()..];
-        // Seen: 2e-13 and 3e-11.
+        // Seen: 1e-13 and 6e-13.
         println!("{name}: {off:.1e}, works {works:?}, speed {}", last.y[1]);
-        assert!(off < 3e-9, "{name}: {off:.1e}");
+        assert!(off < 5e-11, "{name}: {off:.1e}");
         assert!(works.iter().all(|work| *work < 0.0), "{name}: {works:?}");
         let lost: Vec<_> = solution
             .steps
