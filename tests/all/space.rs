@@ -4,9 +4,12 @@
 mod cases;
 mod extremes;
 mod flyball;
+mod friction;
+mod friction_in_motion;
 mod hooke_joint;
 mod loads;
 mod motions;
+mod oblique;
 mod operating_points;
 mod random_loops;
 mod reference;

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! with g the force times the radius in a pin, the sum of the forces on the ends of a guide, or the absolute tooth
-//! force; R⁰ the reactions without these loads and C what a unit of each adds to them. A separating force adds nothing
+//! force (in space g and φ are those of `space/friction.rs`); R⁰ the reactions without these loads and C what a unit of each adds to them. A separating force adds nothing
 //! to tooth forces, but to the reactions on which friction depends. Where coordinates are
 //! free, R⁰ and C include the effect of their accelerations. Newton's method solves (1) from F = 0. The
 //! determinant of its Jacobian is 1 without friction; where it is no longer positive the mechanism jams:
@@ -18,7 +18,7 @@ use crate::load::{Friction, FrictionContact, Load};
 use crate::pass::InverseDynamics;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{Mechanism, Reaction};
-use dwell_numerics::{Scalar, lu};
+use dwell_numerics::{Scalar, lu, map_array};
 
 /// Newton's steps after which a state counts as jammed.
 const MAX_ITERATIONS: usize = 60;
@@ -27,14 +27,20 @@ const STEP_TOLERANCE: f64 = 4.0 * f64::EPSILON;
 /// or by less than this part if the change no longer falls: next to a jam, rounding is amplified.
 const STAGNATION_TOLERANCE: f64 = 1e-6;
 
+/// How a load depends on `N` components of the reaction of its joint.
+pub(crate) trait ContactLaw<const N: usize>: Copy {
+    /// g(R), N·m or N, and its derivatives by the components.
+    fn force<T: Scalar>(self, reaction: [T; N]) -> (T, [T; N]);
+}
+
 /// A load that depends on the reactions of a joint, compiled for a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct DependentLoad {
+pub(crate) struct DependentLoad<L = ReactionLaw, const N: usize = 2> {
     /// Index of its load.
     pub(crate) load: usize,
     /// Indices of the reactions it depends on; none for a component that it does not need.
-    reactions: [Option<usize>; 2],
-    law: ReactionLaw,
+    pub(crate) reactions: [Option<usize>; N],
+    pub(crate) law: L,
 }
 
 /// What is known of a load that depends on reactions, beside its own law.
@@ -49,9 +55,9 @@ pub enum FrictionState<T> {
     Force(T),
 }
 
-/// How a load depends on the reactions of its joint.
+/// How a load in the plane depends on the reactions of its joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum ReactionLaw {
+pub(crate) enum ReactionLaw {
     Friction {
         friction: Friction,
         /// The coordinate whose speed is that of the surfaces.
@@ -61,8 +67,7 @@ enum ReactionLaw {
     Separating { tangent: f64 },
 }
 
-impl ReactionLaw {
-    /// g(R), N·m or N, and its derivatives by both components.
+impl ContactLaw<2> for ReactionLaw {
     fn force<T: Scalar>(self, reaction: [T; 2]) -> (T, [T; 2]) {
         match self {
             Self::Friction { friction, .. } => friction.contact.force(reaction),
@@ -90,6 +95,8 @@ impl FrictionContact {
                 return (radius * force, [radius * x / force, radius * y / force]);
             }
             Self::Guide { length } => length,
+            // Of a joint in space, which has more components: see there.
+            Self::Bearing { .. } => return (zero, [zero; 2]),
         };
         // The force x at the middle of the guide and the moment y press on its ends.
         let half = T::from_f64(0.5);
@@ -171,21 +178,14 @@ impl DependentLoad {
     }
 
     /// φ.
-    fn factor<T: Scalar>(&self, states: &BodyStates<T>) -> T {
+    pub(crate) fn factor<T: Scalar>(&self, states: &BodyStates<T>) -> T {
         match self.law {
             ReactionLaw::Friction {
                 friction,
                 coordinate,
             } => {
                 let [_, velocity, _] = states.coordinate(coordinate);
-                let Some(speed) = friction.regularization_speed else {
-                    let speed = velocity.value();
-                    let sign = if speed == 0.0 { 0.0 } else { speed.signum() };
-                    return T::from_f64(friction.coefficient * sign);
-                };
-                let tanh = (velocity.value() / speed).tanh();
-                let slope = (1.0 - tanh * tanh) / speed;
-                velocity.compose(&[tanh, slope, 0.0, 0.0]) * T::from_f64(friction.coefficient)
+                friction.factor(velocity)
             }
             ReactionLaw::Separating { tangent } => T::from_f64(-tangent),
         }
@@ -201,15 +201,32 @@ impl DependentLoad {
             ReactionLaw::Separating { .. } => None,
         }
     }
+}
 
+impl<L: ContactLaw<N>, const N: usize> DependentLoad<L, N> {
     /// g of these reactions, N·m or N: the force of a unit of φ.
     pub(crate) fn contact_force<T: Scalar>(&self, reactions: &[T]) -> T {
         self.law.force(self.components(reactions)).0
     }
 
-    fn components<T: Scalar>(&self, reactions: &[T]) -> [T; 2] {
-        self.reactions
-            .map(|index| index.map_or(T::from_f64(0.0), |k| reactions[k]))
+    fn components<T: Scalar>(&self, reactions: &[T]) -> [T; N] {
+        map_array(self.reactions, |index| {
+            index.map_or(T::from_f64(0.0), |k| reactions[k])
+        })
+    }
+}
+
+impl Friction {
+    /// φ of surfaces that slide at this speed.
+    pub(crate) fn factor<T: Scalar>(&self, velocity: T) -> T {
+        let Some(speed) = self.regularization_speed else {
+            let speed = velocity.value();
+            let sign = if speed == 0.0 { 0.0 } else { speed.signum() };
+            return T::from_f64(self.coefficient * sign);
+        };
+        let tanh = (velocity.value() / speed).tanh();
+        let slope = (1.0 - tanh * tanh) / speed;
+        velocity.compose(&[tanh, slope, 0.0, 0.0]) * T::from_f64(self.coefficient)
     }
 }
 
@@ -221,14 +238,14 @@ pub(crate) fn required_reactions(mechanism: &Mechanism, load: &Load) -> Vec<Reac
     of_friction.chain(tooth_force).collect()
 }
 
-/// Solves (1): `frictionless` are the reactions without these loads, `responses[j]` what a unit of load j adds to
-/// each. The forces are then in `workspace.force`.
+/// Solves (1): `by_speed` yields φ of a load from the speed of its surfaces, `frictionless` are the reactions without these
+/// loads, `responses[j]` what a unit of load j adds to each. The forces are then in `workspace.force`.
 ///
 /// # Errors
 /// [`KinetostaticsError::SelfLocking`] where there is no unique solution.
-pub(crate) fn solve<T: Scalar>(
-    dependent_loads: &[DependentLoad],
-    states: &BodyStates<T>,
+pub(crate) fn solve<T: Scalar, L: ContactLaw<N>, const N: usize>(
+    dependent_loads: &[DependentLoad<L, N>],
+    by_speed: impl Fn(&DependentLoad<L, N>) -> T,
     frictionless: &[T],
     responses: &[InverseDynamics<T>],
     workspace: &mut FrictionWorkspace<T>,
@@ -238,7 +255,7 @@ pub(crate) fn solve<T: Scalar>(
     let factors = workspace.friction_factor.iter_mut().zip(&workspace.known);
     for (dependent, (factor, known)) in dependent_loads.iter().zip(factors) {
         *factor = match *known {
-            FrictionState::BySpeed => dependent.factor(states),
+            FrictionState::BySpeed => by_speed(dependent),
             FrictionState::Factor(factor) => T::from_f64(factor),
             FrictionState::Force(_) => T::from_f64(0.0),
         } * T::from_f64(workspace.factor_scale);
@@ -278,9 +295,9 @@ pub(crate) fn solve<T: Scalar>(
 
 impl<T: Scalar> FrictionWorkspace<T> {
     /// Residual and Jacobian of (1) at the current forces, and the largest |φ g|.
-    fn linearise(
+    fn linearise<L: ContactLaw<N>, const N: usize>(
         &mut self,
-        dependent_loads: &[DependentLoad],
+        dependent_loads: &[DependentLoad<L, N>],
         frictionless: &[T],
         responses: &[InverseDynamics<T>],
     ) -> f64 {
@@ -289,11 +306,12 @@ impl<T: Scalar> FrictionWorkspace<T> {
         for (j, dependent) in dependent_loads.iter().enumerate() {
             let mut reaction = dependent.components(frictionless);
             for (force, response) in self.force.iter().zip(responses) {
-                let [x, y] = dependent.components(&response.reactions);
-                reaction[0] += x * *force;
-                reaction[1] += y * *force;
+                let unit = dependent.components(&response.reactions);
+                for (sum, one) in reaction.iter_mut().zip(unit) {
+                    *sum += one * *force;
+                }
             }
-            let (contact_force, [by_x, by_y]) = dependent.law.force(reaction);
+            let (contact_force, slopes) = dependent.law.force(reaction);
             let factor = self.friction_factor[j];
             let given = match self.known[j] {
                 FrictionState::Force(force) => force,
@@ -301,12 +319,22 @@ impl<T: Scalar> FrictionWorkspace<T> {
             };
             self.step[j] = given - (self.force[j] + factor * contact_force);
             for (k, response) in responses.iter().enumerate() {
-                let [x, y] = dependent.components(&response.reactions);
+                let unit = dependent.components(&response.reactions);
                 let diagonal = if j == k { 1.0 } else { 0.0 };
-                self.jacobian[j * n + k] = T::from_f64(diagonal) + factor * (by_x * x + by_y * y);
+                let slope = along(slopes, unit);
+                self.jacobian[j * n + k] = T::from_f64(diagonal) + factor * slope;
             }
             largest = largest.max((factor * contact_force).value().abs());
         }
         largest
     }
+}
+
+/// The sum of the products of two lists, from the first on.
+#[inline(always)]
+fn along<T: Scalar, const N: usize>(slopes: [T; N], unit: [T; N]) -> T {
+    let mut products = slopes.into_iter().zip(unit).map(|(slope, one)| slope * one);
+    // Not from zero: the sum of two products stays what it is to the last bit.
+    let first = products.next().unwrap_or(T::from_f64(0.0));
+    products.fold(first, |sum, product| sum + product)
 }

@@ -265,6 +265,16 @@ pub enum Signal<C = Coordinate> {
 /// A [`Signal`] of a certain mechanism, ready to be evaluated.
 pub type CompiledSignal = Signal<CoordinateFunction>;
 
+impl<K, C> Load<K, C> {
+    /// The friction that makes its magnitude, if it is one.
+    pub fn friction(&self) -> Option<Friction> {
+        let Magnitude::Friction(friction) = self.magnitude else {
+            return None;
+        };
+        Some(friction)
+    }
+}
+
 impl Load {
     /// Whether it has a potential energy: gravity, springs and forces of constant direction, where the magnitude is
     /// constant; and the separating force of teeth, which does no work.
@@ -288,14 +298,6 @@ impl Load {
     /// Whether it can do work in some motion: all but the separating force of teeth.
     pub fn does_work(&self) -> bool {
         !matches!(self.kind, LoadKind::SeparatingForce(_))
-    }
-
-    /// The friction that makes its magnitude, if it is one.
-    pub fn friction(&self) -> Option<Friction> {
-        let Magnitude::Friction(friction) = self.magnitude else {
-            return None;
-        };
-        Some(friction)
     }
 
     /// The pressure angle that makes its magnitude, if it is the separating force of teeth.

@@ -150,6 +150,17 @@ impl Model {
         model
     }
 
+    /// The same model for the responses to a unit of each load alone: no friction is solved, and no reaction is computed for it besides
+    /// the requested ones.
+    #[must_use]
+    pub fn for_unit_loads(mut self) -> Self {
+        self.reactions.truncate(self.requested);
+        self.dependent_loads.clear();
+        self.pass_model.reaction_sources =
+            ReactionSources::compile(&self.mechanism, &self.pass_model.plan, &self.reactions);
+        self
+    }
+
     /// The mechanism it was compiled from.
     pub fn mechanism(&self) -> &Mechanism {
         &self.mechanism

@@ -35,6 +35,7 @@
 
 mod action;
 mod compiled_loads;
+mod friction;
 mod load;
 mod machine;
 mod mass;

@@ -166,6 +166,38 @@ fn an_allocation_would_be_counted() {
     assert!(count > 0);
 }
 
+/// Friction in space, solved together with the reactions it depends on.
+#[test]
+fn friction_in_space_allocates_nothing() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../validation/spatial/planar-oblique-rcsr.toml"
+    );
+    let friction = r#"
+[loads]
+weight = { gravity = [1, 2, -9] }
+[friction]
+A = { coefficient = 0.1, radius = 0.1, bearing-distance = 0.5 }
+B = { coefficient = 0.2, radius = 0.1, regularization-speed = 0.02 }
+D = { coefficient = 0.1, radius = 0.1 }
+"#;
+    let text = std::fs::read_to_string(path).expect("the file") + friction;
+    let scene = SpaceScene::parse("test.toml", &text).expect("a scene");
+    let model = space::Model::new(&scene.mechanism, &scene.masses, &scene.assembly, &[]);
+    let model = model
+        .expect("a model")
+        .with_loads(scene.loads)
+        .expect("they fit");
+    assert_eq!(model.frictions().len(), 4);
+    let (mut workspace, mut result) = (model.workspace(), model.result_buffer());
+    let at = [&[1.2][..], &[2.0][..], &[-3.0][..]];
+    let spent = allocations("friction in space", true, || {
+        let done = model.kinetostatics(0.5, at, &mut workspace, &mut result);
+        done.is_ok_and(|state| state.magnitudes()[1] != 0.0)
+    });
+    assert_eq!(spent, 0);
+}
+
 /// Loads in space at a state of motion, with a column of the mass matrix and the response to each load alone: what a machine needs.
 #[test]
 fn machines_in_space_allocate_nothing() {

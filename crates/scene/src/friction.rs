@@ -2,7 +2,7 @@
 
 use crate::diagnostics::Span;
 use crate::joints::{Joints, kind_name};
-use crate::keys::table;
+use crate::keys::{TableSchema, table};
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::{SI, Unit};
@@ -93,54 +93,114 @@ fn read_friction<'a>(
     let name = shorten(entry.name);
     let fields = TableReader::open(entry, format!("friction of `{name}`"))?;
     let is_revolute = has_pin(entry, kind)?;
-    let before = fields.log().count();
-    check_friction_keys(&fields, kind, is_revolute);
-    let number = |key: &str, unit: &Unit, sign: SignRule| {
-        let entry = fields.get(key)?;
-        let rule = NumberRule::new(unit, sign);
-        entry.value.quantity_with_sign(&rule, fields.name_of(entry))
+    let form = FrictionForm {
+        table: match is_revolute {
+            true => table("revolute-friction"),
+            false => table("prismatic-friction"),
+        },
+        joint_kind: kind_name(kind),
+        is_angular: is_revolute,
+        has_pin: is_revolute,
+        is_slot: matches!(kind, JointKind::Slot { .. }),
     };
-    let units = fields.units();
-    let coefficient = number("coefficient", &SI, SignRule::NotNegative);
-    let static_coefficient = number("static-coefficient", &SI, SignRule::NotNegative);
-    let radius = number("radius", &units.length, SignRule::Positive);
-    let guide = number("guide-length", &units.length, SignRule::NotNegative);
-    let speed_unit = units.coordinate_unit(is_revolute);
-    let speed = number("regularization-speed", speed_unit, SignRule::Positive);
-    let viscous = number("viscous", &SI, SignRule::NotNegative);
-    // A guide in its place is one slip, not two.
-    let has_guide = fields.get("guide-length").is_some();
-    if is_revolute && fields.get("coefficient").is_some() && !has_guide {
-        let unit = &units.length.name;
-        let help = format!("add `radius`, the radius of the pin, in {unit}");
-        fields.require("radius", &help);
-    }
-    if fields.log().count() != before {
-        return None;
-    }
-    let contact = if is_revolute {
-        let radius = radius.unwrap_or(0.0);
-        FrictionContact::Pin { radius }
-    } else {
-        let length = guide.unwrap_or(0.0);
-        FrictionContact::Guide { length }
+    let numbers = form.read(&fields)?;
+    let contact = match is_revolute {
+        true => FrictionContact::Pin {
+            radius: numbers.radius,
+        },
+        false => FrictionContact::Guide {
+            length: numbers.length,
+        },
     };
-    let friction = coefficient.map(|coefficient| Friction {
-        joint,
-        coefficient,
-        static_coefficient: static_coefficient.unwrap_or(coefficient),
-        contact,
-        regularization_speed: speed,
-    });
+    let friction = numbers.friction(joint, contact);
     if let Some(friction) = friction {
         check_static_coefficient(&fields, &friction)?;
     }
-    Some((fields, friction, viscous))
+    Some((fields, friction, numbers.viscous))
+}
+
+/// How the friction of a joint is written.
+pub(crate) struct FrictionForm<'k> {
+    /// Its keys.
+    pub(crate) table: &'static TableSchema,
+    /// The kind of its joint.
+    pub(crate) joint_kind: &'k str,
+    /// Whether the speed of its surfaces is that of an angle.
+    pub(crate) is_angular: bool,
+    /// Whether it is that of a pin, with a radius.
+    pub(crate) has_pin: bool,
+    /// Whether its pin touches at one point.
+    pub(crate) is_slot: bool,
+}
+
+/// The numbers of a friction.
+pub(crate) struct FrictionNumbers {
+    coefficient: Option<f64>,
+    static_coefficient: Option<f64>,
+    speed: Option<f64>,
+    /// Radius of the pin, m; zero if there is none.
+    pub(crate) radius: f64,
+    /// Length of the guide, or distance of the bearings, m; zero if it is not given.
+    pub(crate) length: f64,
+    pub(crate) viscous: Option<f64>,
+}
+
+impl FrictionForm<'_> {
+    /// The numbers of a table; none where something is wrong.
+    pub(crate) fn read(&self, fields: &TableReader<'_>) -> Option<FrictionNumbers> {
+        let before = fields.log().count();
+        self.check_keys(fields);
+        let number = |key: &str, unit: &Unit, sign: SignRule| {
+            let entry = fields.get(key)?;
+            let rule = NumberRule::new(unit, sign);
+            entry.value.quantity_with_sign(&rule, fields.name_of(entry))
+        };
+        let units = fields.units();
+        let coefficient = number("coefficient", &SI, SignRule::NotNegative);
+        let static_coefficient = number("static-coefficient", &SI, SignRule::NotNegative);
+        let radius = number("radius", &units.length, SignRule::Positive);
+        let guide = number("guide-length", &units.length, SignRule::NotNegative);
+        let bearings = number("bearing-distance", &units.length, SignRule::NotNegative);
+        let speed_unit = units.coordinate_unit(self.is_angular);
+        let speed = number("regularization-speed", speed_unit, SignRule::Positive);
+        let viscous = number("viscous", &SI, SignRule::NotNegative);
+        // A guide in its place is one slip, not two.
+        let has_guide = fields.get("guide-length").is_some();
+        if self.has_pin && fields.get("coefficient").is_some() && !has_guide {
+            let unit = &units.length.name;
+            let help = format!("add `radius`, the radius of the pin, in {unit}");
+            fields.require("radius", &help);
+        }
+        (fields.log().count() == before).then(|| FrictionNumbers {
+            coefficient,
+            static_coefficient,
+            speed,
+            radius: radius.unwrap_or(0.0),
+            length: guide.or(bearings).unwrap_or(0.0),
+            viscous,
+        })
+    }
+}
+
+impl FrictionNumbers {
+    /// What they give of dry friction.
+    pub(crate) fn friction(&self, joint: JointId, contact: FrictionContact) -> Option<Friction> {
+        self.coefficient.map(|coefficient| Friction {
+            joint,
+            coefficient,
+            static_coefficient: self.static_coefficient.unwrap_or(coefficient),
+            contact,
+            regularization_speed: self.speed,
+        })
+    }
 }
 
 /// Refuses a static coefficient below the coefficient; beside a regularisation speed, which leaves nothing static, it has
 /// no effect.
-fn check_static_coefficient(fields: &TableReader<'_>, friction: &Friction) -> Option<()> {
+pub(crate) fn check_static_coefficient(
+    fields: &TableReader<'_>,
+    friction: &Friction,
+) -> Option<()> {
     let Some(entry) = fields.get("static-coefficient") else {
         return Some(());
     };
@@ -184,47 +244,55 @@ fn has_pin(entry: &Entry<'_>, kind: JointKind) -> Option<bool> {
     }
 }
 
-/// Reports keys that do not belong to this kind of joint, and missing ones of dry friction.
-fn check_friction_keys(fields: &TableReader<'_>, kind: JointKind, is_revolute: bool) {
-    let table = match is_revolute {
-        true => table("revolute-friction"),
-        false => table("prismatic-friction"),
-    };
-    let is_slot = matches!(kind, JointKind::Slot { .. });
-    let dry = fields.get("coefficient");
-    // What seems to be missing may be a key that is misspelt.
-    let misspelt = fields.unknown_entries(table).next().is_some();
-    if dry.is_none() && fields.get("viscous").is_none() && !misspelt {
-        let message = format!("{} has neither `coefficient` nor `viscous`", fields.what);
-        let labels = [(&fields.span, "no friction is given")];
-        let help = "add a `coefficient` of dry friction, or `viscous`";
-        return fields.log().report(message, &labels, help);
-    }
-    for entry in &fields.entries {
-        let (name, what) = (entry.written(), &fields.what);
-        let other = |help| (format!("{what} has no `{name}`"), help);
-        let known = table.contains_key(entry.name);
-        let (message, help) = match entry.name {
-            "radius" if !known => other("`guide-length` is the length of a slide"),
-            "guide-length" if !known => other("`radius` is that of a pin"),
-            "guide-length" if is_slot => {
-                other("the pin of a slot touches it at one point: leave it out")
-            }
-            "radius" | "guide-length" | "static-coefficient" | "regularization-speed"
-                if dry.is_none() && !misspelt =>
-            {
-                (
-                    format!("{what} has a `{name}` but no `coefficient`"),
-                    "it belongs to dry friction: add `coefficient`, or leave it out",
-                )
-            }
-            _ if known => continue,
-            _ => {
-                fields.report_unknown_key(entry, "keys here", table.names());
-                continue;
-            }
-        };
-        let label = format!("its kind is {}", kind_name(kind));
-        entry.reject::<()>(message, &label, help);
+impl FrictionForm<'_> {
+    /// Reports keys that do not belong to this kind of joint, and missing ones of dry friction.
+    fn check_keys(&self, fields: &TableReader<'_>) {
+        let table = self.table;
+        let dry = fields.get("coefficient");
+        // What seems to be missing may be a key that is misspelt.
+        let misspelt = fields.unknown_entries(table).next().is_some();
+        if dry.is_none() && fields.get("viscous").is_none() && !misspelt {
+            let (missing, help) = match table.contains_key("viscous") {
+                true => (
+                    "neither `coefficient` nor `viscous`",
+                    "add a `coefficient` of dry friction, or `viscous`",
+                ),
+                false => ("no `coefficient`", "add a `coefficient` of dry friction"),
+            };
+            let message = format!("{} has {missing}", fields.what);
+            let labels = [(&fields.span, "no friction is given")];
+            return fields.log().report(message, &labels, help);
+        }
+        for entry in &fields.entries {
+            let (name, what) = (entry.written(), &fields.what);
+            let other = |help| (format!("{what} has no `{name}`"), help);
+            let known = table.contains_key(entry.name);
+            let (message, help) = match entry.name {
+                "radius" if !known => other("`guide-length` is the length of a slide"),
+                "guide-length" if !known => other("`radius` is that of a pin"),
+                "guide-length" if self.is_slot => {
+                    other("the pin of a slot touches it at one point: leave it out")
+                }
+                "radius"
+                | "guide-length"
+                | "bearing-distance"
+                | "static-coefficient"
+                | "regularization-speed"
+                    if known && dry.is_none() && !misspelt =>
+                {
+                    (
+                        format!("{what} has a `{name}` but no `coefficient`"),
+                        "it belongs to dry friction: add `coefficient`, or leave it out",
+                    )
+                }
+                _ if known => continue,
+                _ => {
+                    fields.report_unknown_key(entry, "keys here", table.names());
+                    continue;
+                }
+            };
+            let label = format!("its kind is {}", self.joint_kind);
+            entry.reject::<()>(message, &label, help);
+        }
     }
 }

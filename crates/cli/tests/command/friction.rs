@@ -1,6 +1,6 @@
 //! Friction that holds, jams or locks itself, as it is printed, against closed forms.
 
-use crate::test_dir::{Run, TestDir};
+use crate::test_dir::{Run, TestDir, home};
 
 const G: f64 = 9.81;
 
@@ -130,4 +130,67 @@ duration = 0.1
     };
     assert!(!moves(limit - 1e-6));
     assert!(moves(limit + 1e-6));
+}
+
+/// A table has the reactions that are requested, whatever others friction needs; in the plane and in space.
+#[test]
+fn tables_have_the_requested_reactions_alone() {
+    let planar =
+        std::fs::read_to_string(home().join("validation/slider-crank-friction/scene.toml"))
+            .unwrap()
+            .replace("paths = [\"rod.B\", \"piston.C\"]", "reactions = [\"A.x\"]");
+    let space = std::fs::read_to_string(home().join("validation/spatial/rssr.toml")).unwrap()
+        + "\n[friction]\nA = { coefficient = 0.2, radius = 0.02 }\n[requests]\nreactions = [\"A.z\"]\n";
+    for (name, text, reaction) in [("planar", planar, "A.x"), ("space", space, "A.z")] {
+        let dir = TestDir::new();
+        dir.put("friction.toml", &text);
+        let arguments = [
+            "reduce",
+            "friction.toml",
+            "--table-accuracy",
+            "1e-8",
+            "--out",
+            "o",
+        ];
+        let run = dir.run(&arguments);
+        assert_eq!(run.status, Some(0), "{name}: {}", run.err);
+        let table = std::fs::read_to_string(dir.0.join("o/friction-reduced.csv")).unwrap();
+        let head = table.lines().next().unwrap();
+        let of: Vec<&str> = head.split(',').filter(|h| h.contains(".a [")).collect();
+        assert!(of.len() == 1 && of[0].starts_with(reaction), "{head}");
+        assert!(head.contains("A.friction.w"), "{head}");
+    }
+}
+
+/// An error of friction in space points to its table, names the joint and says what to try.
+#[test]
+fn errors_of_friction_in_space_point_into_the_file() {
+    let bennett = std::fs::read_to_string(home().join("validation/spatial/bennett.toml")).unwrap();
+    for (friction, words) in [
+        (
+            "B = { coefficient = 0.1, radius = 0.01 }",
+            [
+                "the friction of joint `B` depends on a reaction that is not determined",
+                "this friction",
+                "spherical or a cylindrical joint",
+            ],
+        ),
+        (
+            "B = { coefficient = 0.1 }",
+            ["`radius`", "friction of `B`", "the radius of the pin"],
+        ),
+    ] {
+        let dir = TestDir::new();
+        dir.put(
+            "bennett.toml",
+            format!("{bennett}\n[friction]\n{friction}\n"),
+        );
+        let run = dir.run(&["kinetostatics", "bennett.toml", "--out", "o"]);
+        assert_eq!(run.status, Some(2), "{}", run.out);
+        let said = run.err.split_whitespace().collect::<Vec<_>>().join(" ");
+        let said = said.replace("│ ", "");
+        for words in words.into_iter().chain([friction]) {
+            assert!(said.contains(words), "{words}: {}", run.err);
+        }
+    }
 }

@@ -49,7 +49,7 @@ impl Mechanism {
                 return Err(Error::unknown(what, "reactions", name, names));
             }
         }
-        let model = loaded_model_in_space(scene, &wanted)?;
+        let model = loaded_model_in_space(scene, &wanted)?.for_unit_loads();
         let Some(exact) = ExactModel::new(model) else {
             // Its error names the actuators.
             return match dwell_study::PreparedSpaceScene::new(scene) {

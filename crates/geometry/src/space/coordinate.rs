@@ -98,6 +98,8 @@ pub enum Counting {
     Freedom(usize, f64),
     /// The joint closes a loop: its place among the angles that are stored along the range.
     Stored(usize),
+    /// They are not counted: its value is between −π and π. What acts along it needs no more than its axis.
+    None,
 }
 
 /// The angles of a joint that closes a loop, with their revolutions.
@@ -133,6 +135,15 @@ impl Plan {
         mechanism: &Mechanism,
         coordinate: Coordinate,
     ) -> Result<CoordinateFunction, &'static str> {
+        self.function(mechanism, coordinate, |joint| self.counting(joint))
+    }
+
+    fn function(
+        &self,
+        mechanism: &Mechanism,
+        coordinate: Coordinate,
+        counting: impl Fn(JointId) -> Result<Counting, &'static str>,
+    ) -> Result<CoordinateFunction, &'static str> {
         let unknown = "the mechanism does not have its coordinate";
         let in_frame = |body: BodyId, point: Vec3| {
             let inverse = self.tree.internal[body.0].inverse();
@@ -158,7 +169,7 @@ impl Plan {
                 bodies,
                 axis,
                 normals: sides.map(|side| side.normal),
-                counting: self.counting(id)?,
+                counting: counting(id)?,
             }),
             false if has_travel => Ok(CoordinateFunction::Travel {
                 bodies,
@@ -168,6 +179,20 @@ impl Plan {
             true => Err("its joint has no angle about an axis"),
             false => Err("its joint has no travel along an axis"),
         }
+    }
+
+    /// A coordinate along which something acts, or whose rate alone is needed: the revolutions of an angle are counted where they can be.
+    ///
+    /// # Errors
+    /// Why there is no such coordinate.
+    pub fn direction_function(
+        &self,
+        mechanism: &Mechanism,
+        coordinate: Coordinate,
+    ) -> Result<CoordinateFunction, &'static str> {
+        self.function(mechanism, coordinate, |joint| {
+            Ok(self.counting(joint).unwrap_or(Counting::None))
+        })
     }
 
     /// How the revolutions of a joint are counted.
@@ -284,6 +309,7 @@ impl Plan {
                 let gain = self.freedom_gains.get(freedom).copied().unwrap_or(0.0);
                 value + T::from_f64(self.periods(self.first_coordinate(pose)) * gain * sign)
             }
+            Counting::None => self.wrapped_angle(pose, bodies, axis, normals),
             Counting::Stored(index) => {
                 let wrapped = self.wrapped_angle(pose, bodies, axis, normals);
                 let angles = &self.closure_angles[index].angles;
@@ -307,6 +333,21 @@ impl Plan {
         let part = at - k as f64;
         let here = angles[k] + part * (angles[k + 1] - angles[k]);
         here + self.periods(q) * (last - first)
+    }
+
+    /// The rate of a coordinate, rad/s or m/s: without the value of an angle.
+    #[inline]
+    pub fn coordinate_rate<T: Scalar>(&self, pose: &Pose<T>, of: CoordinateFunction) -> T {
+        match of {
+            CoordinateFunction::Angle { bodies, axis, .. } => {
+                let [a, b] = bodies.map(|body| pose.states[body.0].angular_velocity);
+                let axis = pose.frames[bodies[0].0].rotation.apply(axis.cast());
+                axis.dot(b - a)
+            }
+            CoordinateFunction::Travel { .. } | CoordinateFunction::Distance { .. } => {
+                self.coordinate(pose, of)[1]
+            }
+        }
     }
 
     /// A coordinate with its rate and its acceleration, rad or m, per s and s²; the last after [`Plan::accelerations`].

@@ -4,7 +4,9 @@ use super::LoadKind;
 use dwell_geometry::{Component, Joint, JointId, JointKind, Mechanism, Reaction};
 
 /// Coulomb friction in a joint, which holds at zero speed or is regularised around it. The load must be a [`LoadKind::Torque`] on the bodies of
-/// a revolute joint or a [`LoadKind::SlideForce`] on those of a prismatic joint or slot.
+/// a revolute joint or a [`LoadKind::SlideForce`] on those of a prismatic joint or slot; in space a
+/// [`JointTorque`](crate::space::LoadKind::JointTorque) of a revolute joint, a [`SlideForce`](crate::space::LoadKind::SlideForce) of a
+/// prismatic joint, or of a cylindrical joint one of each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Friction {
     /// The joint.
@@ -33,27 +35,20 @@ pub enum FrictionContact {
         /// Distance of its ends, m; zero where it presses at one point.
         length: f64,
     },
+    /// In space, the pin of a revolute or cylindrical joint in two bearings: N the sum of the forces in them, a couple µ r N about the axis
+    /// in a revolute joint, a force µ N on the surface against the direction of sliding in a cylindrical one.
+    Bearing {
+        /// Radius r of the pin, m.
+        radius: f64,
+        /// Distance of the bearings, m; zero where the moment that tilts the pin shall press nothing.
+        distance: f64,
+    },
 }
 
 impl Friction {
     /// Why it does not fit a load of this kind on its joint.
     pub(super) fn validate(&self, joint: &Joint, kind: LoadKind) -> Result<(), &'static str> {
-        let (FrictionContact::Pin { radius: size } | FrictionContact::Guide { length: size }) =
-            self.contact;
-        let mut sizes = [self.coefficient, size].into_iter();
-        let regularized = self.regularization_speed.is_none_or(|speed| speed > 0.0);
-        let holds =
-            self.static_coefficient.is_finite() && self.static_coefficient >= self.coefficient;
-        if !holds {
-            return Err(
-                "its static coefficient must be finite and not below its coefficient of friction",
-            );
-        }
-        if !(regularized && sizes.all(|n| n.is_finite() && n >= 0.0)) {
-            return Err(
-                "its coefficient of friction and its size must be finite and not negative, its speed positive",
-            );
-        }
+        self.validate_numbers()?;
         let bodies = joint.bodies;
         let fits = match (joint.kind, self.contact) {
             (JointKind::Revolute, FrictionContact::Pin { .. }) => {
@@ -67,6 +62,7 @@ impl Friction {
             }
             (JointKind::Revolute, FrictionContact::Guide { .. })
             | (JointKind::Prismatic { .. } | JointKind::Slot { .. }, FrictionContact::Pin { .. })
+            | (_, FrictionContact::Bearing { .. })
             | (
                 JointKind::Weld { .. }
                 | JointKind::Gear { .. }
@@ -79,6 +75,31 @@ impl Friction {
         };
         let misfit = "its joint is no revolute joint, prismatic joint or slot between its bodies";
         fits.then_some(()).ok_or(misfit)
+    }
+
+    /// What is wrong with its numbers.
+    pub(crate) fn validate_numbers(&self) -> Result<(), &'static str> {
+        let sizes = match self.contact {
+            FrictionContact::Pin { radius: size } | FrictionContact::Guide { length: size } => {
+                [size; 2]
+            }
+            FrictionContact::Bearing { radius, distance } => [radius, distance],
+        };
+        let mut sizes = [self.coefficient].into_iter().chain(sizes);
+        let regularized = self.regularization_speed.is_none_or(|speed| speed > 0.0);
+        let holds =
+            self.static_coefficient.is_finite() && self.static_coefficient >= self.coefficient;
+        if !holds {
+            return Err(
+                "its static coefficient must be finite and not below its coefficient of friction",
+            );
+        }
+        if !(regularized && sizes.all(|n| n.is_finite() && n >= 0.0)) {
+            return Err(
+                "its coefficient of friction and its size must be finite and not negative, its speed positive",
+            );
+        }
+        Ok(())
     }
 
     /// The reactions it depends on.

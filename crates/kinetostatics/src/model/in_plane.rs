@@ -4,7 +4,7 @@ use super::machine_model::MachineModel;
 use super::{Model, Workspace};
 use crate::drive::Drive;
 use crate::error::{LoadError, PositionResult, Result};
-use crate::friction::{self, FrictionState};
+use crate::friction::{self, DependentLoad, FrictionState};
 use crate::load::{AppliedWrench, ForceSource, Friction, Load, LoadKind, Magnitude, Signal};
 use crate::pass::{AtRest, GivenMotion, InverseDynamics, UnitAcceleration};
 use crate::reduced::{Coefficients, ReducibleModel};
@@ -304,7 +304,8 @@ impl MachineModel for Model {
         let dependent_loads = &self.dependent_loads;
         let solution = &mut workspace.friction_workspace;
         let states = &workspace.states;
-        friction::solve(dependent_loads, states, frictionless, responses, solution)?;
+        let by_speed = |dependent: &DependentLoad| dependent.factor(states);
+        friction::solve(dependent_loads, by_speed, frictionless, responses, solution)?;
         for (dependent, force) in dependent_loads.iter().zip(&solution.force) {
             workspace.loads.magnitude[dependent.load] = *force;
         }

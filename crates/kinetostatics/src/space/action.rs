@@ -67,6 +67,11 @@ impl CompiledKind {
             plan.coordinate_function(mechanism, coordinate)
                 .map(Action::Along)
         };
+        // Without the angle itself.
+        let about = |joint| {
+            plan.direction_function(mechanism, Coordinate::Angle(joint))
+                .map(Action::Along)
+        };
         let finite =
             "its points, directions and free value must be finite, its free length not negative";
         let is_finite = |direction: Direction| match direction {
@@ -111,14 +116,12 @@ impl CompiledKind {
                 along(Coordinate::Distance { bodies, points })?,
                 Resistance::Damper,
             ),
-            LoadKind::JointTorque(joint) => (along(Coordinate::Angle(joint))?, Resistance::None),
+            LoadKind::JointTorque(joint) => (about(joint)?, Resistance::None),
             LoadKind::TorsionSpring { joint, free_angle } if free_angle.is_finite() => (
                 along(Coordinate::Angle(joint))?,
                 Resistance::Spring(free_angle),
             ),
-            LoadKind::RotationalDamper(joint) => {
-                (along(Coordinate::Angle(joint))?, Resistance::Damper)
-            }
+            LoadKind::RotationalDamper(joint) => (about(joint)?, Resistance::Damper),
             LoadKind::SlideForce(joint) => (along(Coordinate::Travel(joint))?, Resistance::None),
             LoadKind::SlideDamper(joint) => (along(Coordinate::Travel(joint))?, Resistance::Damper),
             LoadKind::Gravity(_)
@@ -261,7 +264,7 @@ impl CompiledKind {
                 let [value, ..] = plan.coordinate(pose, of);
                 -(f * (value - T::from_f64(free)))
             }
-            Resistance::Damper => -(f * plan.coordinate(pose, of)[1]),
+            Resistance::Damper => -(f * plan.coordinate_rate(pose, of)),
         };
         let (bodies, arms, force) = match of {
             CoordinateFunction::Angle { bodies, axis, .. } => {

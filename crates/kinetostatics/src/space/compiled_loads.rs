@@ -28,12 +28,14 @@ impl CompiledLoads {
                 Magnitude::Constant(value) if !value.is_finite() => {
                     return Err(wrong("its magnitude is not a finite number"));
                 }
-                Magnitude::Friction(_) | Magnitude::Separating(_) => {
+                Magnitude::Separating(_) => {
                     return Err(wrong(
-                        "dry friction and separating forces of teeth are not computed in space",
+                        "separating forces of teeth are not computed in space",
                     ));
                 }
-                Magnitude::Constant(_)
+                // They are compiled with the reactions that they depend on.
+                Magnitude::Friction(_)
+                | Magnitude::Constant(_)
                 | Magnitude::Law(..)
                 | Magnitude::Expression(..)
                 | Magnitude::Function(..)

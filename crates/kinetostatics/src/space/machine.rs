@@ -9,10 +9,12 @@
 
 use super::action::CompiledKind;
 use super::compiled_loads::CompiledLoads;
+use super::friction::JointFriction;
 use super::load::{Load, LoadKind};
 use super::model::{Model, Workspace};
 use crate::drive::Drive;
 use crate::error::{KinetostaticsError, LoadError, PositionResult, Result};
+use crate::friction::{self, FrictionState};
 use crate::load::{Friction, Magnitude, Signal};
 use crate::model::{EvaluatedState, KinematicState, MachineModel};
 use crate::pass::InverseDynamics;
@@ -52,6 +54,25 @@ impl Model {
     ) -> Result<EvaluatedState<'a, T, Self>> {
         let state = self.kinematic_state(q, q_dot, workspace)?;
         state.apply_loads(t)?.evaluate(q_ddot, result)
+    }
+
+    /// The actions and reactions of inertia and of all loads, at the accelerations of the pose.
+    fn balance_loaded<T: Scalar>(
+        &self,
+        workspace: &mut Workspace<T>,
+        result: &mut InverseDynamics<T>,
+    ) {
+        self.require_inertia(workspace);
+        let Workspace {
+            forces,
+            load_wrenches,
+            ..
+        } = &mut *workspace;
+        for ([required], load) in forces.required.iter_mut().zip(load_wrenches) {
+            required.force -= load.force;
+            required.moment -= load.moment;
+        }
+        self.balance(workspace, result);
     }
 
     /// The wrench of a load on each body, about the origin of its evaluation frame, goes to `add`.
@@ -133,6 +154,7 @@ impl MachineModel for Model {
 
     fn with_loads(mut self, loads: Vec<Load>) -> Result<Self, LoadError> {
         self.loads = CompiledLoads::compile(self.mechanism(), self.plan(), loads)?;
+        self.compile_frictions()?;
         Ok(self)
     }
 
@@ -168,11 +190,11 @@ impl MachineModel for Model {
     }
 
     fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
-        std::iter::empty()
+        self.frictions.iter().map(|friction| friction.load)
     }
 
-    fn sticking_friction(&self, _: usize) -> Option<(Friction, CoordinateFunction)> {
-        None
+    fn sticking_friction(&self, index: usize) -> Option<(Friction, CoordinateFunction)> {
+        self.frictions.get(index)?.sticking()
     }
 
     #[inline]
@@ -220,9 +242,11 @@ impl MachineModel for Model {
             // Laws decide by one value.
             return Err(PositionError::LanesDiverge { q: f64::NAN }.into());
         }
+        let known = &mut workspace.friction_workspace.known;
+        known.fill(FrictionState::BySpeed);
         for (i, load) in self.loads.loads.iter().enumerate() {
             workspace.magnitudes[i] = match &load.magnitude {
-                Magnitude::External(_) => T::from_f64(0.0),
+                Magnitude::External(_) | Magnitude::Friction(_) => T::from_f64(0.0),
                 magnitude => self.eval_magnitude((i, magnitude), t, workspace)?,
             };
         }
@@ -283,17 +307,7 @@ impl MachineModel for Model {
         result: &mut InverseDynamics<T>,
     ) {
         self.plan().accelerations(q_ddot, &mut workspace.pose);
-        self.require_inertia(workspace);
-        let Workspace {
-            forces,
-            load_wrenches,
-            ..
-        } = &mut *workspace;
-        for ([required], load) in forces.required.iter_mut().zip(load_wrenches) {
-            required.force -= load.force;
-            required.moment -= load.moment;
-        }
-        self.balance(workspace, result);
+        self.balance_loaded(workspace, result);
     }
 
     #[inline]
@@ -371,5 +385,57 @@ impl MachineModel for Model {
         let kind = self.loads.kinds.get(load)?;
         let unit = kind.potential(self.plan(), &workspace.pose, self.inner_masses())?;
         Some(magnitude * unit)
+    }
+
+    fn contact_force<T: Scalar>(&self, index: usize, reactions: &[T]) -> T {
+        self.frictions[index].contact_force(reactions)
+    }
+
+    fn friction_states<T: Scalar>(workspace: &mut Workspace<T>) -> &mut [FrictionState<T>] {
+        &mut workspace.friction_workspace.known
+    }
+
+    fn solve_friction<T: Scalar>(
+        &self,
+        frictionless: &[T],
+        responses: &[InverseDynamics<T>],
+        workspace: &mut Workspace<T>,
+    ) -> Result<()> {
+        let Workspace {
+            pose,
+            friction_workspace: solution,
+            magnitudes,
+            ..
+        } = &mut *workspace;
+        let rate = |of| self.plan().coordinate_rate(pose, of);
+        let by_speed = |friction: &JointFriction| friction.factor(rate);
+        friction::solve(&self.frictions, by_speed, frictionless, responses, solution)?;
+        for (friction, force) in self.frictions.iter().zip(&solution.force) {
+            magnitudes[friction.load] = *force;
+        }
+        self.update_wrenches(workspace)
+    }
+
+    fn solve_prescribed_friction<T: Scalar>(
+        &self,
+        _: &[T],
+        workspace: &mut Workspace<T>,
+        result: &mut InverseDynamics<T>,
+    ) -> Result<()> {
+        if self.frictions.is_empty() {
+            return Ok(());
+        }
+        let mut responses = std::mem::take(&mut workspace.friction_responses);
+        let mut respond = || -> Result<()> {
+            for (load, response) in self.frictions().zip(&mut responses) {
+                self.load_response(load, workspace, response)?;
+            }
+            self.solve_friction(&result.reactions, &responses, workspace)
+        };
+        let solved = respond();
+        workspace.friction_responses = responses;
+        solved?;
+        self.balance_loaded(workspace, result);
+        Ok(())
     }
 }

@@ -2,9 +2,11 @@
 
 use super::action::CompiledKind;
 use super::compiled_loads::CompiledLoads;
+use super::friction::JointFriction;
 use super::load::LoadKind;
 use super::mass::Mass;
 use crate::error::PositionResult;
+use crate::friction::FrictionWorkspace;
 use crate::load::SignalWorkspace;
 use crate::pass::InverseDynamics;
 use dwell_geometry::space::{
@@ -74,9 +76,18 @@ pub struct Model {
     masses: Vec<Mass>,
     /// The bodies that have mass or inertia.
     inertial: Vec<usize>,
-    reactions: Vec<(Reaction, Option<(usize, Rotation)>)>,
+    /// The requested reactions, then the others on which friction depends.
+    reactions: Vec<CompiledReaction>,
+    /// How many reactions are requested.
+    requested: usize,
     pub(super) loads: CompiledLoads,
+    pub(super) frictions: Vec<JointFriction>,
+    /// By actuator: where it was assembled.
+    start: Vec<f64>,
 }
+
+/// A reaction; of one in the axes of its joint the body and, in its evaluation frame, these axes.
+type CompiledReaction = (Reaction, Option<(usize, Rotation)>);
 
 /// The memory of one thread.
 #[derive(Debug, Clone, PartialEq)]
@@ -94,6 +105,9 @@ pub struct Workspace<T = f64> {
     /// By body: the wrenches of all loads, about the origin of its evaluation frame.
     pub(super) load_wrenches: Vec<Wrench<T>>,
     pub(super) signals: SignalWorkspace<T>,
+    pub(super) friction_workspace: FrictionWorkspace<T>,
+    /// By friction: the response to one unit of it.
+    pub(super) friction_responses: Vec<InverseDynamics<T>>,
 }
 
 impl Model {
@@ -128,28 +142,20 @@ impl Model {
         internal[mechanism.ground] = Mass::default();
         let has_inertia = |b: &usize| internal[*b].mass > 0.0 || internal[*b].inertia != [0.0; 6];
         let inertial = (0..internal.len()).filter(has_inertia).collect();
-        let compile = |reaction: &Reaction| {
-            let (Component::Force(axes, k) | Component::Moment(axes, k)) = reaction.component;
-            let joint = mechanism.joints.get(reaction.joint.0).filter(|_| k < 3);
-            let joint = joint.ok_or(ModelError::Reaction(*reaction))?;
-            let of_joint = (axes == Axes::Joint).then(|| {
-                let (body, side) = (joint.side_body(0).0, &joint.sides[0]);
-                let in_body = Rotation::of_axes(side.axis, side.normal);
-                (body, frame(body).rotation.inverse().after(&in_body))
-            });
-            Ok((*reaction, of_joint))
-        };
         let reactions = reactions
             .iter()
-            .map(compile)
-            .collect::<Result<_, ModelError>>()?;
+            .map(|reaction| compile_reaction(mechanism, &plan, reaction))
+            .collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             mechanism: Arc::new(mechanism.clone()),
             plan,
             masses: internal,
             inertial,
+            requested: reactions.len(),
             reactions,
             loads: CompiledLoads::default(),
+            frictions: Vec::new(),
+            start: assembly.q.clone(),
         })
     }
 
@@ -173,16 +179,52 @@ impl Model {
         &self.plan
     }
 
-    /// The requested reactions.
+    /// The reactions that are computed: the requested ones in their order, then the others on which friction depends.
     pub fn reactions(&self) -> impl ExactSizeIterator<Item = Reaction> + '_ {
         self.reactions.iter().map(|(reaction, _)| *reaction)
     }
 
-    /// The same model with no reaction.
+    /// The requested reactions.
+    pub(super) fn requested_reactions(&self) -> impl ExactSizeIterator<Item = Reaction> + '_ {
+        self.reactions().take(self.requested)
+    }
+
+    /// Computes these reactions, the requested ones first, on which these frictions depend.
+    pub(super) fn set_reactions(&mut self, all: &[Reaction], frictions: Vec<JointFriction>) {
+        let (mechanism, plan) = (&self.mechanism, &self.plan);
+        let compile = |reaction| compile_reaction(mechanism, plan, reaction).ok();
+        self.reactions = all.iter().filter_map(compile).collect();
+        self.frictions = frictions;
+    }
+
+    /// The same model with no requested reaction.
     #[must_use]
     pub fn without_reactions(&self) -> Self {
+        let mut model = Self {
+            requested: 0,
+            ..self.clone()
+        };
+        // They fitted the joints, and depended on reactions that are determined.
+        let _ = model.compile_frictions();
+        model
+    }
+
+    /// The same for the responses to a unit of each load alone: no friction is solved, and no reaction is computed for it besides
+    /// the requested ones.
+    #[must_use]
+    pub fn for_unit_loads(mut self) -> Self {
+        self.reactions.truncate(self.requested);
+        self.frictions.clear();
+        self
+    }
+
+    /// The same mechanism for its inertia alone: no reaction and no load.
+    pub(super) fn inertia_only(&self) -> Self {
         Self {
             reactions: Vec::new(),
+            requested: 0,
+            loads: CompiledLoads::default(),
+            frictions: Vec::new(),
             ..self.clone()
         }
     }
@@ -198,6 +240,8 @@ impl Model {
             magnitudes: vec![T::from_f64(0.0); self.loads.kinds.len()],
             load_wrenches: vec![Wrench::default(); self.masses.len()],
             signals: SignalWorkspace::new(self.loads.max_signals()),
+            friction_workspace: FrictionWorkspace::new(self.frictions.len()),
+            friction_responses: vec![self.result_buffer(); self.frictions.len()],
         }
     }
 
@@ -218,6 +262,36 @@ impl Model {
             });
         }
         Ok(determined)
+    }
+
+    /// By reaction: whether the loads determine it where the mechanism is assembled and, with one actuator, elsewhere in its range: a
+    /// symmetric start may hide what is open.
+    ///
+    /// # Errors
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at the start.
+    pub fn determined_throughout(&self) -> PositionResult<Vec<bool>> {
+        let mut workspace = self.workspace();
+        let mut determined = self.determined(&self.start, &mut workspace)?;
+        for q in self.elsewhere() {
+            if let Ok(there) = self.determined(&[q], &mut workspace) {
+                (determined.iter_mut().zip(there)).for_each(|(all, here)| *all &= here);
+            }
+        }
+        Ok(determined)
+    }
+
+    /// Other coordinates of a mechanism with one actuator, within its range.
+    fn elsewhere(&self) -> Vec<f64> {
+        let [start] = self.start[..] else {
+            return Vec::new();
+        };
+        let step = match self.plan.range().limits() {
+            None => 1.0,
+            Some((from, to)) => 0.2 * (to - from),
+        };
+        [-1.13, -0.41, 0.37, 1.21]
+            .map(|parts| start + parts * step)
+            .to_vec()
     }
 
     /// A buffer for the results of this model.
@@ -377,6 +451,24 @@ impl Model {
         }
         Ok(())
     }
+}
+
+/// A reaction in the frames of a plan.
+fn compile_reaction(
+    mechanism: &Mechanism,
+    plan: &Plan,
+    reaction: &Reaction,
+) -> Result<CompiledReaction, ModelError> {
+    let (Component::Force(axes, k) | Component::Moment(axes, k)) = reaction.component;
+    let joint = mechanism.joints.get(reaction.joint.0).filter(|_| k < 3);
+    let joint = joint.ok_or(ModelError::Reaction(*reaction))?;
+    let of_joint = (axes == Axes::Joint).then(|| {
+        let (body, side) = (joint.side_body(0).0, &joint.sides[0]);
+        let in_body = Rotation::of_axes(side.axis, side.normal);
+        let frame = plan.evaluation_frame(body);
+        (body, frame.rotation.inverse().after(&in_body))
+    });
+    Ok((*reaction, of_joint))
 }
 
 /// Whether a body's inertia couples its rotation about a line with the motion: the centre is off it, or the inertia is not that of a body of revolution.

@@ -58,7 +58,7 @@ impl ReducibleModel for Model {
     }
 
     fn for_inertia(&self) -> Self {
-        self.without_reactions()
+        self.inertia_only()
     }
 
     fn reduce_at<T: Scalar>(

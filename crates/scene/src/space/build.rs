@@ -4,6 +4,7 @@ use super::actuators::{ParsedActuator, actuators, require_lengths};
 use super::assembly::assembly;
 use super::bodies::Space;
 use super::coordinates::coordinates;
+use super::friction::add_friction;
 use super::joints::Joints;
 use super::loads::LoadReader;
 use super::requests::{in_ground_axes, one_reaction, reactions};
@@ -117,9 +118,12 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
         magnitudes: &magnitudes,
     };
     let load_fields = section("loads");
-    let loads = load_fields
+    let mut loads = load_fields
         .as_ref()
         .map_or_else(Vec::new, |f| reader.loads(f));
+    if let Some(f) = section("friction") {
+        add_friction(&f, &joints, &mut loads);
+    }
     let reader = DriveReader {
         coordinates: &named,
         magnitudes: &magnitudes,

@@ -114,6 +114,22 @@ fn read_joint(entry: &Entry<'_>, id: JointId, bodies: &Bodies<'_, Space>) -> Opt
     ))
 }
 
+/// The name of a kind of joint.
+pub(super) fn kind_name(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Revolute => "revolute",
+        JointKind::Prismatic => "prismatic",
+        JointKind::Cylindrical => "cylindrical",
+        JointKind::Helical { .. } => "helical",
+        JointKind::Universal => "universal",
+        JointKind::Spherical => "spherical",
+        JointKind::Planar => "planar",
+        JointKind::Weld => "weld",
+        JointKind::Distance { .. } => "distance",
+        JointKind::Gear { .. } => "gear",
+    }
+}
+
 fn joint_kind(kind: &str, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<JointKind> {
     Some(match kind {
         "revolute" => JointKind::Revolute,

@@ -6,6 +6,7 @@ mod assembly;
 mod bodies;
 mod build;
 mod coordinates;
+mod friction;
 mod joints;
 mod loads;
 mod points;

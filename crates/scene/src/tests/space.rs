@@ -7,8 +7,8 @@ use crate::keys::kinds;
 use crate::{AnyScene, Scene, SpaceScene};
 use dwell_geometry::space::{ActuatorKind, JointKind, Rotation, Vec3, vec3};
 use dwell_geometry::{BodyId, JointId};
-use dwell_kinetostatics::Magnitude;
 use dwell_kinetostatics::space::{Direction, Load, LoadKind};
+use dwell_kinetostatics::{Friction, FrictionContact, Magnitude};
 use std::f64::consts::{PI, TAU};
 
 fn close(a: Vec3, b: Vec3) -> bool {
@@ -70,7 +70,7 @@ fn assembly_loads_and_requests_are_read_in_si() {
     // A vector of two right angles turns by two right angles.
     let half = Rotation::of_vector(vec3(PI, 0.0, 0.0)).apply(vec3(0.0, 1.0, 0.0));
     assert!((half - vec3(0.0, -1.0, 0.0)).norm() < 1e-15);
-    let [weight, push, twist, drag, _] = &scene.loads[..] else {
+    let [weight, push, twist, drag, _, ..] = &scene.loads[..] else {
         panic!("{} loads", scene.loads.len())
     };
     let constant = |load: &Load| match load.magnitude {
@@ -101,6 +101,46 @@ fn assembly_loads_and_requests_are_read_in_si() {
             "A.z",
             "A.moment-across",
             "P.axial"
+        ]
+    );
+}
+
+/// A friction of a cylindrical joint is two loads: along the axis and about it.
+#[test]
+fn friction_is_read_in_si() {
+    let scene = SpaceScene::parse("test.toml", IN_SPACE).expect("a scene");
+    let [_, _, _, _, _, hinge, oil, slide, along, about] = &scene.loads[..] else {
+        panic!("{} loads", scene.loads.len())
+    };
+    let dry = |load: &Load, joint: usize, [low, high]: [f64; 2], contact, speed| {
+        let friction = load.friction().expect("friction");
+        let wanted = Friction {
+            joint: JointId(joint),
+            coefficient: low,
+            static_coefficient: high,
+            contact,
+            regularization_speed: speed,
+        };
+        assert_eq!(friction, wanted, "{}", load.name);
+    };
+    let bearing = |radius, distance| FrictionContact::Bearing { radius, distance };
+    let guide = FrictionContact::Guide { length: 0.04 };
+    dry(hinge, 0, [0.1; 2], bearing(0.005, 0.0), None);
+    dry(slide, 3, [0.2, 0.3], guide, None);
+    for load in [along, about] {
+        dry(load, 4, [0.05; 2], bearing(0.004, 0.03), Some(0.002));
+    }
+    assert_eq!(oil.magnitude, Magnitude::Constant(0.002));
+    let of = [hinge, oil, slide, along, about].map(|load| (load.name.as_str(), load.kind));
+    let (hinge, guide, tube) = (JointId(0), JointId(3), JointId(4));
+    assert_eq!(
+        of,
+        [
+            ("A.friction", LoadKind::JointTorque(hinge)),
+            ("A.viscous", LoadKind::RotationalDamper(hinge)),
+            ("slide.friction", LoadKind::SlideForce(guide)),
+            ("tube.friction", LoadKind::SlideForce(tube)),
+            ("tube.friction-moment", LoadKind::JointTorque(tube)),
         ]
     );
 }
@@ -199,6 +239,7 @@ bodies.block = { points = { A = [0, 0, 0] } }
 joints.A = { revolute = ["ground.A", "crank.A"], axis = [0, 0, 1] }
 joints.B = { spherical = ["crank.B", "rod.B"] }
 joints.slide = { prismatic = ["ground.S", "piston.P"], axis = [1, 0, 0] }
+joints.tube = { cylindrical = ["ground.S", "block.A"], axis = [1, 0, 0] }
 joints.S = { spherical = ["rod.A", "shaft.A"] }
 joints.N = { spherical = ["rod.A", "nut.A"] }
 joints.K = { spherical = ["rod.A", "block.A"] }
@@ -230,6 +271,9 @@ fn every_example_of_a_key_in_space_is_read() {
                 }
                 "[assembly.<body>] in space" => format!("assembly.rod = {inner}"),
                 "[requests] in space" => format!("requests = {inner}"),
+                "[friction.<hinge>] in space" => format!("friction.A = {inner}"),
+                "[friction.<slide>] in space" => format!("friction.slide = {inner}"),
+                "[friction.<tube>] in space" => format!("friction.tube = {inner}"),
                 _ if kinds("joints-in-space")
                     .iter()
                     .any(|t| t.kind_key() == first) =>

@@ -1,7 +1,7 @@
 //! A scene as plain data for export, and what of it cannot be exported.
 
 use super::sampler::SceneSampler;
-use crate::explain::{StudyError, explain_machine, not_one_actuator, scene_error};
+use crate::explain::{NamedScene, StudyError, explain_machine, not_one_actuator, scene_error};
 use crate::models::{build_machine, determinate_model, initial_reduced_state, with_drive_loads};
 use dwell_dynamics::{TabulatedMachine, TabulationError};
 use dwell_export::{
@@ -74,19 +74,29 @@ pub(super) fn with_unit_loads(scene: &Scene) -> Result<(Scene, Model), StudyErro
     Ok((loaded, model))
 }
 
+/// Rejects dry friction, in the plane or in space, by the index of its load.
+pub(crate) fn reject_friction(
+    scene: &impl NamedScene,
+    load: Option<usize>,
+) -> Result<(), StudyError> {
+    let Some(load) = load else {
+        return Ok(());
+    };
+    let name = scene.load_name(load).unwrap_or_default();
+    Err(scene_error(
+        scene,
+        format!(
+            "no export: {name} is dry friction, which depends on the reactions and holds at rest"
+        ),
+        "leave the friction out, or put a damper in its place; `dwell simulate` computes it",
+        [(SceneLocation::Load(load), "dry friction")],
+    ))
+}
+
 /// Rejects what has no function of the coordinate alone.
 fn reject_contacts(scene: &Scene) -> Result<(), StudyError> {
-    if let Some(load) = scene.loads.iter().position(|l| l.friction().is_some()) {
-        let name = &scene.loads[load].name;
-        return Err(scene_error(
-            scene,
-            format!(
-                "no export: {name} is dry friction, which depends on the reactions and holds at rest"
-            ),
-            "leave the friction out, or put a damper in its place; `dwell simulate` computes it",
-            [(SceneLocation::Load(load), "dry friction")],
-        ));
-    }
+    let friction = scene.loads.iter().position(|l| l.friction().is_some());
+    reject_friction(scene, friction)?;
     if let Some(load) = scene
         .loads
         .iter()

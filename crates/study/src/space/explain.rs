@@ -255,6 +255,15 @@ pub(super) fn with_loads(scene: &SpaceScene, model: Model) -> Result<Model, Stud
 
 /// Explains a load, or a drive behind the loads, that does not fit the mechanism.
 pub(super) fn explain_load_error(scene: &SpaceScene, error: &LoadError) -> StudyError {
+    let load = scene.loads.get(error.load);
+    if let Some(friction) = load.and_then(|load| load.friction()) {
+        let joint = &scene.mechanism.joints[friction.joint.0].name;
+        let message = format!("the friction of joint `{joint}` {}", error.what);
+        let help = "replace a joint of its loop by one with more freedoms, such as a spherical or a cylindrical joint; without \
+                    `bearing-distance` or `guide-length` no moment counts; `dwell check` shows which reactions are determined";
+        let place = (SceneLocation::Load(error.load), "this friction");
+        return scene_error(scene, message, help, [place]);
+    }
     let message = format!(
         "`{}` cannot act on the mechanism: {}",
         name_of_load(scene, error.load),
@@ -303,10 +312,10 @@ pub(super) fn explain_loads(
             "no finite value",
         ),
         KinetostaticsError::SelfLocking { load } => (
-            error.to_string(),
-            "reduce the coefficient of friction",
+            "the mechanism is self-locking by friction there: the equations of motion have no unique solution".to_owned(),
+            "reduce a friction coefficient, or apply the force where the joint reactions are smaller",
             SceneLocation::Load(load),
-            "self-locking here",
+            "together with the other friction loads",
         ),
     };
     scene_error(scene, message, help, [(at, label)])

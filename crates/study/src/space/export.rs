@@ -3,7 +3,9 @@
 use super::explain::explain_position;
 use super::prepared::PreparedSpaceScene;
 use crate::explain::StudyError;
-use crate::export::description::{domain, drive_effect, magnitude_effect, varying_input};
+use crate::export::description::{
+    domain, drive_effect, magnitude_effect, reject_friction, varying_input,
+};
 #[cfg(feature = "output")]
 use crate::export::output::{ExportTarget, export_machine};
 use crate::export::{ExportRequest, explain_fit, no_operations};
@@ -45,6 +47,8 @@ pub fn compute_export_in_space(
     scene: &SpaceScene,
     asked: &ExportRequest,
 ) -> Result<Export, StudyError> {
+    let friction = scene.loads.iter().position(|l| l.friction().is_some());
+    reject_friction(scene, friction)?;
     let prepared = PreparedSpaceScene::new(scene)?;
     let domain = domain(
         &scene.file,

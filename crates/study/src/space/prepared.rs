@@ -133,33 +133,12 @@ pub(super) fn sort_reactions(
     scene: &SpaceScene,
     model: &Model,
 ) -> Result<[Vec<Reaction>; 2], StudyError> {
-    let workspace = &mut model.workspace();
-    let mut determined = model
-        .determined(&scene.assembly.q, workspace)
+    let determined = model
+        .determined_throughout()
         .map_err(|e| explain_position(scene, model.plan(), &e))?;
-    // A symmetric start may hide what is open elsewhere.
-    for q in elsewhere(scene, model) {
-        if let Ok(there) = model.determined(&[q], workspace) {
-            (determined.iter_mut().zip(there)).for_each(|(all, here)| *all &= here);
-        }
-    }
     let all = model.reactions().zip(determined);
     let (determined, others): (Vec<_>, Vec<_>) = all.partition(|(_, determined)| *determined);
     Ok([determined, others].map(|some| some.into_iter().map(|(reaction, _)| reaction).collect()))
-}
-
-/// Other coordinates of a mechanism with one actuator, within its range.
-fn elsewhere(scene: &SpaceScene, model: &Model) -> Vec<f64> {
-    let [start] = scene.assembly.q[..] else {
-        return Vec::new();
-    };
-    let step = match model.plan().range().limits() {
-        None => 1.0,
-        Some((from, to)) => 0.2 * (to - from),
-    };
-    [-1.13, -0.41, 0.37, 1.21]
-        .map(|parts| start + parts * step)
-        .to_vec()
 }
 
 /// Units of w along an angle, and of c of a force and of a moment.
@@ -260,7 +239,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
             return Ok(None);
         }
         let model = self.model.model();
-        let loaded = with_loads(self.scene, model.clone())?;
+        let loaded = with_loads(self.scene, model.clone())?.for_unit_loads();
         let (mut workspace, mut response) = (loaded.workspace(), loaded.result_buffer());
         let mut curves = UnitLoadCurves {
             loads: loads
@@ -304,6 +283,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
         // Drives are no part of a table.
         let loaded = model.with_loads(self.scene.loads.clone());
         let loaded = loaded.map_err(|error| explain_load_error(self.scene, &error))?;
+        let loaded = loaded.for_unit_loads();
         // The model has one actuator, as the prepared one has.
         let exact = ExactModel::new(loaded).unwrap_or_else(|| self.model.clone());
         Ok(TabulatedModel::new(&exact, accuracy, domain))

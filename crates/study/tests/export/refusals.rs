@@ -19,6 +19,21 @@ fn several_freedoms_and_dry_friction_are_refused_by_name() {
 }
 
 #[test]
+fn dry_friction_in_space_is_refused_by_name() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../validation/spatial/rssr.toml"
+    );
+    let text = std::fs::read_to_string(path).expect("the file")
+        + "\n[friction]\nD = { coefficient = 0.1, radius = 0.01, regularization-speed = 0.1 }\n";
+    let scene = dwell_scene::SpaceScene::parse("rssr.toml", &text).expect("a scene");
+    let asked = request(1e-6, Precision::Double);
+    let error = dwell_study::compute_export_in_space(&scene, &asked).expect_err("a refusal");
+    let found = error.to_string();
+    assert!(found.contains("D.friction is dry friction"), "{found}");
+}
+
+#[test]
 fn laws_known_by_values_have_no_operations() {
     let asked = ExportRequest {
         exact: true,

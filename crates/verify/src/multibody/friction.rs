@@ -116,8 +116,11 @@ impl MultibodySystem {
             return none;
         };
         let row = |component| row_of(friction.joint, component);
-        let (FrictionContact::Pin { radius: size } | FrictionContact::Guide { length: size }) =
-            friction.contact;
+        let size = match friction.contact {
+            FrictionContact::Pin { radius: size } | FrictionContact::Guide { length: size } => size,
+            // Of a joint in space.
+            FrictionContact::Bearing { .. } => return none,
+        };
         if let (Some((i, x)), Some((j, y))) = (row(Component::X), row(Component::Y)) {
             let force = x.hypot(y);
             if force == 0.0 {

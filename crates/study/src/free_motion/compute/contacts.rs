@@ -2,9 +2,12 @@
 //! summary, and events beside those of the scene.
 
 use crate::estimate;
+use crate::explain::NamedScene;
 use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
 use crate::number_format::{digits, digits_within, how_often};
-use dwell_dynamics::{ContactEvent, ContactMode, OdeState, StopChange};
+use dwell_dynamics::{
+    ContactEvent, ContactMode, Machine, MovingModel, OdeState, Solution, StopChange,
+};
 use dwell_findings::Record;
 
 /// What a friction does from an event on.
@@ -15,49 +18,77 @@ const OF_SWITCH: [&str; 2] = ["holds at its switch", "leaves its switch"];
 const OF_STOP: [&str; 4] = ["is struck", "is rested on", "is left", "is touched"];
 
 /// A change of a contact, as an event.
-pub(super) struct ContactOccurrence {
+pub(crate) struct ContactOccurrence {
     /// Its number, behind those of the scene's events.
-    pub(super) number: usize,
+    pub(crate) number: usize,
     /// The chart of its segment.
-    pub(super) chart: usize,
+    pub(crate) chart: usize,
     /// Its time and the state behind it.
-    pub(super) state: OdeState,
+    pub(crate) state: OdeState,
     /// Of an impact: by free coordinate, the change of its speed.
-    pub(super) speed_changes: Vec<f64>,
+    pub(crate) speed_changes: Vec<f64>,
 }
 
-impl FreeMotionProblem<'_> {
-    /// By kind of event of contacts: its name; they are numbered behind the scene's events.
-    fn contact_event_names(&self) -> Vec<String> {
-        let frictions = self.machine.contact_loads().map(|load| {
-            let name = self.loaded_scene.loads[load].name.as_str();
+/// The contacts of a machine in the plane or in space, whose events are numbered behind those of the scene.
+pub(crate) struct NamedContacts {
+    /// The frictions that hold: their loads and the names of their joints.
+    frictions: Vec<(usize, String)>,
+    stops: Vec<String>,
+    /// The loads that switch.
+    switches: Vec<(usize, String)>,
+    /// Number of the scene's events.
+    before: usize,
+}
+
+impl NamedContacts {
+    /// Those of a machine of a scene with so many events.
+    pub(crate) fn new<M: MovingModel>(
+        scene: &impl NamedScene,
+        machine: &Machine<M>,
+        before: usize,
+    ) -> Self {
+        let name = |load: usize| scene.load_name(load).unwrap_or_default();
+        let joint = |load: usize| {
+            let name = name(load);
             (
-                name.strip_suffix(".friction").unwrap_or(name),
-                &OF_FRICTION[..],
+                load,
+                name.strip_suffix(".friction").unwrap_or(name).to_owned(),
             )
-        });
-        let stops = self.loaded_scene.stops.iter();
-        let stops = stops.map(|stop| (stop.name.as_str(), &OF_STOP[..]));
-        let switching = self.machine.switching_loads();
-        let switching = switching
+        };
+        let stops = (0..).map_while(|k| scene.stop(k));
+        let switching = machine.switching_loads().into_iter();
+        Self {
+            frictions: machine.contact_loads().map(joint).collect(),
+            stops: stops.map(|(name, _)| name.to_owned()).collect(),
+            switches: switching
+                .map(|load| (load, name(load).to_owned()))
+                .collect(),
+            before,
+        }
+    }
+
+    /// By kind of event: its name.
+    fn names(&self) -> Vec<String> {
+        let frictions = self
+            .frictions
             .iter()
-            .map(|&load| (self.loaded_scene.loads[load].name.as_str(), &OF_SWITCH[..]));
-        let all = frictions.chain(stops).chain(switching);
+            .map(|(_, name)| (name, &OF_FRICTION[..]));
+        let stops = self.stops.iter().map(|name| (name, &OF_STOP[..]));
+        let switches = self.switches.iter().map(|(_, name)| (name, &OF_SWITCH[..]));
+        let all = frictions.chain(stops).chain(switches);
         all.flat_map(|(name, verbs)| verbs.iter().map(move |verb| format!("{name} {verb}")))
             .collect()
     }
 
-    /// The name of an event of contacts, by its number.
-    pub(super) fn contact_event_name(&self, number: usize) -> String {
-        let index = number - self.spec.events.len() - 1;
-        self.contact_event_names()
-            .get(index)
-            .cloned()
-            .unwrap_or_default()
+    /// The name of an event, by its number.
+    pub(crate) fn name(&self, number: usize) -> String {
+        let index = number - self.before - 1;
+        self.names().get(index).cloned().unwrap_or_default()
     }
 
-    /// The kind of an event of contacts; none where surfaces at their limit are held by others, or turn back.
+    /// The kind of an event; none where surfaces at their limit are held by others, or turn back.
     fn kind_of(&self, event: &ContactEvent) -> Option<usize> {
+        let frictions = OF_FRICTION.len() * self.frictions.len();
         match event {
             ContactEvent::Friction { load, from, to, .. } => {
                 let moved = matches!(from, ContactMode::Slides { .. });
@@ -67,14 +98,12 @@ impl FreeMotionProblem<'_> {
                     ContactMode::Holds | ContactMode::AtLimit { .. } if moved => 0,
                     _ => return None,
                 };
-                let contact = self.machine.contact_loads().position(|l| l == *load)?;
+                let contact = self.frictions.iter().position(|(l, _)| l == load)?;
                 Some(OF_FRICTION.len() * contact + kind)
             }
             ContactEvent::Switch { load, sliding, .. } => {
-                let loads = self.machine.switching_loads();
-                let load = loads.iter().position(|l| l == load)?;
-                let frictions = OF_FRICTION.len() * self.machine.contact_loads().count();
-                let stops = OF_STOP.len() * self.loaded_scene.stops.len();
+                let load = self.switches.iter().position(|(l, _)| l == load)?;
+                let stops = OF_STOP.len() * self.stops.len();
                 let kind = usize::from(sliding.is_none());
                 Some(frictions + stops + OF_SWITCH.len() * load + kind)
             }
@@ -85,62 +114,50 @@ impl FreeMotionProblem<'_> {
                     StopChange::Leaves => 2,
                     StopChange::Touches => 3,
                 };
-                let frictions = OF_FRICTION.len() * self.machine.contact_loads().count();
                 Some(frictions + OF_STOP.len() * stop + kind)
             }
         }
     }
 
-    /// The changes of all contacts, in order of time.
-    pub(super) fn contact_occurrences(&self, motion: &SegmentedMotion) -> Vec<ContactOccurrence> {
-        let mut all = Vec::new();
-        for (chart, solution) in &motion.segments {
-            for event in &solution.contact_events {
-                let Some(kind) = self.kind_of(event) else {
-                    continue;
-                };
-                let speed_changes = match event {
-                    ContactEvent::Stop {
-                        change: StopChange::Impact { changes, .. },
-                        ..
-                    } => changes.clone(),
-                    _ => Vec::new(),
-                };
-                all.push(ContactOccurrence {
-                    number: self.spec.events.len() + kind + 1,
-                    chart: *chart,
-                    state: OdeState {
-                        t: event.t(),
-                        y: event.y().to_vec(),
-                    },
-                    speed_changes,
-                });
-            }
-        }
-        all
+    /// The changes of all contacts in a solution of a chart, in order of time.
+    pub(crate) fn occurrences(&self, chart: usize, solution: &Solution) -> Vec<ContactOccurrence> {
+        let one = |event: &ContactEvent| {
+            let kind = self.kind_of(event)?;
+            let speed_changes = match event {
+                ContactEvent::Stop {
+                    change: StopChange::Impact { changes, .. },
+                    ..
+                } => changes.clone(),
+                _ => Vec::new(),
+            };
+            Some(ContactOccurrence {
+                number: self.before + kind + 1,
+                chart,
+                state: OdeState {
+                    t: event.t(),
+                    y: event.y().to_vec(),
+                },
+                speed_changes,
+            })
+        };
+        solution.contact_events.iter().filter_map(one).collect()
     }
 
-    /// Lines of the summary: how often each contact changes, and when first.
-    pub(super) fn describe_contacts(
+    /// Lines of the summary: how often each contact changes in a motion, and when first, with what a second run says.
+    pub(crate) fn describe(
         &self,
-        computed: &ComputedMotion,
+        own: &[ContactOccurrence],
+        second: Option<&[ContactOccurrence]>,
         record: &mut Record,
     ) -> String {
         let mut text = String::new();
-        let names = self.contact_event_names();
-        if names.is_empty() {
-            return text;
-        }
-        let own = self.contact_occurrences(&computed.motion);
-        let second = computed.comparison.as_ref();
-        let second = second.map(|motion| self.contact_occurrences(motion));
-        for (k, name) in names.iter().enumerate() {
-            let number = self.spec.events.len() + k + 1;
+        for (k, name) in self.names().iter().enumerate() {
+            let number = self.before + k + 1;
             let times = |all: &[ContactOccurrence]| -> Vec<f64> {
                 let of_kind = all.iter().filter(|o| o.number == number);
                 of_kind.map(|o| o.state.t).collect()
             };
-            let own = times(&own);
+            let own = times(own);
             let Some(&first) = own.first() else { continue };
             let count = own.len();
             record.add_count(format!("event.{name}.number"), number);
@@ -150,7 +167,7 @@ impl FreeMotionProblem<'_> {
                 "  {name} (event {number}): {}, first at t = ",
                 how_often(count)
             );
-            let others = second.as_deref().map(times);
+            let others = second.map(times);
             text += &match others.as_ref().and_then(|others| others.first()) {
                 Some(other) => {
                     let error = estimate::of_number(first, *other);
@@ -172,5 +189,37 @@ impl FreeMotionProblem<'_> {
             text += "\n";
         }
         text
+    }
+}
+
+impl FreeMotionProblem<'_> {
+    /// Its contacts.
+    fn contacts(&self) -> NamedContacts {
+        NamedContacts::new(self.loaded_scene, &self.machine, self.spec.events.len())
+    }
+
+    /// The name of an event of contacts, by its number.
+    pub(super) fn contact_event_name(&self, number: usize) -> String {
+        self.contacts().name(number)
+    }
+
+    /// The changes of all contacts, in order of time.
+    pub(super) fn contact_occurrences(&self, motion: &SegmentedMotion) -> Vec<ContactOccurrence> {
+        let contacts = self.contacts();
+        let segments = motion.segments.iter();
+        let all = segments.flat_map(|(chart, solution)| contacts.occurrences(*chart, solution));
+        all.collect()
+    }
+
+    /// Lines of the summary: how often each contact changes, and when first.
+    pub(super) fn describe_contacts(
+        &self,
+        computed: &ComputedMotion,
+        record: &mut Record,
+    ) -> String {
+        let own = self.contact_occurrences(&computed.motion);
+        let second = computed.comparison.as_ref();
+        let second = second.map(|motion| self.contact_occurrences(motion));
+        self.contacts().describe(&own, second.as_deref(), record)
     }
 }

@@ -16,6 +16,7 @@ mod simulation;
 mod tables;
 mod within_steps;
 
+pub(crate) use contacts::NamedContacts;
 pub(crate) use difference::Difference;
 pub(crate) use difference::pair_by_time;
 pub use period::compute_period;

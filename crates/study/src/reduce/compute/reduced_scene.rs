@@ -183,7 +183,8 @@ impl ReducedScene for PreparedScene<'_> {
         accuracy: f64,
         domain: TableDomain,
     ) -> Result<Result<TabulatedModel, TableError>, StudyError> {
-        let exact = exact_model(self.scene, loaded_determinate_model(self.scene)?)?;
+        let model = loaded_determinate_model(self.scene)?.for_unit_loads();
+        let exact = exact_model(self.scene, model)?;
         Ok(TabulatedModel::new(&exact, accuracy, domain))
     }
 

@@ -161,7 +161,16 @@ impl SpaceMotionProblem<'_> {
             name: self.spec.events[occurrence.event].name.clone(),
             t: occurrence.state.t,
         };
-        run.solution.event_occurrences.iter().map(event).collect()
+        let contacts = self.contacts();
+        let changes = contacts.occurrences(0, &run.solution).into_iter();
+        let changes = changes.map(|change| RecordedEvent {
+            name: contacts.name(change.number),
+            t: change.state.t,
+        });
+        let own = run.solution.event_occurrences.iter().map(event);
+        let mut all: Vec<_> = own.chain(changes).collect();
+        all.sort_by(|one, other| one.t.total_cmp(&other.t));
+        all
     }
 
     /// The rows of a motion.

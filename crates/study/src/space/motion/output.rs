@@ -34,9 +34,9 @@ pub fn simulate_in_space(
     let pictures = (all_figures, positions.animation());
     let mut outcome = outcome_of(&scene.file, &computed, &document, pictures)?;
     outcome.run = Some(Box::new(page));
-    if !run.solution.event_occurrences.is_empty() {
+    let table = problem.event_table(&run.solution);
+    if !table.rows.is_empty() {
         let name = format!("{}-motion-events.csv", scene.name);
-        let table = problem.event_table(&run.solution);
         outcome.files.add(name, table.csv()?);
     }
     let (summary, record) = problem.summary(&run, problem.duration()?);

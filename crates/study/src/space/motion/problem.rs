@@ -1,6 +1,7 @@
 //! The initial value problem of a free motion of a scene in space.
 
 use crate::explain::{StudyError, missing_section_label, scene_error};
+use crate::free_motion::compute::NamedContacts;
 use crate::machines::MachineScene;
 use crate::space::explain::{explain_position, with_loads};
 use crate::space::prepared::compile;
@@ -127,6 +128,11 @@ impl<'a> SpaceMotionProblem<'a> {
             })
         };
         self.spec.events.iter().enumerate().map(one).collect()
+    }
+
+    /// The contacts of its machine, whose events are numbered behind those of the scene.
+    pub(super) fn contacts(&self) -> NamedContacts {
+        NamedContacts::new(self.scene, &self.machine, self.spec.events.len())
     }
 
     /// The initial state of its machine.

@@ -34,6 +34,10 @@ impl SpaceMotionProblem<'_> {
             };
             text += &format!("  {}: {happened}{stopped}\n", event.name);
         }
+        let contacts = self.contacts();
+        let changes = |solution: &Solution| contacts.occurrences(0, solution);
+        let second = run.second.as_ref().map(changes);
+        text += &contacts.describe(&changes(&run.solution), second.as_deref(), &mut record);
         let cost = run.solution.statistics;
         for (name, count) in [
             ("steps", cost.steps),

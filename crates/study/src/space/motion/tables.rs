@@ -1,5 +1,6 @@
 //! The samples and the events of a motion as tables.
 
+use super::between_rows::MotionSampler;
 use super::problem::SpaceMotionProblem;
 use super::run::Run;
 use crate::free_motion::compute::sliding_at;
@@ -7,7 +8,9 @@ use crate::machines::MachineScene as _;
 use crate::models::states_of_drives;
 #[cfg(feature = "output")]
 use crate::number_format::coordinate_unit;
-use crate::trajectory::compute::{BALANCE, Column, KINETIC, POTENTIAL, Quantity, TrajectorySample};
+use crate::trajectory::compute::{
+    BALANCE, Column, KINETIC, POTENTIAL, Quantity, SamplePrecision, TrajectorySample,
+};
 use dwell_dynamics::{
     DenseOutput, DynamicsError, MachineOde, MachineWorkspace, OdeState, Options, Sliding, Solution,
     StepControl, integrate,
@@ -45,6 +48,9 @@ impl SpaceMotionProblem<'_> {
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let last = run.solution.steps.last();
         let end = last.map_or(0.0, |step| step.t);
+        if self.machine.contact_loads().next().is_some() {
+            return self.samples_between_contacts(run, times, end);
+        }
         let wanted: Vec<f64> = times
             .iter()
             .copied()
@@ -91,6 +97,31 @@ impl SpaceMotionProblem<'_> {
         Ok(all)
     }
 
+    /// The same of a motion whose surfaces come to rest: from the step before each time.
+    fn samples_between_contacts(
+        &self,
+        run: &Run,
+        times: &[f64],
+        end: f64,
+    ) -> Result<Vec<TrajectorySample>, DynamicsError> {
+        let mut sampler = MotionSampler::new(self, run);
+        let wanted = times.iter().copied().filter(|&t| t < end).chain([end]);
+        let sample = |t: f64| {
+            let found = sampler.sample_at(t, SamplePrecision::Exact);
+            found.ok_or(DynamicsError::StepTooSmall { t })
+        };
+        let mut all = wanted.map(sample).collect::<Result<Vec<_>, _>>()?;
+        let initial = self.sample(&self.initial_state(), None, &mut self.machine.workspace())?;
+        let index = self.balance_index();
+        for sample in &mut all {
+            sample.extra_values[index] -= initial.extra_values[index];
+        }
+        if let [only] = all.as_slice() {
+            all.push(only.clone());
+        }
+        Ok(all)
+    }
+
     /// A state of the machine with its accelerations, drive magnitudes and energies; with the balance of energies and works in
     /// place of its error.
     pub(super) fn sample(
@@ -115,14 +146,18 @@ impl SpaceMotionProblem<'_> {
             q: state.q().to_vec(),
             q_dot: state.q_dot().to_vec(),
             q_ddot: state.q_ddot().to_vec(),
-            drive_magnitudes: drives().map(|load| (load, magnitudes[load])).collect(),
+            drive_magnitudes: drives()
+                .chain(machine.contact_loads())
+                .map(|load| (load, magnitudes[load]))
+                .collect(),
             extra_values,
             ..TrajectorySample::default()
         };
         if let Some(sliding) = sliding {
             let forces = machine.sliding_forces(sliding, point, workspace)?;
-            let given = drives().chain(machine.switching_loads());
+            let given = machine.switching_loads().into_iter();
             let given = given.filter(|load| *load >= loads);
+            let given = drives().chain(machine.contact_loads()).chain(given);
             sample.drive_magnitudes = given.map(|load| (load, forces.magnitudes[load])).collect();
             sample.q_ddot = forces.q_ddot;
         }
@@ -189,9 +224,14 @@ impl SpaceMotionProblem<'_> {
             ));
         }
         let mut workspace = self.machine.workspace();
-        let rows = solution.event_occurrences.iter().map(|occurrence| {
-            let at = &occurrence.state;
-            let mut row = vec![at.t, (occurrence.event + 1) as f64];
+        let own = solution.event_occurrences.iter();
+        let own = own.map(|o| (o.event + 1, o.state.clone()));
+        let contacts = self.contacts().occurrences(0, solution).into_iter();
+        let contacts = contacts.map(|o| (o.number, o.state));
+        let mut events: Vec<_> = own.chain(contacts).collect();
+        events.sort_by(|(_, one), (_, other)| one.t.total_cmp(&other.t));
+        let rows = events.iter().map(|(number, at)| {
+            let mut row = vec![at.t, *number as f64];
             if let Ok(state) = self.machine.evaluate(at.t, &at.y, &mut workspace) {
                 let both = state.q().iter().zip(state.q_dot());
                 row.extend(both.flat_map(|(q, speed)| [*q, *speed]));

@@ -5,7 +5,7 @@ use crate::number_format::force_unit;
 use crate::trajectory::compute::{Analysis, Column, POWER_COLUMNS, Quantity};
 use dwell_geometry::space::{ActuatorKind, Vec3};
 use dwell_geometry::{BodyId, JointId};
-use dwell_kinetostatics::space::{Axes, Component};
+use dwell_kinetostatics::space::{Axes, Component, LoadKind};
 use dwell_scene::SpaceScene;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -185,6 +185,22 @@ impl Columns<'_> {
         let loads = self.scene.loads.iter().map(|load| &load.name);
         let names = loads.chain(self.scene.drives.iter().map(|drive| &drive.name));
         for (k, load) in names.enumerate() {
+            if let Some(one) = self.scene.loads.get(k).filter(|l| l.friction().is_some()) {
+                let (word, unit, meaning) = match one.kind {
+                    LoadKind::SlideForce(_) => (
+                        "force",
+                        "N",
+                        "force along the axis, of the first body on the second",
+                    ),
+                    _ => (
+                        "moment",
+                        "N m",
+                        "moment about the axis, of the first body on the second",
+                    ),
+                };
+                let name = format!("{load}.load_{word}");
+                self.add(name, unit, Quantity::LoadForce(k), meaning);
+            }
             let meaning = "power of the load on all bodies";
             let name = format!("{load}.power");
             self.add(name, "W", Quantity::LoadPower(k), meaning);

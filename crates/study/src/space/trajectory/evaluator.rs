@@ -137,6 +137,7 @@ impl RowEvaluator for SpaceEvaluator<'_> {
             }
             Quantity::ShakingForce(k) => self.totals.shaking[k],
             Quantity::Power(k) => self.totals.power[k],
+            Quantity::LoadForce(k) => self.totals.magnitudes[k],
             Quantity::LoadPower(k) => self.totals.load_powers[k],
             Quantity::Extra(k) => sample.extra_values[k],
             // The columns of a mechanism in space are none of these.
@@ -149,8 +150,7 @@ impl RowEvaluator for SpaceEvaluator<'_> {
             | Quantity::TransmissionAngle(_)
             | Quantity::KnownReaction(..)
             | Quantity::BodyFrameForce(..)
-            | Quantity::ForceDirection(_)
-            | Quantity::LoadForce(_) => f64::NAN,
+            | Quantity::ForceDirection(_) => f64::NAN,
         }
     }
 

@@ -25,7 +25,7 @@ pub(super) struct Totals {
     /// The sum of the absolute terms of the power balance, W.
     pub(super) power_scale: f64,
     /// By load: its magnitude and its power, W.
-    magnitudes: Vec<f64>,
+    pub(super) magnitudes: Vec<f64>,
     pub(super) load_powers: Vec<f64>,
 }
 

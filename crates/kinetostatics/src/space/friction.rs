@@ -1,0 +1,264 @@
+//! Dry friction of revolute, prismatic and cylindrical joints in space. The force F and the moment M of the joint, about its
+//! point on the second body, press on two bearings, or on the two ends of a guide, at distance L along the axis u:
+//!
+//! ```text
+//! f₁,₂ = F_n/2 ± M × u / L,    N = |f₁| + |f₂|          F_n = F − (F·u) u;  without L:  N = |F_n|          (1)
+//!
+//! revolute      g = r N,  φ = µ tanh(ω/ω₀)          couple −φ g about the axis
+//! prismatic     g = N,    φ = µ tanh(v/v₀)          force −φ g along the axis
+//! cylindrical   g = N,    φ = µ tanh(s/v₀) v/s      force −φ g along the axis,         s² = v² + (r ω)²    (2)
+//!               g = r N,  φ = µ tanh(s/v₀) r ω/s    couple −φ g about the axis
+//! ```
+//!
+//! So in a cylindrical joint the friction is against the velocity of the pin's surface, and its power is −µ tanh(s/v₀) N s.
+//! Neither the force along the axis of a revolute joint nor the moment about that of a prismatic joint counts: what takes
+//! them has a size of its own.
+
+use super::load::LoadKind;
+use super::model::{Axes, Component, Model, Reaction};
+use crate::error::LoadError;
+use crate::friction::{ContactLaw, DependentLoad};
+use crate::load::{Friction, FrictionContact};
+use dwell_geometry::space::{Coordinate, CoordinateFunction, JointKind, Mechanism, Plan};
+use dwell_numerics::Scalar;
+
+/// The components of (1): of the force and the moment along the joint's normal and across it.
+const COMPONENTS: [Component; 4] = [
+    Component::Force(Axes::Joint, 0),
+    Component::Force(Axes::Joint, 1),
+    Component::Moment(Axes::Joint, 0),
+    Component::Moment(Axes::Joint, 1),
+];
+/// Below this square of s/v₀ the quotient of (2) is its series.
+const SLOW: f64 = 1e-4;
+
+/// A friction whose joint, bodies and reactions are those of a model.
+pub(super) type JointFriction = DependentLoad<FrictionLaw, 4>;
+
+/// How the friction of a joint depends on its reaction and its speeds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FrictionLaw {
+    friction: Friction,
+    sliding: Sliding,
+    /// What g is of N: the radius of a couple, m, or 1 of a force.
+    lever: f64,
+    /// Distance of the bearings or of the ends of the guide, m.
+    distance: f64,
+}
+
+/// How the surfaces slide.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Sliding {
+    /// About or along one coordinate.
+    Along(CoordinateFunction),
+    /// Of a cylindrical joint: the coordinate of the load and the other one, and what makes a speed of the surface of the rate of each.
+    Both {
+        coordinates: [CoordinateFunction; 2],
+        levers: [f64; 2],
+    },
+}
+
+impl FrictionLaw {
+    fn compile(
+        friction: Friction,
+        kind: LoadKind,
+        (mechanism, plan): (&Mechanism, &Plan),
+    ) -> Result<Self, &'static str> {
+        friction.validate_numbers()?;
+        let id = friction.joint;
+        let joint = mechanism.joints.get(id.0);
+        let joint = joint.ok_or("its joint does not exist")?;
+        let function = |coordinate| plan.direction_function(mechanism, coordinate);
+        let (angle, travel) = (Coordinate::Angle(id), Coordinate::Travel(id));
+        let (sliding, lever, distance) = match (joint.kind, friction.contact, kind) {
+            (
+                JointKind::Revolute,
+                FrictionContact::Bearing { radius, distance },
+                LoadKind::JointTorque(of),
+            ) if of == id => (Sliding::Along(function(angle)?), radius, distance),
+            (JointKind::Prismatic, FrictionContact::Guide { length }, LoadKind::SlideForce(of))
+                if of == id =>
+            {
+                (Sliding::Along(function(travel)?), 1.0, length)
+            }
+            (
+                JointKind::Cylindrical,
+                FrictionContact::Bearing { radius, distance },
+                LoadKind::JointTorque(of) | LoadKind::SlideForce(of),
+            ) if of == id => {
+                if friction.regularization_speed.is_none() {
+                    return Err(
+                        "its surfaces slide along the axis and about it, where friction needs a regularization speed",
+                    );
+                }
+                let (mut coordinates, mut levers) =
+                    ([function(travel)?, function(angle)?], [1.0, radius]);
+                if kind == LoadKind::JointTorque(id) {
+                    coordinates.reverse();
+                    levers.reverse();
+                }
+                let [lever, _] = levers;
+                let sliding = Sliding::Both {
+                    coordinates,
+                    levers,
+                };
+                (sliding, lever, distance)
+            }
+            _ => {
+                return Err(
+                    "its joint is no revolute, prismatic or cylindrical joint with such a friction",
+                );
+            }
+        };
+        Ok(Self {
+            friction,
+            sliding,
+            lever,
+            distance,
+        })
+    }
+}
+
+impl ContactLaw<4> for FrictionLaw {
+    fn force<T: Scalar>(self, [force_n, force_a, moment_n, moment_a]: [T; 4]) -> (T, [T; 4]) {
+        let (zero, lever) = (T::from_f64(0.0), T::from_f64(self.lever));
+        // The length of a vector across the axis, and its derivatives by both components.
+        let length = |x: T, y: T| {
+            let square = x * x + y * y;
+            if square.value() == 0.0 {
+                return [zero; 3];
+            }
+            let length = square.sqrt();
+            [length, x / length, y / length]
+        };
+        if self.distance == 0.0 {
+            let [press, by_n, by_a] = length(force_n, force_a);
+            return (lever * press, [lever * by_n, lever * by_a, zero, zero]);
+        }
+        let (half, turn) = (T::from_f64(0.5), T::from_f64(1.0 / self.distance));
+        // M × u = M_a n − M_n a.
+        let [n, a] = [half * force_n, half * force_a];
+        let [first, second] =
+            [turn, -turn].map(|turn| length(n + turn * moment_a, a - turn * moment_n));
+        let slopes = [
+            half * (first[1] + second[1]),
+            half * (first[2] + second[2]),
+            turn * (second[2] - first[2]),
+            turn * (first[1] - second[1]),
+        ];
+        (
+            lever * (first[0] + second[0]),
+            slopes.map(|slope| lever * slope),
+        )
+    }
+}
+
+impl JointFriction {
+    /// φ of (2).
+    #[inline]
+    pub(super) fn factor<T: Scalar>(&self, rate: impl Fn(CoordinateFunction) -> T) -> T {
+        let friction = &self.law.friction;
+        match (self.law.sliding, friction.regularization_speed) {
+            (Sliding::Along(coordinate), _) => friction.factor(rate(coordinate)),
+            // It is not compiled without a speed.
+            (Sliding::Both { .. }, None) => T::from_f64(f64::NAN),
+            (
+                Sliding::Both {
+                    coordinates,
+                    levers,
+                },
+                Some(slow),
+            ) => {
+                let speed = |k: usize| rate(coordinates[k]) * T::from_f64(levers[k] / slow);
+                let [own, other] = [speed(0), speed(1)];
+                own * tanh_quotient(own * own + other * other) * T::from_f64(friction.coefficient)
+            }
+        }
+    }
+
+    /// A friction that holds its surfaces at rest, with the coordinate along which they slide.
+    pub(super) fn sticking(&self) -> Option<(Friction, CoordinateFunction)> {
+        let friction = self.law.friction;
+        match self.law.sliding {
+            Sliding::Along(coordinate) if friction.regularization_speed.is_none() => {
+                Some((friction, coordinate))
+            }
+            Sliding::Along(_) | Sliding::Both { .. } => None,
+        }
+    }
+}
+
+/// tanh(x)/x of x².
+fn tanh_quotient<T: Scalar>(square: T) -> T {
+    if square.value() < SLOW {
+        let [second, third, fourth] = [-1.0 / 3.0, 2.0 / 15.0, -17.0 / 315.0].map(T::from_f64);
+        return T::from_f64(1.0) + square * (second + square * (third + square * fourth));
+    }
+    let x = square.sqrt();
+    let tanh = x.value().tanh();
+    let slope = 1.0 - tanh * tanh;
+    x.compose(&[tanh, slope, -2.0 * tanh * slope, 0.0]) / x
+}
+
+impl Model {
+    /// Compiles the frictions among the loads, with the reactions they depend on behind the requested ones.
+    ///
+    /// # Errors
+    /// [`LoadError`] for a friction that does not fit its joint, or depends on a reaction that redundant constraints leave open.
+    pub(super) fn compile_frictions(&mut self) -> Result<(), LoadError> {
+        let mut all: Vec<Reaction> = self.requested_reactions().collect();
+        let mut frictions = Vec::new();
+        for (load, one) in self.loads.loads.iter().enumerate() {
+            let Some(friction) = one.friction() else {
+                continue;
+            };
+            let at = (self.mechanism(), self.plan());
+            let law = FrictionLaw::compile(friction, one.kind, at)
+                .map_err(|what| LoadError { load, what })?;
+            let needed = if law.distance > 0.0 { 4 } else { 2 };
+            let mut reactions = [None; 4];
+            for (index, component) in reactions.iter_mut().zip(COMPONENTS).take(needed) {
+                let reaction = Reaction {
+                    joint: friction.joint,
+                    component,
+                };
+                let known = all.iter().position(|other| *other == reaction);
+                *index = known.or(Some(all.len()));
+                if known.is_none() {
+                    all.push(reaction);
+                }
+            }
+            frictions.push(JointFriction {
+                load,
+                reactions,
+                law,
+            });
+        }
+        self.set_reactions(&all, frictions);
+        self.require_determined()
+    }
+
+    /// Refuses a friction whose contact force has no value.
+    fn require_determined(&self) -> Result<(), LoadError> {
+        if self.frictions.is_empty() || self.plan().mobility().redundant_count == 0 {
+            return Ok(());
+        }
+        // It was assembled there.
+        let Ok(determined) = self.determined_throughout() else {
+            return Ok(());
+        };
+        let is_open = |friction: &&JointFriction| {
+            let mut needed = friction.reactions.iter().flatten();
+            needed.any(|&k| !determined[k])
+        };
+        let what =
+            "depends on a reaction that is not determined: redundant constraints share the load";
+        let open = self.frictions.iter().find(is_open);
+        open.map_or(Ok(()), |friction| {
+            Err(LoadError {
+                load: friction.load,
+                what,
+            })
+        })
+    }
+}

@@ -1,0 +1,113 @@
+//! Friction in joints: loads that depend on the joints' own reactions and velocities.
+
+use super::joints::{Joints, kind_name};
+use crate::friction::{FrictionForm, check_static_coefficient};
+use crate::keys::table;
+use crate::spans::SceneLocation;
+use crate::table_reader::{Entry, TableReader};
+use crate::wording::shorten;
+use dwell_geometry::JointId;
+use dwell_geometry::space::JointKind;
+use dwell_kinetostatics::space::{Load, LoadKind};
+use dwell_kinetostatics::{FrictionContact, Magnitude};
+
+/// Appends the friction of every joint of the section, in the order of the file.
+pub(super) fn add_friction(fields: &TableReader<'_>, joints: &Joints<'_>, loads: &mut Vec<Load>) {
+    for entry in &fields.entries {
+        let Some(j) = joints.find(entry.name, &entry.key) else {
+            continue;
+        };
+        if let Some(joint) = &joints.list[j].joint {
+            // What is wrong is reported; then there is no scene.
+            let _ = add_loads(entry, (JointId(j), joint.kind), loads);
+        }
+    }
+}
+
+/// Appends the loads of the friction of one joint; none if something in it is wrong.
+fn add_loads(
+    entry: &Entry<'_>,
+    (id, kind): (JointId, JointKind),
+    loads: &mut Vec<Load>,
+) -> Option<()> {
+    let name = shorten(entry.name);
+    let fields = TableReader::open(entry, format!("friction of `{name}`"))?;
+    let numbers = form(entry, kind)?.read(&fields)?;
+    let contact = match kind {
+        JointKind::Prismatic => FrictionContact::Guide {
+            length: numbers.length,
+        },
+        _ => FrictionContact::Bearing {
+            radius: numbers.radius,
+            distance: numbers.length,
+        },
+    };
+    let friction = numbers.friction(id, contact);
+    if let Some(friction) = friction {
+        check_static_coefficient(&fields, &friction)?;
+        if kind == JointKind::Cylindrical && friction.regularization_speed.is_none() {
+            let help = "add `regularization-speed`, in length units per second: the surfaces slide along the axis and about it, and \
+                        friction that holds in both directions is not computed";
+            fields.require("regularization-speed", help)?;
+        }
+    }
+    let dry = friction.map(Magnitude::Friction);
+    let viscous = numbers.viscous.map(Magnitude::Constant);
+    let (force, couple) = (LoadKind::SlideForce(id), LoadKind::JointTorque(id));
+    let [slide_damper, damper] = [LoadKind::SlideDamper(id), LoadKind::RotationalDamper(id)];
+    let all = match kind {
+        JointKind::Prismatic => vec![
+            ("coefficient", "friction", force, dry),
+            ("viscous", "viscous", slide_damper, viscous),
+        ],
+        JointKind::Cylindrical => vec![
+            ("coefficient", "friction", force, dry.clone()),
+            ("coefficient", "friction-moment", couple, dry),
+        ],
+        _ => vec![
+            ("coefficient", "friction", couple, dry),
+            ("viscous", "viscous", damper, viscous),
+        ],
+    };
+    for (key, suffix, kind, magnitude) in all {
+        let Some(magnitude) = magnitude else { continue };
+        let location = SceneLocation::Load(loads.len());
+        fields.log().place(location, &fields.key);
+        fields.place(key, SceneLocation::Magnitude(loads.len()));
+        loads.push(Load {
+            name: format!("{}.{suffix}", entry.name),
+            kind,
+            magnitude,
+        });
+    }
+    Some(())
+}
+
+/// How the friction of a joint is written; an error for a joint that cannot have friction.
+fn form(entry: &Entry<'_>, kind: JointKind) -> Option<FrictionForm<'static>> {
+    let (table_id, is_angular) = match kind {
+        JointKind::Revolute => ("revolute-friction-in-space", true),
+        JointKind::Prismatic => ("prismatic-friction-in-space", false),
+        JointKind::Cylindrical => ("cylindrical-friction", false),
+        JointKind::Weld
+        | JointKind::Helical { .. }
+        | JointKind::Universal
+        | JointKind::Spherical
+        | JointKind::Planar
+        | JointKind::Distance { .. }
+        | JointKind::Gear { .. } => {
+            let message = format!("joint `{}` cannot have friction", shorten(entry.name));
+            let label = format!("its kind is {}", kind_name(kind));
+            let help = "revolute, prismatic and cylindrical joints can have friction; a `joint-torque` or a damper in [loads] \
+                        can stand for that of another";
+            return entry.reject(message, &label, help);
+        }
+    };
+    Some(FrictionForm {
+        table: table(table_id),
+        joint_kind: kind_name(kind),
+        is_angular,
+        has_pin: kind != JointKind::Prismatic,
+        is_slot: false,
+    })
+}
