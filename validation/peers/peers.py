@@ -1,4 +1,5 @@
-"""Ten periods of each mechanism by Exudyn, Pinocchio and MuJoCo: wall time of the integration alone, and the error of the crank.
+"""Motions of each mechanism by Exudyn, Pinocchio and MuJoCo: wall time of the integration alone, and the error of the crank. Those in
+the plane are ten periods; those in space are in space_mechanism.py and space_peers.py.
 
 Each is used as its own documentation says it is accurate and fast; what was tried is in docs/performance.md. Writes CSV.
 """
@@ -6,7 +7,6 @@ Each is used as its own documentation says it is accurate and fast; what was tri
 import csv
 import math
 import sys
-import time
 from pathlib import Path
 
 sys.exudynFast = True  # its build without range checks
@@ -16,21 +16,15 @@ import mujoco  # noqa: E402
 import numpy as np  # noqa: E402
 import pinocchio  # noqa: E402
 
+import space_mechanism  # noqa: E402
+import space_peers  # noqa: E402
 from mechanism import Body, Mechanism, read, turned  # noqa: E402
+from timing import clock, since  # noqa: E402
 
 PERIODS = 10
 # Steps in ten periods: of the crank-rocker from 10 ms to 10 µs each.
 STEPS = [731, 2313, 7315, 23132, 73149, 231317, 731488]
 GROUND = Body(0.0, np.zeros(2), 0.0, np.zeros(3), np.zeros(3))
-
-
-def clock():
-    return time.perf_counter(), time.process_time()
-
-
-def since(start):
-    """Seconds of wall or CPU time, the smaller: on a busy machine a long run waits. All tools work on one thread."""
-    return min(now - then for now, then in zip(clock(), start))
 
 
 def exudyn_(m: Mechanism, steps: int):
@@ -202,24 +196,46 @@ TOOLS = [
 ]
 
 
+def least(run):
+    """The least time of several runs, and what the last gave; the first is the warm-up: a run of ten seconds needs none."""
+    best, value, spent, times = math.inf, None, 0.0, 0
+    while times < 2 or (spent < 1.0 and times < 6):
+        try:
+            wall, value = run()
+        except exudyn.SolverError as refused:  # its Newton method may not converge at the longest step
+            print(refused, flush=True)
+            break
+        best, spent, times = min(best, wall), spent + wall, times + 1
+    return best, value
+
+
+def in_plane(case):
+    """Its name, tools, numbers of steps; by tool and steps the length of a step, and a run with its error."""
+    m = read(case)
+    return m.name, TOOLS, STEPS, lambda steps: PERIODS * m.period / steps, \
+        lambda run, steps: lambda: run(m, steps), lambda turned_by: abs(turned_by - 2 * math.pi * PERIODS)
+
+
+def in_space(case):
+    """The same of a motion that is compared after each unit of time."""
+    m = space_mechanism.read(case)
+    units = m.instants[-1][0]
+    in_unit = lambda steps: max(1, round(steps / units))  # noqa: E731
+    return m.name, space_peers.TOOLS, space_peers.STEPS, lambda steps: m.unit / in_unit(steps), \
+        lambda run, steps: lambda: run(m, in_unit(steps)), m.error
+
+
 def main(cases: Path, out: Path):
     rows = []
-    for case in ("crank-rocker", "single-dwell"):
-        m = read(cases / case)
-        for tool, version, run, most in TOOLS:
-            for steps in (n for n in STEPS if n <= most):
-                best, turned_by, spent, times = math.inf, math.nan, 0.0, 0
-                # The first is the warm-up: a run of ten seconds needs none.
-                while times < 2 or (spent < 1.0 and times < 6):
-                    try:
-                        wall, turned_by = run(m, steps)
-                    except exudyn.SolverError as refused:  # its Newton method may not converge at the longest step
-                        print(f"{case}  {tool}  {steps} steps: {refused}", flush=True)
-                        break
-                    best, spent, times = min(best, wall), spent + wall, times + 1
-                error = abs(turned_by - 2 * math.pi * PERIODS)
-                if math.isfinite(best) and error < 0.1:
-                    h = PERIODS * m.period / steps
+    motions = [in_plane(cases / name) for name in ("crank-rocker", "single-dwell")]
+    motions += [in_space(cases / "spatial" / f"{name}.json") for name in space_mechanism.MOTIONS]
+    for case, tools, all_steps, step, prepared, error_of in motions:
+        for tool, version, run, most in tools:
+            for steps in (n for n in all_steps if n <= most):
+                best, value = least(prepared(run, steps))
+                error = error_of(value) if math.isfinite(best) else math.inf
+                if error < 0.1:
+                    h = step(steps)
                     rows.append([case, f"{tool} {version}", f"h = {h:.3g} s", repr(best), repr(float(error))])
                     print(f"{case}  {tool}  h = {h:.3g} s: {best:.3g} s, {error:.1e} rad", flush=True)
     with out.open("w", newline="", encoding="utf-8") as file:

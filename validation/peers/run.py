@@ -1,7 +1,8 @@
 """Dwell beside Exudyn, Pinocchio and MuJoCo, in one run: `python3 validation/peers/run.py`, or `just peers`.
 
-Installs the three into a scratch environment, measures them on two cases, then Dwell, and writes reports/peers.csv (theirs), .md and .png.
-Needs Python 3.11 or later on x86-64 Linux, the network and about five minutes.
+Installs the three into a scratch environment, measures them on two cases in the plane and three in space, then Dwell, and writes
+reports/peers.csv (theirs), .md and .png.
+Needs Python 3.11 or later on x86-64 Linux, the network and about eight minutes.
 """
 
 import os

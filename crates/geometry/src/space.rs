@@ -52,6 +52,7 @@ mod plan;
 mod positions;
 mod prediction;
 mod rank;
+mod rod;
 mod tree;
 mod vector;
 mod wrench;

@@ -1,99 +1,37 @@
-//! Ten periods by Dwell: by each integrator on exact evaluation and on a table, and by quadrature.
+//! Ten periods in the plane by Dwell: by each integrator on exact evaluation and on a table, and by quadrature.
 
-use super::{ANGLE_ROUNDING, PERIODS, Run};
+use super::motion::min_time;
+use super::motion::{EXACT, FROM_TEXT, Motion, QUADRATURE, QUADRATURE_ACCURACIES, Stages, TABLE};
+use super::{PERIODS, Run};
 use dwell_dynamics::{DynamicsError, Method, Options, Orbit, ReducedState, solve_reduced};
 use dwell_kinetostatics::{ExactModel, Model, ReducedModel, TableDomain, TabulatedModel};
 use dwell_scene::Scene;
 use std::error::Error;
 use std::f64::consts::PI;
 use std::path::Path;
-use std::time::{Duration, Instant};
 
-/// The names of the ways.
-pub(crate) const EXACT: &str = "Dwell, exact";
-pub(crate) const TABLE: &str = "Dwell, table built anew";
-pub(crate) const QUADRATURE: &str = "Dwell, quadrature";
-pub(crate) const FROM_TEXT: &str = "from the scene's text: quadrature";
-
-/// A time is the least of as many runs as fit into this, but of no fewer and no more than these.
-const TIME_BUDGET: Duration = Duration::from_millis(250);
-const MIN_REPETITIONS: usize = 5;
-const MAX_REPETITIONS: usize = 2000;
-/// What the rules of a quadrature leave, as a part of the mean.
-const QUADRATURE_ACCURACIES: [f64; 5] = [1e-4, 1e-6, 1e-9, 1e-12, 0.0];
-/// Times at which a rule is compared with that of all digits.
-const COMPARED_TIMES: u32 = 23;
-/// A method that takes longer than this is not asked for more digits, s.
-const MAX_RUN_TIME: f64 = 0.2;
 /// A table is built to this part of the integrator's tolerance, but to no better than rounding lets it be.
 const TABLE_ACCURACY_FACTOR: f64 = 0.1;
 const MIN_TABLE_ACCURACY: f64 = 1e-13;
 
-/// What stands before the motion, s: reading a scene, building its model; and a table to 1e-11.
-pub(crate) struct Stages {
-    pub(crate) case: String,
-    pub(crate) read: f64,
-    pub(crate) build: f64,
-    pub(crate) table: f64,
+/// Where the crank is at the end.
+fn integrate(
+    motion: &Motion,
+    model: &impl ReducedModel,
+    options: &Options,
+) -> Result<Vec<f64>, DynamicsError> {
+    let run = solve_reduced(model, motion.start, Some(motion.end()), options, &[])?.completed()?;
+    Ok(vec![run.steps.last().map_or(f64::NAN, |last| last.y[0])])
 }
 
-/// The motion of a case, and when it ends.
-struct Motion {
-    case: String,
-    start: ReducedState,
-    end: f64,
-}
-
-impl Motion {
-    fn run(&self, tool: &str, setting: String, (wall, q): (f64, f64)) -> Run {
-        Run {
-            case: self.case.clone(),
-            tool: tool.to_owned(),
-            setting,
-            wall_time: wall,
-            error: (q - self.start.q - 2.0 * PI * PERIODS)
-                .abs()
-                .max(ANGLE_ROUNDING),
-        }
-    }
-
-    /// Where the crank is at the end.
-    fn integrate(
-        &self,
-        model: &impl ReducedModel,
-        options: &Options,
-    ) -> Result<f64, DynamicsError> {
-        let run = solve_reduced(model, self.start, Some(self.end), options, &[])?.completed()?;
-        Ok(run.steps.last().map_or(f64::NAN, |last| last.y[0]))
-    }
-
-    /// The same by quadrature, with its rule.
-    fn quadrature(
-        &self,
-        model: &impl ReducedModel,
-        accuracy: f64,
-    ) -> Result<(f64, Orbit), DynamicsError> {
-        let orbit = Orbit::to_accuracy(model, self.start, accuracy)?;
-        Ok((orbit.state_at(self.end).q, orbit))
-    }
-
-    /// A run by quadrature. At a whole number of periods a rule is at its best, so it counts with what it is
-    /// off in between, too, beside the rule with all digits.
-    fn quadrature_run(
-        &self,
-        tool: &str,
-        (wall, (q, orbit)): (f64, (f64, Orbit)),
-        exact_orbit: &Orbit,
-    ) -> Run {
-        let mut run = self.run(tool, format!("{} points", orbit.points), (wall, q));
-        for k in 0..COMPARED_TIMES {
-            let t = self.end * (f64::from(k) + 0.37) / f64::from(COMPARED_TIMES);
-            run.error = run
-                .error
-                .max((orbit.state_at(t).q - exact_orbit.state_at(t).q).abs());
-        }
-        run
-    }
+/// The same by quadrature, with its rule.
+fn quadrature(
+    motion: &Motion,
+    model: &impl ReducedModel,
+    accuracy: f64,
+) -> Result<(Vec<f64>, Orbit), DynamicsError> {
+    let orbit = Orbit::to_accuracy(model, motion.start, accuracy)?;
+    Ok((motion.angles(&orbit), orbit))
 }
 
 /// All runs of a case.
@@ -115,7 +53,7 @@ pub(crate) fn measure(case: &str, folder: &Path) -> Result<(Vec<Run>, Stages), B
     let motion = Motion {
         case: case.to_owned(),
         start,
-        end: PERIODS * period,
+        known: vec![[PERIODS * period, start.q + 2.0 * PI * PERIODS]],
     };
     let exact = compile(&scene)?;
 
@@ -123,7 +61,7 @@ pub(crate) fn measure(case: &str, folder: &Path) -> Result<(Vec<Run>, Stages), B
     let exact_orbit = Orbit::new(&exact, start)?;
     let mut points = 0;
     for accuracy in QUADRATURE_ACCURACIES {
-        let timed_run = min_time(|| motion.quadrature(&exact, accuracy))?;
+        let timed_run = min_time(|| quadrature(&motion, &exact, accuracy))?;
         let orbit = &timed_run.1.1;
         if orbit.points == points {
             continue;
@@ -131,7 +69,7 @@ pub(crate) fn measure(case: &str, folder: &Path) -> Result<(Vec<Run>, Stages), B
         points = orbit.points;
         runs.push(motion.quadrature_run(QUADRATURE, timed_run, &exact_orbit));
         let from_text = || -> Result<_, Box<dyn Error>> {
-            Ok(motion.quadrature(&compile(&read()?)?, accuracy)?)
+            Ok(quadrature(&motion, &compile(&read()?)?, accuracy)?)
         };
         runs.push(motion.quadrature_run(FROM_TEXT, min_time(from_text)?, &exact_orbit));
     }
@@ -140,7 +78,7 @@ pub(crate) fn measure(case: &str, folder: &Path) -> Result<(Vec<Run>, Stages), B
         case: case.to_owned(),
         read: min_time(read)?.0,
         build: min_time(|| compile(&scene))?.0,
-        table: min_time(|| TabulatedModel::new(&exact, 1e-11, TableDomain::Full))?.0,
+        table: Some(min_time(|| TabulatedModel::new(&exact, 1e-11, TableDomain::Full))?.0),
     };
     Ok((runs, stages))
 }
@@ -149,14 +87,14 @@ pub(crate) fn measure(case: &str, folder: &Path) -> Result<(Vec<Run>, Stages), B
 fn integrator_runs(motion: &Motion, exact: &ExactModel) -> Vec<Run> {
     let mut runs = Vec::new();
     for method in Method::ALL {
-        let exactly = |options: &Options| motion.integrate(exact, options).ok();
-        runs.extend(tolerance_runs(motion, EXACT, method, &exactly));
+        let exactly = |options: &Options| integrate(motion, exact, options).ok();
+        runs.extend(motion.tolerance_runs(EXACT, method, &exactly));
         let tabulated = |options: &Options| {
             let accuracy = (TABLE_ACCURACY_FACTOR * options.rtol).max(MIN_TABLE_ACCURACY);
             let table = TabulatedModel::new(exact, accuracy, TableDomain::Full).ok()?;
-            motion.integrate(&table, options).ok()
+            integrate(motion, &table, options).ok()
         };
-        runs.extend(tolerance_runs(motion, TABLE, method, &tabulated));
+        runs.extend(motion.tolerance_runs(TABLE, method, &tabulated));
     }
     runs
 }
@@ -166,40 +104,4 @@ fn compile(scene: &Scene) -> Result<ExactModel, Box<dyn Error>> {
     let start = scene.assembly.to_configuration();
     let model = Model::new(&scene.mechanism, &scene.masses, &start, &[])?;
     ExactModel::new(model).ok_or_else(|| "not one actuator".into())
-}
-
-/// A method from tolerance to tolerance.
-fn tolerance_runs(
-    motion: &Motion,
-    tool: &str,
-    method: Method,
-    run: &dyn Fn(&Options) -> Option<f64>,
-) -> Vec<Run> {
-    let mut runs = Vec::new();
-    for digits in 4..=13 {
-        let options = Options::new(method, 10_f64.powi(-digits));
-        // A tolerance that cannot be kept ends a method's row.
-        let Ok(timed_run) = min_time(|| run(&options).ok_or("refused")) else {
-            break;
-        };
-        runs.push(motion.run(tool, format!("{}, 1e-{digits}", method.name()), timed_run));
-        if timed_run.0 > MAX_RUN_TIME {
-            break;
-        }
-    }
-    runs
-}
-
-/// The least time of several runs, s, and what the last gave.
-fn min_time<T, E>(mut run: impl FnMut() -> Result<T, E>) -> Result<(f64, T), E> {
-    let (mut best, mut times, first) = (f64::INFINITY, 0, Instant::now());
-    loop {
-        let start = Instant::now();
-        let value = run()?;
-        best = best.min(start.elapsed().as_secs_f64());
-        times += 1;
-        if times >= MAX_REPETITIONS || (times >= MIN_REPETITIONS && first.elapsed() > TIME_BUDGET) {
-            return Ok((best, value));
-        }
-    }
 }

@@ -1,23 +1,37 @@
-//! Ten periods of two mechanisms by Dwell, beside what full multibody codes took in the same hour: `validation/peers/run.py`
+//! Motions of two mechanisms in the plane and three in space by Dwell, beside what full multibody codes took in the same hour: `validation/peers/run.py`
 //! measures those and calls `cargo run --release --example peers -- THEIRS.csv`, which writes `reports/peers.md` and `.png`.
 #![allow(clippy::print_stdout, reason = "a study, run by hand")]
 
 mod dwell_runs;
+mod motion;
 mod report;
+mod space_runs;
 mod speedups;
 
 use std::error::Error;
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// The mechanisms: cases of `validation/`.
+/// The mechanisms in the plane: cases of `validation/`.
 const CASES: [&str; 2] = ["crank-rocker", "single-dwell"];
-/// Periods of a run.
+/// Those in space, of `validation/spatial/`, which of the loads of its reference moves each, and whether it turns: otherwise it swings
+/// and is compared at the instants of the reference.
+const SPACE_CASES: [(&str, &str, bool); 3] = [
+    ("slider-crank-haug", "as defined", true),
+    ("rsur-haug", "none", true),
+    ("bricard-a04", "gravity", false),
+];
+/// Periods of a run of a mechanism that turns.
 const PERIODS: f64 = 10.0;
 /// A crank angle of ten turns is known to one rounding, rad: a smaller error is no error.
 const ANGLE_ROUNDING: f64 = 2.0 * PI * PERIODS * f64::EPSILON;
 
-/// A run of ten periods.
+/// The names of all cases.
+fn all_cases() -> impl Iterator<Item = &'static str> {
+    CASES.into_iter().chain(SPACE_CASES.map(|(case, ..)| case))
+}
+
+/// A run of a motion.
 #[derive(Debug, Clone, PartialEq)]
 struct Run {
     case: String,
@@ -27,7 +41,7 @@ struct Run {
     setting: String,
     /// Least time of all repetitions, s.
     wall_time: f64,
-    /// Of the crank angle at the end, rad.
+    /// Of the crank angle at the end, rad, or the largest at the instants of the reference.
     error: f64,
 }
 
@@ -39,6 +53,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut stages_by_case = Vec::new();
     for case in CASES {
         let (dwell_runs, stages) = dwell_runs::measure(case, &root.join("validation").join(case))?;
+        runs.extend(dwell_runs);
+        stages_by_case.push(stages);
+    }
+    for case in SPACE_CASES {
+        let (dwell_runs, stages) = space_runs::measure(case, &root.join("validation/spatial"))?;
         runs.extend(dwell_runs);
         stages_by_case.push(stages);
     }

@@ -1,8 +1,8 @@
 //! The figure and the page.
 
-use super::dwell_runs::{EXACT, FROM_TEXT, QUADRATURE, Stages, TABLE};
+use super::motion::{EXACT, FROM_TEXT, QUADRATURE, Stages, TABLE};
 use super::speedups::seconds;
-use super::{ANGLE_ROUNDING, CASES, Run, fastest_runs};
+use super::{ANGLE_ROUNDING, Run, all_cases, fastest_runs};
 use dwell_report::{Axis, Block, Chart, Document, Figure, Mark, Paint, Panel, Series, Stroke};
 
 /// The curves: tool, name in the legend, colour; the others first.
@@ -16,39 +16,37 @@ const CURVES: [(&str, &str, Paint); 7] = [
     (FROM_TEXT, "from text", Paint::Grey),
 ];
 
-/// Error against wall time, both mechanisms.
+/// Error against wall time, all mechanisms.
 pub(crate) fn figure(runs: &[Run]) -> Figure {
     Figure {
         name: "peers".into(),
-        title: "Ten periods of free motion: error against time".into(),
-        caption: "Least times of one run on one machine. Exudyn, Pinocchio (a Python loop) and MuJoCo: the integration alone. Dwell: \
+        title: "Free motions: error against time".into(),
+        caption: "Ten turns of each crank; the Bricard linkage swings for ten seconds. Least times of one run on one machine. Exudyn, Pinocchio (a Python loop) and MuJoCo: the integration alone. Dwell: \
                   integrators on exact evaluation; integrators on a table, with its building; the quadrature; and the quadrature from \
                   the scene's text on, with reading and building. A curve has its tool's best: what a quicker run surpasses is left out, and what is accurate by chance."
             .into(),
         columns: 2,
-        panels: CASES.map(|case| panel(runs, case)).into(),
+        panels: all_cases().map(|case| panel(runs, case)).collect(),
         ..Figure::default()
     }
 }
 
 fn panel(runs: &[Run], case: &str) -> Panel {
-    let series = CURVES.map(|(tool, name, color)| {
-        let points = fastest_runs(runs, case, tool)
-            .iter()
-            .map(|r| [r.wall_time, r.error])
-            .collect();
-        Series::line(name, points)
-            .color(color)
-            .stroke(Stroke::LineAndPoints)
+    let series = CURVES.into_iter().filter_map(|(tool, name, color)| {
+        let fastest = fastest_runs(runs, case, tool);
+        let points: Vec<_> = fastest.iter().map(|r| [r.wall_time, r.error]).collect();
+        let line = || Series::line(name, points.clone()).color(color);
+        (!points.is_empty()).then(|| line().stroke(Stroke::LineAndPoints))
     });
+    let series = series.collect();
     Panel::from(Chart {
         title: case.into(),
         x: Axis::log("wall time", "s").with_range(3e-6, 60.0),
         y: Axis::log("error of the crank angle", "rad").with_range(1e-15, 10.0),
-        series: series.into(),
+        series,
         marks: vec![Mark::Horizontal {
             at: ANGLE_ROUNDING,
-            label: "one rounding of ten turns".into(),
+            label: "rounding of ten turns".into(),
         }],
         ..Chart::default()
     })
@@ -59,7 +57,7 @@ pub(crate) fn document(runs: &[Run], stages_by_case: &[Stages], speedups: &[Stri
     let mut blocks = vec![
         Block::Figure {
             file: "peers.png".into(),
-            alt: "Error of the crank angle against wall time, both mechanisms, all tools".into(),
+            alt: "Error of the crank angle against wall time, all mechanisms, all tools".into(),
             caption: String::new(),
         },
         Block::Heading("At equal error".into()),
@@ -67,7 +65,7 @@ pub(crate) fn document(runs: &[Run], stages_by_case: &[Stages], speedups: &[Stri
         Block::Heading("Before the motion".into()),
         stages(stages_by_case),
     ];
-    for case in CASES {
+    for case in all_cases() {
         blocks.push(Block::Heading(format!("All runs of the {case}")));
         let of = runs.iter().filter(|run| run.case == case);
         blocks.push(Block::Table {
@@ -116,7 +114,7 @@ fn stages(stages_by_case: &[Stages]) -> Block {
                     s.case.clone(),
                     seconds(s.read),
                     seconds(s.build),
-                    seconds(s.table),
+                    s.table.map_or("-".into(), seconds),
                 ]
             })
             .collect(),

@@ -219,10 +219,7 @@ impl Closure {
             of(distance - length, along, zero)
         };
         match kind {
-            RowKind::Point(k) => {
-                let axis = Vec3::AXES[k].cast();
-                of(axis.dot(d), axis, zero)
-            }
+            RowKind::Point(k) => of(d.component(k), Vec3::AXES[k].cast(), zero),
             RowKind::Parallel(n, w) => {
                 let (n, w) = (a.apply(n.cast()), b.apply(w.cast()));
                 of(n.dot(w), zero, w.cross(n))
@@ -282,7 +279,7 @@ impl Closure {
         };
         let twice = T::from_f64(2.0);
         match kind {
-            RowKind::Point(k) => Vec3::AXES[k].cast().dot(d2),
+            RowKind::Point(k) => d2.component(k),
             RowKind::Parallel(n, w) => {
                 let ((n, n1, n2), (w, w1, w2)) = (direction(a, n), direction(b, w));
                 n2.dot(w) + twice * n1.dot(w1) + n.dot(w2)

@@ -1,4 +1,5 @@
-//! Factors of the groups' Jacobians: LU with row exchanges where a group is square, Householder's QR where equations are redundant.
+//! Factors of the groups' Jacobians: LU with row exchanges where a group is square, Householder's QR where equations are redundant; a
+//! [rod](super::rod) has closed forms.
 
 use super::groups::Group;
 use super::plan::{Plan, Pose};
@@ -23,9 +24,18 @@ impl Plan {
         }
     }
 
-    /// The solution of a group's equations for the right-hand sides in the scratch memory, by row; it leaves the unknowns there.
+    /// The solution of a closed group's equations for the right-hand sides in the scratch memory, by row; it leaves the unknowns there.
     #[inline(always)]
     pub(super) fn solve<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) {
+        match &group.rod {
+            Some(rod) => Self::solve_rod(group, rod, pose),
+            None => self.solve_factored(group, pose),
+        }
+    }
+
+    /// The same by the factors of the group's Jacobian.
+    #[inline(always)]
+    pub(super) fn solve_factored<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) {
         let (m, n) = (group.rows.len(), group.unknowns.len());
         let Pose {
             scratch,
@@ -58,6 +68,9 @@ impl Plan {
         pose: &Pose<T>,
         values: &mut [T],
     ) {
+        if let Some(rod) = &group.rod {
+            return Self::solve_rod_transposed(group, rod, pose, values);
+        }
         let (m, n) = (group.rows.len(), group.unknowns.len());
         let values = &mut values[..m];
         for (value, scale) in values.iter_mut().zip(&group.column_scales) {

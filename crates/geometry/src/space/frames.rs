@@ -51,7 +51,7 @@ pub(super) struct Screw<T> {
 /// The velocities of a body that a unit of a freedom makes: of one of its points, and angular.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Twist<T> {
-    linear: Vec3<T>,
+    pub(super) linear: Vec3<T>,
     angular: Vec3<T>,
 }
 
@@ -64,6 +64,26 @@ impl<T: Scalar> Twist<T> {
 }
 
 impl<T: Scalar> Screw<T> {
+    /// The velocity that so many units make at a point.
+    #[inline(always)]
+    pub(super) fn velocity(&self, kind: FreedomKind, at: Vec3<T>, units: f64) -> Vec3<T> {
+        self.twist(kind, at, units).linear
+    }
+
+    /// The power that a unit takes from a wrench about the origin of the frame that it places: turns come last, so that the origin is on
+    /// their axes.
+    #[inline(always)]
+    pub(super) fn power_at_origin(&self, kind: FreedomKind, wrench: &Wrench<T>) -> T {
+        match kind {
+            FreedomKind::Turn | FreedomKind::BallTurn => self.axis.dot(wrench.moment),
+            FreedomKind::Slide => self.axis.dot(wrench.force),
+            FreedomKind::Screw(pitch) => {
+                self.axis.dot(wrench.moment) + T::from_f64(pitch) * self.axis.dot(wrench.force)
+            }
+            FreedomKind::Length => T::from_f64(0.0),
+        }
+    }
+
     /// The twist of so many units at a point.
     #[inline(always)]
     pub(super) fn twist(&self, kind: FreedomKind, at: Vec3<T>, units: f64) -> Twist<T> {
@@ -105,6 +125,16 @@ impl<T: Scalar> BodyMotion<T> {
         self.acceleration + self.direction_derivatives(arm).1
     }
 
+    /// The motion that the body gives to another one fixed to it, with an origin at this vector from its own.
+    #[inline(always)]
+    pub(super) fn carried(&self, arm: Vec3<T>) -> Self {
+        Self {
+            velocity: self.point_velocity(arm),
+            acceleration: self.point_acceleration(arm),
+            ..*self
+        }
+    }
+
     /// First and second derivative of a vector fixed in the body: ω × u and ω̇ × u + ω × (ω × u).
     #[inline(always)]
     pub fn direction_derivatives(&self, u: Vec3<T>) -> (Vec3<T>, Vec3<T>) {
@@ -117,17 +147,28 @@ impl<T: Scalar> BodyMotion<T> {
 }
 
 impl Link {
-    /// The body's frame and the screws of the freedoms, from the parent's frame.
+    /// The frame of its joint on the parent; the ground's axes are those of everything.
+    #[inline(always)]
+    pub(super) fn base<T: Scalar>(&self, parent: &Frame<T>, is_ground: bool) -> Frame<T> {
+        if is_ground {
+            return Frame {
+                origin: parent.origin + self.on_parent.position.cast(),
+                rotation: self.on_parent.rotation.cast(),
+            };
+        }
+        parent.then(&self.on_parent)
+    }
+
+    /// The body's frame and the screws of the freedoms, from the joint's frame on the parent.
     #[inline]
     pub(super) fn place<T: Scalar>(
         &self,
-        parent: &Frame<T>,
+        mut frame: Frame<T>,
         coordinates: &[T],
         balls: &[Rotation<T>],
         freedoms: &[FreedomKind],
         screws: &mut [Screw<T>],
     ) -> Frame<T> {
-        let mut frame = parent.then(&self.on_parent);
         for step in &self.steps {
             match *step {
                 Step::Turn(c) => {
@@ -164,7 +205,8 @@ impl Link {
         frame
     }
 
-    /// The body's velocities, and its accelerations without those of the freedoms, from those of the parent.
+    /// The body's velocities, and its accelerations without those of the freedoms, from those of the parent and what it has with the
+    /// parent alone.
     ///
     /// ```text
     /// ω̇ = ω̇_p + Σ ω×u ċ,     v̇ = v̇_p + ω̇_p×r + ω_p×(ω_p×r) + Σ 2 ω_p×u ċ                            (1)
@@ -175,17 +217,12 @@ impl Link {
     #[inline(always)]
     pub(super) fn motion<T: Scalar>(
         &self,
-        arm: Vec3<T>,
+        mut state: BodyMotion<T>,
         of_parent: &BodyMotion<T>,
         rates: &[T],
         freedoms: &[FreedomKind],
         screws: &[Screw<T>],
     ) -> BodyMotion<T> {
-        let mut state = BodyMotion {
-            velocity: of_parent.point_velocity(arm),
-            acceleration: of_parent.point_acceleration(arm),
-            ..*of_parent
-        };
         for c in self.freedoms.clone() {
             let along = screws[c].axis.scaled(rates[c]);
             let slide = |state: &mut BodyMotion<T>, along: Vec3<T>| {

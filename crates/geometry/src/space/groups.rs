@@ -4,6 +4,7 @@
 use super::closure::Closure;
 use super::mechanism::Mechanism;
 use super::plan::{Plan, Pose};
+use super::rod::Rod;
 use super::tree::{FreedomKind, Step};
 use crate::error::AssemblyError;
 use crate::structure::groups::{match_equations, strong_components};
@@ -45,6 +46,8 @@ pub(super) struct Group {
     /// Where the matrix has no entry.
     pub(super) zeros: Vec<usize>,
     pub(super) outer: Vec<Outer>,
+    /// Where its closed positions are solved as those of a rod.
+    pub(super) rod: Option<Rod>,
     pub(super) row_scales: Vec<f64>,
     pub(super) column_scales: Vec<f64>,
     /// Where its factors begin, and what belongs to each of their columns.
@@ -234,7 +237,11 @@ impl Plan {
         }
         let groups = groups
             .into_iter()
-            .map(|(unknowns, rows)| self.group(unknowns, rows))
+            .map(|(unknowns, rows)| {
+                let mut group = self.group(unknowns, rows);
+                group.rod = self.rod(&group);
+                group
+            })
             .collect();
         self.schedule(groups);
         let mut pose = self.pose();

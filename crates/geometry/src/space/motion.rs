@@ -90,8 +90,13 @@ impl Plan {
             ..
         } = pose;
         for link in &self.tree.links {
-            let arm = frames[link.body].origin - frames[link.parent].origin;
-            states[link.body] = link.motion(arm, &states[link.parent], rates, freedoms, screws);
+            let of_parent = &states[link.parent];
+            let carried = if link.parent == self.ground {
+                BodyMotion::default()
+            } else {
+                of_parent.carried(frames[link.body].origin - frames[link.parent].origin)
+            };
+            states[link.body] = link.motion(carried, of_parent, rates, freedoms, screws);
         }
         pose.has_no_acceleration = true;
     }

@@ -46,11 +46,10 @@ impl Plan {
         }
         for link in &self.tree.links {
             let wrenches = &forces.transmitted[link.body];
-            let at = pose.frames[link.body].origin;
             for f in link.freedoms.clone() {
-                let twist = pose.screws[f].twist(self.tree.freedoms[f], at, 1.0);
+                let (screw, kind) = (&pose.screws[f], self.tree.freedoms[f]);
                 for (balance, wrench) in forces.balance[f].iter_mut().zip(wrenches) {
-                    *balance = twist.power(wrench);
+                    *balance = screw.power_at_origin(kind, wrench);
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! The compiled mechanism, and the memory of one thread in which it is evaluated.
 
-use super::closure::Closure;
+use super::closure::{Closure, RowKind};
 use super::coordinate::StoredAngles;
 use super::follow::Node;
 use super::frames::{BodyMotion, Frame, Screw};
@@ -233,6 +233,14 @@ impl Plan {
             states: vec![BodyMotion::default(); self.tree.internal.len()],
             added: vec![[Vec3::zero(); 2]; self.tree.internal.len()],
         };
+        // The wrenches of points do not change.
+        for closure in &self.closures {
+            for (kind, row) in closure.kinds.iter().zip(closure.rows.clone()) {
+                if let RowKind::Point(axis) = kind {
+                    pose.row_wrenches[row].force = Vec3::AXES[*axis].cast();
+                }
+            }
+        }
         // The ground is placed once.
         pose.frames[self.ground].origin = self.tree.internal[self.ground].position.cast();
         pose

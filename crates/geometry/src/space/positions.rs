@@ -1,6 +1,7 @@
 //! Positions: each group from a prediction between stored poses, closed with the predicted inverse of its Jacobian, or by Newton's method. A group with redundant rows is solved by least squares, and what
 //! stays open is looked at: least squares converge where a loop does not close, too.
 
+use super::closure::RowKind;
 use super::groups::Group;
 use super::plan::{Plan, Pose};
 use super::prediction::PiecePoint;
@@ -120,6 +121,9 @@ impl Plan {
     /// Factors the Jacobian of a closed group; false where it is singular.
     #[inline(always)]
     fn factor_closed<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) -> bool {
+        if let Some(rod) = &group.rod {
+            return self.factor_rod(group, rod, pose);
+        }
         self.fill_rows(group, pose);
         self.factor(group, pose).pivot_ratio >= SINGULAR
     }
@@ -135,8 +139,8 @@ impl Plan {
                 screws,
                 ..
             } = pose;
-            frames[link.body] =
-                link.place(&frames[link.parent], coordinates, balls, freedoms, screws);
+            let base = link.base(&frames[link.parent], link.parent == self.ground);
+            frames[link.body] = link.place(base, coordinates, balls, freedoms, screws);
         }
     }
 
@@ -162,6 +166,9 @@ impl Plan {
             }
             if settled {
                 let residual = self.largest_residual(group, pose);
+                if let Some(rod) = &group.rod {
+                    self.factor_rod(group, rod, pose);
+                }
                 return if residual <= OPEN {
                     Ok(())
                 } else {
@@ -231,7 +238,10 @@ impl Plan {
                 let twist = pose.screws[freedom].twist(kind, at, sign);
                 for &(_, k) in rows {
                     let wrench = &pose.row_wrenches[closure.rows.start + k];
-                    pose.entries[closure.entries + k * freedoms + p] = twist.power(wrench);
+                    pose.entries[closure.entries + k * freedoms + p] = match closure.kinds[k] {
+                        RowKind::Point(axis) => twist.linear.component(axis),
+                        _ => twist.power(wrench),
+                    };
                 }
             }
         }
@@ -242,7 +252,7 @@ impl Plan {
         for (i, row) in group.residuals.iter().enumerate() {
             pose.scratch[i] = -pose.residuals[*row];
         }
-        self.solve(group, pose);
+        self.solve_factored(group, pose);
         let mut largest = 0.0_f64;
         for (j, (&freedom, scale)) in group.unknowns.iter().zip(&group.column_scales).enumerate() {
             let step = pose.scratch[j];

@@ -90,6 +90,12 @@ impl<T: Scalar> Vec3<T> {
         )
     }
 
+    /// The component along the axis of this number.
+    #[inline(always)]
+    pub(super) fn component(self, axis: usize) -> T {
+        [self.x, self.y, self.z][axis]
+    }
+
     /// The vector times a number.
     #[inline(always)]
     #[must_use]
