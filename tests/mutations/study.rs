@@ -30,6 +30,9 @@ pub type IgnoredFindings = (String, CheckMode, Vec<String>);
 
 /// The study.
 pub struct Study {
+    /// Its files, and its title.
+    pub name: &'static str,
+    pub title: &'static str,
     /// Without a fault: the union over all machines.
     pub without_mutation: Detection,
     pub groups: Vec<MutationGroup>,
@@ -184,6 +187,8 @@ impl Study {
         ];
         let ignoring = mechanisms.iter().filter(|m| !m.ignored_findings.is_empty());
         Self {
+            name: "mutations",
+            title: "Deliberate faults and the independent checks that detect them",
             without_mutation: unmutated,
             groups,
             operation_results: operations::mutate_operations(&mechanisms),

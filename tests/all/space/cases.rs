@@ -6,15 +6,12 @@ use dwell_tests::fixtures::repository_root;
 use dwell_validation::{Validation, validate_in_space};
 use std::path::PathBuf;
 
-/// The scenes of one coordinate.
+/// The scenes.
 fn cases() -> Vec<PathBuf> {
     let folder = repository_root().join("validation/spatial");
     let entries = std::fs::read_dir(folder).expect("the folder");
     let paths = entries.map(|entry| entry.expect("an entry").path());
-    let is_case = |path: &PathBuf| {
-        let is_scene = path.extension().is_some_and(|ending| ending == "toml");
-        is_scene && SpaceScene::read(path).expect("a scene").assembly.q.len() == 1
-    };
+    let is_case = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "toml");
     let mut all: Vec<PathBuf> = paths.filter(is_case).collect();
     all.sort();
     all
@@ -30,7 +27,7 @@ fn validated(scene: &SpaceScene, path: &std::path::Path) -> Validation {
 #[test]
 fn every_case_in_space_passes_with_the_values_it_had() {
     let cases = cases();
-    assert!(cases.len() >= 13, "{cases:?}");
+    assert!(cases.len() >= 18, "{cases:?}");
     let mut wrong = Vec::new();
     for path in &cases {
         let scene = SpaceScene::read(path).expect("a scene");
