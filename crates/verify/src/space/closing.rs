@@ -1,7 +1,7 @@
 //! The pose nearest to some placements that meets all rows: Newton's method with the smallest steps.
 
 use super::DensePose;
-use super::rows::Bodies;
+use super::rows::{Bodies, mesh_error};
 use crate::error::{DenseError, Result};
 use dwell_geometry::space::{ActuatorKind, Mechanism, Placement, Rotation, Vec3, vec3};
 use std::borrow::Cow;
@@ -35,15 +35,24 @@ pub(super) fn coordinate_error(
     }
 }
 
-/// The residuals of all rows, those of the joints first; what gears have travelled is not among them.
-fn residuals(mechanism: &Mechanism, placements: &[Placement], q: &[f64]) -> Vec<f64> {
+/// The residuals of all rows, those of the joints first. Those of gears are what their teeth have travelled since other placements.
+fn residuals(
+    mechanism: &Mechanism,
+    placements: &[Placement],
+    (q, before): (&[f64], Option<&[Placement]>),
+) -> Vec<f64> {
     let bodies = Bodies::at_rest(mechanism, placements);
     let (_, of_joint) = bodies.all_rows();
     let mut all = Vec::new();
     for (joint, rows) in mechanism.joints.iter().zip(of_joint) {
         // A driven distance holds nothing by itself.
-        if !rows.is_empty() {
-            all.extend(bodies.residuals(joint));
+        if rows.is_empty() {
+            continue;
+        }
+        let mesh = before.and_then(|before| mesh_error(joint, [before, placements]));
+        match mesh {
+            Some(error) => all.push(error),
+            None => all.extend(bodies.residuals(joint)),
         }
     }
     let actuators = mechanism.actuators.iter().zip(q);
@@ -52,14 +61,15 @@ fn residuals(mechanism: &Mechanism, placements: &[Placement], q: &[f64]) -> Vec<
 }
 
 impl<'a> DensePose<'a> {
-    /// The equations at the pose nearest to these placements whose coordinates have these values.
+    /// The equations at the pose nearest to these placements whose coordinates have these values, and in which gears mesh as they did at
+    /// others before.
     ///
     /// # Errors
     /// [`DenseError::NotClosed`] where there is none, [`DenseError`] where the equations have no singular values.
     pub(super) fn nearest(
         mechanism: &'a Mechanism,
         placements: &'a [Placement],
-        q: &[f64],
+        (q, before): (&[f64], Option<&[Placement]>),
         size: f64,
     ) -> Result<Self> {
         let finite = |p: &Placement| {
@@ -72,7 +82,7 @@ impl<'a> DensePose<'a> {
         let scale = size.max(1.0);
         let mut largest = f64::INFINITY;
         for _ in 0..MAX_STEPS {
-            let open = residuals(mechanism, &pose.placements, q);
+            let open = residuals(mechanism, &pose.placements, (q, before));
             let before = largest;
             largest = open.iter().fold(0.0, |max, r| r.abs().max(max));
             if largest <= ROUNDING * scale || largest >= before {

@@ -38,7 +38,7 @@ const NEWTON_EULER: FindingSpec<'_> = FindingSpec {
 
 /// The step of the differences of M, in rad or sizes of the mechanism.
 const INERTIA_STEP: f64 = 5e-4;
-/// The step of the differences of positions, in rad or sizes of the mechanism that the fastest coordinate moves.
+/// The step of the differences of positions, in rad or sizes of the mechanism that the fastest coordinate or body moves.
 const POSITION_STEP: f64 = 2e-3;
 /// Steps on each side: two of the second differences beyond two of the first.
 const REACH: usize = 4;
@@ -200,8 +200,14 @@ fn placements_along(
         let parts = of.iter().enumerate().map(|(k, v)| v.abs() / unit(case, k));
         parts.fold(0.0, f64::max)
     };
-    let pace = fastest(&state.q_dot).max(fastest(&state.q_ddot).sqrt());
-    let step = POSITION_STEP / if pace > 0.0 { pace } else { 1.0 };
+    let coordinates = fastest(&state.q_dot).max(fastest(&state.q_ddot).sqrt());
+    // A screw may turn much faster than its coordinate.
+    let pace = state.motions.iter().fold(coordinates, |max, m| {
+        max.max(m.angular_velocity.norm())
+            .max(m.angular_acceleration.norm().sqrt())
+    });
+    let is_moving = pace > 0.0 && pace.is_finite();
+    let step = POSITION_STEP / if is_moving { pace } else { 1.0 };
     let at = |k: usize| {
         let t = step * (k as f64 - REACH as f64);
         let parts = state.q.iter().zip(&state.q_dot).zip(&state.q_ddot);

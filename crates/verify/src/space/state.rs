@@ -190,7 +190,7 @@ fn solve_all<'a>(case: &SpaceCase<'_>, states: &'a [SpaceState]) -> Vec<DenseSta
         let pose = known.map(|(_, pose, closed)| Ok((pose, closed)));
         let pose = pose.unwrap_or_else(|| {
             let at = &claimed.placements;
-            let pose = DensePose::nearest(case.mechanism, at, &claimed.q, case.size);
+            let pose = DensePose::nearest(case.mechanism, at, (&claimed.q, None), case.size);
             let pose = pose.map_err(|e| e.to_string())?;
             let unit = |i: usize| {
                 let mut rates = vec![0.0; claimed.q.len()];
