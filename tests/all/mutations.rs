@@ -26,7 +26,9 @@ fn every_fault_in_an_equation_is_detected_by_two_checks() {
     // Every function in which an operation was changed belongs to a step.
     let operations = study.operation_results.iter().map(|r| r.operation);
     let source = SourceFiles::read(&repository_root(), operations);
-    assert!(tallies::by_step(&study.operation_results, &source).len() > 15);
+    assert!(
+        tallies::by_step(&study.operation_results, &source, tallies::evaluation_step).len() > 15
+    );
     // It would be a bad sign if evaluating met few operations, or if few of their faults were felt.
     let effective = study
         .operation_results

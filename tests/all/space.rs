@@ -9,6 +9,7 @@ mod friction_in_motion;
 mod hooke_joint;
 mod loads;
 mod motions;
+mod mutations;
 mod oblique;
 mod operating_points;
 mod random_loops;

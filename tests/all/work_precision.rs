@@ -3,7 +3,7 @@
 use dwell_dynamics::Method;
 use dwell_geometry::{PositionError, Range};
 use dwell_kinetostatics::{Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel};
-use dwell_scene::Scene;
+use dwell_scene::{Scene, SpaceScene};
 use dwell_study::no_progress;
 use dwell_tests::fixtures::{repository_root, scene};
 use dwell_validation::work_precision::{
@@ -358,4 +358,67 @@ fn exported_code_is_as_accurate_as_its_cells_and_its_numbers() {
     // Loads that vary are inputs of the code.
     let found = run_study("press", &effort);
     assert!(found.exported_code.is_empty());
+}
+
+/// A scene of `validation/spatial` with a motion.
+fn scene_in_space(name: &str, motion: &str) -> SpaceScene {
+    let path = repository_root().join(format!("validation/spatial/{name}.toml"));
+    let text = std::fs::read_to_string(path).expect("a scene") + motion;
+    SpaceScene::parse(name, &text).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+/// In space the study is that of the plane: with one coordinate, conservative or not, and with several. Each method errs less at a finer
+/// tolerance, quadrature is the reference where there is an orbit, and what there is not is named.
+#[test]
+fn motions_in_space_are_studied_as_those_in_the_plane() {
+    let damped = "drag = { rotational-damper = \"A\", damping = 0.02 }\n";
+    let motion = "\n[motion]\nduration = 2\ninitial-velocity = 3\n";
+    let effort = effort(&[-5, -7, -9], &[1e-6]);
+    let cases = [
+        ("slider-crank-haug", motion.to_owned(), true),
+        ("slider-crank-haug", format!("{damped}{motion}"), false),
+        ("gyroscope", String::new(), false),
+    ];
+    for (name, more, has_orbit) in cases {
+        let scene = scene_in_space(name, &more);
+        let found = measure(&scene, &effort, &no_progress).expect("a study");
+        assert_eq!(found.quadrature().is_some(), has_orbit, "{name}");
+        assert_eq!(found.reference.method.contains("quadrature"), has_orbit);
+        // Measured: 4e-15 to 1e-13 rad.
+        let error = found.reference.error.coordinate;
+        assert!(error < 1e-11, "{name}: {error:.1e}");
+        let tables = found.omitted.iter().filter(|why| why.starts_with("tables"));
+        assert_eq!(tables.count(), 1, "{name}: {:?}", found.omitted);
+        for method in Method::ALL {
+            let runs = exact(&found, method);
+            assert_eq!(runs.len(), 3, "{name}, {}", method.name());
+            for pair in runs.windows(2) {
+                for quantity in ErrorQuantity::ALL {
+                    let [before, after] = [0, 1].map(|k| pair[k].errors.of(quantity));
+                    let at = pair[1].combination.name();
+                    let floor = 100.0 * found.reference.error.of(quantity);
+                    assert!(
+                        after < before / 3.0 || after < floor,
+                        "{name}, {at}: {quantity:?} {before:e} {after:e}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Without loads the tables of the reduced model are studied in space, too, and their errors are those that they were built for.
+#[test]
+fn tables_of_a_reduced_model_in_space_are_studied() {
+    let path = repository_root().join("validation/spatial/rssr.toml");
+    let text = std::fs::read_to_string(path).expect("a scene");
+    let (before, _) = text.split_once("[loads]").expect("loads");
+    let motion = "[motion]\nduration = 5\ninitial-velocity = 2\n";
+    let scene = SpaceScene::parse("rssr", &format!("{before}{motion}")).expect("a scene");
+    let found = measure(&scene, &effort(&[-9, -11], &[1e-5]), &no_progress).expect("a study");
+    let integrator = Integrator::Steps(Method::Dop853, 1e-9);
+    let [table, sound] =
+        ["table 1e-5", "exact f64"].map(|name| result_of(&found, integrator, name));
+    let [table, sound] = [table, sound].map(|result| result.errors.coordinate);
+    assert!(table > 10.0 * sound && table < 1e-3, "{table:e} {sound:e}");
 }

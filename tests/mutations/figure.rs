@@ -9,8 +9,8 @@ use dwell_report::{Axis, Cell, Figure, Grid, Group, Panel, Row};
 /// The figure `mutations`.
 pub fn figure(study: &Study, steps: &[(&'static str, Tally)]) -> Figure {
     Figure {
-        name: "mutations".into(),
-        title: "Deliberate faults and the independent checks that detect them".into(),
+        name: study.name.into(),
+        title: study.title.into(),
         caption: format!(
             "Above: named faults, each on the mechanism where the fewest checks detect it; a number is the digits by which the \
              difference exceeds the tolerance of the check, 0: not detected, hatched: not applied. Below: {} faults of single \

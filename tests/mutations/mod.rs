@@ -6,7 +6,8 @@
 //! operations       every operation of every step is mutated    ┐
 //! reduced_model    named faults of the reduced model          │  each checked by
 //! claimed_states   named faults of states under loads         │  the independent checks
-//! motions          named faults of the equation of motion     ┘
+//! motions          named faults of the equation of motion     │
+//! space            the same for mechanisms in space          ┘
 //! ```
 //!
 //! To add a named fault: a variant, its entry in `ALL`, its words and what it does, in one of the last
@@ -24,6 +25,7 @@ mod published;
 pub mod reduced_model;
 pub mod report;
 pub mod source;
+pub mod space;
 pub mod study;
 pub mod tallies;
 pub mod tested_mechanism;

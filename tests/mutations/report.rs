@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 /// `mutations.txt`: which checks detect what. Digits and counts are left out: they are not the same everywhere, and
 /// each new line of the product changes them.
 pub fn text(study: &Study, functions: &BTreeMap<String, Tally>) -> String {
-    let mut out = String::from(HEAD);
+    let mut out = format!("{}\n{HEAD}", study.title);
     let _ = writeln!(out, "{:<58}  {:<18} checks", "fault", "on");
     let _ = writeln!(
         out,
@@ -41,11 +41,16 @@ pub fn text(study: &Study, functions: &BTreeMap<String, Tally>) -> String {
         let min_checks = tally.min_checks.map_or("-".to_owned(), |n| n.to_string());
         let _ = writeln!(out, "  {function:<36} {min_checks:>3}");
     }
+    if !study.exceptions.is_empty() {
+        let _ = writeln!(out, "\nWhere one check is enough, and why");
+    }
+    for (file, why) in study.exceptions {
+        let _ = writeln!(out, "  {file}: {why}");
+    }
     out
 }
 
-const HEAD: &str = "Deliberate faults and the independent checks that detect them\n\
-    A check is named by its number; in brackets where it exceeds its tolerance by less than three digits.\n\n";
+const HEAD: &str = "A check is named by its number; in brackets where it exceeds its tolerance by less than three digits.\n\n";
 
 /// How many faults, and how many checks.
 pub fn summary(study: &Study) -> String {
@@ -95,14 +100,27 @@ pub fn markdown(
     functions: &BTreeMap<String, Tally>,
     source: &SourceFiles,
 ) -> String {
-    let mut out = String::from(
-        "# Deliberate faults\n\n![Faults and checks](mutations.png)\n\nA fault is a wrapper around what is checked; production \
+    let mut out = format!(
+        "# {}\n\n![Faults and checks]({}.png)\n\nA fault is a wrapper around what is checked; production \
          code holds none. A cell is the digits by which the difference exceeds the tolerance of the check; 0: the check \
          applies and does not detect the fault; empty: it does not apply. Every fault is shown on the mechanism where the fewest checks detect it.\n\n",
+        study.title, study.name
     );
     let _ = writeln!(out, "{}\n", summary(study));
     for gap in study.gaps() {
         let _ = writeln!(out, "- **{gap}**");
+    }
+    for (file, why) in study.exceptions {
+        let excepted = study.operation_results.iter().filter(|result| {
+            result.undetected()
+                && study.is_exception(result)
+                && result.operation.file.ends_with(file)
+        });
+        let _ = writeln!(
+            out,
+            "- {} faults in {file} are detected by one check only: {why}.",
+            excepted.count()
+        );
     }
     for (name, mode, keys) in &study.ignored {
         let _ = writeln!(

@@ -59,12 +59,16 @@ pub fn by_function(results: &[MutationResult], source: &SourceFiles) -> BTreeMap
 ///
 /// # Panics
 /// Where a function belongs to no step.
-pub fn by_step(results: &[MutationResult], source: &SourceFiles) -> Vec<(&'static str, Tally)> {
+pub fn by_step(
+    results: &[MutationResult],
+    source: &SourceFiles,
+    step_of: fn(&str, &str) -> Option<(usize, &'static str)>,
+) -> Vec<(&'static str, Tally)> {
     let mut tallies: BTreeMap<(usize, &'static str), Tally> = BTreeMap::new();
     for result in results {
         let (file, function) = (result.operation.file, source.function(result.operation));
-        let step = evaluation_step(file, function).unwrap_or_else(|| {
-            panic!("`{function}` in {file} belongs to no step: name it in tallies.rs")
+        let step = step_of(file, function).unwrap_or_else(|| {
+            panic!("`{function}` in {file} belongs to no step: name it in tallies.rs, or space/steps.rs")
         });
         tallies.entry(step).or_default().count(result);
     }
@@ -77,7 +81,7 @@ pub fn by_step(results: &[MutationResult], source: &SourceFiles) -> Vec<(&'stati
 // Long: an entry for each step.
 /// The step that a function belongs to, with its place in the order of evaluation. Every function in which a mutation was
 /// tried must be named here: what is unknown fails, so that a renamed file cannot move its mutations to another step.
-fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static str)> {
+pub fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static str)> {
     // An operator that is passed as a function, such as `Add::add`, is called from the standard library.
     if path.contains("library/core/") {
         return Some((25, "operators passed as functions"));

@@ -442,7 +442,7 @@ fn solve_accelerations(runs: &[Kinetostatic<f64>], rest: &[f64]) -> Option<Vec<f
 }
 
 /// The difference of results, relative to the largest of each kind; infinite where one is not a number.
-fn max_difference(clean: &ComparedValues, found: &ComparedValues) -> f64 {
+pub fn max_difference(clean: &ComparedValues, found: &ComparedValues) -> f64 {
     let mut max = 0.0_f64;
     for (clean, found) in clean.iter().zip(found) {
         let largest = clean.iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));

@@ -1,6 +1,5 @@
 //! Finds the folders to validate.
 
-use dwell_scene::SpaceScene;
 use miette::{Report, miette};
 use std::path::{Path, PathBuf};
 
@@ -41,7 +40,7 @@ pub(crate) fn find(names: &[String], folder: &Path) -> Result<Vec<PathBuf>, Repo
     Ok(found)
 }
 
-/// The scenes in space below a folder of cases: those of one coordinate if no names are given, else the named ones; and the other names.
+/// The scenes in space below a folder of cases: all if no names are given, else the named ones; and the other names.
 pub(crate) fn find_in_space(names: &[String], folder: &Path) -> (Vec<PathBuf>, Vec<String>) {
     let below = folder.join("spatial");
     let (named, others): (Vec<_>, Vec<_>) = names.iter().cloned().partition(|name| {
@@ -56,11 +55,7 @@ pub(crate) fn find_in_space(names: &[String], folder: &Path) -> (Vec<PathBuf>, V
         return (Vec::new(), others);
     };
     let paths = entries.flatten().map(|entry| entry.path());
-    let is_case = |path: &PathBuf| {
-        let is_scene = path.extension().is_some_and(|ending| ending == "toml");
-        // One of several coordinates has no reduced parameters, which is what the cases are judged by.
-        is_scene && SpaceScene::read(path).map_or(true, |s| s.mechanism.actuators.len() == 1)
-    };
+    let is_case = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "toml");
     let mut found: Vec<PathBuf> = paths.filter(is_case).collect();
     found.sort();
     (found, others)

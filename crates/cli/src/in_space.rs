@@ -53,6 +53,7 @@ pub(crate) fn run_study(
             let points = points.map(|n| n as usize);
             return dwell_study::unit_runs(scene, points, progress);
         }
+        Command::WorkPrecision { .. } => dwell_validation::work_precision(scene, progress)?,
         Command::Sweep { .. } => {
             let sweep = crate::sweep::parameter_sweep(command, scene, out);
             dwell_study::sweep(scene, &sweep, progress)?

@@ -97,7 +97,8 @@ pub use {
     output::{CommandResult, Outcome, PictureFormat, Pictures, add_page, add_summary},
     reduce::output::reduce,
     space::{
-        analyse_in_space, check_in_space, export_in_space, reduce_in_space, simulate_in_space,
+        analyse_in_space, check_in_space, export_in_space, mechanism_figure_in_space,
+        reduce_in_space, simulate_in_space,
     },
     sweep::output::{ParameterSweep, RowStore, sweep},
     symbolic::output::{FormulaFormat, symbolic},

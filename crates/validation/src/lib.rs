@@ -41,5 +41,5 @@ pub use checked::multibody::{FreeMotionRun, free_motion_run};
 pub use checked::states::{CheckedStates, check_case};
 pub use error::ValidationError;
 pub use overview::{CaseResult, index};
-pub use spatial::{index_in_space, validate_in_space};
+pub use spatial::{ClaimsIn, ReferencePoses, SpaceClaims, index_in_space, validate_in_space};
 pub use work_precision::work_precision;

@@ -1,4 +1,7 @@
 //! Vectors and rotations of space.
+//!
+//! Operators report their caller's source line (`#[track_caller]`): a number type that records its operations (the
+//! mutation tests) then sees the term that uses them.
 
 use dwell_numerics::{Scalar, map_array};
 use std::ops::{Add, AddAssign, Neg, Sub, SubAssign};
@@ -57,6 +60,7 @@ impl Vec3<f64> {
 
     /// The same constants as another number type.
     #[inline(always)]
+    #[track_caller]
     pub fn cast<T: Scalar>(self) -> Vec3<T> {
         vec3(
             T::from_f64(self.x),
@@ -69,12 +73,14 @@ impl Vec3<f64> {
 impl<T: Scalar> Vec3<T> {
     /// Zero, as any number type.
     #[inline(always)]
+    #[track_caller]
     pub fn zero() -> Self {
         Vec3::ZERO.cast()
     }
 
     /// Scalar product.
     #[inline(always)]
+    #[track_caller]
     pub fn dot(self, o: Self) -> T {
         self.x * o.x + self.y * o.y + self.z * o.z
     }
@@ -82,6 +88,7 @@ impl<T: Scalar> Vec3<T> {
     /// Vector product.
     #[inline(always)]
     #[must_use]
+    #[track_caller]
     pub fn cross(self, o: Self) -> Self {
         vec3(
             self.y * o.z - self.z * o.y,
@@ -99,6 +106,7 @@ impl<T: Scalar> Vec3<T> {
     /// The vector times a number.
     #[inline(always)]
     #[must_use]
+    #[track_caller]
     pub fn scaled(self, by: T) -> Self {
         vec3(self.x * by, self.y * by, self.z * by)
     }
@@ -107,6 +115,7 @@ impl<T: Scalar> Vec3<T> {
 impl<T: Scalar> Add for Vec3<T> {
     type Output = Self;
     #[inline(always)]
+    #[track_caller]
     fn add(self, o: Self) -> Self {
         vec3(self.x + o.x, self.y + o.y, self.z + o.z)
     }
@@ -115,6 +124,7 @@ impl<T: Scalar> Add for Vec3<T> {
 impl<T: Scalar> Sub for Vec3<T> {
     type Output = Self;
     #[inline(always)]
+    #[track_caller]
     fn sub(self, o: Self) -> Self {
         vec3(self.x - o.x, self.y - o.y, self.z - o.z)
     }
@@ -123,6 +133,7 @@ impl<T: Scalar> Sub for Vec3<T> {
 impl<T: Scalar> Neg for Vec3<T> {
     type Output = Self;
     #[inline(always)]
+    #[track_caller]
     fn neg(self) -> Self {
         vec3(-self.x, -self.y, -self.z)
     }
@@ -130,15 +141,21 @@ impl<T: Scalar> Neg for Vec3<T> {
 
 impl<T: Scalar> AddAssign for Vec3<T> {
     #[inline(always)]
+    #[track_caller]
     fn add_assign(&mut self, o: Self) {
-        *self = *self + o;
+        self.x += o.x;
+        self.y += o.y;
+        self.z += o.z;
     }
 }
 
 impl<T: Scalar> SubAssign for Vec3<T> {
     #[inline(always)]
+    #[track_caller]
     fn sub_assign(&mut self, o: Self) {
-        *self = *self - o;
+        self.x -= o.x;
+        self.y -= o.y;
+        self.z -= o.z;
     }
 }
 
@@ -232,6 +249,7 @@ impl<T: Scalar> Default for Rotation<T> {
 impl<T: Scalar> Rotation<T> {
     /// A vector of the rotated frame in the axes of the other.
     #[inline(always)]
+    #[track_caller]
     pub fn apply(&self, v: Vec3<T>) -> Vec3<T> {
         let [x, y, z] = self.columns;
         x.scaled(v.x) + y.scaled(v.y) + z.scaled(v.z)
@@ -239,6 +257,7 @@ impl<T: Scalar> Rotation<T> {
 
     /// A vector in the axes of the rotated frame.
     #[inline(always)]
+    #[track_caller]
     pub fn apply_inverse(&self, v: Vec3<T>) -> Vec3<T> {
         vec3(
             self.columns[0].dot(v),
@@ -250,6 +269,7 @@ impl<T: Scalar> Rotation<T> {
     /// This rotation after another.
     #[inline(always)]
     #[must_use]
+    #[track_caller]
     pub fn after(&self, other: &Self) -> Self {
         let [x, y, z] = other.columns;
         Self {
@@ -273,6 +293,7 @@ impl<T: Scalar> Rotation<T> {
     /// The frame turned about its own z axis by the angle of this sine and cosine.
     #[inline(always)]
     #[must_use]
+    #[track_caller]
     pub fn turned_about_z(&self, (sin, cos): (T, T)) -> Self {
         let [x, y, z] = self.columns;
         Self {

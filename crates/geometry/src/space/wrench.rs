@@ -15,6 +15,7 @@ pub struct Wrench<T = f64> {
 impl<T: Scalar> Wrench<T> {
     /// Adds a force at this vector from the point, with a couple.
     #[inline(always)]
+    #[track_caller]
     pub fn add_at(&mut self, arm: Vec3<T>, force: Vec3<T>, couple: Vec3<T>) {
         self.force += force;
         self.moment += couple + arm.cross(force);

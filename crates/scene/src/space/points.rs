@@ -51,7 +51,7 @@ fn points_and_center<'v>(body: &'v DeValue<'v>) -> Vec<&'v Spanned<DeValue<'v>>>
 
 /// A scene in space where one in the plane is needed.
 pub(crate) fn planar_only(source: &Source, point: Span) -> SceneError {
-    let help = "`dwell check`, `reduce`, `kinematics`, `statics`, `kinetostatics`, `simulate`, `cycle`, `equilibria`, `linearise`, `calibrate`, `sweep`, `runs` and `export` take mechanisms in space; for one in the plane, points have two numbers [x, y]";
+    let help = "`dwell check`, `reduce`, `kinematics`, `statics`, `kinetostatics`, `simulate`, `cycle`, `equilibria`, `linearise`, `calibrate`, `sweep`, `runs`, `work-precision` and `export` take mechanisms in space; for one in the plane, points have two numbers [x, y]";
     SceneError::with_labels(
         source,
         "this mechanism is in space, where one in the plane is needed".to_owned(),

@@ -27,7 +27,7 @@ pub use motion::{
     free_motion_page_in_space,
 };
 #[cfg(feature = "output")]
-pub use pictures::reduce_in_space;
+pub use pictures::{mechanism_figure_in_space, reduce_in_space};
 pub use prepared::{PreparedSpaceScene, loaded_model_in_space};
 pub use reduction::{compute_reduction_in_space, reduction_page_in_space};
 #[cfg(feature = "output")]

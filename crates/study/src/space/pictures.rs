@@ -9,6 +9,7 @@ use crate::output::{Outcome, Picture, symbol};
 use crate::reduce::compute::{ReducedScene as _, TableRequest};
 use crate::reduce::{add_table, reduction_outcome};
 use dwell_geometry::Range;
+use dwell_geometry::space::Placement;
 use dwell_report::Figure;
 use dwell_scene::SpaceScene;
 
@@ -80,4 +81,22 @@ impl<'a> PreparedSpaceScene<'a> {
             all,
         })
     }
+}
+
+/// A mechanism in space in three views and an axonometric one, at the first of some positions, which are given with what they are; from
+/// all of them paths are drawn.
+pub fn mechanism_figure_in_space(
+    scene: &SpaceScene,
+    positions: Vec<(Vec<Placement>, String)>,
+    provenance: String,
+) -> Figure {
+    let (drawn, drawn_at) = positions.first().cloned().unwrap_or_default();
+    let positions = SpacePositions {
+        scene,
+        drawn,
+        drawn_at,
+        all: positions,
+        provenance,
+    };
+    positions.figure()
 }

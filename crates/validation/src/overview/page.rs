@@ -8,7 +8,7 @@ use std::fmt::Write as _;
 const STYLE: &str = include_str!("page.css");
 
 /// The other reports, each with what it holds.
-const REPORTS: [(&str, &str, &str); 7] = [
+const REPORTS: [(&str, &str, &str); 8] = [
     (
         "manual.html",
         "Verification manual",
@@ -38,6 +38,11 @@ const REPORTS: [(&str, &str, &str); 7] = [
         "mutations.md",
         "Mutation study",
         "which checks detect which fault (just mutations)",
+    ),
+    (
+        "mutations-space.md",
+        "Mutation study in space",
+        "the same for mechanisms in space",
     ),
     (
         "exported-runs.html",

@@ -8,8 +8,9 @@ use super::samples::{PASSES, Samples};
 use super::worst::Worst;
 use crate::error::ValidationError;
 use dwell_geometry::BodyId;
-use dwell_geometry::space::{ActuatorKind, Placement, Vec3, vec3};
+use dwell_geometry::space::{Placement, Vec3, Wrench, vec3};
 use dwell_kinetostatics::InverseDynamics;
+use dwell_verify::space::joint_actions;
 
 /// The step of the differences, in parts of the range of an angle of one radian or of the mechanism's size.
 const STEP: f64 = 2e-3;
@@ -68,27 +69,13 @@ fn given(
         all[body][0] += force;
         all[body][1] += moment + (at - centre(body)).cross(force);
     };
-    for (j, joint) in mechanism.joints.iter().enumerate() {
-        let part = |k: usize| found.reactions[6 * j + k];
-        let (mut force, mut moment) = (
-            vec3(part(0), part(1), part(2)),
-            vec3(part(3), part(4), part(5)),
-        );
-        let on = placements[joint.side_body(1).0];
-        let at = on.position + on.rotation.apply(joint.sides[1].point);
-        let actuators = mechanism.actuators.iter().zip(&found.tau);
-        for (actuator, tau) in actuators.filter(|(a, _)| a.kind.joint().0 == j) {
-            let first = placements[joint.side_body(0).0];
-            let axis = first.rotation.apply(joint.sides[0].axis);
-            match actuator.kind {
-                ActuatorKind::Angle(_) => moment += axis.scaled(*tau),
-                ActuatorKind::Travel(_) => force += axis.scaled(*tau),
-                ActuatorKind::Length(_) => {
-                    let from = first.position + first.rotation.apply(joint.sides[0].point);
-                    force += (at - from).scaled(tau / (at - from).norm());
-                }
-            }
-        }
+    let wrench = |all: &[f64]| Wrench {
+        force: vec3(all[0], all[1], all[2]),
+        moment: vec3(all[3], all[4], all[5]),
+    };
+    let reactions: Vec<Wrench> = found.reactions.chunks(6).map(wrench).collect();
+    let actions = joint_actions(mechanism, placements, &reactions, &found.tau);
+    for (joint, (at, Wrench { force, moment })) in mechanism.joints.iter().zip(actions) {
         let [first, second] = joint.bodies.map(|b| b.0);
         give(second, at, force, moment);
         give(first, at, -force, -moment);

@@ -1,9 +1,12 @@
 //! All findings of a case in space.
 
 use super::bodies::body_by_body;
+use super::claims::SpaceClaims;
 use super::period::period;
 use super::reference::Reference;
+use super::reference_poses::ReferencePoses;
 use super::samples::{PASSES, POSITIONS, Pass, Samples};
+use super::states::state_findings;
 use super::worst::{Comparison, Worst};
 use crate::error::ValidationError;
 use dwell_findings::{Check, Finding};
@@ -131,12 +134,17 @@ pub(super) fn findings(
     ] {
         found.extend(worst.finding(of, &domain));
     }
+    let positions: Vec<Vec<f64>> = samples.q.iter().step_by(3).map(|q| vec![*q]).collect();
+    found.extend(state_findings(prepared.scene, &positions)?);
     if let Some(reference) = reference {
         let domain = format!("{} positions of the reference", reference.samples().count());
         let [inertia, reactions] = against_reference(prepared, reference)?;
         found.extend(inertia.finding(&REFERENCE, &domain));
         found.extend(reactions.finding(&REFERENCE_REACTIONS, &domain));
         found.extend(period(prepared, reference)?);
+        let claims = SpaceClaims::new(prepared.scene)?;
+        let poses = ReferencePoses::of(prepared.scene, reference);
+        found.extend(poses.placements(&claims.case(), &claims.in_numbers::<f64>()));
     }
     found.sort_by_key(|finding| finding.check);
     Ok(found)

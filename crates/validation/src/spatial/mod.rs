@@ -6,11 +6,18 @@
 //! ```
 
 mod bodies;
+mod claims;
 mod findings;
+mod motion;
 mod period;
 mod reference;
+mod reference_poses;
 mod report;
 mod samples;
+mod several;
+mod states;
 mod worst;
 
+pub use claims::{ClaimsIn, SpaceClaims};
+pub use reference_poses::ReferencePoses;
 pub use report::{index_in_space, validate_in_space};

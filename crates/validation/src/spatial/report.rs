@@ -2,6 +2,7 @@
 
 use super::findings::findings;
 use super::reference::Reference;
+use super::several::validate_several;
 use crate::case_report::validate::Validation;
 use crate::error::ValidationError;
 use crate::overview::{CheckCell, check_cells};
@@ -21,7 +22,7 @@ use std::path::Path;
 /// Positions in the snapshot.
 const PRINTED: usize = 8;
 
-/// Validates a scene in space of one coordinate, with the reference in a file if there is one. The files are `NAME.md` and `NAME.txt`.
+/// Validates a scene in space, with the reference in a file if there is one. The files are `NAME.md` and `NAME.txt`.
 ///
 /// # Errors
 /// [`ValidationError`] when the scene or the reference cannot be used. A failed check is no error.
@@ -30,6 +31,9 @@ pub fn validate_in_space(
     reference: Option<&Path>,
 ) -> Result<Validation, ValidationError> {
     let reference = reference.map(Reference::read).transpose()?;
+    if scene.mechanism.actuators.len() != 1 {
+        return validate_several(scene, reference.as_ref());
+    }
     let prepared = PreparedSpaceScene::new(scene)?;
     let findings = findings(&prepared, reference.as_ref())?;
     let curves = ReducedCurves::new(&prepared, None)?;
@@ -150,7 +154,7 @@ fn snapshot(
 }
 
 /// To seven digits after the first of the largest, without a sign on zero.
-fn rounded(value: f64, largest: f64) -> String {
+pub(super) fn rounded(value: f64, largest: f64) -> String {
     let magnitude = if largest > 0.0 {
         largest.log10().floor()
     } else {

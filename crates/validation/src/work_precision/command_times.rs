@@ -1,12 +1,9 @@
 //! The seconds of the whole command `dwell simulate --accuracy …`, beside those of its computation.
 
+use super::studied_scene::StudiedScene;
 use super::subject::Subject;
 use dwell_report::{OutputFolder, ReportError};
-use dwell_scene::Scene;
-use dwell_study::{
-    MotionSolver, Outcome, PictureFormat, Pictures, StudyError, compute_free_motion, no_progress,
-    simulate_to_accuracy,
-};
+use dwell_study::{Outcome, PictureFormat, Pictures, StudyError, no_progress};
 use std::fs;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
@@ -34,21 +31,17 @@ pub(super) struct CommandTime {
 }
 
 /// The command at each accuracy, on the motion of a scene.
-pub(super) fn command_times(scene: &Scene) -> Result<Vec<CommandTime>, StudyError> {
+pub(super) fn command_times<S: StudiedScene>(scene: &S) -> Result<Vec<CommandTime>, StudyError> {
     let scene = Subject::new(scene)?.scene;
     let one = |preset: (&'static str, f64)| {
         let accuracy = preset.1;
         let started = Instant::now();
-        let solver = MotionSolver::Accuracy {
-            accuracy,
-            sample_interval: None,
-        };
-        let motion = compute_free_motion(&scene, &solver, &no_progress)?;
+        let estimated_error = scene.estimated_error(accuracy)?;
         let computing = started.elapsed().as_secs_f64();
         let [with_files, with_pictures] = whole_command(&scene, accuracy)?;
         Ok(CommandTime {
             preset,
-            estimated_error: motion.estimated_error,
+            estimated_error,
             computing,
             with_files,
             with_pictures,
@@ -59,13 +52,13 @@ pub(super) fn command_times(scene: &Scene) -> Result<Vec<CommandTime>, StudyErro
 
 /// The seconds from the scene in memory to its files in a folder, which is removed afterwards: without pictures, and with
 /// the main ones.
-fn whole_command(scene: &Scene, accuracy: f64) -> Result<[f64; 2], StudyError> {
+fn whole_command<S: StudiedScene>(scene: &S, accuracy: f64) -> Result<[f64; 2], StudyError> {
     static NUMBER: AtomicU64 = AtomicU64::new(0);
     let number = NUMBER.fetch_add(1, Ordering::Relaxed);
     let name = format!("dwell-work-precision-{}-{number}", std::process::id());
     let path = std::env::temp_dir().join(name);
     let started = Instant::now();
-    let outcome = simulate_to_accuracy(scene, accuracy, None, &no_progress)?.outcome;
+    let outcome = scene.simulated(accuracy)?;
     let computing = started.elapsed().as_secs_f64();
     let written = |outcome: Outcome, pictures: Pictures| -> Result<f64, StudyError> {
         let started = Instant::now();

@@ -1,15 +1,14 @@
 //! Evaluators of the equation of motion and of the reactions.
 
 use super::combination::Evaluation;
+use super::studied_scene::StudiedScene;
 use super::subject::Subject;
 use dwell_dynamics::{
-    DynamicsError, Machine, MachineOde, MachineWorkspace, OdeState, OdeSystem, Orbit, ReducedOde,
-    ReducedOutputs, ReducedState, TabulatedMachine,
+    DynamicsError, Machine, MachineOde, MachineWorkspace, MovingModel, OdeState, OdeSystem, Orbit,
+    ReducedOde, ReducedOutputs, ReducedState, TabulatedMachine,
 };
 use dwell_geometry::{PositionError, Range};
-use dwell_kinetostatics::{
-    Coefficients, ExactModel, ExactWorkspace, Inertia, Model, ReducedModel, Workspace,
-};
+use dwell_kinetostatics::{Coefficients, ExactModel, Inertia, ReducedModel, ReducibleModel};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Finds the reactions at a state, N or N·m.
@@ -130,28 +129,29 @@ impl<R: ReducedModel> ReducedModel for CountingModel<'_, R> {
 
 /// The reduced model in single precision. Its derivative is that of double precision: it is used by Newton's
 /// method only.
-#[derive(Debug)]
-pub(super) struct SinglePrecisionModel {
-    exact: ExactModel,
-    /// Pruned for the inertia: without reactions.
-    inertia_model: Model,
+pub(super) struct SinglePrecisionModel<M> {
+    exact: ExactModel<M>,
+    /// Without what the inertia does not need.
+    inertia_model: M,
 }
 
-impl SinglePrecisionModel {
-    pub(super) fn new(exact: &ExactModel) -> Self {
-        let model = exact.model();
+impl<M: ReducibleModel + Clone> SinglePrecisionModel<M> {
+    pub(super) fn new(exact: &ExactModel<M>) -> Self {
         Self {
-            inertia_model: model.without_reactions().pruned_for(&[]),
+            inertia_model: exact.model().for_inertia(),
             exact: exact.clone(),
         }
     }
 }
 
-impl ReducedModel for SinglePrecisionModel {
-    type Workspace = (Workspace<f32>, ExactWorkspace);
+impl<M: ReducibleModel> ReducedModel for SinglePrecisionModel<M> {
+    type Workspace = (
+        M::Workspace<f32>,
+        <ExactModel<M> as ReducedModel>::Workspace,
+    );
 
     fn workspace(&self) -> Self::Workspace {
-        (self.exact.model().workspace(), self.exact.workspace())
+        (self.exact.model().pass_workspace(), self.exact.workspace())
     }
 
     fn reactions(&self) -> usize {
@@ -164,7 +164,7 @@ impl ReducedModel for SinglePrecisionModel {
 
     fn inertia(&self, q: f64, (at, _): &mut Self::Workspace) -> Result<(f64, f64), PositionError> {
         let mut out = Coefficients::default();
-        self.inertia_model.reduce(q as f32, at, &mut out)?;
+        self.inertia_model.reduce_at(q as f32, at, &mut out)?;
         Ok((f64::from(out.m), f64::from(out.half_dm)))
     }
 
@@ -183,8 +183,13 @@ impl ReducedModel for SinglePrecisionModel {
         out: &mut Coefficients,
     ) -> Result<(), PositionError> {
         let model = self.exact.model();
-        let mut single = model.coefficient_buffer::<f32>();
-        model.reduce(q as f32, workspace, &mut single)?;
+        let zeros = vec![0.0_f32; model.reaction_count()];
+        let mut single = Coefficients {
+            a: zeros.clone(),
+            b: zeros,
+            ..Coefficients::default()
+        };
+        model.reduce_at(q as f32, workspace, &mut single)?;
         (out.m, out.half_dm) = (f64::from(single.m), f64::from(single.half_dm));
         let doubled = |values: &[f32]| values.iter().map(|&v| f64::from(v)).collect();
         (out.a, out.b) = (doubled(&single.a), doubled(&single.b));
@@ -193,8 +198,8 @@ impl ReducedModel for SinglePrecisionModel {
 }
 
 /// A machine: any number of freedoms, loads, drives; itself, in single precision or on a table.
-pub(super) struct MachineEvaluator<'s> {
-    pub(super) subject: &'s Subject,
+pub(super) struct MachineEvaluator<'s, S: StudiedScene> {
+    pub(super) subject: &'s Subject<S>,
     pub(super) evaluation: Evaluation,
     /// Its table. This holds no reactions: they are those of the machine at the table's states.
     pub(super) table: Option<TabulatedMachine>,
@@ -202,7 +207,7 @@ pub(super) struct MachineEvaluator<'s> {
     pub(super) build_time: f64,
 }
 
-impl Evaluator for MachineEvaluator<'_> {
+impl<S: StudiedScene> Evaluator for MachineEvaluator<'_, S> {
     fn evaluation(&self) -> Evaluation {
         self.evaluation
     }
@@ -268,15 +273,15 @@ impl Evaluator for MachineEvaluator<'_> {
 }
 
 /// A machine from a start, evaluated in single precision; its Jacobian is that of double precision.
-struct SinglePrecisionOde<'m> {
-    machine: &'m Machine,
-    workspace: MachineWorkspace<f32>,
+struct SinglePrecisionOde<'m, M: MovingModel> {
+    machine: &'m Machine<M>,
+    workspace: MachineWorkspace<f32, M>,
     y: Vec<f32>,
     out: Vec<f32>,
-    exact: MachineOde<'m>,
+    exact: MachineOde<'m, M>,
 }
 
-impl OdeSystem for SinglePrecisionOde<'_> {
+impl<M: MovingModel> OdeSystem for SinglePrecisionOde<'_, M> {
     fn size(&self) -> usize {
         self.machine.state_count()
     }

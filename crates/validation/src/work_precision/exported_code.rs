@@ -5,10 +5,10 @@ use super::combination::Errors;
 use super::evaluator::Evaluator;
 use super::fixed_step::STEP;
 use super::reference_solution::ReferenceSolution;
+use super::studied_scene::StudiedScene;
 use super::subject::Subject;
 use dwell_export::{Export, Identifiers, LoadEffect, Precision, Request, c_files};
-use dwell_scene::Scene;
-use dwell_study::{ExportRequest, compute_export};
+use dwell_study::ExportRequest;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -39,10 +39,10 @@ pub struct ExportedCode {
 }
 
 /// All exports of a motion; where there are none, why.
-pub(super) fn exported_code(
-    reference: &mut ReferenceSolution<'_>,
+pub(super) fn exported_code<S: StudiedScene>(
+    reference: &mut ReferenceSolution<'_, S>,
     exact: &dyn Evaluator,
-    subject: &Subject,
+    subject: &Subject<S>,
     evaluation_time: f64,
 ) -> Result<Vec<ExportedCode>, String> {
     let scene = &subject.scene;
@@ -82,8 +82,8 @@ fn is_there(compiler: &&str) -> bool {
     found.is_ok_and(|output| output.status.success())
 }
 
-fn export(
-    scene: &Scene,
+fn export<S: StudiedScene>(
+    scene: &S,
     accuracy: f64,
     precision: Precision,
     exact: bool,
@@ -96,7 +96,7 @@ fn export(
         exact,
         interval: None,
     };
-    let export = compute_export(scene, &asked).map_err(|e| e.to_string())?;
+    let export = scene.export(&asked).map_err(|e| e.to_string())?;
     let varies = |effect: &LoadEffect| match effect {
         LoadEffect::Input { .. } | LoadEffect::VariableDamper { .. } | LoadEffect::Motor(_) => true,
         LoadEffect::Conservative { .. }
@@ -123,7 +123,11 @@ impl Drop for Scratch {
 /// The states at the subject's times, and the times of a call, s: of all coefficients and of a step, in the mean and at worst.
 type Ran = (Vec<Vec<f64>>, [[f64; 2]; 2]);
 
-fn run(export: &Export, subject: &Subject, compiler: &str) -> Result<Ran, String> {
+fn run<S: StudiedScene>(
+    export: &Export,
+    subject: &Subject<S>,
+    compiler: &str,
+) -> Result<Ran, String> {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     let number = COUNT.fetch_add(1, Ordering::Relaxed);
     let name = format!("dwell-exported-code-{}-{number}", std::process::id());
@@ -161,7 +165,7 @@ fn output(command: &mut Command, folder: &Path) -> Result<String, String> {
 }
 
 /// The program: the motion through the subject's times, then the times of the calls.
-fn driver(export: &Export, subject: &Subject) -> String {
+fn driver<S: StudiedScene>(export: &Export, subject: &Subject<S>) -> String {
     let names = Identifiers::new(&export.machine);
     let times: Vec<String> = subject.times.iter().map(|t| format!("{t:e}")).collect();
     let coefficients = match export.machine.reactions.is_empty() {

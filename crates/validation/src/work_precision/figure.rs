@@ -6,7 +6,7 @@ use super::combination::{
 };
 use dwell_dynamics::Method;
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Panel, Series, Stroke};
-use dwell_scene::Scene;
+use dwell_scene::SceneFile;
 use dwell_study::number_format::{count, digits};
 use dwell_study::output::{chart, figure as scene_figure};
 use dwell_study::ranges::extent;
@@ -20,7 +20,7 @@ const MIN_LABEL_GAP: f64 = 1.6;
 const MIN_LABEL_GAP_CROWDED: f64 = 3.0;
 
 /// The figure of a study.
-pub(super) fn figure(scene: &Scene, found: &WorkPrecision, name: &str) -> Figure {
+pub(super) fn figure(scene: &SceneFile, found: &WorkPrecision, name: &str) -> Figure {
     let tables =
         |p: &CombinationResult| matches!(p.combination.evaluation, Evaluation::Table { .. });
     let hollow = match found.points.iter().any(tables) {

@@ -3,6 +3,7 @@
 
 use super::combination::Errors;
 use super::evaluator::Evaluator;
+use super::studied_scene::StudiedScene;
 use super::subject::Subject;
 use dwell_dynamics::{DynamicsError, OdeSystem};
 use std::time::Instant;
@@ -27,9 +28,9 @@ pub struct FixedStep {
 pub(super) type FixedStepRun = (Vec<Vec<f64>>, usize, f64);
 
 /// Integrates the motion by fixed steps.
-pub(super) fn solve(
+pub(super) fn solve<S: StudiedScene>(
     evaluator: &dyn Evaluator,
-    subject: &Subject,
+    subject: &Subject<S>,
 ) -> Result<FixedStepRun, DynamicsError> {
     if subject.end() / STEP > MAX_STEPS {
         let (t, max_steps) = (0.0, MAX_STEPS as usize);

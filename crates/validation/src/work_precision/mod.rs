@@ -11,6 +11,7 @@ mod reference_solution;
 mod report;
 mod run;
 mod selected_cases;
+mod studied_scene;
 mod subject;
 
 pub use combination::{
@@ -21,12 +22,15 @@ pub use evaluator::{Evaluator, ModelEvaluator, ReactionFn};
 pub use exported_code::ExportedCode;
 pub use fixed_step::FixedStep;
 pub use selected_cases::selected_case_reports;
+pub use studied_scene::{PreliminaryRun, StudiedScene};
 
-use dwell_dynamics::{DynamicsError, Method, TabulatedMachine, TabulationError};
+use dwell_dynamics::{DynamicsError, Method, TabulationError};
 use dwell_geometry::Range;
-use dwell_kinetostatics::{ExactModel, ReducedModel, TableDomain, TabulatedModel};
+use dwell_kinetostatics::{
+    ExactModel, MachineModel as _, ReducedModel, TableDomain, TabulatedModel,
+};
 use dwell_report::TableExport as _;
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::SceneLocation;
 use dwell_study::StudyError;
 use dwell_study::output::Picture;
 use dwell_study::{Outcome, Progress, Step};
@@ -47,7 +51,10 @@ const TIMING_PASSES: usize = 20;
 ///
 /// # Errors
 /// As [`measure`]; [`StudyError::Report`] when a table cannot be written.
-pub fn work_precision(scene: &Scene, progress: Progress<'_>) -> Result<Outcome, StudyError> {
+pub fn work_precision<S: StudiedScene>(
+    scene: &S,
+    progress: Progress<'_>,
+) -> Result<Outcome, StudyError> {
     let found = measure(scene, &Effort::full(), progress)?;
     let times = command_times::command_times(scene)?;
     let name = format!("{}-work-precision", scene.name);
@@ -77,8 +84,8 @@ pub fn work_precision(scene: &Scene, progress: Progress<'_>) -> Result<Outcome, 
 /// # Errors
 /// [`StudyError::Scene`] when the scene cannot be put together, nothing in it is free or moves, or no two methods
 /// reach the end of its motion.
-pub fn measure(
-    scene: &Scene,
+pub fn measure<S: StudiedScene>(
+    scene: &S,
     effort: &Effort,
     progress: Progress<'_>,
 ) -> Result<WorkPrecision, StudyError> {
@@ -86,16 +93,16 @@ pub fn measure(
 }
 
 /// Further evaluators, made of the reduced model of a motion of one freedom without loads.
-pub type ExtraEvaluators<'m> = &'m dyn Fn(&ExactModel) -> Vec<Box<dyn Evaluator>>;
+pub type ExtraEvaluators<'m, M> = &'m dyn Fn(&ExactModel<M>) -> Vec<Box<dyn Evaluator>>;
 
 /// [`measure`] with further evaluators.
 ///
 /// # Errors
 /// As [`measure`].
-pub fn measure_with(
-    scene: &Scene,
+pub fn measure_with<S: StudiedScene>(
+    scene: &S,
     effort: &Effort,
-    extra: ExtraEvaluators<'_>,
+    extra: ExtraEvaluators<'_, S::Model>,
     progress: Progress<'_>,
 ) -> Result<WorkPrecision, StudyError> {
     let subject = Subject::new(scene)?;
@@ -153,12 +160,12 @@ pub fn measure_with(
 }
 
 /// The exact evaluator, the motion, and the seconds of one exact evaluation.
-type Timed<'a> = (&'a dyn Evaluator, &'a Subject, f64);
+type Timed<'a, S> = (&'a dyn Evaluator, &'a Subject<S>, f64);
 
 /// The error and the cost of fixed steps.
-fn fixed_step_result(
-    reference: &mut ReferenceSolution<'_>,
-    (exact, subject, evaluation_time): Timed<'_>,
+fn fixed_step_result<S: StudiedScene>(
+    reference: &mut ReferenceSolution<'_, S>,
+    (exact, subject, evaluation_time): Timed<'_, S>,
     omitted: &mut Vec<String>,
 ) -> Option<FixedStep> {
     let mut solve = || {
@@ -176,9 +183,9 @@ fn fixed_step_result(
 }
 
 /// The errors and the costs of the exported code, if it is wanted.
-fn exported_code_results(
-    reference: &mut ReferenceSolution<'_>,
-    (exact, subject, evaluation_time): Timed<'_>,
+fn exported_code_results<S: StudiedScene>(
+    reference: &mut ReferenceSolution<'_, S>,
+    (exact, subject, evaluation_time): Timed<'_, S>,
     effort: &Effort,
     omitted: &mut Vec<String>,
 ) -> Vec<ExportedCode> {
@@ -191,8 +198,8 @@ fn exported_code_results(
 }
 
 /// Errors and costs of all runs. A run that left the range of an evaluator or of the mechanism has no error.
-fn results(
-    reference: &mut ReferenceSolution<'_>,
+fn results<S: StudiedScene>(
+    reference: &mut ReferenceSolution<'_, S>,
     trials: Vec<Trial<'_>>,
     evaluation_time: f64,
     omitted: &mut Vec<String>,
@@ -212,9 +219,9 @@ fn results(
 }
 
 /// The runs of one evaluator, with the quadrature where the motion follows from the energy.
-fn collect_trials<'e>(
+fn collect_trials<'e, S: StudiedScene>(
     evaluator: &'e dyn Evaluator,
-    subject: &Subject,
+    subject: &Subject<S>,
     all_series: Vec<ToleranceSeries>,
     trials: &mut Vec<Trial<'e>>,
     omitted: &mut Vec<String>,
@@ -246,10 +253,10 @@ fn collect_trials<'e>(
 }
 
 /// All evaluators of the motion, the exact one first. A new one is a line here.
-fn evaluators<'s>(
-    subject: &'s Subject,
+fn evaluators<'s, S: StudiedScene>(
+    subject: &'s Subject<S>,
     effort: &Effort,
-    extra: ExtraEvaluators<'_>,
+    extra: ExtraEvaluators<'_, S::Model>,
     omitted: &mut Vec<String>,
 ) -> Vec<Box<dyn Evaluator + 's>> {
     let mut all: Vec<Box<dyn Evaluator + 's>> = match &subject.reduced {
@@ -278,11 +285,15 @@ fn evaluators<'s>(
     };
     let range = match &subject.reduced {
         Some(exact) => exact.range(),
-        None => subject.machine.model().plan().range(),
+        None => subject.machine.model().range(),
     };
     let domain = table_domain(range, subject.coordinate_range);
     for &accuracy in &effort.table_accuracies {
-        match table_evaluator(subject, accuracy, domain) {
+        let Some(table) = table_evaluator(subject, accuracy, domain) else {
+            omitted.push("tables: a machine in space with loads or drives has none".to_owned());
+            break;
+        };
+        match table {
             Ok(table) => all.push(table),
             Err(error @ TabulationError::Table(_)) => {
                 omitted.push(format!("table {accuracy:.0e}: {error}"));
@@ -299,12 +310,15 @@ fn evaluators<'s>(
     all
 }
 
-/// The reduced model, or else the machine, on a table.
-fn table_evaluator(
-    subject: &Subject,
+/// A table, or why there is none of this accuracy.
+type TableResult<'s> = Result<Box<dyn Evaluator + 's>, TabulationError>;
+
+/// The reduced model, or else the machine, on a table; none where such a machine has no tables.
+fn table_evaluator<S: StudiedScene>(
+    subject: &Subject<S>,
     accuracy: f64,
     domain: TableDomain,
-) -> Result<Box<dyn Evaluator + '_>, TabulationError> {
+) -> Option<TableResult<'_>> {
     let started = Instant::now();
     let evaluation = |cells, bytes| Evaluation::Table {
         accuracy,
@@ -312,19 +326,24 @@ fn table_evaluator(
         bytes,
     };
     if let Some(exact) = &subject.reduced {
-        let model = TabulatedModel::new(exact, accuracy, domain)?;
-        return Ok(Box::new(ModelEvaluator {
-            build_time: started.elapsed().as_secs_f64(),
-            evaluation: evaluation(model.cells()[0], model.bytes()[0]),
-            model,
-        }));
+        let model = TabulatedModel::new(exact, accuracy, domain);
+        let evaluator = model.map(|model| -> Box<dyn Evaluator> {
+            Box::new(ModelEvaluator {
+                build_time: started.elapsed().as_secs_f64(),
+                evaluation: evaluation(model.cells()[0], model.bytes()[0]),
+                model,
+            })
+        });
+        return Some(evaluator.map_err(Into::into));
     }
-    let table = TabulatedMachine::new(&subject.machine, accuracy, domain)?;
-    Ok(Box::new(MachineEvaluator {
-        subject,
-        build_time: started.elapsed().as_secs_f64(),
-        evaluation: evaluation(table.cells()[0], table.bytes()),
-        table: Some(table),
+    let table = S::tabulated(&subject.machine, accuracy, domain)?;
+    Some(table.map(|table| -> Box<dyn Evaluator + '_> {
+        Box::new(MachineEvaluator {
+            subject,
+            build_time: started.elapsed().as_secs_f64(),
+            evaluation: evaluation(table.cells()[0], table.bytes()),
+            table: Some(table),
+        })
     }))
 }
 
@@ -358,9 +377,9 @@ type Trial<'e> = (&'e dyn Evaluator, Combination, Run);
 
 /// Runs everything again, one after the other, with the unit between them, and keeps the least times. Returns the unit:
 /// the time of one evaluation and of one Jacobian, s.
-fn time_runs(
-    subject: &Subject,
-    reference: &ReferenceSolution<'_>,
+fn time_runs<S: StudiedScene>(
+    subject: &Subject<S>,
+    reference: &ReferenceSolution<'_, S>,
     exact: &dyn Evaluator,
     trials: &mut [Trial<'_>],
     effort: &Effort,
@@ -394,10 +413,10 @@ fn time_runs(
 }
 
 /// Evaluates at every state of the reference: none depends on another, but each is at another position.
-fn update_unit_times(
+fn update_unit_times<S: StudiedScene>(
     [evaluation, jacobian]: &mut [f64; 2],
-    subject: &Subject,
-    reference: &ReferenceSolution<'_>,
+    subject: &Subject<S>,
+    reference: &ReferenceSolution<'_, S>,
     exact: &dyn Evaluator,
 ) -> Result<(), DynamicsError> {
     let mut system = exact.system()?;
@@ -421,8 +440,8 @@ fn update_unit_times(
 }
 
 /// Why there is no reference: no two methods reach the end.
-fn no_reference_error(
-    subject: &Subject,
+fn no_reference_error<S: StudiedScene>(
+    subject: &Subject<S>,
     error: &DynamicsError,
     all_series: &[ToleranceSeries],
 ) -> StudyError {

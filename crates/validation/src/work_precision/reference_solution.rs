@@ -7,6 +7,7 @@
 use super::combination::{Effort, Errors};
 use super::evaluator::{Evaluator, ReactionFn};
 use super::run::{ToleranceSeries, orbit_states, solve};
+use super::studied_scene::StudiedScene;
 use super::subject::Subject;
 use dwell_dynamics::{DynamicsError, MachineWorkspace, OdeState, Orbit};
 
@@ -20,9 +21,9 @@ const START_ROUNDING: f64 = 2.0 * f64::EPSILON;
 const RESULT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// The reference with its values.
-pub(super) struct ReferenceSolution<'s> {
-    subject: &'s Subject,
-    workspace: MachineWorkspace<f64>,
+pub(super) struct ReferenceSolution<'s, S: StudiedScene> {
+    subject: &'s Subject<S>,
+    workspace: MachineWorkspace<f64, S::Model>,
     pub(super) method: String,
     pub(super) states: Vec<Vec<f64>>,
     reactions: Vec<Vec<f64>>,
@@ -43,13 +44,13 @@ struct Candidate {
     extra_error: f64,
 }
 
-impl<'s> ReferenceSolution<'s> {
+impl<'s, S: StudiedScene> ReferenceSolution<'s, S> {
     /// Finds the reference; `all_series` are the runs of the mechanism itself by each method.
     ///
     /// # Errors
     /// [`DynamicsError`] where there are no two runs to be compared, or a state cannot be evaluated.
     pub(super) fn new(
-        subject: &'s Subject,
+        subject: &'s Subject<S>,
         exact: &dyn Evaluator,
         all_series: &[ToleranceSeries],
         effort: &Effort,
@@ -90,7 +91,7 @@ impl<'s> ReferenceSolution<'s> {
         (self.max_kinetic_energy, self.initial_energy) = (kinetic, kinetic + potential);
         let mut size = kinetic + potential.abs();
         let mut find = exact.reactions();
-        let count = self.subject.reactions.len();
+        let count = self.subject.reaction_units.len();
         for (t, y) in self.subject.times.iter().zip(self.states.clone()) {
             let [kinetic, potential] = self.energies(*t, &y)?;
             self.max_kinetic_energy = self.max_kinetic_energy.max(kinetic);
@@ -99,7 +100,7 @@ impl<'s> ReferenceSolution<'s> {
             find(&OdeState { t: *t, y }, &mut reactions)?;
             self.reactions.push(reactions);
         }
-        let unit = |k: usize| self.subject.reactions[k].component.unit();
+        let unit = |k: usize| &self.subject.reaction_units[k];
         let of_unit = |k: usize| {
             let same = (0..count).filter(|&other| unit(other) == unit(k));
             let values = same.flat_map(|other| self.reactions.iter().map(move |row| row[other]));
@@ -156,7 +157,7 @@ fn nan_max(max: f64, value: f64) -> f64 {
 }
 
 /// How far two motions are apart in the free coordinates, rad or m.
-fn difference(subject: &Subject, one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
+fn difference<S: StudiedScene>(subject: &Subject<S>, one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
     let free = subject.machine.free().len();
     let mut max = 0.0;
     for (one, other) in one.iter().zip(other) {
@@ -167,7 +168,7 @@ fn difference(subject: &Subject, one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
     max
 }
 
-fn from_quadrature(subject: &Subject, orbit: &Orbit) -> Option<Candidate> {
+fn from_quadrature<S: StudiedScene>(subject: &Subject<S>, orbit: &Orbit) -> Option<Candidate> {
     let state = subject.reduced_state();
     let mut others = Vec::new();
     for sign in [-1.0, 1.0] {
@@ -196,8 +197,8 @@ fn from_quadrature(subject: &Subject, orbit: &Orbit) -> Option<Candidate> {
 }
 
 /// The run of the method that changes least from one tolerance to the next, with that of the second best.
-fn from_integrators(
-    subject: &Subject,
+fn from_integrators<S: StudiedScene>(
+    subject: &Subject<S>,
     exact: &dyn Evaluator,
     all_series: &[ToleranceSeries],
     effort: &Effort,

@@ -10,7 +10,7 @@ use crate::report_parts;
 use dwell_dynamics::Method;
 use dwell_findings::Record;
 use dwell_report::{Block, Column, Document, Table, TableExport as _};
-use dwell_scene::Scene;
+use dwell_scene::SceneFile;
 use dwell_study::StudyError;
 use dwell_study::number_format::{count, digits};
 use dwell_study::output::provenance_line;
@@ -160,7 +160,7 @@ fn cheapest(
 }
 
 /// The document of a study.
-pub(super) fn document(scene: &Scene, found: &WorkPrecision, file: &str) -> Document {
+pub(super) fn document(scene: &SceneFile, found: &WorkPrecision, file: &str) -> Document {
     let mut blocks = vec![
         Block::Text(intro(scene, found)),
         Block::Figure {
@@ -220,7 +220,7 @@ fn cheapest_row(found: &WorkPrecision, quantity: ErrorQuantity, accuracy: f64) -
     row
 }
 
-fn intro(scene: &Scene, found: &WorkPrecision) -> String {
+fn intro(scene: &SceneFile, found: &WorkPrecision) -> String {
     let reference_error = found.reference.error;
     let mut text = format!(
         "{}.\n\nThe motion from t = 0 to {} s; errors are the largest at 50 times spread over it, by dense output.\n",
@@ -401,7 +401,7 @@ pub(super) fn record(found: &WorkPrecision) -> Record {
 }
 
 /// The summary.
-pub(super) fn summary(scene: &Scene, found: &WorkPrecision) -> String {
+pub(super) fn summary(scene: &SceneFile, found: &WorkPrecision) -> String {
     let reference_error = found.reference.error;
     let mut text = format!(
         "{}: {} combinations over {} s\n",

@@ -2,6 +2,7 @@
 
 use super::combination::Effort;
 use super::evaluator::Evaluator;
+use super::studied_scene::StudiedScene;
 use super::subject::Subject;
 use dwell_dynamics::{
     DenseOutput, DynamicsError, Method, OdeState, Options, Orbit, ReducedState, Statistics,
@@ -35,9 +36,9 @@ pub(super) struct ToleranceSeries {
 }
 
 /// Integrates the motion at one tolerance.
-pub(super) fn solve(
+pub(super) fn solve<S: StudiedScene>(
     evaluator: &dyn Evaluator,
-    subject: &Subject,
+    subject: &Subject<S>,
     (method, tolerance): (Method, f64),
     max_steps: usize,
 ) -> Result<Run, DynamicsError> {
@@ -83,7 +84,10 @@ pub(super) fn reason(error: &DynamicsError) -> String {
 }
 
 /// The motion by quadrature.
-pub(super) fn quadrature(evaluator: &dyn Evaluator, subject: &Subject) -> Option<Run> {
+pub(super) fn quadrature<S: StudiedScene>(
+    evaluator: &dyn Evaluator,
+    subject: &Subject<S>,
+) -> Option<Run> {
     let started = Instant::now();
     let (orbit, evaluations) = evaluator.orbit(subject.reduced_state())?;
     let states = orbit_states(&orbit, &subject.times);
@@ -108,9 +112,9 @@ pub(super) fn orbit_states(orbit: &Orbit, times: &[f64]) -> Vec<Vec<f64>> {
 
 impl ToleranceSeries {
     /// Runs a method through the tolerances. `exact` are its runs with the mechanism itself.
-    pub(super) fn new(
+    pub(super) fn new<S: StudiedScene>(
         evaluator: &dyn Evaluator,
-        subject: &Subject,
+        subject: &Subject<S>,
         method: Method,
         effort: &Effort,
         exact: Option<&Self>,

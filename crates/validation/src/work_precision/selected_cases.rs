@@ -29,7 +29,7 @@ pub fn selected_case_reports(scenes: &[&Scene]) -> Result<Outcome, StudyError> {
     let is_selected = |scene: &&&Scene| SELECTED_CASES.contains(&scene.name.as_str());
     let selected: Vec<&Scene> = scenes.iter().filter(is_selected).copied().collect();
     let one = |scene: &&Scene| -> Result<(Files, Picture, String), StudyError> {
-        let found = measure(scene, &Effort::brief(), &no_progress)?;
+        let found = measure(*scene, &Effort::brief(), &no_progress)?;
         let name = &scene.name;
         let mut files = Files::new();
         let figure = figure::figure(scene, &found, name);

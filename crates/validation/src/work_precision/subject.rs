@@ -1,16 +1,14 @@
 //! The motion that is studied: that of the scene, or a free motion from the assembly, bounded so that a study takes
 //! seconds.
 
-use crate::cases::reference::Reference;
-use crate::checked::free_motion_setup::FreeMotionSetup;
-use dwell_dynamics::{DynamicsError, Machine, Method, OdeState, Options, Orbit, ReducedState};
-use dwell_geometry::Reaction;
-use dwell_kinetostatics::ExactModel;
-use dwell_scene::{Scene, SceneLocation};
+use super::studied_scene::{PreliminaryRun, StudiedScene};
+use dwell_dynamics::{
+    DynamicsError, Machine, Method, MovingModel, OdeState, Options, Orbit, ReducedState,
+};
+use dwell_kinetostatics::{ExactModel, MachineModel as _};
+use dwell_scene::{SceneFile, SceneLocation};
 use dwell_study::StudyError;
-use dwell_study::explain::explain_motion;
-use dwell_study::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
-use dwell_study::models::{build_machine, with_drive_loads};
+use dwell_study::machines::MotionStart;
 use dwell_study::number_format::digits;
 use dwell_study::ranges::extent;
 use std::f64::consts::TAU;
@@ -25,19 +23,17 @@ const PREVIEW_RUN: (Method, f64, usize) = (Method::Bdf, 1e-6, 20_000);
 const COMPARED_TIMES: usize = 50;
 
 /// A motion to be studied.
-pub(super) struct Subject {
+pub(super) struct Subject<S: StudiedScene> {
     /// The scene, with a free motion where it had none.
-    pub(super) scene: Scene,
-    /// The same with the loads through which its drives act.
-    scene_with_drives: Scene,
+    pub(super) scene: S,
     /// The equations of motion.
-    pub(super) machine: Machine,
+    pub(super) machine: Machine<S::Model>,
     /// The same with the reactions that are compared, its first ones.
-    pub(super) output_machine: Machine,
-    /// These reactions.
-    pub(super) reactions: Vec<Reaction>,
+    pub(super) output_machine: Machine<S::Model>,
+    /// The units of these reactions.
+    pub(super) reaction_units: Vec<String>,
     /// The reduced model with these reactions, of one freedom without loads.
-    pub(super) reduced: Option<ExactModel>,
+    pub(super) reduced: Option<ExactModel<S::Model>>,
     pub(super) initial_state: OdeState,
     /// When states are compared, s; the last is the end.
     pub(super) times: Vec<f64>,
@@ -49,48 +45,60 @@ pub(super) struct Subject {
     pub(super) notes: Vec<String>,
 }
 
-impl Subject {
+impl<S: StudiedScene> Subject<S> {
     /// The motion of a scene.
     ///
     /// # Errors
     /// [`StudyError::Scene`] when the scene cannot be put together, nothing is free, or nothing moves.
-    pub(super) fn new(scene: &Scene) -> Result<Self, StudyError> {
+    pub(super) fn new(scene: &S) -> Result<Self, StudyError> {
         let mut notes = Vec::new();
-        let scene = with_free_motion(scene, &mut notes)?;
-        let Some(motion) = scene.motion.clone() else {
-            return Err(no_free_coordinate(&scene));
-        };
-        let scene_with_drives = with_drive_loads(&scene)?;
-        let problem = FreeMotionProblem::new(&scene, &scene_with_drives, &motion)?;
-        let machine = &problem.machine;
+        if scene.actuator(0).is_none() {
+            return Err(no_free_coordinate(scene));
+        }
+        let (scene, start) = scene.with_free_motion()?;
+        if let Some(start) = start {
+            notes.push(format!("without [motion], a free motion starts at {start}"));
+        }
+        let machine = scene.machine(&[])?;
         if machine.free().is_empty() {
             return Err(no_free_coordinate(&scene));
         }
-        let plan = machine.model().plan();
-        let all = scene.mechanism.reactions().into_iter().enumerate();
-        let determinate = all.filter(|&(k, _)| plan.is_determinate(k));
-        let reactions: Vec<Reaction> = determinate.map(|(_, reaction)| reaction).collect();
-        let output_machine = build_machine(&scene, &motion, &reactions)?;
-        let initial_state = problem.initial_state();
+        let reactions = scene.compared_reactions(machine.model())?;
+        let output_machine = scene.machine(&reactions)?;
+        let columns = scene.reaction_columns(output_machine.model()).into_iter();
+        let reaction_units = columns.take(reactions.len()).map(|c| c.unit).collect();
+        let MotionStart {
+            coordinates,
+            velocities,
+            laws,
+        } = scene.motion_start();
+        let y = machine.initial_state(&coordinates, &velocities);
+        let initial_state = OdeState { t: 0.0, y };
         // Without loads the reduced model is the whole equation of motion.
-        let unloaded = scene.loads.is_empty() && scene.drives.is_empty();
+        let unloaded = machine.model().loads().is_empty();
         let reduced = (unloaded && machine.state_count() == 2)
             .then(|| ExactModel::new(output_machine.model().clone()));
         // A machine with more than one degree of freedom has none.
-        let is_one = machine.state_count() == 2 && motion.laws.len() == 1;
-        let orbit = is_one.then(|| Orbit::loaded(machine, problem.initial_reduced_state()));
+        let is_one = machine.state_count() == 2 && laws.len() == 1;
+        let first = machine.free().first().copied().unwrap_or(0);
+        let reduced_start = ReducedState {
+            t: 0.0,
+            q: coordinates[first],
+            q_dot: velocities[first],
+        };
+        let orbit = is_one.then(|| Orbit::loaded(&machine, reduced_start));
         let orbit = orbit.and_then(Result::ok);
-        let (end, coordinate_range) = bound_duration(&scene, &problem, orbit.as_ref(), &mut notes)?;
+        let problem = (&scene, &machine, &initial_state);
+        let (end, coordinate_range) = bound_duration(problem, orbit.as_ref(), &mut notes)?;
         // The last time is the end, to the last bit.
         let before = (1..COMPARED_TIMES).map(|k| end * k as f64 / COMPARED_TIMES as f64);
         let subject = Self {
             reduced: reduced.flatten(),
             times: before.chain([end]).collect(),
-            machine: problem.machine,
+            machine,
             scene,
-            scene_with_drives,
             output_machine,
-            reactions,
+            reaction_units,
             initial_state,
             coordinate_range,
             orbit,
@@ -114,8 +122,8 @@ impl Subject {
 
     /// Unit of the free coordinates.
     pub(super) fn unit(&self) -> &'static str {
-        let plan = self.machine.model().plan();
-        let angles = self.machine.free().iter().filter(|&&i| plan.is_angle(i));
+        let model = self.machine.model();
+        let angles = self.machine.free().iter().filter(|&&i| model.is_angle(i));
         match angles.count() {
             0 => "m",
             n if n == self.machine.free().len() => "rad",
@@ -124,7 +132,7 @@ impl Subject {
     }
 
     pub(super) fn explain(&self, error: &DynamicsError) -> StudyError {
-        explain_motion(&self.scene_with_drives, self.machine.model().plan(), error)
+        self.scene.explain(self.machine.model(), error)
     }
 
     /// Refuses a motion that stays at rest: all combinations would be exact.
@@ -147,22 +155,8 @@ impl Subject {
     }
 }
 
-/// The scene with a motion: its own, or a free motion from the assembly.
-fn with_free_motion(scene: &Scene, notes: &mut Vec<String>) -> Result<Scene, StudyError> {
-    if scene.motion.is_some() {
-        return Ok(scene.clone());
-    }
-    if scene.mechanism.actuators.is_empty() {
-        return Err(no_free_coordinate(scene));
-    }
-    let setup = FreeMotionSetup::new(scene, &Reference::default())?;
-    let start = setup.initial_state_text();
-    notes.push(format!("without [motion], a free motion starts at {start}"));
-    Ok(setup.scene)
-}
-
 /// The error of a scene that cannot move.
-fn no_free_coordinate(scene: &Scene) -> StudyError {
+fn no_free_coordinate(scene: &SceneFile) -> StudyError {
     let message = "nothing can move in this scene: no coordinate is free";
     let help = "declare the coordinate that moves, as in `[actuators.phi]`";
     let label = "no free actuator in this file".to_owned();
@@ -172,13 +166,12 @@ fn no_free_coordinate(scene: &Scene) -> StudyError {
 }
 
 /// The duration of the motion, and the range of its first free coordinate.
-fn bound_duration(
-    scene: &Scene,
-    free: &FreeMotionProblem<'_>,
+fn bound_duration<S: StudiedScene>(
+    (scene, machine, start): (&S, &Machine<S::Model>, &OdeState),
     orbit: Option<&Orbit>,
     notes: &mut Vec<String>,
 ) -> Result<(f64, [f64; 2]), StudyError> {
-    let requested = free.duration()?;
+    let requested = scene.duration()?;
     let mut end = requested;
     if let Some(orbit) = orbit.filter(|orbit| requested > MAX_PERIODS * orbit.period) {
         end = MAX_PERIODS * orbit.period;
@@ -192,23 +185,22 @@ fn bound_duration(
         max_step: Some(end / COMPARED_TIMES as f64),
         ..Options::new(method, tolerance)
     };
-    let motion_segments = free.solve(scene, end, &options)?;
-    let first = motion_segments.segments.first();
-    let steps = first.map_or(&[][..], |(_, solution)| solution.steps.as_slice());
+    let run = scene.preliminary_run(machine, start, end, &options)?;
+    let steps = run.steps.as_slice();
     let reached = steps.last().map_or(0.0, |last| last.t);
-    if let Some(error) = motion_segments.failure.as_ref().filter(|_| reached == 0.0) {
-        return Err(free.explain(error));
+    if let Some(error) = run.failure.as_ref().filter(|_| reached == 0.0) {
+        return Err(scene.explain(machine.model(), error));
     }
     let (shortened, reason) = match orbit {
         Some(_) => (end, ""),
-        None => first_revolutions(&free.machine, steps, end),
+        None => first_revolutions(machine, steps, end),
     };
     if shortened < end {
         end = shortened;
         notes.push(shortened_text(reason, end, requested, ""));
     }
     if reached < end {
-        end = shorten_before_end(&motion_segments, reached, requested, notes);
+        end = shorten_before_end(&run, reached, requested, notes);
     }
     let coordinate = |p: &OdeState| p.y.first().copied().unwrap_or(0.0);
     let coordinates = steps.iter().filter(|p| p.t <= end).map(coordinate);
@@ -223,12 +215,12 @@ fn shortened_text(what: &str, end: f64, requested: f64, reason: &str) -> String 
 
 /// The end of a motion that does not last as long as it should in its own coordinate.
 fn shorten_before_end(
-    motion: &SegmentedMotion,
+    motion: &PreliminaryRun,
     reached: f64,
     requested: f64,
     notes: &mut Vec<String>,
 ) -> f64 {
-    let one_chart = motion.segments.len() == 1;
+    let one_chart = motion.has_one_chart;
     let (fraction, reason) = match &motion.failure {
         // An event that ends the motion is no position where anything grows.
         None if one_chart => (1.0, "until an event ends it".to_owned()),
@@ -248,14 +240,18 @@ fn shorten_before_end(
 }
 
 /// The time at which some free coordinate has made three revolutions or oscillations, and which.
-fn first_revolutions(machine: &Machine, steps: &[OdeState], end: f64) -> (f64, &'static str) {
-    let (n, plan) = (machine.free().len(), machine.model().plan());
+fn first_revolutions<M: MovingModel>(
+    machine: &Machine<M>,
+    steps: &[OdeState],
+    end: f64,
+) -> (f64, &'static str) {
+    let (n, model) = (machine.free().len(), machine.model());
     let mut reversals = vec![0.0; n];
     for (before, now) in steps.iter().zip(steps.iter().skip(1)) {
         for (k, &i) in machine.free().iter().enumerate() {
             let distance = (now.y[k] - steps[0].y[k]).abs();
             reversals[k] += f64::from(u8::from(now.y[n + k] * before.y[n + k] < 0.0));
-            if plan.is_angle(i) && distance >= MAX_PERIODS * TAU {
+            if model.is_angle(i) && distance >= MAX_PERIODS * TAU {
                 return (now.t, "three revolutions, ");
             }
             if reversals[k] > 2.0 * MAX_PERIODS {

@@ -20,6 +20,17 @@ pub(super) struct Bodies<'a> {
     pub(super) motions: Vec<BodyMotion>,
 }
 
+impl<'a> Bodies<'a> {
+    /// Without motion.
+    pub(super) fn at_rest(mechanism: &'a Mechanism, placements: &'a [Placement]) -> Self {
+        Self {
+            mechanism,
+            placements,
+            motions: vec![BodyMotion::default(); placements.len()],
+        }
+    }
+}
+
 impl Bodies<'_> {
     /// From a body's origin to a point of it.
     pub(super) fn arm(&self, body: usize, point: Vec3) -> Vec3 {
@@ -216,6 +227,41 @@ impl Bodies<'_> {
     }
 }
 
+impl Bodies<'_> {
+    /// The residuals of the rows (2) of a joint, in their order. That of a gear pair is one of velocities: it has none here.
+    pub(super) fn residuals(&self, joint: &Joint) -> Vec<f64> {
+        let bodies = joint.bodies.map(|b| b.0);
+        let [u, w] = [0, 1].map(|k| self.arm(bodies[k], joint.sides[k].axis));
+        let [n, p] = [0, 1].map(|k| self.arm(bodies[k], joint.sides[k].normal));
+        let across = u.cross(n);
+        let (_, _, d) = self.ends(joint);
+        let (meets, parallel) = ([d.x, d.y, d.z], [n.dot(w), across.dot(w)]);
+        let (on_line, no_turn) = ([n.dot(d), across.dot(d)], n.dot(w.cross(p)));
+        let all: &[&[f64]] = match joint.kind {
+            JointKind::Weld => &[&meets, &parallel, &[no_turn]],
+            JointKind::Revolute => &[&meets, &parallel],
+            JointKind::Prismatic => &[&on_line, &parallel, &[no_turn]],
+            JointKind::Cylindrical => &[&on_line, &parallel],
+            JointKind::Helical { pitch } => {
+                &[&on_line, &parallel, &[screw_error(pitch, [u, d, n, p])]]
+            }
+            JointKind::Universal => &[&meets, &[u.dot(w)]],
+            JointKind::Spherical => &[&meets],
+            JointKind::Planar => &[&[u.dot(d)], &parallel],
+            JointKind::Distance { length } => &[&[(d.dot(d) - length * length) / (2.0 * length)]],
+            JointKind::Gear { .. } => &[&[0.0]],
+        };
+        all.concat()
+    }
+}
+
+/// How far a screw's travel is from that of its angle, which may have whole turns, each of 2π pitch.
+fn screw_error(pitch: f64, [u, d, n, p]: [Vec3; 4]) -> f64 {
+    let angle = n.cross(p).dot(u).atan2(n.dot(p));
+    let turns = (d.dot(u) / pitch - angle) / TAU;
+    (turns - turns.round()) * TAU * pitch
+}
+
 /// How far a joint is from closed, m and rad: the residual of its rows (2) at placements of all bodies. The row of a gear pair is one of
 /// velocities: what its wheels have travelled is seen by comparing two poses, not here.
 pub fn closure_error(joint: &Joint, placements: &[Placement]) -> f64 {
@@ -227,17 +273,12 @@ pub fn closure_error(joint: &Joint, placements: &[Placement]) -> f64 {
     let [n, p] = [0, 1].map(|k| at(k, joint.sides[k].normal));
     let (apart, tilt) = (d.norm(), (u - w).norm());
     let (off_line, turn) = (d.cross(u).norm(), (n - p).norm());
-    let angle = n.cross(p).dot(u).atan2(n.dot(p));
     let found: &[f64] = match joint.kind {
         JointKind::Weld => &[apart, tilt, turn],
         JointKind::Revolute => &[apart, tilt],
         JointKind::Prismatic => &[off_line, tilt, turn],
         JointKind::Cylindrical => &[off_line, tilt],
-        JointKind::Helical { pitch } => {
-            // The angle may have whole turns, each of 2π pitch.
-            let turns = (d.dot(u) / pitch - angle) / TAU;
-            &[off_line, tilt, (turns - turns.round()) * TAU * pitch]
-        }
+        JointKind::Helical { pitch } => &[off_line, tilt, screw_error(pitch, [u, d, n, p])],
         JointKind::Universal => &[apart, u.dot(w)],
         JointKind::Spherical => &[apart],
         JointKind::Planar => &[d.dot(u), tilt],

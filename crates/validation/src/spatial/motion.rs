@@ -1,0 +1,262 @@
+//! A free motion of a case with several coordinates: its accelerations against the dense equations, its energy, and a reference.
+
+use super::claims::SpaceClaims;
+use super::reference::Reference;
+use super::states::{free_accelerations, free_machine, in_units};
+use super::worst::{Comparison, Worst};
+use crate::error::ValidationError;
+use dwell_dynamics::{
+    DenseOutput, Machine, MachineOde, Method, OdeState, Options, StepControl, integrate,
+};
+use dwell_findings::{Check, Finding};
+use dwell_geometry::space::BodyMotion;
+use dwell_kinetostatics::space::{LoadKind, Model};
+use dwell_kinetostatics::{MachineModel as _, Magnitude};
+use dwell_scene::{MotionDuration, SpaceScene};
+use dwell_verify::space::{DensePose, kinetic_energy, potential_energy};
+
+/// The motion without `[motion]`: its speeds at the assembly, rad/s or fifths of the size per s, and the longest time, s.
+const SPEEDS: [f64; 4] = [1.0, -0.6, 0.4, 0.3];
+const MAX_DURATION: f64 = 1.0;
+/// Times at which it is judged.
+const TIMES: usize = 8;
+/// Its tolerance, and most steps.
+const TOLERANCE: f64 = 1e-12;
+const MAX_STEPS: usize = 20_000;
+
+const EQUATIONS: Comparison = Comparison {
+    key: "motion-equations",
+    check: Check::MultibodyMotion,
+    comparison: "the accelerations of a free motion with those of the dense equations",
+    scale: "the largest acceleration that one action makes, or the largest squared speed",
+    tolerance: 1e-10,
+    reason: "rounding, amplified by the condition of the equations and of the inertias",
+};
+const ENERGY: Comparison = Comparison {
+    key: "motion-energy",
+    check: Check::Power,
+    comparison: "kinetic and potential energy, of placements and dense velocities, with the start's and the work of all other loads",
+    scale: "the largest kinetic energy, or the largest change of the potential one",
+    tolerance: 1e-9,
+    reason: "the tolerance of the integration, 1e-12 for each step",
+};
+const REFERENCE: Comparison = Comparison {
+    key: "reference-motion",
+    check: Check::ReferenceValues,
+    comparison: "the coordinates of the free motion with those of the reference",
+    scale: "one radian or the size",
+    tolerance: 1e-9,
+    reason: "the tolerance of the integration, 1e-12 for each step",
+};
+
+/// States of the machine at ascending times, as far as the motion goes.
+fn states_at(machine: &Machine<Model>, y: &[f64], times: &[f64]) -> Option<Vec<OdeState>> {
+    let mut system = MachineOde::new(machine, 0.0, y).ok()?;
+    let options = Options {
+        max_steps: MAX_STEPS,
+        ..Options::new(Method::Dop853, TOLERANCE)
+    };
+    let mut at = OdeState {
+        t: 0.0,
+        y: y.to_vec(),
+    };
+    let mut states = Vec::new();
+    for &t in times {
+        // Dense output is poorer than the steps: each time ends one.
+        let mut watch = |_: &OdeState, _: &OdeState, _: DenseOutput<'_>| Ok(StepControl::Continue);
+        if t > at.t {
+            let done = integrate(&mut system, &at, Some(t), &options, &mut watch).ok()?;
+            if done.error.is_some() {
+                break;
+            }
+            at = done.state;
+        }
+        states.push(at.clone());
+    }
+    Some(states)
+}
+
+/// The start of the motion, and how long it lasts, s.
+fn start(scene: &SpaceScene, model: &Model) -> ([Vec<f64>; 2], f64) {
+    match &scene.motion {
+        Some(motion) => {
+            let duration = match motion.duration {
+                MotionDuration::Seconds(seconds) => seconds.min(MAX_DURATION),
+                MotionDuration::Periods(_) => MAX_DURATION,
+            };
+            let at = [&motion.initial_coordinates, &motion.initial_velocities];
+            (at.map(Clone::clone), duration)
+        }
+        None => {
+            let at = [scene.assembly.q.clone(), in_units(model, &SPEEDS)];
+            (at, MAX_DURATION)
+        }
+    }
+}
+
+/// The findings; none where the machine has no equation of motion.
+pub(super) fn motion_findings(
+    scene: &SpaceScene,
+    reference: Option<&Reference>,
+) -> Result<Vec<Finding>, ValidationError> {
+    let Some(machine) = free_machine(scene)? else {
+        return Ok(Vec::new());
+    };
+    let claims = SpaceClaims::new(scene)?;
+    let ([q, q_dot], duration) = start(scene, claims.model());
+    let y = machine.initial_state(&q, &q_dot);
+    let times: Vec<f64> = (0..=TIMES)
+        .map(|k| duration * k as f64 / TIMES as f64)
+        .collect();
+    let states = states_at(&machine, &y, &times).unwrap_or_default();
+    let domain = format!("{} times", states.len());
+    let [equations, energy] = along(&claims, &machine, &states);
+    let mut findings: Vec<Finding> = [(equations, &EQUATIONS), (energy, &ENERGY)]
+        .into_iter()
+        .filter_map(|(worst, of)| worst.finding(of, &domain))
+        .collect();
+    // A motion that stops early shows less than it should.
+    for finding in &mut findings {
+        if states.len() <= TIMES {
+            finding.pass = false;
+        }
+    }
+    let wanted = reference.map(Reference::coordinates).unwrap_or_default();
+    if !wanted.is_empty() {
+        let times: Vec<f64> = wanted.iter().map(|(t, _)| *t).collect();
+        let found = states_at(&machine, &y, &times).unwrap_or_default();
+        let mut worst = Worst::default();
+        for (k, (t, wanted)) in wanted.iter().enumerate() {
+            for (i, wanted) in wanted.iter().enumerate() {
+                let found = found.get(k).map_or(f64::NAN, |state| state.y[i]);
+                let is_angle = claims.model().is_angle(i);
+                let unit = if is_angle { 1.0 } else { claims.case().size };
+                let name = &scene.mechanism.actuators[i].name;
+                let of = if is_angle { "rad" } else { "m" };
+                worst.add([found, *wanted, unit], of, || format!("t = {t} s, {name}"));
+            }
+        }
+        let domain = format!("{} times of the reference", wanted.len());
+        findings.extend(worst.finding(&REFERENCE, &domain));
+    }
+    Ok(findings)
+}
+
+/// Accelerations and energies along a motion.
+fn along(claims: &SpaceClaims<'_>, machine: &Machine<Model>, states: &[OdeState]) -> [Worst; 2] {
+    let [mut equations, mut energy] = [Worst::default(), Worst::default()];
+    let mut energies: Vec<[f64; 3]> = Vec::new();
+    let n = claims.model().plan().actuators();
+    for OdeState { t, y } in states {
+        let [q, q_dot] = [&y[..n], &y[n..2 * n]];
+        let judged = free_accelerations(machine, *t, [q, q_dot]).and_then(|found| {
+            let dense = Dense::new(claims, *t, [q, q_dot])?;
+            Some((found, dense))
+        });
+        let Some((found, dense)) = judged else {
+            equations.add([f64::NAN, 0.0, 1.0], "", || format!("t = {t} s"));
+            continue;
+        };
+        // Those of speeds may cancel.
+        let unit = |k: usize| match claims.model().is_angle(k) {
+            true => 1.0,
+            false => claims.case().size,
+        };
+        let speeds = q_dot.iter().enumerate().map(|(k, v)| (v / unit(k)).powi(2));
+        let scale = speeds.fold(dense.scale, f64::max);
+        for (k, (found, wanted)) in found.iter().zip(&dense.accelerations).enumerate() {
+            let name = &claims.case().mechanism.actuators[k].name;
+            equations.add([*found, *wanted, scale], "1/s2", || {
+                format!("t = {t:.4} s, {name}")
+            });
+        }
+        let work: f64 = y[machine.work_offset()..].iter().sum();
+        energies.push([dense.kinetic, dense.potential, work]);
+    }
+    let Some(&[kinetic, potential, work]) = energies.first() else {
+        return [equations, energy];
+    };
+    let scale = energies.iter().fold(0.0_f64, |max, [t, v, _]| {
+        max.max(*t).max((v - potential).abs())
+    });
+    for ([t, v, w], state) in energies.iter().zip(states) {
+        let (found, wanted) = (t + v - potential, kinetic + w - work);
+        energy.add([found, wanted, scale], "J", || {
+            format!("t = {:.4} s", state.t)
+        });
+    }
+    [equations, energy]
+}
+
+/// What the dense equations say of a state.
+struct Dense {
+    accelerations: Vec<f64>,
+    /// The largest acceleration that one actuator's action alone makes.
+    scale: f64,
+    kinetic: f64,
+    potential: f64,
+}
+
+impl Dense {
+    fn new(claims: &SpaceClaims<'_>, t: f64, [q, q_dot]: [&[f64]; 2]) -> Option<Self> {
+        let (case, n) = (claims.case(), q.len());
+        let placements = claims.placements::<f64>(q).ok()?;
+        let magnitudes = claims.magnitudes(t, [q, q_dot]).ok()?;
+        let kinds = claims.model().loads().iter().map(|load| load.kind);
+        let loads: Vec<(LoadKind, f64)> = kinds.zip(magnitudes).collect();
+        let pose = DensePose::new(case.mechanism, &placements).ok()?;
+        let at_rest = vec![0.0; n];
+        let actions = |q_ddot: &[f64], loads: &[(LoadKind, f64)], q_dot: &[f64]| {
+            let done = pose.solve(case.masses, [q_dot, q_ddot], loads);
+            done.actuator_actions
+        };
+        let rest = actions(&at_rest, &loads, q_dot);
+        let column = |j: usize| {
+            let mut unit = at_rest.clone();
+            unit[j] = 1.0;
+            actions(&unit, &[], &at_rest)
+        };
+        let columns: Vec<Vec<f64>> = (0..n).map(column).collect();
+        let negative: Vec<f64> = rest.iter().map(|v| -v).collect();
+        let accelerations = solved(&columns, &negative)?;
+        // Of each action alone.
+        let mut scale = 0.0_f64;
+        for (k, action) in rest.iter().enumerate() {
+            let mut one = at_rest.clone();
+            one[k] = *action;
+            let parts = solved(&columns, &one)?;
+            scale = parts.iter().fold(scale, |max, part| max.max(part.abs()));
+        }
+        let motions: Vec<BodyMotion> = pose.velocities(q_dot);
+        let conservative = claims.model().loads().iter().filter_map(|load| {
+            let Magnitude::Constant(magnitude) = load.magnitude else {
+                return None;
+            };
+            potential_energy(&case, &placements, (load.kind, magnitude))
+        });
+        Some(Self {
+            accelerations,
+            scale,
+            kinetic: kinetic_energy(&case, &placements, &motions),
+            potential: conservative.sum(),
+        })
+    }
+}
+
+/// x of Σ columns x = right, by elimination with the largest pivot.
+fn solved(columns: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
+    let n = columns.len();
+    let row = |i: usize| columns.iter().map(|c| c[i]).chain([right[i]]).collect();
+    let mut rows: Vec<Vec<f64>> = (0..n).map(row).collect();
+    for c in 0..n {
+        let pivot = (c..n).max_by(|&i, &j| rows[i][c].abs().total_cmp(&rows[j][c].abs()))?;
+        rows.swap(c, pivot);
+        let pivot_row = rows[c].clone();
+        for (_, other) in rows.iter_mut().enumerate().filter(|(i, _)| *i != c) {
+            let factor = other[c] / pivot_row[c];
+            let pairs = other.iter_mut().zip(&pivot_row);
+            pairs.for_each(|(a, b)| *a -= factor * b);
+        }
+    }
+    Some((0..n).map(|i| rows[i][n] / rows[i][i]).collect())
+}

@@ -1,0 +1,238 @@
+//! A case of several coordinates: its findings and its report.
+
+use super::claims::SpaceClaims;
+use super::motion::motion_findings;
+use super::reference::Reference;
+use super::report::rounded;
+use super::states::{
+    STATES, free_accelerations, free_machine, in_units, near_assembly, state_findings,
+};
+use super::worst::{Comparison, Worst};
+use crate::case_report::validate::Validation;
+use crate::error::ValidationError;
+use crate::report_parts::{figure_blocks, findings_text};
+use dwell_findings::{Check, Finding};
+use dwell_geometry::space::Wrench;
+use dwell_kinetostatics::space::Axes;
+use dwell_report::{Block, Document, Figure, Files, markdown_text};
+use dwell_scene::SpaceScene;
+use dwell_study::output::{Picture, provenance_line};
+use dwell_study::{Outcome, mechanism_figure_in_space};
+use std::fmt::Write as _;
+
+const INERTIA: Comparison = Comparison {
+    key: "reference-inertia",
+    check: Check::ReferenceValues,
+    comparison: "the generalised inertias and the actuators' actions with the reference of 25 digits",
+    scale: "the largest of each",
+    tolerance: 1e-12,
+    reason: "rounding, amplified by the condition of the equations",
+};
+const REACTIONS: Comparison = Comparison {
+    key: "reference-reactions",
+    check: Check::ReferenceValues,
+    comparison: "the reactions under the weight, in motion, with the reference of 25 digits",
+    scale: "the largest force or moment",
+    tolerance: 1e-12,
+    reason: "rounding, amplified by the condition of the equations",
+};
+/// Speeds and accelerations at which a reference is compared.
+const RATES: [[f64; 4]; 2] = [[1.3, -0.7, 0.4, 0.2], [-0.9, 1.1, 0.6, -0.5]];
+
+/// All findings of a scene.
+fn findings(
+    scene: &SpaceScene,
+    reference: Option<&Reference>,
+) -> Result<Vec<Finding>, ValidationError> {
+    let claims = SpaceClaims::new(scene)?;
+    let mut found = state_findings(scene, &near_assembly(scene, claims.model()))?;
+    found.extend(motion_findings(scene, reference)?);
+    if let Some(reference) = reference {
+        found.extend(against_reference(scene, &claims, reference)?);
+    }
+    found.sort_by_key(|finding| finding.check);
+    Ok(found)
+}
+
+fn against_reference(
+    scene: &SpaceScene,
+    claims: &SpaceClaims<'_>,
+    reference: &Reference,
+) -> Result<Vec<Finding>, ValidationError> {
+    let mut worst = [Worst::default(), Worst::default()];
+    let rates = RATES.each_ref().map(|row| in_units(claims.model(), row));
+    let rates = [&rates[0][..], &rates[1][..]];
+    let mut count = 0;
+    for sample in reference.of_two_coordinates() {
+        let wanted = (
+            sample.coordinates(),
+            sample.inertias(),
+            sample.actions(rates),
+        );
+        let (Some(q), Some(inertias), Some(actions)) = wanted else {
+            continue;
+        };
+        count += 1;
+        let place = |what: &str| format!("q = {:.4} {:.4}, {what}", q[0], q[1]);
+        let state = claims.state::<f64>(0.0, [&q, rates[0], rates[1]], Axes::Ground);
+        let Ok(state) = state else {
+            worst[0].add([f64::NAN, 0.0, 1.0], "", || place("no pose"));
+            continue;
+        };
+        let largest = |of: &[f64]| of.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+        let scale = largest(&inertias);
+        for (found, wanted) in state.inertias.iter().zip(inertias) {
+            worst[0].add([*found, wanted, scale], "kg m2", || place("inertia"));
+        }
+        let scale = largest(&actions);
+        for (found, wanted) in state.tau.iter().zip(actions) {
+            worst[0].add([*found, wanted, scale], "N m", || place("action"));
+        }
+        let reactions = sample.reactions(rates);
+        let scales = [0, 1].map(|kind| {
+            let of_kind = reactions.iter().filter(|(_, k, _)| k / 3 == kind);
+            largest(&of_kind.map(|(.., value)| *value).collect::<Vec<f64>>())
+        });
+        for (joint, k, wanted) in reactions {
+            let mut joints = scene.mechanism.joints.iter().zip(&state.reactions);
+            let found = joints.find(|(j, _)| j.name == joint);
+            let found = found.map_or(f64::NAN, |(_, wrench)| part(wrench, k));
+            let unit = ["N", "N m"][k / 3];
+            worst[1].add([found, wanted, scales[k / 3]], unit, || place(&joint));
+        }
+    }
+    let domain = format!("{count} positions of the reference");
+    let [inertia, reactions] = worst;
+    let found = [
+        inertia.finding(&INERTIA, &domain),
+        reactions.finding(&REACTIONS, &domain),
+    ];
+    Ok(found.into_iter().flatten().collect())
+}
+
+fn part(wrench: &Wrench, k: usize) -> f64 {
+    let (f, m) = (wrench.force, wrench.moment);
+    [f.x, f.y, f.z, m.x, m.y, m.z][k]
+}
+
+/// Validates a scene of several coordinates.
+///
+/// # Errors
+/// [`ValidationError`] when the scene cannot be used.
+pub(super) fn validate_several(
+    scene: &SpaceScene,
+    reference: Option<&Reference>,
+) -> Result<Validation, ValidationError> {
+    let findings = findings(scene, reference)?;
+    let figures = vec![mechanism(scene)?];
+    let snapshot = snapshot(scene, &findings)?;
+    let document = document(scene, (reference, &findings), &figures);
+    let name = &scene.name;
+    let mut files = Files::new();
+    files.add(format!("{name}.txt"), snapshot.clone());
+    files.add_document(name, &document);
+    let picture = |figure: Figure| {
+        let path = format!("{name}/{}.png", figure.name);
+        Picture::figure(scene, path, true, figure)
+    };
+    Ok(Validation {
+        outcome: Outcome {
+            summary: findings_text(name, &findings, ""),
+            files,
+            findings,
+            pictures: figures.into_iter().map(picture).collect(),
+            ..Outcome::default()
+        },
+        snapshot,
+        ..Validation::default()
+    })
+}
+
+/// The mechanism at the assembly.
+fn mechanism(scene: &SpaceScene) -> Result<Figure, ValidationError> {
+    let claims = SpaceClaims::new(scene)?;
+    let (_, start) = claims.case().start;
+    let position = (start.to_vec(), "the assembly".to_owned());
+    let provenance = "the mechanism at its assembly".to_owned();
+    Ok(mechanism_figure_in_space(scene, vec![position], provenance))
+}
+
+fn document(
+    scene: &SpaceScene,
+    (reference, findings): (Option<&Reference>, &[Finding]),
+    figures: &[Figure],
+) -> Document {
+    let mut blocks: Vec<Block> = scene.note.iter().cloned().map(Block::Words).collect();
+    let passed = findings.iter().filter(|f| f.pass).count();
+    blocks.push(Block::Text(format!(
+        "{passed} of {} findings pass. The mechanism has {} coordinates, so there is no reduced model: states near the assembly are \
+         checked, at prescribed accelerations and in free motion, and a free motion.",
+        findings.len(),
+        scene.mechanism.actuators.len()
+    )));
+    if let Some(reference) = reference {
+        let source = markdown_text(reference.source());
+        blocks.push(Block::Text(format!("Reference: {source}.")));
+    }
+    blocks.push(Block::Heading("Findings".to_owned()));
+    blocks.push(Block::Findings(findings.to_vec()));
+    blocks.push(Block::Heading("Figures".to_owned()));
+    blocks.extend(figure_blocks(&scene.name, figures, true));
+    blocks.push(Block::Text(provenance_line(scene)));
+    Document {
+        title: scene.title.clone(),
+        blocks,
+    }
+}
+
+/// Inertias, actions under the loads at rest and free accelerations at some states, to seven digits after the first of the largest of
+/// their kind, and which findings pass.
+fn snapshot(scene: &SpaceScene, findings: &[Finding]) -> Result<String, ValidationError> {
+    let claims = SpaceClaims::new(scene)?;
+    let machine = free_machine(scene)?;
+    let names: Vec<&str> = scene
+        .mechanism
+        .actuators
+        .iter()
+        .map(|a| a.name.as_str())
+        .collect();
+    let mut text = format!("{}\n\n", scene.title);
+    // What is zero but for rounding has no digits beside what an acceleration of one makes.
+    let line = |values: &[f64], least: f64| {
+        let largest = values.iter().fold(least, |max, v| max.max(v.abs()));
+        let all: Vec<String> = values.iter().map(|v| rounded(*v, largest)).collect();
+        all.join("  ")
+    };
+    // Writing to a string cannot fail.
+    for q in near_assembly(scene, claims.model()).iter().take(STATES) {
+        let at: Vec<String> = names
+            .iter()
+            .zip(q)
+            .map(|(name, q)| format!("{name} = {q:.7}"))
+            .collect();
+        let _ = writeln!(text, "{}", at.join("  "));
+        let at_rest = vec![0.0; q.len()];
+        let Ok(state) = claims.state::<f64>(0.0, [q, &at_rest, &at_rest], Axes::Ground) else {
+            let _ = writeln!(text, "    no pose");
+            continue;
+        };
+        let inertia = state
+            .inertias
+            .iter()
+            .fold(0.0_f64, |max, m| max.max(m.abs()));
+        for (name, row) in names.iter().zip(state.inertias.chunks(q.len())) {
+            let _ = writeln!(text, "    inertia {name}: {}", line(row, inertia));
+        }
+        let _ = writeln!(text, "    actions at rest: {}", line(&state.tau, inertia));
+        let machine = machine.as_ref();
+        if let Some(free) = machine.and_then(|m| free_accelerations(m, 0.0, [q, &at_rest])) {
+            let _ = writeln!(text, "    free accelerations: {}", line(&free, 1.0));
+        }
+    }
+    text.push('\n');
+    for f in findings {
+        let result = if f.pass { "pass" } else { "FAIL" };
+        let _ = writeln!(text, "{result}  {}  [{}]", f.key, f.check);
+    }
+    Ok(text)
+}

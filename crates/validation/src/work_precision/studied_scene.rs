@@ -1,0 +1,268 @@
+//! What the study needs of a scene beyond its machine, in the plane or in space.
+
+use crate::cases::reference::Reference;
+use crate::checked::free_motion_setup::FreeMotionSetup;
+use dwell_dynamics::{
+    DynamicsError, Machine, OdeState, Options, TabulatedMachine, TabulationError, solve,
+};
+use dwell_export::Export;
+use dwell_geometry::JointId;
+use dwell_kinetostatics::TableDomain;
+use dwell_kinetostatics::space::{Axes, Component};
+use dwell_kinetostatics::table::TableModel;
+use dwell_scene::{FreeMotionSpec, MotionDuration, Scene, SpaceScene};
+use dwell_study::explain::NamedScene as _;
+use dwell_study::free_motion::compute::FreeMotionProblem;
+use dwell_study::machines::MachineScene;
+use dwell_study::models::with_drive_loads;
+use dwell_study::number_format::digits;
+use dwell_study::{
+    ExportRequest, MotionSolver, Outcome, PictureSpan, StudyError, compute_export,
+    compute_export_in_space, compute_free_motion, compute_free_motion_in_space,
+    compute_period_in_space, no_progress, simulate_in_space, simulate_to_accuracy,
+};
+use std::f64::consts::TAU;
+
+/// A motion before it is bounded.
+#[derive(Debug)]
+pub struct PreliminaryRun {
+    /// The steps in its own coordinate.
+    pub(super) steps: Vec<OdeState>,
+    /// Whether it stays in that.
+    pub(super) has_one_chart: bool,
+    /// Why it ended early.
+    pub(super) failure: Option<DynamicsError>,
+}
+
+/// A scene whose motion is studied, in the plane or in space.
+pub trait StudiedScene: MachineScene<Model: TableModel> + Clone {
+    /// The scene with a motion: its own, or a free motion from the assembly, of which it says where it starts.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] when the mechanism cannot be put together.
+    fn with_free_motion(&self) -> Result<(Self, Option<String>), StudyError>;
+
+    /// The reactions that are compared: all that the loads determine.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where the mechanism has no pose.
+    fn compared_reactions(&self, model: &Self::Model) -> Result<Vec<Self::Reaction>, StudyError>;
+
+    /// The duration of its motion, s.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where it follows from a period that is not known.
+    fn duration(&self) -> Result<f64, StudyError>;
+
+    /// Integrates the motion once.
+    ///
+    /// # Errors
+    /// [`StudyError`] where not even the start can be evaluated.
+    fn preliminary_run(
+        &self,
+        machine: &Machine<Self::Model>,
+        start: &OdeState,
+        end: f64,
+        options: &Options,
+    ) -> Result<PreliminaryRun, StudyError>;
+
+    /// Its machine on a table; none where such machines have no tables.
+    fn tabulated(
+        machine: &Machine<Self::Model>,
+        accuracy: f64,
+        domain: TableDomain,
+    ) -> Option<Result<TabulatedMachine, TabulationError>>;
+
+    /// Its export.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where it cannot be exported.
+    fn export(&self, asked: &ExportRequest) -> Result<Export, StudyError>;
+
+    /// Computes its motion without files; the estimated error.
+    ///
+    /// # Errors
+    /// [`StudyError`] where the motion cannot be computed.
+    fn estimated_error(&self, accuracy: f64) -> Result<Option<f64>, StudyError>;
+
+    /// What `dwell simulate` yields.
+    ///
+    /// # Errors
+    /// [`StudyError`] where the motion cannot be computed.
+    fn simulated(&self, accuracy: f64) -> Result<Outcome, StudyError>;
+}
+
+fn to_accuracy(accuracy: f64) -> MotionSolver {
+    MotionSolver::Accuracy {
+        accuracy,
+        sample_interval: None,
+    }
+}
+
+impl StudiedScene for Scene {
+    fn with_free_motion(&self) -> Result<(Self, Option<String>), StudyError> {
+        if self.motion.is_some() {
+            return Ok((self.clone(), None));
+        }
+        let setup = FreeMotionSetup::new(self, &Reference::default())?;
+        let start = setup.initial_state_text();
+        Ok((setup.scene, Some(start)))
+    }
+
+    fn compared_reactions(&self, model: &Self::Model) -> Result<Vec<Self::Reaction>, StudyError> {
+        let all = self.mechanism.reactions().into_iter().enumerate();
+        let determinate = all.filter(|&(k, _)| model.plan().is_determinate(k));
+        Ok(determinate.map(|(_, reaction)| reaction).collect())
+    }
+
+    fn duration(&self) -> Result<f64, StudyError> {
+        let Some(motion) = &self.motion else {
+            return Ok(0.0);
+        };
+        let with_drives = with_drive_loads(self)?;
+        FreeMotionProblem::new(self, &with_drives, motion)?.duration()
+    }
+
+    fn preliminary_run(
+        &self,
+        _: &Machine<Self::Model>,
+        _: &OdeState,
+        end: f64,
+        options: &Options,
+    ) -> Result<PreliminaryRun, StudyError> {
+        let Some(motion) = &self.motion else {
+            return Ok(PreliminaryRun {
+                steps: Vec::new(),
+                has_one_chart: true,
+                failure: None,
+            });
+        };
+        let with_drives = with_drive_loads(self)?;
+        let problem = FreeMotionProblem::new(self, &with_drives, motion)?;
+        let run = problem.solve(self, end, options)?;
+        let has_one_chart = run.segments.len() == 1;
+        let mut segments = run.segments.into_iter();
+        Ok(PreliminaryRun {
+            steps: segments.next().map_or_else(Vec::new, |(_, s)| s.steps),
+            has_one_chart,
+            failure: run.failure,
+        })
+    }
+
+    fn tabulated(
+        machine: &Machine,
+        accuracy: f64,
+        domain: TableDomain,
+    ) -> Option<Result<TabulatedMachine, TabulationError>> {
+        Some(TabulatedMachine::new(machine, accuracy, domain))
+    }
+
+    fn export(&self, asked: &ExportRequest) -> Result<Export, StudyError> {
+        compute_export(self, asked)
+    }
+
+    fn estimated_error(&self, accuracy: f64) -> Result<Option<f64>, StudyError> {
+        let done = compute_free_motion(self, &to_accuracy(accuracy), &no_progress)?;
+        Ok(done.estimated_error)
+    }
+
+    fn simulated(&self, accuracy: f64) -> Result<Outcome, StudyError> {
+        Ok(simulate_to_accuracy(self, accuracy, None, &no_progress)?.outcome)
+    }
+}
+
+impl StudiedScene for SpaceScene {
+    fn with_free_motion(&self) -> Result<(Self, Option<String>), StudyError> {
+        let mut scene = self.clone();
+        if scene.motion.is_some() || self.mechanism.actuators.is_empty() {
+            return Ok((scene, None));
+        }
+        // From the assembly, at one rad/s or m/s of the first actuator: about a revolution, or over the size.
+        let is_angle = self.actuator(0).is_none_or(|(_, is_angle)| is_angle);
+        let machine = self.machine(&[])?;
+        let travel = match is_angle {
+            true => TAU,
+            false => dwell_kinetostatics::MachineModel::size(machine.model()),
+        };
+        let count = self.assembly.q.len();
+        let mut velocities = vec![0.0; count];
+        velocities[0] = 1.0;
+        let unit = if is_angle { "rad" } else { "m" };
+        let (name, q) = (self.quoted_coordinate(), digits(self.assembly.q[0], 6));
+        let text = format!("{} = {q} {unit} with 1 {unit}/s", name.trim_matches('`'));
+        scene.motion = Some(FreeMotionSpec {
+            initial_coordinates: self.assembly.q.clone(),
+            initial_velocities: velocities,
+            laws: vec![None; count],
+            duration: MotionDuration::Seconds(travel),
+            events: Vec::new(),
+        });
+        Ok((scene, Some(text)))
+    }
+
+    fn compared_reactions(&self, model: &Self::Model) -> Result<Vec<Self::Reaction>, StudyError> {
+        // All in the axes of the ground, those that a joint cannot transmit among them: they are zero.
+        let joints = 0..self.mechanism.joints.len();
+        let of_joint = |j: usize| {
+            (0..6).map(move |k| Self::Reaction {
+                joint: JointId(j),
+                component: match k {
+                    0..3 => Component::Force(Axes::Ground, k),
+                    _ => Component::Moment(Axes::Ground, k - 3),
+                },
+            })
+        };
+        let mut scene = self.clone();
+        scene.reactions = joints.flat_map(of_joint).collect();
+        let [determined, _] = scene.sorted_reactions(model)?;
+        Ok(determined)
+    }
+
+    fn duration(&self) -> Result<f64, StudyError> {
+        match self.motion.as_ref().map(|motion| motion.duration) {
+            None => Ok(0.0),
+            Some(MotionDuration::Seconds(seconds)) => Ok(seconds),
+            Some(MotionDuration::Periods(periods)) => {
+                Ok(periods * compute_period_in_space(self)?.period)
+            }
+        }
+    }
+
+    fn preliminary_run(
+        &self,
+        machine: &Machine<Self::Model>,
+        start: &OdeState,
+        end: f64,
+        options: &Options,
+    ) -> Result<PreliminaryRun, StudyError> {
+        let solution = solve(machine, machine.model(), start, end, options, &[]);
+        let solution = solution.map_err(|e| self.explain(machine.model(), &e))?;
+        Ok(PreliminaryRun {
+            steps: solution.steps,
+            has_one_chart: true,
+            failure: solution.error,
+        })
+    }
+
+    fn tabulated(
+        _: &Machine<Self::Model>,
+        _: f64,
+        _: TableDomain,
+    ) -> Option<Result<TabulatedMachine, TabulationError>> {
+        None
+    }
+
+    fn export(&self, asked: &ExportRequest) -> Result<Export, StudyError> {
+        compute_export_in_space(self, asked)
+    }
+
+    fn estimated_error(&self, accuracy: f64) -> Result<Option<f64>, StudyError> {
+        let done = compute_free_motion_in_space(self, &to_accuracy(accuracy), &no_progress)?;
+        Ok(done.estimated_error)
+    }
+
+    fn simulated(&self, accuracy: f64) -> Result<Outcome, StudyError> {
+        let (solver, span) = (to_accuracy(accuracy), PictureSpan::default());
+        Ok(simulate_in_space(self, &solver, None, span, &no_progress)?.outcome)
+    }
+}
