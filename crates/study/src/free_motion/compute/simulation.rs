@@ -19,6 +19,9 @@ use dwell_scene::{Scene, SceneError, SceneLocation};
 
 /// Number of samples if no sample interval is given.
 pub(crate) const DEFAULT_SAMPLES: f64 = 1000.0;
+/// Why a motion is no result that starts in an unstable equilibrium.
+const STARTS_UNSTABLE: &str =
+    "it starts in an unstable equilibrium, and rounding alone decides when and where it leaves it";
 /// Maximum number of samples of a motion.
 const MAX_SAMPLES: f64 = 100_000.0;
 
@@ -109,13 +112,7 @@ pub(crate) fn compute_free_motion_at(
         || problem.steps_as_samples(motion, most_skipped(solver)),
     );
     let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
-    let sampler = || -> Sampler<'_> {
-        let mut sampler = problem.sampler(motion);
-        Box::new(move |t, precision| match precision {
-            SamplePrecision::Interpolated => sampler.interpolated_at(t),
-            SamplePrecision::Exact => sampler.sample_at(t),
-        })
-    };
+    let sampler = || problem.sampler_within_steps(motion);
     let between = steps.map(|further| MotionBetweenRows {
         further,
         sampler: &sampler,
@@ -143,6 +140,15 @@ pub(crate) fn compute_free_motion_at(
 }
 
 impl FreeMotionProblem<'_> {
+    /// What finds the motion at any of its times.
+    fn sampler_within_steps<'m>(&'m self, motion: &'m SegmentedMotion) -> Sampler<'m> {
+        let mut sampler = self.sampler(motion);
+        Box::new(move |t, precision| match precision {
+            SamplePrecision::Interpolated => sampler.interpolated_at(t),
+            SamplePrecision::Exact => sampler.sample_at(t),
+        })
+    }
+
     /// The events of the scene and of contacts, each with its time (s) and its name, in order of time.
     fn named_events(&self, motion: &SegmentedMotion) -> Vec<(f64, String)> {
         let event = |(_, o): (usize, &EventOccurrence)| {
@@ -268,9 +274,8 @@ impl FreeMotionProblem<'_> {
         );
         let mut estimate = estimate?;
         estimate.record.add("tolerance", "", settings.rtol);
-        let unstable = self.leaves_unstable_equilibrium(&motion).then(|| {
-            "it starts in an unstable equilibrium, and rounding alone decides when and where it leaves it".to_owned()
-        });
+        let is_unstable = self.leaves_unstable_equilibrium(&motion);
+        let unstable = is_unstable.then(|| STARTS_UNSTABLE.to_owned());
         Ok(ComputedMotion {
             method_text: settings.describe(),
             remarks: hint + &estimate.text,

@@ -4,8 +4,9 @@
 //! whatever the motion does. About a local extremum there, three positions enclose one of the column. It is found by
 //! parabolas and golden sections, each of whose points is evaluated like a row.
 
+use crate::trajectory::compute::maximum::{NO_GAIN, promising, refine_maximum};
 use crate::trajectory::compute::{
-    BALANCE, Column, Quantity, RowEvaluator, Trajectory, TrajectorySample,
+    BALANCE, Column, Point, Quantity, RowEvaluator, Trajectory, TrajectorySample,
 };
 use SamplePrecision::{Exact, Interpolated};
 use rayon::prelude::*;
@@ -21,17 +22,8 @@ const MAX_REFINED_OF_ALL: usize = 1500;
 /// mechanism with thousands of loads would cost their square. At least so many are searched.
 const MAX_SEARCHED_TIMES_ALL: usize = 600_000;
 const MIN_SEARCHED: usize = 100;
-/// Highest number of evaluations for one extremum.
-const MAX_EVALUATIONS: usize = 40;
-/// Width of the interval, relative to the first, at which an extremum is found, and the relative gain that is none.
-const WIDTH: f64 = 1e-7;
-const NO_GAIN: f64 = 1e-13;
 /// Extrema that differ relatively by less than this are the same: the first one counts.
 const SAME: f64 = 1e-12;
-/// Part of the first or last interval at which a value tells whether the extremum is the end itself.
-const NEXT_TO_END: f64 = 1e-3;
-/// The part of an interval that a golden section cuts off.
-const GOLDEN: f64 = 0.381_966_011_250_105;
 
 /// A value of a column, and the abscissa where it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,9 +69,6 @@ pub(crate) struct BetweenRows<'s> {
     /// A new sampler: each thread has its own.
     pub(crate) sampler: &'s (dyn Fn() -> Sampler<'s> + Sync),
 }
-
-/// A position: its parameter, and the value of a column.
-pub(crate) type Point = [f64; 2];
 
 impl<'s> BetweenRows<'s> {
     /// Of a trajectory that is known at some further positions; others are added where these and the rows are far
@@ -382,123 +371,4 @@ fn is_of_load(column: &Column) -> bool {
         column.quantity,
         Quantity::LoadForce(_) | Quantity::LoadPower(_)
     )
-}
-
-/// The highest point of a function that is known at some points, also between them: it is evaluated about its local
-/// maxima there, about those `count` whose parabolas are highest. None where no point has a value.
-pub(crate) fn highest_between(
-    points: &[Point],
-    count: usize,
-    value: &mut dyn FnMut(f64) -> Option<f64>,
-) -> Option<Point> {
-    let known = points.iter().copied().filter(|[_, v]| !v.is_nan());
-    let scale = known.clone().map(|[_, v]| v.abs()).fold(0.0, f64::max);
-    let higher = |a: Point, b: Point| if b[1] > a[1] { b } else { a };
-    let highest = known.reduce(higher)?;
-    let brackets = promising(points, highest[1], count).into_iter();
-    let found = brackets.filter_map(|(_, bracket)| refine_maximum(value, bracket, scale));
-    Some(found.fold(highest, higher))
-}
-
-/// Three points, the middle one not below the others; the middle one may be missing at an end.
-type Bracket = (Point, Option<Point>, Point);
-
-/// The local maxima in whose neighbourhood the largest value may be, each with its value: the first of them, and those
-/// whose parabolas are highest.
-fn promising(points: &[Point], largest: f64, count: usize) -> Vec<(f64, Bracket)> {
-    let Some(last) = points.len().checked_sub(1).filter(|last| *last > 0) else {
-        return Vec::new();
-    };
-    let mut all: Vec<(f64, f64, Bracket)> = Vec::new();
-    for (i, &point) in points.iter().enumerate() {
-        let value = point[1];
-        if i == 0 || i == last {
-            if value >= largest {
-                let ends = (points[i.max(1) - 1], points[(i + 1).min(last)]);
-                all.push((value, value, (ends.0, None, ends.1)));
-            }
-            continue;
-        }
-        let (before, after) = (points[i - 1], points[i + 1]);
-        let is_peak = value >= before[1] && value >= after[1];
-        if is_peak && (value > before[1] || value > after[1]) {
-            let [_, top] = vertex([before, point, after]).unwrap_or(point);
-            // A parabola through three points may be too low by as much again.
-            if value + 2.0 * (top - value).max(0.0) >= largest {
-                all.push((top, value, (before, Some(point), after)));
-            }
-        }
-    }
-    let first = all.first().copied();
-    all.sort_by(|a, b| b.0.total_cmp(&a.0));
-    all.truncate(count);
-    if let Some(first) = first.filter(|first| all.iter().all(|other| other.2 != first.2)) {
-        all.push(first);
-    }
-    let bracket = |(_, value, bracket)| (value, bracket);
-    all.into_iter().map(bracket).collect()
-}
-
-/// The maximum of the parabola through three points; none if it has none.
-fn vertex([a, c, b]: [Point; 3]) -> Option<Point> {
-    let slope = (c[1] - a[1]) / (c[0] - a[0]);
-    let curvature = ((b[1] - c[1]) / (b[0] - c[0]) - slope) / (b[0] - a[0]);
-    if curvature.is_nan() || curvature >= 0.0 {
-        return None;
-    }
-    let u = 0.5 * (a[0] + c[0] - slope / curvature);
-    let value = a[1] + slope * (u - a[0]) + curvature * (u - a[0]) * (u - c[0]);
-    (u > a[0] && u < b[0]).then_some([u, value])
-}
-
-/// The largest value that is found within a bracket; every value is evaluated.
-fn refine_maximum(
-    value: &mut dyn FnMut(f64) -> Option<f64>,
-    (mut a, middle, mut b): Bracket,
-    scale: f64,
-) -> Option<Point> {
-    let mut c = match middle {
-        Some(middle) => middle,
-        None => {
-            let (end, next) = if a[1] >= b[1] { (a, b) } else { (b, a) };
-            let u = end[0] + NEXT_TO_END * (next[0] - end[0]);
-            let inside = [u, value(u)?];
-            if inside[1] <= end[1] {
-                return Some(end);
-            }
-            inside
-        }
-    };
-    let width = WIDTH * (b[0] - a[0]);
-    let mut before = f64::INFINITY;
-    for k in 0..MAX_EVALUATIONS {
-        let is_slow = k % 3 == 2 && {
-            let slow = b[0] - a[0] > 0.5 * before;
-            before = b[0] - a[0];
-            slow
-        };
-        let top = vertex([a, c, b]).filter(|_| !is_slow);
-        if top.is_some_and(|[_, top]| top - c[1] <= NO_GAIN * scale) {
-            break;
-        }
-        let u = match top {
-            Some([u, _]) if (u - c[0]).abs() > width => u,
-            Some([u, _]) => c[0] + width.copysign(u - c[0]),
-            None if c[0] - a[0] > b[0] - c[0] => c[0] - GOLDEN * (c[0] - a[0]),
-            None => c[0] + GOLDEN * (b[0] - c[0]),
-        };
-        if u <= a[0] || u >= b[0] || b[0] - a[0] <= 2.0 * width {
-            break;
-        }
-        let Some(found) = value(u).map(|value| [u, value]) else {
-            break;
-        };
-        let (left, right) = if u < c[0] { (found, c) } else { (c, found) };
-        if left[1] >= right[1] {
-            (c, b) = (left, right);
-        } else {
-            (a, c) = (left, right);
-        }
-    }
-    Some(c)
 }

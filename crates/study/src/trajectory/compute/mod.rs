@@ -10,6 +10,7 @@ mod extra_columns;
 mod extrema;
 mod followed_scene;
 mod long_rows;
+mod maximum;
 mod mechanical_advantage;
 mod monitor;
 mod peak_forces;
@@ -34,11 +35,10 @@ pub(crate) use early_stop::{
 pub(crate) use evaluator::{ForceEvaluator, PositionEvaluator};
 pub(crate) use extra_columns::extra_columns;
 pub(crate) use extrema::Extremum;
-pub(crate) use extrema::{
-    BetweenRows, Extrema, ExtremaSearch, Point, SamplePrecision, Sampler, highest_between,
-};
+pub(crate) use extrema::{BetweenRows, Extrema, ExtremaSearch, SamplePrecision, Sampler};
 pub(crate) use followed_scene::FollowedScene;
 pub(crate) use long_rows::{LongRows, RowStorage, not_stored};
+pub(crate) use maximum::{Point, highest_between};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryMonitor, table_of};
 pub(crate) use peak_forces::{WantedForces, peak_forces};
