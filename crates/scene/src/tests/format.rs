@@ -215,7 +215,8 @@ pub(super) fn tables_of_examples(table: &TableSchema) -> Vec<(String, String)> {
             (true, _) => {}
             // Numbers of dry friction make sense together.
             _ if table.name.starts_with("[friction.") => {
-                let others = table.keys.iter().filter(|k| k.name != wanted.name);
+                let others = table.keys.iter();
+                let others = others.filter(|k| k.name != wanted.name && k.presence.is_some());
                 parts.extend(others.map(written));
             }
             // An end stop has a limit, and its damper a spring.
