@@ -128,8 +128,8 @@ def pinocchio_(m: Mechanism, steps: int):
     pinocchio.initConstraintDynamics(model, data, models, datas)
     # The rows of the Bricard linkage are redundant: the proximal term makes them solvable, and as small as that of others it is
     # inaccurate.
-    proximal = 0.1 if m.name == "bricard-a04" else 1e-10
-    settings, none = pinocchio.ProximalSettings(1e-14, proximal, 10), np.zeros(model.nv)
+    proximal, most = (0.1, 20) if m.name == "bricard-a04" else (1e-10, 10)
+    settings, none = pinocchio.ProximalSettings(1e-14, proximal, most), np.zeros(model.nv)
     dynamics = pinocchio.constraintDynamics
     f = lambda q, v: dynamics(model, data, q, v, none, models, datas, settings)  # noqa: E731
     q, v = np.zeros(model.nv), np.array(rates)

@@ -11,9 +11,9 @@ const CURVES: [(&str, &str, Paint); 7] = [
     ("Pinocchio", "Pinocchio", Paint::Palette(2)),
     ("MuJoCo", "MuJoCo", Paint::Palette(5)),
     (EXACT, "exact", Paint::Palette(3)),
-    (TABLE, "table", Paint::Palette(1)),
     (QUADRATURE, "quadrature", Paint::Ink),
     (FROM_TEXT, "from text", Paint::Grey),
+    (TABLE, "table", Paint::Palette(1)),
 ];
 
 /// Error against wall time, all mechanisms.
@@ -46,7 +46,7 @@ fn panel(runs: &[Run], case: &str) -> Panel {
         series,
         marks: vec![Mark::Horizontal {
             at: ANGLE_ROUNDING,
-            label: "rounding of ten turns".into(),
+            label: "one rounding of 63 rad".into(),
         }],
         ..Chart::default()
     })

@@ -132,7 +132,7 @@ pub(crate) fn measure(
         let from_text = || -> Result<_, Box<dyn Error>> {
             Ok(quadrature(
                 &motion,
-                &compile(&read()?, is_loaded)?,
+                &compile(&*read()?, is_loaded)?,
                 accuracy,
             )?)
         };

@@ -312,17 +312,17 @@ mod tests {
                 for row in 0..4 {
                     let mut unit = [0.0; 4];
                     unit[row] = 1.0;
-                    let mut transposed = [unit; 2];
+                    let (mut by_rod, mut by_factors) = (unit, unit);
                     for (group, pose, values) in [
-                        (group, &mut pose, &mut transposed[0]),
-                        (&dense_group, &mut dense, &mut transposed[1]),
+                        (group, &mut pose, &mut by_rod),
+                        (&dense_group, &mut dense, &mut by_factors),
                     ] {
                         pose.scratch[..4].copy_from_slice(&unit);
                         plan.solve(group, pose);
                         plan.solve_transposed(group, pose, values);
                     }
-                    let found = [&pose.scratch[..4], &transposed[0][..]];
-                    let wanted = [&dense.scratch[..4], &transposed[1][..]];
+                    let found = [&pose.scratch[..4], &by_rod[..]];
+                    let wanted = [&dense.scratch[..4], &by_factors[..]];
                     for (found, wanted) in found.into_iter().zip(wanted) {
                         for (a, b) in found.iter().zip(wanted) {
                             assert!((a - b).abs() < 1e-11, "{found:?} is {wanted:?}");
