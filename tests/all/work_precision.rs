@@ -380,7 +380,11 @@ fn motions_in_space_are_studied_as_those_in_the_plane() {
         ("gyroscope", String::new(), false),
     ];
     for (name, more, has_orbit) in cases {
-        let scene = scene_in_space(name, &more);
+        let mut scene = scene_in_space(name, &more);
+        if let Some(motion) = scene.motion.as_mut().filter(|_| name == "gyroscope") {
+            // In steady precession nothing but rounding would oscillate.
+            motion.initial_velocities[2] = 25.0;
+        }
         let found = measure(&scene, &effort, &no_progress).expect("a study");
         assert_eq!(found.quadrature().is_some(), has_orbit, "{name}");
         assert_eq!(found.reference.method.contains("quadrature"), has_orbit);
