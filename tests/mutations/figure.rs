@@ -8,6 +8,12 @@ use dwell_report::{Axis, Cell, Figure, Grid, Group, Panel, Row};
 
 /// The figure `mutations`.
 pub fn figure(study: &Study, steps: &[(&'static str, Tally)]) -> Figure {
+    let exceptions = match study.exceptions {
+        [] => "",
+        _ => {
+            " Where a guess of Newton's method is wrong, which decides nothing but the branch, one is enough."
+        }
+    };
     Figure {
         name: study.name.into(),
         title: study.title.into(),
@@ -15,7 +21,7 @@ pub fn figure(study: &Study, steps: &[(&'static str, Tally)]) -> Figure {
             "Above: named faults, each on the mechanism where the fewest checks detect it; a number is the digits by which the \
              difference exceeds the tolerance of the check, 0: not detected, hatched: not applied. Below: {} faults of single \
              operations in the source code, every sign, term and factor of each step; a number is the share that a check \
-             detects, in percent. At least two checks must detect a fault.",
+             detects, in percent. At least two checks must detect a fault.{exceptions}",
             study.operation_results.len()
         ),
         columns: 1,

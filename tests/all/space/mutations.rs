@@ -6,8 +6,9 @@ use dwell_tests::mutations::source::SourceFiles;
 use dwell_tests::mutations::space::{steps, study, tested::TestedSpace};
 use dwell_tests::mutations::tallies;
 
-/// A loop with a ball and a universal joint, under loads of every kind, and one of several coordinates with gears.
-const MECHANISMS: [&str; 2] = ["loads", "bevel-differential"];
+/// A loop with a ball and a universal joint, under loads of every kind; the same with a reference, without which nothing else sees where the ground is; and
+/// gears with several coordinates.
+const MECHANISMS: [&str; 3] = ["loads", "slider-crank-haug", "bevel-differential"];
 
 #[test]
 fn every_fault_of_an_operation_in_space_is_detected_by_two_checks() {

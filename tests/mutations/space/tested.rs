@@ -205,7 +205,7 @@ impl<'a> TestedSpace<'a> {
                 match line {
                     Some(idle) => values[1].extend(parts(placement.rotation.apply(idle.axis))),
                     None => {
-                        values[1].extend(placement.rotation.columns.iter().flat_map(|v| parts(*v)))
+                        values[1].extend(placement.rotation.columns.iter().flat_map(|v| parts(*v)));
                     }
                 }
             }

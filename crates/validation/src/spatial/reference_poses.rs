@@ -14,6 +14,7 @@ const PLACEMENTS: Comparison = Comparison {
     check: Check::ReferenceValues,
     comparison: "positions and rotations of all bodies with the reference of 25 digits",
     scale: "the size of the mechanism, or one radian",
+    // The largest seen in a case is 1.8e-14.
     tolerance: 1e-12,
     reason: "rounding, amplified by the condition of the equations",
 };

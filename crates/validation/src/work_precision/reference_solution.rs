@@ -10,6 +10,7 @@ use super::run::{ToleranceSeries, orbit_states, solve};
 use super::studied_scene::StudiedScene;
 use super::subject::Subject;
 use dwell_dynamics::{DynamicsError, MachineWorkspace, OdeState, Orbit};
+use dwell_kinetostatics::MachineModel as _;
 
 /// Below this no integrator keeps a tolerance in double precision.
 const MIN_TOLERANCE: f64 = 1e-14;
@@ -19,6 +20,9 @@ const STEP_FACTOR: usize = 3;
 const START_ROUNDING: f64 = 2.0 * f64::EPSILON;
 /// Roundings of a result, relative: of sums of energies and forces, and of a phase that Newton's method finds.
 const RESULT_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// A part of the largest reaction, at the size of the mechanism, that is rounding.
+const ZERO: f64 = 1e-12;
 
 /// The reference with its values.
 pub(super) struct ReferenceSolution<'s, S: StudiedScene> {
@@ -107,6 +111,18 @@ impl<'s, S: StudiedScene> ReferenceSolution<'s, S> {
             values.fold(0.0_f64, |max, value| max.max(value.abs()))
         };
         self.scales = (0..count).map(of_unit).collect();
+        // Where all moments, or all forces, are zero but for rounding, there is nothing to compare.
+        let size = self.subject.machine.model().size();
+        let levers: Vec<f64> = (0..count)
+            .map(|k| if unit(k) == "N" { 1.0 } else { 1.0 / size })
+            .collect();
+        let in_newtons = self.scales.iter().zip(&levers).map(|(s, lever)| s * lever);
+        let largest = in_newtons.fold(0.0_f64, f64::max);
+        for (scale, lever) in self.scales.iter_mut().zip(&levers) {
+            if *scale * lever < ZERO * largest {
+                *scale = 0.0;
+            }
+        }
         self.error.energy = RESULT_ROUNDING * size / self.max_kinetic_energy;
         Ok(())
     }

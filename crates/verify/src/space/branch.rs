@@ -10,11 +10,11 @@ use dwell_geometry::space::{Placement, Vec3};
 const BRANCH: FindingSpec<'_> = FindingSpec {
     key: "state-branch",
     check: Check::ConstraintClosure,
-    comparison: "the placements with those to which the assembly leads, closed densely all the way",
+    comparison: "the placements with those of the branch of the assembly, continued densely",
     scale: "the size of the mechanism, or one radian",
     // The largest seen is 1.1e-6, on the Bricard linkage.
     tolerance: 1e-4,
-    tolerance_reason: "the root of rounding, where redundant rows are independent beside the closed pose; another branch is much further away",
+    tolerance_reason: "the root of rounding, where redundant rows are independent off the closed pose; other branches are much further away",
 };
 
 /// Steps of the coordinates within which Newton's method stays on the branch: rad, or parts of the size.
