@@ -26,6 +26,7 @@ pub fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static st
         ("geometry", "space/closure", _) => (10, "accelerations of closures"),
         ("geometry", "space/positions", _) => (4, "positions: predicted steps and Newton"),
         ("geometry", "space/factors" | "space/groups", _) => (6, "groups: scales"),
+        ("geometry", "space/rod", _) => (6, "groups: a rod between two balls"),
         ("numerics", "lu" | "factor_outcome", _) => (6, "groups: elimination"),
         ("numerics", "qr", _) => (6, "groups: least squares"),
         ("geometry", "space/motion", _) => (11, "rates of the freedoms, motions of bodies"),
