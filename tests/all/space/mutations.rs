@@ -6,9 +6,14 @@ use dwell_tests::mutations::source::SourceFiles;
 use dwell_tests::mutations::space::{steps, study, tested::TestedSpace};
 use dwell_tests::mutations::tallies;
 
-/// A loop with a ball and a universal joint, under loads of every kind; the same with a reference, without which nothing else sees where the ground is; and
-/// gears with several coordinates.
-const MECHANISMS: [&str; 3] = ["loads", "slider-crank-haug", "bevel-differential"];
+/// A loop with a ball and a universal joint, under loads of every kind; the same with a reference, without which nothing else sees where the ground is;
+/// gears with several coordinates; and bodies far from the ground.
+const MECHANISMS: [&str; 4] = [
+    "loads",
+    "slider-crank-haug",
+    "bevel-differential",
+    "double-hooke",
+];
 
 #[test]
 fn every_fault_of_an_operation_in_space_is_detected_by_two_checks() {

@@ -262,3 +262,46 @@ impl Model {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_geometry::space::Vec3;
+    use dwell_geometry::{BodyId, JointId};
+    use dwell_numerics::Dual;
+
+    /// The slopes with which the friction is solved are the derivatives of its contact force.
+    #[test]
+    fn slopes_are_those_of_the_contact_force() {
+        let reactions = [[3.0, -4.0, 0.5, 0.2], [-0.7, 0.1, -0.3, 2.0]];
+        for (distance, lever) in [(0.0, 0.02), (0.3, 0.02), (0.15, 1.0)] {
+            let friction = Friction {
+                joint: JointId(0),
+                coefficient: 0.1,
+                static_coefficient: 0.1,
+                contact: FrictionContact::Guide { length: distance },
+                regularization_speed: None,
+            };
+            let law = FrictionLaw {
+                friction,
+                sliding: Sliding::Along(CoordinateFunction::Travel {
+                    bodies: [BodyId(0), BodyId(1)],
+                    points: [Vec3::AXES[0]; 2],
+                    axis: Vec3::AXES[2],
+                }),
+                lever,
+                distance,
+            };
+            for reaction in reactions {
+                let (_, slopes) = law.force(reaction);
+                for k in 0..4 {
+                    let mut varied = reaction.map(Dual::from_f64);
+                    varied[k] = Dual::variable(reaction[k]);
+                    let (force, _) = law.force(varied);
+                    // Seen: 2e-16.
+                    assert!((force.d - slopes[k]).abs() < 1e-14, "{force:?} {slopes:?}");
+                }
+            }
+        }
+    }
+}

@@ -16,14 +16,14 @@ impl FreeMotionProblem<'_> {
     pub(crate) fn steps_as_samples(
         &self,
         motion: &SegmentedMotion,
-        most_skipped: usize,
+        max_skipped: usize,
     ) -> Option<Vec<(f64, TrajectorySample)>> {
         if motion.steps().count() > MAX_STEPS {
             return None;
         }
         let coordinates = &motion.actuator_coordinates.steps;
         let mut thinning = Thinning {
-            most_skipped,
+            max_skipped,
             skipped: 0,
         };
         let mut is_kept = |steps: &[OdeState], k: usize| thinning.keeps(steps, k);
@@ -60,13 +60,13 @@ impl FreeMotionProblem<'_> {
 /// Steps are thinned as if this had been the tolerance: their accuracy is finer than what the search for extrema needs.
 const SEARCH_TOLERANCE: f64 = 1e-6;
 /// Most steps of which one is kept.
-const MOST_STEPS: f64 = 3.0;
+const MAX_THINNING: f64 = 3.0;
 /// Steps whose lengths differ by more than this factor are kept: something begins or ends there.
 const ALIKE: f64 = 2.0;
 
 /// How many steps may be left out between two that are kept, in the search for extrema between rows. What is interpolated over n
 /// steps of a method of order p has n^(p+1) times the error of a step. Steps of DOP853 are long.
-pub(super) fn most_skipped(solver: &MotionSolver) -> usize {
+pub(super) fn max_skipped(solver: &MotionSolver) -> usize {
     let MotionSolver::Settings(settings) = solver else {
         return 0;
     };
@@ -77,12 +77,12 @@ pub(super) fn most_skipped(solver: &MotionSolver) -> usize {
         Method::Dop853 => return 0,
     };
     let steps = (SEARCH_TOLERANCE / settings.rtol).powf(1.0 / f64::from(order + 1));
-    steps.clamp(1.0, MOST_STEPS) as usize - 1
+    steps.clamp(1.0, MAX_THINNING) as usize - 1
 }
 
 /// Steps of which at most so many are left out between two, where their lengths are alike.
 struct Thinning {
-    most_skipped: usize,
+    max_skipped: usize,
     /// Those that have been left out since the last one.
     skipped: usize,
 }
@@ -95,7 +95,7 @@ impl Thinning {
             let [before, after] = [around[1].t - around[0].t, around[2].t - around[1].t];
             before < ALIKE * after && after < ALIKE * before
         });
-        self.skipped = match is_alike && self.skipped < self.most_skipped {
+        self.skipped = match is_alike && self.skipped < self.max_skipped {
             true => self.skipped + 1,
             false => 0,
         };

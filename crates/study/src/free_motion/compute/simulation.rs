@@ -4,7 +4,7 @@ use crate::estimate;
 use crate::explain::{
     StepLimits, StudyError, explain_max_steps, missing_section_label, scene_error,
 };
-use crate::free_motion::compute::between_samples::most_skipped;
+use crate::free_motion::compute::between_samples::max_skipped;
 use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
 use crate::models::{SolverSettings, with_drive_loads};
 use crate::number_format::digits;
@@ -109,7 +109,7 @@ pub(crate) fn compute_free_motion_at(
     }
     let (trajectory, steps) = rayon::join(
         || problem.trajectory(motion, evaluated, &integrated.method_text, times),
-        || problem.steps_as_samples(motion, most_skipped(solver)),
+        || problem.steps_as_samples(motion, max_skipped(solver)),
     );
     let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
     let sampler = || problem.sampler_within_steps(motion);
