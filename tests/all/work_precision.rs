@@ -386,10 +386,10 @@ fn motions_in_space_are_studied_as_those_in_the_plane() {
         let found = measure(&scene, &effort, &no_progress).expect("a study");
         assert_eq!(found.quadrature().is_some(), has_orbit, "{name}");
         assert_eq!(found.reference.method.contains("quadrature"), has_orbit);
-        // Measured: 4e-15 to 1e-13 rad.
+        // Measured: 1e-13 rad and less by quadrature, 8e-11 by integration at 1e-10.
         let error = found.reference.error.coordinate;
         assert!(
-            error < 1e-11,
+            error < if has_orbit { 1e-11 } else { 5e-9 },
             "{name}: {error:.1e} by {}",
             found.reference.method
         );
@@ -422,10 +422,11 @@ fn tables_of_a_reduced_model_in_space_are_studied() {
     let (before, _) = text.split_once("[loads]").expect("loads");
     let motion = "[motion]\nduration = 5\ninitial-velocity = 2\n";
     let scene = SpaceScene::parse("rssr", &format!("{before}{motion}")).expect("a scene");
-    let found = measure(&scene, &effort(&[-5, -6, -7], &[1e-5]), &no_progress).expect("a study");
-    let integrator = Integrator::Steps(Method::Dop853, 1e-6);
+    let found = measure(&scene, &effort(&[-5, -6, -7], &[1e-4]), &no_progress).expect("a study");
+    let integrator = Integrator::Steps(Method::Dop853, 1e-5);
     let [table, sound] =
-        ["table 1e-5", "exact f64"].map(|name| result_of(&found, integrator, name));
+        ["table 1e-4", "exact f64"].map(|name| result_of(&found, integrator, name));
     let [table, sound] = [table, sound].map(|result| result.errors.coordinate);
-    assert!(table > 3.0 * sound && table < 1e-2, "{table:e} {sound:e}");
+    // Seen: 2.8e-5 and 7.0e-6 rad.
+    assert!(table > 2.0 * sound && table < 1e-3, "{table:e} {sound:e}");
 }

@@ -1,4 +1,4 @@
-//! The quick part of the mutation study in space: all faults on a few mechanisms, and that a check of states can fail.
+//! The mutation study in space: all faults of single operations, and that a check of states can fail.
 
 use dwell_tests::fixtures::repository_root;
 use dwell_tests::mutations::operations::{MutatedSubject as _, MutationOutcome};
@@ -6,21 +6,14 @@ use dwell_tests::mutations::source::SourceFiles;
 use dwell_tests::mutations::space::{steps, study, tested::TestedSpace};
 use dwell_tests::mutations::tallies;
 
-/// A loop with a ball and a universal joint, under loads of every kind; the same with a reference, without which nothing else sees where the ground is;
-/// gears with several coordinates; and bodies far from the ground.
-const MECHANISMS: [&str; 4] = [
-    "loads",
-    "slider-crank-haug",
-    "bevel-differential",
-    "double-hooke",
-];
-
+/// On all mechanisms of the study: a fault may be felt on several and seen on some.
 #[test]
 fn every_fault_of_an_operation_in_space_is_detected_by_two_checks() {
-    let scenes = MECHANISMS.map(study::scene);
+    let scenes = study::scenes();
     let study = study::run_operations(&scenes);
     assert_eq!(study.gaps(), Vec::<String>::new());
-    assert!(study.ignored.is_empty(), "{:?}", study.ignored);
+    let ignored = study.ignored.iter().map(|(name, ..)| name.as_str());
+    assert_eq!(ignored.collect::<Vec<_>>(), ["screw"]);
     // Every function in which an operation was changed belongs to a step.
     let operations = study.operation_results.iter().map(|r| r.operation);
     let source = SourceFiles::read(&repository_root(), operations);
@@ -32,7 +25,7 @@ fn every_fault_of_an_operation_in_space_is_detected_by_two_checks() {
         .iter()
         .filter(|s| matches!(s.outcome, MutationOutcome::Checked(..)));
     let count = effective.count();
-    assert!(count > 600, "{count} of {}", study.operation_results.len());
+    assert!(count > 1200, "{count} of {}", study.operation_results.len());
 }
 
 /// The gyroscopic term does no work: inertias, energies and power are blind to it, and reactions are not.
