@@ -18,7 +18,8 @@ pub(crate) const MAX_STEPS: usize = 50_000;
 const NODES: usize = 8;
 /// Numbers that the polynomials of all steps may have, 32 MB; then they are forgotten.
 const MAX_STORED: usize = 1 << 22;
-/// A coefficient of this part of the largest value is rounding.
+/// A coefficient of this part of the largest value is rounding: with a quarter of it 186 of the 195 exact states of the single-dwell
+/// were integrated again, with it 4 are.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Method, tolerance and highest number of steps from the beginning of a step to a time within it; the second where a
 /// stiff motion needs too many of the first.
