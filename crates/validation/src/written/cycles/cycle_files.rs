@@ -1,5 +1,6 @@
 //! The findings over the steady cycle of a case.
 
+use super::multipliers::{Multiplier, multiplier_differences};
 use crate::written::motions::{sentences, simpson};
 use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
@@ -252,11 +253,14 @@ fn long_motion(
     summary: &Value,
     period: f64,
 ) -> Result<(), String> {
-    let multipliers = (1..).map_while(|k| {
-        let part = |p: &str| result(summary, &format!("floquet_multiplier.{k}.{p}"));
-        Some(part("re")?.hypot(part("im")?))
-    });
-    let slowest = multipliers.fold(0.0, f64::max);
+    let multipliers: Vec<Multiplier> = (1..)
+        .map_while(|k| {
+            let part = |p: &str| result(summary, &format!("floquet_multiplier.{k}.{p}"));
+            Some([part("re")?, part("im")?])
+        })
+        .collect();
+    let sizes = multipliers.iter().map(|[re, im]| re.hypot(*im));
+    let slowest = sizes.fold(0.0, f64::max);
     let cycles = (SETTLED.ln() / slowest.max(1e-3).ln()).ceil() + 3.0;
     if slowest >= 1.0 || cycles > MAX_CYCLES || result(summary, "revolutions") != Some(1.0) {
         return Ok(());
@@ -293,5 +297,9 @@ fn long_motion(
     found.add(mean - turn, turn, "rad/s", || {
         "mean speed of `simulate`".to_owned()
     });
+    let speeds = events.columns.get(&format!("{coordinate}.velocity"));
+    let speeds = speeds.map_or(&[][..], Vec::as_slice);
+    let decay = multiplier_differences(speeds, &multipliers);
+    compared.merge("written-cycle-multiplier", decay);
     Ok(())
 }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 type Spec = (&'static str, Check, &'static str, f64);
 
 #[rustfmt::skip]
-const SPECS: [Spec; 68] = [
+const SPECS: [Spec; 69] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
     ("written-quotients", Check::WrittenRates, "velocity ratios with the velocities that they are of, and transmission angles with the places of the pins", 5e-14),
@@ -73,6 +73,7 @@ const SPECS: [Spec; 68] = [
     ("written-cycle", Check::WrittenTotals, "speeds, fluctuation and works of the summary of `cycle` with its rows", 1e-8),
     ("written-cycle-rates", Check::WrittenRates, "changes between rows of `cycle` with the integrals of their rates", 6e-9),
     ("written-cycle-period", Check::WrittenTwice, "the period of `cycle` with that of a long motion by `simulate`", 1e-8),
+    ("written-cycle-multiplier", Check::WrittenTwice, "the largest Floquet multiplier of `cycle` with the decay of a long motion by `simulate`", 1e-2),
     ("written-cycle-flywheel", Check::WrittenTwice, "speeds of `cycle` with its flywheel, with those of the scene in which a body has that inertia", 1e-7),
     ("written-cycle-sentences", Check::WrittenSentences, "numbers that `cycle` prints with its summary, to their digits", 1e-12),
     ("written-contents-sentences", Check::WrittenSentences, "masses, centre of mass, size and angles that `check` prints with the scene's text, to their digits", 7e-15),

@@ -46,6 +46,10 @@ pub(crate) fn compare_reduced(
     let swept = swept(everything, reading, &all)?;
     let run_i = run("sweep", &swept, "kinetostatics")?.npz("-kinetostatics.npz")?;
     let run_ii = run("runs", everything, "runs")?.csv("-run-ii.csv")?;
+    if run_ii.count != all.count {
+        let counts = format!("{} rows where `reduce` has {}", run_ii.count, all.count);
+        compared.fail("written-runs", format!("run ii has {counts}"));
+    }
     let files = ReducedFiles {
         reduced: &all,
         run_i: &run_i,

@@ -7,6 +7,7 @@ use super::reading::Reading;
 use super::rows::Rows;
 use super::scene_text::{Draws, text_of};
 use super::sections::{Link, links, sections};
+use super::stated::sentence_differences;
 
 /// Links of a case whose internal forces are compared.
 const LINKS: usize = 2;
@@ -31,10 +32,8 @@ pub(crate) fn compare_sections(
     let run = program
         .run("sections", &scene, &arguments)
         .map_err(|e| e.to_string())?;
-    let (rows, summary) = (
-        run.csv("-kinetostatics.csv")?,
-        run.json("-kinetostatics.json")?,
-    );
+    let rows = run.csv("-kinetostatics.csv")?;
+    let summary = run.json("-kinetostatics.json")?;
     let abscissa = summary["extrema_over"]["name"].as_str().unwrap_or("t");
     for link in &drawn {
         let body = &reading.bodies[link.body].name;
@@ -44,17 +43,12 @@ pub(crate) fn compare_sections(
         ))?;
         let name = format!("{body} from {from} to {to}.bending_moment");
         let at = summary["results"][format!("{name}.at")]["value"].as_f64();
+        let is_there = |x: &f64| at.is_some_and(|at| (x - at).abs() <= 1e-12 * (1.0 + at.abs()));
         let column = rows.columns.get(abscissa);
-        let row = at.zip(column).and_then(|(at, column)| {
-            column
-                .iter()
-                .position(|x| (x - at).abs() <= 1e-12 * (1.0 + at.abs()))
-        });
+        let row = column.and_then(|column| column.iter().position(|x| is_there(x)));
         let Some(row) = row else {
-            compared.fail(
-                "written-sections",
-                format!("the largest {name} is at {at:?}, which is no row"),
-            );
+            let reason = format!("the largest {name} is at {at:?}, which is no row");
+            compared.fail("written-sections", reason);
             continue;
         };
         let of = sections(reading, &rows, row, link, &cuts);
@@ -66,6 +60,10 @@ pub(crate) fn compare_sections(
         let said = summary["results"][&name]["value"]
             .as_f64()
             .unwrap_or(f64::NAN);
+        compared.merge(
+            "written-sentences",
+            moment_sentence(&run.printed, [body, from, to], said),
+        );
         let column = cuts.columns.get("bending").into_iter().flatten();
         let largest = column.fold(0.0_f64, |max, v| max.max(v.abs()));
         compared
@@ -73,6 +71,24 @@ pub(crate) fn compare_sections(
             .add(said.abs() - largest, largest, "N m", || name.clone());
     }
     Ok(())
+}
+
+/// The sentence about the largest bending moment of a link: its value, and the end from which its station is counted.
+fn moment_sentence(printed: &str, [body, from, to]: [&str; 3], said: f64) -> Differences {
+    let start = format!("bending moment of {body} from {from} to {to}: ");
+    let line = [(start.clone(), vec![(said, said.abs())])];
+    let mut all = sentence_differences(printed, &line, "kinetostatics");
+    let mut lines = printed
+        .lines()
+        .map(str::trim_start)
+        .filter(|line| line.starts_with(&start));
+    let end = format!(" from {from}, at ");
+    if lines.any(|line| !line.contains(&end)) {
+        all.fail(format!(
+            "the station in `{start}` is not counted from {from}"
+        ));
+    }
+    all
 }
 
 /// Every cut is within the envelope of its station, which goes nowhere beyond the largest bending moment.

@@ -100,21 +100,21 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
         compare_row(compared, &program, &changed, (&rows, row))?;
     }
     if let Some(variation) = variations.first() {
-        let mass = reading
-            .bodies
-            .iter()
-            .find(|body| body.name == variation.body);
-        let nominal = mass.map_or(f64::NAN, |body| body.mass / reading.units.mass);
-        let mass = VariedMass {
-            body: &variation.body,
-            values: [0.96 * nominal, 1.05 * nominal],
-        };
-        compared.merge(
-            "written-sweep-motion",
-            motion_differences(&program, &everything, &mass)?,
-        );
+        let motion = motion_differences(&program, &everything, &near(&reading, variation))?;
+        compared.merge("written-sweep-motion", motion);
     }
     compare_dimension(compared, &program, &everything, &mut draws)
+}
+
+/// Two values near that of a mass of the scene.
+fn near<'v>(reading: &Reading, variation: &'v Variation) -> VariedMass<'v> {
+    let mut bodies = reading.bodies.iter();
+    let body = bodies.find(|body| body.name == variation.body);
+    let nominal = body.map_or(f64::NAN, |body| body.mass / reading.units.mass);
+    VariedMass {
+        body: &variation.body,
+        values: [0.96 * nominal, 1.05 * nominal],
+    }
 }
 
 /// A coordinate of a point that is drawn, at two values next to that of the scene; a variant that cannot be assembled has no row to compare.
