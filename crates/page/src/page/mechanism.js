@@ -13,30 +13,44 @@ function createMechanism(state, onMove, onTurn) {
   let items = [];
   let layers = null;
   let overlay = null;
+  let shape = null;
   let width = 0;
   let row = 0;
 
   function show(newRun) {
     run = newRun;
     drawing = run.description.drawing;
-    root.replaceChildren();
-    items = [];
-    if (!drawing) return;
+    if (!drawing) {
+      root.replaceChildren();
+      [shape, items, overlay] = [null, [], null];
+      return;
+    }
     frames = createFrames(drawing, run);
     view = createView(frames.isPlane ? null : state.view || drawing.view);
     bounds = boundsOf(drawing, frames, run.rows);
+    const nextShape = shapeOf(drawing);
+    if (nextShape === shape) {
+      items.forEach((item, k) => item.renew(drawing.parts[k]));
+      overlay.show(drawing, run, frames, view);
+      return fit();
+    }
+    shape = nextShape;
+    root.replaceChildren();
+    items = [];
     layers = { parts: svg('g'), paths: svg('g'), marks: svg('g'), forces: svg('g'), axes: svg('g', { class: 'ground-axes', 'aria-hidden': 'true' }), words: svg('g', { 'aria-hidden': 'true' }) };
     root.append(svg('title', {}, frames.isPlane ? 'The mechanism in this position' : 'The mechanism in this position, seen from one side'));
     root.append(layers.parts, layers.paths, layers.marks, layers.forces, layers.axes, layers.words);
     for (const part of drawing.parts) items.push(createItem(part));
-    overlay = createOverlay(drawing, run, frames, view, layers, state);
+    overlay = createOverlay(drawing, layers, state);
+    overlay.show(drawing, run, frames, view);
     root.classList.toggle('turnable', !frames.isPlane);
     fit();
   }
 
   // Fills the picture with all that the mechanism goes through.
   function fit() {
-    width = root.clientWidth || 560;
+    // Measured when it changes, as the charts'.
+    if (!width) width = root.clientWidth || 560;
     root.setAttribute('viewBox', `0 0 ${width} ${HEIGHT}`);
     const { middle, size, radius } = bounds;
     const across = frames.isPlane ? size : [2 * radius, 2 * radius];
@@ -66,7 +80,9 @@ function createMechanism(state, onMove, onTurn) {
     return paint === null ? 'paint-ground' : `paint-${paint}`;
   };
 
-  function createItem(part) {
+  function createItem(first) {
+    let part = first;
+    const renew = next => { part = next; };
     const w = [0, 0, 0];
     const at = (anchor, r) => view.screen(frames.place(anchor.body, anchor.point, r, w));
     if (part.part === 'outline') return createOutline(part, w);
@@ -77,6 +93,7 @@ function createMechanism(state, onMove, onTurn) {
       layers.parts.append(group);
       return {
         element: group,
+        renew,
         depth: r => 0.5 * (view.nearness(frames.place(part.ends[0].body, part.ends[0].point, r, w)) + view.nearness(frames.place(part.ends[1].body, part.ends[1].point, r, w))),
         move(r) {
           const [a, b] = part.ends.map(end => at(end, r));
@@ -93,7 +110,9 @@ function createMechanism(state, onMove, onTurn) {
     return createMark(part, at, w);
   }
 
-  function createOutline(part, w) {
+  function createOutline(first, w) {
+    let part = first;
+    let renew = next => { part = next; };
     const title = svg('title', {}, drawing.bodies[part.body].name);
     const classes = `${part.look} ${colored(part.body)}`;
     const main = svg('path', { class: classes });
@@ -103,6 +122,7 @@ function createMechanism(state, onMove, onTurn) {
     if (part.look === 'ground-line') {
       return {
         element: group,
+        renew,
         depth: () => -Infinity,
         move(r) {
           const [a, b] = part.points.map(p => view.screen(frames.place(part.body, p, r, w)));
@@ -118,6 +138,7 @@ function createMechanism(state, onMove, onTurn) {
     if (!frames.isPlane) {
       return {
         element: group,
+        renew,
         depth: nearness,
         move(r) {
           let d = '';
@@ -130,10 +151,15 @@ function createMechanism(state, onMove, onTurn) {
       };
     }
     // In the plane the outline is fixed to its body, in meters; only its frame moves.
-    const d = outlinePath(part);
-    for (const path of [main, inner]) if (path) path.setAttribute('d', d);
+    renew = next => {
+      part = next;
+      const d = outlinePath(part);
+      for (const path of [main, inner]) if (path) path.setAttribute('d', d);
+    };
+    renew(part);
     return {
       element: group,
+      renew,
       depth: nearness,
       move(r) {
         const [x, y, angle] = frames.isFixed(part.body) ? [0, 0, 0] : frames.placement(part.body, r);
@@ -143,7 +169,8 @@ function createMechanism(state, onMove, onTurn) {
     };
   }
 
-  function createMark(part, at, w) {
+  function createMark(first, at, w) {
+    let part = first;
     const shape = svg('g', { class: `mark mark-${part.look} ${colored(part.at.body)}`, 'data-body': part.at.body }, svg('title', {}, part.title), markElements(part.look), !frames.isPlane && part.on_ground && part.look !== 'center-of-mass' ? groundMark() : null);
     const label = part.label ? svg('text', { class: 'label' }, part.label) : null;
     layers.marks.append(shape);
@@ -152,6 +179,7 @@ function createMechanism(state, onMove, onTurn) {
     const axisMark = shape.querySelector('.axis-mark');
     return {
       element: shape,
+      renew(next) { part = next; },
       inMarks: true,
       depth: r => view.nearness(frames.place(part.at.body, part.at.point, r, w)),
       move(r) {
@@ -220,8 +248,20 @@ function createMechanism(state, onMove, onTurn) {
     fit();
     onTurn();
   }
-  new ResizeObserver(() => { if (drawing && root.clientWidth && root.clientWidth !== width) fit(); }).observe(root);
+  new ResizeObserver(([{ contentRect }]) => {
+    const newWidth = Math.round(contentRect.width);
+    if (!newWidth || newWidth === width) return;
+    width = newWidth;
+    if (drawing) fit();
+  }).observe(root);
   return { root, show, move, overlay: () => overlay, refresh: () => { if (drawing) { overlay.layOut(); overlay.move(row); } }, angles: () => view && view.angles };
+}
+
+// What the elements of a drawing are made of: two drawings of one shape differ in numbers only.
+function shapeOf(drawing) {
+  const part = p => [p.part, p.look, p.title, p.label, p.on_ground, p.closed, p.body, p.bodies, p.at && p.at.body, (p.points || []).length, (p.axis || []).length].join();
+  const arrow = a => [a.name, a.title, a.group, a.direction, a.columns || a.column].join();
+  return [drawing.view === null, drawing.bodies.map(b => `${b.name}|${b.paint}|${b.placements.length}`).join(), ...drawing.parts.map(part), ...drawing.arrows.map(arrow), ...drawing.paths.map(p => `${p.name}|${p.requested}`)].join('\n');
 }
 
 // An outline in the frame of its body, m.
