@@ -85,7 +85,9 @@ class Editor {
       }
     });
     this.paint(parts);
-    this.scrolled();
+    // The colours are scrolled with the text, by its event: to ask where it is would lay out the page.
+    this.slider.place();
+    this.completion.place();
   }
 
   // Shows texts with their classes. Those before and after what has changed stay.

@@ -2,6 +2,9 @@
 
 const HEIGHT = 400;
 const MARGIN = 34;
+// Where labels are beside their marks, and how large they are, px: width of a letter, and height.
+const LABEL_PLACES = [{ x: 10, y: -10 }, { x: -11, y: -10 }, { x: 10, y: 21 }, { x: -11, y: 21 }];
+const LABEL_SIZE = [9, 13];
 
 function createMechanism(state, onMove, onTurn) {
   const root = svg('svg', { class: 'mechanism', role: 'img', tabindex: 0, height: HEIGHT });
@@ -19,6 +22,7 @@ function createMechanism(state, onMove, onTurn) {
 
   function show(newRun) {
     run = newRun;
+    row = Math.min(row, Math.max(0, run.rows - 1));
     drawing = run.description.drawing;
     if (!drawing) {
       root.replaceChildren();
@@ -63,6 +67,8 @@ function createMechanism(state, onMove, onTurn) {
     [view.x, view.y] = [width / 2 - x, HEIGHT / 2 - y];
     overlay.layOut();
     if (!frames.isPlane) drawAxes();
+    const boxes = [];
+    for (const item of items) if (item.placeLabel) item.placeLabel(row, boxes);
     move(row);
   }
 
@@ -175,20 +181,33 @@ function createMechanism(state, onMove, onTurn) {
     const label = part.label ? svg('text', { class: 'label' }, part.label) : null;
     layers.marks.append(shape);
     if (label) layers.words.append(label);
+    // Beside the mark, where no other label is in the row of the first picture.
+    let place = part.look === 'ground-pin' ? LABEL_PLACES[1] : LABEL_PLACES[0];
     const axisLine = shape.querySelector('.axis-line');
     const axisMark = shape.querySelector('.axis-mark');
     return {
       element: shape,
       renew(next) { part = next; },
+      // Takes the first place that is free of the boxes of labels before it, and adds its own.
+      placeLabel(r, boxes) {
+        if (!label) return;
+        const [x, y] = at(part.at, r);
+        const long = part.label.length * LABEL_SIZE[0];
+        const boxOf = p => [p.x < 0 ? x + p.x - long : x + p.x, y + p.y - LABEL_SIZE[1], long, LABEL_SIZE[1]];
+        const isFree = p => !boxes.some(([bx, by, w, h]) => { const [ax, ay, v, g] = boxOf(p); return ax < bx + w && bx < ax + v && ay < by + h && by < ay + g; });
+        const own = part.look === 'ground-pin' ? [1, 0, 3, 2] : [0, 1, 2, 3];
+        place = own.map(k => LABEL_PLACES[k]).find(isFree) || LABEL_PLACES[own[0]];
+        boxes.push(boxOf(place));
+      },
       inMarks: true,
       depth: r => view.nearness(frames.place(part.at.body, part.at.point, r, w)),
       move(r) {
         const [x, y] = at(part.at, r);
         shape.setAttribute('transform', `translate(${x} ${y})`);
         if (label) {
-          label.setAttribute('x', x + (part.look === 'ground-pin' ? -11 : 10));
-          label.setAttribute('y', y - 10);
-          label.setAttribute('text-anchor', part.look === 'ground-pin' ? 'end' : 'start');
+          label.setAttribute('x', x + place.x);
+          label.setAttribute('y', y + place.y);
+          label.setAttribute('text-anchor', place.x < 0 ? 'end' : 'start');
         }
         if (axisMark && part.axis.length) {
           const [dx, dy] = view.direction(frames.direct(part.at.body, part.axis, r, w)).map(v => v / view.scale);
