@@ -38,7 +38,7 @@ function createPeaks(units, actions, later) {
     note.hidden = !note.textContent;
     if (run.shape === shape) {
       for (const own of rows) [own.column, own.isOld] = [run.columns[own.column.index], true];
-      seen.forEach(fill);
+      seen.forEach(now);
       // The others before they come to be seen.
       let k = 0;
       later.add('peaks', isLate => {
@@ -82,7 +82,7 @@ function createPeaks(units, actions, later) {
     return own;
   }
 
-  // Its numbers.
+  // Its numbers, but for the value of the row: that is written where the line is seen.
   function fill(own) {
     own.isOld = false;
     const { column } = own;
@@ -99,7 +99,6 @@ function createPeaks(units, actions, later) {
       if (peak && peak.error) value.title = `estimated error ${scientific(peak.error)} ${printedUnit(column.unit)}`;
       else if (value.title) value.removeAttribute('title');
     }
-    now(own);
   }
 
   // By unit the column with the largest value.
@@ -141,7 +140,7 @@ function createPeaks(units, actions, later) {
   }
 
   function now(own) {
-    if (own.isOld) return fill(own);
+    if (own.isOld) fill(own);
     const value = own.column.values[row];
     setText(own.value, format(value * units.of(own.column.unit).factor, 6));
     own.value.dataset.value = value;
