@@ -7,8 +7,16 @@ use super::{Matrix, Svd};
 
 /// Sweeps over all pairs; about ten are needed.
 const MAX_SWEEPS: usize = 60;
-/// Cosine of the angle between columns that are orthogonal.
-const ORTHOGONAL: f64 = 1e-15;
+/// Columns are orthogonal if the cosine of their angle is no larger than this times the square root of their length: roundings.
+const ORTHOGONAL: f64 = 8.0 * f64::EPSILON;
+
+/// What is zero but for rounding.
+struct Limits {
+    /// The cosine of the angle between two columns.
+    cosine: f64,
+    /// The square of the length of a column.
+    square: f64,
+}
 
 pub(super) fn svd(matrix: &Matrix) -> Option<Svd> {
     if matrix.rows < matrix.columns {
@@ -21,12 +29,17 @@ pub(super) fn svd(matrix: &Matrix) -> Option<Svd> {
     let mut columns: Vec<Vec<f64>> = (0..n).map(column).collect();
     let unit = |j: usize| (0..n).map(|i| f64::from(u8::from(i == j))).collect();
     let mut turns: Vec<Vec<f64>> = (0..n).map(unit).collect();
+    let squares: f64 = matrix.entries.iter().map(|x| x * x).sum();
+    let limits = Limits {
+        cosine: ORTHOGONAL * (matrix.rows as f64).sqrt(),
+        square: f64::EPSILON * f64::EPSILON * squares,
+    };
     let mut is_done = false;
     for _ in 0..MAX_SWEEPS {
         is_done = true;
         for q in 1..n {
             for p in 0..q {
-                is_done &= !make_orthogonal(&mut columns, &mut turns, p, q);
+                is_done &= !make_orthogonal(&mut columns, &mut turns, (p, q), &limits);
             }
         }
         if is_done {
@@ -57,9 +70,14 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Turns two columns in their plane until they are orthogonal; whether they were not.
-fn make_orthogonal(columns: &mut [Vec<f64>], turns: &mut [Vec<f64>], p: usize, q: usize) -> bool {
+fn make_orthogonal(
+    columns: &mut [Vec<f64>],
+    turns: &mut [Vec<f64>],
+    (p, q): (usize, usize),
+    limits: &Limits,
+) -> bool {
     let [pp, qq, pq] = [(p, p), (q, q), (p, q)].map(|(i, j)| dot(&columns[i], &columns[j]));
-    if pq.abs() <= ORTHOGONAL * (pp * qq).sqrt() {
+    if pq.abs() <= limits.cosine * (pp * qq).sqrt() || pp.min(qq) <= limits.square {
         return false;
     }
     let cotangent = (qq - pp) / (2.0 * pq);
