@@ -101,14 +101,57 @@ function compare(shown, expected, what) {
   });
 }
 
+// The scene with its first length that is not zero longer by a factor.
+const longer = (scene, part) => scene.replace(/(points = \{[^}]*\[)([1-9]\d*\.?\d*)/, (_, before, number) => `${before}${Number(number) * part}`);
+
 const SAVE_CSV = '.dwell-page button:text("all data")';
 
 await test('a changed length gives the numbers of the command line', async page => {
-  const scene = caseText('jansen').replace(/(points = \{[^}]*\[)(\d+\.?\d*)/, (_, before, number) => `${before}${Number(number) * 1.01}`);
+  const scene = longer(caseText('jansen'), 1.01);
   await write(page, scene);
   compare(parse((await saved(page, SAVE_CSV)).text), table('kinetostatics', scene), 'kinetostatics');
   await page.screenshot({ path: join(pictures, 'live-jansen.png') });
 });
+
+// All that the results show, as text.
+const shownResults = page => page.evaluate(() => {
+  const all = (selector, of) => [...document.querySelectorAll(selector)].map(of);
+  const attributes = element => [...element.attributes].map(a => `${a.name}=${a.value}`).sort().join(' ');
+  return {
+    lines: all('.peaks tbody tr', line => [...line.children].map(cell => cell.textContent + [...cell.querySelectorAll('path')].map(attributes) + cell.title).join('|')),
+    chips: all('.chip', chip => `${chip.title} ${[...chip.children].map(part => part.textContent)}`),
+    charts: all('.chart *', element => attributes(element) + (element.children.length ? '' : element.textContent)),
+    said: all('.chart', chart => chart.getAttribute('aria-label')),
+    legends: all('.legend li, .chart-head select', element => element.textContent),
+    mechanism: all('svg.mechanism *', element => attributes(element) + (element.children.length ? '' : element.textContent)),
+    choices: all('.choices label', label => label.textContent),
+    words: all('.words .card', card => card.textContent),
+  };
+});
+
+for (const [name, changed] of [['jansen', scene => longer(scene, 1.03)], ['spatial/rssr', scene => scene.replace(/mass = (\d+\.?\d*)/, (_, mass) => `mass = ${1.5 * mass}`)]]) {
+  await test(`a change of ${name} shows what is shown without the scene before it`, async page => {
+    const before = name.includes('/') ? readFileSync(join(top, 'validation', `${name}.toml`), 'utf8') : caseText(name);
+    const after = changed(before);
+    expect(after !== before, 'nothing is changed');
+    const first = page.url();
+    await write(page, after);
+    const expected = await shownResults(page);
+    await page.goto('about:blank');
+    await page.goto(first);
+    await settled(page);
+    await write(page, before);
+    await page.evaluate(() => document.querySelectorAll('.peaks tr, .chart *, svg.mechanism *').forEach(element => { element.isBefore = true; }));
+    await write(page, after);
+    const shown = await shownResults(page);
+    const kept = await page.evaluate(() => [...document.querySelectorAll('.peaks tr, .chart path.curve, svg.mechanism [data-body]')].every(element => element.isBefore));
+    expect(kept, 'elements are made anew');
+    for (const [part, texts] of Object.entries(expected)) {
+      same(shown[part].length, texts.length, part);
+      texts.forEach((text, k) => same(shown[part][k], text, `${part} ${k}`));
+    }
+  });
+}
 
 await test('what is asked for gives the numbers of the command line', async page => {
   const scene = caseText('single-dwell').replace('mass = 2.1', 'mass = 2.2');
@@ -332,7 +375,7 @@ await test('dwell view opens its scene', async page => {
 
 await test('times', async page => {
   const scene = caseText('jansen');
-  const number = /(points = \{[^}]*\[)(\d+\.?\d*)/.exec(scene);
+  const number = /(points = \{[^}]*\[)([1-9]\d*\.?\d*)/.exec(scene);
   const times = [];
   for (let k = 0; k < 40; k++) {
     await write(page, scene.replace(number[0], `${number[1]}${Number(number[2]) * (1 + 1e-4 * k)}`));

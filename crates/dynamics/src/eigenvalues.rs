@@ -6,7 +6,7 @@
 //! too, where first derivatives do not exist.
 
 use crate::error::{DynamicsError, Result};
-use faer::Mat;
+use dwell_numerics::dense::Matrix;
 
 /// Numbers of changed matrices whose eigenvalues are compared.
 const CHANGES: usize = 12;
@@ -28,10 +28,9 @@ pub(crate) fn eigenvalues(matrix: &[f64], n: usize) -> Result<Vec<[f64; 2]>> {
 }
 
 fn of_balanced(matrix: &[f64], n: usize) -> Result<Vec<[f64; 2]>> {
-    let matrix = Mat::from_fn(n, n, |i, j| matrix[i * n + j]);
+    let matrix = Matrix::from_fn(n, n, |i, j| matrix[i * n + j]);
     let found = matrix.eigenvalues();
-    let found = found.map_err(|_| DynamicsError::NoEigenvalues)?;
-    let mut values: Vec<[f64; 2]> = found.iter().map(|z| [z.re, z.im]).collect();
+    let mut values = found.ok_or(DynamicsError::NoEigenvalues)?;
     values.sort_by(|x, y| y[0].total_cmp(&x[0]).then(y[1].total_cmp(&x[1])));
     Ok(values)
 }

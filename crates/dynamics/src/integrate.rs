@@ -318,15 +318,26 @@ fn integrate_smooth(
     };
     let mut termination = match options.method {
         Method::Bdf => step_loop.run(&mut problem.bdf::<Solver>().map_err(solver)?, observer),
+        #[cfg(not(target_family = "wasm"))]
         Method::Esdirk34 => {
             let state = state_of(Tableau::esdirk34()).map_err(solver)?;
             let by = problem.esdirk34_solver::<Solver>(state);
             step_loop.run(&mut by.map_err(solver)?, observer)
         }
+        #[cfg(not(target_family = "wasm"))]
         Method::TrBdf2 => {
             let state = state_of(Tableau::tr_bdf2()).map_err(solver)?;
             let by = problem.tr_bdf2_solver::<Solver>(state);
             step_loop.run(&mut by.map_err(solver)?, observer)
+        }
+        // The live page takes the default of the command line and the method it is compared with: others would make its
+        // module larger.
+        #[cfg(target_family = "wasm")]
+        Method::Esdirk34 | Method::TrBdf2 => {
+            return Err(DynamicsError::Solver {
+                t: start.t,
+                reason: format!("{} is not part of this program", options.method.name()),
+            });
         }
         // The eighth order is done above.
         Method::Tsit45 | Method::Dop853 => {

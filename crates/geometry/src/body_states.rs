@@ -245,6 +245,7 @@ impl<T: Scalar> BodyStates<T> {
     }
 
     /// A point of a body, given in its frame, m.
+    #[inline]
     pub fn point(&self, body: BodyId, point: Vec2) -> PointState<T> {
         let state = self.body(body);
         let moment_arm = state.moment_arm(point);

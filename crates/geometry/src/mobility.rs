@@ -10,8 +10,7 @@ use crate::constraint_rows::ConstraintRows;
 use crate::mechanism::{BodyId, Joint, JointKind, Mechanism};
 use crate::plan::AssemblyConfiguration;
 use crate::plane::{Vec2, vec2};
-use faer::linalg::solvers::Svd;
-use faer::{Mat, MatRef};
+use dwell_numerics::dense::{Matrix, Svd};
 
 /// Degrees of freedom and redundant constraints of a mechanism.
 #[derive(Debug, Clone, PartialEq)]
@@ -147,11 +146,11 @@ impl DenseConstraints {
         if column % 3 == 2 { 1.0 } else { self.size }
     }
 
-    fn rank(&self, svd: &Svd<f64>) -> usize {
-        let values = svd.S().column_vector();
-        let largest = if values.nrows() > 0 { values[0] } else { 0.0 };
-        (0..values.nrows())
-            .filter(|&k| values[k] > self.rank_tolerance * largest)
+    fn rank(&self, svd: &Svd) -> usize {
+        let largest = svd.values.first().copied().unwrap_or(0.0);
+        let values = svd.values.iter();
+        values
+            .filter(|&&s| s > self.rank_tolerance * largest)
             .count()
     }
 
@@ -232,19 +231,17 @@ impl DenseConstraints {
         let mut gap = self.largest_residual(x, count);
         for _ in 0..MAX_STEPS {
             let (jacobian, residual) = (self.jacobian(x), self.residual(x));
-            let Ok(svd) = jacobian.subrows(0, count).svd() else {
+            let Some(Svd { u, values, v }) = jacobian.first_rows(count).svd() else {
                 return f64::INFINITY;
             };
-            let (u, v) = (svd.U(), svd.V());
-            let values = svd.S().column_vector();
             let mut step = vec![0.0; x.len()];
-            for k in 0..values.nrows() {
-                if values[k] <= RANK_TOLERANCE * values[0] {
+            for (k, &value) in values.iter().enumerate() {
+                if value <= RANK_TOLERANCE * values[0] {
                     break;
                 }
                 let along: f64 = (0..count).map(|i| u[(i, k)] * residual[i]).sum();
                 for (j, step) in step.iter_mut().enumerate() {
-                    *step -= v[(j, k)] * along / values[k];
+                    *step -= v[(j, k)] * along / value;
                 }
             }
             // At most about half a radian or half the size in a step.
@@ -272,10 +269,10 @@ impl DenseConstraints {
     /// Another configuration that closes the joints, a step along their null space.
     fn other_configuration(&self, x: &[f64]) -> Option<Vec<f64>> {
         let jacobian = self.jacobian(x);
-        let svd = jacobian.subrows(0, self.joint_rows).svd().ok()?;
-        let (rank, v) = (self.rank(&svd), svd.V());
+        let svd = jacobian.first_rows(self.joint_rows).svd()?;
+        let (rank, v) = (self.rank(&svd), svd.v);
         let mut other = x.to_vec();
-        for k in rank..v.ncols() {
+        for k in rank..v.columns() {
             for (j, value) in other.iter_mut().enumerate() {
                 *value += 0.2 * self.unit(j) * v[(j, k)] / (1.0 + 0.3 * k as f64);
             }
@@ -297,23 +294,23 @@ impl DenseConstraints {
             size: self.size,
             gap: None,
         };
-        if let Ok(svd) = all.subrows(0, self.joint_rows).svd() {
+        if let Some(svd) = all.first_rows(self.joint_rows).svd() {
             found.rank = self.rank(&svd);
         }
-        if let Ok(svd) = all.svd() {
+        if let Some(svd) = all.svd() {
             let rank = self.rank(&svd);
             found.redundant_count = self.rows.len() - rank;
-            let part = |m: MatRef<'_, f64>, i: usize| -> f64 {
-                (rank..m.ncols()).map(|k| m[(i, k)] * m[(i, k)]).sum()
+            let part = |m: &Matrix, i: usize| -> f64 {
+                (rank..m.columns()).map(|k| m[(i, k)] * m[(i, k)]).sum()
             };
             for (k, determinate) in found.determinate.iter_mut().enumerate() {
-                *determinate = part(svd.U(), k) <= NULL_SPACE_PART * NULL_SPACE_PART;
+                *determinate = part(&svd.u, k) <= NULL_SPACE_PART * NULL_SPACE_PART;
             }
             let bodies = (0..mechanism.bodies.len()).map(BodyId);
             let moves = |b: &BodyId| {
                 let column = self.rows.column(*b);
                 column.is_some_and(|c| {
-                    (c..c + 3).any(|c| part(svd.V(), c) > NULL_SPACE_PART * NULL_SPACE_PART)
+                    (c..c + 3).any(|c| part(&svd.v, c) > NULL_SPACE_PART * NULL_SPACE_PART)
                 })
             };
             found.free_bodies = bodies.filter(moves).collect();
@@ -322,12 +319,12 @@ impl DenseConstraints {
     }
 
     /// The rows' derivatives, lengths over the size.
-    fn jacobian(&self, x: &[f64]) -> Mat<f64> {
+    fn jacobian(&self, x: &[f64]) -> Matrix {
         let (m, n) = (self.rows.len(), self.rows.columns());
         let mut flat = vec![0.0; m * n];
         self.rows.jacobian(x, &mut flat);
         let angular = self.rows.angular();
-        Mat::from_fn(m, n, |i, j| {
+        Matrix::from_fn(m, n, |i, j| {
             let row = if angular[i] { 1.0 } else { 1.0 / self.size };
             flat[i * n + j] * row * self.unit(j)
         })

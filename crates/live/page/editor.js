@@ -5,6 +5,8 @@ class Editor {
   constructor(root, changed) {
     this.area = root.querySelector('textarea');
     this.colours = root.querySelector('pre');
+    // A last line that is empty has its height, too.
+    this.colours.append('\n');
     this.hint = root.querySelector('[data-part=hint]');
     this.schema = null;
     this.messages = [];
@@ -64,27 +66,47 @@ class Editor {
   get inSpace() { return /=\s*\[\s*[-+\d.e_]+\s*,\s*[-+\d.e_]+\s*,\s*[-+\d.e_]+\s*\]/.test(this.text.replace(/#.*$/gm, '')); }
 
   show(messages) {
+    const isPlain = (all) => all.every((message) => !message.labels.length);
+    const isDrawn = isPlain(this.messages) && isPlain(messages);
     this.messages = messages;
-    this.draw();
+    if (!isDrawn) this.draw();
     this.showHint();
   }
 
   draw() {
     const marks = this.messages.flatMap((message) => message.labels.map((label) => ({ ...label, severity: message.severity })));
-    const parts = document.createDocumentFragment();
-    follow(tokens(this.text), (token, role) => {
+    const { text } = this;
+    const parts = [];
+    follow(tokens(text), (token, role) => {
       for (const [from, to] of cut(token, marks)) {
-        const span = document.createElement('span');
-        span.textContent = this.text.slice(from, to);
         const hit = marks.filter((mark) => mark.from < to && Math.max(mark.to, mark.from + 1) > from);
         const severity = hit.some((mark) => mark.severity === 'error') ? ' error' : hit.length ? ' warning' : '';
-        span.className = `${role || token.kind} ${role === 'value' ? token.kind : ''}${severity}`;
-        parts.append(span);
+        parts.push([text.slice(from, to), `${role || token.kind} ${role === 'value' ? token.kind : ''}${severity}`]);
       }
     });
-    parts.append('\n');
-    this.colours.replaceChildren(parts);
-    this.scrolled();
+    this.paint(parts);
+    // The colours are scrolled with the text, by its event: to ask where it is would lay out the page.
+    this.slider.place();
+    this.completion.place();
+  }
+
+  // Shows texts with their classes. Those before and after what has changed stay.
+  paint(parts) {
+    const spans = this.colours.children;
+    const isSame = (span, [text, name]) => span.firstChild.nodeValue === text && span.className === name;
+    let first = 0;
+    while (first < spans.length && first < parts.length && isSame(spans[first], parts[first])) first += 1;
+    let [end, last] = [spans.length, parts.length];
+    while (end > first && last > first && isSame(spans[end - 1], parts[last - 1])) [end, last] = [end - 1, last - 1];
+    const old = Array.from({ length: end - first }, (_, k) => spans[first + k]);
+    const after = spans[end] || this.colours.lastChild;
+    for (const span of old) span.remove();
+    for (const [text, name] of parts.slice(first, last)) {
+      const span = document.createElement('span');
+      span.textContent = text;
+      span.className = name;
+      this.colours.insertBefore(span, after);
+    }
   }
 
   scrolled() {

@@ -124,6 +124,7 @@ class Live {
     if (!page) return this.say('not computed: see the messages beside');
     const begun = performance.now();
     this.page.show(page, numbers);
+    this.work(this.page.settled());
     document.title = `${page.title} – Dwell`;
     const drawn = performance.now() - begun;
     this.say(`computed in ${ms.toFixed(1)} ms, drawn in ${drawn.toFixed(1)} ms`);

@@ -3,7 +3,7 @@
 use crate::diagnostics::scene_error;
 use dwell_export::{Precision, Request, c_files as c_files_of};
 use dwell_scene::{AnyScene, SceneError};
-use dwell_study::{ExportRequest, compute_export};
+use dwell_study::{ExportRequest, compute_export_in_cells};
 
 /// The accuracy that `dwell export` takes where none is given.
 const ACCURACY: f64 = 1e-9;
@@ -23,6 +23,6 @@ pub(crate) fn c_files(scene: &AnyScene) -> Result<Vec<(String, String)>, SceneEr
         interval: None,
         exact: false,
     };
-    let export = compute_export(scene, &asked).map_err(scene_error)?;
+    let export = compute_export_in_cells(scene, &asked).map_err(scene_error)?;
     Ok(c_files_of(&export).into())
 }

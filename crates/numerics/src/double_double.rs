@@ -42,10 +42,32 @@ fn quick_sum(a: f64, b: f64) -> (f64, f64) {
 }
 
 /// a × b and its rounding error.
+#[cfg(not(target_family = "wasm"))]
 #[inline]
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     (product, a.mul_add(b, -product))
+}
+
+#[cfg(target_family = "wasm")]
+use split_product as two_product;
+
+/// The same without a fused operation, which WebAssembly does not have, by products of halves (Dekker 1971): exact below 2⁹⁹⁶ and
+/// where no product of halves underflows.
+#[cfg(any(target_family = "wasm", test))]
+#[inline]
+fn split_product(a: f64, b: f64) -> (f64, f64) {
+    /// 2²⁷ + 1 splits 53 digits into halves.
+    const SPLITTER: f64 = 134_217_729.0;
+    let split = |x: f64| {
+        let scaled = SPLITTER * x;
+        let high = scaled - (scaled - x);
+        (high, x - high)
+    };
+    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
+    let product = a * b;
+    let rest = a_high * b_high - product + a_high * b_low + a_low * b_high;
+    (product, rest + a_low * b_low)
 }
 
 impl DoubleDouble {
@@ -295,6 +317,16 @@ mod tests {
             0.03,
             1.6653345369377347e-18,
         );
+    }
+
+    #[test]
+    fn products_by_halves_are_those_of_the_fused_operation() {
+        let mut x = 0.37_f64;
+        for k in -300..300 {
+            x = (x * 997.0 + 0.123).fract();
+            let (a, b) = ((x - 0.5) * f64::from(k).exp2(), (0.7 - x * x) * 3.0);
+            assert_eq!(split_product(a, b), two_product(a, b), "{a} × {b}");
+        }
     }
 
     #[test]

@@ -18,6 +18,7 @@
 //! assert!(rounding.value().abs() < 1e-15);
 //! ```
 
+pub mod dense;
 pub mod double_double;
 pub mod dual;
 pub mod factor_outcome;
@@ -25,6 +26,7 @@ mod float;
 pub mod fourier;
 pub mod lanes;
 pub mod lu;
+#[cfg(not(target_family = "wasm"))]
 mod lu_faer;
 pub mod minimum;
 pub mod panels;

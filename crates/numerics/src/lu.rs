@@ -1,17 +1,39 @@
 //! LU factors with partial pivoting for a few unknowns, in any number type.
 
 use crate::factor_outcome::FactorOutcome;
+#[cfg(not(target_family = "wasm"))]
 use crate::lu_faer;
 use crate::scalar::{Scalar, uniform};
 
 /// Whether plain numbers of so many unknowns are factored by faer, which allocates its scratch memory.
+#[cfg(not(target_family = "wasm"))]
 #[inline]
 pub fn uses_faer(unknowns: usize) -> bool {
     unknowns >= lu_faer::FAER_MIN_UNKNOWNS
 }
 
+/// Whether plain numbers of so many unknowns are factored by faer: in WebAssembly never.
+#[cfg(target_family = "wasm")]
+#[inline]
+pub fn uses_faer(_unknowns: usize) -> bool {
+    false
+}
+
+/// Whether loops over few unknowns are unrolled: in WebAssembly, where size counts, only those of plain numbers.
+const fn unrolls<T: Scalar>() -> bool {
+    let is_plain = !T::HAS_DERIVATIVES && T::EPSILON == f64::EPSILON && T::LANES == 1;
+    is_plain || !cfg!(target_family = "wasm")
+}
+
+/// The number of unknowns where loops are unrolled, else none that is.
+#[inline(always)]
+pub(crate) fn unrolled<T: Scalar>(unknowns: usize) -> usize {
+    if unrolls::<T>() { unknowns } else { usize::MAX }
+}
+
 /// Factors the row-major n×n matrix `a` in place, with the row exchanges in `pivots`.
 pub fn factor<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> FactorOutcome {
+    #[cfg(not(target_family = "wasm"))]
     if uses_faer(pivots.len())
         && let Some(plain) = T::as_f64_slice_mut(a)
     {
@@ -23,12 +45,12 @@ pub fn factor<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> FactorOutcome {
 /// The same by elimination written out.
 pub(crate) fn eliminate<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> FactorOutcome {
     // Of few unknowns the loops are unrolled.
-    match pivots.len() {
+    match unrolled::<T>(pivots.len()) {
         2 => eliminate_inline(a, pivots, 2),
         3 => eliminate_inline(a, pivots, 3),
         4 => eliminate_inline(a, pivots, 4),
         5 => eliminate_inline(a, pivots, 5),
-        n => eliminate_inline(a, pivots, n),
+        _ => eliminate_inline(a, pivots, pivots.len()),
     }
 }
 
@@ -90,12 +112,12 @@ fn eliminate_inline<T: Scalar>(a: &mut [T], pivots: &mut [usize], n: usize) -> F
 
 /// Solves A x = b in place.
 pub fn solve<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
-    match pivots.len() {
+    match unrolled::<T>(pivots.len()) {
         2 => solve_inline(a, pivots, b, 2),
         3 => solve_inline(a, pivots, b, 3),
         4 => solve_inline(a, pivots, b, 4),
         5 => solve_inline(a, pivots, b, 5),
-        n => solve_inline(a, pivots, b, n),
+        _ => solve_inline(a, pivots, b, pivots.len()),
     }
 }
 
@@ -142,12 +164,12 @@ pub(crate) fn solve_upper_transposed<T: Scalar>(a: &[T], n: usize, b: &mut [T]) 
 
 /// Solves Aᵀ x = b in place.
 pub fn solve_transposed<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
-    match pivots.len() {
+    match unrolled::<T>(pivots.len()) {
         2 => solve_transposed_inline(a, pivots, b, 2),
         3 => solve_transposed_inline(a, pivots, b, 3),
         4 => solve_transposed_inline(a, pivots, b, 4),
         5 => solve_transposed_inline(a, pivots, b, 5),
-        n => solve_transposed_inline(a, pivots, b, n),
+        _ => solve_transposed_inline(a, pivots, b, pivots.len()),
     }
 }
 

@@ -9,11 +9,11 @@ use crate::scalar::Scalar;
 /// one, and their factors in `factors` (n entries): each reflection is 1 − factor v vᵀ.
 pub fn factor<T: Scalar>(a: &mut [T], factors: &mut [T], m: usize) -> FactorOutcome {
     // Of few unknowns the loops are unrolled.
-    match (m, factors.len()) {
+    match (m, lu::unrolled::<T>(factors.len())) {
         (4, 3) => factor_inline(a, factors, 4, 3),
         (5, 4) => factor_inline(a, factors, 5, 4),
         (6, 5) => factor_inline(a, factors, 6, 5),
-        (m, n) => factor_inline(a, factors, m, n),
+        (m, _) => factor_inline(a, factors, m, factors.len()),
     }
 }
 
@@ -89,11 +89,11 @@ fn apply_reflector<T: Scalar>(a: &[T], [m, n]: [usize; 2], k: usize, factor: T, 
 
 /// The least-squares solution of A x = b, in the first entries of `b` (m entries).
 pub fn solve<T: Scalar>(a: &[T], factors: &[T], m: usize, b: &mut [T]) {
-    match (m, factors.len()) {
+    match (m, lu::unrolled::<T>(factors.len())) {
         (4, 3) => solve_inline(a, factors, [4, 3], b),
         (5, 4) => solve_inline(a, factors, [5, 4], b),
         (6, 5) => solve_inline(a, factors, [6, 5], b),
-        (m, n) => solve_inline(a, factors, [m, n], b),
+        (m, _) => solve_inline(a, factors, [m, factors.len()], b),
     }
 }
 
@@ -108,11 +108,11 @@ fn solve_inline<T: Scalar>(a: &[T], factors: &[T], [m, n]: [usize; 2], b: &mut [
 
 /// The smallest solution of Aᵀ x = b: `b` holds n entries of b, and then m of x.
 pub fn solve_transposed<T: Scalar>(a: &[T], factors: &[T], m: usize, b: &mut [T]) {
-    match (m, factors.len()) {
+    match (m, lu::unrolled::<T>(factors.len())) {
         (4, 3) => solve_transposed_inline(a, factors, [4, 3], b),
         (5, 4) => solve_transposed_inline(a, factors, [5, 4], b),
         (6, 5) => solve_transposed_inline(a, factors, [6, 5], b),
-        (m, n) => solve_transposed_inline(a, factors, [m, n], b),
+        (m, _) => solve_transposed_inline(a, factors, [m, factors.len()], b),
     }
 }
 

@@ -90,25 +90,37 @@ impl Page {
     }
 }
 
+/// An odd number whose bits are as good as random (of FxHash).
+const MIX: u64 = 0x517c_c1b7_2722_0a95;
+
 /// The columns that are stored, each once.
 #[derive(Default)]
 struct Block {
     rows: usize,
     numbers: Vec<f64>,
-    /// By their bits: the number of the column.
-    known: HashMap<Vec<u64>, usize>,
+    /// How many columns are stored, and their numbers by a fingerprint of their bits.
+    count: usize,
+    known: HashMap<u64, Vec<usize>>,
 }
 
 impl Block {
     /// The number of a column, which is stored unless an equal one is.
     fn add(&mut self, values: &[f64]) -> usize {
-        let bits: Vec<u64> = values.iter().map(|v| v.to_bits()).collect();
-        let next = self.known.len();
-        let (numbers, known) = (&mut self.numbers, &mut self.known);
-        *known.entry(bits).or_insert_with(|| {
-            numbers.extend_from_slice(values);
-            next
-        })
+        let mix = |print: u64, v: &f64| (print.rotate_left(5) ^ v.to_bits()).wrapping_mul(MIX);
+        let alike = self.known.entry(values.iter().fold(0, mix)).or_default();
+        let numbers = &self.numbers;
+        let is_equal = |k: &&usize| {
+            let stored = &numbers[**k * values.len()..][..values.len()];
+            let mut pairs = stored.iter().zip(values);
+            pairs.all(|(a, b)| a.to_bits() == b.to_bits())
+        };
+        if let Some(&known) = alike.iter().find(is_equal) {
+            return known;
+        }
+        alike.push(self.count);
+        self.numbers.extend_from_slice(values);
+        self.count += 1;
+        self.count - 1
     }
 
     fn column<'a>(&mut self, of: &'a PageColumn) -> Result<EncodedColumn<'a>, PageError> {

@@ -67,7 +67,9 @@ pub use equilibria::compute::compute_equilibria;
 pub use explain::{StudyError, SweepError};
 #[cfg(feature = "fmu")]
 pub use export::fmu_archive;
-pub use export::{ExportRequest, compute_export, compute_export_of_several_freedoms};
+pub use export::{
+    ExportRequest, compute_export, compute_export_in_cells, compute_export_of_several_freedoms,
+};
 pub use exported_runs::{ColumnNames, ExportedTable, SampleInterpolation};
 pub use free_motion::compute::{MotionSolver, compute_free_motion, compute_period};
 pub use linearise::compute::{OperatingPoint, compute_linearisation};

@@ -8,7 +8,7 @@ use dwell_kinetostatics::{
     MachineModel as _, Magnitude, ReducedModel as _, TableDomain, TableQuantity, UnitLoadResponses,
 };
 use dwell_scene::SpaceScene;
-use dwell_study::reduce::compute::ReducedScene as _;
+use dwell_study::reduce::compute::{ReducedScene as _, TabulatedScene as _};
 use dwell_study::{
     CycleSearch, OperatingPoint, PreparedSpaceScene, SolverSettings, compute_cycle,
     compute_equilibria, compute_linearisation,

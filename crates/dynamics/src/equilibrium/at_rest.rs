@@ -8,8 +8,8 @@ use crate::error::{DynamicsError, Result};
 use crate::machine::{Machine, MachineWorkspace, MovingModel};
 use crate::machine_ode::MachineOde;
 use crate::ode::OdeSystem;
+use dwell_numerics::dense::Matrix;
 use dwell_numerics::{DoubleDouble, Scalar, lu};
-use faer::Mat;
 
 /// Steps of Newton's method, and halvings of one.
 const MAX_NEWTON_STEPS: usize = 100;
@@ -51,9 +51,9 @@ pub(super) struct AtRest<'m, M: MovingModel> {
 
 /// The Jacobian of some rates by some states as U Σ Vᵀ, scaled by rows and columns.
 pub(super) struct Factored {
-    u: Mat<f64>,
+    u: Matrix,
     sizes: Vec<f64>,
-    v: Mat<f64>,
+    v: Matrix,
     rows: Vec<f64>,
     columns: Vec<f64>,
 }
@@ -385,15 +385,14 @@ impl<'m, M: MovingModel> AtRest<'m, M> {
                 of_coordinate(j).unwrap_or_else(|| 1.0 / largest(&mut entries))
             })
             .collect();
-        let matrix = Mat::from_fn(rows.len(), columns.len(), |i, j| {
+        let matrix = Matrix::from_fn(rows.len(), columns.len(), |i, j| {
             self.entry(rows[i], columns[j]) * row_scales[i] * column_scales[j]
         });
-        let found = matrix.svd().map_err(|_| DynamicsError::NoEigenvalues)?;
-        let sizes = found.S().column_vector();
+        let found = matrix.svd().ok_or(DynamicsError::NoEigenvalues)?;
         Ok(Factored {
-            u: found.U().to_owned(),
-            sizes: (0..columns.len()).map(|k| sizes[k]).collect(),
-            v: found.V().to_owned(),
+            u: found.u,
+            sizes: (0..columns.len()).map(|k| found.values[k]).collect(),
+            v: found.v,
             rows: row_scales,
             columns: column_scales,
         })

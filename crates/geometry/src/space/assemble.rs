@@ -13,7 +13,7 @@ use super::vector::vec3;
 use crate::error::{AssemblyError, StructureError};
 use crate::mechanism::{BodyId, JointId};
 use crate::plan::range::Range;
-use faer::Mat;
+use dwell_numerics::dense::{Matrix, Svd};
 
 /// Steps at most.
 const MAX_STEPS: usize = 300;
@@ -66,9 +66,9 @@ impl Plan {
     }
 
     /// The whole group's Jacobian, scaled.
-    pub(super) fn dense(&self, group: &Group, pose: &Pose) -> Mat<f64> {
+    pub(super) fn dense(&self, group: &Group, pose: &Pose) -> Matrix {
         let n = group.unknowns.len();
-        let mut matrix = Mat::zeros(group.rows.len(), n);
+        let mut matrix = Matrix::zeros(group.rows.len(), n);
         for inner in &group.inner {
             matrix[(inner.at / n, inner.at % n)] = pose.entries[inner.entry] * inner.scale;
         }
@@ -190,13 +190,12 @@ impl Plan {
     /// One damped step, δ = V σ/(σ² + µ) Uᵀ (−φ).
     fn damped_step(&self, damping: f64, pose: &mut Pose) {
         let group = &self.groups[0];
-        let Ok(svd) = self.dense(group, pose).svd() else {
+        let Some(Svd { u, values, v }) = self.dense(group, pose).svd() else {
             return;
         };
-        let (u, s, v) = (svd.U(), svd.S().column_vector(), svd.V());
-        let largest = s.iter().fold(0.0_f64, |a, b| a.max(*b));
+        let largest = values.iter().fold(0.0_f64, |a, b| a.max(*b));
         let mut step = vec![0.0; group.unknowns.len()];
-        for (k, &sigma) in s
+        for (k, &sigma) in values
             .iter()
             .enumerate()
             .filter(|(_, s)| **s > RANK_TOLERANCE * largest)

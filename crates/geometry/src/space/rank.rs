@@ -8,7 +8,7 @@ use super::plan::{Plan, Pose};
 use super::vector::Vec3;
 use crate::error::{AssemblyError, StructureError};
 use crate::mechanism::{ActuatorId, BodyId};
-use faer::linalg::solvers::Svd;
+use dwell_numerics::dense::Svd;
 
 /// A twist or a force is none below this.
 const PART: f64 = 1e-6;
@@ -53,8 +53,8 @@ fn hangs_between_balls(mechanism: &Mechanism, body: usize) -> bool {
 }
 
 /// The rank by singular values.
-pub(super) fn rank_of(svd: &Svd<f64>) -> usize {
-    let values = svd.S().column_vector();
+pub(super) fn rank_of(svd: &Svd) -> usize {
+    let values = &svd.values;
     let largest = values.iter().fold(0.0_f64, |a, b| a.max(*b));
     values
         .iter()
@@ -72,7 +72,7 @@ impl Plan {
         let group = &self.groups[0];
         let (rows, n) = (group.rows.len(), group.unknowns.len());
         let svd = if rows * n > 0 {
-            self.dense(group, &pose).svd().ok()
+            self.dense(group, &pose).svd()
         } else {
             None
         };
@@ -113,7 +113,7 @@ impl Plan {
         let everything = self.group((0..freedoms).collect(), self.all_rows());
         let empty = freedoms * everything.rows.len() == 0;
         let svd = (!empty)
-            .then(|| self.dense(&everything, pose).svd().ok())
+            .then(|| self.dense(&everything, pose).svd())
             .flatten();
         let left = freedoms - svd.as_ref().map_or(0, rank_of);
         // The rows that hold idle bodies are among all rows.
@@ -155,7 +155,7 @@ impl Plan {
     fn idle_bodies(
         &self,
         mechanism: &Mechanism,
-        svd: Option<&Svd<f64>>,
+        svd: Option<&Svd>,
         rank: usize,
         pose: &mut Pose,
     ) -> Result<Vec<IdleBody>, AssemblyError> {
@@ -168,7 +168,7 @@ impl Plan {
             pose.rates.fill(0.0);
             for (j, (freedom, unit)) in group.unknowns.iter().zip(&group.column_scales).enumerate()
             {
-                pose.rates[*freedom] = svd.map_or(f64::from(j == k), |svd| svd.V()[(j, k)]) * unit;
+                pose.rates[*freedom] = svd.map_or(f64::from(j == k), |svd| svd.v[(j, k)]) * unit;
             }
             self.fill_states(pose);
             for body in 0..mechanism.bodies.len() {
@@ -267,13 +267,13 @@ impl Plan {
     /// determined.
     pub fn self_stresses(&self, pose: &Pose) -> Vec<Vec<f64>> {
         let group = self.group(self.unknowns(), self.all_rows());
-        let Ok(svd) = self.dense(&group, pose).svd() else {
+        let Some(svd) = self.dense(&group, pose).svd() else {
             return Vec::new();
         };
         let rank = rank_of(&svd);
         let of = |k: usize| {
             (0..group.rows.len())
-                .map(|i| svd.U()[(i, k)] * group.row_scales[i])
+                .map(|i| svd.u[(i, k)] * group.row_scales[i])
                 .collect()
         };
         (rank..group.rows.len()).map(of).collect()

@@ -2,14 +2,25 @@
 
 const ARROW_PART = 0.24;
 
-function createOverlay(drawing, run, frames, view, layers, state) {
-  const arrows = drawing.arrows.map((arrow, index) => ({ ...arrow, index, size: sizeOf(arrow) }));
-  const largest = {};
-  for (const arrow of arrows) largest[arrow.group] = Math.max(largest[arrow.group] || 0, arrow.size);
+function createOverlay(first, layers, state) {
+  let drawing = first;
+  let run = null;
+  let frames = null;
+  let view = null;
+  let arrows = [];
+  let largest = {};
   const w = [0, 0, 0];
   const u = [0, 0, 0];
-  if (!state.arrows) state.arrows = new Set(arrows.filter(a => a.size > 0).map(a => a.name));
-  if (!state.paths) state.paths = new Set(drawing.paths.filter(p => p.requested).map(p => p.name));
+
+  // Another drawing of the same shape.
+  function show(...next) {
+    [drawing, run, frames, view] = next;
+    arrows = drawing.arrows.map((arrow, index) => ({ ...arrow, index, size: sizeOf(arrow) }));
+    largest = {};
+    for (const arrow of arrows) largest[arrow.group] = Math.max(largest[arrow.group] || 0, arrow.size);
+    if (!state.arrows) state.arrows = new Set(arrows.filter(a => a.size > 0).map(a => a.name));
+    if (!state.paths) state.paths = new Set(drawing.paths.filter(p => p.requested).map(p => p.name));
+  }
 
   // The largest force of an arrow in the rows.
   function sizeOf(arrow) {
@@ -23,7 +34,7 @@ function createOverlay(drawing, run, frames, view, layers, state) {
     return Math.sqrt(most);
   }
 
-  const elements = arrows.map(arrow => {
+  const elements = drawing.arrows.map(arrow => {
     const path = svg('path', { class: `force force-${arrow.group === 'Loads' ? 'load' : 'reaction'}` });
     const title = svg('title', {}, arrow.title);
     const group = svg('g', { 'data-arrow': arrow.name }, title, path);
@@ -64,7 +75,7 @@ function createOverlay(drawing, run, frames, view, layers, state) {
       const stride = Math.max(1, Math.floor(run.rows / 720));
       for (let row = 0; row < run.rows; row += stride) {
         const [x, y] = view.screen(frames.place(path.at.body, path.at.point, row, w));
-        d += `${d ? 'L' : 'M'}${x.toFixed(1)} ${y.toFixed(1)}`;
+        d += `${d ? 'L' : 'M'}${tenth(x)} ${tenth(y)}`;
       }
       paths[k].setAttribute('d', d);
     });
@@ -85,7 +96,7 @@ function createOverlay(drawing, run, frames, view, layers, state) {
     });
   }
 
-  return { arrows, largest, layOut, move, paths: drawing.paths };
+  return { show, layOut, move, arrows: () => arrows, paths: () => drawing.paths };
 }
 
 // An arrow from a point; of one too short to be seen nothing.

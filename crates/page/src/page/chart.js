@@ -20,14 +20,27 @@ function createChart(number, state, units, actions) {
   let width = 0;
   let row = 0;
   let scales = null;
-  let cursor = null;
+  let shape = null;
   let dots = [];
   let readouts = [];
+  const frame = { x: svg('g', { class: 'axes', 'aria-hidden': 'true' }), y: svg('g', { class: 'axes', 'aria-hidden': 'true' }) };
+  const renewed = { x: createRenewed(frame.x), y: createRenewed(frame.y) };
+  const clip = svg('svg', { y: 0, height: CHART_HEIGHT - PAD.bottom + 2 });
+  const peaks = svg('g', { 'aria-hidden': 'true' });
+  const cursor = svg('path', { class: 'cursor', d: `M0 ${PAD.top}V${CHART_HEIGHT - PAD.bottom}` });
+  const dotted = svg('g', {});
+  picture.append(frame.x, frame.y, clip, peaks, cursor, dotted);
 
   function show(newRun) {
     run = newRun;
-    chooser.replaceChildren(...[...run.groups.values()].map(g => el('option', { value: g.key }, `${g.title}${g.unit ? ` (${units.of(g.unit).name})` : ''}`)));
     const own = state.charts[number];
+    // Of a run that differs in numbers only, the same curves are drawn again.
+    if (group && shape === shapeNow()) {
+      group = run.groups.get(group.key);
+      columns = columns.map(column => run.columns[column.index]);
+      return draw();
+    }
+    chooser.replaceChildren(...[...run.groups.values()].map(g => el('option', { value: g.key }, `${g.title}${g.unit ? ` (${units.of(g.unit).name})` : ''}`)));
     const wanted = own && run.groups.get(own.group);
     group = wanted || firstGroup(run, number);
     const kept = wanted && own.columns ? own.columns.map(key => run.byKey.get(key)).filter(c => c && c.unit === group.unit) : [];
@@ -36,6 +49,13 @@ function createChart(number, state, units, actions) {
     columns = kept.length ? kept : firstColumns(group);
     remember();
     build();
+    shape = shapeNow();
+  }
+
+  // What the chooser, the legend and the curves are made of.
+  function shapeNow() {
+    const own = state.charts[number];
+    return [run.shape, units.of('m').name, units.of('rad').name, own && own.group, ...((own && own.columns) || [])].join('\n');
   }
 
   function remember() {
@@ -68,6 +88,9 @@ function createChart(number, state, units, actions) {
     chooser.value = group.key;
     fillPicker();
     legend.replaceChildren();
+    clip.replaceChildren(...columns.map((_, k) => svg('path', { class: `curve paint-${k}` })));
+    dots = columns.map((_, k) => svg('circle', { class: `dot paint-${k}`, r: 4 }));
+    dotted.replaceChildren(...dots);
     readouts = columns.map((column, k) => {
       const value = el('span', { class: 'value' });
       legend.append(el('li', { title: column.description || column.key }, el('span', { class: `swatch paint-${k}` }), el('span', { class: 'name' }, column.label), value));
@@ -79,7 +102,7 @@ function createChart(number, state, units, actions) {
   function fillPicker() {
     const all = [...new Set([...columns, ...group.columns])];
     pickerList.replaceChildren(...all.map(column => {
-      const box = el('input', { type: 'checkbox', onchange: () => toggle(column, box.checked) });
+      const box = el('input', { type: 'checkbox', onchange: () => toggle(run.columns[column.index], box.checked) });
       box.checked = columns.includes(column);
       return el('label', { title: column.description }, box, ' ', column.label);
     }));
@@ -103,9 +126,8 @@ function createChart(number, state, units, actions) {
   }
 
   function draw() {
-    picture.replaceChildren();
-    width = picture.clientWidth || 560;
-    picture.setAttribute('viewBox', `0 0 ${width} ${CHART_HEIGHT}`);
+    // Its width is measured when it changes: asking for it here would lay out the whole page first.
+    if (!width) setWidth(picture.clientWidth || 560);
     const { factor } = units.of(group.unit);
     const axisUnit = units.of(run.axis.unit);
     const rows = shownRows();
@@ -134,47 +156,64 @@ function createChart(number, state, units, actions) {
     const toX = x => PAD.left + ((x - xFrom) / (xTo - xFrom || 1)) * (width - PAD.left - PAD.right);
     const toY = y => CHART_HEIGHT - PAD.bottom - ((y - low) / (high - low)) * (CHART_HEIGHT - PAD.top - PAD.bottom);
     scales = { toX, toY, xFrom, xTo, toAxis: px => xFrom + ((px - PAD.left) / (width - PAD.left - PAD.right)) * (xTo - xFrom) };
-    picture.append(axes({ low, high, xFrom, xTo, factor, axisUnit, toX, toY }));
-    const clip = svg('svg', { x: PAD.left, y: 0, width: Math.max(1, width - PAD.left - PAD.right), height: CHART_HEIGHT - PAD.bottom + 2, viewBox: `${PAD.left} 0 ${Math.max(1, width - PAD.left - PAD.right)} ${CHART_HEIGHT - PAD.bottom + 2}` });
-    columns.forEach((column, k) => clip.append(svg('path', { class: `curve paint-${k}`, d: curvePath(run.axis.values, column.values, rows, toX, toY, width) })));
-    picture.append(clip);
-    columns.forEach((column, k) => picture.append(peakMarks(column, k)));
-    cursor = svg('path', { class: 'cursor', d: `M0 ${PAD.top}V${CHART_HEIGHT - PAD.bottom}` });
-    dots = columns.map((_, k) => svg('circle', { class: `dot paint-${k}`, r: 4 }));
-    picture.append(cursor, dots);
+    drawAxes({ low, high, xFrom, xTo, factor, axisUnit, toX, toY });
+    const across = () => run.places(rows, toX, [xFrom, xTo, width].join());
+    columns.forEach((column, k) => clip.children[k].setAttribute('d', curvePath(run.axis.values, column.values, rows, toX, toY, width, across)));
+    markPeaks();
     picture.setAttribute('aria-label', describe());
     move(row);
   }
 
-  function axes({ low, high, xFrom, xTo, factor, axisUnit, toX, toY }) {
-    const group = svg('g', { class: 'axes', 'aria-hidden': 'true' });
-    const ys = ticks(low * factor, high * factor, 4, false);
-    for (const value of ys.values) {
-      const y = toY(value / factor);
-      group.append(svg('path', { class: Math.abs(value) < 1e-12 * Math.max(1, Math.abs(high * factor)) ? 'zero' : 'gridline', d: `M${PAD.left} ${y}H${width - PAD.right}` }));
-      group.append(svg('text', { x: PAD.left - 8, y: y + 4, 'text-anchor': 'end' }, tickText(value, ys.decimals)));
-    }
-    const isDegrees = axisUnit.name === '°';
-    const xs = ticks(xFrom * axisUnit.factor, xTo * axisUnit.factor, Math.max(2, Math.floor(width / 85)), isDegrees);
-    for (const value of xs.values) {
-      const x = toX(value / axisUnit.factor);
-      group.append(svg('path', { class: 'gridline', d: `M${x} ${PAD.top}V${CHART_HEIGHT - PAD.bottom}` }));
-      group.append(svg('text', { x, y: CHART_HEIGHT - PAD.bottom + 16, 'text-anchor': 'middle' }, tickText(value, xs.decimals) + (isDegrees ? '°' : '')));
-    }
-    const unit = axisUnit.name && !isDegrees ? ` (${axisUnit.name})` : '';
-    group.append(svg('text', { class: 'axis-name', x: width - PAD.right, y: CHART_HEIGHT - 4, 'text-anchor': 'end' }, run.axis.label + unit));
-    return group;
+  function setWidth(newWidth) {
+    width = newWidth;
+    picture.setAttribute('viewBox', `0 0 ${width} ${CHART_HEIGHT}`);
+    const inside = Math.max(1, width - PAD.left - PAD.right);
+    clip.setAttribute('x', PAD.left);
+    clip.setAttribute('width', inside);
+    clip.setAttribute('viewBox', `${PAD.left} 0 ${inside} ${CHART_HEIGHT - PAD.bottom + 2}`);
+  }
+
+  function drawAxes({ low, high, xFrom, xTo, factor, axisUnit, toX, toY }) {
+    renewed.y([low, high, factor, width].join(), () => {
+      const ys = ticks(low * factor, high * factor, 4, false);
+      return ys.values.flatMap(value => {
+        const y = toY(value / factor);
+        return [
+          svg('path', { class: Math.abs(value) < 1e-12 * Math.max(1, Math.abs(high * factor)) ? 'zero' : 'gridline', d: `M${PAD.left} ${y}H${width - PAD.right}` }),
+          svg('text', { x: PAD.left - 8, y: y + 4, 'text-anchor': 'end' }, tickText(value, ys.decimals)),
+        ];
+      });
+    });
+    renewed.x([xFrom, xTo, axisUnit.name, axisUnit.factor, width, run.axis.label].join(), () => {
+      const isDegrees = axisUnit.name === '°';
+      const xs = ticks(xFrom * axisUnit.factor, xTo * axisUnit.factor, Math.max(2, Math.floor(width / 85)), isDegrees);
+      const lines = xs.values.flatMap(value => {
+        const x = toX(value / axisUnit.factor);
+        return [
+          svg('path', { class: 'gridline', d: `M${x} ${PAD.top}V${CHART_HEIGHT - PAD.bottom}` }),
+          svg('text', { x, y: CHART_HEIGHT - PAD.bottom + 16, 'text-anchor': 'middle' }, tickText(value, xs.decimals) + (isDegrees ? '°' : '')),
+        ];
+      });
+      const unit = axisUnit.name && !isDegrees ? ` (${axisUnit.name})` : '';
+      return [...lines, svg('text', { class: 'axis-name', x: width - PAD.right, y: CHART_HEIGHT - 4, 'text-anchor': 'end' }, run.axis.label + unit)];
+    });
   }
 
   // Rings at the peaks, which may be between rows.
-  function peakMarks(column, k) {
-    const marks = svg('g', { 'aria-hidden': 'true' });
-    if (!column.peak || !varies(column)) return marks;
-    for (const { value, at } of [column.peak.min, column.peak.max]) {
-      if (!Number.isFinite(value) || at < scales.xFrom || at > scales.xTo) continue;
-      marks.append(svg('circle', { class: `peak paint-${k}`, cx: scales.toX(at), cy: scales.toY(value), r: 3.2 }));
-    }
-    return marks;
+  function markPeaks() {
+    let count = 0;
+    const mark = ({ value, at }, k) => {
+      if (!Number.isFinite(value) || at < scales.xFrom || at > scales.xTo) return;
+      const ring = peaks.children[count] || peaks.appendChild(svg('circle', { r: 3.2 }));
+      count += 1;
+      ring.setAttribute('class', `peak paint-${k}`);
+      ring.setAttribute('cx', scales.toX(at));
+      ring.setAttribute('cy', scales.toY(value));
+    };
+    columns.forEach((column, k) => {
+      if (column.peak && varies(column)) [column.peak.min, column.peak.max].forEach(end => mark(end, k));
+    });
+    while (peaks.children.length > count) peaks.lastChild.remove();
   }
 
   // The extremes in words.
@@ -209,7 +248,12 @@ function createChart(number, state, units, actions) {
     zoom: actions.zoom,
     bounds: () => [PAD.left, width - PAD.right],
   });
-  new ResizeObserver(() => { if (run && group && picture.clientWidth && picture.clientWidth !== width) draw(); }).observe(picture);
+  new ResizeObserver(([{ contentRect }]) => {
+    const newWidth = Math.round(contentRect.width);
+    if (!newWidth || newWidth === width) return;
+    setWidth(newWidth);
+    if (run && group) draw();
+  }).observe(picture);
   return { root, show, move, draw: () => { if (run && group) draw(); }, add, unit: () => group && group.unit, count: () => columns.length };
 }
 

@@ -1,9 +1,11 @@
 // A curve as a path: all of its rows, or the smallest and largest of each pixel where these are many.
 
 // Through the rows from `first` to `last`; a gap where there is no value.
-function curvePath(xs, ys, [first, last], toX, toY, width) {
+// `across()` are the places of the rows along the axis, written.
+function curvePath(xs, ys, [first, last], toX, toY, width, across) {
   const count = last - first + 1;
   if (count > 3 * width) return denseCurve(xs, ys, [first, last], toX, toY);
+  const places = across();
   let d = '';
   let isOpen = false;
   for (let k = first; k <= last; k++) {
@@ -12,7 +14,7 @@ function curvePath(xs, ys, [first, last], toX, toY, width) {
       isOpen = false;
       continue;
     }
-    d += `${isOpen ? 'L' : 'M'}${toX(xs[k]).toFixed(1)} ${toY(y).toFixed(1)}`;
+    d += `${isOpen ? 'L' : 'M'}${places[k - first]} ${tenth(toY(y))}`;
     isOpen = true;
   }
   return d;
@@ -28,7 +30,7 @@ function denseCurve(xs, ys, [first, last], toX, toY) {
   let end = 0;
   const close = () => {
     if (pixel === null) return;
-    d += `L${pixel} ${toY(low).toFixed(1)}L${pixel} ${toY(high).toFixed(1)}L${pixel} ${toY(end).toFixed(1)}`;
+    d += `L${pixel} ${tenth(toY(low))}L${pixel} ${tenth(toY(high))}L${pixel} ${tenth(toY(end))}`;
     pixel = null;
   };
   for (let k = first; k <= last; k++) {
@@ -41,7 +43,7 @@ function denseCurve(xs, ys, [first, last], toX, toY) {
     const x = Math.round(toX(xs[k]));
     if (x !== pixel) {
       close();
-      d += `${isOpen ? 'L' : 'M'}${x} ${toY(y).toFixed(1)}`;
+      d += `${isOpen ? 'L' : 'M'}${x} ${tenth(toY(y))}`;
       [pixel, low, high, isOpen] = [x, y, y, true];
     }
     if (y < low) low = y;
@@ -66,7 +68,7 @@ function sparkline(values, width, height, [low, high], points = 90) {
       continue;
     }
     const x = (k / Math.max(1, count - 1)) * width;
-    d += `${isOpen ? 'L' : 'M'}${x.toFixed(1)} ${(height - 1.5 - ((value - low) / span) * (height - 3)).toFixed(1)}`;
+    d += `${isOpen ? 'L' : 'M'}${tenth(x)} ${tenth(height - 1.5 - ((value - low) / span) * (height - 3))}`;
     isOpen = true;
   }
   return d;

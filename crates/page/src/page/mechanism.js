@@ -2,6 +2,9 @@
 
 const HEIGHT = 400;
 const MARGIN = 34;
+// Where labels are beside their marks, and how large they are, px: width of a letter, and height.
+const LABEL_PLACES = [{ x: 10, y: -10 }, { x: -11, y: -10 }, { x: 10, y: 21 }, { x: -11, y: 21 }];
+const LABEL_SIZE = [9, 13];
 
 function createMechanism(state, onMove, onTurn) {
   const root = svg('svg', { class: 'mechanism', role: 'img', tabindex: 0, height: HEIGHT });
@@ -13,30 +16,45 @@ function createMechanism(state, onMove, onTurn) {
   let items = [];
   let layers = null;
   let overlay = null;
+  let shape = null;
   let width = 0;
   let row = 0;
 
   function show(newRun) {
     run = newRun;
+    row = Math.min(row, Math.max(0, run.rows - 1));
     drawing = run.description.drawing;
-    root.replaceChildren();
-    items = [];
-    if (!drawing) return;
+    if (!drawing) {
+      root.replaceChildren();
+      [shape, items, overlay] = [null, [], null];
+      return;
+    }
     frames = createFrames(drawing, run);
     view = createView(frames.isPlane ? null : state.view || drawing.view);
     bounds = boundsOf(drawing, frames, run.rows);
+    const nextShape = shapeOf(drawing);
+    if (nextShape === shape) {
+      items.forEach((item, k) => item.renew(drawing.parts[k]));
+      overlay.show(drawing, run, frames, view);
+      return fit();
+    }
+    shape = nextShape;
+    root.replaceChildren();
+    items = [];
     layers = { parts: svg('g'), paths: svg('g'), marks: svg('g'), forces: svg('g'), axes: svg('g', { class: 'ground-axes', 'aria-hidden': 'true' }), words: svg('g', { 'aria-hidden': 'true' }) };
     root.append(svg('title', {}, frames.isPlane ? 'The mechanism in this position' : 'The mechanism in this position, seen from one side'));
     root.append(layers.parts, layers.paths, layers.marks, layers.forces, layers.axes, layers.words);
     for (const part of drawing.parts) items.push(createItem(part));
-    overlay = createOverlay(drawing, run, frames, view, layers, state);
+    overlay = createOverlay(drawing, layers, state);
+    overlay.show(drawing, run, frames, view);
     root.classList.toggle('turnable', !frames.isPlane);
     fit();
   }
 
   // Fills the picture with all that the mechanism goes through.
   function fit() {
-    width = root.clientWidth || 560;
+    // Measured when it changes, as the charts'.
+    if (!width) width = root.clientWidth || 560;
     root.setAttribute('viewBox', `0 0 ${width} ${HEIGHT}`);
     const { middle, size, radius } = bounds;
     const across = frames.isPlane ? size : [2 * radius, 2 * radius];
@@ -49,6 +67,8 @@ function createMechanism(state, onMove, onTurn) {
     [view.x, view.y] = [width / 2 - x, HEIGHT / 2 - y];
     overlay.layOut();
     if (!frames.isPlane) drawAxes();
+    const boxes = [];
+    for (const item of items) if (item.placeLabel) item.placeLabel(row, boxes);
     move(row);
   }
 
@@ -66,7 +86,9 @@ function createMechanism(state, onMove, onTurn) {
     return paint === null ? 'paint-ground' : `paint-${paint}`;
   };
 
-  function createItem(part) {
+  function createItem(first) {
+    let part = first;
+    const renew = next => { part = next; };
     const w = [0, 0, 0];
     const at = (anchor, r) => view.screen(frames.place(anchor.body, anchor.point, r, w));
     if (part.part === 'outline') return createOutline(part, w);
@@ -77,6 +99,7 @@ function createMechanism(state, onMove, onTurn) {
       layers.parts.append(group);
       return {
         element: group,
+        renew,
         depth: r => 0.5 * (view.nearness(frames.place(part.ends[0].body, part.ends[0].point, r, w)) + view.nearness(frames.place(part.ends[1].body, part.ends[1].point, r, w))),
         move(r) {
           const [a, b] = part.ends.map(end => at(end, r));
@@ -93,7 +116,9 @@ function createMechanism(state, onMove, onTurn) {
     return createMark(part, at, w);
   }
 
-  function createOutline(part, w) {
+  function createOutline(first, w) {
+    let part = first;
+    let renew = next => { part = next; };
     const title = svg('title', {}, drawing.bodies[part.body].name);
     const classes = `${part.look} ${colored(part.body)}`;
     const main = svg('path', { class: classes });
@@ -103,6 +128,7 @@ function createMechanism(state, onMove, onTurn) {
     if (part.look === 'ground-line') {
       return {
         element: group,
+        renew,
         depth: () => -Infinity,
         move(r) {
           const [a, b] = part.points.map(p => view.screen(frames.place(part.body, p, r, w)));
@@ -118,6 +144,7 @@ function createMechanism(state, onMove, onTurn) {
     if (!frames.isPlane) {
       return {
         element: group,
+        renew,
         depth: nearness,
         move(r) {
           let d = '';
@@ -130,10 +157,15 @@ function createMechanism(state, onMove, onTurn) {
       };
     }
     // In the plane the outline is fixed to its body, in meters; only its frame moves.
-    const d = outlinePath(part);
-    for (const path of [main, inner]) if (path) path.setAttribute('d', d);
+    renew = next => {
+      part = next;
+      const d = outlinePath(part);
+      for (const path of [main, inner]) if (path) path.setAttribute('d', d);
+    };
+    renew(part);
     return {
       element: group,
+      renew,
       depth: nearness,
       move(r) {
         const [x, y, angle] = frames.isFixed(part.body) ? [0, 0, 0] : frames.placement(part.body, r);
@@ -143,24 +175,39 @@ function createMechanism(state, onMove, onTurn) {
     };
   }
 
-  function createMark(part, at, w) {
+  function createMark(first, at, w) {
+    let part = first;
     const shape = svg('g', { class: `mark mark-${part.look} ${colored(part.at.body)}`, 'data-body': part.at.body }, svg('title', {}, part.title), markElements(part.look), !frames.isPlane && part.on_ground && part.look !== 'center-of-mass' ? groundMark() : null);
     const label = part.label ? svg('text', { class: 'label' }, part.label) : null;
     layers.marks.append(shape);
     if (label) layers.words.append(label);
+    // Beside the mark, where no other label is in the row of the first picture.
+    let place = part.look === 'ground-pin' ? LABEL_PLACES[1] : LABEL_PLACES[0];
     const axisLine = shape.querySelector('.axis-line');
     const axisMark = shape.querySelector('.axis-mark');
     return {
       element: shape,
+      renew(next) { part = next; },
+      // Takes the first place that is free of the boxes of labels before it, and adds its own.
+      placeLabel(r, boxes) {
+        if (!label) return;
+        const [x, y] = at(part.at, r);
+        const long = part.label.length * LABEL_SIZE[0];
+        const boxOf = p => [p.x < 0 ? x + p.x - long : x + p.x, y + p.y - LABEL_SIZE[1], long, LABEL_SIZE[1]];
+        const isFree = p => !boxes.some(([bx, by, w, h]) => { const [ax, ay, v, g] = boxOf(p); return ax < bx + w && bx < ax + v && ay < by + h && by < ay + g; });
+        const own = part.look === 'ground-pin' ? [1, 0, 3, 2] : [0, 1, 2, 3];
+        place = own.map(k => LABEL_PLACES[k]).find(isFree) || LABEL_PLACES[own[0]];
+        boxes.push(boxOf(place));
+      },
       inMarks: true,
       depth: r => view.nearness(frames.place(part.at.body, part.at.point, r, w)),
       move(r) {
         const [x, y] = at(part.at, r);
         shape.setAttribute('transform', `translate(${x} ${y})`);
         if (label) {
-          label.setAttribute('x', x + (part.look === 'ground-pin' ? -11 : 10));
-          label.setAttribute('y', y - 10);
-          label.setAttribute('text-anchor', part.look === 'ground-pin' ? 'end' : 'start');
+          label.setAttribute('x', x + place.x);
+          label.setAttribute('y', y + place.y);
+          label.setAttribute('text-anchor', place.x < 0 ? 'end' : 'start');
         }
         if (axisMark && part.axis.length) {
           const [dx, dy] = view.direction(frames.direct(part.at.body, part.axis, r, w)).map(v => v / view.scale);
@@ -220,8 +267,20 @@ function createMechanism(state, onMove, onTurn) {
     fit();
     onTurn();
   }
-  new ResizeObserver(() => { if (drawing && root.clientWidth && root.clientWidth !== width) fit(); }).observe(root);
+  new ResizeObserver(([{ contentRect }]) => {
+    const newWidth = Math.round(contentRect.width);
+    if (!newWidth || newWidth === width) return;
+    width = newWidth;
+    if (drawing) fit();
+  }).observe(root);
   return { root, show, move, overlay: () => overlay, refresh: () => { if (drawing) { overlay.layOut(); overlay.move(row); } }, angles: () => view && view.angles };
+}
+
+// What the elements of a drawing are made of: two drawings of one shape differ in numbers only.
+function shapeOf(drawing) {
+  const part = p => [p.part, p.look, p.title, p.label, p.on_ground, p.closed, p.body, p.bodies, p.at && p.at.body, (p.points || []).length, (p.axis || []).length].join();
+  const arrow = a => [a.name, a.title, a.group, a.direction, a.columns || a.column].join();
+  return [drawing.view === null, drawing.bodies.map(b => `${b.name}|${b.paint}|${b.placements.length}`).join(), ...drawing.parts.map(part), ...drawing.arrows.map(arrow), ...drawing.paths.map(p => `${p.name}|${p.requested}`)].join('\n');
 }
 
 // An outline in the frame of its body, m.

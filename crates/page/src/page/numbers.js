@@ -34,6 +34,14 @@ function format(value, digits = 5) {
   return text.replace('-', '−');
 }
 
+// A coordinate of a picture to a tenth of a pixel. Those within a picture are written once: a curve has hundreds.
+const TENTHS = [];
+function tenth(value) {
+  const tenths = Math.round(10 * value);
+  if (!(tenths >= 0 && tenths < 20000)) return String(tenths / 10);
+  return TENTHS[tenths] || (TENTHS[tenths] = String(tenths / 10));
+}
+
 const scientific = value => (value === 0 ? '0' : Number.isFinite(value) ? value.toExponential(1).replace('-', '−').replace('+', '') : String(value));
 
 // A unit as it is printed: `N m` becomes N·m, `m/s2` m/s².

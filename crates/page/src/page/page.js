@@ -8,6 +8,9 @@ function create(root, options = {}) {
   let pending = null;
   const unitProxy = { of: (...a) => units.of(...a), text: (...a) => units.text(...a), names: () => units.names() };
 
+  // What is not seen at once can wait.
+  const later = createLater();
+
   const actions = {
     // A row that someone asks for: playing stops.
     move(newRow) {
@@ -37,8 +40,8 @@ function create(root, options = {}) {
   const player = createPlayer(state, unitProxy, { move });
   player.controls.querySelector('.slider').addEventListener('input', () => player.stop());
   const charts = createCharts(state, unitProxy, actions);
-  const peaks = createPeaks(unitProxy, actions);
-  const words = createWords(unitProxy, actions);
+  const peaks = createPeaks(unitProxy, actions, later);
+  const words = createWords(unitProxy, actions, later);
   const title = el('h1');
   const subtitle = el('p', { class: 'subtitle' });
   const note = el('p', { class: 'scene-note' });
@@ -47,6 +50,7 @@ function create(root, options = {}) {
   const themeButton = el('button', { type: 'button', 'aria-label': 'dark or light', title: 'dark or light', onclick: () => switchTheme() }, '◐');
   const choices = createChoices(state, mechanism, () => remember());
   const help = el('p', { class: 'help' });
+  const renewedHelp = createRenewed(help);
   const view = el('section', { class: 'card view', 'aria-label': 'mechanism' }, mechanism.root, player.controls, el('div', { class: 'place-line' }, player.place, choices.root), help);
   const left = el('div', { class: 'column' }, view, peaks.chipCard);
   root.classList.add('dwell-page');
@@ -89,8 +93,8 @@ function create(root, options = {}) {
   function describeHelp(d) {
     const keys = (...names) => names.map(name => el('kbd', {}, name));
     const isSpace = d.drawing && d.drawing.view;
-    help.replaceChildren(isSpace ? 'Drag to turn the view (or ' : 'Drag a body, or move over a curve: everything follows. ', ...(isSpace ? [...keys('Alt'), ' with arrows). '] : []),
-      ...keys('Space'), ' play, ', ...keys('←', '→'), ' one row (', ...keys('⇧'), ' ten), ', ...keys('Home', 'End'), ', drag in a chart to zoom, ', ...keys('Esc'), ' shows all.');
+    renewedHelp(String(Boolean(isSpace)), () => [isSpace ? 'Drag to turn the view (or ' : 'Drag a body, or move over a curve: everything follows. ', ...(isSpace ? [...keys('Alt'), ' with arrows). '] : []),
+      ...keys('Space'), ' play, ', ...keys('←', '→'), ' one row (', ...keys('⇧'), ' ten), ', ...keys('Home', 'End'), ', drag in a chart to zoom, ', ...keys('Esc'), ' shows all.']);
     help.hidden = !run.axis;
   }
 
@@ -162,6 +166,8 @@ function create(root, options = {}) {
       run.numbers = numbers;
     },
     move: actions.move,
+    // A promise that nothing of it waits for its turn any more.
+    settled: later.done,
     row: () => row,
     run: () => run,
     play: () => player.toggle(),
@@ -183,6 +189,7 @@ function isClosed(run) {
 // Which forces and paths are shown.
 function createChoices(state, mechanism, changed) {
   const root = el('div', { class: 'choices' });
+  const renewed = createRenewed(root);
   const group = (name, isOn, set, names, chosen) => {
     if (!names.length) return null;
     const main = el('input', { type: 'checkbox', onchange: () => { set(main.checked); mechanism.refresh(); changed(); } });
@@ -201,11 +208,10 @@ function createChoices(state, mechanism, changed) {
   return {
     root,
     show(overlay) {
-      root.replaceChildren();
-      if (!overlay) return;
-      const arrows = overlay.arrows.filter(a => a.size > 0).map(a => ({ name: a.name, title: a.title }));
-      const paths = overlay.paths.map(p => ({ name: p.name, title: p.name }));
-      root.append(...[group('forces', state.forces !== false, v => { state.forces = v; }, arrows, state.arrows), group('paths', state.showPaths !== false, v => { state.showPaths = v; }, paths, state.paths)].filter(Boolean));
+      if (!overlay) return renewed('', () => []);
+      const arrows = overlay.arrows().filter(a => a.size > 0).map(a => ({ name: a.name, title: a.title }));
+      const paths = overlay.paths().map(p => ({ name: p.name, title: p.name }));
+      renewed(JSON.stringify([arrows, paths]), () => [group('forces', state.forces !== false, v => { state.forces = v; }, arrows, state.arrows), group('paths', state.showPaths !== false, v => { state.showPaths = v; }, paths, state.paths)].filter(Boolean));
     },
   };
 }

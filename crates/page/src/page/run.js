@@ -12,6 +12,15 @@ function createRun(description, numbers) {
   }
   const axis = d.axis === null || d.axis === undefined ? null : columns[d.axis];
   const run = { description: d, rows, columns, axis, slot, groups: groupsOf(columns, axis), byKey: new Map(columns.map(c => [c.key, c])) };
+  // What tables and choices are made of: two runs of one shape differ in numbers only.
+  run.shape = [d.command, d.axis, ...d.columns.map(c => `${c.key}|${c.label}|${c.unit}|${c.group}|${c.description}`)].join('\n');
+  // The rows from the first to the last on the screen, as they are written in curves. All charts have one axis.
+  let places = { of: '', across: [] };
+  run.places = ([first, last], toX, scale) => {
+    const of = [first, last, scale].join();
+    if (places.of !== of) places = { of, across: Array.from(axis.values.subarray(first, last + 1), at => tenth(toX(at))) };
+    return places.across;
+  };
   run.rowAt = at => rowAt(axis, rows, at);
   return run;
 }

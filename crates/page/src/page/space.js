@@ -4,7 +4,8 @@
 function createFrames(drawing, run) {
   const bodies = drawing.bodies.map(body => body.placements.map(k => run.slot(k)));
   const isPlane = drawing.view === null;
-  // Cosine and sine of the angle, once for each row that is asked for.
+  // By body: cosine and sine of its angle in each row.
+  const turns = bodies.map(p => (isPlane && p.length ? [Float64Array.from(p[2], Math.cos), Float64Array.from(p[2], Math.sin)] : null));
   function place(body, point, row, out) {
     const p = bodies[body];
     const [x, y] = point;
@@ -13,8 +14,7 @@ function createFrames(drawing, run) {
       return out;
     }
     if (isPlane) {
-      const cos = Math.cos(p[2][row]);
-      const sin = Math.sin(p[2][row]);
+      const [cos, sin] = [turns[body][0][row], turns[body][1][row]];
       out[0] = p[0][row] + cos * x - sin * y;
       out[1] = p[1][row] + sin * x + cos * y;
       out[2] = 0;
@@ -30,8 +30,7 @@ function createFrames(drawing, run) {
     if (!p.length) {
       out[0] = axis[0]; out[1] = axis[1]; out[2] = axis[2] || 0;
     } else if (isPlane) {
-      const cos = Math.cos(p[2][row]);
-      const sin = Math.sin(p[2][row]);
+      const [cos, sin] = [turns[body][0][row], turns[body][1][row]];
       out[0] = cos * axis[0] - sin * axis[1];
       out[1] = sin * axis[0] + cos * axis[1];
       out[2] = 0;

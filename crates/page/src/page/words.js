@@ -1,18 +1,50 @@
 // What a run says: messages, findings, numbers, tables, events, the scene and where the results come from.
 
-function createWords(units, actions) {
+function createWords(units, actions, later) {
   const root = el('div', { class: 'words' });
   const top = el('div', { class: 'messages' });
 
+  // By place: what a card was made of, and the card.
+  let cards = [];
+  let shownRun = null;
+  const renewedTop = createRenewed(top);
+
   function show(run) {
     const d = run.description;
-    top.replaceChildren(...d.messages.map(message));
-    root.replaceChildren(...[
-      findingsCard(d.findings), printedCard(d.printed), eventsCard(d.events, run, actions), numbersCard(d.numbers, units),
-      d.tables.map((table, k) => tableCard(table, k)), sceneCard(d), provenanceCard(d),
-    ].flat().filter(Boolean));
+    const isFirst = !shownRun;
+    shownRun = run;
+    renewedTop(JSON.stringify(d.messages), () => d.messages.map(message));
+    if (isFirst) fill();
+    else later.add('words', () => { fill(); return true; });
+  }
+
+  // Cards stay as they are, open or closed, where what they say has not changed.
+  function fill() {
+    const d = shownRun.description;
+    const { axis } = shownRun;
+    const parts = [
+      ['findings', d.findings, () => findingsCard(d.findings)], ['printed', d.printed, () => printedCard(d.printed)],
+      ['events', [d.events, axis && axis.unit], () => eventsCard(d.events, () => shownRun, actions)], ['numbers', d.numbers, () => numbersCard(d.numbers, units)],
+      ...d.tables.map((table, k) => [`table ${k}`, table, () => tableCard(table, k)]),
+      ['scene', d.scene, () => sceneCard(d)], ['provenance', [d.version, d.command, d.method, d.scene && d.scene.sha256, d.files], () => provenanceCard(d)],
+    ];
+    const before = new Map(cards.map(own => [own.signature, own]));
+    cards = parts.map(([name, of, make]) => {
+      const signature = name + JSON.stringify(of);
+      const own = before.get(signature) || { name, signature, card: make() };
+      const old = cards.find(other => other.name === name);
+      if (own.card && old && old.card && old !== own) keepOpen(old.card, own.card);
+      return own;
+    });
+    root.replaceChildren(...cards.map(own => own.card).filter(Boolean));
   }
   return { root, top, show };
+}
+
+// What the reader has opened stays open.
+function keepOpen(before, now) {
+  const [old, details] = [before.querySelectorAll('details'), now.querySelectorAll('details')];
+  if (old.length === details.length) details.forEach((own, k) => { own.open = old[k].open; });
 }
 
 function message({ severity, text, help }) {
@@ -54,13 +86,14 @@ function printedCard(printed) {
   return printed ? card('Summary', 'summary', el('pre', {}, printed)) : null;
 }
 
-function eventsCard(events, run, actions) {
+function eventsCard(events, runNow, actions) {
   if (!events.length) return null;
   const shown = events.slice(0, 200);
   const item = e => {
-    const isTime = run.axis && run.axis.unit === 's';
+    const { axis } = runNow();
+    const isTime = axis && axis.unit === 's';
     const text = `${format(Number(e.t), 6)} s`;
-    return el('li', {}, isTime ? el('button', { type: 'button', class: 'jump', onclick: () => actions.move(run.rowAt(Number(e.t))) }, text) : text, ` ${e.name}`);
+    return el('li', {}, isTime ? el('button', { type: 'button', class: 'jump', onclick: () => actions.move(runNow().rowAt(Number(e.t))) }, text) : text, ` ${e.name}`);
   };
   const more = events.length - shown.length;
   return card('Events', 'events', el('ul', { class: 'events' }, shown.map(item)), more > 0 ? el('p', { class: 'note' }, `and ${more} more`) : null);

@@ -15,6 +15,7 @@ pub use several_freedoms::compute_export_of_several_freedoms;
 use crate::explain::{StudyError, explain_motion, scene_error};
 use crate::number_format::number;
 use description::ExportedScene;
+use dwell_dynamics::DynamicsError;
 use dwell_export::{Export, FitError, Function, MachineDescription, RecordingError, Request};
 use dwell_geometry::ActuatorId;
 use dwell_scene::{Scene, SceneFile, SceneLocation};
@@ -37,28 +38,49 @@ pub struct ExportRequest {
 /// # Errors
 /// [`StudyError::Scene`] where the scene cannot be exported: it says why and what to change.
 pub fn compute_export(scene: &Scene, asked: &ExportRequest) -> Result<Export, StudyError> {
+    if !asked.exact {
+        return compute_export_in_cells(scene, asked);
+    }
+    let exported = ExportedScene::new(scene, asked.interval)?;
+    let code = recorded(&exported).map_err(|error| match error {
+        RecordingError::Evaluation(error) => explain_sampler(&exported, &error),
+        RecordingError::Function => no_operations(
+            scene,
+            "a law of a cam, of a joint or of an inertia is known by its values alone",
+        ),
+        RecordingError::Differs { .. } => no_operations(scene, SEARCHED),
+    })?;
+    let (machine, precision) = (exported.description.clone(), asked.request.precision);
+    let export = Export::exact(machine, precision, code, &mut exported.sampler());
+    export.map_err(|error| explain_export(scene, &exported, asked, error))
+}
+
+/// Fits the functions of a scene's machine in cells, whether they are asked for or the model's own operations: a program that calls
+/// nothing else is without what records operations.
+///
+/// # Errors
+/// As [`compute_export`].
+pub fn compute_export_in_cells(scene: &Scene, asked: &ExportRequest) -> Result<Export, StudyError> {
     let exported = ExportedScene::new(scene, asked.interval)?;
     let machine = exported.description.clone();
-    let mut sampler = exported.sampler();
-    let explain = |error| explain_motion(&exported.loaded, exported.model.plan(), &error);
-    let export = match asked.exact {
-        true => {
-            let code = recorded(&exported).map_err(|error| match error {
-                RecordingError::Evaluation(error) => explain(error),
-                RecordingError::Function => no_operations(
-                    scene,
-                    "a law of a cam, of a joint or of an inertia is known by its values alone",
-                ),
-                RecordingError::Differs { .. } => no_operations(scene, SEARCHED),
-            })?;
-            Export::exact(machine, asked.request.precision, code, &mut sampler)
-        }
-        false => Export::new(machine, asked.request, &mut sampler),
-    };
-    export.map_err(|error| match error {
-        FitError::Sampler(error) => explain(error),
+    let export = Export::new(machine, asked.request, &mut exported.sampler());
+    export.map_err(|error| explain_export(scene, &exported, asked, error))
+}
+
+fn explain_sampler(exported: &ExportedScene<'_>, error: &DynamicsError) -> StudyError {
+    explain_motion(&exported.loaded, exported.model.plan(), error)
+}
+
+fn explain_export(
+    scene: &SceneFile,
+    exported: &ExportedScene<'_>,
+    asked: &ExportRequest,
+    error: FitError<DynamicsError>,
+) -> StudyError {
+    match error {
+        FitError::Sampler(error) => explain_sampler(exported, &error),
         other => explain_fit(scene, &exported.description, asked, &other),
-    })
+    }
 }
 
 /// Why the operations of a model are not the same at all coordinates.

@@ -44,8 +44,13 @@ impl RowChoice {
 
     /// Something of each row that is shown.
     pub(crate) fn map<'a, T, R>(&self, all: &'a [T], of: impl Fn(&'a T) -> R) -> Vec<R> {
-        let rows = self.rows.iter().filter_map(|&k| all.get(k));
-        rows.map(of).collect()
+        let mut chosen = Vec::with_capacity(self.rows.len());
+        for &k in &self.rows {
+            if let Some(row) = all.get(k) {
+                chosen.push(of(row));
+            }
+        }
+        chosen
     }
 
     /// What to say where not all of so many rows are shown.

@@ -8,8 +8,8 @@ use crate::output::{Outcome, Picture};
 use crate::page::drawing_along;
 use crate::ranges::extent;
 use crate::reduce::compute::{
-    Peak, ReducedScene, Reduction, RoundingErrors, TableRequest, compute_reduction, inertia_units,
-    peak_between_rows, tabulate,
+    Peak, ReducedScene, Reduction, RoundingErrors, TableRequest, TabulatedScene, compute_reduction,
+    inertia_units, peak_between_rows, tabulate,
 };
 use dwell_findings::Record;
 use dwell_kinetostatics::Coefficients;
@@ -43,7 +43,7 @@ pub fn reduce(
 
 /// Adds an interpolation table to the results.
 pub(crate) fn add_table(
-    prepared: &dyn ReducedScene,
+    prepared: &dyn TabulatedScene,
     request: &TableRequest,
     outcome: &mut Outcome,
 ) -> Result<(), StudyError> {

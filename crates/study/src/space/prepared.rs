@@ -8,7 +8,9 @@ use crate::number_format::count;
 #[cfg(feature = "output")]
 use crate::output::{indeterminate_note, symbol};
 use crate::ranges::equally_spaced;
-use crate::reduce::compute::{InertiaAt, ReducedLoad, ReducedScene, UnitLoadCurves};
+use crate::reduce::compute::{
+    InertiaAt, ReducedLoad, ReducedScene, TabulatedScene, UnitLoadCurves,
+};
 use dwell_geometry::space::{ActuatorKind, Placement, Plan};
 use dwell_geometry::{ActuatorId, PositionError, Range};
 use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};
@@ -158,6 +160,23 @@ fn load_units(kind: LoadKind) -> [&'static str; 3] {
     }
 }
 
+impl TabulatedScene for PreparedSpaceScene<'_> {
+    fn tabulated(
+        &self,
+        accuracy: f64,
+        domain: TableDomain,
+    ) -> Result<Result<TabulatedModel, TableError>, StudyError> {
+        let model = self.model.model().clone();
+        // Drives are no part of a table.
+        let loaded = model.with_loads(self.scene.loads.clone());
+        let loaded = loaded.map_err(|error| explain_load_error(self.scene, &error))?;
+        let loaded = loaded.for_unit_loads();
+        // The model has one actuator, as the prepared one has.
+        let exact = ExactModel::new(loaded).unwrap_or_else(|| self.model.clone());
+        Ok(TabulatedModel::new(&exact, accuracy, domain))
+    }
+}
+
 impl ReducedScene for PreparedSpaceScene<'_> {
     fn file(&self) -> &SceneFile {
         &self.scene.file
@@ -272,21 +291,6 @@ impl ReducedScene for PreparedSpaceScene<'_> {
             curves.potential.push(potential);
         }
         Ok(Some(curves))
-    }
-
-    fn tabulated(
-        &self,
-        accuracy: f64,
-        domain: TableDomain,
-    ) -> Result<Result<TabulatedModel, TableError>, StudyError> {
-        let model = self.model.model().clone();
-        // Drives are no part of a table.
-        let loaded = model.with_loads(self.scene.loads.clone());
-        let loaded = loaded.map_err(|error| explain_load_error(self.scene, &error))?;
-        let loaded = loaded.for_unit_loads();
-        // The model has one actuator, as the prepared one has.
-        let exact = ExactModel::new(loaded).unwrap_or_else(|| self.model.clone());
-        Ok(TabulatedModel::new(&exact, accuracy, domain))
     }
 
     fn load_names(&self) -> Vec<String> {

@@ -11,7 +11,7 @@ pub(crate) use curves::flat;
 pub use curves::{ReducedCurves, Reduction, RoundingErrors, compute_reduction};
 pub(crate) use curves::{coefficient_units, inertia_units};
 pub(crate) use peak::{Peak, fast_turns, peak_between_rows};
-pub use reduced_scene::{InertiaAt, ReducedScene};
+pub use reduced_scene::{InertiaAt, ReducedScene, TabulatedScene};
 pub use table::{TableRequest, Tabulation, tabulate};
 pub(crate) use unit_load_curves::ReducedLoad;
 pub use unit_load_curves::UnitLoadCurves;

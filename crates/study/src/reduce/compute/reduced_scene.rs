@@ -72,16 +72,6 @@ pub trait ReducedScene: Sync {
     /// [`StudyError::Scene`] where one of them cannot be reached.
     fn unit_loads(&self, q: &[f64]) -> Result<Option<UnitLoadCurves>, StudyError>;
 
-    /// The reduced model as a table, with w and c of the loads; and if there is none, why.
-    ///
-    /// # Errors
-    /// [`StudyError::Scene`] where a load does not fit the mechanism.
-    fn tabulated(
-        &self,
-        accuracy: f64,
-        domain: TableDomain,
-    ) -> Result<Result<TabulatedModel, TableError>, StudyError>;
-
     /// The names of the loads.
     fn load_names(&self) -> Vec<String>;
 
@@ -105,6 +95,31 @@ pub trait ReducedScene: Sync {
     /// The last lines of a summary: what is not in the tables, and why.
     #[cfg(feature = "output")]
     fn notes(&self) -> String;
+}
+
+/// A scene whose reduced model can become a table. It is by itself, so that a program without tables is without their code.
+pub trait TabulatedScene: ReducedScene {
+    /// The reduced model as a table, with w and c of the loads; and if there is none, why.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where a load does not fit the mechanism.
+    fn tabulated(
+        &self,
+        accuracy: f64,
+        domain: TableDomain,
+    ) -> Result<Result<TabulatedModel, TableError>, StudyError>;
+}
+
+impl TabulatedScene for PreparedScene<'_> {
+    fn tabulated(
+        &self,
+        accuracy: f64,
+        domain: TableDomain,
+    ) -> Result<Result<TabulatedModel, TableError>, StudyError> {
+        let model = loaded_determinate_model(self.scene)?.for_unit_loads();
+        let exact = exact_model(self.scene, model)?;
+        Ok(TabulatedModel::new(&exact, accuracy, domain))
+    }
 }
 
 impl ReducedScene for PreparedScene<'_> {
@@ -176,16 +191,6 @@ impl ReducedScene for PreparedScene<'_> {
 
     fn unit_loads(&self, q: &[f64]) -> Result<Option<UnitLoadCurves>, StudyError> {
         UnitLoadCurves::new(self, q)
-    }
-
-    fn tabulated(
-        &self,
-        accuracy: f64,
-        domain: TableDomain,
-    ) -> Result<Result<TabulatedModel, TableError>, StudyError> {
-        let model = loaded_determinate_model(self.scene)?.for_unit_loads();
-        let exact = exact_model(self.scene, model)?;
-        Ok(TabulatedModel::new(&exact, accuracy, domain))
     }
 
     fn load_names(&self) -> Vec<String> {

@@ -1,6 +1,6 @@
 //! `dwell reduce --table-accuracy`: the whole reduced model as an interpolation table, usable without the mechanism.
 
-use super::ReducedScene;
+use super::{ReducedScene, TabulatedScene};
 use crate::explain::{self, StudyError, scene_error};
 use crate::number_format::number;
 use dwell_findings::Record;
@@ -34,7 +34,7 @@ pub struct Tabulation {
 /// Builds a table of m, ½m′, a and b of the requested reactions, and w and c of the loads, each to the required
 /// accuracy relative to its largest value.
 pub fn tabulate(
-    prepared: &dyn ReducedScene,
+    prepared: &dyn TabulatedScene,
     request: &TableRequest,
 ) -> Result<Tabulation, StudyError> {
     let scene = prepared.file();

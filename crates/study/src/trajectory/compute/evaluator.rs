@@ -24,6 +24,8 @@ pub(crate) struct ForceEvaluator<'a> {
     pose: Pose<f64>,
     /// Whether something is computed from the pose that the forces do not need.
     keeps_poses: bool,
+    /// Whether forces are computed, or the motion of the bodies alone.
+    has_forces: bool,
     motion_buffer: Motion<f64>,
     /// The bodies at the velocities of the trajectory, whatever the analysis.
     body_states: BodyStates,
@@ -39,13 +41,14 @@ impl<'a> ForceEvaluator<'a> {
             results: model.result_buffer(),
             pose: model.plan().pose(),
             keeps_poses: false,
+            has_forces: true,
             motion_buffer: model.plan().motion(),
             body_states: BodyStates::new(model.plan()),
             monitor: TrajectoryMonitor::new(scene),
         }
     }
 
-    /// Evaluates the position of a sample, with the loads at time `t`; its state, but for kinematics.
+    /// Evaluates the position of a sample, with the loads at time `t`; its state, where forces are computed.
     pub(crate) fn evaluate(
         &mut self,
         sample: &TrajectorySample,
@@ -59,6 +62,15 @@ impl<'a> ForceEvaluator<'a> {
                 return Ok(None);
             }
             Analysis::Statics => model.statics(t, q, workspace, results)?,
+            Analysis::Kinetostatics | Analysis::FreeMotion if !self.has_forces => {
+                let mut state = model.kinematic_state(q, q_dot, workspace)?;
+                if self.keeps_poses {
+                    self.pose.clone_from(state.pose());
+                }
+                self.body_states.copy_from(state.bodies_at(q_ddot));
+                self.monitor.check_tables(t, &self.body_states)?;
+                return Ok(None);
+            }
             Analysis::Kinetostatics | Analysis::FreeMotion => {
                 let mut state = model.kinematic_state(q, q_dot, workspace)?.apply_loads(t)?;
                 for &(load, magnitude) in &sample.drive_magnitudes {
@@ -178,12 +190,33 @@ fn second_body(load: &LoadKind) -> Option<BodyId> {
     }
 }
 
-/// Whether a column is a quotient of velocities.
-fn is_quotient(column: &Column) -> bool {
-    use Quantity::{MechanicalAdvantage, Pole, VelocityRatio};
+/// Whether a quantity is a quotient of velocities.
+fn is_quotient(quantity: Quantity) -> bool {
+    matches!(quantity, Quantity::VelocityRatio(_)) || has_scale(quantity)
+}
+
+/// Whether a quantity is one where its divisor is not too small beside the speeds of all bodies.
+fn has_scale(quantity: Quantity) -> bool {
     matches!(
-        column.quantity,
-        VelocityRatio(_) | MechanicalAdvantage(..) | Pole(..)
+        quantity,
+        Quantity::MechanicalAdvantage(..) | Quantity::Pole(..)
+    )
+}
+
+/// Whether a quantity is computed from the motion of the bodies alone.
+fn is_kinematic(quantity: Quantity) -> bool {
+    use Quantity::{
+        ActuatorCoordinate, BodyAngle, Measured, PointCoordinate, Time, TransmissionAngle,
+        VelocityRatio,
+    };
+    matches!(
+        quantity,
+        Time | ActuatorCoordinate(..)
+            | Measured(..)
+            | BodyAngle(..)
+            | PointCoordinate(..)
+            | TransmissionAngle(_)
+            | VelocityRatio(_)
     )
 }
 
@@ -212,8 +245,9 @@ pub(crate) struct PositionEvaluator<'a> {
     pub(crate) position: PositionForces<'a>,
     /// With several actuators, the unpruned mechanism: the trajectory ends where any of its groups cannot be assembled.
     whole_mechanism: Option<(&'a Plan, Pose<f64>)>,
-    /// Whether a requested quantity is a quotient of velocities.
+    /// Whether a requested quantity is a quotient of velocities; whether one is compared with the speeds of all bodies.
     has_quotients: bool,
+    has_scales: bool,
     /// Whether the forces on all bodies are computed.
     has_forces_on_bodies: bool,
     /// The bodies at q̇ = 1 of a single actuator.
@@ -233,7 +267,7 @@ impl<'a> PositionEvaluator<'a> {
     ) -> Result<Self, StudyError> {
         let is_pruned = model.plan().pruned_groups().contains(&true);
         let checks_whole = is_pruned && whole_plan.actuators() > 1;
-        let has_quotients = columns.iter().any(is_quotient);
+        let has_quotients = columns.iter().any(|c| is_quotient(c.quantity));
         let mut forces = ForceEvaluator::new(scene, model, analysis);
         forces.keeps_poses = has_quotients;
         Ok(Self {
@@ -243,6 +277,7 @@ impl<'a> PositionEvaluator<'a> {
             has_forces_on_bodies: true,
             whole_mechanism: checks_whole.then(|| (whole_plan, whole_plan.pose())),
             has_quotients,
+            has_scales: has_quotients,
             size: scene.mechanism.size(),
             speed_scales: [SpeedScale::default(); 2],
             unit_speed_states: BodyStates::new(model.plan()),
@@ -295,8 +330,16 @@ impl<'a> PositionEvaluator<'a> {
 }
 
 impl RowEvaluator for PositionEvaluator<'_> {
-    fn limit_to(&mut self, mut quantities: impl Iterator<Item = Quantity>) {
-        self.has_forces_on_bodies = quantities.any(needs_forces_on_bodies);
+    fn limit_to(&mut self, quantities: impl Iterator<Item = Quantity>) {
+        (self.has_forces_on_bodies, self.forces.has_forces) = (false, false);
+        (self.has_quotients, self.has_scales) = (false, false);
+        for quantity in quantities {
+            self.has_forces_on_bodies |= needs_forces_on_bodies(quantity);
+            self.forces.has_forces |= !is_kinematic(quantity);
+            self.has_quotients |= is_quotient(quantity);
+            self.has_scales |= has_scale(quantity);
+        }
+        self.forces.keeps_poses = self.has_quotients;
     }
 
     fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
@@ -315,7 +358,7 @@ impl RowEvaluator for PositionEvaluator<'_> {
             self.unit_speed_states.fill(plan, pose, motion);
         }
         forces.fill_states(sample)?;
-        if self.has_quotients {
+        if self.has_scales {
             self.speed_scales = [&self.unit_speed_states, &forces.body_states]
                 .map(|states| SpeedScale::new(states, self.size));
         }
@@ -360,8 +403,12 @@ impl RowEvaluator for PositionEvaluator<'_> {
             }
             Quantity::PointCoordinate(body, at, k) => {
                 let point = states.point(body, at);
-                let vectors = [point.position, point.velocity, point.acceleration];
-                component(vectors[k / 2], k % 2)
+                let vector = match k / 2 {
+                    0 => point.position,
+                    1 => point.velocity,
+                    _ => point.acceleration,
+                };
+                component(vector, k % 2)
             }
             Quantity::TransmissionAngle(dyad) => dyad.angle(states),
             Quantity::Reaction(k) => forces.reactions[k],

@@ -119,15 +119,18 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
     pub(crate) fn in_rows(&self) -> io::Result<Extrema> {
         let at = (self.values)(self.abscissa)?;
         let both = |k| -> io::Result<Option<[Extremum; 2]>> {
-            let values = (self.values)(k)?;
-            let extremum = |sign: f64| {
-                let values = values.iter().zip(&at).filter(|(value, _)| !value.is_nan());
+            let mut found: Option<[Extremum; 2]> = None;
+            for (value, &at) in (self.values)(k)?.into_iter().zip(&at) {
+                let here = Extremum { value, at };
                 // Of equal values the first.
-                let better = |a: (_, _), b: (_, _)| if sign * b.0 > sign * a.0 { b } else { a };
-                let (value, at) = values.map(|(&value, &at)| (value, at)).reduce(better)?;
-                Some(Extremum { value, at })
-            };
-            Ok(extremum(-1.0).zip(extremum(1.0)).map(Into::into))
+                match &mut found {
+                    Some([smallest, _]) if value < smallest.value => *smallest = here,
+                    Some([_, largest]) if value > largest.value => *largest = here,
+                    None if !value.is_nan() => found = Some([here; 2]),
+                    _ => {}
+                }
+            }
+            Ok(found)
         };
         Ok(Extrema {
             of_columns: (0..self.columns.len())
@@ -211,11 +214,18 @@ impl<E: RowEvaluator> ExtremaSearch<'_, E> {
         let parts = positions.par_chunks(part.max(1)).map(|positions| {
             let mut evaluators = evaluators.to_vec();
             limit(&mut evaluators, (all, columns));
-            let mut value = |(u, sample): &(f64, TrajectorySample)| {
-                let values = evaluate(trajectory, &mut evaluators, (all, columns), sample);
-                Some((*u, values?))
-            };
-            positions.iter().filter_map(&mut value).collect::<Vec<_>>()
+            let mut found = Vec::with_capacity(positions.len());
+            for (u, sample) in positions {
+                let Some(evaluator) = evaluated(trajectory, &mut evaluators, sample) else {
+                    continue;
+                };
+                let mut values = Vec::with_capacity(columns.len());
+                for &k in columns {
+                    values.push(evaluator.value(all[k].quantity, sample));
+                }
+                found.push((*u, values));
+            }
+            found
         });
         parts.flatten().collect()
     }
@@ -253,11 +263,15 @@ impl<'b> KnownPoints<'b> {
             return points;
         }
         // A motion may end before its last row.
-        let known = self.order.iter().filter_map(|&(u, place)| match place {
-            Ok(row) => Some([u, *rows.get(row)?]),
-            Err(other) => Some([u, self.further[other].1[i]]),
-        });
-        known.collect()
+        let mut known = Vec::with_capacity(self.order.len());
+        for &(u, place) in &self.order {
+            match place {
+                Ok(row) if row < rows.len() => known.push([u, rows[row]]),
+                Ok(_) => {}
+                Err(other) => known.push([u, self.further[other].1[i]]),
+            }
+        }
+        known
     }
 }
 
@@ -272,14 +286,14 @@ struct ColumnSearch<'a, 's, E> {
 
 impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
     /// Some columns at a position.
-    fn evaluate(
+    fn evaluate<const N: usize>(
         &mut self,
-        columns: &[usize],
+        columns: [usize; N],
         (u, precision): (f64, SamplePrecision),
-    ) -> Option<Vec<f64>> {
+    ) -> Option<[f64; N]> {
         let sample = (self.sample)(u, precision)?;
-        let all = (self.columns, columns);
-        evaluate(self.trajectory, &mut self.evaluators, all, &sample)
+        let evaluator = evaluated(self.trajectory, &mut self.evaluators, &sample)?;
+        Some(columns.map(|k| evaluator.value(self.columns[k].quantity, &sample)))
     }
 
     /// The largest value times `sign` of a column; `points` are some of its values.
@@ -290,19 +304,24 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         (points, refined): (&[Point], usize),
     ) -> Option<Extremum> {
         limit(&mut self.evaluators, (self.columns, &[k, self.abscissa]));
-        let points: Vec<Point> = points.iter().map(|[u, v]| [*u, sign * v]).collect();
-        let values = points.iter().filter(|point| !point[1].is_nan());
-        let largest = *values.reduce(|a, b| if b[1] > a[1] { b } else { a })?;
-        let scale = points.iter().map(|[_, v]| v.abs()).fold(0.0, f64::max);
+        let (mut largest, mut scale) = (None::<Point>, 0.0);
+        for &[u, value] in points {
+            let signed = sign * value;
+            if largest.map_or(!value.is_nan(), |largest| signed > largest[1]) {
+                largest = Some([u, signed]);
+            }
+            if value.abs() > scale {
+                scale = value.abs();
+            }
+        }
+        let largest = largest?;
         // Each with its abscissa, where that is known.
         let mut found: Vec<(Point, Option<f64>)> = vec![(largest, None)];
         let unwraps = self.columns[k].unwraps();
-        for (near, bracket) in promising(&points, largest[1], refined) {
+        for (near, bracket) in promising(points, sign, largest[1], refined) {
             let columns = [k, self.abscissa];
             let mut value = |u: f64, precision: SamplePrecision| {
-                let [mut value, at] = self.evaluate(&columns, (u, precision))?[..] else {
-                    return None;
-                };
+                let [mut value, at] = self.evaluate(columns, (u, precision))?;
                 if unwraps {
                     value += TAU * ((sign * near - value) / TAU).round();
                 }
@@ -322,7 +341,7 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         let ([u, value], at) = *first.min_by(|(a, _), (b, _)| a[0].total_cmp(&b[0]))?;
         let at = match at {
             Some(at) => at,
-            None => *self.evaluate(&[self.abscissa], (u, Exact))?.first()?,
+            None => self.evaluate([self.abscissa], (u, Exact))?[0],
         };
         Some(Extremum {
             value: sign * value,
@@ -338,19 +357,16 @@ fn limit(evaluators: &mut [impl RowEvaluator], (all, columns): (&[Column], &[usi
     }
 }
 
-/// Some of all columns at a position.
-fn evaluate(
+/// The evaluator of a sample's chart, at its position.
+fn evaluated<'e, E: RowEvaluator>(
     trajectory: &Trajectory<'_>,
-    evaluators: &mut [impl RowEvaluator],
-    (all, columns): (&[Column], &[usize]),
+    evaluators: &'e mut [E],
     sample: &TrajectorySample,
-) -> Option<Vec<f64>> {
+) -> Option<&'e E> {
     let evaluator = evaluators.get_mut(sample.chart)?;
     let t = trajectory.load_time(sample);
     evaluator.evaluate(sample, t).ok()?;
-    let values = columns.iter();
-    let values = values.map(|&k| evaluator.value(all[k].quantity, sample));
-    Some(values.collect())
+    Some(evaluator)
 }
 
 /// Whether a column has its extrema between rows: not the error of the integration, and nothing that is infinite in

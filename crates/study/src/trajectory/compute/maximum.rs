@@ -25,7 +25,7 @@ pub(crate) fn highest_between(
     let scale = known.clone().map(|[_, v]| v.abs()).fold(0.0, f64::max);
     let higher = |a: Point, b: Point| if b[1] > a[1] { b } else { a };
     let highest = known.reduce(higher)?;
-    let brackets = promising(points, highest[1], count).into_iter();
+    let brackets = promising(points, 1.0, highest[1], count).into_iter();
     let found = brackets.filter_map(|(_, bracket)| refine_maximum(value, bracket, scale));
     Some(found.fold(highest, higher))
 }
@@ -33,25 +33,34 @@ pub(crate) fn highest_between(
 /// Three points, the middle one not below the others; the middle one may be missing at an end.
 pub(super) type Bracket = (Point, Option<Point>, Point);
 
-/// The local maxima in whose neighbourhood the largest value may be, each with its value: the first of them, and those
-/// whose parabolas are highest.
-pub(super) fn promising(points: &[Point], largest: f64, count: usize) -> Vec<(f64, Bracket)> {
+/// The local maxima of `sign` times the values in whose neighbourhood the largest may be, each with its value: the first of
+/// them, and those whose parabolas are highest.
+pub(super) fn promising(
+    points: &[Point],
+    sign: f64,
+    largest: f64,
+    count: usize,
+) -> Vec<(f64, Bracket)> {
     let Some(last) = points.len().checked_sub(1).filter(|last| *last > 0) else {
         return Vec::new();
     };
-    let mut all: Vec<(f64, f64, Bracket)> = Vec::new();
-    for (i, &point) in points.iter().enumerate() {
-        let value = point[1];
-        if i == 0 || i == last {
-            if value >= largest {
-                let ends = (points[i.max(1) - 1], points[(i + 1).min(last)]);
-                all.push((value, value, (ends.0, None, ends.1)));
-            }
-            continue;
-        }
-        let (before, after) = (points[i - 1], points[i + 1]);
-        let is_peak = value >= before[1] && value >= after[1];
-        if is_peak && (value > before[1] || value > after[1]) {
+    let signed = |i: usize| [points[i][0], sign * points[i][1]];
+    let end = |i: usize| {
+        let value = sign * points[i][1];
+        let ends = (signed(i.max(1) - 1), signed((i + 1).min(last)));
+        (value >= largest).then_some((value, value, (ends.0, None, ends.1)))
+    };
+    let mut all: Vec<(f64, f64, Bracket)> = Vec::from_iter(end(0));
+    for (i, around) in points.windows(3).enumerate() {
+        // Not by `map`, which is a call where the program is optimised for size.
+        let (low, value, high) = (
+            sign * around[0][1],
+            sign * around[1][1],
+            sign * around[2][1],
+        );
+        let is_peak = value >= low && value >= high;
+        if is_peak && (value > low || value > high) {
+            let (before, point, after) = (signed(i), signed(i + 1), signed(i + 2));
             let [_, top] = vertex([before, point, after]).unwrap_or(point);
             // A parabola through three points may be too low by as much again.
             if value + 2.0 * (top - value).max(0.0) >= largest {
@@ -59,6 +68,7 @@ pub(super) fn promising(points: &[Point], largest: f64, count: usize) -> Vec<(f6
             }
         }
     }
+    all.extend(end(last));
     let first = all.first().copied();
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
     all.truncate(count);

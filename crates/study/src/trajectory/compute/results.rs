@@ -161,7 +161,13 @@ impl TrajectoryResults {
     pub(crate) fn values(&self, column: usize) -> io::Result<Vec<f64>> {
         match &self.long_rows {
             Some(long) => long.table.column(column),
-            None => Ok(self.rows.iter().map(|row| row[column]).collect()),
+            None => {
+                let mut values = Vec::with_capacity(self.rows.len());
+                for row in &self.rows {
+                    values.push(row[column]);
+                }
+                Ok(values)
+            }
         }
     }
 
@@ -219,16 +225,18 @@ impl TrajectoryResults {
         evaluator: &impl RowEvaluator,
         sample: &TrajectorySample,
     ) -> Vec<f64> {
-        let value = |(column, last): (&Column, &mut Option<[f64; 3]>)| {
+        let mut row = Vec::with_capacity(self.columns.len());
+        for (column, last) in self.columns.iter().zip(&mut self.last_angles) {
             let value = evaluator.value(column.quantity, sample);
-            if !column.unwraps() {
-                return value;
-            }
-            let speed = evaluator.angular_velocity(column.quantity);
-            unwrap_angle(last, value, speed, sample.t)
-        };
-        let columns = self.columns.iter().zip(&mut self.last_angles);
-        columns.map(value).collect()
+            row.push(match column.unwraps() {
+                true => {
+                    let speed = evaluator.angular_velocity(column.quantity);
+                    unwrap_angle(last, value, speed, sample.t)
+                }
+                false => value,
+            });
+        }
+        row
     }
 }
 

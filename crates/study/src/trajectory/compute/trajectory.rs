@@ -341,14 +341,17 @@ impl<'a> Trajectory<'a> {
         match &self.kind {
             TrajectoryKind::Prescribed(prescribed, spacing) => {
                 let t = spacing.fraction_of_time(fraction) * prescribed.duration;
-                let derivative = |k: usize| prescribed.laws.iter().map(|l| l.eval(t)[k]).collect();
-                TrajectorySample {
+                let mut sample = TrajectorySample {
                     t,
-                    q: derivative(0),
-                    q_dot: derivative(1),
-                    q_ddot: derivative(2),
                     ..TrajectorySample::default()
+                };
+                for law in &prescribed.laws {
+                    let derivatives = law.eval(t);
+                    sample.q.push(derivatives[0]);
+                    sample.q_dot.push(derivatives[1]);
+                    sample.q_ddot.push(derivatives[2]);
                 }
+                sample
             }
             TrajectoryKind::Free(FreeTrajectory { samples, .. }) => {
                 let last = samples.len().saturating_sub(1);

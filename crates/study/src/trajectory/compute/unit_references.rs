@@ -42,8 +42,9 @@ impl UnitReferences {
                 Some(k) => row[k],
                 None => value(of.column.quantity),
             };
-            if value.is_finite() {
-                of.largest = of.largest.max(value.abs());
+            // What is no number is not larger.
+            if value.abs() > of.largest && value.is_finite() {
+                of.largest = value.abs();
             }
         }
     }
