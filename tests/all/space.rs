@@ -16,6 +16,7 @@ mod random_loops;
 mod reference;
 mod scenes;
 mod simulate;
+mod stops;
 mod sweeps;
 mod tilted;
 mod unit_runs;

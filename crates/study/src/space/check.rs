@@ -2,6 +2,7 @@
 
 use super::prepared::{compile, is_angle, sort_reactions};
 use crate::check::driven_by;
+use crate::contents::describe_stops;
 use crate::explain::{StudyError, describe_ends};
 use crate::number_format::{coordinate_unit, count, number};
 #[cfg(feature = "output")]
@@ -56,6 +57,7 @@ fn description(scene: &SpaceScene, record: &mut Record) -> Result<String, StudyE
     text += &describe_groups(scene, plan, record);
     text += &describe_placements(scene, &model, record);
     text += &describe_reactions(scene, &sorted, record);
+    text += &describe_stops(scene, record);
     if let Some(note) = &scene.note {
         text += &format!("  note: {note}\n");
     }

@@ -24,6 +24,8 @@ pub(crate) struct SpaceMotionProblem<'a> {
     pub(super) output_model: Model,
     /// The equations of motion.
     pub(super) machine: Machine<Model>,
+    /// The same with the requested reactions, for their impulses where there are end stops.
+    pub(super) impact_machine: Option<Machine<Model>>,
     /// The model whose reactions events are about.
     pub(super) event_model: Model,
     pub(super) events: Vec<Event<CoordinateFunction>>,
@@ -52,9 +54,12 @@ impl<'a> SpaceMotionProblem<'a> {
         });
         let of_events: Vec<Reaction> = of_events.collect();
         let event_model = with_loads(scene, compile(scene, &of_events)?)?;
+        let has_impacts = !scene.stops.is_empty();
+        let impact_machine = has_impacts.then(|| scene.machine(&reactions.requested));
         let mut problem = Self {
             scene,
             spec,
+            impact_machine: impact_machine.transpose()?,
             reactions,
             output_model,
             machine: scene.machine(&[])?,

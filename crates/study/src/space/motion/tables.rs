@@ -3,6 +3,8 @@
 use super::between_rows::MotionSampler;
 use super::problem::SpaceMotionProblem;
 use super::run::Run;
+#[cfg(feature = "output")]
+use crate::free_motion::compute::first_impulses;
 use crate::free_motion::compute::sliding_at;
 use crate::machines::MachineScene as _;
 use crate::models::states_of_drives;
@@ -48,7 +50,7 @@ impl SpaceMotionProblem<'_> {
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let last = run.solution.steps.last();
         let end = last.map_or(0.0, |step| step.t);
-        if self.machine.contact_loads().next().is_some() {
+        if self.machine.has_contacts() {
             return self.samples_between_contacts(run, times, end);
         }
         let wanted: Vec<f64> = times
@@ -97,7 +99,7 @@ impl SpaceMotionProblem<'_> {
         Ok(all)
     }
 
-    /// The same of a motion whose surfaces come to rest: from the step before each time.
+    /// The same of a motion with surfaces that come to rest, or end stops: from the step before each time.
     fn samples_between_contacts(
         &self,
         run: &Run,
@@ -211,7 +213,8 @@ impl SpaceMotionProblem<'_> {
         all.into_iter().enumerate().map(column).collect()
     }
 
-    /// The time of each event, and the actuator coordinates and speeds then.
+    /// The time of each event, the actuator coordinates and speeds then, and where there are end stops the impulses of the
+    /// requested reactions.
     #[cfg(feature = "output")]
     pub(super) fn event_table(&self, solution: &Solution) -> Table {
         let mut columns = vec![TableColumn::new("t", "s"), TableColumn::new("event", "")];
@@ -223,20 +226,33 @@ impl SpaceMotionProblem<'_> {
                 format!("{unit}/s"),
             ));
         }
+        let impulses = match &self.impact_machine {
+            Some(machine) => self.scene.reaction_columns(machine.model()),
+            None => Vec::new(),
+        };
+        // Behind the requested ones are those that friction needs.
+        let impulses = &impulses[..impulses.len().min(self.reactions.requested.len())];
+        columns.extend(impulses.iter().map(|reaction| {
+            let (name, unit) = (&reaction.name, &reaction.unit);
+            TableColumn::new(format!("{name}.impulse"), format!("{unit} s"))
+        }));
         let mut workspace = self.machine.workspace();
         let own = solution.event_occurrences.iter();
-        let own = own.map(|o| (o.event + 1, o.state.clone()));
+        let own = own.map(|o| (o.event + 1, o.state.clone(), Vec::new()));
         let contacts = self.contacts().occurrences(0, solution).into_iter();
-        let contacts = contacts.map(|o| (o.number, o.state));
+        let contacts = contacts.map(|o| (o.number, o.state, o.speed_changes));
         let mut events: Vec<_> = own.chain(contacts).collect();
-        events.sort_by(|(_, one), (_, other)| one.t.total_cmp(&other.t));
-        let rows = events.iter().map(|(number, at)| {
+        events.sort_by(|(_, one, _), (_, other, _)| one.t.total_cmp(&other.t));
+        let rows = events.iter().map(|(number, at, changes)| {
             let mut row = vec![at.t, *number as f64];
             if let Ok(state) = self.machine.evaluate(at.t, &at.y, &mut workspace) {
                 let both = state.q().iter().zip(state.q_dot());
                 row.extend(both.flat_map(|(q, speed)| [*q, *speed]));
             }
-            row.resize(columns.len(), f64::NAN);
+            row.resize(columns.len() - impulses.len(), f64::NAN);
+            if let Some(machine) = &self.impact_machine {
+                row.extend(first_impulses(machine, at, (changes, impulses.len())));
+            }
             row
         });
         let rows = rows.collect();
