@@ -2,6 +2,7 @@
 //! must be refused.
 
 mod cases;
+mod change_points;
 mod extremes;
 mod flyball;
 mod friction;

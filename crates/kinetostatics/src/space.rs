@@ -40,6 +40,7 @@ mod load;
 mod machine;
 mod mass;
 mod model;
+mod on_fit;
 mod reduced;
 
 pub use dwell_geometry::space::{Coordinate, CoordinateFunction};

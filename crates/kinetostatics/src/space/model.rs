@@ -5,6 +5,7 @@ use super::compiled_loads::CompiledLoads;
 use super::friction::JointFriction;
 use super::load::LoadKind;
 use super::mass::Mass;
+use super::on_fit::FitMemory;
 use crate::error::PositionResult;
 use crate::friction::FrictionWorkspace;
 use crate::load::SignalWorkspace;
@@ -108,6 +109,7 @@ pub struct Workspace<T = f64> {
     pub(super) friction_workspace: FrictionWorkspace<T>,
     /// By friction: the response to one unit of it.
     pub(super) friction_responses: Vec<InverseDynamics<T>>,
+    pub(super) on_fit: FitMemory<T>,
 }
 
 impl Model {
@@ -242,6 +244,7 @@ impl Model {
             signals: SignalWorkspace::new(self.loads.max_signals()),
             friction_workspace: FrictionWorkspace::new(self.frictions.len()),
             friction_responses: vec![self.result_buffer(); self.frictions.len()],
+            on_fit: FitMemory::default(),
         }
     }
 

@@ -333,7 +333,7 @@ fn motion_values(
     reactions: &JointReactions,
 ) -> Result<Vec<(String, f64)>, StudyError> {
     let solver = MotionSolver::Settings(SolverSettings::default());
-    let problem = SpaceMotionProblem::new(scene)?;
+    let problem = SpaceMotionProblem::new(scene)?.for_solver(&solver);
     let (_, mut computed, _) = problem.simulate(&solver, None, &no_progress)?;
     if let Some(error) = computed.early_stop.take() {
         return Err(error);

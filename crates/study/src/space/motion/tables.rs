@@ -29,6 +29,8 @@ impl SpaceMotionProblem<'_> {
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let mut workspace = self.machine.workspace();
         let states = solution.samples.iter();
+        // Within the window of a change point no reaction has a value.
+        let states = states.filter(|state| !self.machine.is_in_fit_window(&state.y));
         let all = states.map(|state| {
             let sliding = sliding_at(solution, state.t);
             self.sample(state, sliding, &mut workspace)
@@ -83,6 +85,7 @@ impl SpaceMotionProblem<'_> {
             states.push(state.clone());
         }
         let mut workspace = self.machine.workspace();
+        states.retain(|state| !self.machine.is_in_fit_window(&state.y));
         let all = states.iter().map(|state| {
             let sliding = sliding_at(&run.solution, state.t);
             self.sample(state, sliding, &mut workspace)
@@ -108,11 +111,11 @@ impl SpaceMotionProblem<'_> {
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let mut sampler = MotionSampler::new(self, run);
         let wanted = times.iter().copied().filter(|&t| t < end).chain([end]);
-        let sample = |t: f64| {
-            let found = sampler.sample_at(t, SamplePrecision::Exact);
-            found.ok_or(DynamicsError::StepTooSmall { t })
+        let sample = |t: f64| match sampler.sample_at(t, SamplePrecision::Exact) {
+            None if self.crosses_at(run, t) => None,
+            found => Some(found.ok_or(DynamicsError::StepTooSmall { t })),
         };
-        let mut all = wanted.map(sample).collect::<Result<Vec<_>, _>>()?;
+        let mut all = wanted.filter_map(sample).collect::<Result<Vec<_>, _>>()?;
         let initial = self.sample(&self.initial_state(), None, &mut self.machine.workspace())?;
         let index = self.balance_index();
         for sample in &mut all {
