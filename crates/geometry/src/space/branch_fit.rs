@@ -88,6 +88,15 @@ impl Plan {
         })
     }
 
+    /// The whole periods between a fit and a coordinate at a distance from its centre, less those by which a freedom is counted there.
+    fn counted_periods(&self, fit: &BranchFit, [q, x]: [f64; 2]) -> f64 {
+        let periods = match self.range.period() {
+            Some(period) => ((q - x - fit.center) / period).round(),
+            None => 0.0,
+        };
+        periods - self.periods(q)
+    }
+
     /// What a freedom gains in a period of the only coordinate.
     fn gain(&self, freedom: usize) -> f64 {
         self.freedom_gains.get(freedom).copied().unwrap_or(0.0)
@@ -114,12 +123,7 @@ impl Plan {
             pose.accelerations[driver.freedom] = q_ddot * factor;
         }
         let (scalars, balls) = values.split_at(fit.scalars.len());
-        // Whole periods between the fit and the coordinate, and those by which a freedom is counted there.
-        let periods = match self.range.period() {
-            Some(period) => ((q.value() - x.value() - fit.center) / period).round(),
-            None => 0.0,
-        };
-        let shift = periods - self.periods(q.value());
+        let shift = self.counted_periods(fit, [q, x].map(|v| v.value()));
         for (&freedom, [value, first, second]) in fit.scalars.iter().zip(scalars) {
             pose.coordinates[freedom] = *value + T::from_f64(shift * self.gain(freedom));
             pose.rates[freedom] = *first * q_dot;
