@@ -59,7 +59,7 @@ mod tree;
 mod vector;
 mod wrench;
 
-pub use branch_fit::{BranchFit, BranchFitMemory};
+pub use branch_fit::{BranchFit, BranchFitWorkspace};
 pub use change_points::ChangePoint;
 pub use coordinate::{Coordinate, CoordinateFunction, Counting};
 pub use frames::{BodyMotion, Frame};

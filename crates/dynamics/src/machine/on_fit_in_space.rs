@@ -6,7 +6,7 @@ use super::{Machine, MachineState, MovingModel};
 use crate::change_point_fit::{ChangePointFitError, MAX_GAP, half_width_of_groups};
 use crate::error::{Result, positive_inertia};
 use dwell_geometry::PositionError;
-use dwell_geometry::space::{BranchFit, BranchFitMemory, ChangePoint};
+use dwell_geometry::space::{BranchFit, BranchFitWorkspace, ChangePoint};
 use dwell_kinetostatics::space::{Model, Workspace};
 use dwell_kinetostatics::{EvaluatedState, ForceState, InverseDynamics, MachineModel as _};
 use dwell_numerics::{Scalar, lu};
@@ -141,7 +141,7 @@ fn gap(
     [half_width, unit]: [f64; 2],
 ) -> Result<f64, PositionError> {
     let plan = model.plan();
-    let (mut memory, mut largest) = (BranchFitMemory::default(), 0.0_f64);
+    let (mut memory, mut largest) = (BranchFitWorkspace::default(), 0.0_f64);
     let [mut pose, mut fitted] = [plan.pose::<f64>(), plan.pose::<f64>()];
     for x in [-half_width, half_width] {
         let q = center + x;

@@ -34,7 +34,7 @@ pub struct BranchFit {
 
 /// Memory for the evaluation of a fit.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct BranchFitMemory<T> {
+pub struct BranchFitWorkspace<T> {
     basis: Vec<[T; 3]>,
     values: Vec<[T; 3]>,
 }
@@ -108,13 +108,13 @@ impl Plan {
         fit: &BranchFit,
         [q, x]: [T; 2],
         [q_dot, q_ddot]: [T; 2],
-        memory: &mut BranchFitMemory<T>,
+        memory: &mut BranchFitWorkspace<T>,
         pose: &mut Pose<T>,
     ) {
         let zero = T::from_f64(0.0);
         let count = fit.scalars.len() + BALL * pose.balls.len();
         memory.values.resize(count, [zero; 3]);
-        let BranchFitMemory { basis, values } = memory;
+        let BranchFitWorkspace { basis, values } = memory;
         fit.polynomials.eval(x, basis, values);
         for driver in &self.drivers {
             let factor = T::from_f64(driver.factor);

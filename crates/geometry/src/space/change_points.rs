@@ -6,7 +6,7 @@
 //! sign det(P₁ P₂ᵀ) < 0,    and at the change point 1/‖P‖ = 0                                             (1)
 //! ```
 
-use super::branch_fit::{BranchFit, BranchFitMemory};
+use super::branch_fit::{BranchFit, BranchFitWorkspace};
 use super::groups::Group;
 use super::plan::{Plan, Pose};
 use dwell_numerics::{lu, root};
@@ -62,7 +62,7 @@ impl Plan {
         let fit = self
             .fit_branch(guess, FITTED.map(|part| part * unit))
             .ok()?;
-        let (mut pose, mut memory) = (self.pose::<f64>(), BranchFitMemory::default());
+        let (mut pose, mut memory) = (self.pose::<f64>(), BranchFitWorkspace::default());
         let mut signed = |q: f64| {
             let there = self.inverse_on_fit(group, &fit, [q, q - guess], &mut memory, &mut pose);
             let size = norm(&there);
@@ -85,7 +85,7 @@ impl Plan {
         group: &Group,
         fit: &BranchFit,
         at: [f64; 2],
-        memory: &mut BranchFitMemory<f64>,
+        memory: &mut BranchFitWorkspace<f64>,
         pose: &mut Pose,
     ) -> Vec<f64> {
         self.set_on_fit(fit, at, [1.0, 0.0], memory, pose);

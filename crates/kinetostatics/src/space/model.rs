@@ -5,7 +5,7 @@ use super::compiled_loads::CompiledLoads;
 use super::friction::JointFriction;
 use super::load::LoadKind;
 use super::mass::Mass;
-use super::on_fit::FitMemory;
+use super::on_fit::FitWorkspace;
 use super::surface_friction::SurfaceFriction;
 use crate::error::PositionResult;
 use crate::friction::FrictionWorkspace;
@@ -112,7 +112,7 @@ pub struct Workspace<T = f64> {
     pub(super) friction_workspace: FrictionWorkspace<T>,
     /// By friction: the response to one unit of it.
     pub(super) friction_responses: Vec<InverseDynamics<T>>,
-    pub(super) on_fit: FitMemory<T>,
+    pub(super) on_fit: FitWorkspace<T>,
     /// By friction of a surface that holds at rest: in which direction it slides, along the axis and around it.
     pub(super) surface_directions: Vec<[T; 2]>,
 }
@@ -251,7 +251,7 @@ impl Model {
             signals: SignalWorkspace::new(self.loads.max_signals()),
             friction_workspace: FrictionWorkspace::new(self.frictions.len()),
             friction_responses: vec![self.result_buffer(); self.frictions.len()],
-            on_fit: FitMemory::default(),
+            on_fit: FitWorkspace::default(),
             surface_directions: vec![[T::from_f64(0.0); 2]; self.surface_frictions.len()],
         }
     }

@@ -10,13 +10,13 @@ use super::model::{Model, Workspace};
 use crate::error::Result;
 use crate::model::{EvaluatedState, ForceState, KinematicState, MachineModel as _};
 use crate::pass::InverseDynamics;
-use dwell_geometry::space::{BodyMotion, BranchFit, BranchFitMemory, Wrench};
+use dwell_geometry::space::{BodyMotion, BranchFit, BranchFitWorkspace, Wrench};
 use dwell_numerics::Scalar;
 
 /// Memory for a model on a fit.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct FitMemory<T> {
-    branch: BranchFitMemory<T>,
+pub(super) struct FitWorkspace<T> {
+    branch: BranchFitWorkspace<T>,
     /// By body: its motion at unit speed.
     unit_states: Vec<BodyMotion<T>>,
 }

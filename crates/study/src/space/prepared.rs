@@ -187,7 +187,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
     }
 
     fn range(&self) -> Range {
-        shown_range(self.model.model().plan(), self.scene.assembly.q[0])
+        range_between_change_points(self.model.model().plan(), self.scene.assembly.q[0])
     }
 
     fn has_limits(&self) -> [bool; 2] {
@@ -322,7 +322,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
 }
 
 /// The range of the only actuator about a coordinate; of one with change points the part between two of them, as in the plane.
-fn shown_range(plan: &Plan, start: f64) -> Range {
+fn range_between_change_points(plan: &Plan, start: f64) -> Range {
     let range = plan.range();
     if plan.change_points().is_empty() {
         return range;
@@ -346,7 +346,7 @@ fn shown_range(plan: &Plan, start: f64) -> Range {
 pub(super) fn range_limits(scene: &SpaceScene, plan: &Plan) -> ([f64; 2], [bool; 2], &'static str) {
     let (start, is_angle) = (scene.assembly.q[0], is_angle(scene));
     let half_stroke = DEFAULT_STROKE * plan.size();
-    match shown_range(plan, start) {
+    match range_between_change_points(plan, start) {
         Range::Limited(from, to) => {
             let margin = LIMIT_MARGIN * (to - from);
             ([from + margin, to - margin], [true; 2], "the range")

@@ -27,7 +27,7 @@ const IMPACTS: Comparison = Comparison {
     key: "stop-impacts",
     check: Check::Momentum,
     comparison: "the impulses that the dense inertias give of each impact's change of speeds with one along its coordinate alone, and the \
-                 speed behind it with the restitution",
+                 speed after it with the restitution",
     scale: "the impulse, and the speed before",
     // The largest seen in a case is 9.4e-15.
     tolerance: 9e-13,
@@ -63,7 +63,7 @@ pub(super) fn stopped_findings(scene: &SpaceScene) -> Result<Vec<Finding>, Valid
     let begin = OdeState { t: 0.0, y };
     let solution = solve(&machine, machine.model(), &begin, duration, &options, &[]);
     let solution = solution.map_err(|error| scene.explain(machine.model(), &error))?;
-    let judged = Judged {
+    let motion = StoppedMotion {
         claims: &claims,
         machine: &machine,
         stops: &scene.stops,
@@ -71,9 +71,9 @@ pub(super) fn stopped_findings(scene: &SpaceScene) -> Result<Vec<Finding>, Valid
     let steps = format!("{} steps", solution.steps.len());
     let impacts = format!("{} events", solution.contact_events.len());
     let found = [
-        judged.forces(&solution).finding(&FORCES, &steps),
-        judged.impacts(&solution).finding(&IMPACTS, &impacts),
-        judged.energy(&solution).finding(&ENERGY, &steps),
+        motion.forces(&solution).finding(&FORCES, &steps),
+        motion.impacts(&solution).finding(&IMPACTS, &impacts),
+        motion.energy(&solution).finding(&ENERGY, &steps),
     ];
     let mut findings: Vec<Finding> = found.into_iter().flatten().collect();
     // A motion that stops early shows less than it should.
@@ -83,13 +83,13 @@ pub(super) fn stopped_findings(scene: &SpaceScene) -> Result<Vec<Finding>, Valid
     Ok(findings)
 }
 
-struct Judged<'a> {
+struct StoppedMotion<'a> {
     claims: &'a SpaceClaims<'a>,
     machine: &'a Machine<Model>,
     stops: &'a [NamedStop],
 }
 
-impl Judged<'_> {
+impl StoppedMotion<'_> {
     /// Coordinates and speeds of a state.
     fn parts<'y>(&self, y: &'y [f64]) -> [&'y [f64]; 2] {
         let n = self.machine.free().len();

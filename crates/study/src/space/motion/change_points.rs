@@ -3,10 +3,16 @@
 use super::problem::SpaceMotionProblem;
 use super::run::Run;
 use crate::number_format::digits;
-use dwell_dynamics::{OdeState, SpaceFitWindow};
+use dwell_dynamics::{DynamicsError, Event, EventKind, OdeState, Solution, SpaceFitWindow};
+use dwell_geometry::PositionError;
+use dwell_kinetostatics::MachineModel as _;
+use dwell_kinetostatics::space::CoordinateFunction;
+use std::num::NonZeroUsize;
 
 /// Passages that a summary lists.
 const MAX_LISTED: usize = 6;
+/// How far in front of a change point that it cannot cross a motion ends, in half windows: at their edge nothing is evaluated any more.
+const IN_FRONT: f64 = 1.02;
 
 /// How many change points of a window are at or below a coordinate.
 fn count_below(window: &SpaceFitWindow, q: f64) -> f64 {
@@ -61,6 +67,72 @@ impl SpaceMotionProblem<'_> {
             };
         }
         text
+    }
+}
+
+/// Where a motion ends, and why.
+pub(super) type Barrier = (Event<CoordinateFunction>, DynamicsError);
+
+impl SpaceMotionProblem<'_> {
+    /// The ends of the part of its coordinate that it cannot leave: in front of the windows of change points that it cannot cross.
+    pub(super) fn barriers(&self) -> Vec<Barrier> {
+        let windows = self.machine.change_point_windows().iter();
+        let windows = windows.filter(|window| window.fit.is_err());
+        let (Some(actuator), Some(&start)) = (
+            self.scene.mechanism.actuators.first(),
+            self.spec.initial_coordinates.first(),
+        ) else {
+            return Vec::new();
+        };
+        let joint = &self.scene.mechanism.joints[actuator.kind.joint().0];
+        let coordinate = self
+            .event_model
+            .coordinate_function(actuator.kind.coordinate(joint));
+        let Ok(coordinate) = coordinate else {
+            return Vec::new();
+        };
+        let ends = windows.flat_map(|window| {
+            let aside = IN_FRONT * window.half_width;
+            let [up, down] = [-aside, aside].map(|aside| window.at.q + aside - start);
+            // The next ones of all periods.
+            let next = match window.period() {
+                Some(period) => [
+                    Some(up.rem_euclid(period)),
+                    Some(-(-down).rem_euclid(period)),
+                ],
+                None => [
+                    Some(up).filter(|up| *up >= 0.0),
+                    Some(down).filter(|down| *down <= 0.0),
+                ],
+            };
+            let event = move |to: f64| {
+                let singular = PositionError::Singular {
+                    group: window.at.group,
+                    q: start + to + aside.copysign(to),
+                    relative_determinant: 0.0,
+                };
+                let event = Event {
+                    kind: EventKind::Reaches(coordinate, start + to),
+                    terminal: Some(NonZeroUsize::MIN),
+                };
+                (event, DynamicsError::from(singular))
+            };
+            next.into_iter().flatten().map(event)
+        });
+        ends.collect()
+    }
+
+    /// A motion that came to one of them ends there with its error.
+    pub(super) fn end_at_barrier(&self, solution: &mut Solution, barriers: &[Barrier]) {
+        let own = self.events.len();
+        let reached = solution.event_occurrences.iter().map(|o| o.event);
+        let reached = reached.filter(|event| *event >= own).min();
+        let Some((_, error)) = reached.and_then(|event| barriers.get(event - own)) else {
+            return;
+        };
+        solution.event_occurrences.retain(|o| o.event < own);
+        solution.terminated_by_event = false;
+        solution.error = Some(error.clone());
     }
 }
 
