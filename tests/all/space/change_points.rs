@@ -112,7 +112,7 @@ fn change_points_are_found_where_the_parallelogram_is_flat() {
             }
         }
     }
-    // Seen: 2e-13.
+    // Seen: 5.4e-12.
     println!("change points: {largest:.1e}");
     assert!(largest < 2e-11, "{largest:.1e}");
     for name in ONE_COORDINATE {
@@ -124,8 +124,8 @@ fn change_points_are_found_where_the_parallelogram_is_flat() {
 /// The error of a motion at a tolerance of 1e-12: of the method, after five revolutions.
 fn allowed(method: Method) -> f64 {
     match method {
-        Method::TrBdf2 => 1e-4,
-        Method::Esdirk34 | Method::Bdf => 1e-6,
+        // Seen: 3e-8, 9e-8 and 1e-9.
+        Method::TrBdf2 | Method::Esdirk34 | Method::Bdf => 1e-6,
         Method::Tsit45 | Method::Dop853 => 1e-8,
     }
 }
@@ -171,7 +171,7 @@ fn a_parallelogram_moves_as_a_pendulum_through_its_change_points() {
         }
     }
     println!("parallelogram after ten change points: {largest:.1e}");
-    // Within the errors of the fits.
+    // Seen: 8e-11, the errors of the fits.
     assert!(largest < 1e-9, "{largest:.1e}");
 }
 
@@ -216,7 +216,8 @@ fn parallelograms_move_in_an_oblique_plane_as_in_the_plane() {
             }
             println!("{angles:?} {kinds:?}: {largest:.1e} in {compared} rows");
             assert!(compared > 900, "{compared}");
-            assert!(largest < 1e-7, "{angles:?} {kinds:?}: {largest:.1e}");
+            // Seen: 1.8e-11.
+            assert!(largest < 1e-9, "{angles:?} {kinds:?}: {largest:.1e}");
         }
     }
 }
