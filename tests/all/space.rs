@@ -2,10 +2,12 @@
 //! must be refused.
 
 mod cases;
+mod change_points;
 mod extremes;
 mod flyball;
 mod friction;
 mod friction_in_motion;
+mod holding_tubes;
 mod hooke_joint;
 mod loads;
 mod motions;
@@ -16,6 +18,7 @@ mod random_loops;
 mod reference;
 mod scenes;
 mod simulate;
+mod stops;
 mod sweeps;
 mod tilted;
 mod unit_runs;

@@ -33,7 +33,7 @@ const MAX_TOLERANCE: f64 = 1e-9;
 /// How far from the change point poses are fitted, rad: the farthest of the good ones is taken.
 const FIT_RADII: [f64; 5] = [0.15, 0.3, 0.5, 0.8, 1.2];
 /// Largest gap between a fit and the plan at the window's ends, in first and second derivatives.
-const MAX_GAP: f64 = 1e-6;
+pub(crate) const MAX_GAP: f64 = 1e-6;
 /// A gap below this is as good as any.
 const GAP_ROUNDING: f64 = 1e-11;
 
@@ -127,7 +127,12 @@ impl FitWindow {
 
 /// Half the window for a tolerance, rad: where N·eps/|sin θ|³ exceeds it.
 pub(crate) fn half_width_for(plan: &Plan, tolerance: f64) -> f64 {
-    let groups = plan.group_methods().len() as f64;
+    half_width_of_groups(plan.group_methods().len(), tolerance)
+}
+
+/// The same of so many groups.
+pub(crate) fn half_width_of_groups(groups: usize, tolerance: f64) -> f64 {
+    let groups = groups as f64;
     let tolerance = tolerance.clamp(MIN_TOLERANCE, MAX_TOLERANCE);
     (groups * f64::EPSILON / tolerance)
         .cbrt()

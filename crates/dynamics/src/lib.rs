@@ -95,7 +95,7 @@ pub use flywheel::{Flywheel, size_flywheel};
 pub use integrate::integrate;
 pub use machine::{
     CoordinateMode, Machine, MachineError, MachineState, MachineWorkspace, MovingModel,
-    NonconservativeSource, SlidingForces, loads_with_drives,
+    NonconservativeSource, SlidingForces, SpaceFitWindow, loads_with_drives,
 };
 pub use machine_ode::MachineOde;
 pub use motion_class::{MotionClass, motion_class};

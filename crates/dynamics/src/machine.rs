@@ -18,6 +18,7 @@ mod contacts;
 mod drives;
 mod impact;
 mod on_fit;
+mod on_fit_in_space;
 mod sliding;
 mod state;
 mod unloaded;
@@ -35,7 +36,7 @@ use dwell_kinetostatics::{
 use dwell_laws::{Features, Law};
 use dwell_numerics::{Scalar, lu};
 pub use on_fit::MovingModel;
-pub use on_fit::NoFit;
+pub use on_fit_in_space::SpaceFitWindow;
 pub use sliding::SlidingForces;
 pub use state::MachineState;
 use std::sync::Arc;

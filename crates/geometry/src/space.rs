@@ -37,6 +37,8 @@
 //! ```
 
 mod assemble;
+mod branch_fit;
+mod change_points;
 mod closure;
 mod coordinate;
 mod factors;
@@ -57,6 +59,8 @@ mod tree;
 mod vector;
 mod wrench;
 
+pub use branch_fit::{BranchFit, BranchFitWorkspace};
+pub use change_points::ChangePoint;
 pub use coordinate::{Coordinate, CoordinateFunction, Counting};
 pub use frames::{BodyMotion, Frame};
 pub use mechanism::{

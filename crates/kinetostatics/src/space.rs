@@ -40,7 +40,10 @@ mod load;
 mod machine;
 mod mass;
 mod model;
+mod on_fit;
 mod reduced;
+mod response;
+mod surface_friction;
 
 pub use dwell_geometry::space::{Coordinate, CoordinateFunction};
 pub use load::{Direction, Load, LoadKind};

@@ -1,5 +1,6 @@
 //! What a scene has, for `dwell check`: its size and masses at the start, loads, drives, stops and motions.
 
+use crate::explain::NamedScene;
 use crate::number_format::{coordinate_unit, count, digits, force_unit, number};
 use dwell_findings::Record;
 use dwell_geometry::{BodyId, Plan, Vec2, vec2};
@@ -229,10 +230,10 @@ fn describe_drives(scene: &Scene, record: &mut Record) -> String {
     "  drives:\n".to_owned() + &lines.collect::<String>()
 }
 
-fn describe_stops(scene: &Scene, record: &mut Record) -> String {
-    let lines = scene.stops.iter().map(|stop| {
-        let actuator = &scene.mechanism.actuators[stop.actuator.0];
-        let is_angle = actuator.coordinate().is_angle();
+/// The end stops of a scene in the plane or in space.
+pub(crate) fn describe_stops(scene: &impl NamedScene, record: &mut Record) -> String {
+    let lines = scene.stops().iter().map(|stop| {
+        let (on, is_angle) = scene.actuator(stop.actuator.0).unwrap_or(("", true));
         let limit = |words: &str, value: f64| {
             let (value, unit) = scene.to_scene_unit(value, is_angle);
             format!(" {words} {} {unit}", number(value))
@@ -246,10 +247,23 @@ fn describe_stops(scene: &Scene, record: &mut Record) -> String {
                 record.add(of(what), coordinate_unit(is_angle), value);
             }
         }
-        record.add(of("restitution"), "", stop.restitution);
-        let restitution = number(stop.restitution);
-        let (name, on) = (&stop.name, &actuator.name);
-        format!("  end stop {name}: {on}{limits}, coefficient of restitution {restitution}\n")
+        let force = force_unit(is_angle);
+        let pushes = match stop.yielding {
+            None => {
+                record.add(of("restitution"), "", stop.restitution);
+                format!("coefficient of restitution {}", number(stop.restitution))
+            }
+            Some([stiffness, damping]) => {
+                let per = coordinate_unit(is_angle);
+                let units = [format!("{force}/{per}"), format!("{force} s/{per}")];
+                record.add(of("stiffness"), &units[0], stiffness);
+                record.add(of("damping"), &units[1], damping);
+                let [stiffness, damping] = [stiffness, damping].map(number);
+                let [by_depth, by_rate] = units;
+                format!("it yields with {stiffness} {by_depth} and {damping} {by_rate}")
+            }
+        };
+        format!("  end stop {}: {on}{limits}, {pushes}\n", stop.name)
     });
     lines.collect()
 }

@@ -20,12 +20,14 @@ mod closing;
 mod differences;
 mod energy;
 mod forces;
+mod friction;
 mod rows;
 mod state;
 
 pub use balances::joint_actions;
 pub use branch::check_branch_in_space;
 pub use energy::{kinetic_energy, potential_energy};
+pub use friction::{sliding_in_space, with_friction_in_space};
 pub use rows::{closure_error, mesh_error};
 pub use state::{SpaceCase, SpaceState, SpaceSubject, check_states_in_space};
 

@@ -27,12 +27,12 @@ fn tolerance(method: Method) -> [f64; 2] {
 }
 
 /// The machine of a scene, all of whose coordinates are free.
-fn machine(scene: &SpaceScene) -> Machine<Model> {
+pub(super) fn machine(scene: &SpaceScene) -> Machine<Model> {
     MachineScene::machine(scene, &[]).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A motion from a coordinate and a speed.
-fn motion<M: MovingModel>(
+pub(super) fn motion<M: MovingModel>(
     machine: &Machine<M>,
     model: &M,
     [q, q_dot]: [f64; 2],
@@ -64,7 +64,7 @@ fn holds(mode: ContactMode) -> bool {
 }
 
 /// How far kinetic and potential energy less all works vary, over the largest of them.
-fn energy_error<M: MovingModel>(machine: &Machine<M>, steps: &[OdeState]) -> f64 {
+pub(super) fn energy_error<M: MovingModel>(machine: &Machine<M>, steps: &[OdeState]) -> f64 {
     let mut workspace = machine.workspace();
     let (mut low, mut high, mut largest) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
     for step in steps {
@@ -317,7 +317,11 @@ fn a_machine_with_friction_moves_in_an_oblique_plane_as_in_the_plane() {
 }
 
 /// The state at the end of a motion, without works; the error of its energy; and the times of all changes of contacts.
-fn compare<S: MachineScene>(scene: &S, end: f64, start: [f64; 2]) -> (Vec<f64>, f64, Vec<f64>)
+pub(super) fn compare<S: MachineScene>(
+    scene: &S,
+    end: f64,
+    start: [f64; 2],
+) -> (Vec<f64>, f64, Vec<f64>)
 where
     S::Model: MovingModel,
 {

@@ -41,6 +41,9 @@ pub fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static st
         }
         ("geometry", "space/coordinate", _) => (15, "coordinates of loads"),
         ("kinetostatics", "space/mass", _) => (16, "inertia forces"),
+        ("kinetostatics", "friction" | "space/friction" | "space/surface_friction", _) => {
+            (19, "friction")
+        }
         ("kinetostatics", _, _) if module.starts_with("load") => (17, "magnitudes of loads"),
         ("kinetostatics", "space/action" | "space/load" | "space/compiled_loads", _) => {
             (17, "loads")

@@ -55,6 +55,11 @@ impl<M: MovingModel> Machine<M> {
         self.contacts.len() + self.stops.len()
     }
 
+    /// Whether it has frictions that hold at rest, or end stops: then its motion has events of their own.
+    pub fn has_contacts(&self) -> bool {
+        self.contact_count() > 0
+    }
+
     /// The frictions that hold at rest, by their loads.
     pub fn contact_loads(&self) -> impl Iterator<Item = usize> + '_ {
         self.contacts.iter().map(|contact| contact.load)

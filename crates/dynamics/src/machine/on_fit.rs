@@ -6,7 +6,7 @@ use crate::change_point_fit::{FitWindow, FitWorkspace, set_motion};
 use crate::error::{Result, positive_inertia};
 use dwell_geometry::{Motion, Pose};
 use dwell_kinetostatics::{
-    EvaluatedState, ForceState, InverseDynamics, MachineModel, Magnitude, Model, Workspace, space,
+    EvaluatedState, ForceState, InverseDynamics, MachineModel, Magnitude, Model, Workspace,
 };
 use dwell_numerics::Scalar;
 use dwell_numerics::polynomial_fit::{PolynomialFit, chebyshev_nodes};
@@ -86,38 +86,6 @@ pub trait MovingModel: MachineModel {
         workspace: &'o mut Self::Workspace<f64>,
         result: &'o mut InverseDynamics<f64>,
     ) -> Result<EvaluatedState<'o, f64, Self>>;
-}
-
-/// A model in space crosses no change point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum NoFit {}
-
-impl MovingModel for space::Model {
-    type FitWindow = NoFit;
-
-    fn offset_within(window: &NoFit, _: f64) -> Option<f64> {
-        match *window {}
-    }
-
-    fn evaluate_on_fit<'a, T: Scalar>(
-        _: &'a Machine<Self>,
-        (window, _): (&NoFit, f64),
-        _: (f64, &[T]),
-        _: (&[T], &'a mut Self::Workspace<T>),
-        _: &mut EquationWorkspace<T>,
-    ) -> Result<ForceState<'a, T, Self>> {
-        match *window {}
-    }
-
-    fn outputs_on_fit<'o>(
-        _: &MachineState<'_, f64, Self>,
-        (window, _): (&NoFit, f64),
-        _: &'o Self,
-        _: &'o mut Self::Workspace<f64>,
-        _: &'o mut InverseDynamics<f64>,
-    ) -> Result<EvaluatedState<'o, f64, Self>> {
-        match *window {}
-    }
 }
 
 impl<M: MovingModel> Machine<M> {

@@ -53,6 +53,7 @@ impl Plan {
             assembly_q: Vec::new(),
             closure_angles: Vec::new(),
             freedom_gains: Vec::new(),
+            change_points: Vec::new(),
             mobility: Mobility::default(),
         };
         plan.schedule_whole();

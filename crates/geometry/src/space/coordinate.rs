@@ -275,7 +275,7 @@ impl Plan {
 
     /// The whole periods of the only coordinate from the first stored pose.
     #[inline(always)]
-    fn periods(&self, q: f64) -> f64 {
+    pub(super) fn periods(&self, q: f64) -> f64 {
         match (self.range.period(), self.predictions.range()) {
             (Some(period), Some([first, _])) => ((q - first) / period).floor(),
             _ => 0.0,

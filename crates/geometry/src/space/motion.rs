@@ -103,7 +103,7 @@ impl Plan {
 
     /// Adds the accelerations of the freedoms to the states of the bodies.
     #[inline(always)]
-    fn add_accelerations<T: Scalar>(&self, pose: &mut Pose<T>) {
+    pub(super) fn add_accelerations<T: Scalar>(&self, pose: &mut Pose<T>) {
         let freedoms = &self.tree.freedoms;
         let Pose {
             frames,

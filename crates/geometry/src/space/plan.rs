@@ -1,5 +1,6 @@
 //! The compiled mechanism, and the memory of one thread in which it is evaluated.
 
+use super::change_points::ChangePoint;
 use super::closure::{Closure, RowKind};
 use super::coordinate::StoredAngles;
 use super::follow::Node;
@@ -64,6 +65,8 @@ pub struct Plan {
     pub(super) closure_angles: Vec<StoredAngles>,
     /// By freedom: what it gains in a period of the only coordinate.
     pub(super) freedom_gains: Vec<f64>,
+    /// In the range of the only coordinate.
+    pub(super) change_points: Vec<ChangePoint>,
 }
 
 /// A pose with its velocities, for one thread.
@@ -155,6 +158,9 @@ impl Plan {
         plan.follow_range(&assembly.q, start, kind)
             .map_err(singular)?;
         plan.count_revolutions(mechanism);
+        if plan.actuators() == 1 {
+            plan.find_change_points();
+        }
         Ok(plan)
     }
 

@@ -120,7 +120,7 @@ impl Plan {
 
     /// Factors the Jacobian of a closed group; false where it is singular.
     #[inline(always)]
-    fn factor_closed<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) -> bool {
+    pub(super) fn factor_closed<T: Scalar>(&self, group: &Group, pose: &mut Pose<T>) -> bool {
         if let Some(rod) = &group.rod {
             return self.factor_rod(group, rod, pose);
         }

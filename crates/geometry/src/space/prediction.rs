@@ -78,6 +78,12 @@ impl Predictions {
         Some([*self.ends.first()?, *self.ends.last()?])
     }
 
+    /// By stored pose: its coordinate, and the inverses of the groups' Jacobians.
+    pub(super) fn stored_inverses(&self) -> impl Iterator<Item = (f64, &[f64])> {
+        let inverses = self.inverses.chunks_exact(self.inverse_stride.max(1));
+        self.ends.iter().copied().zip(inverses)
+    }
+
     /// Where a coordinate within the range is; none where there is one stored pose only.
     #[inline(always)]
     pub(super) fn at(&self, q: f64) -> Option<PiecePoint> {

@@ -13,8 +13,8 @@ use std::ops::Deref;
 /// Everything is known: the accelerations of the bodies, all loads with friction, actuator forces and reactions.
 #[derive(Debug)]
 pub struct EvaluatedState<'a, T: Scalar = f64, M: MachineModel = Model> {
-    pub(super) state: KinematicState<'a, T, M>,
-    pub(super) result: &'a InverseDynamics<T>,
+    pub(crate) state: KinematicState<'a, T, M>,
+    pub(crate) result: &'a InverseDynamics<T>,
 }
 
 /// To read only: other accelerations would not fit the forces.

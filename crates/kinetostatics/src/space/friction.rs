@@ -10,12 +10,14 @@
 //!               g = r N,  φ = µ tanh(s/v₀) r ω/s    couple −φ g about the axis
 //! ```
 //!
-//! So in a cylindrical joint the friction is against the velocity of the pin's surface, and its power is −µ tanh(s/v₀) N s.
+//! So in a cylindrical joint the friction is against the velocity of the pin's surface, and its power is −µ tanh(s/v₀) N s. Without a
+//! regularisation speed v₀ it is one force along that velocity, which holds at rest: see `surface_friction`.
 //! Neither the force along the axis of a revolute joint nor the moment about that of a prismatic joint counts: what takes
 //! them has a size of its own.
 
 use super::load::LoadKind;
 use super::model::{Axes, Component, Model, Reaction};
+use super::surface_friction::TWO_DIRECTIONS;
 use crate::error::LoadError;
 use crate::friction::{ContactLaw, DependentLoad};
 use crate::load::{Friction, FrictionContact};
@@ -59,6 +61,7 @@ enum Sliding {
 }
 
 impl FrictionLaw {
+    // Long because it has one arm for each kind of joint.
     fn compile(
         friction: Friction,
         kind: LoadKind,
@@ -81,16 +84,20 @@ impl FrictionLaw {
             {
                 (Sliding::Along(function(travel)?), 1.0, length)
             }
+            // One line in a mechanism of one coordinate: see `surface_friction`.
+            (
+                JointKind::Cylindrical,
+                FrictionContact::Bearing { distance, .. },
+                LoadKind::SlideForce(of),
+            ) if of == id && friction.regularization_speed.is_none() => {
+                let only = only_coordinate(mechanism)?;
+                (Sliding::Along(function(only)?), 1.0, distance)
+            }
             (
                 JointKind::Cylindrical,
                 FrictionContact::Bearing { radius, distance },
                 LoadKind::JointTorque(of) | LoadKind::SlideForce(of),
-            ) if of == id => {
-                if friction.regularization_speed.is_none() {
-                    return Err(
-                        "its surfaces slide along the axis and about it, where friction needs a regularization speed",
-                    );
-                }
+            ) if of == id && friction.regularization_speed.is_some() => {
                 let (mut coordinates, mut levers) =
                     ([function(travel)?, function(angle)?], [1.0, radius]);
                 if kind == LoadKind::JointTorque(id) {
@@ -117,6 +124,15 @@ impl FrictionLaw {
             distance,
         })
     }
+}
+
+/// The coordinate of a mechanism that has one, with which the surface of a cylindrical joint slides along one line: see `surface_friction`.
+fn only_coordinate(mechanism: &Mechanism) -> Result<Coordinate, &'static str> {
+    let [actuator] = &mechanism.actuators[..] else {
+        return Err(TWO_DIRECTIONS);
+    };
+    let joint = &mechanism.joints[actuator.kind.joint().0];
+    Ok(actuator.kind.coordinate(joint))
 }
 
 impl ContactLaw<4> for FrictionLaw {

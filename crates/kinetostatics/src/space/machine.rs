@@ -87,11 +87,20 @@ impl Model {
             return Ok(());
         };
         let at = (self.plan(), &workspace.pose);
-        let acted = kind.act(magnitude, at, self.inner_masses(), |action| {
-            let mut wrench = Wrench::default();
-            wrench.add_at(action.arm, action.force, action.couple);
-            add(action.body, wrench);
-        });
+        let mut act = |kind: &CompiledKind, magnitude: T| {
+            kind.act(magnitude, at, self.inner_masses(), |action| {
+                let mut wrench = Wrench::default();
+                wrench.add_at(action.arm, action.force, action.couple);
+                add(action.body, wrench);
+            })
+        };
+        let acted = match self.surface_friction(load, &workspace.surface_directions) {
+            None => act(kind, magnitude),
+            Some((surface, direction)) => surface
+                .parts(direction)
+                .into_iter()
+                .try_for_each(|(kind, part)| act(kind, magnitude * part)),
+        };
         acted.ok_or(KinetostaticsError::NoDirection { load })
     }
 }
@@ -154,6 +163,7 @@ impl MachineModel for Model {
 
     fn with_loads(mut self, loads: Vec<Load>) -> Result<Self, LoadError> {
         self.loads = CompiledLoads::compile(self.mechanism(), self.plan(), loads)?;
+        self.compile_surface_frictions()?;
         self.compile_frictions()?;
         Ok(self)
     }
@@ -206,6 +216,9 @@ impl MachineModel for Model {
     ) -> PositionResult {
         self.plan().positions(q, &mut workspace.pose)?;
         self.plan().velocities(q_dot, &mut workspace.pose);
+        if !self.surface_frictions.is_empty() {
+            self.update_surface_directions(workspace);
+        }
         Ok(())
     }
 
@@ -340,6 +353,12 @@ impl MachineModel for Model {
         result: &mut InverseDynamics<T>,
     ) -> Result<()> {
         let no_direction = KinetostaticsError::NoDirection { load };
+        if let Some((surface, direction)) =
+            self.surface_friction(load, &workspace.surface_directions)
+        {
+            let parts = surface.parts(direction);
+            return (self.respond_to(&parts, workspace, result)).ok_or(no_direction);
+        }
         self.respond(&self.loads.kinds[load], workspace, result)
             .ok_or(no_direction)
     }

@@ -5,6 +5,8 @@ use super::compiled_loads::CompiledLoads;
 use super::friction::JointFriction;
 use super::load::LoadKind;
 use super::mass::Mass;
+use super::on_fit::FitWorkspace;
+use super::surface_friction::SurfaceFriction;
 use crate::error::PositionResult;
 use crate::friction::FrictionWorkspace;
 use crate::load::SignalWorkspace;
@@ -82,6 +84,8 @@ pub struct Model {
     requested: usize,
     pub(super) loads: CompiledLoads,
     pub(super) frictions: Vec<JointFriction>,
+    /// Those of cylindrical joints that hold at rest.
+    pub(super) surface_frictions: Vec<SurfaceFriction>,
     /// By actuator: where it was assembled.
     start: Vec<f64>,
 }
@@ -108,6 +112,9 @@ pub struct Workspace<T = f64> {
     pub(super) friction_workspace: FrictionWorkspace<T>,
     /// By friction: the response to one unit of it.
     pub(super) friction_responses: Vec<InverseDynamics<T>>,
+    pub(super) on_fit: FitWorkspace<T>,
+    /// By friction of a surface that holds at rest: in which direction it slides, along the axis and around it.
+    pub(super) surface_directions: Vec<[T; 2]>,
 }
 
 impl Model {
@@ -155,6 +162,7 @@ impl Model {
             reactions,
             loads: CompiledLoads::default(),
             frictions: Vec::new(),
+            surface_frictions: Vec::new(),
             start: assembly.q.clone(),
         })
     }
@@ -225,6 +233,7 @@ impl Model {
             requested: 0,
             loads: CompiledLoads::default(),
             frictions: Vec::new(),
+            surface_frictions: Vec::new(),
             ..self.clone()
         }
     }
@@ -242,6 +251,8 @@ impl Model {
             signals: SignalWorkspace::new(self.loads.max_signals()),
             friction_workspace: FrictionWorkspace::new(self.frictions.len()),
             friction_responses: vec![self.result_buffer(); self.frictions.len()],
+            on_fit: FitWorkspace::default(),
+            surface_directions: vec![[T::from_f64(0.0); 2]; self.surface_frictions.len()],
         }
     }
 
@@ -368,25 +379,6 @@ impl Model {
         }
     }
 
-    /// The response to a unit of a load, at rest; none where it has no direction.
-    pub(super) fn respond<T: Scalar>(
-        &self,
-        kind: &CompiledKind,
-        workspace: &mut Workspace<T>,
-        result: &mut InverseDynamics<T>,
-    ) -> Option<()> {
-        let (unit, magnitude) = kind.unit();
-        let Workspace { pose, forces, .. } = &mut *workspace;
-        let required = &mut forces.required;
-        required.fill([Wrench::default()]);
-        let at = (&self.plan, &*pose);
-        unit.act(T::from_f64(magnitude), at, &self.masses, |action| {
-            required[action.body][0].add_at(action.arm, -action.force, -action.couple);
-        })?;
-        self.balance(workspace, result);
-        Some(())
-    }
-
     /// The inertia of all bodies in both unit passes, after the accelerations at unit speed: at unit acceleration from rest, and at
     /// unit speed.
     #[inline(always)]
@@ -428,28 +420,6 @@ impl Model {
             };
             take(index, map_array(wrenches, part));
         }
-    }
-
-    /// The response to a load of magnitude 1 at `q` (rad or m), at rest: τ = −w and the reactions c; of a damper, to a unit of its
-    /// resistance. No numbers where the load has no direction or does not fit the mechanism.
-    ///
-    /// # Errors
-    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
-    pub fn unit_load_response<T: Scalar>(
-        &self,
-        q: &[T],
-        load: &LoadKind,
-        workspace: &mut Workspace<T>,
-        result: &mut InverseDynamics<T>,
-    ) -> PositionResult {
-        self.plan.positions(q, &mut workspace.pose)?;
-        let kind = CompiledKind::new(load, &self.mechanism, &self.plan).ok();
-        let responded = kind.and_then(|kind| self.respond(&kind, workspace, result));
-        if responded.is_none() {
-            result.tau.fill(T::from_f64(f64::NAN));
-            result.reactions.fill(T::from_f64(f64::NAN));
-        }
-        Ok(())
     }
 }
 

@@ -27,6 +27,7 @@ use crate::sections::{
     needed_section, one_line, printable, report_unjoined_bodies, section, text_of, title,
 };
 use crate::spans::SceneLocation;
+use crate::stops::stops as stops_of;
 use crate::table_reader::TableReader;
 use crate::units::Units;
 use crate::value::Context;
@@ -136,6 +137,8 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
         let actuators = by_name.iter().zip(coordinates);
         reject_drives_of_prescribed(&drives, motion, actuators, |a, b| a == b);
     }
+    let stops = section("stops");
+    let stops = stops.map_or_else(Vec::new, |f| stops_of(&f, &by_name, motion.as_ref()));
     let listed = section("requests").and_then(|f| reactions(&f, &joints, ground));
     let joined = || joints.list.iter().filter_map(|j| j.joint.as_ref());
     // A joint that could not be read may be the one that holds a body.
@@ -185,6 +188,7 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
         sweep,
         motion: motion.and_then(|m| m.into_spec(&start, events)),
         drives: drives.into_iter().map(|(drive, _)| drive).collect(),
+        stops,
         assembly,
         loads,
         file: SceneFile::new(

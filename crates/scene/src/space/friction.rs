@@ -45,11 +45,6 @@ fn add_loads(
     let friction = numbers.friction(id, contact);
     if let Some(friction) = friction {
         check_static_coefficient(&fields, &friction)?;
-        if kind == JointKind::Cylindrical && friction.regularization_speed.is_none() {
-            let help = "add `regularization-speed`, in length units per second: the surfaces slide along the axis and about it, and \
-                        friction that holds in both directions is not computed";
-            fields.require("regularization-speed", help)?;
-        }
     }
     let dry = friction.map(Magnitude::Friction);
     let viscous = numbers.viscous.map(Magnitude::Constant);
@@ -60,6 +55,10 @@ fn add_loads(
             ("coefficient", "friction", force, dry),
             ("viscous", "viscous", slide_damper, viscous),
         ],
+        // What holds at rest is one force, along the velocity of the surface.
+        JointKind::Cylindrical if friction.is_some_and(|f| f.regularization_speed.is_none()) => {
+            vec![("coefficient", "friction", force, dry)]
+        }
         JointKind::Cylindrical => vec![
             ("coefficient", "friction", force, dry.clone()),
             ("coefficient", "friction-moment", couple, dry),

@@ -1,7 +1,7 @@
 //! A scene in space as plain data.
 
 use crate::file::SceneFile;
-use crate::scene::{CoordinateSweep, FreeMotionSpec, NamedCoordinate, PrescribedMotion};
+use crate::scene::{CoordinateSweep, FreeMotionSpec, NamedCoordinate, NamedStop, PrescribedMotion};
 use dwell_geometry::space::{Assembly, Coordinate, Mechanism, Vec3};
 use dwell_kinetostatics::Drive;
 use dwell_kinetostatics::space::{Load, Mass, Reaction};
@@ -30,6 +30,8 @@ pub struct SpaceScene {
     pub loads: Vec<Load>,
     /// What drives it in a free motion.
     pub drives: Vec<Drive<Coordinate>>,
+    /// The end stops of free coordinates.
+    pub stops: Vec<NamedStop>,
     /// The free motion.
     pub motion: Option<FreeMotionSpec<Coordinate, Reaction>>,
     /// The requested reactions.

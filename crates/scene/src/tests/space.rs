@@ -145,6 +145,28 @@ fn friction_is_read_in_si() {
     );
 }
 
+/// End stops are those of the plane: angles and lengths in the units of the scene, stiffness and damping in SI.
+#[test]
+fn end_stops_are_read_in_si() {
+    let scene = SpaceScene::parse("test.toml", IN_SPACE).expect("a scene");
+    let [buffer, bed] = &scene.stops[..] else {
+        panic!("{} stops", scene.stops.len())
+    };
+    assert_eq!(buffer.name, "buffer");
+    assert_eq!((buffer.actuator.0, bed.actuator.0), (0, 1));
+    let angles = [buffer.min, buffer.max].map(|limit| limit.expect("a limit"));
+    let wanted = [-10.0_f64, 300.0].map(f64::to_radians);
+    assert!(
+        angles
+            .iter()
+            .zip(wanted)
+            .all(|(a, b)| (a - b).abs() < 1e-15)
+    );
+    assert_eq!((buffer.restitution, buffer.yielding), (0.5, None));
+    assert_eq!((bed.min, bed.max), (Some(0.0), None));
+    assert_eq!(bed.yielding, Some([20000.0, 50.0]));
+}
+
 /// A scene cut short anywhere, or with a piece of it replaced, is read or told what is wrong with it.
 #[test]
 fn no_text_breaks_the_reader() {
@@ -274,6 +296,7 @@ fn every_example_of_a_key_in_space_is_read() {
                 "[friction.<hinge>] in space" => format!("friction.A = {inner}"),
                 "[friction.<slide>] in space" => format!("friction.slide = {inner}"),
                 "[friction.<tube>] in space" => format!("friction.tube = {inner}"),
+                "[stops.<stop>]" => format!("stops.other = {inner}"),
                 _ if kinds("joints-in-space")
                     .iter()
                     .any(|t| t.kind_key() == first) =>

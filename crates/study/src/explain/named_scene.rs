@@ -1,7 +1,7 @@
 //! What messages about a motion need to know of a scene, in the plane or in space.
 
 use dwell_geometry::{ActuatorId, BodyId};
-use dwell_scene::{Scene, SceneFile, SceneLocation, SpaceScene};
+use dwell_scene::{NamedStop, Scene, SceneFile, SceneLocation, SpaceScene};
 use std::ops::Deref;
 
 /// A scene with the names of its parts.
@@ -22,8 +22,14 @@ pub trait NamedScene: Deref<Target = SceneFile> {
     /// The name of a load, or of a drive behind the loads.
     fn load_name(&self, load: usize) -> Option<&str>;
 
+    /// Its end stops.
+    fn stops(&self) -> &[NamedStop];
+
     /// The name of an end stop, and its actuator.
-    fn stop(&self, stop: usize) -> Option<(&str, ActuatorId)>;
+    fn stop(&self, stop: usize) -> Option<(&str, ActuatorId)> {
+        let stop = self.stops().get(stop)?;
+        Some((&stop.name, stop.actuator))
+    }
 
     /// The bodies but the ground.
     fn moving_bodies(&self) -> Vec<BodyId>;
@@ -64,9 +70,8 @@ impl NamedScene for Scene {
         self.loads.get(load).map(|load| load.name.as_str())
     }
 
-    fn stop(&self, stop: usize) -> Option<(&str, ActuatorId)> {
-        let stop = self.stops.get(stop)?;
-        Some((&stop.name, stop.actuator))
+    fn stops(&self) -> &[NamedStop] {
+        &self.stops
     }
 
     fn moving_bodies(&self) -> Vec<BodyId> {
@@ -91,9 +96,8 @@ impl NamedScene for SpaceScene {
         loads.chain(drives).nth(load)
     }
 
-    fn stop(&self, _: usize) -> Option<(&str, ActuatorId)> {
-        // A scene in space has no end stops.
-        None
+    fn stops(&self) -> &[NamedStop] {
+        &self.stops
     }
 
     fn moving_bodies(&self) -> Vec<BodyId> {

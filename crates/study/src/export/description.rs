@@ -109,15 +109,20 @@ fn reject_contacts(scene: &Scene) -> Result<(), StudyError> {
             [(SceneLocation::Load(load), "separating force")],
         ));
     }
-    if !scene.stops.is_empty() {
-        return Err(scene_error(
-            scene,
-            "no export: the scene has end stops, at which the motion jumps",
-            "leave [stops] out, and watch the coordinate in the program that uses the export",
-            [(SceneLocation::Stop(0), "an end stop")],
-        ));
+    reject_stops(scene)
+}
+
+/// Rejects end stops, in the plane or in space.
+pub(crate) fn reject_stops(scene: &impl NamedScene) -> Result<(), StudyError> {
+    if scene.stops().is_empty() {
+        return Ok(());
     }
-    Ok(())
+    Err(scene_error(
+        scene,
+        "no export: the scene has end stops, at which the motion jumps",
+        "leave [stops] out, and watch the coordinate in the program that uses the export",
+        [(SceneLocation::Stop(0), "an end stop")],
+    ))
 }
 
 /// Rejects a machine that crosses change points, beyond which another branch follows.

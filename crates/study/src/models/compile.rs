@@ -99,8 +99,9 @@ pub fn with_drive_loads(scene: &Scene) -> Result<Scene, StudyError> {
     Ok(loaded)
 }
 
-fn end_stop(stop: &NamedStop) -> EndStop {
-    EndStop {
+/// The end stops of a scene in the plane or in space, as its machine takes them.
+pub(crate) fn end_stops(stops: &[NamedStop]) -> Vec<EndStop> {
+    let one = |stop: &NamedStop| EndStop {
         actuator: stop.actuator.0,
         min: stop.min,
         max: stop.max,
@@ -108,7 +109,8 @@ fn end_stop(stop: &NamedStop) -> EndStop {
         yielding: stop
             .yielding
             .map(|[stiffness, damping]| YieldingStop { stiffness, damping }),
-    }
+    };
+    stops.iter().map(one).collect()
 }
 
 /// The machine of a scene, with some reactions and those that friction needs.
@@ -133,7 +135,6 @@ pub fn machine_with_laws(
     let modes = laws.iter().map(mode).collect();
     let model = compile_model(scene, reactions)?;
     let machine = Machine::new(model, &scene.loads, modes, &scene.drives);
-    let stops: Vec<EndStop> = scene.stops.iter().map(end_stop).collect();
-    let machine = machine.and_then(|machine| machine.with_stops(&stops));
+    let machine = machine.and_then(|machine| machine.with_stops(&end_stops(&scene.stops)));
     machine.map_err(|e| explain_machine(scene, e))
 }

@@ -10,7 +10,7 @@ pub use compile::{
     reduced_model, with_drive_loads,
 };
 pub(crate) use compile::{
-    determinate_model, exact_model, lists_reactions, loaded_determinate_model,
+    determinate_model, end_stops, exact_model, lists_reactions, loaded_determinate_model,
     requested_reaction_bodies, requested_reactions, with_loads,
 };
 pub(crate) use drives::{drive_states, motor_columns, motor_of, source_name, states_of_drives};

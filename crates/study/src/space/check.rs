@@ -2,13 +2,14 @@
 
 use super::prepared::{compile, is_angle, sort_reactions};
 use crate::check::driven_by;
-use crate::explain::{StudyError, describe_ends};
+use crate::contents::describe_stops;
+use crate::explain::{StudyError, describe_coordinate, describe_ends};
 use crate::number_format::{coordinate_unit, count, number};
 #[cfg(feature = "output")]
 use crate::output::Outcome;
 use dwell_findings::Record;
 use dwell_geometry::Range;
-use dwell_geometry::space::{Actuator, ActuatorKind, Plan};
+use dwell_geometry::space::{Actuator, ActuatorKind, ChangePoint, Plan};
 use dwell_kinetostatics::space::{Model, Reaction};
 use dwell_scene::SpaceScene;
 
@@ -56,6 +57,7 @@ fn description(scene: &SpaceScene, record: &mut Record) -> Result<String, StudyE
     text += &describe_groups(scene, plan, record);
     text += &describe_placements(scene, &model, record);
     text += &describe_reactions(scene, &sorted, record);
+    text += &describe_stops(scene, record);
     if let Some(note) = &scene.note {
         text += &format!("  note: {note}\n");
     }
@@ -108,7 +110,7 @@ fn describe_range(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Strin
         record.add("range.lower", unit, from);
         record.add("range.upper", unit, to);
     }
-    match plan.range() {
+    let text = match plan.range() {
         Range::Full => format!("  {name} rotates fully\n"),
         Range::Revolutions(revolutions) => {
             record.add("period.revolutions", "", f64::from(revolutions));
@@ -125,7 +127,29 @@ fn describe_range(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Strin
             let ends = describe_ends(from, to, is_angle);
             format!("  {name} ranges from {ends}; how it goes on from there is not known\n")
         }
-    }
+    };
+    text + &describe_change_points(scene, plan, record)
+}
+
+/// The change points in the range.
+fn describe_change_points(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> String {
+    let (name, is_angle) = (&scene.mechanism.actuators[0].name, is_angle(scene));
+    let groups = plan.described_groups();
+    let one = |(k, point): (usize, &ChangePoint)| {
+        let key = format!("change_point.{}", k + 1);
+        record.add(key, coordinate_unit(is_angle), point.q);
+        let joints = groups.get(point.group).into_iter();
+        let joints = joints.flat_map(|group| &group.joints);
+        let joints: Vec<_> = joints
+            .map(|j| scene.mechanism.joints[j.0].name.as_str())
+            .collect();
+        let at = describe_coordinate(name, point.q, is_angle);
+        format!(
+            "    change point of the group closed by {} at {at}, where another assembly mode meets this one\n",
+            joints.join(", ")
+        )
+    };
+    plan.change_points().iter().enumerate().map(one).collect()
 }
 
 /// The groups of unknowns that are solved together.

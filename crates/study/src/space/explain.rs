@@ -4,7 +4,7 @@ use crate::explain::{
     Labels, StudyError, body_labels, describe_ends, joint_labels, labels, scene_error,
 };
 use crate::number_format::{coordinate_unit, count, digits, number};
-use dwell_geometry::space::Plan;
+use dwell_geometry::space::{JointKind, Plan};
 use dwell_geometry::{ActuatorId, AssemblyError, BodyId, JointId, PositionError, StructureError};
 use dwell_kinetostatics::space::{Model, ModelError};
 use dwell_kinetostatics::{KinetostaticsError, LoadError, MachineModel as _};
@@ -259,6 +259,14 @@ pub(super) fn explain_load_error(scene: &SpaceScene, error: &LoadError) -> Study
     if let Some(friction) = load.and_then(|load| load.friction()) {
         let joint = &scene.mechanism.joints[friction.joint.0].name;
         let message = format!("the friction of joint `{joint}` {}", error.what);
+        if scene.mechanism.joints[friction.joint.0].kind == JointKind::Cylindrical
+            && friction.regularization_speed.is_none()
+            && scene.mechanism.actuators.len() != 1
+        {
+            let help = "add `regularization-speed`, in length units per second: then it is smooth and does not hold";
+            let place = (SceneLocation::Load(error.load), "this friction");
+            return scene_error(scene, message, help, [place]);
+        }
         let help = "replace a joint of its loop by one with more freedoms, such as a spherical or a cylindrical joint; without \
                     `bearing-distance` or `guide-length` no moment counts; `dwell check` shows which reactions are determined";
         let place = (SceneLocation::Load(error.load), "this friction");

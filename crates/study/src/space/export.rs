@@ -4,7 +4,7 @@ use super::explain::explain_position;
 use super::prepared::PreparedSpaceScene;
 use crate::explain::StudyError;
 use crate::export::description::{
-    domain, drive_effect, magnitude_effect, reject_friction, varying_input,
+    domain, drive_effect, magnitude_effect, reject_friction, reject_stops, varying_input,
 };
 #[cfg(feature = "output")]
 use crate::export::output::{ExportTarget, export_machine};
@@ -49,6 +49,7 @@ pub fn compute_export_in_space(
 ) -> Result<Export, StudyError> {
     let friction = scene.loads.iter().position(|l| l.friction().is_some());
     reject_friction(scene, friction)?;
+    reject_stops(scene)?;
     let prepared = PreparedSpaceScene::new(scene)?;
     let domain = domain(
         &scene.file,

@@ -5,7 +5,7 @@ use super::prepared::{PreparedSpaceScene, compile, sort_reactions};
 use super::views::page_drawing;
 use crate::explain::{StudyError, explain_any_motion, scene_error};
 use crate::machines::{MachineScene, MotionStart};
-use crate::models::states_of_drives;
+use crate::models::{end_stops, states_of_drives};
 use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, MachineError, NonconservativeSource};
 use dwell_findings::Column;
 use dwell_kinetostatics::Drive;
@@ -29,6 +29,7 @@ impl MachineScene for SpaceScene {
         };
         let modes = self.motion_start().laws.iter().map(mode).collect();
         let machine = Machine::new(compile(self, reactions)?, &self.loads, modes, &self.drives);
+        let machine = machine.and_then(|machine| machine.with_stops(&end_stops(&self.stops)));
         machine.map_err(|error| explain_machine(self, &error))
     }
 
@@ -73,8 +74,7 @@ impl MachineScene for SpaceScene {
             NonconservativeSource::Loads => "loads",
             NonconservativeSource::Drive(drive) => &self.drives[drive].name,
             NonconservativeSource::Prescribed(i) => &self.mechanism.actuators[i].name,
-            // A scene in space has no end stops.
-            NonconservativeSource::Stop(_) => "",
+            NonconservativeSource::Stop(stop) => &self.stops[stop].name,
         }
     }
 

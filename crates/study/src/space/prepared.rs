@@ -173,6 +173,14 @@ impl TabulatedScene for PreparedSpaceScene<'_> {
         let loaded = loaded.for_unit_loads();
         // The model has one actuator, as the prepared one has.
         let exact = ExactModel::new(loaded).unwrap_or_else(|| self.model.clone());
+        let [from, to] = self.drawn_range();
+        let domain = match domain {
+            // Between the change points, next to which reactions grow.
+            TableDomain::Full if !self.model.model().plan().change_points().is_empty() => {
+                TableDomain::Between(from, to)
+            }
+            domain => domain,
+        };
         Ok(TabulatedModel::new(&exact, accuracy, domain))
     }
 }
@@ -206,7 +214,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
     }
 
     fn range(&self) -> Range {
-        self.model.range()
+        range_between_change_points(self.model.model().plan(), self.scene.assembly.q[0])
     }
 
     fn has_limits(&self) -> [bool; 2] {
@@ -317,11 +325,32 @@ impl ReducedScene for PreparedSpaceScene<'_> {
     }
 }
 
+/// The range of the only actuator about a coordinate; of one with change points the part between two of them, as in the plane.
+fn range_between_change_points(plan: &Plan, start: f64) -> Range {
+    let range = plan.range();
+    if plan.change_points().is_empty() {
+        return range;
+    }
+    let period = range.period();
+    let periods = if period.is_some() { -2..=2 } else { 0..=0 };
+    let turns = periods.map(|k| f64::from(k) * period.unwrap_or(0.0));
+    let points = turns.flat_map(|turn| plan.change_points().iter().map(move |p| p.q + turn));
+    let points: Vec<f64> = points.collect();
+    let (low, high) = range.limits().unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    let below = points.iter().copied().filter(|q| *q <= start);
+    let above = points.iter().copied().filter(|q| *q > start);
+    let (from, to) = (below.fold(low, f64::max), above.fold(high, f64::min));
+    match plan.is_angle(0) {
+        true => Range::Limited(from, to),
+        false => Range::Stroke(from, to),
+    }
+}
+
 /// The part of the range of the only actuator that is shown, whether its ends are next to limit positions, and what it is.
 pub(super) fn range_limits(scene: &SpaceScene, plan: &Plan) -> ([f64; 2], [bool; 2], &'static str) {
     let (start, is_angle) = (scene.assembly.q[0], is_angle(scene));
     let half_stroke = DEFAULT_STROKE * plan.size();
-    match plan.range() {
+    match range_between_change_points(plan, start) {
         Range::Limited(from, to) => {
             let margin = LIMIT_MARGIN * (to - from);
             ([from + margin, to - margin], [true; 2], "the range")

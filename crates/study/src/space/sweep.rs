@@ -7,7 +7,7 @@ use super::trajectory::{JointReactions, computed_rows};
 use crate::explain::StudyError;
 use crate::free_motion::compute::MotionSolver;
 use crate::machines::MachineScene;
-use crate::models::SolverSettings;
+use crate::models::{SolverSettings, end_stops};
 use crate::number_format::coordinate_unit;
 use crate::progress::no_progress;
 use crate::sweep::compute::{
@@ -230,6 +230,7 @@ fn start_of_free_motion(scene: &SpaceScene) -> Option<ReducedState> {
 fn free_machine(scene: &SpaceScene) -> Result<Machine<Model>, StudyError> {
     let modes = vec![CoordinateMode::Free; scene.mechanism.actuators.len()];
     let machine = Machine::new(compile(scene, &[])?, &scene.loads, modes, &scene.drives);
+    let machine = machine.and_then(|machine| machine.with_stops(&end_stops(&scene.stops)));
     machine.map_err(|error| super::machine_scene::explain_machine(scene, &error))
 }
 
@@ -332,7 +333,7 @@ fn motion_values(
     reactions: &JointReactions,
 ) -> Result<Vec<(String, f64)>, StudyError> {
     let solver = MotionSolver::Settings(SolverSettings::default());
-    let problem = SpaceMotionProblem::new(scene)?;
+    let problem = SpaceMotionProblem::new(scene)?.for_solver(&solver);
     let (_, mut computed, _) = problem.simulate(&solver, None, &no_progress)?;
     if let Some(error) = computed.early_stop.take() {
         return Err(error);

@@ -34,6 +34,23 @@ fn dry_friction_in_space_is_refused_by_name() {
 }
 
 #[test]
+fn end_stops_in_space_are_refused() {
+    let path = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../../validation/spatial/rssr.toml"
+    );
+    let text = std::fs::read_to_string(path).expect("the file");
+    let scene = dwell_scene::SpaceScene::parse("rssr.toml", &text).expect("a scene");
+    let name = &scene.mechanism.actuators[0].name;
+    let text = format!("{text}\n[stops]\nend = {{ coordinate = \"{name}\", max = 9 }}\n");
+    let scene = dwell_scene::SpaceScene::parse("rssr.toml", &text).expect("a scene");
+    let asked = request(1e-6, Precision::Double);
+    let error = dwell_study::compute_export_in_space(&scene, &asked).expect_err("a refusal");
+    let found = error.to_string();
+    assert!(found.contains("the scene has end stops"), "{found}");
+}
+
+#[test]
 fn laws_known_by_values_have_no_operations() {
     let asked = ExportRequest {
         exact: true,

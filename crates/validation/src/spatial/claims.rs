@@ -1,16 +1,18 @@
 //! What a model in space says of itself, evaluated in any kind of number, for the checks of states.
 
 use dwell_geometry::space::{
-    BodyMotion, Frame, Joint, Placement, Pose, Rotation, Vec3, Wrench, vec3,
+    BodyMotion, Frame, Joint, JointKind, Placement, Pose, Rotation, Vec3, Wrench, vec3,
 };
 use dwell_geometry::{JointId, PositionError};
-use dwell_kinetostatics::space::{Axes, Component, LoadKind, Model, Reaction};
-use dwell_kinetostatics::{KinetostaticsError, MachineModel as _};
+use dwell_kinetostatics::space::{Axes, Component, Load, LoadKind, Model, Reaction};
+use dwell_kinetostatics::{Friction, FrictionContact, KinetostaticsError, MachineModel as _};
 use dwell_numerics::Scalar;
 use dwell_scene::SpaceScene;
 use dwell_study::{StudyError, loaded_model_in_space};
 use dwell_verify::SubjectError;
-use dwell_verify::space::{SpaceCase, SpaceState, SpaceSubject};
+use dwell_verify::space::{
+    SpaceCase, SpaceState, SpaceSubject, sliding_in_space, with_friction_in_space,
+};
 use std::marker::PhantomData;
 
 /// Components of a joint's reaction in one kind of axes.
@@ -208,6 +210,72 @@ impl<'a> SpaceClaims<'a> {
         Ok(state.apply_loads(t)?.wrenches()?.magnitudes().to_vec())
     }
 
+    /// A friction of a cylindrical joint that holds: one force along the velocity of the surface of a pin of this radius, m.
+    fn surface_friction(&self, load: &Load) -> Option<(Friction, f64)> {
+        let (friction, LoadKind::SlideForce(joint)) = (load.friction()?, load.kind) else {
+            return None;
+        };
+        let FrictionContact::Bearing { radius, .. } = friction.contact else {
+            return None;
+        };
+        let kind = self.scene.mechanism.joints[joint.0].kind;
+        let holds = kind == JointKind::Cylindrical && friction.regularization_speed.is_none();
+        holds.then_some((friction, radius))
+    }
+
+    /// What a unit of a load is at rest, of a damper of its resistance.
+    fn unit_parts(
+        &self,
+        q: &[f64],
+        load: usize,
+    ) -> Result<Vec<(LoadKind, f64)>, Box<dyn std::error::Error>> {
+        let Some((friction, radius)) = self.surface_friction(&self.model.loads()[load]) else {
+            return Ok(self.unit_loads().get(load).copied().into_iter().collect());
+        };
+        let placements = self.motion::<f64>([q, &[0.0], &[0.0]])?.placements;
+        let [along, turn] = sliding_in_space(&self.case(), &placements, &[1.0], &friction)?;
+        let length = along.hypot(radius * turn);
+        Ok(vec![
+            (LoadKind::SlideForce(friction.joint), along / length),
+            (
+                LoadKind::JointTorque(friction.joint),
+                radius * radius * turn / length,
+            ),
+        ])
+    }
+
+    /// The loads with their magnitudes in a state, those that are friction by the dense equations: what the model says of them is what is
+    /// judged.
+    fn loads(
+        &self,
+        rates: [&[f64]; 3],
+        magnitudes: &[f64],
+    ) -> Result<Vec<(LoadKind, f64)>, Box<dyn std::error::Error>> {
+        let [q, q_dot, q_ddot] = rates;
+        let (mut loads, mut frictions) = (Vec::new(), Vec::new());
+        for (load, magnitude) in self.model.loads().iter().zip(magnitudes) {
+            loads.push((load.kind, *magnitude));
+            frictions.push(load.friction());
+            // What holds in a cylindrical joint is one load, and two here.
+            if let Some((friction, _)) = self.surface_friction(load) {
+                loads.push((LoadKind::JointTorque(friction.joint), 0.0));
+                frictions.push(Some(friction));
+            }
+        }
+        if frictions.iter().all(Option::is_none) {
+            return Ok(loads);
+        }
+        let placements = self.motion::<f64>([q, q_dot, q_ddot])?.placements;
+        let given = (&loads[..], &frictions[..]);
+        let rates = [q_dot, q_ddot];
+        Ok(with_friction_in_space(
+            &self.case(),
+            &placements,
+            rates,
+            given,
+        )?)
+    }
+
     /// The state under all loads at time `t` (s), at coordinates, speeds and accelerations, with its reactions as they are read in these axes.
     ///
     /// # Errors
@@ -222,14 +290,13 @@ impl<'a> SpaceClaims<'a> {
         let explain = |e: &dyn std::fmt::Display| refused(q, e);
         let mut claimed = self.motion::<T>(rates).map_err(|e| explain(&e))?;
         let magnitudes = self.magnitudes(t, [q, q_dot]).map_err(|e| explain(&e))?;
-        let kinds = self.model.loads().iter().map(|load| load.kind);
-        claimed.loads = kinds.zip(magnitudes).collect();
+        claimed.loads = (self.loads(rates, &magnitudes)).map_err(|e| explain(&e))?;
         let (mut workspace, mut result) = (self.model.workspace(), self.model.result_buffer());
         let of_numbers = rates.map(lifted::<T>);
         let at = of_numbers.each_ref().map(Vec::as_slice);
         let state = self.model.kinetostatics(t, at, &mut workspace, &mut result);
         let state = state.map_err(|e| explain(&e))?;
-        let powers = (0..claimed.loads.len()).map(|load| state.load_power(load).value());
+        let powers = (0..magnitudes.len()).map(|load| state.load_power(load).value());
         claimed.load_power = powers.sum();
         let found = state.inverse_dynamics();
         claimed.tau = found.tau.iter().map(|v| v.value()).collect();
@@ -308,7 +375,7 @@ impl<'a> SpaceClaims<'a> {
         done.map_err(|e| explain(&e))?;
         claimed.tau = found.tau.iter().map(|v| v.value()).collect();
         claimed.reactions = self.wrenches(&found.reactions, &claimed.placements, axes);
-        claimed.loads = self.unit_loads().get(load).copied().into_iter().collect();
+        claimed.loads = self.unit_parts(q, load).map_err(|e| explain(&e))?;
         claimed.inertias = self.inertias::<T>(q)?;
         Ok(claimed)
     }

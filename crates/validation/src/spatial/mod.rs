@@ -16,6 +16,7 @@ mod report;
 mod samples;
 mod several;
 mod states;
+mod stopped_motion;
 mod worst;
 
 pub use claims::{ClaimsIn, SpaceClaims};

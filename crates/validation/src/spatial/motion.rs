@@ -21,8 +21,8 @@ const MAX_DURATION: f64 = 1.0;
 /// Times at which it is judged.
 const TIMES: usize = 8;
 /// Its tolerance, and most steps.
-const TOLERANCE: f64 = 1e-12;
-const MAX_STEPS: usize = 20_000;
+pub(super) const TOLERANCE: f64 = 1e-12;
+pub(super) const MAX_STEPS: usize = 20_000;
 
 const EQUATIONS: Comparison = Comparison {
     key: "motion-equations",
@@ -80,7 +80,7 @@ fn states_at(machine: &Machine<Model>, y: &[f64], times: &[f64]) -> Option<Vec<O
 }
 
 /// The start of the motion, and how long it lasts, s.
-fn start(scene: &SpaceScene, model: &Model) -> ([Vec<f64>; 2], f64) {
+pub(super) fn start(scene: &SpaceScene, model: &Model) -> ([Vec<f64>; 2], f64) {
     match &scene.motion {
         Some(motion) => {
             let duration = match motion.duration {
@@ -192,16 +192,19 @@ fn along(claims: &SpaceClaims<'_>, machine: &Machine<Model>, states: &[OdeState]
 }
 
 /// What the dense equations say of a state.
-struct Dense {
+pub(super) struct Dense {
     accelerations: Vec<f64>,
+    /// The actions that a unit acceleration of each coordinate takes, and those that the state takes without acceleration.
+    pub(super) columns: Vec<Vec<f64>>,
+    pub(super) rest: Vec<f64>,
     /// The largest acceleration that one actuator's action alone makes.
     scale: f64,
-    kinetic: f64,
-    potential: f64,
+    pub(super) kinetic: f64,
+    pub(super) potential: f64,
 }
 
 impl Dense {
-    fn new(claims: &SpaceClaims<'_>, t: f64, [q, q_dot]: [&[f64]; 2]) -> Option<Self> {
+    pub(super) fn new(claims: &SpaceClaims<'_>, t: f64, [q, q_dot]: [&[f64]; 2]) -> Option<Self> {
         let (case, n) = (claims.case(), q.len());
         let placements = claims.placements::<f64>(q).ok()?;
         let magnitudes = claims.magnitudes(t, [q, q_dot]).ok()?;
@@ -242,6 +245,8 @@ impl Dense {
             scale,
             kinetic: kinetic_energy(&case, &placements, &motions),
             potential: conservative.sum(),
+            columns,
+            rest,
         })
     }
 }

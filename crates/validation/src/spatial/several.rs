@@ -7,6 +7,7 @@ use super::report::rounded;
 use super::states::{
     STATES, free_accelerations, free_machine, in_units, near_assembly, state_findings,
 };
+use super::stopped_motion::stopped_findings;
 use super::worst::{Comparison, Worst};
 use crate::case_report::validate::Validation;
 use crate::error::ValidationError;
@@ -48,7 +49,10 @@ fn findings(
 ) -> Result<Vec<Finding>, ValidationError> {
     let claims = SpaceClaims::new(scene)?;
     let mut found = state_findings(scene, &near_assembly(scene, claims.model()))?;
-    found.extend(motion_findings(scene, reference)?);
+    found.extend(match scene.stops.is_empty() {
+        true => motion_findings(scene, reference)?,
+        false => stopped_findings(scene)?,
+    });
     if let Some(reference) = reference {
         found.extend(against_reference(scene, &claims, reference)?);
     }

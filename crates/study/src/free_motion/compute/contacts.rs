@@ -192,6 +192,19 @@ impl NamedContacts {
     }
 }
 
+/// The impulses of the first so many reactions of a machine's model, at an impact that changes the free speeds; zero where none is.
+pub(crate) fn first_impulses<M: MovingModel>(
+    machine: &Machine<M>,
+    at: &OdeState,
+    (changes, count): (&[f64], usize),
+) -> Vec<f64> {
+    let mut workspace = machine.workspace();
+    match machine.evaluate(at.t, &at.y, &mut workspace) {
+        Ok(state) => state.impulses(changes).reactions[..count].to_vec(),
+        Err(_) => vec![f64::NAN; count],
+    }
+}
+
 impl FreeMotionProblem<'_> {
     /// Its contacts.
     fn contacts(&self) -> NamedContacts {

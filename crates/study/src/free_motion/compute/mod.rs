@@ -17,6 +17,8 @@ mod tables;
 mod within_steps;
 
 pub(crate) use contacts::NamedContacts;
+#[cfg(feature = "output")]
+pub(crate) use contacts::first_impulses;
 pub(crate) use difference::Difference;
 pub(crate) use difference::pair_by_time;
 pub use period::compute_period;

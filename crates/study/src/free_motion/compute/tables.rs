@@ -1,6 +1,6 @@
 //! The samples and the events of a motion as tables.
 
-use crate::free_motion::compute::contacts::ContactOccurrence;
+use crate::free_motion::compute::contacts::{ContactOccurrence, first_impulses};
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::number_format::coordinate_unit;
 use crate::trajectory::compute::{FreeTrajectory, Trajectory, TrajectorySample, extra_columns};
@@ -242,11 +242,7 @@ impl FreeMotionProblem<'_> {
             return Vec::new();
         };
         let count = self.loaded_scene.requests.reactions.len();
-        let mut workspace = machine.workspace();
-        match machine.evaluate(at.t, &at.y, &mut workspace) {
-            Ok(state) => state.impulses(changes).reactions[..count].to_vec(),
-            Err(_) => vec![f64::NAN; count],
-        }
+        first_impulses(machine, at, (changes, count))
     }
 }
 

@@ -15,7 +15,8 @@ impl SpaceMotionProblem<'_> {
             return None;
         }
         let mut workspace = self.machine.workspace();
-        let samples = steps.iter().map(|step| {
+        let steps = (steps.iter()).filter(|step| !self.machine.is_in_fit_window(&step.y));
+        let samples = steps.map(|step| {
             let sliding = sliding_at(&run.solution, step.t);
             let sample = self.sample(step, sliding, &mut workspace).ok()?;
             Some((step.t, sample))
@@ -63,6 +64,9 @@ impl<'m> MotionSampler<'m> {
             Some((orbit, _)) => OdeState::from(orbit.state_at(t)),
             None => self.state_within(step, t, precision)?,
         };
+        if self.problem.machine.is_in_fit_window(&point.y) {
+            return None;
+        }
         let sliding = sliding_at(&self.run.solution, t);
         let sample = self.problem.sample(&point, sliding, &mut self.workspace);
         sample.ok()

@@ -1,6 +1,7 @@
 //! The free motion of scenes in space: its rows, what is said of it, and its page.
 
 mod between_rows;
+mod change_points;
 #[cfg(feature = "output")]
 mod output;
 mod problem;
@@ -49,7 +50,7 @@ pub fn compute_free_motion_in_space(
     solver: &MotionSolver,
     progress: Progress<'_>,
 ) -> Result<FreeMotionInSpace, StudyError> {
-    let problem = SpaceMotionProblem::new(scene)?;
+    let problem = SpaceMotionProblem::new(scene)?.for_solver(solver);
     let (run, computed, _) = problem.simulate(solver, None, progress)?;
     let events = problem.recorded_events(&run).into_iter();
     let errors = run.accuracy.and_then(|_| problem.errors(&run));
@@ -97,7 +98,7 @@ pub fn free_motion_page_in_space(
     solver: &MotionSolver,
     progress: Progress<'_>,
 ) -> Result<(Page, Option<StudyError>), StudyError> {
-    let problem = SpaceMotionProblem::new(scene)?;
+    let problem = SpaceMotionProblem::new(scene)?.for_solver(solver);
     let (run, computed, evaluator) = problem.simulate(solver, None, progress)?;
     let mut page = problem.page(&computed, evaluator);
     let (summary, record) = problem.summary(&run, problem.duration()?);

@@ -24,7 +24,7 @@ pub fn simulate_in_space(
     span: PictureSpan,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
-    let problem = SpaceMotionProblem::new(scene)?;
+    let problem = SpaceMotionProblem::new(scene)?.for_solver(solver);
     let (run, computed, evaluator) = problem.simulate(solver, times, progress)?;
     let page = problem.page(&computed, evaluator.clone());
     let positions = drawn_positions(scene, &computed, evaluator, None);

@@ -1,7 +1,7 @@
 //! The initial value problem of a free motion of a scene in space.
 
 use crate::explain::{StudyError, missing_section_label, scene_error};
-use crate::free_motion::compute::NamedContacts;
+use crate::free_motion::compute::{MotionSolver, NamedContacts};
 use crate::machines::MachineScene;
 use crate::space::explain::{explain_position, with_loads};
 use crate::space::prepared::compile;
@@ -11,6 +11,9 @@ use dwell_kinetostatics::MachineModel as _;
 use dwell_kinetostatics::space::{Coordinate, CoordinateFunction, Model, Reaction};
 use dwell_scene::{EventTrigger, FreeMotionSpec, MotionDuration, SceneLocation, SpaceScene};
 use std::num::NonZeroUsize;
+
+/// The tolerance of the fits across change points where an accuracy is required, as a part of it.
+const TOLERANCE_OF_ACCURACY: f64 = 1e-2;
 
 /// The motion of a scene.
 pub(super) type Spec = FreeMotionSpec<Coordinate, Reaction>;
@@ -24,6 +27,8 @@ pub(crate) struct SpaceMotionProblem<'a> {
     pub(super) output_model: Model,
     /// The equations of motion.
     pub(super) machine: Machine<Model>,
+    /// The same with the requested reactions, for their impulses where there are end stops.
+    pub(super) impact_machine: Option<Machine<Model>>,
     /// The model whose reactions events are about.
     pub(super) event_model: Model,
     pub(super) events: Vec<Event<CoordinateFunction>>,
@@ -52,9 +57,12 @@ impl<'a> SpaceMotionProblem<'a> {
         });
         let of_events: Vec<Reaction> = of_events.collect();
         let event_model = with_loads(scene, compile(scene, &of_events)?)?;
+        let has_impacts = !scene.stops.is_empty();
+        let impact_machine = has_impacts.then(|| scene.machine(&reactions.requested));
         let mut problem = Self {
             scene,
             spec,
+            impact_machine: impact_machine.transpose()?,
             reactions,
             output_model,
             machine: scene.machine(&[])?,
@@ -64,6 +72,19 @@ impl<'a> SpaceMotionProblem<'a> {
         problem.require_determined(&of_events)?;
         problem.events = problem.compile_events(&of_events)?;
         Ok(problem)
+    }
+
+    /// The same for a solver: its machine crosses the change points of its branch to the tolerance of the solver.
+    #[must_use]
+    pub(crate) fn for_solver(mut self, solver: &MotionSolver) -> Self {
+        let tolerance = match solver {
+            MotionSolver::Settings(settings) => settings.rtol,
+            MotionSolver::Accuracy { accuracy, .. } => TOLERANCE_OF_ACCURACY * accuracy,
+        };
+        self.machine = self.machine.with_change_points(tolerance);
+        let impacts = self.impact_machine.take();
+        self.impact_machine = impacts.map(|machine| machine.with_change_points(tolerance));
+        self
     }
 
     /// Refuses an event of a reaction that redundant constraints leave open.

@@ -79,9 +79,13 @@ impl SpaceMotionProblem<'_> {
         method_text: String,
     ) -> Result<Run, StudyError> {
         let start = self.initial_state();
+        let barriers = self.barriers();
+        let of_barriers = barriers.iter().map(|(event, _)| *event);
+        let events: Vec<_> = self.events.iter().copied().chain(of_barriers).collect();
         let by = |options: &Options, end: f64| {
             let (machine, model) = (&self.machine, &self.event_model);
-            let mut solution = solve(machine, model, &start, end, options, &self.events)?;
+            let mut solution = solve(machine, model, &start, end, options, &events)?;
+            self.end_at_barrier(&mut solution, &barriers);
             solution.sample_end();
             Ok(solution)
         };

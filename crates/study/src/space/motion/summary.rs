@@ -38,6 +38,7 @@ impl SpaceMotionProblem<'_> {
         let changes = |solution: &Solution| contacts.occurrences(0, solution);
         let second = run.second.as_ref().map(changes);
         text += &contacts.describe(&changes(&run.solution), second.as_deref(), &mut record);
+        text += &self.describe_change_points(run);
         let cost = run.solution.statistics;
         for (name, count) in [
             ("steps", cost.steps),

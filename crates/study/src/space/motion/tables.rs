@@ -3,6 +3,8 @@
 use super::between_rows::MotionSampler;
 use super::problem::SpaceMotionProblem;
 use super::run::Run;
+#[cfg(feature = "output")]
+use crate::free_motion::compute::first_impulses;
 use crate::free_motion::compute::sliding_at;
 use crate::machines::MachineScene as _;
 use crate::models::states_of_drives;
@@ -27,6 +29,8 @@ impl SpaceMotionProblem<'_> {
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let mut workspace = self.machine.workspace();
         let states = solution.samples.iter();
+        // Within the window of a change point no reaction has a value.
+        let states = states.filter(|state| !self.machine.is_in_fit_window(&state.y));
         let all = states.map(|state| {
             let sliding = sliding_at(solution, state.t);
             self.sample(state, sliding, &mut workspace)
@@ -48,7 +52,7 @@ impl SpaceMotionProblem<'_> {
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let last = run.solution.steps.last();
         let end = last.map_or(0.0, |step| step.t);
-        if self.machine.contact_loads().next().is_some() {
+        if self.machine.has_contacts() {
             return self.samples_between_contacts(run, times, end);
         }
         let wanted: Vec<f64> = times
@@ -81,6 +85,7 @@ impl SpaceMotionProblem<'_> {
             states.push(state.clone());
         }
         let mut workspace = self.machine.workspace();
+        states.retain(|state| !self.machine.is_in_fit_window(&state.y));
         let all = states.iter().map(|state| {
             let sliding = sliding_at(&run.solution, state.t);
             self.sample(state, sliding, &mut workspace)
@@ -97,7 +102,7 @@ impl SpaceMotionProblem<'_> {
         Ok(all)
     }
 
-    /// The same of a motion whose surfaces come to rest: from the step before each time.
+    /// The same of a motion with surfaces that come to rest, or end stops: from the step before each time.
     fn samples_between_contacts(
         &self,
         run: &Run,
@@ -106,11 +111,11 @@ impl SpaceMotionProblem<'_> {
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let mut sampler = MotionSampler::new(self, run);
         let wanted = times.iter().copied().filter(|&t| t < end).chain([end]);
-        let sample = |t: f64| {
-            let found = sampler.sample_at(t, SamplePrecision::Exact);
-            found.ok_or(DynamicsError::StepTooSmall { t })
+        let sample = |t: f64| match sampler.sample_at(t, SamplePrecision::Exact) {
+            None if self.crosses_at(run, t) => None,
+            found => Some(found.ok_or(DynamicsError::StepTooSmall { t })),
         };
-        let mut all = wanted.map(sample).collect::<Result<Vec<_>, _>>()?;
+        let mut all = wanted.filter_map(sample).collect::<Result<Vec<_>, _>>()?;
         let initial = self.sample(&self.initial_state(), None, &mut self.machine.workspace())?;
         let index = self.balance_index();
         for sample in &mut all {
@@ -211,7 +216,8 @@ impl SpaceMotionProblem<'_> {
         all.into_iter().enumerate().map(column).collect()
     }
 
-    /// The time of each event, and the actuator coordinates and speeds then.
+    /// The time of each event, the actuator coordinates and speeds then, and where there are end stops the impulses of the
+    /// requested reactions.
     #[cfg(feature = "output")]
     pub(super) fn event_table(&self, solution: &Solution) -> Table {
         let mut columns = vec![TableColumn::new("t", "s"), TableColumn::new("event", "")];
@@ -223,20 +229,33 @@ impl SpaceMotionProblem<'_> {
                 format!("{unit}/s"),
             ));
         }
+        let impulses = match &self.impact_machine {
+            Some(machine) => self.scene.reaction_columns(machine.model()),
+            None => Vec::new(),
+        };
+        // Behind the requested ones are those that friction needs.
+        let impulses = &impulses[..impulses.len().min(self.reactions.requested.len())];
+        columns.extend(impulses.iter().map(|reaction| {
+            let (name, unit) = (&reaction.name, &reaction.unit);
+            TableColumn::new(format!("{name}.impulse"), format!("{unit} s"))
+        }));
         let mut workspace = self.machine.workspace();
         let own = solution.event_occurrences.iter();
-        let own = own.map(|o| (o.event + 1, o.state.clone()));
+        let own = own.map(|o| (o.event + 1, o.state.clone(), Vec::new()));
         let contacts = self.contacts().occurrences(0, solution).into_iter();
-        let contacts = contacts.map(|o| (o.number, o.state));
+        let contacts = contacts.map(|o| (o.number, o.state, o.speed_changes));
         let mut events: Vec<_> = own.chain(contacts).collect();
-        events.sort_by(|(_, one), (_, other)| one.t.total_cmp(&other.t));
-        let rows = events.iter().map(|(number, at)| {
+        events.sort_by(|(_, one, _), (_, other, _)| one.t.total_cmp(&other.t));
+        let rows = events.iter().map(|(number, at, changes)| {
             let mut row = vec![at.t, *number as f64];
             if let Ok(state) = self.machine.evaluate(at.t, &at.y, &mut workspace) {
                 let both = state.q().iter().zip(state.q_dot());
                 row.extend(both.flat_map(|(q, speed)| [*q, *speed]));
             }
-            row.resize(columns.len(), f64::NAN);
+            row.resize(columns.len() - impulses.len(), f64::NAN);
+            if let Some(machine) = &self.impact_machine {
+                row.extend(first_impulses(machine, at, (changes, impulses.len())));
+            }
             row
         });
         let rows = rows.collect();

@@ -6,7 +6,7 @@ use dwell_geometry::space::{Joint, JointKind, Placement, Vec3};
 use dwell_scene::SpaceScene;
 
 /// Half the length of a hinge, in sizes of the picture; less where joints are closer, but no less than the second.
-const SYMBOL: f64 = 0.032;
+pub(super) const SYMBOL: f64 = 0.032;
 const MIN_SYMBOL: f64 = 0.02;
 /// The same in distances of joints on one body.
 const SYMBOL_OF_DISTANCE: f64 = 0.28;

@@ -3,7 +3,7 @@
 //! The views are those of the third angle: what is seen from above stands above the front view, and what is seen from the
 //! right on its right, all to one scale.
 
-use super::arrangement::SpaceDrawing;
+use super::arrangement::{SYMBOL, SpaceDrawing};
 use super::direction::View;
 use super::direction::best_view;
 use super::drawing::Detail;
@@ -18,6 +18,10 @@ use dwell_scene::SpaceScene;
 
 /// The largest height of a panel, in its widths.
 const HEIGHT: f64 = 0.9;
+/// Where all joints are in one point: the width of the picture in the size of its symbols, and half the length of a hinge in the distance
+/// of a centre of mass.
+const ABOUT: f64 = 0.42;
+const SYMBOL_OF_REACH: f64 = 0.2;
 /// Length of the ground's axes in widths of the picture.
 const AXES: f64 = 0.1;
 /// Frames of the animation at most, the time of each, and its width.
@@ -136,13 +140,17 @@ impl<'a> Views<'a> {
             let [[x0, x1], [y0, y1]] = bounds(view, &points);
             width = width.max(x1 - x0).max((y1 - y0) / HEIGHT);
         }
-        let width = if width > 0.0 { width } else { 1.0 };
+        let size = if width > 0.0 {
+            width
+        } else {
+            size_about_a_point(positions)
+        };
         Self {
-            drawing: SpaceDrawing::new(scene, all, width),
+            drawing: SpaceDrawing::new(scene, all, size),
             positions,
             axonometric,
             points,
-            width,
+            width: if width > 0.0 { width } else { ABOUT * size },
         }
     }
 
@@ -223,12 +231,34 @@ impl<'a> Views<'a> {
 
     /// What a view shows: as wide as the others.
     fn ranges(&self, view: View) -> [[f64; 2]; 2] {
-        let [[x0, x1], vertical] = bounds(view, &self.points);
-        let middle = 0.5 * (x0 + x1);
-        [
-            [middle - 0.5 * self.width, middle + 0.5 * self.width],
-            vertical,
-        ]
+        let [[x0, x1], [y0, y1]] = bounds(view, &self.points);
+        let about = |a: f64, b: f64, width: f64| {
+            let middle = 0.5 * (a + b);
+            [middle - 0.5 * width, middle + 0.5 * width]
+        };
+        let is_point = x1 - x0 < 1e-6 * self.width && y1 - y0 < 1e-6 * self.width;
+        let vertical = match is_point {
+            true => about(y0, y1, HEIGHT * self.width),
+            false => [y0, y1],
+        };
+        [about(x0, x1, self.width), vertical]
+    }
+}
+
+/// The size to which symbols are drawn where all joints and points are in one: so that centres of mass are among them, m.
+fn size_about_a_point(positions: &SpacePositions<'_>) -> f64 {
+    let scene = positions.scene;
+    let bodies = scene.masses.iter().zip(&positions.drawn);
+    let reach = bodies
+        .filter(|(mass, _)| mass.mass > 0.0)
+        .map(|(mass, at)| {
+            let center = at.position + at.rotation.apply(mass.center);
+            let points = points_of(scene, &positions.drawn).into_iter();
+            points.map(|p| (center - p).norm()).fold(0.0, f64::max)
+        });
+    match reach.fold(0.0, f64::max) {
+        0.0 => 1.0,
+        reach => SYMBOL_OF_REACH * reach / SYMBOL,
     }
 }
 

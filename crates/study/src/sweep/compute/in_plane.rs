@@ -4,7 +4,7 @@ use crate::branch_note::branch_note;
 use crate::explain::{
     StudyError, explain_machine, explain_model, explain_motion, explain_position,
 };
-use crate::models::{compile_model, exact_model, initial_reduced_state, with_loads};
+use crate::models::{compile_model, end_stops, exact_model, initial_reduced_state, with_loads};
 use crate::sweep::compute::available::{Available, IndexedReaction};
 use crate::sweep::compute::extremes::RangeCurves;
 use crate::sweep::compute::motions::{
@@ -188,7 +188,9 @@ fn is_conservative(scene: &Scene, model: &Model) -> bool {
 
 fn orbit_machine(scene: &Scene, model: &Model) -> Result<Machine, StudyError> {
     let (model, modes) = (model.without_reactions(), vec![CoordinateMode::Free]);
-    Machine::new(model, &scene.loads, modes, &scene.drives).map_err(|e| explain_machine(scene, e))
+    let machine = Machine::new(model, &scene.loads, modes, &scene.drives);
+    let machine = machine.and_then(|machine| machine.with_stops(&end_stops(&scene.stops)));
+    machine.map_err(|e| explain_machine(scene, e))
 }
 
 fn orbit(scene: &Scene, start: ReducedState, model: &Model) -> Result<Orbit, StudyError> {

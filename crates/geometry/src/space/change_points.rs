@@ -1,0 +1,116 @@
+//! Change points in the range of the only coordinate: another branch meets this one there, and this one goes on. The Jacobian J of a
+//! group is singular there and its determinant changes its sign. Between two stored poses, by the inverses P of J (of least squares where
+//! equations are redundant),
+//!
+//! ```text
+//! sign det(P₁ P₂ᵀ) < 0,    and at the change point 1/‖P‖ = 0                                             (1)
+//! ```
+
+use super::branch_fit::{BranchFit, BranchFitWorkspace};
+use super::groups::Group;
+use super::plan::{Plan, Pose};
+use dwell_numerics::{lu, root};
+
+/// The poses from which the branch across is fitted: rad, or parts of the size.
+const FITTED: [f64; 2] = [0.02, 0.2];
+/// There the inverse is so many times as large as at the stored poses, at least.
+const GROWTH: f64 = 100.0;
+
+/// A change point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChangePoint {
+    /// The coordinate, rad or m.
+    pub q: f64,
+    /// The group whose branches meet there.
+    pub group: usize,
+}
+
+impl Plan {
+    /// The change points in the range of the only coordinate, of one of its periods, ascending. Those where the determinant of a group
+    /// keeps its sign, as where two of its loops are flat at once, are not among them.
+    pub fn change_points(&self) -> &[ChangePoint] {
+        &self.change_points
+    }
+
+    /// Finds them between the stored poses.
+    pub(super) fn find_change_points(&mut self) {
+        let unit = if self.is_angle(0) { 1.0 } else { self.size };
+        let mut found = Vec::new();
+        for (g, group) in self.groups.iter().enumerate() {
+            let stored: Vec<(f64, &[f64])> = self.predictions.stored_inverses().collect();
+            for pair in stored.windows(2) {
+                let [one, other] = [0, 1].map(|k| (pair[k].0, of_group(group, pair[k].1)));
+                if changes_sign(group, one.1, other.1) {
+                    let q = self.change_point_between((group, one), other, unit);
+                    found.extend(q.map(|q| ChangePoint { q, group: g }));
+                }
+            }
+        }
+        found.sort_by(|a, b| a.q.total_cmp(&b.q));
+        self.change_points = found;
+    }
+
+    /// The change point of a group between two stored poses; none where its Jacobian is not singular there.
+    fn change_point_between(
+        &self,
+        (group, (from, first)): (&Group, (f64, &[f64])),
+        (to, second): (f64, &[f64]),
+        unit: f64,
+    ) -> Option<f64> {
+        let smallest = [first, second].map(|p| 1.0 / norm(p));
+        let guess = from + (to - from) * smallest[0] / (smallest[0] + smallest[1]);
+        let fit = self
+            .fit_branch(guess, FITTED.map(|part| part * unit))
+            .ok()?;
+        let (mut pose, mut memory) = (self.pose::<f64>(), BranchFitWorkspace::default());
+        let mut signed = |q: f64| {
+            let there = self.inverse_on_fit(group, &fit, [q, q - guess], &mut memory, &mut pose);
+            let size = norm(&there);
+            match (size.is_finite(), changes_sign(group, first, &there)) {
+                (true, false) => 1.0 / size,
+                (true, true) => -1.0 / size,
+                // Singular to the last digit.
+                (false, _) => 0.0,
+            }
+        };
+        let at = root::find(|q| Ok::<_, std::convert::Infallible>(signed(q)), from, to);
+        let at = at.ok().flatten()?;
+        let is_singular = signed(at).abs() * GROWTH < smallest[0].max(smallest[1]);
+        is_singular.then_some(at)
+    }
+
+    /// The inverse of a group's Jacobian at a pose of a fit.
+    fn inverse_on_fit(
+        &self,
+        group: &Group,
+        fit: &BranchFit,
+        at: [f64; 2],
+        memory: &mut BranchFitWorkspace<f64>,
+        pose: &mut Pose,
+    ) -> Vec<f64> {
+        self.set_on_fit(fit, at, [1.0, 0.0], memory, pose);
+        self.factor_closed(group, pose);
+        self.inverse(group, pose)
+    }
+}
+
+/// The inverse of a group among those of a stored pose.
+fn of_group<'i>(group: &Group, inverses: &'i [f64]) -> &'i [f64] {
+    &inverses[group.factors..][..group.rows.len() * group.unknowns.len()]
+}
+
+fn norm(values: &[f64]) -> f64 {
+    values.iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// Whether the determinant of a group's Jacobian changes its sign from one pose to another, by (1).
+fn changes_sign(group: &Group, one: &[f64], other: &[f64]) -> bool {
+    let (m, n) = (group.rows.len(), group.unknowns.len());
+    let mut products = vec![0.0; n * n];
+    for (i, a) in one.chunks_exact(m).enumerate() {
+        for (j, b) in other.chunks_exact(m).enumerate() {
+            products[i * n + j] = a.iter().zip(b).map(|(a, b)| a * b).sum();
+        }
+    }
+    lu::factor(&mut products, &mut vec![0; n]).determinant_sign < 0.0
+}

@@ -1,0 +1,64 @@
+//! The responses of a model at rest to single loads.
+
+use super::action::CompiledKind;
+use super::load::LoadKind;
+use super::model::{Model, Workspace};
+use crate::error::PositionResult;
+use crate::pass::InverseDynamics;
+use dwell_geometry::space::Wrench;
+use dwell_numerics::Scalar;
+
+impl Model {
+    /// The response to a unit of a load, at rest; none where it has no direction.
+    pub(super) fn respond<T: Scalar>(
+        &self,
+        kind: &CompiledKind,
+        workspace: &mut Workspace<T>,
+        result: &mut InverseDynamics<T>,
+    ) -> Option<()> {
+        let (unit, magnitude) = kind.unit();
+        self.respond_to(&[(&unit, T::from_f64(magnitude))], workspace, result)
+    }
+
+    /// The response to some shapes with their magnitudes, at rest; none where one has no direction.
+    pub(super) fn respond_to<T: Scalar>(
+        &self,
+        parts: &[(&CompiledKind, T)],
+        workspace: &mut Workspace<T>,
+        result: &mut InverseDynamics<T>,
+    ) -> Option<()> {
+        let Workspace { pose, forces, .. } = &mut *workspace;
+        let required = &mut forces.required;
+        required.fill([Wrench::default()]);
+        let at = (self.plan(), &*pose);
+        for (kind, magnitude) in parts {
+            kind.act(*magnitude, at, self.inner_masses(), |action| {
+                required[action.body][0].add_at(action.arm, -action.force, -action.couple);
+            })?;
+        }
+        self.balance(workspace, result);
+        Some(())
+    }
+
+    /// The response to a load of magnitude 1 at `q` (rad or m), at rest: τ = −w and the reactions c; of a damper, to a unit of its
+    /// resistance. No numbers where the load has no direction or does not fit the mechanism.
+    ///
+    /// # Errors
+    /// [`PositionError`](dwell_geometry::PositionError) when there is no pose at `q`.
+    pub fn unit_load_response<T: Scalar>(
+        &self,
+        q: &[T],
+        load: &LoadKind,
+        workspace: &mut Workspace<T>,
+        result: &mut InverseDynamics<T>,
+    ) -> PositionResult {
+        self.plan().positions(q, &mut workspace.pose)?;
+        let kind = CompiledKind::new(load, self.mechanism(), self.plan()).ok();
+        let responded = kind.and_then(|kind| self.respond(&kind, workspace, result));
+        if responded.is_none() {
+            result.tau.fill(T::from_f64(f64::NAN));
+            result.reactions.fill(T::from_f64(f64::NAN));
+        }
+        Ok(())
+    }
+}
