@@ -77,6 +77,39 @@ fn an_evaluation_allocates_nothing() {
     }
 }
 
+/// Without a plane, in one, and with a planar equivalent.
+#[test]
+fn an_evaluation_in_space_allocates_nothing() {
+    for name in ["rssr", "planar-oblique-rcsr", "planar-oblique-4r"] {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/spatial");
+        let scene = SpaceScene::read(folder.join(format!("{name}.toml"))).expect("a scene");
+        let (mechanism, all) = (&scene.mechanism, &scene.reactions);
+        let model = space::Model::new(mechanism, &scene.masses, &scene.assembly, all);
+        let model = ExactModel::new(model.expect("it assembles")).expect("one actuator");
+        assert!(model.reactions() > 0);
+        let is_planar = model.model().plan().planar_equivalent(mechanism).is_some();
+        assert_eq!(is_planar, name != "rssr");
+        let mut workspace = model.workspace();
+        let mut out = model.model().coefficient_buffer();
+        for k in 0..20 {
+            let q = 0.3 * f64::from(k);
+            let counts = [
+                allocations(name, true, || {
+                    model.coefficients(q, &mut workspace, &mut out).is_ok()
+                }),
+                allocations(name, true, || model.inertia(q, &mut workspace).is_ok()),
+                allocations(name, true, || {
+                    model.inertia_derivatives(q, &mut workspace).is_ok()
+                }),
+                allocations(name, false, || {
+                    model.inertia(f64::NAN, &mut workspace).is_ok()
+                }),
+            ];
+            assert_eq!(counts, [0; 4], "{name} at {q}");
+        }
+    }
+}
+
 /// Loads of every cost: weight, a spring, a magnitude that has to be measured, a torque.
 fn loads(model: &Model) -> Vec<Load> {
     let ground = model.plan().tree().joints[0].parent;
