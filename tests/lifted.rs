@@ -16,6 +16,9 @@ pub fn tilt() -> Placement {
     }
 }
 
+/// How much higher the second point of a distance is than the first, m.
+const RISE: f64 = 0.3;
+
 /// A planar mechanism in space.
 pub struct Lifted {
     pub mechanism: Mechanism,
@@ -43,7 +46,11 @@ impl Plane<'_> {
                 let along = axes.map(|axis| [self.lifted(axis, 0.0), z]);
                 (JointKind::Prismatic, along)
             }
-            plane::JointKind::Distance { length } => (JointKind::Distance { length }, [[z, x]; 2]),
+            // Its second point is higher.
+            plane::JointKind::Distance { length } => {
+                let length = length.hypot(RISE);
+                (JointKind::Distance { length }, [[z, x]; 2])
+            }
             plane::JointKind::Weld { angle } => {
                 // The second body's frame is turned, so that the first's x has this direction in it.
                 let (sin, cos) = angle.sin_cos();
@@ -53,7 +60,9 @@ impl Plane<'_> {
         };
         let side = |k: usize| {
             let [axis, normal] = directions[k];
-            let point = self.lifted(joint.points[k], (self.heights)(j));
+            let is_distance = matches!(kind, JointKind::Distance { .. });
+            let rise = if k == 1 && is_distance { RISE } else { 0.0 };
+            let point = self.lifted(joint.points[k], (self.heights)(j) + rise);
             // The ground's frame is that of the scene: what is on the ground is tilted.
             let frame = if joint.bodies[k].0 == ground {
                 self.frame

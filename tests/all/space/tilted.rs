@@ -4,7 +4,7 @@
 use dwell_geometry::space::{Vec3, vec3};
 use dwell_geometry::{Component as PlanarComponent, JointId};
 use dwell_kinetostatics::space::{Axes, Component, LoadKind, Model, Reaction};
-use dwell_kinetostatics::{Coefficients, ExactModel, ReducedModel};
+use dwell_kinetostatics::{Coefficients, ExactModel, ReducedModel, ReducibleModel};
 use dwell_scene::Scene;
 use dwell_tests::lifted::{Lifted, lifted_scene, tilt};
 use std::path::Path;
@@ -234,8 +234,7 @@ fn planar_cases_have_the_same_reduced_parameters_in_space() {
                 let count: usize = groups.iter().map(redundant).sum();
                 let in_the_plane = scene.name == "parallelogram-three-cranks";
                 assert_eq!(count > 0, in_the_plane, "{}: {groups:?}", scene.name);
-                let equivalent = model.plan().planar_equivalent(mechanism);
-                planar_count += usize::from(equivalent.is_some());
+                planar_count += usize::from(model.for_inertia().is_in_plane());
             }
             for found in compare(&model, &lifted, &in_plane, &positions) {
                 let relative = found.relative();
@@ -255,7 +254,8 @@ fn planar_cases_have_the_same_reduced_parameters_in_space() {
     }
     println!("{:?} {:?}", largest.map(shown), magnified.map(shown));
     assert!(compared.len() >= 8, "{compared:?}");
-    assert_eq!(planar_count, compared.len(), "planar equivalents");
+    // The range of the chain of parallelograms (A02) ends at change points in the plane, and goes on in space.
+    assert_eq!(planar_count, compared.len() - 1, "{compared:?}");
     // Seen with planes: 8e-14 of Jansen's b, 2e-14 of the others; without: 1.9e-13 and 7e-14. The largest parts are those of cases that magnify the rounding of
     // their dimensions, as a parallelogram does beside its change points: 1.2e-12 and 8.2e-13 of ½m′.
     assert!(largest[0].iter().all(|part| *part < 1e-13), "{largest:?}");

@@ -120,10 +120,11 @@ impl Plan {
         // Rows that nothing moves are in no group.
         for group in &self.groups {
             for (c, rows) in &group.closures {
-                let actions = &mut forces.closure_actions[*c];
+                let mut actions = forces.closure_actions[*c];
                 for &r in &group.residuals[rows.clone()] {
-                    add_row(actions, &pose.row_wrenches[r], forces.multipliers[r]);
+                    add_row(&mut actions, &pose.row_wrenches[r], forces.multipliers[r]);
                 }
+                forces.closure_actions[*c] = actions;
             }
         }
     }

@@ -90,6 +90,11 @@ impl InPlane {
 }
 
 impl Model {
+    /// Whether m and ½m′ come from a planar equivalent: of a model [for inertia alone](crate::ReducibleModel::for_inertia).
+    pub fn is_in_plane(&self) -> bool {
+        self.in_plane.is_some()
+    }
+
     /// m and ½m′ from the planar equivalent; false where there is none, or no pose.
     #[inline(always)]
     pub(super) fn reduce_in_plane<T: Scalar>(
