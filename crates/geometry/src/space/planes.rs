@@ -12,7 +12,6 @@
 //! what its plane leaves to its other freedoms, as the slide of a cylindrical joint, is a group of its own. Rows that nothing moves are in no
 //! group. Their multipliers, forces along n and moments across it, are open; zero is the smallest.
 
-use super::assemble::RANK_TOLERANCE;
 use super::closure::{Closure, RowKind, rows_of};
 use super::mechanism::{Joint, JointKind, Mechanism, Side};
 use super::plan::{Plan, Pose};
@@ -20,14 +19,18 @@ use super::positions::OPEN;
 use super::tree::FreedomKind;
 use super::vector::Vec3;
 
+/// Directions are parallel, or at right angles, to this: rounding of what a scene states. An axis that is tilted by more is solved as tilted,
+/// however little it is, and its results have all digits.
+const ALIGNED: f64 = 1e-13;
+
 /// Whether two unit vectors have the same direction, or opposite ones.
 pub(super) fn is_parallel(a: Vec3, b: Vec3) -> bool {
-    a.cross(b).norm() < RANK_TOLERANCE
+    a.cross(b).norm() < ALIGNED
 }
 
 /// Whether two unit vectors are at right angles.
 pub(super) fn is_across(a: Vec3, b: Vec3) -> bool {
-    a.dot(b).abs() < RANK_TOLERANCE
+    a.dot(b).abs() < ALIGNED
 }
 
 impl Plan {
