@@ -16,5 +16,6 @@ pub mod cases;
 pub mod chain;
 pub mod changes;
 pub mod fixtures;
+pub mod lifted;
 pub mod mutations;
 pub mod sketch;

@@ -4,6 +4,7 @@
 mod formulas;
 mod grow;
 mod placed_mechanism;
+mod tilted;
 
 use crate::batches::compare_batch;
 use dwell_geometry::{BodyId, JointKind, Vec2};

@@ -14,6 +14,7 @@ mod motions;
 mod mutations;
 mod oblique;
 mod operating_points;
+mod planes;
 mod random_loops;
 mod reference;
 mod scenes;

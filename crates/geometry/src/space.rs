@@ -51,6 +51,8 @@ mod mechanism;
 mod motion;
 mod multipliers;
 mod plan;
+mod planar_equivalent;
+mod planes;
 mod positions;
 mod prediction;
 mod rank;
@@ -68,6 +70,7 @@ pub use mechanism::{
 };
 pub use multipliers::Forces;
 pub use plan::{GroupDescription, Plan, Pose, PoseMotion};
+pub use planar_equivalent::PlanarEquivalent;
 pub use rank::{IdleBody, Mobility};
 pub use vector::{Rotation, Vec3, vec3};
 pub use wrench::Wrench;

@@ -37,6 +37,8 @@ fn main() {
     let one_force = Case::read("crank-rocker");
     let one_force = one_force.model(&one_force.scene.requests.reactions[..1]);
     let rssr = in_space("rssr", "B.x");
+    // The crank-rocker once more, in an oblique plane.
+    let oblique = in_space("planar-oblique-4r", "A.x");
     let bricard = in_space("bricard-a04", "P2.moment-x");
 
     let closed_form_four_bar = FourBar::new();
@@ -81,6 +83,8 @@ fn main() {
         ),
         coefficients("Bricard linkage, a moment", (0.3, 2.5), &bricard),
         coefficients("crank-rocker, a force", FULL_REVOLUTION, &one_force),
+        coefficients("… in an oblique plane, a force", FULL_REVOLUTION, &oblique),
+        inertia("… and m and m'/2", FULL_REVOLUTION, &oblique),
     ]);
     subjects.extend(stages_in_space(&rssr));
 
@@ -233,7 +237,11 @@ fn coefficients<'a, R: ReducedModel>(
     })
 }
 
-fn inertia<'a>(name: &'static str, range: (f64, f64), model: &'a ExactModel) -> Subject<'a> {
+fn inertia<'a, R: ReducedModel>(
+    name: &'static str,
+    range: (f64, f64),
+    model: &'a R,
+) -> Subject<'a> {
     let mut workspace = model.workspace();
     Subject::new(name, range, move |q| {
         black_box(model.inertia(q, &mut workspace).ok());

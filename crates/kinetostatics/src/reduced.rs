@@ -120,10 +120,11 @@ pub trait ReducibleModel: Sync + Sized {
     ) -> PositionResult;
 }
 
-/// Working memory of the exact reduced model: one for values, one for derivatives.
+/// Working memory of the exact reduced model: for coefficients, for inertia alone, and for derivatives.
 #[derive(Debug, Clone)]
 pub struct ExactWorkspace<R = Workspace<f64>, D = Workspace<Dual>> {
     real: R,
+    inertia: R,
     dual: D,
 }
 
@@ -249,6 +250,7 @@ impl<M: ReducibleModel> ReducedModel for ExactModel<M> {
     fn workspace(&self) -> Self::Workspace {
         ExactWorkspace {
             real: self.model.pass_workspace(),
+            inertia: self.inertia_model.pass_workspace(),
             dual: self.inertia_model.pass_workspace(),
         }
     }
@@ -264,7 +266,7 @@ impl<M: ReducibleModel> ReducedModel for ExactModel<M> {
     fn inertia(&self, q: f64, workspace: &mut Self::Workspace) -> PositionResult<(f64, f64)> {
         let mut out = Coefficients::default();
         let model = &self.inertia_model;
-        model.reduce_at(q, &mut workspace.real, &mut out)?;
+        model.reduce_at(q, &mut workspace.inertia, &mut out)?;
         Ok((out.m, out.half_dm))
     }
 

@@ -36,6 +36,7 @@
 mod action;
 mod compiled_loads;
 mod friction;
+mod in_plane;
 mod load;
 mod machine;
 mod mass;

@@ -5,7 +5,7 @@ use allocation_counter::measure;
 use dwell_geometry::{BodyId, Coordinate, vec2};
 use dwell_kinetostatics::{
     ExactModel, FreeBodyForces, Load, LoadKind, MachineModel as _, Magnitude, Model, ReducedModel,
-    ShakingForce, Signal, space,
+    ReducibleModel as _, ShakingForce, Signal, space,
 };
 use dwell_laws::{Expression, Law, Polynomial};
 use dwell_scene::{Scene, SpaceScene};
@@ -70,6 +70,39 @@ fn an_evaluation_allocates_nothing() {
                 }),
                 allocations(name, false, || {
                     model.inertia(beyond, &mut workspace).is_ok()
+                }),
+            ];
+            assert_eq!(counts, [0; 4], "{name} at {q}");
+        }
+    }
+}
+
+/// Without a plane, in one, and with a planar equivalent.
+#[test]
+fn an_evaluation_in_space_allocates_nothing() {
+    for name in ["rssr", "planar-oblique-rcsr", "planar-oblique-4r"] {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/spatial");
+        let scene = SpaceScene::read(folder.join(format!("{name}.toml"))).expect("a scene");
+        let (mechanism, all) = (&scene.mechanism, &scene.reactions);
+        let model = space::Model::new(mechanism, &scene.masses, &scene.assembly, all);
+        let model = ExactModel::new(model.expect("it assembles")).expect("one actuator");
+        assert!(model.reactions() > 0);
+        let is_in_plane = model.model().for_inertia().is_in_plane();
+        assert_eq!(is_in_plane, name != "rssr");
+        let mut workspace = model.workspace();
+        let mut out = model.model().coefficient_buffer();
+        for k in 0..20 {
+            let q = 0.3 * f64::from(k);
+            let counts = [
+                allocations(name, true, || {
+                    model.coefficients(q, &mut workspace, &mut out).is_ok()
+                }),
+                allocations(name, true, || model.inertia(q, &mut workspace).is_ok()),
+                allocations(name, true, || {
+                    model.inertia_derivatives(q, &mut workspace).is_ok()
+                }),
+                allocations(name, false, || {
+                    model.inertia(f64::NAN, &mut workspace).is_ok()
                 }),
             ];
             assert_eq!(counts, [0; 4], "{name} at {q}");

@@ -15,7 +15,9 @@ pub fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static st
         ("geometry", "space/vector", _) => (2, "rotations"),
         ("geometry", "space/frames", "motion") => (7, "velocities along the tree"),
         ("geometry", "space/frames", "added") => (9, "accelerations along the tree"),
-        ("geometry", "space/frames", "power" | "twist") => (5, "screws and wrenches: the Jacobian"),
+        ("geometry", "space/frames", "force_power" | "moment_power" | "twist") => {
+            (5, "screws and wrenches: the Jacobian")
+        }
         (
             "geometry",
             "space/frames",
@@ -33,7 +35,7 @@ pub fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static st
         ("geometry", "space/multipliers", "balance" | "carry_down") => {
             (12, "forces along the tree")
         }
-        ("geometry", "space/multipliers", "multipliers" | "close_forces") => {
+        ("geometry", "space/multipliers", "multipliers" | "close_forces" | "add_row") => {
             (13, "multipliers and forces of closures")
         }
         ("geometry", "space/multipliers" | "space/plan" | "space/wrench", _) => {

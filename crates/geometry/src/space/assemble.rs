@@ -40,6 +40,7 @@ impl Plan {
         let mut plan = Self {
             ground: mechanism.ground,
             size: mechanism.size(),
+            has_planes: false,
             tree,
             closures,
             joint_places,

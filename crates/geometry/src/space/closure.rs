@@ -2,7 +2,7 @@
 //! with d = p_b − p_a:
 //!
 //! ```text
-//! Point        e_k·d = 0        Parallel   n_a·w_b = 0        InPlane   u_a·d = 0        Length   |d| = L
+//! Point        e_k·d = 0        Parallel   n_a·w_b = 0        Along, InPlane   u_a·d = 0        Length   |d| = L
 //! ```
 //!
 //! The gradient of a row is a wrench on the second body, a force f at its point and a couple m; the first body feels the
@@ -23,6 +23,8 @@ use std::ops::Range;
 pub(super) enum RowKind {
     /// The points coincide along this axis of the ground.
     Point(usize),
+    /// The points coincide along this direction of the first body.
+    Along(Vec3),
     /// A direction of the first body is at right angles to one of the second.
     Parallel(Vec3, Vec3),
     /// The second point lies in a plane of the first body through its point.
@@ -42,7 +44,7 @@ impl RowKind {
     /// Whether its residual is a length, m, and not the cosine of an angle.
     pub(super) fn is_length(self) -> bool {
         match self {
-            Self::Point(_) | Self::InPlane(_) | Self::Length(_) => true,
+            Self::Point(_) | Self::Along(_) | Self::InPlane(_) | Self::Length(_) => true,
             Self::Driven(_) | Self::Mesh(_) => true,
             Self::Parallel(..) | Self::NoSpin(_) => false,
         }
@@ -67,6 +69,9 @@ pub(super) struct Closure {
     pub(super) links: Vec<(usize, f64)>,
     /// The freedoms on that path, with their signs.
     pub(super) path: Vec<(usize, f64)>,
+    /// By row and freedom of the path: whether the freedom never changes the row, since the closure keeps to a [plane](super::planes). Empty
+    /// where that is not known.
+    pub(super) unmoved: Vec<bool>,
     /// Where its entries of the Jacobian begin: row by row, one for each freedom of the path.
     pub(super) entries: usize,
 }
@@ -114,7 +119,7 @@ pub(super) fn closures(mechanism: &Mechanism, tree: &Tree) -> Result<Vec<Closure
 }
 
 /// The rows of a joint; none of a helical one.
-fn rows_of(joint: &Joint, [a, b]: &[Side; 2]) -> Option<Vec<RowKind>> {
+pub(super) fn rows_of(joint: &Joint, [a, b]: &[Side; 2]) -> Option<Vec<RowKind>> {
     use RowKind::{InPlane, Length, Mesh, Parallel, Point};
     let across = a.axis.cross(a.normal);
     let points = || (0..3).map(Point);
@@ -182,8 +187,15 @@ impl Closure {
             kinds,
             path: links.iter().flat_map(freedoms).collect(),
             links,
+            unmoved: Vec::new(),
             entries,
         }
+    }
+
+    /// Whether a freedom of the path, by its place there, changes a row.
+    #[inline(always)]
+    pub(super) fn is_moved(&self, row: usize, place: usize) -> bool {
+        self.unmoved.is_empty() || !self.unmoved[row * self.path.len() + place]
     }
 
     /// Whether it is a distance that an actuator gives.
@@ -224,7 +236,7 @@ impl Closure {
                 let (n, w) = (a.apply(n.cast()), b.apply(w.cast()));
                 of(n.dot(w), zero, w.cross(n))
             }
-            RowKind::InPlane(u) => {
+            RowKind::Along(u) | RowKind::InPlane(u) => {
                 let u = a.apply(u.cast());
                 of(u.dot(d), u, zero)
             }
@@ -280,6 +292,8 @@ impl Closure {
         let twice = T::from_f64(2.0);
         match kind {
             RowKind::Point(k) => d2.component(k),
+            // d and ḋ are zero.
+            RowKind::Along(u) => frames[a].rotation.apply(u.cast()).dot(d2),
             RowKind::Parallel(n, w) => {
                 let ((n, n1, n2), (w, w1, w2)) = (direction(a, n), direction(b, w));
                 n2.dot(w) + twice * n1.dot(w1) + n.dot(w2)

@@ -56,10 +56,16 @@ pub(super) struct Twist<T> {
 }
 
 impl<T: Scalar> Twist<T> {
-    /// The power of a wrench about that point.
+    /// The power of the force of a wrench about that point.
     #[inline(always)]
-    pub(super) fn power(&self, wrench: &Wrench<T>) -> T {
-        self.linear.dot(wrench.force) + self.angular.dot(wrench.moment)
+    pub(super) fn force_power(&self, wrench: &Wrench<T>) -> T {
+        self.linear.dot(wrench.force)
+    }
+
+    /// The power of its moment.
+    #[inline(always)]
+    pub(super) fn moment_power(&self, wrench: &Wrench<T>) -> T {
+        self.angular.dot(wrench.moment)
     }
 }
 

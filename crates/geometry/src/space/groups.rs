@@ -117,6 +117,9 @@ impl Plan {
             }
             let closure: &Closure = &self.closures[c];
             for (p, &(freedom, _)) in closure.path.iter().enumerate() {
+                if !closure.is_moved(k, p) {
+                    continue;
+                }
                 let entry = closure.entries + k * closure.path.len() + p;
                 match unknowns.binary_search(&freedom) {
                     Ok(j) => group.inner.push(Inner {
@@ -200,23 +203,24 @@ impl Plan {
         let unknowns = self.unknowns();
         let position = |f: &usize| unknowns.binary_search(f).ok();
         let rows = self.all_rows();
-        let dependencies: Vec<Vec<usize>> = rows
-            .iter()
-            .map(|(c, _)| {
-                self.closures[*c]
-                    .path
-                    .iter()
-                    .filter_map(|(f, _)| position(f))
-                    .collect()
-            })
-            .collect();
+        // By row: the unknowns on its path, and those of them that move it. What a row is evaluated with has to be placed before it,
+        // whether it moves the row or not.
+        let on_path = |only_moving: bool| -> Vec<Vec<usize>> {
+            let of_row = |&(c, k): &(usize, usize)| {
+                let closure = &self.closures[c];
+                let path = closure.path.iter().enumerate();
+                let path = path.filter(|(p, _)| !only_moving || closure.is_moved(k, *p));
+                path.filter_map(|(_, (f, _))| position(f)).collect()
+            };
+            rows.iter().map(of_row).collect()
+        };
+        let (dependencies, moving) = (on_path(false), on_path(true));
         let independent: Vec<usize> = analysed.independent;
-        let chosen: Vec<Vec<usize>> = independent
-            .iter()
-            .map(|r| dependencies[*r].clone())
-            .collect();
-        let (of_equation, of_unknown) = match_equations(&chosen, unknowns.len());
-        let components = strong_components(&of_equation, &chosen, &of_unknown);
+        let chosen = |of: &[Vec<usize>]| -> Vec<Vec<usize>> {
+            independent.iter().map(|r| of[*r].clone()).collect()
+        };
+        let (of_equation, of_unknown) = match_equations(&chosen(&moving), unknowns.len());
+        let components = strong_components(&of_equation, &chosen(&dependencies), &of_unknown);
         let mut groups: Vec<Members> = components
             .into_iter()
             .map(|equations| {
@@ -231,7 +235,7 @@ impl Plan {
             })
             .collect();
         let redundant = (0..rows.len()).filter(|r| !independent.contains(r));
-        for r in redundant {
+        for r in redundant.filter(|r| !moving[*r].is_empty()) {
             let of_row: Vec<usize> = dependencies[r].iter().map(|u| unknowns[*u]).collect();
             add_redundant(&mut groups, rows[r], &of_row);
         }

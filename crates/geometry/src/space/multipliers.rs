@@ -62,10 +62,12 @@ impl Plan {
         forces.required.fill([Wrench::default()]);
         forces.transmitted.fill([Wrench::default()]);
         forces.balance.fill([T::from_f64(0.0)]);
-        for (to, from) in forces.multipliers.iter_mut().zip(multipliers) {
-            *to = [*from];
+        for (closure, actions) in self.closures.iter().zip(&mut forces.closure_actions) {
+            *actions = [Wrench::default()];
+            for r in closure.rows.clone() {
+                add_row(actions, &pose.row_wrenches[r], [multipliers[r]]);
+            }
         }
-        self.close_forces(pose, forces);
     }
 
     /// Sums what is required from the outermost bodies to the ground.
@@ -114,14 +116,15 @@ impl Plan {
     /// The forces of the closures from the multipliers.
     #[inline(always)]
     fn close_forces<T: Scalar, const N: usize>(&self, pose: &Pose<T>, forces: &mut Forces<T, N>) {
-        for (closure, actions) in self.closures.iter().zip(&mut forces.closure_actions) {
-            *actions = [Wrench::default(); N];
-            for r in closure.rows.clone() {
-                let row = &pose.row_wrenches[r];
-                for (action, multiplier) in actions.iter_mut().zip(forces.multipliers[r]) {
-                    action.force += row.force.scaled(multiplier);
-                    action.moment += row.moment.scaled(multiplier);
+        forces.closure_actions.fill([Wrench::default(); N]);
+        // Rows that nothing moves are in no group.
+        for group in &self.groups {
+            for (c, rows) in &group.closures {
+                let mut actions = forces.closure_actions[*c];
+                for &r in &group.residuals[rows.clone()] {
+                    add_row(&mut actions, &pose.row_wrenches[r], forces.multipliers[r]);
                 }
+                forces.closure_actions[*c] = actions;
             }
         }
     }
@@ -205,5 +208,18 @@ impl Plan {
             reversed.add_at(arm, -wrench.force, -wrench.moment);
             reversed
         })
+    }
+}
+
+/// Adds the wrench of a row times its multipliers.
+#[inline(always)]
+fn add_row<T: Scalar, const N: usize>(
+    actions: &mut [Wrench<T>; N],
+    row: &Wrench<T>,
+    multipliers: [T; N],
+) {
+    for (action, multiplier) in actions.iter_mut().zip(multipliers) {
+        action.force += row.force.scaled(multiplier);
+        action.moment += row.moment.scaled(multiplier);
     }
 }

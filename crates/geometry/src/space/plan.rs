@@ -43,6 +43,8 @@ pub struct GroupDescription {
 pub struct Plan {
     pub(super) ground: usize,
     pub(super) size: f64,
+    /// Whether loops that keep to a [plane](super::planes) are solved in it.
+    pub(super) has_planes: bool,
     pub(super) tree: Tree,
     pub(super) closures: Vec<Closure>,
     /// By joint.
@@ -135,16 +137,41 @@ impl Plan {
     /// # Errors
     /// [`AssemblyError`] where it cannot be assembled, its freedoms are not those of its actuators, or its loops contradict each other.
     pub fn compile(mechanism: &Mechanism, assembly: &Assembly) -> Result<Self, AssemblyError> {
+        Self::compile_with(mechanism, assembly, true)
+    }
+
+    /// The same with every loop solved as one in space, whether it keeps to a plane or not: what tests compare with.
+    ///
+    /// # Errors
+    /// As [`Plan::compile`].
+    pub fn compile_without_planes(
+        mechanism: &Mechanism,
+        assembly: &Assembly,
+    ) -> Result<Self, AssemblyError> {
+        Self::compile_with(mechanism, assembly, false)
+    }
+
+    fn compile_with(
+        mechanism: &Mechanism,
+        assembly: &Assembly,
+        has_planes: bool,
+    ) -> Result<Self, AssemblyError> {
         if let Some(reason) = mechanism.fault() {
             return Err(StructureError::Malformed { reason }.into());
         }
         let lowered = Lowered::new(mechanism)?;
-        Self::compile_lowered(&lowered, assembly).map_err(|error| lowered.described(error))
+        let compiled = Self::compile_lowered(&lowered, assembly, has_planes);
+        compiled.map_err(|error| lowered.described(error))
     }
 
-    fn compile_lowered(lowered: &Lowered, assembly: &Assembly) -> Result<Self, AssemblyError> {
+    fn compile_lowered(
+        lowered: &Lowered,
+        assembly: &Assembly,
+        has_planes: bool,
+    ) -> Result<Self, AssemblyError> {
         let (mechanism, assembly) = (&lowered.mechanism, &lowered.assembly(assembly));
         let mut plan = Self::whole(mechanism, &lowered.in_tree)?;
+        plan.has_planes = has_planes;
         plan.measure_gears()?;
         let start = plan.assemble(mechanism, assembly)?;
         let start = plan.find_groups(mechanism, start)?;

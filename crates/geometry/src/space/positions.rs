@@ -235,12 +235,19 @@ impl Plan {
                     pose.entries[closure.entries + p] = T::from_f64(-1.0);
                     continue;
                 }
+                let is_moved = |&(_, k): &(usize, usize)| closure.is_moved(k, p);
+                if !closure.unmoved.is_empty() && !rows.iter().any(is_moved) {
+                    continue;
+                }
                 let twist = pose.screws[freedom].twist(kind, at, sign);
                 for &(_, k) in rows {
                     let wrench = &pose.row_wrenches[closure.rows.start + k];
                     pose.entries[closure.entries + k * freedoms + p] = match closure.kinds[k] {
                         RowKind::Point(axis) => twist.linear.component(axis),
-                        _ => twist.power(wrench),
+                        RowKind::Along(_) | RowKind::InPlane(_) => twist.force_power(wrench),
+                        RowKind::Length(_) | RowKind::Driven(_) => twist.force_power(wrench),
+                        RowKind::Mesh(_) => twist.force_power(wrench),
+                        RowKind::Parallel(..) | RowKind::NoSpin(_) => twist.moment_power(wrench),
                     };
                 }
             }

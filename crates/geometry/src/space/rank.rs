@@ -87,6 +87,11 @@ impl Plan {
             self.evaluate_whole(&mut pose);
         }
         self.require_independent_actuators(mechanism, &pose)?;
+        if self.has_planes {
+            self.find_planes(mechanism, &pose);
+            self.schedule_whole();
+            self.evaluate_whole(&mut pose);
+        }
         let independent = self.independent_rows(&pose);
         if independent.len() < n {
             return Err(self.under_actuated(mechanism, n - independent.len(), Vec::new()));
@@ -234,7 +239,14 @@ impl Plan {
         let matrix = self.dense(group, pose);
         let n = group.unknowns.len();
         let mut order: Vec<usize> = (0..group.rows.len()).collect();
-        order.sort_by_key(|r| self.closures[group.rows[*r].0].path.len());
+        let moving = |r: &usize| {
+            let (c, k) = group.rows[*r];
+            let closure = &self.closures[c];
+            (0..closure.path.len())
+                .filter(|p| closure.is_moved(k, *p))
+                .count()
+        };
+        order.sort_by_key(moving);
         let norm = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let row = |r: usize| -> Vec<f64> { (0..n).map(|j| matrix[(r, j)]).collect() };
         let largest = (0..group.rows.len())
@@ -264,9 +276,11 @@ impl Plan {
     }
 
     /// Multipliers of all rows, N or N·m, that no load makes: Jᵀ λ = 0 at the pose. A reaction that one of them changes is not
-    /// determined.
-    pub fn self_stresses(&self, pose: &Pose) -> Vec<Vec<f64>> {
+    /// determined. The pose then has the wrenches of all rows.
+    pub fn self_stresses(&self, pose: &mut Pose) -> Vec<Vec<f64>> {
         let group = self.group(self.unknowns(), self.all_rows());
+        // Rows that nothing moves, too.
+        self.fill_rows(&group, pose);
         let Some(svd) = self.dense(&group, pose).svd() else {
             return Vec::new();
         };

@@ -47,6 +47,23 @@ impl Mass {
             && determinant >= -slack * (xx + yy + zz).powi(2)
     }
 
+    /// Whether a body's inertia couples its rotation about a line with the motion: the centre is off it, or the inertia is not that of a body of revolution.
+    pub(super) fn is_unbalanced_about(&self, point: Vec3, axis: Vec3) -> bool {
+        let off = (self.center - point).cross(axis);
+        let x = axis.any_normal();
+        let y = axis.cross(x);
+        let [z, along_x, along_y] = [axis, x, y].map(|v| self.angular_momentum(v));
+        let scale = self.inertia[..3].iter().sum::<f64>() + self.mass * off.dot(off);
+        let products = [
+            z.dot(x),
+            z.dot(y),
+            along_x.dot(y),
+            along_x.dot(x) - along_y.dot(y),
+        ];
+        self.mass * off.norm() * (off.norm() + self.center.norm()) > 1e-12 * scale
+            || products.iter().any(|p| p.abs() > 1e-9 * scale)
+    }
+
     /// The same with a tensor that refers to these axes of the body.
     #[must_use]
     pub fn turned(&self, axes: &Rotation) -> Self {

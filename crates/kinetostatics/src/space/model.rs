@@ -1,9 +1,8 @@
 //! A mechanism in space with its masses and requested reactions, and the passes over it.
 
-use super::action::CompiledKind;
 use super::compiled_loads::CompiledLoads;
 use super::friction::JointFriction;
-use super::load::LoadKind;
+use super::in_plane::InPlane;
 use super::mass::Mass;
 use super::on_fit::FitWorkspace;
 use super::surface_friction::SurfaceFriction;
@@ -88,6 +87,8 @@ pub struct Model {
     pub(super) surface_frictions: Vec<SurfaceFriction>,
     /// By actuator: where it was assembled.
     start: Vec<f64>,
+    /// The planar model of its inertia, of a model for inertia alone that has one.
+    pub(super) in_plane: Option<Arc<InPlane>>,
 }
 
 /// A reaction; of one in the axes of its joint the body and, in its evaluation frame, these axes.
@@ -115,6 +116,7 @@ pub struct Workspace<T = f64> {
     pub(super) on_fit: FitWorkspace<T>,
     /// By friction of a surface that holds at rest: in which direction it slides, along the axis and around it.
     pub(super) surface_directions: Vec<[T; 2]>,
+    pub(super) in_plane: Option<crate::model::Workspace<T>>,
 }
 
 impl Model {
@@ -128,15 +130,39 @@ impl Model {
         assembly: &Assembly,
         reactions: &[Reaction],
     ) -> Result<Self, ModelError> {
+        Self::with_plan(mechanism, masses, assembly, reactions, Plan::compile)
+    }
+
+    /// The same with every loop solved as one in space, whether it keeps to a plane or not: what tests compare with.
+    ///
+    /// # Errors
+    /// As [`Model::new`].
+    pub fn without_planes(
+        mechanism: &Mechanism,
+        masses: &[Mass],
+        assembly: &Assembly,
+        reactions: &[Reaction],
+    ) -> Result<Self, ModelError> {
+        let compile = Plan::compile_without_planes;
+        Self::with_plan(mechanism, masses, assembly, reactions, compile)
+    }
+
+    fn with_plan(
+        mechanism: &Mechanism,
+        masses: &[Mass],
+        assembly: &Assembly,
+        reactions: &[Reaction],
+        compile: fn(&Mechanism, &Assembly) -> Result<Plan, AssemblyError>,
+    ) -> Result<Self, ModelError> {
         if masses.len() != mechanism.bodies.len() || !masses.iter().all(Mass::is_valid) {
             return Err(ModelError::Masses);
         }
-        let plan = Plan::compile(mechanism, assembly)?;
+        let plan = compile(mechanism, assembly)?;
         let coupled = plan
             .mobility()
             .idle
             .iter()
-            .find(|idle| has_dynamic_imbalance(&masses[idle.body.0], idle.point, idle.axis));
+            .find(|idle| masses[idle.body.0].is_unbalanced_about(idle.point, idle.axis));
         if let Some(idle) = coupled {
             return Err(ModelError::UnbalancedRod { body: idle.body });
         }
@@ -164,6 +190,7 @@ impl Model {
             frictions: Vec::new(),
             surface_frictions: Vec::new(),
             start: assembly.q.clone(),
+            in_plane: None,
         })
     }
 
@@ -228,14 +255,17 @@ impl Model {
 
     /// The same mechanism for its inertia alone: no reaction and no load.
     pub(super) fn inertia_only(&self) -> Self {
-        Self {
+        let mut model = Self {
             reactions: Vec::new(),
             requested: 0,
             loads: CompiledLoads::default(),
             frictions: Vec::new(),
             surface_frictions: Vec::new(),
+            in_plane: None,
             ..self.clone()
-        }
+        };
+        model.in_plane = InPlane::new(&model).map(Arc::new);
+        model
     }
 
     /// Memory for one thread.
@@ -253,6 +283,7 @@ impl Model {
             friction_responses: vec![self.result_buffer(); self.frictions.len()],
             on_fit: FitWorkspace::default(),
             surface_directions: vec![[T::from_f64(0.0); 2]; self.surface_frictions.len()],
+            in_plane: self.in_plane.as_ref().map(|model| model.workspace()),
         }
     }
 
@@ -348,12 +379,6 @@ impl Model {
         });
     }
 
-    /// The potential energy of a unit of a load at the last pose, J; none of one that has no potential.
-    pub fn potential_energy(&self, load: &LoadKind, workspace: &Workspace) -> Option<f64> {
-        let kind = CompiledKind::new(load, &self.mechanism, &self.plan).ok()?;
-        kind.potential(&self.plan, &workspace.pose, &self.masses)
-    }
-
     /// The inertia of all bodies as what they require.
     pub(super) fn require_inertia<T: Scalar>(&self, workspace: &mut Workspace<T>) {
         let Workspace { pose, forces, .. } = workspace;
@@ -439,21 +464,4 @@ fn compile_reaction(
         (body, frame.rotation.inverse().after(&in_body))
     });
     Ok((*reaction, of_joint))
-}
-
-/// Whether a body's inertia couples its rotation about a line with the motion: the centre is off it, or the inertia is not that of a body of revolution.
-fn has_dynamic_imbalance(mass: &Mass, point: Vec3, axis: Vec3) -> bool {
-    let off = (mass.center - point).cross(axis);
-    let x = axis.any_normal();
-    let y = axis.cross(x);
-    let [z, along_x, along_y] = [axis, x, y].map(|v| mass.angular_momentum(v));
-    let scale = mass.inertia[..3].iter().sum::<f64>() + mass.mass * off.dot(off);
-    let products = [
-        z.dot(x),
-        z.dot(y),
-        along_x.dot(y),
-        along_x.dot(x) - along_y.dot(y),
-    ];
-    mass.mass * off.norm() * (off.norm() + mass.center.norm()) > 1e-12 * scale
-        || products.iter().any(|p| p.abs() > 1e-9 * scale)
 }

@@ -17,6 +17,9 @@ impl Model {
         workspace: &mut Workspace<T>,
         out: &mut Coefficients<T>,
     ) -> PositionResult {
+        if self.reduce_in_plane(q, workspace, out) {
+            return Ok(());
+        }
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
         let plan = self.plan();
         plan.positions(&[q], &mut workspace.pose)?;

@@ -1,4 +1,4 @@
-//! The responses of a model at rest to single loads.
+//! The responses of a model at rest to single loads, and their potentials.
 
 use super::action::CompiledKind;
 use super::load::LoadKind;
@@ -9,6 +9,12 @@ use dwell_geometry::space::Wrench;
 use dwell_numerics::Scalar;
 
 impl Model {
+    /// The potential energy of a unit of a load at the last pose, J; none of one that has no potential.
+    pub fn potential_energy(&self, load: &LoadKind, workspace: &Workspace) -> Option<f64> {
+        let kind = CompiledKind::new(load, self.mechanism(), self.plan()).ok()?;
+        kind.potential(self.plan(), &workspace.pose, self.inner_masses())
+    }
+
     /// The response to a unit of a load, at rest; none where it has no direction.
     pub(super) fn respond<T: Scalar>(
         &self,

@@ -170,6 +170,7 @@ mod tests {
         let rows = |t: f64| Rows {
             columns: [("t".to_owned(), vec![t])].into_iter().collect(),
             count: 1,
+            ..Rows::default()
         };
         for (t, agrees) in [(0.5, true), (0.51, false)] {
             let found = summary_of_rows(&summary, &Rows::default(), Some(&rows(t)));

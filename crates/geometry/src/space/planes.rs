@@ -1,0 +1,145 @@
+//! Loops that keep to a plane. Where all turns between the two bodies of a closure are about one direction n, and all slides between
+//! them along n or across it, n is fixed in both bodies whatever the coordinates are, and the closure's rows part:
+//!
+//! ```text
+//! turns about n, slides across n    move    points along directions across n, and angles about n
+//! slides along n                    move    points along n
+//! nothing                           moves   directions along n: they stay parallel
+//! ```
+//!
+//! The rows of the closure are therefore given along n and across it, in the first body, and those that a freedom never changes are
+//! known to be so, not merely found to be zero. A planar loop is then a group with two rows, or three, where its joints have five or six, and
+//! what its plane leaves to its other freedoms, as the slide of a cylindrical joint, is a group of its own. Rows that nothing moves are in no
+//! group. Their multipliers, forces along n and moments across it, are open; zero is the smallest.
+
+use super::closure::{Closure, RowKind, rows_of};
+use super::mechanism::{Joint, JointKind, Mechanism, Side};
+use super::plan::{Plan, Pose};
+use super::positions::OPEN;
+use super::tree::FreedomKind;
+use super::vector::Vec3;
+
+/// Directions are parallel, or at right angles, to this: rounding of what a scene states. An axis that is tilted by more is solved as tilted,
+/// however little it is, and its results have all digits.
+const ALIGNED: f64 = 1e-13;
+
+/// Whether two unit vectors have the same direction, or opposite ones.
+pub(super) fn is_parallel(a: Vec3, b: Vec3) -> bool {
+    a.cross(b).norm() < ALIGNED
+}
+
+/// Whether two unit vectors are at right angles.
+pub(super) fn is_across(a: Vec3, b: Vec3) -> bool {
+    a.dot(b).abs() < ALIGNED
+}
+
+impl Plan {
+    /// Gives each closure that keeps to a plane its rows along the plane and across it, at the assembled pose.
+    pub(super) fn find_planes(&mut self, mechanism: &Mechanism, pose: &Pose) {
+        for c in 0..self.closures.len() {
+            let Some(normal) = self.normal_of(&self.closures[c], pose) else {
+                continue;
+            };
+            if let Some(kinds) = self.rows_in_plane(mechanism, c, normal, pose) {
+                self.closures[c].kinds = kinds;
+            }
+            self.closures[c].unmoved = self.unmoved(&self.closures[c], normal, pose);
+        }
+    }
+
+    /// The direction about which all turns on the path of a closure are; none where there is none, or a slide is oblique to it.
+    // The axes are parallel at every pose if they are at one: nothing else turns the bodies between them.
+    fn normal_of(&self, closure: &Closure, pose: &Pose) -> Option<Vec3> {
+        let axis = |freedom: usize| pose.screws[freedom].axis;
+        let kind = |freedom: usize| self.tree.freedoms[freedom];
+        let mut path = closure.path.iter().map(|(freedom, _)| *freedom);
+        let normal = axis(path.clone().find(|f| kind(*f) == FreedomKind::Turn)?);
+        let fits = |freedom: usize| match kind(freedom) {
+            FreedomKind::Turn => is_parallel(axis(freedom), normal),
+            FreedomKind::Slide => {
+                is_parallel(axis(freedom), normal) || is_across(axis(freedom), normal)
+            }
+            FreedomKind::Screw(_) | FreedomKind::BallTurn | FreedomKind::Length => false,
+        };
+        (closure.joint.is_some() && closure.on == closure.bodies && path.all(fits))
+            .then_some(normal)
+    }
+
+    /// The rows of a closure along and across the plane with this normal; none where they would not be closed at the pose.
+    fn rows_in_plane(
+        &self,
+        mechanism: &Mechanism,
+        c: usize,
+        normal: Vec3,
+        pose: &Pose,
+    ) -> Option<Vec<RowKind>> {
+        let closure = &self.closures[c];
+        let joint = &mechanism.joints[closure.joint?.0];
+        let of_body = |k: usize| {
+            let body = closure.bodies[k];
+            let own = pose.frames[body].rotation.apply_inverse(normal);
+            let side = joint.sides[k].in_frame(&self.tree.internal[body]);
+            // The normals of a slide in the plane are that of the plane.
+            let across = own - side.axis.scaled(side.axis.dot(own));
+            let is_slide = joint.kind == JointKind::Prismatic && is_across(side.axis, own);
+            let normal = across.unit().filter(|_| is_slide);
+            (
+                own,
+                Side {
+                    normal: normal.unwrap_or(side.normal),
+                    ..side
+                },
+            )
+        };
+        let ((own, first), (_, second)) = (of_body(0), of_body(1));
+        let u = own.any_normal();
+        let axes = [u, own.cross(u), own];
+        let along = |kind: RowKind| match kind {
+            RowKind::Point(k) => RowKind::Along(axes[k]),
+            other => other,
+        };
+        let joint = Joint {
+            sides: [first, second],
+            ..joint.clone()
+        };
+        let rows = rows_of(&joint, &joint.sides)?;
+        let kinds: Vec<RowKind> = rows.into_iter().map(along).collect();
+        let [_, _, d] = closure.ends(&pose.frames);
+        let is_closed = |kind: &RowKind| {
+            let unit = if kind.is_length() { self.size } else { 1.0 };
+            let row = closure.row(*kind, &pose.frames, &pose.coordinates, d);
+            row.residual.abs() <= OPEN * unit
+        };
+        (kinds.len() == closure.kinds.len() && kinds.iter().all(is_closed)).then_some(kinds)
+    }
+
+    /// By row of a closure and freedom of its path: whether the freedom never changes the row.
+    fn unmoved(&self, closure: &Closure, normal: Vec3, pose: &Pose) -> Vec<bool> {
+        let [a, b] = closure.bodies.map(|body| &pose.frames[body].rotation);
+        let is_unmoved = |kind: RowKind, freedom: usize| {
+            let is_turn = self.tree.freedoms[freedom] == FreedomKind::Turn;
+            let along_normal = is_parallel(pose.screws[freedom].axis, normal);
+            match kind {
+                RowKind::Along(u) | RowKind::InPlane(u) => {
+                    let u = a.apply(u);
+                    match (is_turn, along_normal) {
+                        (true, _) | (false, false) => is_parallel(u, normal),
+                        (false, true) => is_across(u, normal),
+                    }
+                }
+                RowKind::Parallel(v, w) => {
+                    let stays = is_parallel(a.apply(v), normal) || is_parallel(b.apply(w), normal);
+                    !is_turn || stays
+                }
+                RowKind::Point(_) | RowKind::Length(_) | RowKind::Driven(_) => false,
+                RowKind::Mesh(_) | RowKind::NoSpin(_) => false,
+            }
+        };
+        let of_row = |kind: &RowKind| {
+            let kind = *kind;
+            let path = closure.path.iter();
+            path.map(move |(freedom, _)| is_unmoved(kind, *freedom))
+        };
+        closure.kinds.iter().flat_map(of_row).collect()
+    }
+}

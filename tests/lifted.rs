@@ -1,0 +1,242 @@
+//! The planar cases placed obliquely in space, and a planar linkage that drives one in space.
+
+use dwell_geometry::space::{
+    Actuator, Assembly, Joint, JointKind, Mechanism, Placement, Rotation, Side, Vec3, vec3,
+};
+use dwell_geometry::{self as plane, ActuatorKind, Body, BodyId, Vec2};
+use dwell_kinetostatics::Model;
+use dwell_kinetostatics::space::Mass;
+use dwell_scene::Scene;
+
+/// The plane's frame in space.
+pub fn tilt() -> Placement {
+    Placement {
+        position: vec3(0.7, -0.3, 1.1),
+        rotation: Rotation::of_vector(vec3(0.9, -1.3, 0.4)),
+    }
+}
+
+/// How much higher the second point of a distance is than the first, m.
+const RISE: f64 = 0.3;
+
+/// A planar mechanism in space.
+pub struct Lifted {
+    pub mechanism: Mechanism,
+    pub masses: Vec<Mass>,
+    pub assembly: Assembly,
+}
+
+/// Where the plane of a mechanism is, and at which height above it each joint.
+pub struct Plane<'a> {
+    pub frame: Placement,
+    pub heights: &'a dyn Fn(usize) -> f64,
+}
+
+impl Plane<'_> {
+    fn lifted(&self, v: Vec2, height: f64) -> Vec3 {
+        vec3(v.x, v.y, height)
+    }
+
+    /// A joint in space with its axes in or across the plane; none of a kind that has no counterpart.
+    fn joint(&self, j: usize, joint: &plane::Joint, ground: usize) -> Option<Joint> {
+        let (z, x) = (vec3(0.0, 0.0, 1.0), vec3(1.0, 0.0, 0.0));
+        let (kind, directions) = match joint.kind {
+            plane::JointKind::Revolute => (JointKind::Revolute, [[z, x]; 2]),
+            plane::JointKind::Prismatic { axes } => {
+                let along = axes.map(|axis| [self.lifted(axis, 0.0), z]);
+                (JointKind::Prismatic, along)
+            }
+            // Its second point is higher.
+            plane::JointKind::Distance { length } => {
+                let length = length.hypot(RISE);
+                (JointKind::Distance { length }, [[z, x]; 2])
+            }
+            plane::JointKind::Weld { angle } => {
+                // The second body's frame is turned, so that the first's x has this direction in it.
+                let (sin, cos) = angle.sin_cos();
+                (JointKind::Weld, [[z, x], [z, vec3(cos, -sin, 0.0)]])
+            }
+            _ => return None,
+        };
+        let side = |k: usize| {
+            let [axis, normal] = directions[k];
+            let is_distance = matches!(kind, JointKind::Distance { .. });
+            let rise = if k == 1 && is_distance { RISE } else { 0.0 };
+            let point = self.lifted(joint.points[k], (self.heights)(j) + rise);
+            // The ground's frame is that of the scene: what is on the ground is tilted.
+            let frame = if joint.bodies[k].0 == ground {
+                self.frame
+            } else {
+                Placement::default()
+            };
+            Side {
+                point: frame.position + frame.rotation.apply(point),
+                axis: frame.rotation.apply(axis),
+                normal: frame.rotation.apply(normal),
+            }
+        };
+        let sides = [side(0), side(1)];
+        Some(Joint::new(joint.name.clone(), joint.bodies, kind, sides))
+    }
+
+    /// The mechanism in space; none where a joint or the actuator has no counterpart.
+    fn mechanism(&self, planar: &plane::Mechanism) -> Option<Mechanism> {
+        let joints = planar.joints.iter().enumerate();
+        let joints: Option<Vec<Joint>> = joints
+            .map(|(j, joint)| self.joint(j, joint, planar.ground))
+            .collect();
+        let [actuator] = &planar.actuators[..] else {
+            return None;
+        };
+        let driven = match actuator.kind {
+            ActuatorKind::Angle => planar.joints.iter().position(|j| {
+                j.bodies == actuator.bodies && matches!(j.kind, plane::JointKind::Revolute)
+            })?,
+            ActuatorKind::Travel(joint) => joint.0,
+            ActuatorKind::Length(_) => return None,
+        };
+        let name = actuator.name.clone();
+        let actuator = match actuator.kind {
+            ActuatorKind::Travel(_) => Actuator::travel(name, driven),
+            _ => Actuator::angle(name, driven),
+        };
+        Some(Mechanism {
+            bodies: planar.bodies.clone(),
+            ground: planar.ground,
+            joints: joints?,
+            actuators: vec![actuator],
+        })
+    }
+
+    /// Where the bodies of a planar model are in space at a coordinate.
+    fn placements(&self, model: &Model, q: f64) -> Vec<Placement> {
+        let mut workspace = model.workspace();
+        let mut state = model
+            .kinematic_state(&[q], &[1.0], &mut workspace)
+            .expect("a pose");
+        let states = state.bodies_at(&[0.0]);
+        let place = |b: usize| {
+            if b == model.mechanism().ground {
+                return Placement::default();
+            }
+            let rotation = states.body(BodyId(b)).rotation;
+            let at = states.point(BodyId(b), Vec2::ZERO).position;
+            let turn = Rotation::of_vector(vec3(0.0, 0.0, rotation.y.atan2(rotation.x)));
+            Placement {
+                position: self.frame.position + self.frame.rotation.apply(self.lifted(at, 0.0)),
+                rotation: self.frame.rotation.after(&turn),
+            }
+        };
+        (0..model.mechanism().bodies.len()).map(place).collect()
+    }
+
+    /// A planar model in space; none where a joint or the actuator has no counterpart.
+    pub fn lift(&self, model: &Model, masses: &[dwell_kinetostatics::Mass]) -> Option<Lifted> {
+        let mechanism = self.mechanism(model.mechanism())?;
+        let start = model.plan().assembly_coordinates()[0];
+        // What a mass is above the plane does not matter to m.
+        let masses = masses.iter().enumerate().map(|(b, m)| Mass {
+            mass: m.mass,
+            center: self.lifted(m.center, (self.heights)(b)),
+            inertia: [m.inertia, m.inertia, m.inertia, 0.0, 0.1 * m.inertia, 0.0],
+        });
+        Some(Lifted {
+            masses: masses.collect(),
+            assembly: Assembly {
+                q: vec![start],
+                placements: self.placements(model, start),
+            },
+            mechanism,
+        })
+    }
+}
+
+/// A planar scene obliquely in space, with its model; none where a joint or the actuator has no counterpart, or an inertia varies.
+pub fn lifted_scene(scene: &Scene) -> Option<(Model, Lifted)> {
+    if !scene.varying_inertias.is_empty() {
+        return None;
+    }
+    let start = scene.assembly.to_configuration();
+    let planar = Model::new(&scene.mechanism, &scene.masses, &start, &[]).expect("a model");
+    let plane = Plane {
+        frame: tilt(),
+        heights: &|j| 0.04 * j as f64,
+    };
+    let lifted = plane.lift(&planar, &scene.masses)?;
+    Some((planar, lifted))
+}
+
+/// The planar crank-rocker obliquely in space, whose rocker drives another in space by a rod between two balls.
+pub fn crank_rocker_and_rod() -> Lifted {
+    let scene = crate::fixtures::scene("crank-rocker");
+    let (_, lifted) = lifted_scene(&scene).expect("four revolute joints");
+    let Lifted {
+        mut mechanism,
+        mut masses,
+        mut assembly,
+    } = lifted;
+    let bodies = mechanism.bodies.iter();
+    let rocker = bodies.clone().position(|b| b.name == "rocker");
+    let (rocker, rod) = (rocker.expect("a rocker"), bodies.len());
+    let on_rocker = vec3(0.4, 0.1, 0.2);
+    let place = assembly.placements[rocker];
+    let from = place.position + place.rotation.apply(on_rocker);
+    let to = from + vec3(2.0, 1.5, 3.0);
+    let hinge = to + vec3(0.2, -1.9, 0.4);
+    let along = to - from;
+    let e = along.unit().expect("a length");
+    let across = |a: f64, b: f64| -0.3 * a * b;
+    mechanism
+        .bodies
+        .extend(["rod", "follower"].map(Body::named));
+    masses.push(Mass {
+        mass: 1.0,
+        center: along.scaled(0.5),
+        inertia: [
+            0.3 + across(e.x, e.x),
+            0.3 + across(e.y, e.y),
+            0.3 + across(e.z, e.z),
+            across(e.x, e.y),
+            across(e.x, e.z),
+            across(e.y, e.z),
+        ],
+    });
+    masses.push(Mass {
+        mass: 1.5,
+        center: vec3(0.1, 0.5, -0.2),
+        inertia: [0.2, 0.25, 0.3, 0.01, 0.02, 0.03],
+    });
+    let ball = |name: &str, bodies: [usize; 2], points: [Vec3; 2]| {
+        let sides = points.map(|point| Side {
+            point,
+            ..Side::default()
+        });
+        Joint::new(name, bodies, JointKind::Spherical, sides)
+    };
+    let on_hinge = |point: Vec3| Side {
+        point,
+        axis: vec3(0.3, 0.5, 0.9),
+        ..Side::default()
+    };
+    mechanism.joints.extend([
+        ball("E", [rocker, rod], [on_rocker, Vec3::ZERO]),
+        ball("F", [rod, rod + 1], [along, to - hinge]),
+        Joint::new(
+            "G",
+            [mechanism.ground, rod + 1],
+            JointKind::Revolute,
+            [on_hinge(hinge), on_hinge(Vec3::ZERO)],
+        ),
+    ]);
+    assembly
+        .placements
+        .extend([from, hinge].map(|position| Placement {
+            position,
+            rotation: Rotation::IDENTITY,
+        }));
+    Lifted {
+        mechanism,
+        masses,
+        assembly,
+    }
+}
