@@ -32,7 +32,44 @@ impl Rest<'_> {
         for row in 0..self.rows.count {
             self.compare_place(compared, row)?;
         }
+        if let Some(order) = self.order() {
+            compared.merge("written-rest-order", order);
+        }
         self.compare_damped(compared)
+    }
+
+    /// Along one coordinate the force at rest crosses zero upwards and downwards in turn: the product of both eigenvalues, the
+    /// stiffness over the inertia, changes its sign from one equilibrium to the next. None with states of drives, and where one of
+    /// the equilibria is neutral.
+    fn order(&self) -> Option<Differences> {
+        let [free] = self.start.free.as_slice() else {
+            return None;
+        };
+        let mut places = Vec::new();
+        for row in 0..self.rows.count {
+            let values = eigenvalues(self.summary, &format!("equilibrium.{}", row + 1));
+            let [[a, b], [c, d]] = *values.as_slice() else {
+                return None;
+            };
+            let [product, whole] = [a * c - b * d, a.hypot(b) * c.hypot(d)];
+            if product.abs() < 1e-6 * whole || whole == 0.0 {
+                return None;
+            }
+            places.push((self.rows.get(row, &free.name)?, product.signum(), row));
+        }
+        places.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let mut all = Differences::default();
+        for pair in places.windows(2) {
+            let rows = [pair[0].2 + 1, pair[1].2 + 1];
+            let place = || {
+                format!(
+                    "stability of the neighbouring equilibria {} and {}",
+                    rows[0], rows[1]
+                )
+            };
+            all.add(pair[0].1 + pair[1].1, 2.0, "", place);
+        }
+        (all.count > 0).then_some(all)
     }
 
     /// The scene at rest in an equilibrium, and what the state of a drive adds there.

@@ -9,9 +9,10 @@ use std::collections::BTreeMap;
 type Spec = (&'static str, Check, &'static str, f64);
 
 #[rustfmt::skip]
-const SPECS: [Spec; 61] = [
+const SPECS: [Spec; 68] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
+    ("written-quotients", Check::WrittenRates, "velocity ratios with the velocities that they are of, and transmission angles with the places of the pins", 5e-14),
     ("written-slopes", Check::WrittenRates, "m and V of `reduce` with the integrals of ½m′ and w between rows", 1e-7),
     ("written-law-rates", Check::WrittenRates, "changes between rows of drawn laws with the integrals of their rates", 1e-6),
     ("written-extrema", Check::WrittenRates, "extrema of the summary with the rows around them", 1e-6),
@@ -23,11 +24,14 @@ const SPECS: [Spec; 61] = [
     ("written-reduced", Check::WrittenTotals, "m, ½m′ and w of `reduce` with sums over all bodies", 1e-12),
     ("written-calibration", Check::WrittenTotals, "the period of the calibrated scene by quadrature of the rows of `reduce`", 1e-11),
     ("written-section-ends", Check::WrittenTotals, "internal forces at the end of a link with what acts there", 2e-14),
+    ("written-envelope", Check::WrittenForces, "internal forces of a link in the row of its largest moment with their envelope over all rows", 1e-14),
+    ("written-dwell", Check::WrittenTotals, "the dwell that a scene requests with all windows of its rows", 1e-14),
     ("written-contents", Check::WrittenTotals, "masses, centre of mass, size and angles of `check` with the scene's text and a row of the start", 1e-14),
     ("written-laws", Check::WrittenLaws, "actuators of every row with the laws of the scene's text and their derivatives", 4e-13),
     ("written-loads", Check::WrittenLaws, "forces of loads with expressions and tables of the scene's text", 2e-14),
     ("written-runs", Check::WrittenTwice, "m, ½m′, a and b of `reduce` with two runs of kinetostatics, and with the columns that are requested", 4e-11),
     ("written-files", Check::WrittenTwice, "CSV with NPZ, extrema and peaks of the summary with the rows", 1e-12),
+    ("written-laws-again", Check::WrittenTwice, "motions of drawn laws with the same motions as expressions, or by tables turned by half a turn", 3e-12),
     ("written-table", Check::WrittenTwice, "the table of `reduce` with its rows, beyond the errors that it states", 1e-13),
     ("written-code", Check::WrittenTwice, "code of `symbolic` in Rust, Python and C, run line by line, with the rows of `reduce`", 1e-11),
     ("written-formulas", Check::WrittenTwice, "formulas of `symbolic` in LaTeX, with the printed constants of 12 digits, computed line by line, with the rows of `reduce`", 1e-9),
@@ -36,6 +40,7 @@ const SPECS: [Spec; 61] = [
     ("written-sweep-distribution", Check::WrittenTotals, "random numbers of `sweep` with their distribution function (Kolmogorov and Smirnov)", 1.0),
     ("written-sweep-files", Check::WrittenTwice, "archive, database and Parquet files of `sweep` with its table", 1e-15),
     ("written-sweep-summary", Check::WrittenTotals, "statistics of the summary of `sweep` with its rows", 1e-13),
+    ("written-sweep-motion", Check::WrittenTwice, "end, largest size, mean and root mean square of columns of motions in `sweep` with rows of `simulate` of the changed scene", 1e-14),
     ("written-sweep-sentences", Check::WrittenSentences, "numbers that `sweep` prints with its summary, to their digits", 1e-12),
     ("written-units", Check::WrittenUnits, "files of the scene with those of the scene in other units", 1e-11),
     ("written-joint-forces", Check::WrittenTotals, "magnitudes, directions and components along bodies of pins' forces with their components along the ground", 1e-14),
@@ -58,6 +63,7 @@ const SPECS: [Spec; 61] = [
     ("written-modes", Check::WrittenTotals, "frequencies and damping ratios of `linearise` and `equilibria` with their eigenvalues", 1e-14),
     ("written-linear", Check::WrittenForces, "A, B, C and D of `linearise` with differences of rows of `simulate` from neighbouring starts", 3e-10),
     ("written-rest", Check::WrittenForces, "accelerations of `simulate` that starts at rest in the equilibria of `equilibria`", 2e-14),
+    ("written-rest-order", Check::WrittenTotals, "stability of neighbouring equilibria of one coordinate: the force at rest crosses zero in turn", 0.5),
     ("written-damped", Check::WrittenTotals, "the modes of `equilibria` with a damper of known damping ratio, with those of a damped oscillator", 1e-14),
     ("written-rest-modes", Check::WrittenTwice, "modes of `equilibria` with eigenvalues of `linearise` about the equilibria", 2e-14),
     ("written-linear-equations", Check::WrittenForces, "Newton's and Euler's equations of every body in these rows, with loads, drives and friction of the scene's text", 3e-14),
@@ -70,6 +76,7 @@ const SPECS: [Spec; 61] = [
     ("written-cycle-flywheel", Check::WrittenTwice, "speeds of `cycle` with its flywheel, with those of the scene in which a body has that inertia", 1e-7),
     ("written-cycle-sentences", Check::WrittenSentences, "numbers that `cycle` prints with its summary, to their digits", 1e-12),
     ("written-contents-sentences", Check::WrittenSentences, "masses, centre of mass, size and angles that `check` prints with the scene's text, to their digits", 7e-15),
+    ("written-warnings", Check::WrittenSentences, "warnings of splines that go beyond their points, with their curves from the scene's text, to the last printed digit", 0.51),
     ("written-sentences", Check::WrittenSentences, "printed numbers with the summary, to their digits", 1e-12),
 ];
 

@@ -1,8 +1,10 @@
 //! What `check` writes and prints of a scene: masses, the centre of mass, size and angles at the start, against the scene's text
 //! and the first row of a motion from there.
 
+use super::contents_motions::motion_lines;
 use super::difference::Differences;
 use super::motion::Motion;
+use super::overshoot::warning_count;
 use super::program::Program;
 use super::reading::{Body, JointKind, Reading};
 use super::scene_text::text_of;
@@ -12,12 +14,12 @@ use serde_json::Value;
 /// Part of a sweep, rad or m, whose first row is the start.
 const STEP: f64 = 1e-6;
 
-/// The summary and the sentences of `check` on a scene.
+/// The summary, the sentences and the warnings of `check` on a scene.
 pub(super) fn contents_differences(
     program: &Program,
     reading: &Reading,
     scene: &str,
-) -> Result<[Differences; 2], String> {
+) -> Result<[Differences; 3], String> {
     let run = program
         .run("contents", scene, &["check"])
         .map_err(|e| e.to_string())?;
@@ -27,8 +29,13 @@ pub(super) fn contents_differences(
     let numbers = expected.numbers.iter();
     let numbers = numbers.map(|(name, value, scale)| (name.as_str(), (*value, *scale)));
     let summed = summary_differences(&summary, numbers, "check");
-    let printed = sentence_differences(&run.printed, &expected.sentences(reading), "check");
-    Ok([summed, printed])
+    let table = scene
+        .parse()
+        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let mut lines = expected.sentences(reading);
+    lines.extend(motion_lines(reading, &table));
+    let printed = sentence_differences(&run.printed, &lines, "check");
+    Ok([summed, printed, warning_count(&table, &run.messages)])
 }
 
 /// How the bodies are at the start, by the first row of a sweep from there.

@@ -62,6 +62,7 @@ pub(crate) struct DrawnMotion {
     pub(crate) reading: Reading,
     pub(crate) rows: Rows,
     pub(crate) name: String,
+    pub(super) text: String,
 }
 
 /// The motions of a case with a single actuator: one for each kind of law, of which that by an expression also has loads
@@ -111,6 +112,7 @@ pub(crate) fn drawn_motions(
             reading: Reading::new(&text)?,
             rows,
             name,
+            text,
         });
     }
     Ok(all)

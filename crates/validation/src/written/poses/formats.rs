@@ -33,8 +33,11 @@ pub(crate) fn formats(
         run.npz(&format!("-{stem}.npz"))?,
     );
     let summary = run.json(&format!("-{command}.json"))?;
+    let headings = run.text(&format!("-{stem}.csv"))?;
+    let mut files = same_bits(&csv, &npz, command);
+    files.merge(same_headings(&headings, &npz, command));
     let mut found = Formats {
-        files: same_bits(&csv, &npz, command),
+        files,
         ..Formats::default()
     };
     add_extrema(&mut found, &summary, &csv, command, corners);
@@ -69,6 +72,40 @@ fn same_bits(csv: &Rows, npz: &Rows, command: &str) -> Differences {
                 format!("{command}, row {row}, {name}, CSV and NPZ")
             });
         }
+    }
+    all
+}
+
+/// The headings of the CSV file with the names and units that the archive lists, one by one.
+fn same_headings(csv: &str, npz: &Rows, command: &str) -> Differences {
+    let mut all = Differences::default();
+    let [names, units] = ["columns", "units"].map(|list| npz.words.get(list));
+    let (Some(names), Some(units)) = (names, units) else {
+        all.fail(format!(
+            "{command}: the NPZ file lists no columns and units"
+        ));
+        return all;
+    };
+    let heading = |(name, unit): (&String, &String)| match unit.as_str() {
+        "" => name.clone(),
+        unit => format!("{name} [{unit}]"),
+    };
+    let listed: Vec<String> = names.iter().zip(units).map(heading).collect();
+    let line = csv.lines().find(|line| !line.starts_with('#'));
+    let written: Vec<&str> = line.unwrap_or("").split(',').collect();
+    let other = written.iter().zip(&listed).find(|(a, b)| **a != b.as_str());
+    match other {
+        Some((csv, npz)) => all.fail(format!(
+            "{command}: CSV has `{csv}` where NPZ lists `{npz}`"
+        )),
+        None if written.len() != listed.len() => {
+            let counts = [written.len(), listed.len()];
+            all.fail(format!(
+                "{command}: CSV has {} columns, NPZ lists {}",
+                counts[0], counts[1]
+            ));
+        }
+        None => {}
     }
     all
 }

@@ -136,7 +136,7 @@ impl Law {
         })
     }
 
-    /// Where a derivative up to the second jumps.
+    /// Where a derivative up to the third jumps.
     pub(crate) fn corners(&self) -> Vec<f64> {
         match self {
             Self::Rise {

@@ -3,14 +3,16 @@
 use super::closure::closure;
 use super::compared::Compared;
 use super::contents_files::contents_differences;
+use super::dwell::dwell_differences;
 use super::equilibrium::equilibrium;
 use super::formats::formats;
 use super::headings::heading_differences;
 use super::joint_forces::joint_force_differences;
 use super::law::{Law, number};
 use super::program::{Program, Run};
+use super::quotients::quotient_differences;
 use super::rates::rates;
-use super::reading::Reading;
+use super::reading::{JointKind, Reading};
 use super::reduced_files::compare_reduced;
 use super::scene_text::{Draws, requests_everything, text_of};
 use super::section_files::compare_sections;
@@ -18,6 +20,8 @@ use super::unit_files::compare_units;
 use dwell_findings::Finding;
 use std::path::Path;
 
+/// The pressure angle of teeth where the scene gives none, rad: 20°.
+const PRESSURE_ANGLE: f64 = 0.349_065_850_398_865_9;
 /// How far a case without a motion is swept, rad or m.
 const SWEEP: f64 = 0.4;
 
@@ -48,9 +52,11 @@ fn compare_all(
         &moving
     };
     compare_kinematics(compared, &program, &reading, kinematic)?;
-    let [contents, sentences] = contents_differences(&program, &reading, &everything)?;
+    compared.merge("written-dwell", dwell_differences(&program, scene)?);
+    let [contents, sentences, warnings] = contents_differences(&program, &reading, &everything)?;
     compared.merge("written-contents", contents);
     compared.merge("written-contents-sentences", sentences);
+    compared.merge("written-warnings", warnings);
     compare_forces(compared, &program, &reading, &moving, &mut draws)?;
     compare_units(compared, &program, &reading, &moving, &mut draws)?;
     if reading.actuator_count == 1 {
@@ -107,6 +113,10 @@ fn compare_kinematics(
     let of = closure(reading, &rows, "kinematics");
     compared.merge("written-closure", of.joints);
     compared.merge("written-laws", of.laws);
+    compared.merge(
+        "written-quotients",
+        quotient_differences(reading, &rows, "kinematics"),
+    );
     if let Some(time) = rows.columns.get("t") {
         compared.merge(
             "written-rates",
@@ -159,6 +169,60 @@ fn compare_forces(
     if has_motion {
         compare_sections(compared, program, reading, scene, draws)?;
     }
+    if let Some(scene) = with_pressure_angles(scene, reading).filter(|_| has_motion) {
+        compare_teeth(compared, program, &scene?)?;
+    }
+    Ok(())
+}
+
+/// The scene with a pressure angle of every pair of teeth; none where it has no teeth, or those have theirs.
+fn with_pressure_angles(scene: &str, reading: &Reading) -> Option<Result<String, String>> {
+    let is_open = |kind: &JointKind| {
+        matches!(
+            kind,
+            JointKind::Gear {
+                pressure_angle: 0.0,
+                ..
+            } | JointKind::Rack {
+                pressure_angle: 0.0,
+                ..
+            }
+        )
+    };
+    let teeth: Vec<&str> = reading
+        .joints
+        .iter()
+        .filter(|j| is_open(&j.kind))
+        .map(|j| j.name.as_str())
+        .collect();
+    let mut table: toml::Table = scene.parse().ok()?;
+    let joints = table.get_mut("joints")?.as_table_mut()?;
+    let angle = toml::Value::Float(PRESSURE_ANGLE / reading.units.angle);
+    for name in &teeth {
+        let joint = joints.get_mut(*name)?.as_table_mut()?;
+        joint.insert("pressure-angle".to_owned(), angle.clone());
+    }
+    (!teeth.is_empty()).then(|| text_of(&table))
+}
+
+/// Forces of the scene whose teeth have pressure angles.
+fn compare_teeth(compared: &mut Compared, program: &Program, scene: &str) -> Result<(), String> {
+    let run = program
+        .run("teeth", scene, &["kinetostatics", "--points", "37"])
+        .map_err(|e| e.to_string())?;
+    let reading = Reading::new(scene)?;
+    let rows = run.npz("-kinetostatics.npz")?;
+    let forces = equilibrium(&reading, &rows, "teeth", false);
+    compared.merge("written-equilibrium", forces.bodies);
+    compared.merge("written-loads", forces.loads);
+    compared.merge("written-totals", forces.totals);
+    compared.merge(
+        "written-joint-forces",
+        joint_force_differences(&reading, &rows, "teeth"),
+    );
+    add_formats(compared, &run, &reading, "kinetostatics")?;
+    let [_, sentences, _] = contents_differences(program, &reading, scene)?;
+    compared.merge("written-contents-sentences", sentences);
     Ok(())
 }
 

@@ -40,7 +40,11 @@ pub(crate) fn csv_rows(text: &str) -> Option<Rows> {
         .map(|name| (*name).to_owned())
         .zip(columns)
         .collect();
-    Some(Rows { columns, count })
+    Some(Rows {
+        columns,
+        count,
+        ..Rows::default()
+    })
 }
 
 /// The columns of numbers of a table of an SQLite file, in the order of its first column; what is NULL is no number.
@@ -134,9 +138,13 @@ pub(crate) fn npz_rows(bytes: &[u8]) -> Option<Rows> {
         if method != 0 {
             return None;
         }
-        let values = array(bytes.get(data..data + size)?);
+        let member = bytes.get(data..data + size)?;
+        let column = file.strip_suffix(".npy");
         // What is no array of numbers, such as a text, is no column.
-        if let (Some(column), Some(values)) = (file.strip_suffix(".npy"), values) {
+        if let (Some(name), Some(words)) = (column, words(member)) {
+            rows.words.insert(name.to_owned(), words);
+        }
+        if let (Some(column), Some(values)) = (column, array(member)) {
             rows.count = rows.count.max(values.len());
             rows.columns.insert(column.to_owned(), values);
         }
@@ -147,17 +155,38 @@ pub(crate) fn npz_rows(bytes: &[u8]) -> Option<Rows> {
 
 /// The numbers of a `.npy` array of 64-bit numbers.
 fn array(bytes: &[u8]) -> Option<Vec<f64>> {
+    let (head, data) = described(bytes)?;
+    if !head.contains("'<f8'") {
+        return None;
+    }
+    let (values, _) = data.as_chunks::<8>();
+    Some(values.iter().map(|b| f64::from_le_bytes(*b)).collect())
+}
+
+/// The words of a `.npy` array of them: four bytes a character, zeros up to the length that the head states.
+fn words(bytes: &[u8]) -> Option<Vec<String>> {
+    let (head, data) = described(bytes)?;
+    let width: usize = head.split("'<U").nth(1)?.split('\'').next()?.parse().ok()?;
+    let word = |bytes: &[u8]| {
+        let (characters, _) = bytes.as_chunks::<4>();
+        let characters = characters.iter().map(|c| u32::from_le_bytes(*c));
+        characters
+            .take_while(|c| *c != 0)
+            .map(char::from_u32)
+            .collect()
+    };
+    data.chunks(4 * width).map(word).collect()
+}
+
+/// What a `.npy` array says of itself, and its data.
+fn described(bytes: &[u8]) -> Option<(&str, &[u8])> {
     let head = if *bytes.get(6)? == 1 {
         10 + number(bytes, 8, 2)?
     } else {
         12 + number(bytes, 8, 4)?
     };
     let text = std::str::from_utf8(bytes.get(10..head)?).ok()?;
-    if !text.contains("'<f8'") {
-        return None;
-    }
-    let (values, _) = bytes.get(head..)?.as_chunks::<8>();
-    Some(values.iter().map(|b| f64::from_le_bytes(*b)).collect())
+    Some((text, bytes.get(head..)?))
 }
 
 #[cfg(test)]

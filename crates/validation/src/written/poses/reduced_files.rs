@@ -7,6 +7,8 @@ use super::drawn_laws::drawn_motions;
 use super::equilibrium::equilibrium;
 use super::generated_code::code_differences;
 use super::headings::heading_differences;
+use super::law_twins::twin_differences;
+use super::overshoot::warning_differences;
 use super::positions::corners;
 use super::printed_formulas::formula_differences;
 use super::program::{Program, Run};
@@ -212,6 +214,10 @@ fn compare_laws(
                 "written-law-rates",
                 rates(rows, time, &corners(reading), &motion.name),
             );
+        }
+        compared.merge("written-laws-again", twin_differences(program, &motion)?);
+        if motion.name.ends_with("spline") {
+            compared.merge("written-warnings", warning_differences(program, &motion)?);
         }
         if motion.name.ends_with("expression") {
             let forces = equilibrium(reading, rows, &motion.name, false);

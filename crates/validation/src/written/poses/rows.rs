@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 pub(crate) struct Rows {
     pub(crate) columns: BTreeMap<String, Vec<f64>>,
     pub(crate) count: usize,
+    /// Arrays of words of an archive, and of a CSV file its headings.
+    pub(crate) words: BTreeMap<String, Vec<String>>,
 }
 
 impl Rows {

@@ -1,8 +1,10 @@
 //! The files of internal forces of drawn links.
 
 use super::compared::Compared;
+use super::difference::Differences;
 use super::program::Program;
 use super::reading::Reading;
+use super::rows::Rows;
 use super::scene_text::{Draws, text_of};
 use super::sections::{Link, links, sections};
 
@@ -58,6 +60,8 @@ pub(crate) fn compare_sections(
         let of = sections(reading, &rows, row, link, &cuts);
         compared.merge("written-sections", of.cuts);
         compared.merge("written-section-ends", of.ends);
+        let file = format!("-kinetostatics-internal-forces-{body}.{from}.{to}.envelope.csv");
+        compared.merge("written-envelope", within(&cuts, &run.csv(&file)?, &name));
         // The largest moment that is printed is one of the cuts.
         let said = summary["results"][&name]["value"]
             .as_f64()
@@ -69,6 +73,54 @@ pub(crate) fn compare_sections(
             .add(said.abs() - largest, largest, "N m", || name.clone());
     }
     Ok(())
+}
+
+/// Every cut is within the envelope of its station, which goes nowhere beyond the largest bending moment.
+fn within(cuts: &Rows, envelope: &Rows, link: &str) -> Differences {
+    let mut all = Differences::default();
+    let size = |of: &[f64]| of.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+    let scale = |name: &str| cuts.columns.get(name).map_or(0.0, |of| size(of));
+    let forces = scale("axial").max(scale("shear"));
+    for (name, scale) in [
+        ("axial", forces),
+        ("shear", forces),
+        ("bending", scale("bending")),
+    ] {
+        let of = |end: &str| envelope.columns.get(&format!("{name}.{end}"));
+        let (Some(values), Some(min), Some(max)) = (cuts.columns.get(name), of("min"), of("max"))
+        else {
+            all.fail(format!("{link}: no envelope of {name}"));
+            continue;
+        };
+        let stations = envelope
+            .columns
+            .get("station")
+            .into_iter()
+            .flatten()
+            .enumerate();
+        for (row, value) in values.iter().enumerate() {
+            let at = cuts.get(row, "station").unwrap_or(f64::NAN);
+            let aside = |k: usize| (envelope.get(k, "station").unwrap_or(f64::NAN) - at).abs();
+            let nearest = stations
+                .clone()
+                .map(|(k, _)| k)
+                .min_by(|a, b| aside(*a).total_cmp(&aside(*b)));
+            // Stations on both sides of a concentrated load are cuts of their own.
+            let Some(k) = nearest.filter(|k| aside(*k) <= 1e-12 * (1.0 + at.abs())) else {
+                continue;
+            };
+            let beyond = (min[k] - value).max(value - max[k]).max(0.0);
+            all.add(beyond, scale, "", || format!("{link}, {name} at {at}"));
+        }
+        if name == "bending" {
+            // Its station need not be one of the envelope, but none of those has a larger one.
+            let beyond = (size(min).max(size(max)) - scale).max(0.0);
+            all.add(beyond, scale, "N m", || {
+                format!("{link}, the largest bending moment")
+            });
+        }
+    }
+    all
 }
 
 fn requesting_sections(scene: &str, reading: &Reading, drawn: &[Link]) -> Result<String, String> {

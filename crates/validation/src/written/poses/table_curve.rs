@@ -11,6 +11,7 @@ pub(crate) struct TableCurve {
     points: Vec<[f64; 2]>,
     slopes: Vec<[f64; 2]>,
     is_step: bool,
+    is_spline: bool,
 }
 
 impl TableCurve {
@@ -40,12 +41,23 @@ impl TableCurve {
             points,
             slopes,
             is_step: interpolation == "step",
+            is_spline: interpolation == "spline",
         })
+    }
+
+    /// The points.
+    pub(crate) fn points(&self) -> &[[f64; 2]] {
+        &self.points
     }
 
     /// The x of the points.
     pub(crate) fn knots(&self) -> Vec<f64> {
         self.points.iter().map(|p| p[0]).collect()
+    }
+
+    /// Whether its second derivative is continuous.
+    pub(crate) fn is_spline(&self) -> bool {
+        self.is_spline
     }
 
     /// The cubic of Hermite in its piece; none outside the table.

@@ -7,6 +7,7 @@
 //! ```
 
 mod draws;
+mod motion_results;
 mod statistics;
 mod sweep_files;
 

@@ -2,6 +2,7 @@
 //! distribution; and a coordinate of one of its points.
 
 use super::draws::{distance, normal, normal_distribution, uniform};
+use super::motion_results::{VariedMass, motion_differences};
 use super::statistics::Stated;
 use crate::written::motions::sentences;
 use crate::written::poses::compared::Compared;
@@ -97,6 +98,21 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
             changed = with_number(&changed, &path, value).ok_or("the body has no mass")?;
         }
         compare_row(compared, &program, &changed, (&rows, row))?;
+    }
+    if let Some(variation) = variations.first() {
+        let mass = reading
+            .bodies
+            .iter()
+            .find(|body| body.name == variation.body);
+        let nominal = mass.map_or(f64::NAN, |body| body.mass / reading.units.mass);
+        let mass = VariedMass {
+            body: &variation.body,
+            values: [0.96 * nominal, 1.05 * nominal],
+        };
+        compared.merge(
+            "written-sweep-motion",
+            motion_differences(&program, &everything, &mass)?,
+        );
     }
     compare_dimension(compared, &program, &everything, &mut draws)
 }
