@@ -14,7 +14,18 @@ NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\bNaN\b|\binf\b"
 # What is measured of the machine, or says where files are, is no result.
 IGNORED = re.compile(r"second|running for|time:|\btime\b.*ms|program|sha256|hash|seconds|version", re.I)
 # Numbers that say how certain or how costly a result is, not what it is.
-ESTIMATES = re.compile(r"error|estimate|step|evaluation|reject|jacobian|condition|uncertain|accura|drift|toleran|rtol|atol|digits", re.I)
+ESTIMATES = re.compile(
+    r"error|estimate|step|evaluation|reject|jacobian|factoris|condition|uncertain|accura|drift|toleran|rtol|atol|digits"
+    r"|residual|closes to|work_sum|\bhint\b|\bruns\b", re.I
+)
+# A row of a table of extrema, and how the place of an extremum is named in sentences, tables and summaries, with its value.
+EXTREMA = re.compile(r"\| [^|]* \|(?: [^|]* \|)? # \| # \| # \| # \|")
+PLACE = re.compile(r" at$| at \S+ \[[^]]*\]$|\.at$")
+VALUES = {".at": ".value", " at": ""}
+# From this part of the span on it is another place, not the same one less exactly.
+OTHER_PLACE = 0.01
+# A motion has changed where it differs by more than so many times what half the tolerance changes of it.
+TIMES_TOLERANCE = 4.0
 
 
 def numbers(name, data):
@@ -58,7 +69,9 @@ def of_json(value, label="", found=None):
                 of_json(inner, f"{label}.{key}", found)
     elif isinstance(value, list):
         for inner in value:
-            of_json(inner, label, found)
+            # Extrema by the quantity that they are of.
+            named = isinstance(inner, dict) and inner.get("quantity")
+            of_json(inner, f"{label}.{named}" if named else label, found)
     elif isinstance(value, (int, float)):
         found.setdefault(label, []).append(float(value))
     elif isinstance(value, str):
@@ -70,10 +83,13 @@ def of_csv(text):
     lines = [line for line in text.splitlines() if line and not line.startswith("#")]
     columns = lines[0].split(",") if lines else []
     found = {name: [] for name in columns}
+    by_quantity = columns[:1] == ["quantity"]
     for line in lines[1:]:
-        for name, entry in zip(columns, line.split(",")):
+        entries = line.split(",")
+        for name, entry in zip(columns, entries):
+            name = f"{entries[0]}.{name}" if by_quantity else name
             try:
-                found[name].append(float(entry))
+                found.setdefault(name, []).append(float(entry))
             except ValueError:
                 found.setdefault(name + " (text)", []).append(float(sum(entry.encode())))
     return found
@@ -94,9 +110,24 @@ def of_text(text):
     found = {}
     for line in text.splitlines():
         label = re.sub(r"\s+", " ", NUMBER.sub("#", line)).strip()
-        for number in NUMBER.findall(line):
-            found.setdefault(label, []).append(float(number))
+        found_here = [float(number) for number in NUMBER.findall(line)]
+        if EXTREMA.fullmatch(label):
+            # The smallest and where, the largest and where.
+            numbers_here = found_here[-4:]
+            for end, value, at in zip(("min", "max"), numbers_here[0::2], numbers_here[1::2]):
+                found.setdefault(f"{label} {end}", []).append(value)
+                found.setdefault(f"{label} {end} at", []).append(at)
+        elif found_here:
+            found.setdefault(label, []).extend(found_here)
     return found
+
+
+def is_other_place(label, differs, a, b):
+    """Whether this is the place of an extremum that is the same but is reached elsewhere, too: a period later, for instance."""
+    if differs < OTHER_PLACE or not PLACE.search(label):
+        return False
+    value = next((label[: -len(end)] + new for end, new in VALUES.items() if label.endswith(end)), PLACE.sub("", label))
+    return value in a and size(a[value], b.get(value, ())) <= EFFECTIVE
 
 
 class Difference:
@@ -118,8 +149,10 @@ class Difference:
         self.only_estimates &= is_estimate
 
 
-def difference(base, other, varying=frozenset()):
-    """The difference of two runs' written numbers; None where there is none."""
+def difference(base, other, effective=None):
+    """The difference of two runs' written numbers; None where there is none. `effective` holds the sizes from which on a label has
+    changed, where that is not EFFECTIVE."""
+    effective = effective or {}
     found = Difference()
     sentences = lambda written: "\n".join(line for line in written.printed.splitlines() if not IGNORED.search(line)).encode()
     pairs = [("printed", sentences(base), sentences(other))]
@@ -130,32 +163,40 @@ def difference(base, other, varying=frozenset()):
             pairs.append((name, base.files[name], other.files[name]))
     for name, a, b in pairs:
         if a != b:
-            compare(found, name, numbers(name, a), numbers(name, b), varying)
+            compare(found, name, numbers(name, a), numbers(name, b), effective)
     return found if found.count else None
 
 
-def varying(a, b):
-    """The labels whose numbers differ at all."""
-    found = set()
-    pairs = [("printed", a.printed.encode(), b.printed.encode())] + [(name, a.files[name], b.files.get(name, b"")) for name in a.files]
+def sizes(a, b):
+    """How much each label differs between two runs, for all that differ at all."""
+    found = {}
+    pairs = [("printed", a.printed.encode(), b.printed.encode())]
+    pairs += [(name, a.files.get(name, b""), b.files.get(name, b"")) for name in a.files.keys() | b.files.keys()]
     for name, one, other in pairs:
         if one != other:
             one, other = numbers(name, one), numbers(name, other)
-            found |= {(name, label) for label in one.keys() | other.keys() if one.get(label) != other.get(label)}
-    return frozenset(found)
+            of = {label: size(one.get(label, ()), other.get(label, ())) for label in one.keys() | other.keys()}
+            found |= {(name, label): differs for label, differs in of.items() if differs}
+    return found
 
 
-def compare(found, name, a, b, varying):
+def size(a, b):
+    """The largest difference of two lists of numbers, relative to the largest of the first; infinite where they cannot be compared."""
+    if len(a) != len(b):
+        return math.inf
+    scale = max((abs(x) for x in a if math.isfinite(x)), default=0.0)
+    largest = 0.0
+    for x, y in zip(a, b):
+        if x == y or math.isnan(x) and math.isnan(y):
+            continue
+        differs = abs(x - y) / scale if scale else math.inf
+        largest = max(largest, differs if differs == differs else math.inf)
+    return largest
+
+
+def compare(found, name, a, b, effective):
     for label in a.keys() | b.keys():
-        if IGNORED.search(label) or (name, label) in varying:
-            continue
-        if len(a.get(label, ())) != len(b.get(label, ())):
-            found.add(name, label, math.inf)
-            continue
-        scale = max((abs(x) for x in a.get(label, ()) if math.isfinite(x)), default=0.0)
-        for x, y in zip(a.get(label, ()), b.get(label, ())):
-            if x == y or math.isnan(x) and math.isnan(y):
-                continue
-            size = abs(x - y) / scale if scale else math.inf
-            if not size <= EFFECTIVE:
-                found.add(name, label, size if size == size else math.inf)
+        if not IGNORED.search(label):
+            differs = size(a.get(label, ()), b.get(label, ()))
+            if differs > effective.get((name, label), EFFECTIVE) and not is_other_place(label, differs, a, b):
+                found.add(name, label, differs)

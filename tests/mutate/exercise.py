@@ -1,4 +1,6 @@
 """Runs of the program on a few scenes: which changes each of them reaches, and what it writes without any."""
+import json
+import math
 import os
 import pathlib
 import shlex
@@ -40,6 +42,8 @@ COMMANDS = [
     ["symbolic", "--format", "python"],
     ["calibrate"],
 ]
+# Parts of a tolerance with which a motion is run again.
+PARTS_OF_TOLERANCE = [0.35, 0.5, 0.7]
 # No run takes longer, s, and one that takes longer than this without a change is not among them.
 LONGEST, LONGEST_BASE = 20.0, 5.0
 
@@ -60,7 +64,7 @@ class Exercise:
 
     def __init__(self, scene, arguments):
         self.scene, self.arguments = scene, arguments
-        self.reached, self.base, self.varying = set(), None, frozenset()
+        self.reached, self.base, self.effective = set(), None, {}
 
     def name(self):
         folder = self.scene.parent.name if self.scene.name == "scene.toml" else self.scene.stem
@@ -132,11 +136,37 @@ def exercises(top, program, say):
             # Where there is no result, numbers of a message are none.
             has_result = one.base.status == 0 or any(name.endswith(".csv") for name in one.base.files)
             if one.base.status in (0, 1) and has_result and one.base.seconds < LONGEST_BASE:
-                # What differs between two runs of the same program is no effect of a change.
-                one.varying = contents.varying(one.base, program.run(one.command()))
+                one.effective = effective(one, program)
                 found.append(one)
     say(f"{len(found)} runs of {len(scenes)} scenes reach {len(set().union(*(e.reached for e in found)))} changes")
     return found
+
+
+def effective(one, program):
+    """From which size on each label has changed: what differs between two runs of the same program is no effect of a change, nor is
+    what other tolerances of an integration change, times a factor."""
+    sizes = dict.fromkeys(contents.sizes(one.base, program.run(one.command())), math.inf)
+    for part in PARTS_OF_TOLERANCE:
+        finer = finer_command(one, part)
+        for label, differs in contents.sizes(one.base, program.run(finer)).items() if finer else ():
+            sizes[label] = max(sizes.get(label, contents.EFFECTIVE), contents.TIMES_TOLERANCE * differs)
+    return sizes
+
+
+def finer_command(one, part):
+    """The command with a part of the tolerance, or of the accuracy asked for; none where it does not integrate with steps."""
+    command = one.command()
+    if one.arguments[0] != "simulate":
+        return None
+    if "--accuracy" in command:
+        at = command.index("--accuracy") + 1
+        return [*command[:at], str(part * float(command[at])), *command[at + 1 :]]
+    summary = next((json.loads(data) for name, data in one.base.files.items() if name.endswith("simulate.json")), None)
+    tolerance = (summary or {}).get("results", {}).get("tolerance")
+    if tolerance is None:
+        return None
+    at = command.index("--rtol") if "--rtol" in command else len(command)
+    return [*command[:at], *command[at + 2 :], "--rtol", str(part * tolerance["value"])]
 
 
 def for_change(all_exercises, number, most):

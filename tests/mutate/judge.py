@@ -6,8 +6,8 @@ import exercise
 
 # Runs of a change, of those that reach it; more of a named fault, which must show an effect.
 MOST_RUNS, MOST_RUNS_NAMED = 3, 9
-# No more cases are tried than take so long without a change, s, but at least one.
-MOST_SECONDS = 8.0
+# No more cases are tried than take so long without a change, s, but at least so many.
+MOST_SECONDS, LEAST_CASES = 8.0, 3
 CAUGHT = "caught by two"
 
 
@@ -94,8 +94,8 @@ def outcome(result, has_effect):
 def validated(result, program, some_cases):
     """Validates cases until two checks of different number fail."""
     spent = 0.0
-    for case in some_cases:
-        if spent and spent + case.base.seconds > MOST_SECONDS:
+    for count, case in enumerate(some_cases):
+        if count >= LEAST_CASES and spent + case.base.seconds > MOST_SECONDS:
             return
         spent += case.base.seconds
         done = program.run(case.command(), result.change.number, limit=limit_of(case.base))
@@ -130,7 +130,7 @@ def effect(result, program, runs):
         if done.has_panicked or done.status > run.base.status:
             refusal = "refused"
             continue
-        found = contents.difference(run.base, done, run.varying)
+        found = contents.difference(run.base, done, run.effective)
         if found is None:
             continue
         if result.outcome != "number changed" or (not found.only_estimates, found.largest) > (not result.only_estimates, result.size):
