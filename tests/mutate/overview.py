@@ -5,11 +5,11 @@ import tomllib
 import judge
 
 # In this order they are counted.
-OUTCOMES = [judge.CAUGHT, "caught by one", "refused", "endless", "not caught", "no number changed", "not reached"]
+OUTCOMES = [judge.CAUGHT, "caught by one", "refused", "endless", "not caught", "only an estimate", "no number changed", "not reached"]
 # At most this part of the changes of a number may stay uncaught.
 MOST_UNCAUGHT = 0.02
 GROUPS = ["laws, every line", "drawn lines", "named faults"]
-ESTIMATE = "only an estimated error or a count of steps changes, which no result depends on"
+ESTIMATE = "only an estimated error, a residual or a count of steps changes, which no result depends on"
 
 
 def group_of(result):
@@ -30,12 +30,18 @@ def why(result, known):
     return written or (ESTIMATE if result["only_estimates"] else "")
 
 
+def outcome_of(result):
+    """Its outcome; what is not caught and says only how certain or how costly a result is counts by itself."""
+    is_estimate = result["outcome"] == "not caught" and result["only_estimates"]
+    return "only an estimate" if is_estimate else result["outcome"]
+
+
 def has_changed_number(result):
-    return result["outcome"] in (judge.CAUGHT, "caught by one", "not caught")
+    return outcome_of(result) in (judge.CAUGHT, "caught by one", "not caught")
 
 
 def is_open(result):
-    return result["outcome"] in ("caught by one", "not caught")
+    return outcome_of(result) in ("caught by one", "not caught", "only an estimate")
 
 
 def write(top, results, left_out, options, say):
@@ -43,13 +49,15 @@ def write(top, results, left_out, options, say):
     known = reasons(top)
     text = table(results)
     changed = [r for r in results if has_changed_number(r)]
-    unexplained = [r for r in changed if is_open(r) and not why(r, known)]
-    uncaught = [r for r in changed if is_open(r)]
-    share = len(uncaught) / max(1, len(changed))
+    by_none = [r for r in changed if r["outcome"] == "not caught"]
+    by_one = [r for r in changed if r["outcome"] == "caught by one"]
+    uncaught = [r for r in results if is_open(r)]
+    unexplained = [r for r in by_none if not why(r, known)]
+    share = len(by_none) / max(1, len(changed))
     text += [
         "",
-        f"Of {len(changed)} changes of a written number {len(changed) - len(uncaught)} are caught by two checks of different number;",
-        f"{len(uncaught)} ({share:.1%}) are not, {len(unexplained)} of them without a reason. {left_out} changes do not compile.",
+        f"Of {len(changed)} changes of a result {len(changed) - len(by_none) - len(by_one)} are caught by two checks of different number, {len(by_one)} by one,",
+        f"{len(by_none)} ({share:.1%}) by none, {len(unexplained)} of them without a reason. {left_out} changes do not compile.",
     ]
     name = "named-source-faults" if options.named else "source-mutations"
     origin = "the named faults" if options.named else f"{options.lines} drawn lines, seed {options.seed}; all of the laws; the named faults"
@@ -66,7 +74,7 @@ def write(top, results, left_out, options, say):
 
 def table(results):
     """How many changes of each group had which outcome, and how often each check failed."""
-    counts = collections.Counter((group_of(r), r["outcome"]) for r in results)
+    counts = collections.Counter((group_of(r), outcome_of(r)) for r in results)
     lines = [" " * 20 + "".join(f"{group:>20}" for group in GROUPS)]
     for outcome in OUTCOMES:
         lines.append(f"{outcome:20}" + "".join(f"{counts[group, outcome]:20}" for group in GROUPS))
