@@ -2,12 +2,12 @@
 
 use super::closure::closure;
 use super::compared::Compared;
+use super::described_again::described_again_differences;
 use super::difference::Differences;
 use super::drawn_laws::drawn_motions;
 use super::equilibrium::equilibrium;
 use super::generated_code::code_differences;
 use super::headings::heading_differences;
-use super::law_twins::twin_differences;
 use super::overshoot::warning_differences;
 use super::positions::corners;
 use super::printed_formulas::formula_differences;
@@ -219,7 +219,10 @@ fn compare_laws(
                 rates(rows, time, &corners(reading), &motion.name),
             );
         }
-        compared.merge("written-laws-again", twin_differences(program, &motion)?);
+        compared.merge(
+            "written-laws-again",
+            described_again_differences(program, &motion)?,
+        );
         if motion.name.ends_with("spline") {
             compared.merge("written-warnings", warning_differences(program, &motion)?);
         }

@@ -13,14 +13,14 @@ use toml::{Table, Value};
 const NEAR: f64 = 1e-9;
 
 /// How the rows of the other description follow from those of the first.
-enum Twin {
+enum Description {
     Same,
     /// Backwards in time, and mirrored about the sum of the first and the last value.
     Turned(f64),
 }
 
 /// Runs the other description of a motion and compares the rows of its coordinate; nothing where it has none.
-pub(crate) fn twin_differences(
+pub(crate) fn described_again_differences(
     program: &Program,
     motion: &DrawnMotion,
 ) -> Result<Differences, String> {
@@ -35,12 +35,12 @@ pub(crate) fn twin_differences(
     let Some(prescribed) = scene.get_mut("prescribed").and_then(Value::as_table_mut) else {
         return Ok(Differences::default());
     };
-    let twin = match law {
+    let description = match law {
         Law::Curve(_) => {
             let Some(sum) = turn(prescribed, coordinate.0) else {
                 return Ok(Differences::default());
             };
-            Twin::Turned(sum * unit)
+            Description::Turned(sum * unit)
         }
         law => {
             let Some(text) = expression(law) else {
@@ -51,18 +51,18 @@ pub(crate) fn twin_differences(
                 coordinate.0.to_owned(),
                 Value::Table(entry.into_iter().collect()),
             );
-            Twin::Same
+            Description::Same
         }
     };
     let count = motion.rows.count.to_string();
-    let name = format!("{}-twin", motion.name);
+    let name = format!("{}-again", motion.name);
     let run = program.run(
         &name,
         &text_of(&scene)?,
         &["kinematics", "--points", &count],
     );
     let rows = run.map_err(|e| e.to_string())?.csv("-kinematics.csv")?;
-    Ok(compare(motion, &rows, coordinate.0, law, &twin))
+    Ok(compare(motion, &rows, coordinate.0, law, &description))
 }
 
 /// The coordinate that is prescribed, with what it measures, and its law.
@@ -139,17 +139,17 @@ fn expression(law: &Law) -> Option<String> {
 /// The coordinate, its velocity and acceleration in both files, relative to the largest of each.
 fn compare(
     motion: &DrawnMotion,
-    twin: &Rows,
+    again: &Rows,
     coordinate: &str,
     law: &Law,
-    how: &Twin,
+    how: &Description,
 ) -> Differences {
     let mut all = Differences::default();
     let rows = &motion.rows;
-    if twin.count != rows.count {
+    if again.count != rows.count {
         all.fail(format!(
             "{}: {} rows, described otherwise {}",
-            motion.name, rows.count, twin.count
+            motion.name, rows.count, again.count
         ));
         return all;
     }
@@ -166,7 +166,7 @@ fn compare(
     };
     for (order, end) in ["", ".velocity", ".acceleration"].into_iter().enumerate() {
         let column = format!("{coordinate}{end}");
-        let (Some(first), Some(second)) = (rows.columns.get(&column), twin.columns.get(&column))
+        let (Some(first), Some(second)) = (rows.columns.get(&column), again.columns.get(&column))
         else {
             all.fail(format!("{}: no column {column}", motion.name));
             continue;
@@ -174,8 +174,8 @@ fn compare(
         let scale = first.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
         for row in (0..rows.count).filter(|&row| order == 0 || !is_corner(row)) {
             let other = match how {
-                Twin::Same => second[row],
-                Twin::Turned(sum) => match order {
+                Description::Same => second[row],
+                Description::Turned(sum) => match order {
                     0 => sum - second[last - row],
                     1 => second[last - row],
                     _ => -second[last - row],
