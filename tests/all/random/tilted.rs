@@ -107,7 +107,9 @@ fn check(built: &BuiltMechanism, seed: u64, coverage: &mut Coverage) -> Result<(
     for (k, (m, half_dm)) in found.into_iter().enumerate() {
         let difference = (m - wanted.m).abs().max((half_dm - wanted.half_dm).abs());
         coverage.worst[k] = coverage.worst[k].max(difference / scale);
-        if !(difference <= TOLERANCE * scale) {
+        // A difference that is no number fails, too.
+        let agrees = difference <= TOLERANCE * scale;
+        if !agrees {
             return Err(format!(
                 "{k}: {m} and {half_dm} for {} and {}, condition {condition:.0e}",
                 wanted.m, wanted.half_dm

@@ -107,7 +107,7 @@ impl Plan {
     fn common_normal(&self, pose: &Pose) -> Option<Vec3> {
         let is_turn = |freedom: &usize| self.tree.freedoms[*freedom] == FreedomKind::Turn;
         let axis = |freedom: usize| pose.screws[freedom].axis;
-        let freedoms = 0..self.tree.freedoms.len();
+        let mut freedoms = 0..self.tree.freedoms.len();
         let normal = axis(freedoms.clone().find(is_turn)?);
         // A slide along the normal stands still where no row moves both it and what turns.
         let is_parted = |freedom: usize| {
@@ -128,8 +128,7 @@ impl Plan {
             FreedomKind::Screw(_) | FreedomKind::BallTurn | FreedomKind::Length => false,
         };
         let mut closures = self.closures.iter();
-        (freedoms.map(fits).all(|fits| fits) && closures.all(|c| !c.unmoved.is_empty()))
-            .then_some(normal)
+        (freedoms.all(fits) && closures.all(|c| !c.unmoved.is_empty())).then_some(normal)
     }
 }
 

@@ -23,10 +23,10 @@ pub(super) fn multiplier_differences(speeds: &[f64], multipliers: &[Multiplier])
     let deviations: Vec<f64> = speeds.iter().map(|speed| speed / settled - 1.0).collect();
     let [least, most] = DEVIATIONS;
     let is_between = |d: f64| (least..=most).contains(&d.abs());
-    let pairs = deviations
+    let mut pairs = deviations
         .windows(2)
         .filter(|d| is_between(d[0]) && is_between(d[1]));
-    if let Some(pair) = pairs.last() {
+    if let Some(pair) = pairs.next_back() {
         let ratio = pair[1] / pair[0];
         // Of the deviation that is left, the integration's error of about 1e-11 is a part.
         all.add(ratio - expected, *expected, "", || {

@@ -45,7 +45,7 @@ pub(crate) fn compare_sections(
         let at = summary["results"][format!("{name}.at")]["value"].as_f64();
         let is_there = |x: &f64| at.is_some_and(|at| (x - at).abs() <= 1e-12 * (1.0 + at.abs()));
         let column = rows.columns.get(abscissa);
-        let row = column.and_then(|column| column.iter().position(|x| is_there(x)));
+        let row = column.and_then(|column| column.iter().position(is_there));
         let Some(row) = row else {
             let reason = format!("the largest {name} is at {at:?}, which is no row");
             compared.fail("written-sections", reason);
