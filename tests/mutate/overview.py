@@ -44,8 +44,9 @@ def is_open(result):
     return outcome_of(result) in ("caught by one", "not caught", "only an estimate")
 
 
-def write(top, results, left_out, options, say):
-    """Writes both files; status 1 where too many changes are uncaught, or one without a reason."""
+def write(top, results, left_out, options, say, compiled):
+    """Writes both files; status 1 where too many changes are uncaught, or one without a reason. `compiled` counts all changes that
+    compile, of which a run that is stopped tries a part."""
     known = reasons(top)
     text = table(results)
     changed = [r for r in results if has_changed_number(r)]
@@ -59,6 +60,8 @@ def write(top, results, left_out, options, say):
         f"Of {len(changed)} changes of a result {len(changed) - len(by_none) - len(by_one)} are caught by two checks of different number, {len(by_one)} by one,",
         f"{len(by_none)} ({share:.1%}) by none, {len(unexplained)} of them without a reason. {left_out} changes do not compile.",
     ]
+    if len(results) < compiled:
+        text.append(f"{len(results)} of the {compiled} changes that compile were tried: the run was stopped.")
     name = "named-source-faults" if options.named else "source-mutations"
     origin = "the named faults" if options.named else f"{options.lines} drawn lines, seed {options.seed}; all of the laws; the named faults"
     title = f"Changes of the source text: {origin}"

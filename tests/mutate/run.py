@@ -75,7 +75,7 @@ def main():
         else:
             results.append(result)
     keep([])
-    return overview.write(top, results, len(build.left_out), options, say)
+    return overview.write(top, results, len(build.left_out), options, say, len(build.changes))
 
 
 def reached(build, program, folder, say):
