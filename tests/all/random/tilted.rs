@@ -78,7 +78,7 @@ fn check(built: &BuiltMechanism, seed: u64, coverage: &mut Coverage) -> Result<(
         let ranges = [&with, &without].map(|model| model.plan().range());
         let limits = ranges.map(|range| range.limits().unwrap_or((0.0, 0.0)));
         let gap = (limits[0].0 - limits[1].0).abs() + (limits[0].1 - limits[1].1).abs();
-        // Near a singular position the last step that converges depends on how the group is factored. Seen: 1.2e-4.
+        // Ends of ranges are where a step last converged; why one differs is not known. Seen: 1.2e-4.
         let kinds = ranges.map(|range| std::mem::discriminant(&range));
         if gap > 1e-3 || kinds[0] != kinds[1] {
             return Err(format!("{ranges:?}"));
