@@ -16,7 +16,16 @@ pub(super) fn motion_lines(reading: &Reading, scene: &Table) -> Vec<Line> {
     lines.extend(sweep(reading, scene));
     lines.extend(stops(scene));
     lines.extend(teeth(reading));
+    // A number in a name is not one of the line's.
+    lines.retain(|(start, _)| !start.split_whitespace().any(is_number));
     lines
+}
+
+/// Whether a word of a name reads as a number.
+fn is_number(word: &str) -> bool {
+    word.trim_end_matches(':')
+        .parse::<f64>()
+        .is_ok_and(f64::is_finite)
 }
 
 fn expected(value: f64) -> Expected {
@@ -26,10 +35,16 @@ fn expected(value: f64) -> Expected {
 /// Start, velocity and duration, where the text gives the start of every actuator.
 fn free_motion(reading: &Reading, scene: &Table) -> Option<Line> {
     let motion = scene.get("motion")?.as_table()?;
-    let of = |key: &str, name: &str| number(motion.get(key)?.get(name));
+    // Of a single coordinate the number itself is allowed.
+    let of = |key: &str, name: &str| {
+        let value = motion.get(key)?;
+        number(Some(value)).or_else(|| number(value.get(name)))
+    };
     let mut values = Vec::new();
     for coordinate in reading.coordinates.iter().take(reading.actuator_count) {
-        if motion.contains_key(&coordinate.name) {
+        if motion.contains_key(&coordinate.name)
+            || coordinate.name.split_whitespace().any(is_number)
+        {
             return None;
         }
         values.push(expected(of("initial-coordinate", &coordinate.name)?));
@@ -81,7 +96,10 @@ fn stops(scene: &Table) -> Vec<Line> {
         let of = |key: &str| number(keys.get(key));
         let limits = [of("min"), of("max")].into_iter().flatten();
         let mut values: Vec<Expected> = limits.map(expected).collect();
-        values.push(expected(of("restitution").unwrap_or(0.0)));
+        // One that yields has a stiffness instead.
+        if keys.get("stiffness").is_none() {
+            values.push(expected(of("restitution").unwrap_or(0.0)));
+        }
         (format!("end stop {name}: "), values)
     };
     stops.iter().map(line).collect()
@@ -107,4 +125,20 @@ fn teeth(reading: &Reading) -> Option<Line> {
         .map(|a| expected(a.to_degrees()))
         .collect();
     (!angles.is_empty()).then(|| ("separating forces: ".to_owned(), angles))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stop_that_yields_has_no_restitution() {
+        let scene: Table = "[stops]\nhard = { max = 300, restitution = 0.5 }\nsoft = { min = -10, stiffness = 1e4, damping = 20 }"
+            .parse()
+            .expect("a scene");
+        let lines = stops(&scene);
+        assert_eq!(lines[0].1, [(300.0, 300.0), (0.5, 0.5)]);
+        assert_eq!(lines[1].1, [(-10.0, 10.0)]);
+        assert!(is_number("2") && is_number("2:") && !is_number("mesh-2"));
+    }
 }
