@@ -14,6 +14,7 @@ import contents
 
 SCENES = [
     "validation/*/scene.toml",
+    "validation/spatial/*.toml",
     "tests/mutations/scenes/*.toml",
     "tests/mutate/scenes/*.toml",
     "crates/scene/src/tests/*.toml",

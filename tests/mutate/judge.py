@@ -12,16 +12,17 @@ CAUGHT = "caught by two"
 
 
 class Case:
-    """A case of `validation` with the changes that its validation reaches."""
+    """A case of `validation`, in the plane or in space, with the changes that its validation reaches."""
 
-    def __init__(self, folder, program):
-        self.folder, self.name = folder, folder.name
+    def __init__(self, scene, top, program):
+        self.scene, self.folder = scene, top / "validation"
+        self.name = scene.parent.name if scene.name == "scene.toml" else scene.stem
         self.base, self.reached = program.recorded(self.command())
         if self.base.status != 0:
             raise SystemExit(f"`dwell validate {self.name}` fails without a change:\n{self.base.printed}")
 
     def command(self):
-        return ["validate", str(self.folder), "--pictures", "none"]
+        return ["validate", self.name, "--folder", str(self.folder), "--pictures", "none"]
 
 
 class Result:
@@ -30,7 +31,7 @@ class Result:
     def __init__(self, change):
         self.change, self.outcome, self.checks, self.by = change, "", {}, []
         self.size, self.place, self.only_estimates = 0.0, "", False
-        self.folders, self.kinds = set(), set()
+        self.scenes, self.kinds = set(), set()
 
     def as_dict(self):
         of = self.change
@@ -42,7 +43,8 @@ class Result:
 
 
 def cases(top, program):
-    return [Case(path.parent, program) for path in sorted(top.glob("validation/*/case.toml"))]
+    scenes = [path.with_name("scene.toml") for path in top.glob("validation/*/case.toml")]
+    return [Case(scene, top, program) for scene in sorted(scenes) + sorted(top.glob("validation/spatial/*.toml"))]
 
 
 def limit_of(written):
@@ -62,7 +64,7 @@ def judge(change, program, all_cases, all_exercises):
         result.outcome = refusal or "no number changed"
         return result
     # First the cases in whose files a number changed.
-    reaching.sort(key=lambda case: case.folder not in result.folders)
+    reaching.sort(key=lambda case: case.scene not in result.scenes)
     validated(result, program, reaching)
     result.outcome = outcome(result, has_effect=bool(runs))
     return result
@@ -137,6 +139,6 @@ def effect(result, program, runs):
             result.size, result.place, result.only_estimates = found.largest, f"{run.name()}: {found.place}", found.only_estimates
         result.outcome = "number changed"
         if not found.only_estimates:
-            result.folders.add(run.scene.parent)
+            result.scenes.add(run.scene)
             result.kinds |= found.kinds
     return refusal

@@ -1,0 +1,85 @@
+//! Along the rows of a file: prescribed coordinates with their law, and free ones with the integrals of their speeds.
+
+use super::super::worst::{Comparison, Worst};
+use super::finding;
+use super::scenes::{Scenes, sinusoid};
+use crate::written::motions::simpson;
+use crate::written::poses::difference::{Differences, Texts};
+use crate::written::poses::rows::Rows;
+use dwell_findings::{Check, Finding};
+use dwell_scene::SpaceScene;
+
+const LAWS: Comparison = Comparison {
+    key: "written-kinetostatics-laws",
+    check: Check::WrittenLaws,
+    comparison: "prescribed coordinates, speeds and accelerations with sinusoids from the assembly",
+    scale: "the amplitude, times the angular frequency for each derivative",
+    // The largest seen in a case is 0.
+    tolerance: 1e-15,
+    reason: "rounding of the law",
+};
+const SPEEDS: Texts<'_> = Texts {
+    key: "written-motion-speeds",
+    check: Check::WrittenRates,
+    comparison: "what coordinates and speeds change by between rows with the integrals of speeds and accelerations, by Simpson's rule",
+    scale: "the largest coordinate, or the largest speed",
+    // The largest seen in a case is 4.5e-10.
+    tolerance: 4e-8,
+    tolerance_reason: "the tolerance of the integration, and what the rule's estimated error leaves",
+};
+
+/// Prescribed coordinates with their sinusoids.
+pub(super) fn laws(scenes: &Scenes, scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
+    let mut worst = Worst::default();
+    for (k, amplitude) in scenes.amplitudes.as_ref()?.iter().enumerate() {
+        let actuator = &scene.mechanism.actuators[k].name;
+        let start = scene.assembly.q[k];
+        for row in 0..rows.count {
+            let mut wanted = sinusoid(*amplitude, rows.time(row));
+            wanted[0] += start;
+            let largest = sinusoid(*amplitude, 0.0)[1].abs() / amplitude.abs();
+            let scales = [
+                amplitude.abs().max(start.abs()),
+                amplitude.abs() * largest,
+                amplitude.abs() * largest * largest,
+            ];
+            for ((end, wanted), scale) in ["", ".velocity", ".acceleration"]
+                .into_iter()
+                .zip(wanted)
+                .zip(scales)
+            {
+                let name = format!("{actuator}{end}");
+                let found = rows.get(row, &name).unwrap_or(f64::NAN);
+                worst.add([found, wanted, scale], "", || format!("row {row}, {name}"));
+            }
+        }
+    }
+    finding(worst, &LAWS, rows, "kinetostatics")
+}
+
+/// Free coordinates and their speeds with the integrals of speeds and accelerations.
+pub(super) fn motion(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
+    let mut found = Differences::default();
+    let Some(times) = rows.columns.get("t") else {
+        found.fail("the file has no time".to_owned());
+        return found.finding(SPEEDS, "motion");
+    };
+    let actuators = &scene.mechanism.actuators;
+    let column = |k: usize, end: &str| rows.columns.get(&format!("{}{end}", actuators[k].name));
+    let largest = |end: &str| {
+        let all = (0..actuators.len()).filter_map(|k| column(k, end));
+        all.flatten().fold(0.0_f64, |max, v| max.max(v.abs()))
+    };
+    for (k, actuator) in actuators.iter().enumerate() {
+        for [of, rate] in [["", ".velocity"], [".velocity", ".acceleration"]] {
+            let name = format!("{}{of}", actuator.name);
+            match (column(k, of), column(k, rate)) {
+                (Some(values), Some(rates)) => {
+                    simpson(&mut found, times, [values, rates], largest(of), &name);
+                }
+                _ => found.fail(format!("no column {name}, or none of its rate")),
+            }
+        }
+    }
+    found.finding(SPEEDS, "motion")
+}
