@@ -24,6 +24,9 @@ PLACE = re.compile(r" at$| at \S+ \[[^]]*\]$|\.at$")
 VALUES = {".at": ".value", " at": ""}
 # From this part of the span on it is another place, not the same one less exactly.
 OTHER_PLACE = 0.01
+# A column that is zero but for rounding has changed where it differs by this part of the largest of its unit, times EFFECTIVE.
+OF_UNIT = 1e-6
+UNIT = re.compile(r"\[[^]]*\]$")
 # A motion has changed where it differs by more than so many times what half the tolerance changes of it.
 TIMES_TOLERANCE = 4.0
 
@@ -175,16 +178,39 @@ def sizes(a, b):
     for name, one, other in pairs:
         if one != other:
             one, other = numbers(name, one), numbers(name, other)
-            of = {label: size(one.get(label, ()), other.get(label, ())) for label in one.keys() | other.keys()}
+            of = all_sizes(one, other)
             found |= {(name, label): differs for label, differs in of.items() if differs}
     return found
 
 
-def size(a, b):
-    """The largest difference of two lists of numbers, relative to the largest of the first; infinite where they cannot be compared."""
+def all_sizes(a, b):
+    """By label: the difference of its numbers. An extremum that is zero is compared by the other end, a column that is zero but for
+    rounding by the others of its unit."""
+    largest_of = {label: max((abs(x) for x in values if math.isfinite(x)), default=0.0) for label, values in a.items()}
+    of_unit = {}
+    for label, largest in largest_of.items():
+        if unit := UNIT.search(label):
+            of_unit[unit[0]] = max(of_unit.get(unit[0], 0.0), largest)
+    def floor(label):
+        unit = UNIT.search(label)
+        return max(largest_of.get(other_end(label), 0.0), OF_UNIT * of_unit.get(unit[0], 0.0) if unit else 0.0)
+    return {label: size(a.get(label, ()), b.get(label, ()), floor(label)) for label in a.keys() | b.keys()}
+
+
+def other_end(label):
+    """The label of the largest where this is that of the smallest, and the reverse; none of a place."""
+    if PLACE.search(label):
+        return ""
+    swapped = re.sub(r"\b(min|max)\b", lambda found: {"min": "max", "max": "min"}[found[0]], label)
+    return swapped if swapped != label else ""
+
+
+def size(a, b, floor=0.0):
+    """The largest difference of two lists of numbers, relative to the largest of the first, or a floor; infinite where they cannot be compared."""
     if len(a) != len(b):
         return math.inf
     scale = max((abs(x) for x in a if math.isfinite(x)), default=0.0)
+    scale = max(scale, floor)
     largest = 0.0
     for x, y in zip(a, b):
         if x == y or math.isnan(x) and math.isnan(y):
@@ -195,8 +221,7 @@ def size(a, b):
 
 
 def compare(found, name, a, b, effective):
-    for label in a.keys() | b.keys():
+    for label, differs in all_sizes(a, b).items():
         if not IGNORED.search(label):
-            differs = size(a.get(label, ()), b.get(label, ()))
             if differs > effective.get((name, label), EFFECTIVE) and not is_other_place(label, differs, a, b):
                 found.add(name, label, differs)

@@ -6,8 +6,10 @@ import exercise
 
 # Runs of a change, of those that reach it; more of a named fault, which must show an effect.
 MOST_RUNS, MOST_RUNS_NAMED = 3, 9
-# No more cases are tried than take so long without a change, s, but at least so many.
-MOST_SECONDS, LEAST_CASES = 8.0, 3
+# No more cases are tried than take so long without a change, s of the processors, but at least so many.
+MOST_SECONDS, LEAST_CASES = 10.0, 5
+# The whole of `dwell validate` takes no longer, s.
+WHOLE_SECONDS = 600.0
 CAUGHT = "caught by two"
 
 
@@ -21,8 +23,23 @@ class Case:
         if self.base.status != 0:
             raise SystemExit(f"`dwell validate {self.name}` fails without a change:\n{self.base.printed}")
 
+    def run(self, program, number):
+        return program.run(self.command(), number, limit=limit_of(self.base))
+
     def command(self):
         return ["validate", self.name, "--folder", str(self.folder), "--pictures", "none"]
+
+
+class Whole:
+    """All cases with the extreme parameters, which belong to no case: `dwell validate` as it stands in the README."""
+
+    name = "all"
+
+    def __init__(self, top):
+        self.top = top
+
+    def run(self, program, number):
+        return program.run(["validate", "--pictures", "none"], number, limit=WHOLE_SECONDS, directory=self.top)
 
 
 class Result:
@@ -54,7 +71,7 @@ def limit_of(written):
 def judge(change, program, all_cases, all_exercises):
     """Tries a change on commands that reach it, then on the cases, the quickest first, until two checks fail."""
     result = Result(change)
-    reaching = sorted((c for c in all_cases if change.number in c.reached), key=lambda c: c.base.seconds)
+    reaching = sorted((c for c in all_cases if change.number in c.reached), key=lambda c: c.base.cost)
     runs = exercise.for_change(all_exercises, change.number, MOST_RUNS_NAMED if change.named else MOST_RUNS)
     if not runs and not reaching:
         result.outcome = "not reached"
@@ -63,6 +80,8 @@ def judge(change, program, all_cases, all_exercises):
     if result.outcome != "number changed" and runs:
         result.outcome = refusal or "no number changed"
         return result
+    if not reaching:
+        tried(result, program, Whole(all_cases[0].folder.parent))
     # First the cases in whose files a number changed.
     reaching.sort(key=lambda case: case.scene not in result.scenes)
     validated(result, program, reaching)
@@ -75,7 +94,7 @@ def judge_again(change, known, program, all_cases):
     result = Result(change)
     result.size, result.place, result.only_estimates = known["size"], known["place"], known["only_estimates"]
     result.kinds = set(known.get("kinds", ()))
-    reaching = sorted((c for c in all_cases if change.number in c.reached), key=lambda c: c.base.seconds)
+    reaching = sorted((c for c in all_cases if change.number in c.reached), key=lambda c: c.base.cost)
     reaching.sort(key=lambda case: case.name != result.place.split(": ")[0])
     validated(result, program, reaching)
     result.outcome = outcome(result, has_effect=True)
@@ -97,19 +116,24 @@ def validated(result, program, some_cases):
     """Validates cases until two checks of different number fail."""
     spent = 0.0
     for count, case in enumerate(some_cases):
-        if count >= LEAST_CASES and spent + case.base.seconds > MOST_SECONDS:
+        if count >= LEAST_CASES and spent + case.base.cost > MOST_SECONDS:
             return
-        spent += case.base.seconds
-        done = program.run(case.command(), result.change.number, limit=limit_of(case.base))
-        failed = failed_checks(done)
-        for number, key in failed:
-            result.checks.setdefault(number, f"{case.name}: {key}")
-        if done.status is None:
-            result.by.append("endless")
-        elif done.status != 0 and not failed:
-            result.by.append("refused")
+        spent += case.base.cost
+        tried(result, program, case)
         if len(result.checks) >= 2:
             return
+
+
+def tried(result, program, case):
+    """Validates a case with the change."""
+    done = case.run(program, result.change.number)
+    failed = failed_checks(done)
+    for number, key in failed:
+        result.checks.setdefault(number, f"{case.name}: {key}")
+    if done.status is None:
+        result.by.append("endless")
+    elif done.status != 0 and not failed:
+        result.by.append("refused")
 
 
 def failed_checks(done):

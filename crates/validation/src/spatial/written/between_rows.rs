@@ -18,6 +18,22 @@ const LAWS: Comparison = Comparison {
     tolerance: 1e-15,
     reason: "rounding of the law",
 };
+const AGAIN: Texts<'_> = Texts {
+    key: "written-motion-again",
+    check: Check::WrittenTwice,
+    comparison: "coordinates and speeds by the default method and to an accuracy of 1e-8",
+    scale: "the largest coordinate, or the largest speed",
+    tolerance: 1e-6,
+    tolerance_reason: "the errors of both motions",
+};
+const STOPS: Texts<'_> = Texts {
+    key: "written-motion-stops",
+    check: Check::WrittenPositions,
+    comparison: "coordinates with the ends that their stops of no compliance allow",
+    scale: "one radian or metre",
+    tolerance: 1e-9,
+    tolerance_reason: "an impact is located to the tolerance of the integration",
+};
 const SPEEDS: Texts<'_> = Texts {
     key: "written-motion-speeds",
     check: Check::WrittenRates,
@@ -82,4 +98,56 @@ pub(super) fn motion(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
         }
     }
     found.finding(SPEEDS, "motion")
+}
+
+/// The same motion in two files.
+pub(super) fn again(scene: &SpaceScene, both: [&Rows; 2]) -> Option<Finding> {
+    let mut found = Differences::default();
+    let ends = ["", ".velocity"];
+    let all = both.map(|rows| {
+        ends.map(|end| {
+            let actuators = scene.mechanism.actuators.iter();
+            let columns = actuators.filter_map(|a| rows.columns.get(&format!("{}{end}", a.name)));
+            columns.flatten().copied().collect::<Vec<f64>>()
+        })
+    });
+    for (k, end) in ends.into_iter().enumerate() {
+        let [one, other] = [&all[0][k], &all[1][k]];
+        if one.len() != other.len() {
+            found.fail(format!("{} and {} numbers", one.len(), other.len()));
+            continue;
+        }
+        let scale = one.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+        for (i, (a, b)) in one.iter().zip(other).enumerate() {
+            found.add(a - b, scale, "", || {
+                format!("number {i} of coordinates{end}")
+            });
+        }
+    }
+    found.finding(AGAIN, "motion")
+}
+
+/// No row is beyond a rigid stop.
+pub(super) fn stops(scene: &SpaceScene, both: [&Rows; 2]) -> Option<Finding> {
+    let mut found = Differences::default();
+    let none = Vec::new();
+    for stop in scene.stops.iter().filter(|stop| stop.yielding.is_none()) {
+        let coordinate = &scene.mechanism.actuators[stop.actuator.0].name;
+        for rows in both {
+            for (row, value) in rows
+                .columns
+                .get(coordinate)
+                .unwrap_or(&none)
+                .iter()
+                .enumerate()
+            {
+                let above = stop.max.map_or(0.0, |max| value - max);
+                let below = stop.min.map_or(0.0, |min| min - value);
+                found.add(above.max(below).max(0.0), 1.0, "", || {
+                    format!("row {row}, {coordinate}")
+                });
+            }
+        }
+    }
+    found.finding(STOPS, "motion")
 }

@@ -5,6 +5,7 @@ use super::super::claims::SpaceClaims;
 use crate::written::poses::difference::{Differences, Texts};
 use crate::written::poses::program::Program;
 use dwell_findings::{Check, Finding};
+use dwell_kinetostatics::MachineModel as _;
 use dwell_scene::SpaceScene;
 use dwell_verify::space::DenseSpace;
 
@@ -57,6 +58,30 @@ pub(super) fn findings(
                 if said.contains(&name.as_str()) && !is {
                     found.fail(format!("`check` says that {name} is determined"));
                 }
+            }
+        }
+    }
+    let summary = run.json("-check.json")?;
+    for stop in &scene.stops {
+        let per = match claims.model().is_angle(stop.actuator.0) {
+            true => ["N m/rad", "N m s/rad"],
+            false => ["N/m", "N s/m"],
+        };
+        let numbers = stop
+            .yielding
+            .into_iter()
+            .flatten()
+            .zip(["stiffness", "damping"]);
+        for ((value, what), unit) in numbers.zip(per) {
+            let written = &summary["results"][format!("stop.{}.{what}", stop.name)];
+            found.add(
+                written["value"].as_f64().unwrap_or(f64::NAN) - value,
+                value,
+                unit,
+                || format!("{what} of {}", stop.name),
+            );
+            if written["unit"].as_str() != Some(unit) {
+                found.fail(format!("{what} of {} in {}", stop.name, written["unit"]));
             }
         }
     }

@@ -29,6 +29,9 @@ use dwell_scene::SpaceScene;
 use scenes::Scenes;
 use std::path::Path;
 
+/// The accuracy of one of the motions.
+const ACCURACY: &str = "1e-8";
+
 /// The findings of what the program at a path writes of a scene.
 pub(super) fn written_findings(
     scene: &SpaceScene,
@@ -80,7 +83,7 @@ fn forced(
     Ok(found)
 }
 
-/// `simulate`, where the scene has a motion or one coordinate.
+/// `simulate`, where the scene has a motion or one coordinate: by its default method, and to an accuracy.
 fn free(
     program: &Program,
     (claims, scene): (&SpaceClaims<'_>, &SpaceScene),
@@ -90,8 +93,8 @@ fn free(
         return Ok(Vec::new());
     };
     let arguments = ["simulate", "--sample-interval", interval];
-    let run = run(program, &scene.name, text, &arguments)?;
-    let rows = run.csv("-motion.csv")?;
+    let first = run(program, &scene.name, text, &arguments)?;
+    let rows = first.csv("-motion.csv")?;
     let mut found = Vec::new();
     // An end stop acts beside the loads.
     if scene.stops.is_empty() {
@@ -99,7 +102,17 @@ fn free(
         found.extend(sums::findings(claims, scene, &rows, "motion"));
         found.extend(between_rows::motion(scene, &rows));
     }
-    found.extend(twice(&run, "motion", "simulate")?);
+    found.extend(twice(&first, "motion", "simulate")?);
+    let arguments = [&arguments[..], &["--accuracy", ACCURACY]].concat();
+    let other = run(
+        program,
+        &format!("{}-to-accuracy", scene.name),
+        text,
+        &arguments,
+    )?;
+    let others = other.csv("-motion.csv")?;
+    found.extend(between_rows::again(scene, [&rows, &others]));
+    found.extend(between_rows::stops(scene, [&rows, &others]));
     Ok(found)
 }
 

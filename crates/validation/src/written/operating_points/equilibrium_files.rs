@@ -187,7 +187,8 @@ fn static_force(
         return Ok(());
     };
     let end = |end: &str| number(summary, &format!("searched.{}.{end}", free.name));
-    let (Some(from), Some(to), true) = (end("from"), end("to"), start.drives_at_rest().is_some()) else {
+    let (Some(from), Some(to), true) = (end("from"), end("to"), start.drives_at_rest().is_some())
+    else {
         return Ok(());
     };
     let mut scene = start.scene.clone();
@@ -208,12 +209,16 @@ fn static_force(
     let name = format!("{}.actuator_force", free.name);
     let forces = rows.columns.get(&name).ok_or("no actuator force")?;
     // The actuator holds what the loads do; a drive at rest adds the same everywhere.
-    let [low_row, high_row] = forces.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| {
-        [a.min(-f), b.max(-f)]
-    });
+    let [low_row, high_row] = forces
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| {
+            [a.min(-f), b.max(-f)]
+        });
     let scale = low.abs().max(high.abs());
     let found = compared.of("written-static-force");
-    found.add((high - low) - (high_row - low_row), scale, "", || "largest less smallest".to_owned());
+    found.add((high - low) - (high_row - low_row), scale, "", || {
+        "largest less smallest".to_owned()
+    });
     if start.drives_at_rest() == Some(0) {
         found.add(low - low_row, scale, "", || "the smallest".to_owned());
     }

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 type Spec = (&'static str, Check, &'static str, f64);
 
 #[rustfmt::skip]
-const SPECS: [Spec; 73] = [
+const SPECS: [Spec; 77] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
     ("written-quotients", Check::WrittenRates, "velocity ratios with the velocities that they are of, and transmission angles with the places of the pins", 5e-14),
@@ -33,6 +33,8 @@ const SPECS: [Spec; 73] = [
     ("written-files", Check::WrittenTwice, "CSV with NPZ, extrema and peaks of the summary with the rows", 1e-12),
     ("written-laws-again", Check::WrittenTwice, "motions of drawn laws with the same motions as expressions, or by tables turned by half a turn", 3e-12),
     ("written-table", Check::WrittenTwice, "the table of `reduce` with its rows, beyond the errors that it states", 1e-13),
+    ("written-table-sums", Check::WrittenTotals, "m, ½m′ and w of the table of `reduce` with sums over all bodies", 1e-5),
+    ("written-table-bodies", Check::WrittenForces, "a, b and c of the table of `reduce` in the equations of every body", 1e-5),
     ("written-code", Check::WrittenTwice, "code of `symbolic` in Rust, Python and C, run line by line, with the rows of `reduce`", 1e-11),
     ("written-formulas", Check::WrittenTwice, "formulas of `symbolic` in LaTeX, with the printed constants of 12 digits, computed line by line, with the rows of `reduce`", 1e-9),
     ("written-sweep", Check::WrittenTwice, "extrema of m in rows of `sweep` with `reduce` of each changed scene", 1e-13),
@@ -58,6 +60,8 @@ const SPECS: [Spec; 73] = [
     ("written-motion-extrema", Check::WrittenRates, "extrema of the summary of `simulate` with the rows around them", 1e-6),
     ("written-motion-places", Check::WrittenRates, "slopes at the places of extrema of `simulate` by the rows around them, over one row", 1e-6),
     ("written-motion-summary", Check::WrittenTotals, "energies and events of the summary of `simulate` with rows and events", 5e-6),
+    ("written-motion-events", Check::WrittenRates, "events of `simulate` with changes of sign between rows: none is missing", 0.5),
+    ("written-motion-change-points", Check::WrittenSentences, "change points that `check` names with those that `simulate` says it crosses", 1e-12),
     ("written-motion-sentences", Check::WrittenSentences, "numbers that `simulate` prints with the summary, to their digits", 1e-12),
     ("written-eigenvalues", Check::WrittenForces, "eigenvalues of `linearise` in the characteristic polynomial of the written A, and their sum with its trace", 1e-13),
     ("written-modes", Check::WrittenTotals, "frequencies and damping ratios of `linearise` and `equilibria` with their eigenvalues", 1e-14),

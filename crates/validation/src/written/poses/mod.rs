@@ -43,7 +43,7 @@ mod same_columns;
 pub(crate) mod scene_text;
 mod section_files;
 mod sections;
-pub(super) mod stated;
+pub(crate) mod stated;
 pub(super) mod table_curve;
 mod table_file;
 pub(super) mod totals;

@@ -19,7 +19,7 @@ use super::rows::Rows;
 use super::same_columns::same_columns;
 use super::scene_text::{Draws, text_of};
 use super::stated::{Expected, sentence_differences, summary_differences};
-use super::table_file::table_differences;
+use super::table_file::{table_differences, table_rows};
 use super::variants::calibration_differences;
 
 /// Runs `reduce` and its like on a scene with one actuator, as it is and with everything requested.
@@ -60,7 +60,7 @@ pub(crate) fn compare_reduced(
     let range =
         [0, all.count.saturating_sub(1)].map(|row| all.get(row, coordinate).unwrap_or(f64::NAN));
     compare_laws(compared, program, reading, everything, range, draws)?;
-    compare_copies(compared, program, reading, everything, &all)?;
+    compare_copies(compared, program, reading, everything, &files)?;
     let whole: toml::Table = everything
         .parse()
         .map_err(|e| format!("the scene is no TOML: {e}"))?;
@@ -146,9 +146,9 @@ fn compare_copies(
     program: &Program,
     reading: &Reading,
     scene: &str,
-    rows: &Rows,
+    files: &ReducedFiles<'_>,
 ) -> Result<(), String> {
-    let coordinate = &reading.coordinates[0].name;
+    let (coordinate, rows) = (&reading.coordinates[0].name, files.reduced);
     let arguments = [
         "reduce",
         "--points",
@@ -157,10 +157,18 @@ fn compare_copies(
         TABLE_ACCURACY,
     ];
     match program.run("table", scene, &arguments) {
-        Ok(run) => compared.merge(
-            "written-table",
-            table_differences(&run.text(".table")?, rows, coordinate),
-        ),
+        Ok(run) => {
+            let text = run.text(".table")?;
+            compared.merge("written-table", table_differences(&text, rows, coordinate));
+            let of_table = table_rows(&text, rows, coordinate).ok_or("no rows of the table")?;
+            let files = ReducedFiles {
+                reduced: &of_table,
+                ..*files
+            };
+            let of = reduced(reading, &files, coordinate);
+            compared.merge("written-table-sums", of.sums);
+            compared.merge("written-table-bodies", of.bodies);
+        }
         // Not every mechanism has one, as its format says.
         Err(e)
             if ["tables are of driven angles", "no table:"]
