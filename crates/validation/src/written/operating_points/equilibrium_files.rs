@@ -153,6 +153,20 @@ fn add_same(
     to.add(away(nearest), 1.0, "", || {
         "the place of the equilibrium".to_owned()
     });
+    if let ([free], [from]) = (
+        start.free.as_slice(),
+        &start.values().collect::<Vec<_>>()[..],
+    ) {
+        let aside = |at: Option<f64>| at.map_or(f64::INFINITY, |at| (at - from).abs());
+        let of_table = names
+            .iter()
+            .map(|name| number(summary, &format!("{name}.{}", free.name)));
+        let least = of_table.map(aside).fold(f64::INFINITY, f64::min);
+        let this = aside(number(linear, &format!("equilibrium.{}", free.name)));
+        to.add((this - least).max(0.0), free.size, "", || {
+            "an equilibrium nearer to the start".to_owned()
+        });
+    }
     let [these, those] = [
         eigenvalues(linear, "equilibrium"),
         eigenvalues(summary, nearest),
