@@ -44,7 +44,8 @@ class Printed(float):
         made = super().__new__(cls, text)
         mantissa, _, exponent = text.lower().partition("e")
         decimals = len(mantissa.partition(".")[2])
-        made.digit = 10.0 ** (int(exponent or 0) - decimals) if mantissa.strip("+-").replace(".", "").isdigit() else 0.0
+        is_plain = mantissa.strip("+-").replace(".", "").isdigit()
+        made.digit = float(f"1e{int(exponent or 0) - decimals}") if is_plain else 0.0
         return made
 
 
