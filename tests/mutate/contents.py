@@ -16,7 +16,7 @@ IGNORED = re.compile(r"second|running for|time:|\btime\b.*ms|program|sha256|hash
 # Numbers that say how certain or how costly a result is, not what it is.
 ESTIMATES = re.compile(
     r"error|estimate|step|evaluation|reject|jacobian|factoris|condition|uncertain|accura|drift|toleran|rtol|atol|digits"
-    r"|residual|closes to|work_sum|\bhint\b|\bruns\b", re.I
+    r"|residual|closes to|work_sum|\bhint\b|\bruns\b|worst_at", re.I
 )
 # A row of a table of extrema, and how the place of an extremum is named in sentences, tables and summaries, with its value.
 EXTREMA = re.compile(r"\| [^|]* \|(?: [^|]* \|)? # \| # \| # \| # \|")
@@ -24,8 +24,35 @@ PLACE = re.compile(r" at$| at \S+ \[[^]]*\]$|\.at$")
 VALUES = {".at": ".value", " at": ""}
 # From this part of the span on it is another place, not the same one less exactly.
 OTHER_PLACE = 0.01
+# Near an extremum the value changes by the square: up to this part of the span the place is the same to the value's rounding.
+SAME_PLACE = 3e-5
+# A column that is zero but for rounding has changed where it differs by this part of the largest of its unit, times EFFECTIVE.
+OF_UNIT = 1e-6
+UNIT = re.compile(r"\[[^]]*\]$")
 # A motion has changed where it differs by more than so many times what half the tolerance changes of it.
 TIMES_TOLERANCE = 4.0
+
+
+# A printed number with other digits is the same where it agrees to the fewer of both, if these are not fewer than about three.
+FEWEST_DIGITS = 2e-3
+
+
+class Printed(float):
+    """A number of a sentence, with the value of one in its last digit."""
+
+    def __new__(cls, text):
+        made = super().__new__(cls, text)
+        mantissa, _, exponent = text.lower().partition("e")
+        decimals = len(mantissa.partition(".")[2])
+        made.digit = 10.0 ** (int(exponent or 0) - decimals) if mantissa.strip("+-").replace(".", "").isdigit() else 0.0
+        return made
+
+
+def same_printed(x, y):
+    if not (isinstance(x, Printed) and isinstance(y, Printed)) or x.digit == y.digit:
+        return False
+    coarse = max(x.digit, y.digit)
+    return abs(x - y) <= 0.51 * coarse and coarse <= FEWEST_DIGITS * max(abs(x), abs(y))
 
 
 def numbers(name, data):
@@ -110,7 +137,7 @@ def of_text(text):
     found = {}
     for line in text.splitlines():
         label = re.sub(r"\s+", " ", NUMBER.sub("#", line)).strip()
-        found_here = [float(number) for number in NUMBER.findall(line)]
+        found_here = [Printed(number) for number in NUMBER.findall(line)]
         if EXTREMA.fullmatch(label):
             # The smallest and where, the largest and where.
             numbers_here = found_here[-4:]
@@ -123,8 +150,9 @@ def of_text(text):
 
 
 def is_other_place(label, differs, a, b):
-    """Whether this is the place of an extremum that is the same but is reached elsewhere, too: a period later, for instance."""
-    if differs < OTHER_PLACE or not PLACE.search(label):
+    """Whether this is the place of an extremum of the same value: as near as the value's rounding shows, or reached elsewhere, too, a period
+    later, for instance."""
+    if SAME_PLACE < differs < OTHER_PLACE or not PLACE.search(label):
         return False
     value = next((label[: -len(end)] + new for end, new in VALUES.items() if label.endswith(end)), PLACE.sub("", label))
     return value in a and size(a[value], b.get(value, ())) <= EFFECTIVE
@@ -175,19 +203,42 @@ def sizes(a, b):
     for name, one, other in pairs:
         if one != other:
             one, other = numbers(name, one), numbers(name, other)
-            of = {label: size(one.get(label, ()), other.get(label, ())) for label in one.keys() | other.keys()}
+            of = all_sizes(one, other)
             found |= {(name, label): differs for label, differs in of.items() if differs}
     return found
 
 
-def size(a, b):
-    """The largest difference of two lists of numbers, relative to the largest of the first; infinite where they cannot be compared."""
+def all_sizes(a, b):
+    """By label: the difference of its numbers. An extremum that is zero is compared by the other end, a column that is zero but for
+    rounding by the others of its unit."""
+    largest_of = {label: max((abs(x) for x in values if math.isfinite(x)), default=0.0) for label, values in a.items()}
+    of_unit = {}
+    for label, largest in largest_of.items():
+        if unit := UNIT.search(label):
+            of_unit[unit[0]] = max(of_unit.get(unit[0], 0.0), largest)
+    def floor(label):
+        unit = UNIT.search(label)
+        return max(largest_of.get(other_end(label), 0.0), OF_UNIT * of_unit.get(unit[0], 0.0) if unit else 0.0)
+    return {label: size(a.get(label, ()), b.get(label, ()), floor(label)) for label in a.keys() | b.keys()}
+
+
+def other_end(label):
+    """The label of the largest where this is that of the smallest, and the reverse; none of a place."""
+    if PLACE.search(label):
+        return ""
+    swapped = re.sub(r"\b(min|max)\b", lambda found: {"min": "max", "max": "min"}[found[0]], label)
+    return swapped if swapped != label else ""
+
+
+def size(a, b, floor=0.0):
+    """The largest difference of two lists of numbers, relative to the largest of the first, or a floor; infinite where they cannot be compared."""
     if len(a) != len(b):
         return math.inf
     scale = max((abs(x) for x in a if math.isfinite(x)), default=0.0)
+    scale = max(scale, floor)
     largest = 0.0
     for x, y in zip(a, b):
-        if x == y or math.isnan(x) and math.isnan(y):
+        if x == y or math.isnan(x) and math.isnan(y) or same_printed(x, y):
             continue
         differs = abs(x - y) / scale if scale else math.inf
         largest = max(largest, differs if differs == differs else math.inf)
@@ -195,8 +246,7 @@ def size(a, b):
 
 
 def compare(found, name, a, b, effective):
-    for label in a.keys() | b.keys():
+    for label, differs in all_sizes(a, b).items():
         if not IGNORED.search(label):
-            differs = size(a.get(label, ()), b.get(label, ()))
             if differs > effective.get((name, label), EFFECTIVE) and not is_other_place(label, differs, a, b):
                 found.add(name, label, differs)

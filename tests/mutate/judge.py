@@ -6,22 +6,40 @@ import exercise
 
 # Runs of a change, of those that reach it; more of a named fault, which must show an effect.
 MOST_RUNS, MOST_RUNS_NAMED = 3, 9
-# No more cases are tried than take so long without a change, s, but at least so many.
-MOST_SECONDS, LEAST_CASES = 8.0, 3
+# No more cases are tried than take so long without a change, s of the processors, but at least so many.
+MOST_SECONDS, LEAST_CASES = 10.0, 5
+# The whole of `dwell validate` takes no longer, s.
+WHOLE_SECONDS = 600.0
 CAUGHT = "caught by two"
 
 
 class Case:
-    """A case of `validation` with the changes that its validation reaches."""
+    """A case of `validation`, in the plane or in space, with the changes that its validation reaches."""
 
-    def __init__(self, folder, program):
-        self.folder, self.name = folder, folder.name
+    def __init__(self, scene, top, program):
+        self.scene, self.folder = scene, top / "validation"
+        self.name = scene.parent.name if scene.name == "scene.toml" else scene.stem
         self.base, self.reached = program.recorded(self.command())
         if self.base.status != 0:
             raise SystemExit(f"`dwell validate {self.name}` fails without a change:\n{self.base.printed}")
 
+    def run(self, program, number):
+        return program.run(self.command(), number, limit=limit_of(self.base))
+
     def command(self):
-        return ["validate", str(self.folder), "--pictures", "none"]
+        return ["validate", self.name, "--folder", str(self.folder), "--pictures", "none"]
+
+
+class Whole:
+    """All cases with the extreme parameters, which belong to no case: `dwell validate` as it stands in the README."""
+
+    name = "all"
+
+    def __init__(self, top):
+        self.top = top
+
+    def run(self, program, number):
+        return program.run(["validate", "--pictures", "none"], number, limit=WHOLE_SECONDS, directory=self.top)
 
 
 class Result:
@@ -30,7 +48,7 @@ class Result:
     def __init__(self, change):
         self.change, self.outcome, self.checks, self.by = change, "", {}, []
         self.size, self.place, self.only_estimates = 0.0, "", False
-        self.folders, self.kinds = set(), set()
+        self.scenes, self.kinds = set(), set()
 
     def as_dict(self):
         of = self.change
@@ -42,7 +60,8 @@ class Result:
 
 
 def cases(top, program):
-    return [Case(path.parent, program) for path in sorted(top.glob("validation/*/case.toml"))]
+    scenes = [path.with_name("scene.toml") for path in top.glob("validation/*/case.toml")]
+    return [Case(scene, top, program) for scene in sorted(scenes) + sorted(top.glob("validation/spatial/*.toml"))]
 
 
 def limit_of(written):
@@ -52,7 +71,7 @@ def limit_of(written):
 def judge(change, program, all_cases, all_exercises):
     """Tries a change on commands that reach it, then on the cases, the quickest first, until two checks fail."""
     result = Result(change)
-    reaching = sorted((c for c in all_cases if change.number in c.reached), key=lambda c: c.base.seconds)
+    reaching = sorted((c for c in all_cases if change.number in c.reached), key=lambda c: c.base.cost)
     runs = exercise.for_change(all_exercises, change.number, MOST_RUNS_NAMED if change.named else MOST_RUNS)
     if not runs and not reaching:
         result.outcome = "not reached"
@@ -61,8 +80,10 @@ def judge(change, program, all_cases, all_exercises):
     if result.outcome != "number changed" and runs:
         result.outcome = refusal or "no number changed"
         return result
+    if not reaching:
+        tried(result, program, Whole(all_cases[0].folder.parent))
     # First the cases in whose files a number changed.
-    reaching.sort(key=lambda case: case.folder not in result.folders)
+    reaching.sort(key=lambda case: case.scene not in result.scenes)
     validated(result, program, reaching)
     result.outcome = outcome(result, has_effect=bool(runs))
     return result
@@ -73,7 +94,7 @@ def judge_again(change, known, program, all_cases):
     result = Result(change)
     result.size, result.place, result.only_estimates = known["size"], known["place"], known["only_estimates"]
     result.kinds = set(known.get("kinds", ()))
-    reaching = sorted((c for c in all_cases if change.number in c.reached), key=lambda c: c.base.seconds)
+    reaching = sorted((c for c in all_cases if change.number in c.reached), key=lambda c: c.base.cost)
     reaching.sort(key=lambda case: case.name != result.place.split(": ")[0])
     validated(result, program, reaching)
     result.outcome = outcome(result, has_effect=True)
@@ -95,19 +116,24 @@ def validated(result, program, some_cases):
     """Validates cases until two checks of different number fail."""
     spent = 0.0
     for count, case in enumerate(some_cases):
-        if count >= LEAST_CASES and spent + case.base.seconds > MOST_SECONDS:
+        if count >= LEAST_CASES and spent + case.base.cost > MOST_SECONDS:
             return
-        spent += case.base.seconds
-        done = program.run(case.command(), result.change.number, limit=limit_of(case.base))
-        failed = failed_checks(done)
-        for number, key in failed:
-            result.checks.setdefault(number, f"{case.name}: {key}")
-        if done.status is None:
-            result.by.append("endless")
-        elif done.status != 0 and not failed:
-            result.by.append("refused")
+        spent += case.base.cost
+        tried(result, program, case)
         if len(result.checks) >= 2:
             return
+
+
+def tried(result, program, case):
+    """Validates a case with the change."""
+    done = case.run(program, result.change.number)
+    failed = failed_checks(done)
+    for number, key in failed:
+        result.checks.setdefault(number, f"{case.name}: {key}")
+    if done.status is None:
+        result.by.append("endless")
+    elif done.status != 0 and not failed:
+        result.by.append("refused")
 
 
 def failed_checks(done):
@@ -137,6 +163,6 @@ def effect(result, program, runs):
             result.size, result.place, result.only_estimates = found.largest, f"{run.name()}: {found.place}", found.only_estimates
         result.outcome = "number changed"
         if not found.only_estimates:
-            result.folders.add(run.scene.parent)
+            result.scenes.add(run.scene)
             result.kinds |= found.kinds
     return refusal

@@ -56,7 +56,9 @@ pub(crate) fn validate(
             )
         },
     );
-    let spatial = in_space.par_iter().map(|path| case_in_space(path));
+    let spatial = in_space
+        .par_iter()
+        .map(|path| case_in_space(path, program.as_deref()));
     let spatial = spatial.collect();
     bar.finish_and_clear();
     let mut others = studies.map_err(as_scene_error)?;
@@ -114,13 +116,16 @@ fn validate_case(
     }
 }
 
-/// A scene in space with its validation, by the reference beside it if there is one.
-fn case_in_space(path: &Path) -> Result<(SpaceScene, Validation), SceneError> {
+/// A scene in space with its validation, by the reference beside it if there is one, and what leaves the program of it.
+fn case_in_space(
+    path: &Path,
+    program: Option<&Path>,
+) -> Result<(SpaceScene, Validation), SceneError> {
     let scene = SpaceScene::read(path)?;
     print_warnings(&scene);
     let reference = path.with_extension("json");
     let reference = reference.is_file().then_some(reference);
-    let done = dwell_validation::validate_in_space(&scene, reference.as_deref());
+    let done = dwell_validation::validate_in_space(&scene, reference.as_deref(), program);
     Ok((scene, done.map_err(validation_error)?))
 }
 

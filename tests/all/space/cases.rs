@@ -20,7 +20,7 @@ fn cases() -> Vec<PathBuf> {
 fn validated(scene: &SpaceScene, path: &std::path::Path) -> Validation {
     let reference = path.with_extension("json");
     let reference = reference.is_file().then_some(reference);
-    let done = validate_in_space(scene, reference.as_deref());
+    let done = validate_in_space(scene, reference.as_deref(), None);
     done.unwrap_or_else(|e| panic!("{}: {e}", scene.name))
 }
 

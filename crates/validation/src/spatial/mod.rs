@@ -1,8 +1,9 @@
 //! The cases in space: each judged by the dense equations in body coordinates, by Newton's and Euler's equations of each body with motions
-//! differenced from positions, by energies and differences, in 32 digits, and by a reference of 25 digits.
+//! differenced from positions, by energies and differences, in 32 digits, and by a reference of 25 digits;
+//! and what the program writes of each.
 //!
 //! ```text
-//! worst ── reference ── samples ── findings ── report
+//! worst ── reference ── samples ── findings ── written ── report
 //! ```
 
 mod bodies;
@@ -18,6 +19,7 @@ mod several;
 mod states;
 mod stopped_motion;
 mod worst;
+mod written;
 
 pub use claims::{ClaimsIn, SpaceClaims};
 pub use reference_poses::ReferencePoses;

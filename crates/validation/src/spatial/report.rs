@@ -3,6 +3,7 @@
 use super::findings::findings;
 use super::reference::Reference;
 use super::several::validate_several;
+use super::written::written_findings;
 use crate::case_report::validate::Validation;
 use crate::error::ValidationError;
 use crate::overview::{CheckCell, check_cells};
@@ -22,20 +23,26 @@ use std::path::Path;
 /// Positions in the snapshot.
 const PRINTED: usize = 8;
 
-/// Validates a scene in space, with the reference in a file if there is one. The files are `NAME.md` and `NAME.txt`.
+/// Validates a scene in space, with the reference in a file if there is one, and what the program at a path writes of it when it runs as a
+/// process. The files are `NAME.md` and `NAME.txt`.
 ///
 /// # Errors
 /// [`ValidationError`] when the scene or the reference cannot be used. A failed check is no error.
 pub fn validate_in_space(
     scene: &SpaceScene,
     reference: Option<&Path>,
+    program: Option<&Path>,
 ) -> Result<Validation, ValidationError> {
     let reference = reference.map(Reference::read).transpose()?;
+    let written = program.map(|path| written_findings(scene, path));
+    let written = written.transpose()?.unwrap_or_default();
     if scene.mechanism.actuators.len() != 1 {
-        return validate_several(scene, reference.as_ref());
+        return validate_several(scene, reference.as_ref(), written);
     }
     let prepared = PreparedSpaceScene::new(scene)?;
-    let findings = findings(&prepared, reference.as_ref())?;
+    let mut findings = findings(&prepared, reference.as_ref())?;
+    findings.extend(written);
+    findings.sort_by_key(|finding| finding.check);
     let curves = ReducedCurves::new(&prepared, None)?;
     let is_rounding = curves.rounding(&prepared);
     let mut figures = vec![prepared.mechanism_figure()?];

@@ -121,15 +121,18 @@ fn part(wrench: &Wrench, k: usize) -> f64 {
     [f.x, f.y, f.z, m.x, m.y, m.z][k]
 }
 
-/// Validates a scene of several coordinates.
+/// Validates a scene of several coordinates, with the findings of what is written of it.
 ///
 /// # Errors
 /// [`ValidationError`] when the scene cannot be used.
 pub(super) fn validate_several(
     scene: &SpaceScene,
     reference: Option<&Reference>,
+    written: Vec<Finding>,
 ) -> Result<Validation, ValidationError> {
-    let findings = findings(scene, reference)?;
+    let mut findings = findings(scene, reference)?;
+    findings.extend(written);
+    findings.sort_by_key(|finding| finding.check);
     let figures = vec![mechanism(scene)?];
     let snapshot = snapshot(scene, &findings)?;
     let document = document(scene, (reference, &findings), &figures);

@@ -7,9 +7,11 @@ use crate::written::poses::difference::Differences;
 use crate::written::poses::program::{Program, Run};
 use crate::written::poses::reading::{Measure, Reading};
 use crate::written::poses::rows::Rows;
+use crate::written::poses::stated::sentence_differences;
+use crate::written::poses::units::Units;
 use dwell_findings::Finding;
 use serde_json::Value;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::path::Path;
 use toml::Table;
 
@@ -75,8 +77,40 @@ fn compare(
         );
     }
     compared.merge("written-cycle-sentences", sentences(&run, &summary));
+    let angle = Units::read(table).map_or(1.0, |units| units.angle);
+    compared.merge(
+        "written-cycle-sentences",
+        said(&run.printed, &summary, angle),
+    );
     with_heavier_body(compared, program, (scene, table, &coordinate), &summary)?;
     long_motion(compared, program, (table, &coordinate), &summary, period)
+}
+
+/// The lines that the summary asks for; angles of the scene are in this unit, rad.
+fn said(printed: &str, summary: &Value, angle: f64) -> Differences {
+    let of = |name: &str| result(summary, name);
+    // Each speed in the unit of the scene and as `(… 1/min)`.
+    let with_revolutions = |names: [&str; 3]| -> Option<Vec<(f64, f64)>> {
+        let speeds: Option<Vec<f64>> = names.into_iter().map(of).collect();
+        let parts = |v: f64| [v / angle, v * 30.0 / PI, 1.0].map(|v| (v, v));
+        Some(speeds?.into_iter().flat_map(parts).collect())
+    };
+    let mut lines = Vec::new();
+    let inertia = of("flywheel.inertia");
+    if inertia == Some(0.0) {
+        lines.push(("no flywheel is needed".to_owned(), Vec::new()));
+    } else if let Some(inertia) = inertia {
+        let numbers = vec![(FLUCTUATION, FLUCTUATION), (inertia, inertia)];
+        lines.push(("for a coefficient of fluctuation of".to_owned(), numbers));
+        let names = [
+            "flywheel.mean_speed",
+            "flywheel.slowest_speed",
+            "flywheel.fastest_speed",
+        ];
+        let numbers = with_revolutions(names).unwrap_or_default();
+        lines.push(("with it: mean speed".to_owned(), numbers));
+    }
+    sentence_differences(printed, &lines, "cycle")
 }
 
 /// The cycle of the scene in which the body that turns with the coordinate has the flywheel's inertia is that with flywheel.

@@ -9,6 +9,7 @@
 
 mod between_rows;
 mod drives;
+mod events;
 mod motion_files;
 mod row_forces;
 mod summary;

@@ -1,6 +1,7 @@
 //! The findings over the motions of a case.
 
 use super::between_rows::between_rows;
+use super::events::{change_points, missing_events};
 use super::row_forces::MotionReading;
 use super::summary::{sentences, summary_of_rows};
 use crate::written::poses::closure::closure;
@@ -64,6 +65,12 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
         }
         compared.merge("written-motion-again", same);
     }
+    let missing = missing_events(&motion.reading, &everything, &rows, events[0].as_ref());
+    compared.merge("written-motion-events", missing);
+    let contents = program.run("contents", &text, &["check"]);
+    let contents = contents.map_err(|e| e.to_string())?;
+    let points = change_points(&contents.printed, &first.printed);
+    compared.merge("written-motion-change-points", points);
     for (run, rows, events) in [
         (&first, &rows, &events[0]),
         (&wanted, &rows_wanted, &events[2]),

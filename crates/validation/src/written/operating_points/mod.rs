@@ -4,10 +4,12 @@
 //! ```text
 //! program as a process ── matrices, table, summary, sentences ── characteristic (determinant), modes ── findings
 //!      └── starts (changed states and inputs) ── rows of simulate ── slopes (A, B, C, D by differences) ────┤
-//!      └── starts in equilibria ── rows of simulate, modes of linearise ── rest ────────────────────────────┘
+//!      └── starts in equilibria ── rows of simulate, modes of linearise ── rest ────────────────────────────┤
+//! summaries, sentences, rows of statics ── equilibrium_files ──────────────────────────────────────────────┘
 //! ```
 
 mod characteristic;
+mod equilibrium_files;
 mod linear_file;
 mod modes;
 mod point_files;

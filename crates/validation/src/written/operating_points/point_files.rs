@@ -1,6 +1,7 @@
 //! The findings over operating points of a case.
 
 use super::characteristic::{Complex, error_of_root, size};
+use super::equilibrium_files;
 use super::linear_file::LinearFile;
 use super::modes::{add_modes, eigenvalues, number};
 use super::rest::Rest;
@@ -35,19 +36,21 @@ pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
         for reason in [linear, points].into_iter().filter_map(Result::err) {
             compared.fail("written-modes", reason);
         }
-        if let Err(reason) = other_starts(&mut compared, &program, scene, rest.ok().as_ref()) {
+        let about = program.run("about", scene, &["linearise"]);
+        let rest = rest.as_ref().ok().zip(Some(about.as_ref().ok()));
+        if let Err(reason) = other_starts(&mut compared, &program, scene, rest) {
             compared.fail("written-linear", reason);
         }
     }
     compared.findings()
 }
 
-/// A, B, C and D with differences, and the motion from equilibria; nothing of a motion that cannot be linearised.
+/// A, B, C and D with differences, what is written of equilibria, and the motion from them; nothing of a motion that cannot be linearised.
 fn other_starts(
     compared: &mut Compared,
     program: &Program,
     scene: &str,
-    rest: Option<&Run>,
+    rest: Option<(&Run, Option<&Run>)>,
 ) -> Result<(), String> {
     let everything = requests_everything(scene)?;
     let text = text_of(&everything)?;
@@ -70,9 +73,13 @@ fn other_starts(
         linear: &linear,
     };
     slopes.compare(compared, &archive)?;
-    let Some(rest) = rest else {
+    let Some((rest, about)) = rest else {
         return Ok(());
     };
+    equilibrium_files::compare(compared, program, &start, (rest, about))?;
+    if number(&rest.json("-equilibria.json")?, "equilibria") == Some(0.0) {
+        return Ok(());
+    }
     let found = Rest {
         program,
         start: &start,

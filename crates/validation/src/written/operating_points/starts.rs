@@ -43,7 +43,31 @@ pub(super) struct Start<'a> {
     pub(super) free: Vec<FreeCoordinate>,
 }
 
+impl FreeCoordinate {
+    /// The unit of the scene's text in SI units.
+    pub(super) fn unit(&self) -> f64 {
+        self.unit
+    }
+}
+
 impl<'a> Start<'a> {
+    /// The coordinates at the start, in SI units.
+    pub(super) fn values(&self) -> impl Iterator<Item = f64> + '_ {
+        self.free.iter().map(|free| free.value)
+    }
+
+    pub(super) fn is_angle(&self, name: &str) -> bool {
+        let measure = self.motion.reading.coordinate(name).map(|c| &c.measure);
+        measure.is_some_and(|m| matches!(m, crate::written::poses::reading::Measure::Angle(_)))
+    }
+
+    /// How many drives there are, if the force of each at rest is the same at every coordinate.
+    pub(super) fn drives_at_rest(&self) -> Option<usize> {
+        let drives = &self.motion.drives;
+        let is_given = |drive: &Drive| matches!(drive.kind, DriveKind::AppliedForce(_));
+        (!drives.iter().any(is_given)).then_some(drives.len())
+    }
+
     /// The start of a scene whose free coordinates have these names and values, then velocities.
     pub(super) fn new(
         mut scene: Table,

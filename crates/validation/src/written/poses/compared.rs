@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 type Spec = (&'static str, Check, &'static str, f64);
 
 #[rustfmt::skip]
-const SPECS: [Spec; 69] = [
+const SPECS: [Spec; 77] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
     ("written-quotients", Check::WrittenRates, "velocity ratios with the velocities that they are of, and transmission angles with the places of the pins", 5e-14),
@@ -33,6 +33,8 @@ const SPECS: [Spec; 69] = [
     ("written-files", Check::WrittenTwice, "CSV with NPZ, extrema and peaks of the summary with the rows", 1e-12),
     ("written-laws-again", Check::WrittenTwice, "motions of drawn laws with the same motions as expressions, or by tables turned by half a turn", 3e-12),
     ("written-table", Check::WrittenTwice, "the table of `reduce` with its rows, beyond the errors that it states", 1e-13),
+    ("written-table-sums", Check::WrittenTotals, "m, ½m′ and w of the table of `reduce` with sums over all bodies", 1e-5),
+    ("written-table-bodies", Check::WrittenForces, "a, b and c of the table of `reduce` in the equations of every body", 1e-5),
     ("written-code", Check::WrittenTwice, "code of `symbolic` in Rust, Python and C, run line by line, with the rows of `reduce`", 1e-11),
     ("written-formulas", Check::WrittenTwice, "formulas of `symbolic` in LaTeX, with the printed constants of 12 digits, computed line by line, with the rows of `reduce`", 1e-9),
     ("written-sweep", Check::WrittenTwice, "extrema of m in rows of `sweep` with `reduce` of each changed scene", 1e-13),
@@ -58,12 +60,18 @@ const SPECS: [Spec; 69] = [
     ("written-motion-extrema", Check::WrittenRates, "extrema of the summary of `simulate` with the rows around them", 1e-6),
     ("written-motion-places", Check::WrittenRates, "slopes at the places of extrema of `simulate` by the rows around them, over one row", 1e-6),
     ("written-motion-summary", Check::WrittenTotals, "energies and events of the summary of `simulate` with rows and events", 5e-6),
+    ("written-motion-events", Check::WrittenRates, "events of `simulate` with changes of sign between rows: none is missing", 0.5),
+    ("written-motion-change-points", Check::WrittenSentences, "change points that `check` names with those that `simulate` says it crosses", 1e-12),
     ("written-motion-sentences", Check::WrittenSentences, "numbers that `simulate` prints with the summary, to their digits", 1e-12),
     ("written-eigenvalues", Check::WrittenForces, "eigenvalues of `linearise` in the characteristic polynomial of the written A, and their sum with its trace", 1e-13),
     ("written-modes", Check::WrittenTotals, "frequencies and damping ratios of `linearise` and `equilibria` with their eigenvalues", 1e-14),
     ("written-linear", Check::WrittenForces, "A, B, C and D of `linearise` with differences of rows of `simulate` from neighbouring starts", 3e-10),
     ("written-rest", Check::WrittenForces, "accelerations of `simulate` that starts at rest in the equilibria of `equilibria`", 2e-14),
     ("written-rest-order", Check::WrittenTotals, "stability of neighbouring equilibria of one coordinate: the force at rest crosses zero in turn", 0.5),
+    ("written-rest-start", Check::WrittenTotals, "distances of equilibria from the start with the start of the motion, and what was searched with one revolution", 1e-14),
+    ("written-rest-words", Check::WrittenSentences, "the stability that `equilibria` and `linearise` print with their eigenvalues", 0.5),
+    ("written-rest-again", Check::WrittenTwice, "the equilibrium of `linearise` and its modes with the table of `equilibria`", 1e-11),
+    ("written-static-force", Check::WrittenTotals, "the smallest and the largest static force of `equilibria` with rows of `statics`", 1e-12),
     ("written-damped", Check::WrittenTotals, "the modes of `equilibria` with a damper of known damping ratio, with those of a damped oscillator", 1e-14),
     ("written-rest-modes", Check::WrittenTwice, "modes of `equilibria` with eigenvalues of `linearise` about the equilibria", 2e-14),
     ("written-linear-equations", Check::WrittenForces, "Newton's and Euler's equations of every body in these rows, with loads, drives and friction of the scene's text", 3e-14),

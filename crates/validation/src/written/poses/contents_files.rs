@@ -34,8 +34,41 @@ pub(super) fn contents_differences(
         .map_err(|e| format!("the scene is no TOML: {e}"))?;
     let mut lines = expected.sentences(reading);
     lines.extend(motion_lines(reading, &table));
-    let printed = sentence_differences(&run.printed, &lines, "check");
+    let mut printed = sentence_differences(&run.printed, &lines, "check");
+    add_requests(&mut printed, program, &table, &run.printed)?;
     Ok([summed, printed, warning_count(&table, &run.messages)])
+}
+
+/// How many reactions are not requested: all that there are without requests, less those that are listed.
+fn add_requests(
+    to: &mut Differences,
+    program: &Program,
+    scene: &toml::Table,
+    printed: &str,
+) -> Result<(), String> {
+    let mut everything = scene.clone();
+    everything.remove("requests");
+    let run = program.run("all-reactions", &text_of(&everything)?, &["check"]);
+    let all = run.map_err(|e| e.to_string())?.printed;
+    let listed = |printed: &str| -> Option<(usize, usize)> {
+        let rest = printed
+            .lines()
+            .find_map(|line| line.trim().strip_prefix("reactions requested: "))?;
+        let (names, others) = rest.split_once(" (").unwrap_or((rest, "0"));
+        let count = names.split(", ").filter(|name| *name != "none").count();
+        let others = others.split(' ').next()?.parse().unwrap_or(0);
+        Some((count, others))
+    };
+    if let (Some((these, others)), Some((all, more))) = (listed(printed), listed(&all)) {
+        let difference = (these + others) as f64 - (all + more) as f64;
+        to.add(difference, 1.0, "", || {
+            "reactions that are requested, and others".to_owned()
+        });
+        to.add(more as f64, 1.0, "", || {
+            "others where all are requested".to_owned()
+        });
+    }
+    Ok(())
 }
 
 /// How the bodies are at the start, by the first row of a sweep from there.

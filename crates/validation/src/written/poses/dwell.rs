@@ -3,7 +3,7 @@
 use super::difference::Differences;
 use super::program::Program;
 use super::rows::Rows;
-use super::stated::summary_differences;
+use super::stated::{sentence_differences, summary_differences};
 use toml::{Table, Value};
 
 /// Runs `kinematics` on a scene that requests a dwell; nothing where it requests none.
@@ -27,7 +27,15 @@ pub(super) fn dwell_differences(program: &Program, scene: &str) -> Result<Differ
     let expected = expected
         .iter()
         .map(|(name, value)| (name.as_str(), (*value, 1.0)));
-    Ok(summary_differences(&summary, expected, "kinematics"))
+    let mut found = summary_differences(&summary, expected, "kinematics");
+    let angle = summary["results"]["dwell.angle"]["value"].as_f64();
+    let said = angle.map(|angle| vec![(angle, 1.0), (100.0 * band, 100.0 * band)]);
+    let line = [(format!("{body} rests at "), said.unwrap_or_default())];
+    // Of an angle in degrees the number is another.
+    if run.printed.contains(" rad within ") {
+        found.merge(sentence_differences(&run.printed, &line, "kinematics"));
+    }
+    Ok(found)
 }
 
 /// The middle of the angles in the longest window, and where it begins and ends.

@@ -19,7 +19,7 @@ use super::rows::Rows;
 use super::same_columns::same_columns;
 use super::scene_text::{Draws, text_of};
 use super::stated::{Expected, sentence_differences, summary_differences};
-use super::table_file::table_differences;
+use super::table_file::{table_differences, table_rows};
 use super::variants::calibration_differences;
 
 /// Runs `reduce` and its like on a scene with one actuator, as it is and with everything requested.
@@ -45,7 +45,11 @@ pub(crate) fn compare_reduced(
     let requested = run("requested", scene, "reduce")?.npz("-reduced.npz")?;
     let swept = swept(everything, reading, &all)?;
     let run_i = run("sweep", &swept, "kinetostatics")?.npz("-kinetostatics.npz")?;
-    let run_ii = run("runs", everything, "runs")?.csv("-run-ii.csv")?;
+    compare_peak(compared, program, reading, everything, &all)?;
+    let runs = run("runs", everything, "runs")?;
+    let run_ii = runs.csv("-run-ii.csv")?;
+    let both = [&runs.csv("-run-i.csv")?, &run_ii];
+    compared.merge("written-sentences", run_sentences(&runs.printed, both));
     if run_ii.count != all.count {
         let counts = format!("{} rows where `reduce` has {}", run_ii.count, all.count);
         compared.fail("written-runs", format!("run ii has {counts}"));
@@ -60,7 +64,7 @@ pub(crate) fn compare_reduced(
     let range =
         [0, all.count.saturating_sub(1)].map(|row| all.get(row, coordinate).unwrap_or(f64::NAN));
     compare_laws(compared, program, reading, everything, range, draws)?;
-    compare_copies(compared, program, reading, everything, &all)?;
+    compare_copies(compared, program, reading, everything, &files)?;
     let whole: toml::Table = everything
         .parse()
         .map_err(|e| format!("the scene is no TOML: {e}"))?;
@@ -109,6 +113,68 @@ fn compare_stated(compared: &mut Compared, run: &Run, rows: &Rows) -> Result<(),
     Ok(())
 }
 
+/// Speed or acceleration, the end and the number of columns of both runs.
+fn run_sentences(printed: &str, both: [&Rows; 2]) -> Differences {
+    let starts = ["run i: speed ", "run ii: acceleration "];
+    let lines = starts.into_iter().zip(both).map(|(start, rows)| {
+        let end = rows.time(rows.count.saturating_sub(1));
+        let columns = rows.columns.len() as f64;
+        let numbers = [1.0, end, columns].map(|number| (number, number));
+        (start.to_owned(), numbers.to_vec())
+    });
+    sentence_differences(printed, &lines.collect::<Vec<_>>(), "runs")
+}
+
+/// Positions of a file of `reduce` that miss the largest m.
+const FEW_POINTS: &str = "7";
+/// What many rows may miss of the largest m between them.
+const BETWEEN_ROWS: f64 = 1e-2;
+
+/// Where few rows miss the largest m, `reduce` says how large it is: no smaller than in many rows, and where these have it.
+fn compare_peak(
+    compared: &mut Compared,
+    program: &Program,
+    reading: &Reading,
+    scene: &str,
+    many: &Rows,
+) -> Result<(), String> {
+    let few = program.run("few", scene, &["reduce", "--points", FEW_POINTS]);
+    let few = few.map_err(|e| e.to_string())?;
+    let said = few.printed.lines();
+    let line = said
+        .map(str::trim)
+        .find_map(|line| line.strip_prefix("between these positions m reaches "));
+    let Some(line) = line else {
+        return Ok(());
+    };
+    let found = compared.of("written-sentences");
+    let first = |text: &str| text.split([' ', ',']).next()?.parse::<f64>().ok();
+    let place = line.split_once(" = ").and_then(|(_, rest)| first(rest));
+    let columns = [&reading.coordinates[0].name, "m"].map(|name| many.columns.get(name));
+    let (Some(value), Some(place), [Some(q), Some(m)]) = (first(line), place, columns) else {
+        found.fail(format!("`reduce` says `{line}`"));
+        return Ok(());
+    };
+    let largest = m.iter().fold(f64::NEG_INFINITY, |max, m| max.max(*m));
+    let outside = (largest - value).max(value - largest * (1.0 + BETWEEN_ROWS));
+    // Printed are the digits that its error leaves.
+    found.add((outside - 1e-6 * largest).max(0.0), largest, "", || {
+        format!("`{line}`")
+    });
+    let step = q
+        .windows(2)
+        .fold(0.0_f64, |max, pair| max.max((pair[1] - pair[0]).abs()));
+    let near = q
+        .iter()
+        .zip(m)
+        .filter(|(q, _)| (*q - place).abs() <= 1.01 * step);
+    let here = near.fold(f64::NEG_INFINITY, |max, (_, m)| max.max(*m));
+    found.add(largest - here, largest, "", || {
+        format!("the place of `{line}`")
+    });
+    Ok(())
+}
+
 /// What is nowhere above so many times its stated error is zero but for rounding, and so is what is below a part of m.
 const ERRORS: f64 = 4.0;
 const ROUNDING: f64 = 1e-12;
@@ -146,9 +212,9 @@ fn compare_copies(
     program: &Program,
     reading: &Reading,
     scene: &str,
-    rows: &Rows,
+    files: &ReducedFiles<'_>,
 ) -> Result<(), String> {
-    let coordinate = &reading.coordinates[0].name;
+    let (coordinate, rows) = (&reading.coordinates[0].name, files.reduced);
     let arguments = [
         "reduce",
         "--points",
@@ -157,10 +223,18 @@ fn compare_copies(
         TABLE_ACCURACY,
     ];
     match program.run("table", scene, &arguments) {
-        Ok(run) => compared.merge(
-            "written-table",
-            table_differences(&run.text(".table")?, rows, coordinate),
-        ),
+        Ok(run) => {
+            let text = run.text(".table")?;
+            compared.merge("written-table", table_differences(&text, rows, coordinate));
+            let of_table = table_rows(&text, rows, coordinate).ok_or("no rows of the table")?;
+            let files = ReducedFiles {
+                reduced: &of_table,
+                ..*files
+            };
+            let of = reduced(reading, &files, coordinate);
+            compared.merge("written-table-sums", of.sums);
+            compared.merge("written-table-bodies", of.bodies);
+        }
         // Not every mechanism has one, as its format says.
         Err(e)
             if ["tables are of driven angles", "no table:"]

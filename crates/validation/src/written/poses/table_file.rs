@@ -106,6 +106,22 @@ impl<'a> TableFile<'a> {
     }
 }
 
+/// The rows of `reduce` with the values of its table in place of their own.
+pub(crate) fn table_rows(text: &str, rows: &Rows, coordinate: &str) -> Option<Rows> {
+    let file = TableFile::read(text)?;
+    let names = file.columns();
+    let mut of_table = rows.clone();
+    for row in 0..rows.count {
+        let Some(values) = rows.get(row, coordinate).and_then(|q| file.at(q)) else {
+            continue;
+        };
+        for (name, value) in names.iter().zip(values) {
+            *of_table.columns.get_mut(name)?.get_mut(row)? = value;
+        }
+    }
+    Some(of_table)
+}
+
 /// The rows of `reduce` against its table: what is beyond the errors that the file states, relative to its scales. Of the
 /// text the checksum, too.
 pub(crate) fn table_differences(text: &str, rows: &Rows, coordinate: &str) -> Differences {

@@ -75,6 +75,15 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
     let stored = stored.map_err(|e| e.to_string())?;
     compared.merge("written-sweep-files", same_files([&run, &stored], &rows)?);
     let summary = run.json("-sweep.json")?;
+    let is_whole = rows
+        .columns
+        .values()
+        .flatten()
+        .all(|value| value.is_finite());
+    if is_whole && run.printed.contains("could not be computed completely") {
+        let reason = "`sweep` says that points failed, and every row has its numbers";
+        compared.fail("written-sweep-sentences", reason.to_owned());
+    }
     let inputs: Vec<String> = variations.iter().map(Variation::path).collect();
     let mut stated = Stated::default();
     for result in ["m.min", "m.max"] {

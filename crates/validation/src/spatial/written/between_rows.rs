@@ -1,0 +1,153 @@
+//! Along the rows of a file: prescribed coordinates with their law, and free ones with the integrals of their speeds.
+
+use super::super::worst::{Comparison, Worst};
+use super::finding;
+use super::scenes::{Scenes, sinusoid};
+use crate::written::motions::simpson;
+use crate::written::poses::difference::{Differences, Texts};
+use crate::written::poses::rows::Rows;
+use dwell_findings::{Check, Finding};
+use dwell_scene::SpaceScene;
+
+const LAWS: Comparison = Comparison {
+    key: "written-kinetostatics-laws",
+    check: Check::WrittenLaws,
+    comparison: "prescribed coordinates, speeds and accelerations with sinusoids from the assembly",
+    scale: "the amplitude, times the angular frequency for each derivative",
+    // The largest seen in a case is 0.
+    tolerance: 1e-15,
+    reason: "rounding of the law",
+};
+const AGAIN: Texts<'_> = Texts {
+    key: "written-motion-again",
+    check: Check::WrittenTwice,
+    comparison: "coordinates and speeds by the default method and to an accuracy of 1e-8",
+    scale: "the largest coordinate, or the largest speed",
+    tolerance: 1e-6,
+    tolerance_reason: "the errors of both motions",
+};
+const STOPS: Texts<'_> = Texts {
+    key: "written-motion-stops",
+    check: Check::WrittenPositions,
+    comparison: "coordinates with the ends that their stops of no compliance allow",
+    scale: "one radian or metre",
+    tolerance: 1e-9,
+    tolerance_reason: "an impact is located to the tolerance of the integration",
+};
+const SPEEDS: Texts<'_> = Texts {
+    key: "written-motion-speeds",
+    check: Check::WrittenRates,
+    comparison: "what coordinates and speeds change by between rows with the integrals of speeds and accelerations, by Simpson's rule",
+    scale: "the largest coordinate, or the largest speed",
+    // The largest seen in a case is 4.5e-10.
+    tolerance: 4e-8,
+    tolerance_reason: "the tolerance of the integration, and what the rule's estimated error leaves",
+};
+
+/// Prescribed coordinates with their sinusoids.
+pub(super) fn laws(scenes: &Scenes, scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
+    let mut worst = Worst::default();
+    for (k, amplitude) in scenes.amplitudes.as_ref()?.iter().enumerate() {
+        let actuator = &scene.mechanism.actuators[k].name;
+        let start = scene.assembly.q[k];
+        for row in 0..rows.count {
+            let mut wanted = sinusoid(*amplitude, rows.time(row));
+            wanted[0] += start;
+            let largest = sinusoid(*amplitude, 0.0)[1].abs() / amplitude.abs();
+            let scales = [
+                amplitude.abs().max(start.abs()),
+                amplitude.abs() * largest,
+                amplitude.abs() * largest * largest,
+            ];
+            for ((end, wanted), scale) in ["", ".velocity", ".acceleration"]
+                .into_iter()
+                .zip(wanted)
+                .zip(scales)
+            {
+                let name = format!("{actuator}{end}");
+                let found = rows.get(row, &name).unwrap_or(f64::NAN);
+                worst.add([found, wanted, scale], "", || format!("row {row}, {name}"));
+            }
+        }
+    }
+    finding(worst, &LAWS, rows, "kinetostatics")
+}
+
+/// Free coordinates and their speeds with the integrals of speeds and accelerations.
+pub(super) fn motion(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
+    let mut found = Differences::default();
+    let Some(times) = rows.columns.get("t") else {
+        found.fail("the file has no time".to_owned());
+        return found.finding(SPEEDS, "motion");
+    };
+    let actuators = &scene.mechanism.actuators;
+    let column = |k: usize, end: &str| rows.columns.get(&format!("{}{end}", actuators[k].name));
+    let largest = |end: &str| {
+        let all = (0..actuators.len()).filter_map(|k| column(k, end));
+        all.flatten().fold(0.0_f64, |max, v| max.max(v.abs()))
+    };
+    for (k, actuator) in actuators.iter().enumerate() {
+        for [of, rate] in [["", ".velocity"], [".velocity", ".acceleration"]] {
+            let name = format!("{}{of}", actuator.name);
+            match (column(k, of), column(k, rate)) {
+                (Some(values), Some(rates)) => {
+                    simpson(&mut found, times, [values, rates], largest(of), &name);
+                }
+                _ => found.fail(format!("no column {name}, or none of its rate")),
+            }
+        }
+    }
+    found.finding(SPEEDS, "motion")
+}
+
+/// The same motion in two files.
+pub(super) fn again(scene: &SpaceScene, both: [&Rows; 2]) -> Option<Finding> {
+    let mut found = Differences::default();
+    let ends = ["", ".velocity"];
+    let all = both.map(|rows| {
+        ends.map(|end| {
+            let actuators = scene.mechanism.actuators.iter();
+            let columns = actuators.filter_map(|a| rows.columns.get(&format!("{}{end}", a.name)));
+            columns.flatten().copied().collect::<Vec<f64>>()
+        })
+    });
+    for (k, end) in ends.into_iter().enumerate() {
+        let [one, other] = [&all[0][k], &all[1][k]];
+        if one.len() != other.len() {
+            found.fail(format!("{} and {} numbers", one.len(), other.len()));
+            continue;
+        }
+        let scale = one.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+        for (i, (a, b)) in one.iter().zip(other).enumerate() {
+            found.add(a - b, scale, "", || {
+                format!("number {i} of coordinates{end}")
+            });
+        }
+    }
+    found.finding(AGAIN, "motion")
+}
+
+/// No row is beyond a rigid stop.
+pub(super) fn stops(scene: &SpaceScene, both: [&Rows; 2]) -> Option<Finding> {
+    let mut found = Differences::default();
+    let none = Vec::new();
+    for stop in scene.stops.iter().filter(|stop| stop.yielding.is_none()) {
+        let coordinate = &scene.mechanism.actuators[stop.actuator.0].name;
+        for rows in both {
+            for (row, value) in rows
+                .columns
+                .get(coordinate)
+                .unwrap_or(&none)
+                .iter()
+                .enumerate()
+            {
+                let above = stop.max.map_or(0.0, |max| value - max);
+                let below = stop.min.map_or(0.0, |min| min - value);
+                found.add(above.max(below).max(0.0), 1.0, "", || {
+                    format!("row {row}, {coordinate}")
+                });
+            }
+        }
+    }
+    found.finding(STOPS, "motion")
+}

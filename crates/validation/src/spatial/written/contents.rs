@@ -1,0 +1,97 @@
+//! What `check` says of a scene: which components of reactions the loads determine, by the ranks of the dense equations at the assembly, and
+//! how many bodies, joints and coordinates there are.
+
+use super::super::claims::SpaceClaims;
+use crate::written::poses::difference::{Differences, Texts};
+use crate::written::poses::program::Program;
+use dwell_findings::{Check, Finding};
+use dwell_kinetostatics::MachineModel as _;
+use dwell_scene::SpaceScene;
+use dwell_verify::space::DenseSpace;
+
+/// The findings of its sentences.
+pub(super) fn findings(
+    program: &Program,
+    (claims, scene): (&SpaceClaims<'_>, &SpaceScene),
+) -> Result<Vec<Finding>, String> {
+    let run = super::run(program, &scene.name, scene.source.inner(), &["check"])?;
+    let case = claims.case();
+    let zero = vec![0.0; scene.mechanism.actuators.len()];
+    let dense = DenseSpace::new(
+        &scene.mechanism,
+        &scene.masses,
+        case.start.1,
+        [&zero, &zero],
+        &[],
+    );
+    let dense = dense.map_err(|e| e.to_string())?;
+    let mut found = Differences::default();
+    let mut says = |what: String| {
+        found.add(0.0, 1.0, "", String::new);
+        if !run.printed.contains(&what) {
+            found.fail(format!("`check` does not say `{what}`"));
+        }
+    };
+    let count = |n: usize, one: &str, many: &str| match n {
+        1 => format!("1 {one}"),
+        _ => format!("{n} {many}"),
+    };
+    says(count(
+        scene.mechanism.bodies.len() - 1,
+        "moving body",
+        "moving bodies",
+    ));
+    says(count(scene.mechanism.joints.len(), "joint", "joints"));
+    says(count(zero.len(), "degree of freedom", "degrees of freedom"));
+    if !scene.lists_reactions {
+        let ends = ["x", "y", "z", "moment-x", "moment-y", "moment-z"];
+        let said = run
+            .printed
+            .lines()
+            .find_map(|line| line.trim().strip_prefix("statically determinate: "));
+        let said: Vec<&str> = said.map_or_else(Vec::new, |list| list.split(", ").collect());
+        for (joint, determined) in scene.mechanism.joints.iter().zip(&dense.determined) {
+            for (end, is) in ends.into_iter().zip(determined) {
+                let name = format!("{}.{end}", joint.name);
+                found.add(0.0, 1.0, "", String::new);
+                // A component that the joint does not transmit is zero, and not a reaction.
+                if said.contains(&name.as_str()) && !is {
+                    found.fail(format!("`check` says that {name} is determined"));
+                }
+            }
+        }
+    }
+    let summary = run.json("-check.json")?;
+    for stop in &scene.stops {
+        let per = match claims.model().is_angle(stop.actuator.0) {
+            true => ["N m/rad", "N m s/rad"],
+            false => ["N/m", "N s/m"],
+        };
+        let numbers = stop
+            .yielding
+            .into_iter()
+            .flatten()
+            .zip(["stiffness", "damping"]);
+        for ((value, what), unit) in numbers.zip(per) {
+            let written = &summary["results"][format!("stop.{}.{what}", stop.name)];
+            found.add(
+                written["value"].as_f64().unwrap_or(f64::NAN) - value,
+                value,
+                unit,
+                || format!("{what} of {}", stop.name),
+            );
+            if written["unit"].as_str() != Some(unit) {
+                found.fail(format!("{what} of {} in {}", stop.name, written["unit"]));
+            }
+        }
+    }
+    let texts = Texts {
+        key: "written-contents",
+        check: Check::WrittenSentences,
+        comparison: "counts and determined reactions that `check` prints with the scene and the ranks of the dense equations",
+        scale: "nothing: words",
+        tolerance: 0.0,
+        tolerance_reason: "words",
+    };
+    Ok(found.finding(texts, "check").into_iter().collect())
+}

@@ -1,0 +1,185 @@
+//! What the commands write of a case in space: the program runs as a process, and its files and sentences are read back.
+//!
+//! ```text
+//! scene text ── scenes (adds a motion where there is none) ── program ── files
+//!      files ── states (rows as states) ── the dense equations in body coordinates ──┐
+//!      files ── sums (power, shaking force, energies), between_rows (time) ──────────┤
+//!      files ── reduced_file (m, ½m′, a, b, c, w), contents (sentences of `check`) ──┴── findings
+//! ```
+//!
+//! Placements, motions, reactions and actions come from the columns; of the model only what no column says is taken: magnitudes of loads,
+//! and the components of reactions that redundant constraints leave open.
+
+mod between_rows;
+mod contents;
+mod reduced_file;
+mod scenes;
+mod states;
+mod sums;
+
+use super::claims::SpaceClaims;
+use super::worst::Worst;
+use crate::error::ValidationError;
+use crate::written::poses::difference::{Differences, Texts};
+use crate::written::poses::formats::{Formats, formats};
+use crate::written::poses::program::{Program, Run};
+use crate::written::poses::rows::Rows;
+use dwell_findings::{Check, Finding};
+use dwell_scene::SpaceScene;
+use scenes::Scenes;
+use std::path::Path;
+
+/// The accuracy of one of the motions.
+const ACCURACY: &str = "1e-8";
+
+/// The findings of what the program at a path writes of a scene.
+pub(super) fn written_findings(
+    scene: &SpaceScene,
+    program: &Path,
+) -> Result<Vec<Finding>, ValidationError> {
+    let claims = SpaceClaims::new(scene)?;
+    let scenes = Scenes::new(scene, &claims);
+    let runs = Program::new(program, &format!("{}-in-space", scene.name));
+    let judged = runs.map_err(|e| e.to_string()).and_then(|program| {
+        let given = (&claims, scene);
+        let mut found = forced(&program, given, &scenes)?;
+        found.extend(free(&program, given, &scenes)?);
+        found.extend(contents::findings(&program, given)?);
+        Ok(found)
+    });
+    let mut found = judged.unwrap_or_else(|reason| vec![refused(&reason)]);
+    if scene.mechanism.actuators.len() == 1 {
+        found.extend(reduced_file::findings(scene, (program, &scenes.plain))?);
+    }
+    Ok(found)
+}
+
+/// The findings of a command that could not be read back.
+fn refused(reason: &str) -> Finding {
+    Finding {
+        worst_at: reason.to_owned(),
+        pass: false,
+        ..Finding::new("written-files", Check::WrittenTwice, [f64::NAN; 2], 0.0)
+    }
+}
+
+/// `kinetostatics` along a prescribed motion.
+fn forced(
+    program: &Program,
+    (claims, scene): (&SpaceClaims<'_>, &SpaceScene),
+    scenes: &Scenes,
+) -> Result<Vec<Finding>, String> {
+    let run = run(
+        program,
+        &scene.name,
+        &scenes.forced,
+        &["kinetostatics", "--points", "25"],
+    )?;
+    let rows = run.csv("-kinetostatics.csv")?;
+    let mut found = states::findings(claims, scene, &rows, states::Kind::Forced)?;
+    found.extend(sums::findings(claims, scene, &rows, "kinetostatics"));
+    found.extend(between_rows::laws(scenes, scene, &rows));
+    found.extend(twice(&run, "kinetostatics", "kinetostatics")?);
+    Ok(found)
+}
+
+/// `simulate`, where the scene has a motion or one coordinate: by its default method, and to an accuracy.
+fn free(
+    program: &Program,
+    (claims, scene): (&SpaceClaims<'_>, &SpaceScene),
+    scenes: &Scenes,
+) -> Result<Vec<Finding>, String> {
+    let Some((text, interval)) = &scenes.free else {
+        return Ok(Vec::new());
+    };
+    let arguments = ["simulate", "--sample-interval", interval];
+    let first = run(program, &scene.name, text, &arguments)?;
+    let rows = first.csv("-motion.csv")?;
+    let mut found = Vec::new();
+    // An end stop acts beside the loads.
+    if scene.stops.is_empty() {
+        found.extend(states::findings(claims, scene, &rows, states::Kind::Free)?);
+        found.extend(sums::findings(claims, scene, &rows, "motion"));
+        found.extend(between_rows::motion(scene, &rows));
+    }
+    found.extend(twice(&first, "motion", "simulate")?);
+    let arguments = [&arguments[..], &["--accuracy", ACCURACY]].concat();
+    let other = run(
+        program,
+        &format!("{}-to-accuracy", scene.name),
+        text,
+        &arguments,
+    )?;
+    let others = other.csv("-motion.csv")?;
+    found.extend(between_rows::again(scene, [&rows, &others]));
+    found.extend(between_rows::stops(scene, [&rows, &others]));
+    Ok(found)
+}
+
+fn run(program: &Program, name: &str, text: &str, arguments: &[&str]) -> Result<Run, String> {
+    let done = program.run(name, text, arguments);
+    done.map_err(|e| e.to_string())
+}
+
+/// The same numbers in the files and sentences of a run.
+fn twice(run: &Run, stem: &str, command: &str) -> Result<Vec<Finding>, String> {
+    let Formats {
+        files,
+        extrema,
+        places,
+        printed,
+    } = formats(run, stem, command, &[])?;
+    let of = |differences: Differences, end: &str, check, comparison, tolerance| {
+        let texts = Texts {
+            key: &format!("written-{stem}-{end}"),
+            check,
+            comparison,
+            scale: "the number, or the largest extremum of its unit",
+            tolerance,
+            tolerance_reason: "the same numbers; between rows, the error of a polynomial through them",
+        };
+        differences.finding(texts, command)
+    };
+    let all = [
+        of(
+            files,
+            "twice",
+            Check::WrittenTwice,
+            "CSV with NPZ, and no row beyond an extremum",
+            // The largest seen in a case is 4.6e-11 N m, of a moment that is zero beside forces of 300 N.
+            4e-9,
+        ),
+        of(
+            extrema,
+            "extrema",
+            Check::WrittenTwice,
+            "extrema of the summary with a polynomial through rows",
+            1e-5,
+        ),
+        of(
+            places,
+            "places",
+            Check::WrittenTwice,
+            "slopes of that polynomial at the places of extrema, over one row",
+            1e-3,
+        ),
+        of(
+            printed,
+            "printed",
+            Check::WrittenSentences,
+            "printed extrema with the summary",
+            1e-12,
+        ),
+    ];
+    Ok(all.into_iter().flatten().collect())
+}
+
+/// A finding of a worst difference with its texts.
+fn finding(
+    worst: Worst,
+    of: &super::worst::Comparison,
+    rows: &Rows,
+    file: &str,
+) -> Option<Finding> {
+    worst.finding(of, &format!("{file}, {} rows", rows.count))
+}

@@ -1,0 +1,135 @@
+//! The table of `reduce`: m, ½m′, a, b, and what the loads make, at its rows, with the dense equations at the model's placements there.
+
+use super::super::samples::{PASSES, Samples};
+use super::super::worst::{Comparison, Worst};
+use super::finding;
+use crate::error::ValidationError;
+use crate::written::poses::program::Program;
+use crate::written::poses::rows::Rows;
+use dwell_findings::{Check, Finding};
+use dwell_kinetostatics::Magnitude;
+use dwell_scene::SpaceScene;
+use dwell_study::PreparedSpaceScene;
+use std::path::Path;
+
+const COEFFICIENTS: Comparison = Comparison {
+    key: "written-reduced",
+    check: Check::WrittenForces,
+    comparison: "m, ½m′, w, a, b and c of the table with the dense equations at unit speed, unit acceleration and under the loads",
+    scale: "the largest of each pass, of its kind, in the row, or a thousandth of what the whole mass makes",
+    // The largest seen in a case is 2.6e-12.
+    tolerance: 2e-10,
+    reason: "rounding, amplified by the condition of the equations",
+};
+
+/// Rows of the table, and those that are judged.
+const POINTS: &str = "25";
+const STEP: usize = 4;
+
+/// The finding of the table that the program at a path writes.
+pub(super) fn findings(
+    scene: &SpaceScene,
+    (program, text): (&Path, &str),
+) -> Result<Vec<Finding>, ValidationError> {
+    let prepared = PreparedSpaceScene::new(scene)?;
+    let mut samples = Samples::new(&prepared)?;
+    let read = || -> Result<Rows, String> {
+        let program =
+            Program::new(program, &format!("{}-reduced", scene.name)).map_err(|e| e.to_string())?;
+        let run = program.run(&scene.name, text, &["reduce", "--points", POINTS]);
+        run.map_err(|e| e.to_string())?.csv("-reduced.csv")
+    };
+    let rows = match read() {
+        Ok(rows) => rows,
+        Err(reason) => return Ok(vec![super::refused(&reason)]),
+    };
+    let mut worst = Worst::default();
+    for row in (1..rows.count).step_by(STEP) {
+        compare(&mut worst, &mut samples, scene, (&rows, row))?;
+    }
+    Ok(finding(worst, &COEFFICIENTS, &rows, "reduced.csv")
+        .into_iter()
+        .collect())
+}
+
+/// The three passes of a row.
+fn compare(
+    worst: &mut Worst,
+    samples: &mut Samples<'_>,
+    scene: &SpaceScene,
+    (rows, row): (&Rows, usize),
+) -> Result<(), ValidationError> {
+    let q = rows
+        .get(row, &scene.mechanism.actuators[0].name)
+        .unwrap_or(f64::NAN);
+    let placements = samples.placements(q)?;
+    let size = samples.model.plan().size();
+    for (pass, [of_actuator, of_reaction]) in
+        PASSES
+            .into_iter()
+            .zip([["half_dm", "b"], ["m", "a"], ["w", "c"]])
+    {
+        let Some(dense) = samples.dense(&placements, pass) else {
+            continue;
+        };
+        // Under loads: the sum of each load's column times its magnitude.
+        let written = |name: &str, kind: &str| match pass.is_loaded {
+            false if name.is_empty() => rows.get(row, kind),
+            false => rows.get(row, &format!("{name}.{kind}")),
+            true => {
+                let of_load = |load: &dwell_kinetostatics::space::Load| {
+                    let Magnitude::Constant(magnitude) = load.magnitude else {
+                        return None;
+                    };
+                    let column = match name.is_empty() {
+                        true => format!("{}.{kind}", load.name),
+                        false => format!("{name}.{kind}.{}", load.name),
+                    };
+                    Some(magnitude * rows.get(row, &column)?)
+                };
+                scene.loads.iter().map(of_load).sum::<Option<f64>>()
+            }
+        };
+        let floor = samples.floor(pass);
+        let of_wrench = |w: &dwell_geometry::space::Wrench| {
+            let (f, m) = (w.force, w.moment);
+            [f.x, f.y, f.z, m.x, m.y, m.z]
+        };
+        let all: Vec<[f64; 6]> = dense.reactions.iter().map(of_wrench).collect();
+        let largest = |kind: usize| {
+            let of_kind = all.iter().zip(&dense.determined).flat_map(|(v, is)| {
+                (3 * kind..3 * kind + 3)
+                    .filter(|k| is[*k])
+                    .map(|k| v[k].abs())
+            });
+            of_kind.fold(0.0, f64::max)
+        };
+        let scales = [largest(0).max(floor), largest(1).max(floor * size)];
+        let unit = match samples.model.plan().is_angle(0) {
+            true => size,
+            false => 1.0,
+        };
+        if let Some(found) = written("", of_actuator) {
+            // The loads do what the actuator must undo.
+            let sign = if pass.is_loaded { -1.0 } else { 1.0 };
+            let wanted = sign * dense.actuator_actions[0];
+            worst.add([found, wanted, wanted.abs().max(floor * unit)], "", || {
+                format!("q = {q:.4}, {of_actuator}")
+            });
+        }
+        for (joint, values) in scene.mechanism.joints.iter().zip(&all) {
+            for (k, end) in ["x", "y", "z", "moment-x", "moment-y", "moment-z"]
+                .into_iter()
+                .enumerate()
+            {
+                let name = format!("{}.{end}", joint.name);
+                if let Some(found) = written(&name, of_reaction) {
+                    worst.add([found, values[k], scales[k / 3]], "", || {
+                        format!("q = {q:.4}, {name}.{of_reaction}")
+                    });
+                }
+            }
+        }
+    }
+    Ok(())
+}
