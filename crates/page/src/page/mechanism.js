@@ -279,7 +279,7 @@ function createMechanism(state, onMove, onTurn) {
 // What the elements of a drawing are made of: two drawings of one shape differ in numbers only.
 function shapeOf(drawing) {
   const part = p => [p.part, p.look, p.title, p.label, p.on_ground, p.closed, p.body, p.bodies, p.at && p.at.body, (p.points || []).length, (p.axis || []).length].join();
-  const arrow = a => [a.name, a.title, a.group, a.direction, a.columns || a.column].join();
+  const arrow = a => [a.name, a.title, a.group, a.direction, a.columns || a.parts.map(part => part.column)].join();
   return [drawing.view === null, drawing.bodies.map(b => `${b.name}|${b.paint}|${b.placements.length}`).join(), ...drawing.parts.map(part), ...drawing.arrows.map(arrow), ...drawing.paths.map(p => `${p.name}|${p.requested}`)].join('\n');
 }
 
