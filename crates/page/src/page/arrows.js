@@ -18,8 +18,8 @@ function createOverlay(first, layers, state) {
     arrows = drawing.arrows.map((arrow, index) => ({ ...arrow, index, size: sizeOf(arrow) }));
     largest = {};
     for (const arrow of arrows) largest[arrow.group] = Math.max(largest[arrow.group] || 0, arrow.size);
-    if (!state.arrows) state.arrows = new Set(arrows.filter(a => a.shown && a.size > 0).map(a => a.name));
-    if (!state.paths) state.paths = new Set(drawing.paths.filter(p => p.requested).map(p => p.name));
+    state.arrows = chosen(state.arrows, arrows.filter(a => a.size > 0), a => a.shown);
+    state.paths = chosen(state.paths, drawing.paths, p => p.requested);
   }
 
   // The largest force of an arrow in the rows.
@@ -97,6 +97,17 @@ function createOverlay(first, layers, state) {
   }
 
   return { show, layOut, move, arrows: () => arrows, paths: () => drawing.paths };
+}
+
+// The names of what is shown, as someone has chosen; of what was not there to be chosen before, what is shown at first.
+function chosen(before, all, isFirst) {
+  const names = before || Object.assign(new Set(), { known: new Set() });
+  for (const one of all) {
+    if (names.known.has(one.name)) continue;
+    names.known.add(one.name);
+    if (isFirst(one)) names.add(one.name);
+  }
+  return names;
 }
 
 // An arrow from a point; of one too short to be seen nothing.
