@@ -355,6 +355,28 @@ await test('narrow screens', async page => {
   expect(wide <= 1, `${wide} pixels too wide`);
 }, { viewport: { width: 400, height: 900 } });
 
+// In 24 rows: pairs of labels that lie over each other by more than the room above and below their letters, 3 px.
+const labelsMeet = page => page.evaluate(() => {
+  const slider = document.querySelector('input.slider');
+  let count = 0;
+  for (let k = 0; k < 24; k++) {
+    slider.value = Math.round((k * Number(slider.max)) / 24);
+    slider.dispatchEvent(new Event('input'));
+    const boxes = [...document.querySelectorAll('svg.mechanism text.label')].map(label => label.getBoundingClientRect());
+    const meet = (a, b) => a.left < b.right && b.left < a.right && a.top + 3 < b.bottom - 3 && b.top + 3 < a.bottom - 3;
+    count += boxes.filter((a, i) => boxes.slice(0, i).some(b => meet(a, b))).length;
+  }
+  return count;
+});
+
+await test('labels keep apart on narrow screens', async page => {
+  for (const name of ['single-dwell', 'whitworth', 'watt-six-bar', 'planetary']) {
+    await page.selectOption('#live-example', name);
+    await settled(page);
+    same(await labelsMeet(page), 0, `${name}: labels over each other`);
+  }
+}, { viewport: { width: 390, height: 844 } });
+
 await test('examples', async page => {
   const names = await page.locator('#live-example option').evaluateAll(all => all.map(one => one.value).filter(Boolean));
   expect(names.length > 25, `${names.length} examples`);
