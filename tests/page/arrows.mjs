@@ -24,7 +24,7 @@ async function drawn(page, name) {
 // Where points of the ground are on the screen: in the plane by a body whose origin is known, m; it is drawn by its frame.
 async function byBody(page, body, [ax, ay]) {
   const all = await page.$$eval('.mechanism g[data-body][transform^=matrix]', (groups, own) => groups.filter(g => g.querySelector('title').textContent === own).map(g => g.getAttribute('transform')), body);
-  const [a, b, , , x, y] = all[0].match(/[-\d.e]+/g).map(Number);
+  const [a, b, , , x, y] = all[0].match(/-?\d[\d.e-]*/g).map(Number);
   const scale = Math.hypot(a, b);
   return point => [x + scale * (point[0] - ax), y - scale * (point[1] - ay)];
 }
@@ -33,7 +33,7 @@ async function byBody(page, body, [ax, ay]) {
 async function byMarks(page, [[one, [ax, ay]], [other, [bx, by]]]) {
   const place = async joint => {
     const texts = await page.$$eval('.mechanism .mark', (all, own) => all.filter(m => m.querySelector('title').textContent.startsWith(own)).map(m => m.getAttribute('transform')), `${joint} (`);
-    return texts[0].match(/[-\d.e]+/g).map(Number);
+    return texts[0].match(/-?\d[\d.e-]*/g).map(Number);
   };
   const [a, b] = [await place(one), await place(other)];
   const scale = Math.hypot(b[0] - a[0], b[1] - a[1]) / Math.hypot(bx - ax, by - ay);
