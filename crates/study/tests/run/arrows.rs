@@ -205,8 +205,8 @@ fn balances(text: &str, contacts: &[&str], without: &[&str]) {
             if b == scene.mechanism.ground || without.contains(&name) {
                 continue;
             }
-            // Seen: 3e-13 N and 6e-14 N m, of forces of some 400 N.
-            let is_small = force.norm() < 1e-11 && moment.abs() < 1e-11;
+            // Seen: 1.1e-13 N and 1.5e-14 N m.
+            let is_small = force.norm() < 1e-11 && moment.abs() < 1e-12;
             assert!(is_small, "{name}, row {}: {force:?}, {moment}", row.row);
         }
     }
