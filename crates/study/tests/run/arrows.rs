@@ -74,7 +74,7 @@ impl Row<'_> {
             } => {
                 let mut at = self.place(&arrow.at);
                 if !offset.is_empty() {
-                    at = at + self.turned(*body, offset);
+                    at += self.turned(*body, offset);
                 }
                 let parts = parts.iter();
                 let parts = parts.map(|p| self.turned(*body, &p.axis) * value(p.column));
