@@ -200,8 +200,8 @@ pub struct ForceArrow {
     pub group: String,
     /// What it is.
     pub title: String,
-    /// Whether it is shown at first.
-    pub shown: bool,
+    /// Whether it is shown before anyone has chosen.
+    pub initially_visible: bool,
     /// Where it acts; of one along a line the line decides.
     pub at: Anchor,
     /// Where it points to.

@@ -18,7 +18,7 @@ function createOverlay(first, layers, state) {
     arrows = drawing.arrows.map((arrow, index) => ({ ...arrow, index, size: sizeOf(arrow) }));
     largest = {};
     for (const arrow of arrows) largest[arrow.group] = Math.max(largest[arrow.group] || 0, arrow.size);
-    state.arrows = chosen(state.arrows, arrows.filter(a => a.size > 0), a => a.shown);
+    state.arrows = chosen(state.arrows, arrows.filter(a => a.size > 0), a => a.initially_visible);
     state.paths = chosen(state.paths, drawing.paths, p => p.requested);
   }
 

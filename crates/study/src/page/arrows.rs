@@ -14,27 +14,27 @@ use dwell_scene::Scene;
 
 /// The reactions and loads among the columns of the page. A reaction is drawn on the joint's second body.
 pub(super) fn plane_arrows(scene: &Scene, results: &TrajectoryResults) -> Vec<ForceArrow> {
-    let shown = Shown {
+    let columns = WrittenColumns {
         scene,
         results,
         reactions: scene.mechanism.reactions(),
     };
     let joints = scene.mechanism.joints.iter().enumerate();
     let joints = joints.map(|(j, joint)| JointForces {
-        shown: &shown,
+        columns: &columns,
         id: JointId(j),
         joint,
     });
     let mut arrows: Vec<ForceArrow> = joints.flat_map(|joint| joint.arrows()).collect();
     let loads = scene.loads.iter().enumerate();
     arrows.extend(loads.filter_map(|(k, load)| {
-        let column = shown.column(Quantity::LoadForce(k))?;
+        let column = columns.column(Quantity::LoadForce(k))?;
         let (at, direction) = load_direction(scene, &load.kind, column)?;
         Some(ForceArrow {
             name: load.name.clone(),
             group: "Loads".to_owned(),
             title: results.columns[results.written[column]].meaning.clone(),
-            shown: true,
+            initially_visible: true,
             at,
             direction,
         })
@@ -43,13 +43,13 @@ pub(super) fn plane_arrows(scene: &Scene, results: &TrajectoryResults) -> Vec<Fo
 }
 
 /// What the columns of a page show.
-struct Shown<'a> {
+struct WrittenColumns<'a> {
     scene: &'a Scene,
     results: &'a TrajectoryResults,
     reactions: Vec<dwell_geometry::Reaction>,
 }
 
-impl Shown<'_> {
+impl WrittenColumns<'_> {
     /// The column of a quantity, among those that are written.
     fn column(&self, quantity: Quantity) -> Option<usize> {
         let mut written = self.results.written.iter();
@@ -59,7 +59,7 @@ impl Shown<'_> {
 
 /// The forces of a joint whose columns are there.
 struct JointForces<'a> {
-    shown: &'a Shown<'a>,
+    columns: &'a WrittenColumns<'a>,
     id: JointId,
     joint: &'a Joint,
 }
@@ -67,9 +67,9 @@ struct JointForces<'a> {
 impl JointForces<'_> {
     /// The column of a component of the reaction.
     fn component(&self, wanted: Component) -> Option<usize> {
-        let mut all = self.shown.reactions.iter();
+        let mut all = self.columns.reactions.iter();
         let k = all.position(|r| r.joint == self.id && r.component == wanted)?;
-        self.shown.column(Quantity::Reaction(k))
+        self.columns.column(Quantity::Reaction(k))
     }
 
     /// A component along a direction; none where there is no column of it.
@@ -124,14 +124,14 @@ impl JointForces<'_> {
             name: self.joint.name.clone(),
             group: "Reactions".to_owned(),
             title: format!("{}: force of {from} on {on}", self.joint.name),
-            shown: true,
+            initially_visible: true,
             at: anchor(self.joint.bodies[1], self.joint.points[1]),
             direction,
         }
     }
 
     fn body_names(&self) -> [&str; 2] {
-        let mechanism = &self.shown.scene.mechanism;
+        let mechanism = &self.columns.scene.mechanism;
         self.joint.bodies.map(|b| mechanism.body_name(b))
     }
 }

@@ -82,7 +82,7 @@ pub(super) fn rolling_arrows(of: &JointForces<'_>, axis: Vec2, radius: f64) -> V
 /// The force of a coupling on what follows: along a travel at the slide's second point, or between the two points of a length. A
 /// coupled angle follows by a couple, which has no arrow.
 pub(super) fn coupling_arrow(of: &JointForces<'_>, coupling: usize) -> Option<ForceArrow> {
-    let mechanism = &of.shown.scene.mechanism;
+    let mechanism = &of.columns.scene.mechanism;
     let column = of.component(Component::Force)?;
     let (bodies, points, direction) = match mechanism.couplings.get(coupling)?.dependent {
         Coordinate::Angle(_) => return None,
@@ -104,7 +104,7 @@ pub(super) fn coupling_arrow(of: &JointForces<'_>, coupling: usize) -> Option<Fo
         name: name.clone(),
         group: "Reactions".to_owned(),
         title: format!("{name}: force of the coupling on {on}, along what it couples"),
-        shown: true,
+        initially_visible: true,
         at: anchor(bodies[1], points[1]),
         direction,
     })
@@ -150,12 +150,12 @@ pub(super) fn axes_of(mesh: Mesh) -> (Direction, [Vec2; 2]) {
 
 /// The column of the separating force of a joint's teeth, where they have a pressure angle.
 fn separating_column(of: &JointForces<'_>) -> Option<usize> {
-    let mut loads = of.shown.scene.loads.iter();
+    let mut loads = of.columns.scene.loads.iter();
     let k = loads.position(|load| match (&load.kind, &load.magnitude) {
         (LoadKind::SeparatingForce(_), Magnitude::Separating(teeth)) => teeth.joint == of.id,
         _ => false,
     })?;
-    of.shown.column(Quantity::LoadForce(k))
+    of.columns.column(Quantity::LoadForce(k))
 }
 
 /// A force at a contact on the second body.
@@ -193,7 +193,7 @@ fn pair(
                 "{}: {what} of {from} on {on}, where they touch",
                 of.joint.name
             ),
-            shown: false,
+            initially_visible: false,
             ..of.on_second(back)
         },
     ]
