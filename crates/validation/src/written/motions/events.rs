@@ -142,7 +142,7 @@ mod tests {
         let scene: Table = "[motion]\nevents.back = { reverses = \"q\" }"
             .parse()
             .expect("a scene");
-        let reading = Reading::new("[bodies]\nground = {}").expect("a reading");
+        let reading = Reading::new("bodies.ground.points = { A = [0, 0] }").expect("a reading");
         let columns = |name: &str, values: Vec<f64>| (name.to_owned(), values);
         let rows = Rows {
             columns: [
