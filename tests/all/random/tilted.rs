@@ -19,7 +19,7 @@ const TOLERANCE: f64 = 1e-14;
 
 /// The same of the reactions that are determined, of the largest of all: large ones that redundant constraints leave open round those beside
 /// them (2e-13 of the largest determined one in the regression). Seen: 1.1e-15.
-const REACTION_TOLERANCE: f64 = 1e-13;
+const REACTION_TOLERANCE: f64 = 5e-14;
 
 /// What was met.
 #[derive(Debug, Default)]
