@@ -19,8 +19,7 @@ const TOGETHER: f64 = 16.0 * f64::EPSILON;
 const MAX_TOGETHER: usize = 64;
 /// Events at one time, beside those of other contacts, after which they repeat each other.
 const REPEATED: usize = 8;
-/// A margin below this is beyond its limit where a motion or a mode begins: what has just left a stop, at the instant at which its force is zero,
-/// may be pushed back by rounding.
+/// A margin below this is beyond its limit where a motion begins.
 const BEYOND: f64 = 1e-12;
 
 /// Watches the contacts of a system during its integration.
@@ -155,9 +154,6 @@ impl ContactMonitor {
         let was_inside = margin.is_inside;
         margin.is_inside |= value > 0.0;
         if value < 0.0 && !was_inside {
-            if value >= -BEYOND {
-                return Ok(None);
-            }
             let start = earlier[0].0;
             let first = self.first_inside(k, [start, t], system, (before, now), dense)?;
             let Some([inside, until]) = first else {

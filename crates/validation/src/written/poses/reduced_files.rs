@@ -201,7 +201,7 @@ fn printed_extrema(rows: &Rows, summary: &serde_json::Value) -> [(&'static str, 
 }
 
 /// The accuracy that tables are asked for.
-const TABLE_ACCURACY: &str = "1e-10";
+const TABLE_ACCURACY: &str = "1e-7";
 
 /// Differences of a text of `symbolic` from the rows of `reduce`, in a coordinate, with a reaction.
 type Comparison = fn(&str, &Rows, &str, &str) -> Differences;
