@@ -177,10 +177,13 @@ pub(super) fn summary(summary: &Value, rows: &Rows, events: Option<&Rows>) -> Op
 /// Rows without an interval of their own: a thousand equal ones, to the same end.
 pub(super) fn default_rows(all: &Rows, others: &Rows) -> Option<Finding> {
     let mut found = Differences::default();
-    let count = all.count as f64;
-    found.add(count - 1001.0, 1001.0, "", || {
-        "the number of rows".to_owned()
-    });
+    // A motion that ends early has fewer, and one that strikes a stop has those of its impacts besides.
+    if others.count == ROWS + 1 {
+        let count = all.count as f64;
+        found.add(count - 1001.0, 1001.0, "", || {
+            "the number of rows".to_owned()
+        });
+    }
     let end = |rows: &Rows| rows.time(rows.count.saturating_sub(1));
     found.add(end(all) - end(others), end(others), "s", || {
         "the end".to_owned()
