@@ -120,6 +120,7 @@ fn add_words(to: &mut Differences, printed: &str, summary: &Json, names: &[Strin
 }
 
 /// The equilibrium of `linearise` is one of the table, with its modes.
+// Long because place, nearness and modes are of one pair of equilibria.
 fn add_same(
     to: &mut Differences,
     start: &Start<'_>,

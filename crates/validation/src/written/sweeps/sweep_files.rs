@@ -49,6 +49,7 @@ pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
     compared.findings()
 }
 
+// Long because it is the list of all that a sweep writes.
 fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Result<(), String> {
     let reading = Reading::new(scene)?;
     let everything = requests_everything(scene)?;
