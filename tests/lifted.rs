@@ -3,9 +3,9 @@
 use dwell_geometry::space::{
     Actuator, Assembly, Joint, JointKind, Mechanism, Placement, Rotation, Side, Vec3, vec3,
 };
-use dwell_geometry::{self as plane, ActuatorKind, Body, BodyId, Vec2};
+use dwell_geometry::{self as plane, ActuatorKind, Body, BodyId, JointId, Vec2};
 use dwell_kinetostatics::Model;
-use dwell_kinetostatics::space::Mass;
+use dwell_kinetostatics::space::{Axes, Component, Mass, Reaction};
 use dwell_scene::Scene;
 
 /// The plane's frame in space.
@@ -16,8 +16,13 @@ pub fn tilt() -> Placement {
     }
 }
 
-/// How much higher the second point of a distance is than the first, m.
+/// How much higher the second point of every second distance is than the first, m.
 const RISE: f64 = 0.3;
+
+/// The rise of a distance by the number of its joint, m.
+fn rise(joint: usize) -> f64 {
+    RISE * (joint % 2) as f64
+}
 
 /// A planar mechanism in space.
 pub struct Lifted {
@@ -43,12 +48,15 @@ impl Plane<'_> {
         let (kind, directions) = match joint.kind {
             plane::JointKind::Revolute => (JointKind::Revolute, [[z, x]; 2]),
             plane::JointKind::Prismatic { axes } => {
-                let along = axes.map(|axis| [self.lifted(axis, 0.0), z]);
+                // Its normals are oblique to the plane.
+                let along = axes.map(|axis| {
+                    let axis = self.lifted(axis, 0.0);
+                    [axis, z.scaled(0.8) + axis.cross(z).scaled(0.6)]
+                });
                 (JointKind::Prismatic, along)
             }
-            // Its second point is higher.
             plane::JointKind::Distance { length } => {
-                let length = length.hypot(RISE);
+                let length = length.hypot(rise(j));
                 (JointKind::Distance { length }, [[z, x]; 2])
             }
             plane::JointKind::Weld { angle } => {
@@ -61,7 +69,7 @@ impl Plane<'_> {
         let side = |k: usize| {
             let [axis, normal] = directions[k];
             let is_distance = matches!(kind, JointKind::Distance { .. });
-            let rise = if k == 1 && is_distance { RISE } else { 0.0 };
+            let rise = if k == 1 && is_distance { rise(j) } else { 0.0 };
             let point = self.lifted(joint.points[k], (self.heights)(j) + rise);
             // The ground's frame is that of the scene: what is on the ground is tilted.
             let frame = if joint.bodies[k].0 == ground {
@@ -138,7 +146,7 @@ impl Plane<'_> {
         let masses = masses.iter().enumerate().map(|(b, m)| Mass {
             mass: m.mass,
             center: self.lifted(m.center, (self.heights)(b)),
-            inertia: [m.inertia, m.inertia, m.inertia, 0.0, 0.1 * m.inertia, 0.0],
+            inertia: [1.3, 1.2, 1.0, 0.05, 0.1, -0.07].map(|part| part * m.inertia),
         });
         Some(Lifted {
             masses: masses.collect(),
@@ -239,4 +247,18 @@ pub fn crank_rocker_and_rod() -> Lifted {
         masses,
         assembly,
     }
+}
+
+/// All forces and moments of joints in these axes.
+pub fn wrenches(joints: usize, axes: Axes) -> Vec<Reaction> {
+    let of_joint = |j: usize| {
+        let parts: [fn(Axes, usize) -> Component; 2] = [Component::Force, Component::Moment];
+        parts.into_iter().flat_map(move |part| {
+            (0..3).map(move |k| Reaction {
+                joint: JointId(j),
+                component: part(axes, k),
+            })
+        })
+    };
+    (0..joints).flat_map(of_joint).collect()
 }

@@ -2,12 +2,14 @@
 //! compiled for each of them.
 
 use dwell_geometry::{Range, Reaction};
-use dwell_kinetostatics::variants::{Extremum, Turn, VariantModel};
+use dwell_kinetostatics::variants::{Extremum, Turn, TurningVariant, VariantModel};
 use dwell_kinetostatics::{ExactModel, Model, ReducedModel};
 use dwell_scene::Scene;
 use dwell_tests::fixtures;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
+
+mod under_loads;
 
 /// Variants of each mechanism at each deviation: 12 000 in all.
 const VARIANTS: usize = 1000;
@@ -43,7 +45,11 @@ fn random(counter: u64) -> f64 {
 
 /// All numbers of the bodies changed by up to a part of them; those that are zero, by a part of the reach.
 fn variant(scene: &Scene, deviation: f64, number: u64) -> Scene {
-    let paths = scene.number_paths();
+    variant_in(scene, &scene.number_paths(), deviation, number)
+}
+
+/// The same of the numbers at some paths.
+fn variant_in(scene: &Scene, paths: &[String], deviation: f64, number: u64) -> Scene {
     let mut values = Vec::new();
     for (k, path) in paths.iter().enumerate() {
         let value = scene.value(path).expect("a number");
@@ -173,14 +179,16 @@ fn compare(case: &str, reaction: &str, deviation: f64) -> (usize, usize, f64) {
         .collect();
     let numbers: Vec<Option<Vec<f64>>> = variants
         .iter()
-        .map(|scene| structure.numbers(&scene.mechanism, &scene.masses))
+        .map(|scene| structure.numbers(&scene.mechanism, &scene.masses, &[]))
         .collect();
     let mut turns: Vec<Option<Turn>> = vec![None; VARIANTS];
     let mut fill = |k: usize, to: &mut [f64]| {
         to.copy_from_slice(numbers[k].as_ref().expect("the structure"));
         start
     };
-    let mut done = |k: usize, turn: Option<&Turn>| turns[k] = turn.cloned();
+    let mut done = |k: usize, variant: Option<TurningVariant<'_>>| {
+        turns[k] = variant.map(|variant| variant.turn.clone());
+    };
     structure.turns(0..VARIANTS, &mut fill, &mut done);
     let each = variants.par_iter().zip(turns).map(|(scene, turn)| {
         let model = compile(scene, reaction);

@@ -12,6 +12,20 @@ run() {
 
 run kinetostatics validation/slider-crank/scene.toml
 run statics validation/press/scene.toml
+# Forces at contacts: teeth with a pressure angle of 20°, a rack, a wheel that rolls, a cam's follower.
+for contact in "planetary:radii = \[30, 20\]" "rack-pinion:radius = 20"; do
+    name=${contact%%:*}
+    sed "s/${contact#*:}/&, pressure-angle = 0.3490658503988659/" "validation/$name/scene.toml" >"$out/$name-teeth.toml"
+    run kinetostatics "$out/$name-teeth.toml"
+done
+run kinetostatics validation/rolling-wheel/scene.toml
+sed '/^\[requests\]/,$d' validation/cam/scene.toml >"$out/cam-whole.toml"
+run kinetostatics "$out/cam-whole.toml"
+{
+    cat validation/spatial/bevel-differential.toml
+    printf '\n[loads]\nbrake = { torque = "carrier", axis = [1, 0, 0], magnitude = -3.0 }\n\n[prescribed]\nduration = 1.0\nl = { speed = 2.0 }\nr = { speed = 0.5 }\n'
+} >"$out/bevel.toml"
+run kinetostatics "$out/bevel.toml"
 run check validation/single-dwell/scene.toml
 for command in simulate reduce calibrate runs; do
     run "$command" validation/single-dwell/scene.toml

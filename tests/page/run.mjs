@@ -7,6 +7,7 @@
 import { mkdirSync, readdirSync, statSync } from 'node:fs';
 import { join } from 'node:path';
 import { launch, open, openRun } from './browser.mjs';
+import { arrowTests } from './arrows.mjs';
 import { chartTests } from './charts.mjs';
 import { lookTests } from './look.mjs';
 import { mechanismTests } from './mechanism.mjs';
@@ -48,6 +49,7 @@ const onPage = (name, file, body, options) => test(`${file}: ${name}`, async () 
 
 const tools = { test, onPage, pages, pictures };
 await mechanismTests(tools);
+await arrowTests(tools);
 await chartTests(tools);
 await numberTests(tools);
 await lookTests(tools);

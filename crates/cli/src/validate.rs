@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// Validates the cases in parallel, and with all of Dwell's own cases also the extreme parameters (`slow`: those
 /// that take minutes too; `seed`: that of what is drawn at random) and the verification manual. The outcome holds the cases that could be validated, the report the errors of the others.
+// Long because it is the command from its arguments to its outcome.
 pub(crate) fn validate(
     names: &[String],
     folder: &Path,

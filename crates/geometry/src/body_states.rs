@@ -154,6 +154,13 @@ impl<T: Scalar> BodyStates<T> {
         }
     }
 
+    /// Takes over the dimensions of a plan whose numbers have changed since these states were made.
+    pub fn set_dimensions(&mut self, plan: &Plan) {
+        self.origin = plan.tree().joint_origins[plan.lowered.ground];
+        let bodies = self.bodies.iter_mut().zip(&plan.tree().joint_origins);
+        bodies.for_each(|(state, &local)| state.local_origin = local);
+    }
+
     /// Takes over the states of others of the same plan.
     pub fn copy_from(&mut self, others: &Self) {
         self.origin = others.origin;

@@ -2,6 +2,7 @@
 //! whose positions are found by iteration.
 
 mod separation;
+mod step_buffers;
 
 use crate::error::AssemblyError;
 use crate::plan::range::{NearBranch, Range, RangeLimit};
@@ -12,6 +13,7 @@ use crate::positions::{InitialIterate, STEPS_PER_REVOLUTION};
 use crate::structure::groups::Unknown;
 use dwell_numerics::Dual;
 use std::f64::consts::TAU;
+use step_buffers::StepBuffers;
 
 /// Revolutions after which a branch that neither ends nor closes is no longer followed.
 const MAX_REVOLUTIONS: u32 = 8;
@@ -97,8 +99,8 @@ impl Plan {
         let uses_stored_poses = self.groups.iter().any(|g| g.uses_stored_poses);
         let mut pose = poses.last()?.clone();
         let q0 = pose.q[0];
-        let mut with_slopes: Pose<Dual> = self.pose();
-        let Some(mut margins) = self.determinant_margins(&pose, &mut with_slopes) else {
+        let mut buffers = StepBuffers::new(self);
+        let Some(mut margins) = self.determinant_margins(&pose, &mut buffers.with_slopes) else {
             return Some(RangeLimit {
                 q: q0,
                 group: 0,
@@ -131,10 +133,11 @@ impl Plan {
                             && product < CHANGE_POINT_PRODUCT * maximum[1]
                     })
                 };
-                let advanced = self.advance((&pose, &margins), next, &mut with_slopes);
-                let at_change_point = advanced.as_ref().is_some_and(|(_, left)| ended(left));
+                let advanced = self.advance((&pose, &margins), next, &mut buffers);
+                let reached = &mut buffers.reached;
+                let at_change_point = advanced.as_ref().is_some_and(|left| ended(left));
                 match advanced.filter(|_| !at_change_point) {
-                    Some((reached, left)) => {
+                    Some(left) => {
                         for (maximum, margin) in largest.iter_mut().zip(&left) {
                             let [value, product] = size(margin);
                             *maximum = [maximum[0].max(value), maximum[1].max(product)];
@@ -146,14 +149,14 @@ impl Plan {
                         if both.all(|(margin, maximum)| {
                             size(margin)[0] > ANCHOR_DETERMINANT * maximum[0]
                         }) {
-                            anchor.clone_from(&reached);
+                            self.note_pose(&mut anchor, reached);
                         }
                         match &mut poses[..] {
                             // Only the ends are wanted.
-                            [_, .., last] if !uses_stored_poses => last.clone_from(&reached),
+                            [_, .., last] if !uses_stored_poses => self.note_pose(last, reached),
                             _ => poses.push(reached.clone()),
                         }
-                        pose = reached;
+                        std::mem::swap(&mut pose, reached);
                         margins = left;
                         fine *= 2.0;
                     }
@@ -170,6 +173,8 @@ impl Plan {
                                     < CHANGE_POINT_PRODUCT * largest[group][1];
                             let at = (&pose, &margins[group]);
                             let shallow = size(at.1)[1] < NEAR_PRODUCT * largest[group][1];
+                            self.complete_pose(Some(&mut anchor));
+                            self.complete_pose(poses.last_mut());
                             let anchor = Some(&anchor).filter(|_| shallow || change_point);
                             let limit =
                                 self.limit_near(at, (direction, group, change_point), anchor);
@@ -180,6 +185,7 @@ impl Plan {
                 }
             }
         }
+        self.complete_pose(poses.last_mut());
         None
     }
 
@@ -252,24 +258,28 @@ impl Plan {
         &self,
         (from, margins): (&Pose<f64>, &[Dual]),
         q: f64,
-        with_slopes: &mut Pose<Dual>,
-    ) -> Option<(Pose<f64>, Vec<Dual>)> {
-        let (pose, new_margins) = if self.is_dyadic() {
-            // Closed forms need no prediction: one evaluation gives the pose and the margins.
-            let margins = self.margins_at(q, from, with_slopes)?;
-            let mut pose = from.clone();
-            pose.take_values(with_slopes);
-            (pose, margins)
-        } else {
-            let pose = self.corrected_pose(from, q)?;
-            let margins = self.determinant_margins(&pose, with_slopes)?;
-            (pose, margins)
-        };
+        buffers: &mut StepBuffers,
+    ) -> Option<Vec<Dual>> {
         let clearance = TANGENT_CLEARANCE * (q - from.q[0]);
-        let clear =
-            |(a, b): (&Dual, &Dual)| a.v + a.d * clearance > 0.0 && b.v - b.d * clearance > 0.0;
-        let is_clear = margins.iter().zip(&new_margins).all(clear);
-        is_clear.then_some((pose, new_margins))
+        // The tangents at this end need no pose at the other.
+        if !margins.iter().all(|a| a.v + a.d * clearance > 0.0) {
+            return None;
+        }
+        let is_clear = |new: &Vec<Dual>| new.iter().all(|b| b.v - b.d * clearance > 0.0);
+        let StepBuffers {
+            reached,
+            with_slopes,
+        } = buffers;
+        let found = if self.is_dyadic() {
+            // Closed forms need no prediction: one evaluation gives the pose and the margins.
+            let found = self.margins_at(q, from, with_slopes)?;
+            reached.take_values(with_slopes);
+            found
+        } else {
+            *reached = self.corrected_pose(from, q)?;
+            self.determinant_margins(reached, with_slopes)?
+        };
+        Some(found).filter(is_clear)
     }
 
     /// The pose at `q` near another one, if every correction is small beside its prediction.

@@ -263,7 +263,7 @@ impl JointKind {
 
     /// The axis t, in the first body's frame, along which [`Coordinate::Travel`] of such a joint is measured; none where
     /// the joint has no travel.
-    pub(crate) fn travel_axis(self) -> Option<Vec2> {
+    pub fn travel_axis(self) -> Option<Vec2> {
         match self {
             Self::Prismatic { axes } => Some(axes[0]),
             Self::Slot { axis } => Some(axis),

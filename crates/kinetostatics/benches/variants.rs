@@ -42,7 +42,7 @@ impl Subject {
         let structure = structure.unwrap_or_else(|| stop(case, "no structure for variants"));
         let numbers = (1..=VARIANTS).map(|k| {
             let scene = variant(&scene, k);
-            let numbers = structure.numbers(&scene.mechanism, &scene.masses);
+            let numbers = structure.numbers(&scene.mechanism, &scene.masses, &[]);
             numbers.unwrap_or_else(|| stop(case, "another structure"))
         });
         Self {
@@ -61,8 +61,8 @@ impl Subject {
         };
         let mut complete = 0;
         self.structure
-            .turns(0..VARIANTS, &mut fill, &mut |_, turn| {
-                complete += usize::from(black_box(turn).is_some());
+            .turns(0..VARIANTS, &mut fill, &mut |_, variant| {
+                complete += usize::from(black_box(variant).is_some());
             });
         self.times
             .push(start.elapsed().as_secs_f64() / VARIANTS as f64 * 1e6);

@@ -14,7 +14,7 @@ pub use compiled::LoadState;
 pub use friction::{Friction, FrictionContact};
 pub use function::{MAX_FUNCTION_SIGNALS, MagnitudeFunction};
 pub use separating::{Mesh, PitchLines, PressureAngle};
-pub(crate) use signal::{SignalWorkspace, compile_signals_by};
+pub(crate) use signal::{SignalWorkspace, compile_signals, compile_signals_by};
 pub use wrench::{AppliedWrench, ForceSource};
 pub(crate) use wrench::{find_couple_points, on_two_bodies};
 

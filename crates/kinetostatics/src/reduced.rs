@@ -104,6 +104,10 @@ pub trait ReducibleModel: Sync + Sized {
     /// The range of the coordinate.
     fn range(&self) -> Range;
 
+    /// The same, prepared for its reduced coefficients: whatever makes them cheap is found once.
+    #[must_use]
+    fn for_coefficients(self) -> Self;
+
     /// The same without reactions and whatever else m and ½m′ do not need.
     #[must_use]
     fn for_inertia(&self) -> Self;
@@ -140,8 +144,8 @@ impl<M: ReducibleModel> ExactModel<M> {
     /// The reduced model of a mechanism; none unless it has exactly one actuator.
     pub fn new(model: M) -> Option<Self> {
         let inertia_model = model.for_inertia();
-        (model.actuators() == 1).then_some(Self {
-            model,
+        (model.actuators() == 1).then(|| Self {
+            model: model.for_coefficients(),
             inertia_model,
         })
     }
@@ -186,6 +190,10 @@ impl ReducibleModel for Model {
 
     fn range(&self) -> Range {
         self.plan().range()
+    }
+
+    fn for_coefficients(self) -> Self {
+        self
     }
 
     fn for_inertia(&self) -> Self {

@@ -37,6 +37,7 @@ mod action;
 mod compiled_loads;
 mod friction;
 mod in_plane;
+mod lifted_reactions;
 mod load;
 mod machine;
 mod mass;

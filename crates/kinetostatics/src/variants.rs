@@ -4,15 +4,17 @@
 //! variant is on the assembly branch of the model, and whether its actuator turns fully on it, is checked on its own
 //! poses; what these checks cannot decide has no turn here, and is to be compiled.
 
+mod loads;
 mod search;
 mod turn;
 
 pub use search::{Extremum, Turn};
 
+use crate::load::Load;
 use crate::mass::Mass;
 use crate::model::Model;
 use crate::reduced::in_lanes;
-use dwell_geometry::{Mechanism, ModeGuess, vec2};
+use dwell_geometry::{Mechanism, ModeGuess, Reaction, vec2};
 use turn::Turns;
 
 /// Numbers of the mass properties of a body: mass, centre (x, y) and moment of inertia.
@@ -23,6 +25,24 @@ const PER_BODY: usize = 4;
 pub struct VariantModel {
     model: Model,
     guess: ModeGuess,
+    loaded: Option<LoadedModel>,
+}
+
+/// The same model under loads.
+#[derive(Debug, Clone)]
+struct LoadedModel {
+    model: Model,
+    /// The constant velocity at which the forces over the turn are wanted, rad/s; none where they are not.
+    velocity: Option<f64>,
+}
+
+/// A variant that is on the assembly branch of its model and turns fully.
+#[derive(Debug, Clone, Copy)]
+pub struct TurningVariant<'a> {
+    /// What is known of its turn.
+    pub turn: &'a Turn,
+    /// The model under loads with the numbers of this variant, where there is one.
+    pub loaded: Option<&'a Model>,
 }
 
 impl VariantModel {
@@ -37,25 +57,76 @@ impl VariantModel {
         Some(Self {
             guess: guess.flatten()?,
             model,
+            loaded: None,
         })
     }
 
-    /// The numbers of a mechanism with these masses, in SI: its dimensions, then mass, centre and moment of inertia of
-    /// each body. None where it has another structure.
-    pub fn numbers(&self, mechanism: &Mechanism, masses: &[Mass]) -> Option<Vec<f64>> {
+    /// The same variants with forces under loads: the actuator force and these reactions over a turn at a constant
+    /// `velocity` (rad/s, zero for statics) become a part of [`Turn`]; without one the variants' [loaded
+    /// models](TurningVariant::loaded) alone are filled in. None where a variant needs a compilation each: friction, teeth with
+    /// a pressure angle, drives, loads that count the revolutions of an angle; and over the turn, magnitudes that are not
+    /// constant.
+    #[must_use]
+    pub fn with_loads(
+        mut self,
+        loads: Vec<Load>,
+        reactions: &[Reaction],
+        velocity: Option<f64>,
+    ) -> Option<Self> {
+        if !loads.iter().all(loads::is_supported) {
+            return None;
+        }
+        let model = self.model.clone().with_reactions(reactions).ok()?;
+        let model = model.with_loads(loads).ok()?;
+        let supported = model.plan().supports_variants(model.mechanism())
+            && model.frictions().len() == 0
+            && (velocity.is_none() || model.loads.are_constant());
+        self.loaded = supported.then_some(LoadedModel { model, velocity });
+        self.loaded.is_some().then_some(self)
+    }
+
+    /// Whether [`Turn`] has forces under loads.
+    pub fn has_loaded_turn(&self) -> bool {
+        let loaded = self.loaded.as_ref();
+        loaded.is_some_and(|loaded| loaded.velocity.is_some())
+    }
+
+    /// The numbers of a mechanism with these masses and loads, in SI: its dimensions, then mass, centre and moment of
+    /// inertia of each body, then those of the loads where the variants have some. None where it has another structure.
+    pub fn numbers(
+        &self,
+        mechanism: &Mechanism,
+        masses: &[Mass],
+        loads: &[Load],
+    ) -> Option<Vec<f64>> {
         let mut numbers = self.model.plan().dimensions(mechanism)?;
         numbers.extend((masses.iter()).flat_map(|m| [m.mass, m.center.x, m.center.y, m.inertia]));
+        if let Some(loaded) = &self.loaded {
+            numbers.extend(loaded.model.loads.numbers_of(mechanism, loads)?);
+        }
         Some(numbers)
     }
 
+    /// How many numbers there are of the mechanism and the masses.
+    fn inertial_numbers(&self) -> usize {
+        self.model.plan().dimension_count() + PER_BODY * self.model.masses().len()
+    }
+
+    /// How many numbers [`numbers`](Self::numbers) gives.
+    pub fn number_count(&self) -> usize {
+        let of_loads = self.loaded.as_ref();
+        let of_loads = of_loads.map_or(0, |loaded| loaded.model.loads.number_count());
+        self.inertial_numbers() + of_loads
+    }
+
     /// Evaluates the turns of some variants in one thread. `fill` writes the numbers of a variant, as [`numbers`](Self::numbers)
-    /// gives them, and returns the coordinate (rad) at which m is wanted besides; `done` takes the turn, or none where the
-    /// variant has to be compiled.
+    /// gives them, and returns the coordinate (rad) at which m is wanted besides; `done` takes the variant, or none where it
+    /// has to be compiled.
     pub fn turns(
         &self,
         variants: std::ops::Range<usize>,
         fill: &mut dyn FnMut(usize, &mut [f64]) -> f64,
-        done: &mut dyn FnMut(usize, Option<&Turn>),
+        done: &mut dyn FnMut(usize, Option<TurningVariant<'_>>),
     ) {
         in_lanes(
             &self.model,

@@ -89,6 +89,8 @@ fn an_evaluation_in_space_allocates_nothing() {
         assert!(model.reactions() > 0);
         let is_in_plane = model.model().for_inertia().is_in_plane();
         assert_eq!(is_in_plane, name != "rssr");
+        // Its reactions, too: all of them, those that nothing determines among them.
+        assert_eq!(model.model().is_in_plane(), name != "rssr");
         let mut workspace = model.workspace();
         let mut out = model.model().coefficient_buffer();
         for k in 0..20 {

@@ -1,5 +1,8 @@
 // The scene's text: a text area over a copy of its text that is coloured, with what is wrong underlined.
 
+// What has a colour of its own.
+const COLOURED = new Set(['comment', 'header', 'key', 'string', 'number']);
+
 class Editor {
   // `changed(text)` is called after every change.
   constructor(root, changed) {
@@ -81,7 +84,11 @@ class Editor {
       for (const [from, to] of cut(token, marks)) {
         const hit = marks.filter((mark) => mark.from < to && Math.max(mark.to, mark.from + 1) > from);
         const severity = hit.some((mark) => mark.severity === 'error') ? ' error' : hit.length ? ' warning' : '';
-        parts.push([text.slice(from, to), `${role || token.kind} ${role === 'value' ? token.kind : ''}${severity}`]);
+        const name = [role, token.kind].find((one) => COLOURED.has(one)) || '';
+        const [last] = parts.slice(-1);
+        // What looks alike is one element: each costs layout and painting after every change.
+        if (last && last[1] === name + severity) last[0] += text.slice(from, to);
+        else parts.push([text.slice(from, to), name + severity]);
       }
     });
     this.paint(parts);

@@ -2,9 +2,10 @@
 // and the next request starts another.
 
 class Engine {
-  // `bytes` is a promise of the module; `script` is the text of the worker.
-  constructor(bytes, script) {
-    this.bytes = bytes;
+  // `module.packed` is a promise of the module's bytes; what the first worker has compiled is for all. `script` is the text of the
+  // worker.
+  constructor(module, script) {
+    this.module = module;
     this.url = URL.createObjectURL(new Blob([script], { type: 'text/javascript' }));
     this.worker = null;
     this.last = Promise.resolve();
@@ -25,7 +26,7 @@ class Engine {
   inflate(packed, most, seconds) {
     return this.queue(async () => {
       if (!this.worker) this.worker = new Worker(this.url);
-      return (await this.post({ packed, most }, [], seconds)).text;
+      return (await this.post({ link: packed, most }, [], seconds)).text;
     });
   }
 
@@ -42,9 +43,10 @@ class Engine {
 
   async ready() {
     if (this.worker && this.started) return;
-    const bytes = (await this.bytes).slice();
+    const { module } = this;
+    const own = module.compiled ? { compiled: module.compiled } : { packed: await module.packed };
     if (!this.worker) this.worker = new Worker(this.url);
-    await this.post({ bytes }, [bytes.buffer], 60);
+    ({ compiled: module.compiled } = await this.post({ module: own }, [], 60));
     this.started = true;
   }
 
@@ -74,10 +76,5 @@ class Engine {
   }
 }
 
-// The bytes that an element of the page carries: gzip in Base64.
-async function carried(text) {
-  const binary = atob(text.trim());
-  const bytes = Uint8Array.from(binary, (c) => c.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
-}
+// The bytes that an element of the page carries in Base64.
+const carried = (text) => Uint8Array.from(atob(text.trim()), (c) => c.charCodeAt(0));

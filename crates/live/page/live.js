@@ -19,10 +19,10 @@ const element = (id) => document.getElementById(id);
 
 class Live {
   constructor() {
-    const bytes = moduleBytes();
+    const module = { packed: moduleBytes() };
     const worker = element('live-worker').textContent;
-    this.following = new Engine(bytes, worker);
-    this.asked = new Engine(bytes, worker);
+    this.following = new Engine(module, worker);
+    this.asked = new Engine(module, worker);
     this.page = DwellPage.create(element('page'), { hash: false });
     this.editor = new Editor(element('live-editor'), () => this.edited());
     this.command = 'motion';
@@ -173,7 +173,7 @@ class Live {
   }
 }
 
-// The module: within the page, or beside it where the page is served.
+// The module, packed: within the page, or beside it where the page is served.
 async function moduleBytes() {
   const { textContent, dataset } = element('live-module');
   if (!dataset.file) return carried(textContent);

@@ -1,11 +1,11 @@
 // In a worker: the module, one instance of it, and one request at a time. A request that fails in the module costs the instance.
-'use strict';
 
 let module = null;
 let instance = null;
 
-async function start(bytes) {
-  module = await WebAssembly.compile(bytes);
+// From the packed module, or from one that another worker has compiled.
+async function start({ packed, compiled }) {
+  module = compiled || await WebAssembly.compile(unpackLzma(packed));
   instance = await WebAssembly.instantiate(module, {});
 }
 
@@ -38,11 +38,11 @@ async function inflate(bytes, most) {
 
 self.onmessage = async ({ data }) => {
   try {
-    if (data.bytes) {
-      await start(data.bytes);
-      self.postMessage({ id: data.id });
-    } else if (data.packed) {
-      self.postMessage({ id: data.id, text: await inflate(data.packed, data.most) });
+    if (data.module) {
+      await start(data.module);
+      self.postMessage({ id: data.id, compiled: module });
+    } else if (data.link) {
+      self.postMessage({ id: data.id, text: await inflate(data.link, data.most) });
     } else {
       if (!instance) instance = await WebAssembly.instantiate(module, {});
       const answer = respond(data.request);

@@ -151,6 +151,15 @@ pub enum Part {
     Mark(Mark),
 }
 
+/// A part of a force: a column along a unit vector.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ForcePart {
+    /// The column, N.
+    pub column: usize,
+    /// The unit vector of a positive force.
+    pub axis: Vec<f64>,
+}
+
 /// Where a force points to.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "direction", rename_all = "kebab-case")]
@@ -160,25 +169,25 @@ pub enum Direction {
         /// The columns, N.
         columns: Vec<usize>,
     },
-    /// Along a direction of a body.
-    Along {
-        /// The column, N.
-        column: usize,
+    /// Along directions of a body.
+    Body {
         /// The body.
         body: usize,
-        /// The direction in its frame, a unit vector.
-        axis: Vec<f64>,
+        /// The parts of the force, at right angles to each other, in the frame of the body.
+        parts: Vec<ForcePart>,
+        /// From the anchor to where the force acts, m, in the frame of the same body; empty where it acts at the anchor. The
+        /// pitch point of a rack is fixed neither to the rack nor to the pinion, but beside the pinion's centre as the rack sees it.
+        offset: Vec<f64>,
     },
-    /// Along a line from one point to another, or across it.
+    /// Along a line from one point to another in the plane, and across it.
     Line {
-        /// The column, N.
-        column: usize,
         /// The points.
         ends: [Anchor; 2],
-        /// Whether the force is across the line: that line turned by +90°.
-        across: bool,
+        /// The parts of the force, at right angles to each other: the first number of an axis is along the line, the second across
+        /// it, along the line turned by +90°.
+        parts: Vec<ForcePart>,
         /// Where on the line it acts, from 0 to 1; it may be outside.
-        part: f64,
+        place: f64,
     },
 }
 
@@ -187,10 +196,12 @@ pub enum Direction {
 pub struct ForceArrow {
     /// The joint or the load.
     pub name: String,
-    /// `Reactions` or `Loads`.
+    /// `Reactions` or `Loads`: forces of a group have one scale.
     pub group: String,
     /// What it is.
     pub title: String,
+    /// Whether it is shown before anyone has chosen.
+    pub initially_visible: bool,
     /// Where it acts; of one along a line the line decides.
     pub at: Anchor,
     /// Where it points to.

@@ -35,8 +35,8 @@ pub use description::{
     DisplayUnit, FileLink, Page, PageColumn, PageMessage, PageScene, PageTable, Peak,
 };
 pub use drawing::{
-    Anchor, Direction, Drawing, DrawnBody, DrawnPath, ForceArrow, LinkLook, Mark, MarkLook,
-    OutlineLook, Part,
+    Anchor, Direction, Drawing, DrawnBody, DrawnPath, ForceArrow, ForcePart, LinkLook, Mark,
+    MarkLook, OutlineLook, Part,
 };
 pub use encoded::{EncodedPage, FORMAT, PageError};
 pub use html::{SCRIPT, STYLE, source_hash};

@@ -3,29 +3,15 @@
 use dwell_geometry::space::{
     Actuator, Assembly, Joint, JointKind, Mechanism, Placement, Rotation, Side, Vec3, vec3,
 };
-use dwell_geometry::{Body, BodyId, JointId, Vec2};
-use dwell_kinetostatics::Coefficients;
-use dwell_kinetostatics::space::{Axes, Component, Mass, Model, Reaction};
+use dwell_geometry::{Body, BodyId, Vec2};
+use dwell_kinetostatics::space::{Axes, Mass, Model};
+use dwell_kinetostatics::{Coefficients, ExactModel, ReducedModel, ReducibleModel};
 use dwell_tests::fixtures;
-use dwell_tests::lifted::{Lifted, crank_rocker_and_rod, lifted_scene, tilt};
-
-/// All forces and moments of joints in the axes of the ground.
-fn reactions(joints: usize) -> Vec<Reaction> {
-    let of_joint = |j: usize| {
-        let parts: [fn(Axes, usize) -> Component; 2] = [Component::Force, Component::Moment];
-        parts.into_iter().flat_map(move |part| {
-            (0..3).map(move |k| Reaction {
-                joint: JointId(j),
-                component: part(Axes::Ground, k),
-            })
-        })
-    };
-    (0..joints).flat_map(of_joint).collect()
-}
+use dwell_tests::lifted::{Lifted, crank_rocker_and_rod, lifted_scene, tilt, wrenches};
 
 /// The same model with planes and without.
 fn both(mechanism: &Mechanism, masses: &[Mass], assembly: &Assembly) -> [Model; 2] {
-    let all = reactions(mechanism.joints.len());
+    let all = wrenches(mechanism.joints.len(), Axes::Ground);
     [Model::new, Model::without_planes].map(|new| {
         let model = new(mechanism, masses, assembly, &all);
         model.unwrap_or_else(|e| panic!("{e}"))
@@ -208,7 +194,9 @@ fn moments_across_the_plane_are_those_derived_by_hand() {
     let [with, without] = both(&mechanism, &masses, &assembly);
     let mut planar_work = planar.workspace();
     let mut worst = 0.0_f64;
-    for model in [&with, &without] {
+    let planar_reactions = with.clone().for_coefficients();
+    assert!(planar_reactions.is_in_plane() && !with.is_in_plane());
+    for model in [&with, &without, &planar_reactions] {
         let mut work = model.workspace::<f64>();
         let mut found: Coefficients = model.coefficient_buffer();
         let determined = model.determined(&[0.7], &mut work).expect("a pose");
@@ -294,4 +282,97 @@ fn nearly_parallel_axes_make_no_plane() {
     let oblique = Model::new(&mechanism, &masses, &assembly, &[]).expect("a model");
     let plane = |(model, of): &(Model, Mechanism)| model.plan().planar_equivalent(of).is_some();
     assert!(plane(&straight) && !plane(&(oblique, mechanism)));
+}
+
+/// A crank and a rocker in an oblique plane that a rod between two balls connects, whose second ball is higher by so much.
+fn crank_rod_and_rocker(rise: f64) -> Lifted {
+    let frame = tilt();
+    let z = vec3(0.0, 0.0, 1.0);
+    let on_ground = |point: Vec3| Side {
+        point: frame.position + frame.rotation.apply(point),
+        axis: frame.rotation.columns[2],
+        normal: frame.rotation.columns[0],
+    };
+    let on_body = |point: Vec3| Side {
+        point,
+        axis: z,
+        normal: vec3(1.0, 0.0, 0.0),
+    };
+    let hinge = |name: &str, body: usize, at: Vec3, height: f64| {
+        let sides = [on_ground(at), on_body(vec3(0.0, 0.0, height))];
+        Joint::new(name, [0, body], JointKind::Revolute, sides)
+    };
+    let length = 2.0_f64.hypot(rise);
+    let ends = [vec3(0.5, 0.0, 0.1), vec3(1.5, 0.0, 0.1 + rise)].map(on_body);
+    let rod = JointKind::Distance { length };
+    let body = |center: Vec3| Mass {
+        mass: 1.2,
+        center,
+        inertia: [0.2, 0.25, 0.3, 0.01, 0.04, -0.03],
+    };
+    let place = |x: f64, angle: f64| Placement {
+        position: frame.position + frame.rotation.apply(vec3(x, 0.0, 0.0)),
+        rotation: frame.rotation.after(&Rotation::of_vector(z.scaled(angle))),
+    };
+    Lifted {
+        mechanism: Mechanism {
+            bodies: ["ground", "crank", "rocker"].map(Body::named).into(),
+            ground: 0,
+            joints: vec![
+                hinge("A", 1, Vec3::ZERO, 0.0),
+                hinge("D", 2, vec3(2.0, 0.0, 0.2), 0.2),
+                Joint::new("rod", [1, 2], rod, ends),
+            ],
+            actuators: vec![Actuator::angle("q", 0)],
+        },
+        masses: vec![
+            Mass::default(),
+            body(vec3(0.2, 0.05, -0.1)),
+            body(vec3(0.7, -0.1, 0.3)),
+        ],
+        assembly: Assembly {
+            q: vec![0.7],
+            placements: vec![Placement::default(), place(0.0, 0.7), place(2.0, 1.6)],
+        },
+    }
+}
+
+/// A rod that rises from the plane has a force along the normal: m is that of a planar mechanism with its projection as the rod, and the reactions
+/// are those of space.
+#[test]
+fn a_rod_may_rise_from_the_plane() {
+    for rise in [0.0, 0.3] {
+        let Lifted {
+            mechanism,
+            masses,
+            assembly,
+        } = crank_rod_and_rocker(rise);
+        let [with, without] = both(&mechanism, &masses, &assembly);
+        assert!(with.for_inertia().is_in_plane(), "{rise}");
+        let reduced = ExactModel::new(with).expect("one actuator");
+        assert_eq!(reduced.model().is_in_plane(), rise == 0.0);
+        let (mut work, mut other) = (reduced.workspace(), without.workspace::<f64>());
+        let mut found = reduced.coefficient_buffer();
+        let mut wanted: Coefficients = without.coefficient_buffer();
+        let mut worst = [0.0_f64; 4];
+        for k in 0..12 {
+            let q = 0.5 * f64::from(k);
+            reduced
+                .coefficients(q, &mut work, &mut found)
+                .expect("a pose");
+            without.reduce(q, &mut other, &mut wanted).expect("a pose");
+            let (m, half_dm) = reduced.inertia(q, &mut work).expect("a pose");
+            let all = vec![true; wanted.a.len()];
+            let here = [
+                (m / wanted.m - 1.0).abs(),
+                (half_dm - wanted.half_dm).abs() / wanted.m,
+                relative(&found.a, &wanted.a, &all),
+                relative(&found.b, &wanted.b, &all),
+            ];
+            let pairs = worst.iter_mut().zip(here);
+            pairs.for_each(|(worst, here)| *worst = worst.max(here));
+        }
+        println!("{rise}: {worst:?}");
+        assert!(worst.iter().all(|part| *part < 1e-13), "{rise}: {worst:?}");
+    }
 }

@@ -2,11 +2,13 @@
 //! whether planes are looked for or not.
 
 use dwell_geometry::space::{Vec3, vec3};
-use dwell_geometry::{Component as PlanarComponent, JointId};
-use dwell_kinetostatics::space::{Axes, Component, LoadKind, Model, Reaction};
+use dwell_geometry::{Component as PlanarComponent, JointId, Vec2, vec2};
+use dwell_kinetostatics::space::{Axes, LoadKind, Model};
 use dwell_kinetostatics::{Coefficients, ExactModel, ReducedModel, ReducibleModel};
+use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_scene::Scene;
-use dwell_tests::lifted::{Lifted, lifted_scene, tilt};
+use dwell_tests::changes::Rng;
+use dwell_tests::lifted::{Lifted, lifted_scene, tilt, wrenches};
 use std::path::Path;
 
 /// What is compared of one position: m, ½m′, w, and a and b of the reactions in the plane.
@@ -79,21 +81,22 @@ impl InPlane {
         }
     }
 
-    fn at(&self, q: f64) -> Values {
+    fn at<T: Scalar>(&self, q: f64) -> Values {
         let mut workspace = self.model.workspace();
-        let mut found = self.model.coefficient_buffer::<f64>();
+        let mut found = self.model.coefficient_buffer::<T>();
+        let [q, one] = [q, 1.0].map(T::from_f64);
         self.model
             .reduce(q, &mut workspace, &mut found)
             .expect("a pose");
         let mut load = self.model.result_buffer();
-        let state = self.model.kinematic_state(&[q], &[1.0], &mut workspace);
+        let state = self.model.kinematic_state(&[q], &[one], &mut workspace);
         let response = state.expect("a pose").unit_load_response(0, &mut load);
         response.expect("a response");
         Values {
-            m: found.m,
-            half_dm: found.half_dm,
-            w: load.tau[0],
-            reactions: [found.a, found.b],
+            m: found.m.value(),
+            half_dm: found.half_dm.value(),
+            w: load.tau[0].value(),
+            reactions: [rounded(&found.a), rounded(&found.b)],
         }
     }
 
@@ -120,72 +123,137 @@ impl InPlane {
     }
 }
 
-/// All forces and moments of joints in the axes of the ground.
-fn wrenches(joints: usize) -> Vec<Reaction> {
-    let of_joint = |j: usize| {
-        let parts: [fn(Axes, usize) -> Component; 2] = [Component::Force, Component::Moment];
-        parts.into_iter().flat_map(move |part| {
-            (0..3).map(move |k| Reaction {
-                joint: JointId(j),
-                component: part(Axes::Ground, k),
-            })
-        })
-    };
-    (0..joints).flat_map(of_joint).collect()
+fn rounded<T: Scalar>(values: &[T]) -> Vec<f64> {
+    values.iter().map(|v| v.value()).collect()
 }
 
-/// The differences of a model in space; and those of its m and ½m′ alone, as an equation of motion uses them.
-fn compare(
-    model: &Model,
-    lifted: &Lifted,
-    in_plane: &InPlane,
-    positions: &[f64],
-) -> [Differences; 2] {
-    let gravity = LoadKind::Gravity(tilt().rotation.apply(vec3(0.6, -0.8, 0.0)));
-    let reduced = ExactModel::new(model.clone()).expect("one actuator");
-    let mut reduced_work = reduced.workspace();
-    let mut work = model.workspace();
-    let mut found: Coefficients = model.coefficient_buffer();
-    let mut response = model.result_buffer();
-    let mut all = [Differences::default(); 2];
-    for &q in positions {
-        let wanted = in_plane.at(q);
-        model
-            .reduce(q, &mut work, &mut found)
-            .unwrap_or_else(|e| panic!("{q}: {e}"));
-        model
-            .unit_load_response(&[q], &gravity, &mut work, &mut response)
-            .expect("a pose");
+/// A model in space, and the planar one that it is compared with.
+struct Subject<'a> {
+    model: &'a Model,
+    lifted: &'a Lifted,
+    in_plane: &'a InPlane,
+}
+
+impl Subject<'_> {
+    /// The reactions in the plane from all forces and moments of the joints.
+    fn in_plane(&self, q: f64, wrenches: [&[f64]; 2]) -> [Vec<f64>; 2] {
+        let plan = self.model.plan();
+        let mut pose = plan.pose::<f64>();
+        plan.positions(&[q], &mut pose).expect("a pose");
         let axes = |joint: JointId| {
-            let joint = &lifted.mechanism.joints[joint.0];
-            let body = joint.bodies[0].0;
-            let mut pose = model.plan().pose::<f64>();
-            model.plan().positions(&[q], &mut pose).expect("a pose");
-            let placement = model.plan().placement(&pose, body);
+            let joint = &self.lifted.mechanism.joints[joint.0];
+            let placement = plan.placement(&pose, joint.bodies[0].0);
             placement.rotation.apply(joint.sides[0].axis)
         };
-        let values = Values {
-            m: found.m,
-            half_dm: found.half_dm,
-            w: response.tau[0],
-            reactions: [&found.a, &found.b].map(|all| in_plane.of_wrenches(all, axes)),
-        };
-        all[0].add(&values, &wanted);
-        let (m, half_dm) = reduced.inertia(q, &mut reduced_work).expect("a pose");
-        all[1].add(
-            &Values {
-                m,
-                half_dm,
-                ..values
-            },
-            &wanted,
-        );
+        wrenches.map(|all| self.in_plane.of_wrenches(all, axes))
     }
-    all
+
+    /// What the passes in space give.
+    fn at<T: Scalar>(&self, q: f64) -> (Values, Coefficients) {
+        let model = self.model;
+        let gravity = LoadKind::Gravity(tilt().rotation.apply(vec3(0.6, -0.8, 0.0)));
+        let (mut work, mut found) = (model.workspace(), model.coefficient_buffer::<T>());
+        let done = model.reduce(T::from_f64(q), &mut work, &mut found);
+        done.unwrap_or_else(|e| panic!("{q}: {e}"));
+        let mut response = model.result_buffer::<T>();
+        model
+            .unit_load_response(&[T::from_f64(q)], &gravity, &mut work, &mut response)
+            .expect("a pose");
+        let all = Coefficients {
+            m: found.m.value(),
+            half_dm: found.half_dm.value(),
+            a: rounded(&found.a),
+            b: rounded(&found.b),
+        };
+        let values = Values {
+            m: all.m,
+            half_dm: all.half_dm,
+            w: response.tau[0].value(),
+            reactions: self.in_plane(q, [&all.a, &all.b]),
+        };
+        (values, all)
+    }
 }
 
-/// Cases that magnify the rounding of their dimensions a thousand times.
-const MAGNIFYING: [&str; 3] = ["parallelogram-three-cranks", "jansen", "andrews"];
+/// Differences of a model in space, in their order: from the plane; of its reduced model, as an equation of motion and the reactions along
+/// it use it, from the plane; from 32 digits of the same model; of these from 32 digits of the plane. And the largest difference of all
+/// reactions of the reduced model from those of the passes in space, those across the plane and those that nothing determines among them,
+/// over the largest of them.
+fn compare(subject: &Subject<'_>, positions: &[f64]) -> ([Differences; 4], f64) {
+    let reduced = ExactModel::new(subject.model.clone()).expect("one actuator");
+    let (mut work, mut found) = (reduced.workspace(), reduced.coefficient_buffer());
+    let mut all = [Differences::default(); 4];
+    let mut across = 0.0_f64;
+    for &q in positions {
+        let wanted = subject.in_plane.at::<f64>(q);
+        let (here, wrenches) = subject.at::<f64>(q);
+        all[0].add(&here, &wanted);
+        let (exact, _) = subject.at::<DoubleDouble>(q);
+        all[2].add(&here, &exact);
+        all[3].add(&exact, &subject.in_plane.at::<DoubleDouble>(q));
+        reduced
+            .coefficients(q, &mut work, &mut found)
+            .expect("a pose");
+        let pairs = [(&found.a, &wrenches.a), (&found.b, &wrenches.b)];
+        let largest = pairs.iter().flat_map(|(_, wanted)| wanted.iter());
+        let largest = largest.fold(0.0_f64, |a, b| a.max(b.abs()));
+        let pairs = pairs.iter().flat_map(|(f, w)| f.iter().zip(w.iter()));
+        let differences = pairs.map(|(found, wanted)| (found - wanted).abs() / largest);
+        across = differences.fold(across, |a, b| if b > a || b.is_nan() { b } else { a });
+        let (m, half_dm) = reduced.inertia(q, &mut work).expect("a pose");
+        let reactions = subject.in_plane(q, [&found.a, &found.b]);
+        let w = here.w;
+        let values = Values {
+            m,
+            half_dm,
+            w,
+            reactions,
+        };
+        all[1].add(&values, &wanted);
+    }
+    (all, across)
+}
+
+/// A change of the dimensions, in sizes of the mechanism.
+const CHANGE: f64 = 1e-12;
+
+/// By how much a planar mechanism magnifies a change of its dimensions, in sizes of the mechanism: the largest of some random ones.
+fn magnification(scene: &Scene, in_plane: &InPlane, positions: &[f64]) -> [f64; 5] {
+    let size = scene.mechanism.size();
+    let mut random = Rng(18);
+    let mut largest = [0.0_f64; 5];
+    for _ in 0..6 {
+        let mut mechanism = scene.mechanism.clone();
+        let mut masses = scene.masses.clone();
+        let mut moved = |at: &mut Vec2| {
+            let mut by = || CHANGE * size * random.between(-1.0, 1.0);
+            *at += vec2(by(), by());
+        };
+        for joint in &mut mechanism.joints {
+            joint.points.iter_mut().for_each(&mut moved);
+        }
+        masses.iter_mut().for_each(|mass| moved(&mut mass.center));
+        let start = scene.assembly.to_configuration();
+        let other = dwell_kinetostatics::Model::new(&mechanism, &masses, &start, &[]);
+        let other = InPlane::new(&other.unwrap_or_else(|e| panic!("{}: {e}", scene.name)));
+        let mut differences = Differences::default();
+        for &q in positions {
+            differences.add(&other.at::<f64>(q), &in_plane.at::<f64>(q));
+        }
+        for (largest, part) in largest.iter_mut().zip(differences.relative()) {
+            *largest = largest.max(part / CHANGE);
+        }
+    }
+    largest
+}
+
+/// What is allowed of the differences of a case with these magnifications. Coordinates in space are rounded as numbers of the size
+/// of their distance from the origin, which a mechanism of this size feels as a change of its dimensions.
+fn allowed(magnified: [f64; 5], size: f64) -> [f64; 5] {
+    let rounding = 0.5 * f64::EPSILON * (1.0 + tilt().position.norm() / size);
+    // Seen: 2.7 times the rounding times the magnification, of Jansen's b; most of the others are below 1.
+    magnified.map(|by| 10.0 * (1.0 + by) * rounding)
+}
 
 fn shown(parts: [f64; 5]) -> String {
     parts.map(|part| format!("{part:.1e}")).join(" ")
@@ -194,9 +262,7 @@ fn shown(parts: [f64; 5]) -> String {
 #[test]
 fn planar_cases_have_the_same_reduced_parameters_in_space() {
     let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("../validation");
-    let (mut compared, mut planar_count) = (Vec::new(), 0);
-    let mut largest = [[0.0_f64; 5]; 2];
-    let mut magnified = largest;
+    let (mut compared, mut planar_counts) = (Vec::new(), [0; 2]);
     for entry in std::fs::read_dir(home).expect("the cases").flatten() {
         let path = entry.path().join("scene.toml");
         let Ok(scene) = Scene::read(&path) else {
@@ -220,9 +286,12 @@ fn planar_cases_have_the_same_reduced_parameters_in_space() {
             masses,
             assembly,
         } = &lifted;
-        let reactions = wrenches(mechanism.joints.len());
+        let reactions = wrenches(mechanism.joints.len(), Axes::Ground);
         let with = Model::new(mechanism, masses, assembly, &reactions);
         let without = Model::without_planes(mechanism, masses, assembly, &reactions);
+        let magnified = magnification(&scene, &in_plane, &positions);
+        let limits = allowed(magnified, mechanism.size());
+        println!("{} magnifies {}", scene.name, shown(magnified));
         for (k, model) in [with, without].into_iter().enumerate() {
             let model = model.unwrap_or_else(|e| panic!("{}: {e}", scene.name));
             let groups = model.plan().described_groups();
@@ -234,32 +303,38 @@ fn planar_cases_have_the_same_reduced_parameters_in_space() {
                 let count: usize = groups.iter().map(redundant).sum();
                 let in_the_plane = scene.name == "parallelogram-three-cranks";
                 assert_eq!(count > 0, in_the_plane, "{}: {groups:?}", scene.name);
-                planar_count += usize::from(model.for_inertia().is_in_plane());
+                planar_counts[0] += usize::from(model.for_inertia().is_in_plane());
+                planar_counts[1] += usize::from(model.clone().for_coefficients().is_in_plane());
             }
-            for found in compare(&model, &lifted, &in_plane, &positions) {
+            let subject = Subject {
+                model: &model,
+                lifted: &lifted,
+                in_plane: &in_plane,
+            };
+            let (found, across) = compare(&subject, &positions);
+            println!("{} {k}: across the plane {across:.1e}", scene.name);
+            // Seen: 5.8e-14 of Jansen's, 4.6e-14 of Andrews', at most 2e-14 of the others.
+            assert!(across < 1e-12, "{}: {across:e}", scene.name);
+            for (what, found) in found.iter().enumerate() {
                 let relative = found.relative();
-                println!("{} {k}: {}", scene.name, shown(relative));
-                let magnifies = MAGNIFYING.contains(&&*scene.name);
-                let largest = if magnifies {
-                    &mut magnified
-                } else {
-                    &mut largest
-                };
-                for (largest, part) in largest[k].iter_mut().zip(relative) {
-                    *largest = largest.max(part);
+                println!("{} {k} {what}: {}", scene.name, shown(relative));
+                let parts = relative.into_iter().zip(limits).zip(magnified);
+                for ((part, limit), by) in parts {
+                    assert!(part < limit, "{} {k} {what}: {part:e}", scene.name);
+                    // What a mechanism that magnifies little is asked for, with planes and without. Seen: 5.6e-14 and 1.0e-13.
+                    assert!(
+                        by > 50.0 || part < [1e-13, 1e-12][k],
+                        "{}: {part:e}",
+                        scene.name
+                    );
                 }
             }
         }
         compared.push(scene.name.clone());
     }
-    println!("{:?} {:?}", largest.map(shown), magnified.map(shown));
     assert!(compared.len() >= 8, "{compared:?}");
-    // The range of the chain of parallelograms (A02) ends at change points in the plane, and goes on in space.
-    assert_eq!(planar_count, compared.len() - 1, "{compared:?}");
-    // Seen with planes: 8e-14 of Jansen's b, 2e-14 of the others; without: 1.9e-13 and 7e-14. The largest parts are those of cases that magnify the rounding of
-    // their dimensions, as a parallelogram does beside its change points: 1.2e-12 and 8.2e-13 of ½m′.
-    assert!(largest[0].iter().all(|part| *part < 1e-13), "{largest:?}");
-    assert!(largest[1].iter().all(|part| *part < 1e-12), "{largest:?}");
-    let [with, without] = magnified.map(|parts| parts.into_iter().fold(0.0, f64::max));
-    assert!(with < 1e-11 && without < 1e-11, "{magnified:?}");
+    // The range of the chain of parallelograms (A02) ends at change points in the plane, and goes on in space; and three cranks leave
+    // reactions in the plane open.
+    let count = compared.len();
+    assert_eq!(planar_counts, [count - 1, count - 2], "{compared:?}");
 }

@@ -2,7 +2,7 @@
 
 use super::closure::RowKind;
 use super::mechanism::{ActuatorKind, Joint, JointKind, Mechanism, Placement};
-use super::plan::{Plan, Pose};
+use super::plan::{JointPlace, Plan, Pose};
 use super::planes::{is_across, is_parallel};
 use super::tree::FreedomKind;
 use super::vector::{Rotation, Vec3};
@@ -19,6 +19,13 @@ pub struct PlanarEquivalent {
     pub assembly: AssemblyConfiguration,
     /// By body: the frame whose x and y axes are those of the body in the plane, in the [evaluation frame](Plan::evaluation_frame).
     pub frames: Vec<Placement>,
+    /// By body: the height of its own frame's origin along the normal, m; it is constant.
+    pub heights: Vec<f64>,
+    /// By joint: the heights of its points on both bodies, m.
+    pub joint_heights: Vec<[f64; 2]>,
+    /// By joint: the bodies that it carries in the [tree](super::tree); none of one that closes a loop, whose rows across the plane nothing
+    /// moves and whose moments across it are zero therefore.
+    pub carried: Vec<Option<Vec<usize>>>,
 }
 
 /// A mechanism in space at its assembly, seen along the normal of its plane.
@@ -55,7 +62,17 @@ impl Plan {
             };
             self.tree.internal[b].inverse().then(&own)
         });
+        let height = |placement: &Placement| view.normal.dot(placement.position);
+        let heights = view.placements.iter().map(height).collect();
+        let carried = self.joint_places.iter().map(|place| match *place {
+            JointPlace::Link(link) => Some(self.carried_by(link)),
+            JointPlace::Closure(_) => None,
+        });
+        let joint_heights = mechanism.joints.iter().map(|joint| view.heights(joint));
         Some(PlanarEquivalent {
+            heights,
+            joint_heights: joint_heights.collect(),
+            carried: carried.collect(),
             frames: frames.collect(),
             assembly: AssemblyConfiguration {
                 q: self.assembly_q.clone(),
@@ -70,6 +87,17 @@ impl Plan {
                 couplings: Vec::new(),
             },
         })
+    }
+
+    /// The bodies beyond a link, its own among them.
+    fn carried_by(&self, link: usize) -> Vec<usize> {
+        let mut carried = vec![self.tree.links[link].body];
+        for other in &self.tree.links[link + 1..] {
+            if carried.contains(&other.parent) {
+                carried.push(other.body);
+            }
+        }
+        carried
     }
 
     /// The mechanism along the normal of its plane, with the axes of the bodies such that the coordinate is that of the actuator.
@@ -150,6 +178,15 @@ impl View<'_> {
     fn angle(&self, body: usize) -> f64 {
         let x = self.axes[body].columns[0];
         self.direction(self.placements[body].rotation.apply(x))
+    }
+
+    /// The heights of a joint's points on both bodies, m.
+    fn heights(&self, joint: &Joint) -> [f64; 2] {
+        [0, 1].map(|k| {
+            let placement = &self.placements[joint.bodies[k].0];
+            let point = placement.rotation.apply(joint.sides[k].point);
+            self.normal.dot(placement.position + point)
+        })
     }
 
     /// A joint with the approximate value by which its branch is chosen; none of one that has no equivalent.

@@ -17,7 +17,7 @@ pub(crate) struct CompiledLoads {
     /// By load: where a couple between two bodies acts on each.
     pub(super) couple_points: Vec<[Vec2; 2]>,
     /// The bodies that have weight, with mass and centre.
-    pub(super) weighted_bodies: Vec<(BodyId, Mass)>,
+    pub(crate) weighted_bodies: Vec<(BodyId, Mass)>,
 }
 
 /// The loads at one state of motion: working memory, and what it holds afterwards.
@@ -108,8 +108,9 @@ impl CompiledLoads {
         states: &BodyStates<T>,
         out: &mut LoadState<T>,
     ) -> Result<()> {
-        if T::LANES > 1 && !self.loads.is_empty() {
-            // Laws, dry friction and slack springs decide by one value.
+        let is_constant = |load: &Load| matches!(load.magnitude, Magnitude::Constant(_));
+        if T::LANES > 1 && !self.loads.iter().all(is_constant) {
+            // Laws and dry friction decide by one value.
             return Err(PositionError::LanesDiverge { q: f64::NAN }.into());
         }
         for (i, load) in self.loads.iter().enumerate() {

@@ -1,6 +1,8 @@
-//! The generalised inertia of a mechanism whose bodies all move parallel to one plane, from the planar mechanism that moves as it does:
-//! what lies at the height z above the plane, and the products of inertia with z, do no work there.
+//! The reduced coefficients of a mechanism whose bodies all move parallel to one plane, from the planar mechanism that moves as it does:
+//! what lies at the height z above the plane, and the products of inertia with z, do no work there, and what they ask of the joints
+//! follows from the [forces in the plane](super::lifted_reactions).
 
+use super::lifted_reactions::{LiftedReactions, LiftedWorkspace};
 use super::model::{Model, Workspace};
 use crate::mass::Mass;
 use crate::model::{Model as PlanarModel, Workspace as PlanarWorkspace};
@@ -11,33 +13,45 @@ use std::f64::consts::TAU;
 
 /// Positions at which both mechanisms are compared.
 const COMPARED: u32 = 32;
-/// They have the same generalised inertia to this part.
+/// They have the same generalised inertia and the same reactions to this part.
 const SAME: f64 = 1e-9;
 
 /// The equivalent planar model.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct InPlane {
     model: PlanarModel,
+    lifted: LiftedReactions,
     /// Of the mechanism in space, which decides where the range ends.
     limits: Option<(f64, f64)>,
 }
 
+/// Memory for one thread.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct InPlaneWorkspace<T> {
+    planar: PlanarWorkspace<T>,
+    /// The coefficients of the planar model.
+    found: Coefficients<T>,
+    lifted: LiftedWorkspace<T>,
+}
+
 impl InPlane {
-    /// That of a model; none where it has none, or where the planar branch is not that of the mechanism in space over its whole range.
+    /// That of a model with its reactions; none where it has none, or where the planar branch is not that of the mechanism in space over its
+    /// whole range.
     pub(super) fn new(of: &Model) -> Option<Self> {
         let equivalent = of.plan().planar_equivalent(of.mechanism())?;
         let masses = of.inner_masses().iter().zip(&equivalent.frames);
-        let masses = masses.map(|(mass, frame)| {
-            let mass = mass.in_frame(frame);
-            Mass {
-                mass: mass.mass,
-                center: dwell_geometry::vec2(mass.center.x, mass.center.y),
-                inertia: mass.inertia[2],
-            }
+        let in_space: Vec<_> = masses.map(|(mass, frame)| mass.in_frame(frame)).collect();
+        let masses = in_space.iter().map(|mass| Mass {
+            mass: mass.mass,
+            center: dwell_geometry::vec2(mass.center.x, mass.center.y),
+            inertia: mass.inertia[2],
         });
         let masses: Vec<Mass> = masses.collect();
         let model = PlanarModel::new(&equivalent.mechanism, &masses, &equivalent.assembly, &[]);
-        let model = model.ok()?.inertia_only();
+        let model = model.ok()?;
+        let lifted = LiftedReactions::new(of, &equivalent, &in_space, model.plan())?;
+        let model = model.with_reactions(lifted.planar_reactions()).ok()?;
+        let model = model.pruned_for(lifted.bodies());
         let limits = match (of.plan().range(), model.plan().range()) {
             (Range::Full, Range::Full) => None,
             (own, other) => {
@@ -45,57 +59,86 @@ impl InPlane {
                 Some(own.limits()?)
             }
         };
-        let found = Self { model, limits };
+        let found = Self {
+            model,
+            lifted,
+            limits,
+        };
         found.agrees(of).then_some(found)
     }
 
-    /// Whether m and ½m′ are those of the mechanism in space.
+    /// Whether the coefficients are those of the mechanism in space. Reactions that redundant constraints of the plane leave open are not,
+    /// and a model that asks for one is evaluated in space.
     fn agrees(&self, of: &Model) -> bool {
         let (from, width) = self
             .limits
             .map_or((0.0, TAU), |(from, to)| (from, to - from));
-        let (mut one, mut other) = (self.model.workspace::<f64>(), of.workspace::<f64>());
-        let [mut found, mut wanted] = [(); 2].map(|()| Coefficients::<f64>::buffer(0));
+        let (mut one, mut other) = (self.workspace::<f64>(), of.workspace::<f64>());
+        let [mut found, mut wanted] = [(); 2].map(|()| of.coefficient_buffer::<f64>());
+        let size = of.plan().size();
         let mut agrees_at = |k: u32| {
             let q = from + width * (f64::from(k) + 0.5) / f64::from(COMPARED);
-            let evaluated = self.model.reduce(q, &mut one, &mut found).is_ok()
+            let evaluated = self.reduce(q, &mut one, &mut found)
                 && of.reduce(q, &mut other, &mut wanted).is_ok();
-            let scale = SAME * (wanted.m.abs() + wanted.half_dm.abs());
+            let inertia = wanted.m.abs() + wanted.half_dm.abs();
+            let same = |a: f64, b: f64, scale: f64| (a - b).abs() <= SAME * scale;
+            let both = |of: &Coefficients| [&of.a[..], &of.b[..]].concat();
+            let (reactions, expected) = (both(&found), both(&wanted));
+            let largest = expected.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+            // What inertia has in the units of a force or a moment, whether the coordinate is an angle or a length: all reactions may be zero.
+            let scale = largest + inertia * (1.0 + size + 1.0 / size);
+            let mut pairs = reactions.iter().zip(&expected);
             evaluated
-                && (found.m - wanted.m).abs() <= scale
-                && (found.half_dm - wanted.half_dm).abs() <= scale
+                && same(found.m, wanted.m, inertia)
+                && same(found.half_dm, wanted.half_dm, inertia)
+                && pairs.all(|(a, b)| same(*a, *b, scale))
         };
         (0..COMPARED).all(&mut agrees_at)
     }
 
     /// Memory for one thread.
-    pub(super) fn workspace<T: Scalar>(&self) -> PlanarWorkspace<T> {
-        self.model.workspace()
+    pub(super) fn workspace<T: Scalar>(&self) -> InPlaneWorkspace<T> {
+        InPlaneWorkspace {
+            planar: self.model.workspace(),
+            found: self.model.coefficient_buffer(),
+            lifted: self.lifted.workspace(),
+        }
     }
 
-    /// m and ½m′ at `q`; false where the mechanism in space has to say what is wrong there.
+    /// The coefficients at `q`; false where the mechanism in space has to say what is wrong there.
     #[inline(always)]
     pub(super) fn reduce<T: Scalar>(
         &self,
         q: T,
-        workspace: &mut PlanarWorkspace<T>,
+        workspace: &mut InPlaneWorkspace<T>,
         out: &mut Coefficients<T>,
     ) -> bool {
         let value = q.value();
         let inside = self
             .limits
             .is_none_or(|(from, to)| value >= from && value <= to);
-        inside && self.model.reduce(q, workspace, out).is_ok()
+        let InPlaneWorkspace {
+            planar,
+            found,
+            lifted,
+        } = workspace;
+        if !(inside && self.model.reduce(q, planar, found).is_ok()) {
+            return false;
+        }
+        (out.m, out.half_dm) = (found.m, found.half_dm);
+        self.lifted.lift(planar, found, lifted, out);
+        true
     }
 }
 
 impl Model {
-    /// Whether m and ½m′ come from a planar equivalent: of a model [for inertia alone](crate::ReducibleModel::for_inertia).
+    /// Whether the reduced coefficients come from a planar equivalent: of a model that was prepared
+    /// [for them](crate::ReducibleModel::for_coefficients) or [for inertia alone](crate::ReducibleModel::for_inertia).
     pub fn is_in_plane(&self) -> bool {
         self.in_plane.is_some()
     }
 
-    /// m and ½m′ from the planar equivalent; false where there is none, or no pose.
+    /// The reduced coefficients from the planar equivalent; false where there is none, or no pose.
     #[inline(always)]
     pub(super) fn reduce_in_plane<T: Scalar>(
         &self,

@@ -2,7 +2,7 @@
 
 use super::compiled_loads::CompiledLoads;
 use super::friction::JointFriction;
-use super::in_plane::InPlane;
+use super::in_plane::{InPlane, InPlaneWorkspace};
 use super::mass::Mass;
 use super::on_fit::FitWorkspace;
 use super::surface_friction::SurfaceFriction;
@@ -87,12 +87,12 @@ pub struct Model {
     pub(super) surface_frictions: Vec<SurfaceFriction>,
     /// By actuator: where it was assembled.
     start: Vec<f64>,
-    /// The planar model of its inertia, of a model for inertia alone that has one.
+    /// The planar model of its reduced coefficients, where one was looked for and found.
     pub(super) in_plane: Option<Arc<InPlane>>,
 }
 
 /// A reaction; of one in the axes of its joint the body and, in its evaluation frame, these axes.
-type CompiledReaction = (Reaction, Option<(usize, Rotation)>);
+pub(super) type CompiledReaction = (Reaction, Option<(usize, Rotation)>);
 
 /// The memory of one thread.
 #[derive(Debug, Clone, PartialEq)]
@@ -116,7 +116,7 @@ pub struct Workspace<T = f64> {
     pub(super) on_fit: FitWorkspace<T>,
     /// By friction of a surface that holds at rest: in which direction it slides, along the axis and around it.
     pub(super) surface_directions: Vec<[T; 2]>,
-    pub(super) in_plane: Option<crate::model::Workspace<T>>,
+    pub(super) in_plane: Option<InPlaneWorkspace<T>>,
 }
 
 impl Model {
@@ -219,6 +219,11 @@ impl Model {
         self.reactions.iter().map(|(reaction, _)| *reaction)
     }
 
+    /// The same with the axes of those in the axes of their joints.
+    pub(super) fn compiled_reactions(&self) -> &[CompiledReaction] {
+        &self.reactions
+    }
+
     /// The requested reactions.
     pub(super) fn requested_reactions(&self) -> impl ExactSizeIterator<Item = Reaction> + '_ {
         self.reactions().take(self.requested)
@@ -230,6 +235,7 @@ impl Model {
         let compile = |reaction| compile_reaction(mechanism, plan, reaction).ok();
         self.reactions = all.iter().filter_map(compile).collect();
         self.frictions = frictions;
+        self.in_plane = None;
     }
 
     /// The same model with no requested reaction.
@@ -250,22 +256,28 @@ impl Model {
     pub fn for_unit_loads(mut self) -> Self {
         self.reactions.truncate(self.requested);
         self.frictions.clear();
+        self.in_plane = None;
         self
     }
 
     /// The same mechanism for its inertia alone: no reaction and no load.
     pub(super) fn inertia_only(&self) -> Self {
-        let mut model = Self {
+        let model = Self {
             reactions: Vec::new(),
             requested: 0,
             loads: CompiledLoads::default(),
             frictions: Vec::new(),
             surface_frictions: Vec::new(),
-            in_plane: None,
             ..self.clone()
         };
-        model.in_plane = InPlane::new(&model).map(Arc::new);
-        model
+        model.reduced_in_plane()
+    }
+
+    /// The same, reduced by its planar equivalent if it has one.
+    pub(super) fn reduced_in_plane(mut self) -> Self {
+        self.in_plane = None;
+        self.in_plane = InPlane::new(&self).map(Arc::new);
+        self
     }
 
     /// Memory for one thread.

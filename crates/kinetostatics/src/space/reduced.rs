@@ -60,6 +60,10 @@ impl ReducibleModel for Model {
         self.plan().range()
     }
 
+    fn for_coefficients(self) -> Self {
+        self.reduced_in_plane()
+    }
+
     fn for_inertia(&self) -> Self {
         self.inertia_only()
     }

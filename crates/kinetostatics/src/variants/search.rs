@@ -41,11 +41,14 @@ pub struct Turn {
     pub half_dm: [Extremum; 2],
     /// By reaction: its value of largest magnitude in the free rotation, over 2E, 1/m or 1.
     pub free_reactions: Vec<Extremum>,
+    /// The actuator force (N m), then each reaction (N or N m), of largest magnitude under the loads of the variants, where
+    /// they are wanted.
+    pub loaded_forces: Vec<Extremum>,
     /// Positions of the rule that resolved it.
     pub positions: usize,
 }
 
-/// Positions with the values of all curves: m, ½m′, then the reactions of the free rotation.
+/// Positions with the values of all curves: m, ½m′, the reactions of the free rotation, then the forces under loads.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Samples {
     pub(super) q: Vec<f64>,
@@ -54,6 +57,13 @@ pub(super) struct Samples {
 }
 
 impl Samples {
+    /// The positions side by side from the `first` on; the last one stands for those beyond it.
+    #[inline(always)]
+    pub(super) fn lanes_at(&self, first: usize) -> [f64; LANES] {
+        let last = self.q.len() - 1;
+        std::array::from_fn(|lane| self.q[last.min(first + lane)])
+    }
+
     /// Some values of a curve from the `first` position on; those beyond the last one are dropped.
     #[inline(always)]
     pub(super) fn set(&mut self, curve: usize, first: usize, values: [f64; LANES]) {
@@ -110,22 +120,29 @@ pub(super) struct TurnSearch {
 }
 
 impl TurnSearch {
-    pub(super) fn new(reactions: usize) -> Self {
+    /// The first curve of a force under loads, after this many reactions of the free rotation.
+    pub(super) fn first_force(reactions: usize) -> usize {
+        2 + reactions
+    }
+
+    pub(super) fn new(reactions: usize, forces: usize) -> Self {
+        let curves = Self::first_force(reactions) + forces;
         let samples = Samples {
-            curves: vec![Vec::new(); 2 + reactions],
+            curves: vec![Vec::new(); curves],
             ..Samples::default()
         };
         Self {
             rule: samples.clone(),
             samples,
             stage: Stage::Rule,
-            interpolants: vec![Interpolant::default(); 2 + reactions],
+            interpolants: vec![Interpolant::default(); curves],
             root_m: Vec::new(),
             alternating: Vec::new(),
             peaks: Vec::new(),
             start: 0.0,
             turn: Turn {
                 free_reactions: vec![Extremum::default(); reactions],
+                loaded_forces: vec![Extremum::default(); forces],
                 ..Turn::default()
             },
             is_complete: false,
@@ -290,7 +307,15 @@ impl TurnSearch {
                 of => {
                     let [low, high] = ends;
                     let larger = low.value.abs() > high.value.abs();
-                    self.turn.free_reactions[of - 2] = if larger { low } else { high };
+                    let Turn {
+                        free_reactions,
+                        loaded_forces,
+                        ..
+                    } = &mut self.turn;
+                    let mut forces = free_reactions.iter_mut().chain(loaded_forces);
+                    if let Some(force) = forces.nth(of - 2) {
+                        *force = if larger { low } else { high };
+                    }
                 }
             }
         }

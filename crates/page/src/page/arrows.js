@@ -18,13 +18,13 @@ function createOverlay(first, layers, state) {
     arrows = drawing.arrows.map((arrow, index) => ({ ...arrow, index, size: sizeOf(arrow) }));
     largest = {};
     for (const arrow of arrows) largest[arrow.group] = Math.max(largest[arrow.group] || 0, arrow.size);
-    if (!state.arrows) state.arrows = new Set(arrows.filter(a => a.size > 0).map(a => a.name));
-    if (!state.paths) state.paths = new Set(drawing.paths.filter(p => p.requested).map(p => p.name));
+    state.arrows = chosen(state.arrows, arrows.filter(a => a.size > 0), a => a.initially_visible);
+    state.paths = chosen(state.paths, drawing.paths, p => p.requested);
   }
 
   // The largest force of an arrow in the rows.
   function sizeOf(arrow) {
-    const columns = arrow.direction === 'components' ? arrow.columns : [arrow.column];
+    const columns = arrow.direction === 'components' ? arrow.columns : arrow.parts.map(part => part.column);
     let most = 0;
     for (let row = 0; row < run.rows; row++) {
       let sum = 0;
@@ -50,20 +50,20 @@ function createOverlay(first, layers, state) {
   // Where a force acts and its vector, in the axes of the ground.
   function forceOf(arrow, row) {
     const value = k => run.columns[k].values[row];
-    if (arrow.direction === 'components') {
-      const at = [...frames.place(arrow.at.body, arrow.at.point, row, w)];
-      return [at, [value(arrow.columns[0]), value(arrow.columns[1]), arrow.columns.length > 2 ? value(arrow.columns[2]) : 0]];
+    if (arrow.direction === 'line') {
+      const [a, b] = arrow.ends.map(end => [...frames.place(end.body, end.point, row, w)]);
+      const d = [b[0] - a[0], b[1] - a[1]];
+      const length = Math.hypot(...d) || 1;
+      const [x, y] = d.map(c => c / length);
+      const [along, across] = [0, 1].map(k => arrow.parts.reduce((sum, part) => sum + part.axis[k] * value(part.column), 0));
+      return [[a[0] + arrow.place * d[0], a[1] + arrow.place * d[1], 0], [along * x - across * y, along * y + across * x, 0]];
     }
-    if (arrow.direction === 'along') {
-      const at = [...frames.place(arrow.at.body, arrow.at.point, row, w)];
-      frames.direct(arrow.body, arrow.axis, row, u);
-      return [at, u.map(c => c * value(arrow.column))];
-    }
-    const [a, b] = arrow.ends.map(end => [...frames.place(end.body, end.point, row, w)]);
-    const d = [0, 1, 2].map(k => b[k] - a[k]);
-    const length = Math.hypot(...d) || 1;
-    const unit = arrow.across ? [-d[1] / length, d[0] / length, 0] : d.map(c => c / length);
-    return [a.map((c, k) => c + arrow.part * d[k]), unit.map(c => c * value(arrow.column))];
+    const at = [...frames.place(arrow.at.body, arrow.at.point, row, w)];
+    if (arrow.direction === 'components') return [at, [value(arrow.columns[0]), value(arrow.columns[1]), arrow.columns.length > 2 ? value(arrow.columns[2]) : 0]];
+    if (arrow.offset.length) frames.direct(arrow.body, arrow.offset, row, u).forEach((c, k) => { at[k] += c; });
+    const force = [0, 0, 0];
+    for (const part of arrow.parts) frames.direct(arrow.body, part.axis, row, u).forEach((c, k) => { force[k] += c * value(part.column); });
+    return [at, force];
   }
 
   function layOut() {
@@ -97,6 +97,17 @@ function createOverlay(first, layers, state) {
   }
 
   return { show, layOut, move, arrows: () => arrows, paths: () => drawing.paths };
+}
+
+// The names of what is shown, as someone has chosen; of what was not there to be chosen before, what is shown at first.
+function chosen(before, all, isFirst) {
+  const names = before || Object.assign(new Set(), { known: new Set() });
+  for (const one of all) {
+    if (names.known.has(one.name)) continue;
+    names.known.add(one.name);
+    if (isFirst(one)) names.add(one.name);
+  }
+  return names;
 }
 
 // An arrow from a point; of one too short to be seen nothing.

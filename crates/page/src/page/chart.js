@@ -41,7 +41,8 @@ function createChart(number, state, units, actions) {
       return draw();
     }
     chooser.replaceChildren(...[...run.groups.values()].map(g => el('option', { value: g.key }, `${g.title}${g.unit ? ` (${units.of(g.unit).name})` : ''}`)));
-    const wanted = own && run.groups.get(own.group);
+    // What nobody has chosen is not kept for another run: what is asked there may be something else.
+    const wanted = own && own.isChosen && run.groups.get(own.group);
     group = wanted || firstGroup(run, number);
     const kept = wanted && own.columns ? own.columns.map(key => run.byKey.get(key)).filter(c => c && c.unit === group.unit) : [];
     root.hidden = !group;

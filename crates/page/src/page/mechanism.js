@@ -5,6 +5,8 @@ const MARGIN = 34;
 // Where labels are beside their marks, and how large they are, px: width of a letter, and height.
 const LABEL_PLACES = [{ x: 10, y: -10 }, { x: -11, y: -10 }, { x: 10, y: 21 }, { x: -11, y: 21 }];
 const LABEL_SIZE = [9, 13];
+// In so many rows it is seen what is in their way.
+const LABEL_ROWS = 12;
 
 function createMechanism(state, onMove, onTurn) {
   const root = svg('svg', { class: 'mechanism', role: 'img', tabindex: 0, height: HEIGHT });
@@ -67,9 +69,17 @@ function createMechanism(state, onMove, onTurn) {
     [view.x, view.y] = [width / 2 - x, HEIGHT / 2 - y];
     overlay.layOut();
     if (!frames.isPlane) drawAxes();
-    const boxes = [];
-    for (const item of items) if (item.placeLabel) item.placeLabel(row, boxes);
+    placeLabels();
     move(row);
+  }
+
+  // Labels stay where they are beside their marks: where least is in their way in some rows of the run.
+  function placeLabels() {
+    const last = Math.max(0, run.rows - 1);
+    const rows = Array.from({ length: Math.min(LABEL_ROWS, run.rows) }, (_, k) => Math.round((k * last) / LABEL_ROWS));
+    const marks = items.filter(item => item.placeLabel);
+    const taken = rows.map(r => marks.flatMap(mark => mark.boxes(r)));
+    for (const mark of marks) mark.placeLabel(rows, taken);
   }
 
   // The axes of the ground, in a corner.
@@ -188,16 +198,25 @@ function createMechanism(state, onMove, onTurn) {
     return {
       element: shape,
       renew(next) { part = next; },
-      // Takes the first place that is free of the boxes of labels before it, and adds its own.
-      placeLabel(r, boxes) {
-        if (!label) return;
+      // What it covers itself, px: left, top, width, height, and which mark it is.
+      boxes(r) {
         const [x, y] = at(part.at, r);
+        const own = [[x - 7, y - 7, 14, 14, shape]];
+        if (part.look === 'ground-pin') own.push([x - 20, y + 5, 40, 24, shape]);
+        return own;
+      },
+      // Takes the place with the fewest boxes of others, and adds its own.
+      placeLabel(rows, taken) {
+        if (!label) return;
         const long = part.label.length * LABEL_SIZE[0];
-        const boxOf = p => [p.x < 0 ? x + p.x - long : x + p.x, y + p.y - LABEL_SIZE[1], long, LABEL_SIZE[1]];
-        const isFree = p => !boxes.some(([bx, by, w, h]) => { const [ax, ay, v, g] = boxOf(p); return ax < bx + w && bx < ax + v && ay < by + h && by < ay + g; });
-        const own = part.look === 'ground-pin' ? [1, 0, 3, 2] : [0, 1, 2, 3];
-        place = own.map(k => LABEL_PLACES[k]).find(isFree) || LABEL_PLACES[own[0]];
-        boxes.push(boxOf(place));
+        const middles = rows.map(r => at(part.at, r));
+        const boxOf = (p, [x, y]) => [p.x < 0 ? x + p.x - long : x + p.x, y + p.y - LABEL_SIZE[1], long, LABEL_SIZE[1], shape];
+        const meets = ([ax, ay, v, g], [bx, by, w, h, of]) => of !== shape && ax < bx + w && bx < ax + v && ay < by + h && by < ay + g;
+        const countOf = p => middles.reduce((sum, middle, k) => { const box = boxOf(p, middle); return sum + taken[k].filter(other => meets(box, other)).length; }, 0);
+        const own = (part.look === 'ground-pin' ? [1, 0, 3, 2] : [0, 1, 2, 3]).map(k => LABEL_PLACES[k]);
+        const counts = own.map(countOf);
+        place = own[counts.indexOf(Math.min(...counts))];
+        middles.forEach((middle, k) => taken[k].push(boxOf(place, middle)));
       },
       inMarks: true,
       depth: r => view.nearness(frames.place(part.at.body, part.at.point, r, w)),
@@ -279,7 +298,7 @@ function createMechanism(state, onMove, onTurn) {
 // What the elements of a drawing are made of: two drawings of one shape differ in numbers only.
 function shapeOf(drawing) {
   const part = p => [p.part, p.look, p.title, p.label, p.on_ground, p.closed, p.body, p.bodies, p.at && p.at.body, (p.points || []).length, (p.axis || []).length].join();
-  const arrow = a => [a.name, a.title, a.group, a.direction, a.columns || a.column].join();
+  const arrow = a => [a.name, a.title, a.group, a.direction, a.columns || a.parts.map(part => part.column)].join();
   return [drawing.view === null, drawing.bodies.map(b => `${b.name}|${b.paint}|${b.placements.length}`).join(), ...drawing.parts.map(part), ...drawing.arrows.map(arrow), ...drawing.paths.map(p => `${p.name}|${p.requested}`)].join('\n');
 }
 

@@ -1,36 +1,40 @@
 //! Which columns of a run are forces that can be drawn as arrows, and where they act.
 
+mod contacts;
+#[cfg(test)]
+mod tests;
+
 use super::plane::{anchor, anchors, point};
 use crate::trajectory::compute::{Quantity, TrajectoryResults};
-use dwell_geometry::{Component, Joint, JointKind, Vec2};
+use contacts::{coupling_arrow, rolling_arrows, tooth_arrows};
+use dwell_geometry::{BodyId, Component, Joint, JointId, JointKind, Vec2};
 use dwell_kinetostatics::{Guide, LoadKind};
-use dwell_page::{Anchor, Direction, ForceArrow};
+use dwell_page::{Anchor, Direction, ForceArrow, ForcePart};
 use dwell_scene::Scene;
 
 /// The reactions and loads among the columns of the page. A reaction is drawn on the joint's second body.
 pub(super) fn plane_arrows(scene: &Scene, results: &TrajectoryResults) -> Vec<ForceArrow> {
-    let column = |quantity: Quantity| {
-        let mut written = results.written.iter();
-        written.position(|&k| results.columns[k].quantity == quantity)
+    let columns = WrittenColumns {
+        scene,
+        results,
+        reactions: scene.mechanism.reactions(),
     };
-    let reactions = scene.mechanism.reactions();
-    let mut arrows = Vec::new();
-    for (j, joint) in scene.mechanism.joints.iter().enumerate() {
-        let component = |wanted: Component| {
-            let mut all = reactions.iter();
-            let k = all.position(|r| r.joint.0 == j && r.component == wanted)?;
-            column(Quantity::Reaction(k))
-        };
-        arrows.extend(reaction_arrows(scene, joint, component));
-    }
+    let joints = scene.mechanism.joints.iter().enumerate();
+    let joints = joints.map(|(j, joint)| JointForces {
+        columns: &columns,
+        id: JointId(j),
+        joint,
+    });
+    let mut arrows: Vec<ForceArrow> = joints.flat_map(|joint| joint.arrows()).collect();
     let loads = scene.loads.iter().enumerate();
     arrows.extend(loads.filter_map(|(k, load)| {
-        let column = column(Quantity::LoadForce(k))?;
+        let column = columns.column(Quantity::LoadForce(k))?;
         let (at, direction) = load_direction(scene, &load.kind, column)?;
         Some(ForceArrow {
             name: load.name.clone(),
             group: "Loads".to_owned(),
             title: results.columns[results.written[column]].meaning.clone(),
+            initially_visible: true,
             at,
             direction,
         })
@@ -38,73 +42,121 @@ pub(super) fn plane_arrows(scene: &Scene, results: &TrajectoryResults) -> Vec<Fo
     arrows
 }
 
-/// The forces of a joint whose columns are there. Tangential forces of rolling contact, whose place moves on both bodies, and
-/// forces of couplings have no arrow.
-fn reaction_arrows(
-    scene: &Scene,
-    joint: &Joint,
-    component: impl Fn(Component) -> Option<usize>,
-) -> Option<ForceArrow> {
-    let [one, two] = joint.bodies;
-    let along = |column, axis: Vec2| Direction::Along {
-        column,
-        body: one.0,
-        axis: point(axis),
-    };
-    let direction = match joint.kind {
-        JointKind::Revolute | JointKind::Weld { .. } => Direction::Components {
-            columns: [Component::X, Component::Y]
-                .into_iter()
-                .map(&component)
-                .collect::<Option<_>>()?,
-        },
-        JointKind::Prismatic { axes } => along(component(Component::Normal)?, axes[0].perp()),
-        JointKind::Slot { axis } | JointKind::Rolling { axis, .. } => {
-            along(component(Component::Normal)?, axis.perp())
-        }
-        JointKind::Rack { axis, .. } => along(component(Component::Tooth)?, axis),
-        JointKind::Gear { radii, internal } => {
-            tooth_line(joint, radii, internal, component(Component::Tooth)?)
-        }
-        JointKind::Distance { .. } => Direction::Line {
-            column: component(Component::Axial)?,
-            ends: anchors(joint.bodies, joint.points),
-            across: false,
-            part: 1.0,
-        },
-        JointKind::Coupling(_) => return None,
-    };
-    let [from, on] = [one, two].map(|b| scene.mechanism.body_name(b));
-    Some(ForceArrow {
-        name: joint.name.clone(),
-        group: "Reactions".to_owned(),
-        title: format!("{}: force of {from} on {on}", joint.name),
-        at: anchor(two, joint.points[1]),
-        direction,
-    })
+/// What the columns of a page show.
+struct WrittenColumns<'a> {
+    scene: &'a Scene,
+    results: &'a TrajectoryResults,
+    reactions: Vec<dwell_geometry::Reaction>,
 }
 
-/// The tooth force of two gears at their pitch point, across the line of centres; positive rotates the second one
-/// counter-clockwise.
-///
-/// The line goes from the second centre to the first, or the other way where the first gear is a ring around the second.
-fn tooth_line(joint: &Joint, radii: [f64; 2], internal: bool, column: usize) -> Direction {
-    let [one, two] = anchors(joint.bodies, joint.points);
-    let [r1, r2] = radii;
-    let (ends, part) = match (internal, r1 > r2) {
-        (false, _) => ([two, one], r2 / (r1 + r2)),
-        (true, true) => ([one, two], r1 / (r1 - r2)),
-        (true, false) => ([two, one], r2 / (r2 - r1)),
-    };
-    Direction::Line {
-        column,
-        ends,
-        across: true,
-        part,
+impl WrittenColumns<'_> {
+    /// The column of a quantity, among those that are written.
+    fn column(&self, quantity: Quantity) -> Option<usize> {
+        let mut written = self.results.written.iter();
+        written.position(|&k| self.results.columns[k].quantity == quantity)
     }
 }
 
-/// Where a load acts and where it points to; none where it is no force at one place.
+/// The forces of a joint whose columns are there.
+struct JointForces<'a> {
+    columns: &'a WrittenColumns<'a>,
+    id: JointId,
+    joint: &'a Joint,
+}
+
+impl JointForces<'_> {
+    /// The column of a component of the reaction.
+    fn component(&self, wanted: Component) -> Option<usize> {
+        let mut all = self.columns.reactions.iter();
+        let k = all.position(|r| r.joint == self.id && r.component == wanted)?;
+        self.columns.column(Quantity::Reaction(k))
+    }
+
+    /// A component along a direction; none where there is no column of it.
+    fn part(&self, component: Component, axis: Vec2) -> Option<ForcePart> {
+        let column = self.component(component)?;
+        let axis = point(axis);
+        Some(ForcePart { column, axis })
+    }
+
+    /// Whatever can be drawn of it. Couples have no arrow.
+    fn arrows(&self) -> Vec<ForceArrow> {
+        match self.joint.kind {
+            JointKind::Gear { .. } | JointKind::Rack { .. } => tooth_arrows(self),
+            JointKind::Rolling { axis, radius } => rolling_arrows(self, axis, radius),
+            JointKind::Coupling(k) => coupling_arrow(self, k).into_iter().collect(),
+            JointKind::Revolute
+            | JointKind::Weld { .. }
+            | JointKind::Prismatic { .. }
+            | JointKind::Slot { .. }
+            | JointKind::Distance { .. } => {
+                let direction = self.at_its_point();
+                direction.map(|d| self.on_second(d)).into_iter().collect()
+            }
+        }
+    }
+
+    /// The force at the second body's point of a joint that is no contact.
+    fn at_its_point(&self) -> Option<Direction> {
+        let along = |axis: Vec2| {
+            let part = self.part(Component::Normal, axis.perp())?;
+            Some(along_body(self.joint.bodies[0], vec![part]))
+        };
+        match self.joint.kind {
+            JointKind::Prismatic { axes } => along(axes[0]),
+            JointKind::Slot { axis } => along(axis),
+            JointKind::Distance { .. } => {
+                let ends = anchors(self.joint.bodies, self.joint.points);
+                Some(pushing_apart(self.component(Component::Axial)?, ends))
+            }
+            _ => {
+                let components = [Component::X, Component::Y];
+                let columns = components.into_iter().map(|c| self.component(c));
+                let columns = columns.collect::<Option<_>>()?;
+                Some(Direction::Components { columns })
+            }
+        }
+    }
+
+    fn on_second(&self, direction: Direction) -> ForceArrow {
+        let [from, on] = self.body_names();
+        ForceArrow {
+            name: self.joint.name.clone(),
+            group: "Reactions".to_owned(),
+            title: format!("{}: force of {from} on {on}", self.joint.name),
+            initially_visible: true,
+            at: anchor(self.joint.bodies[1], self.joint.points[1]),
+            direction,
+        }
+    }
+
+    fn body_names(&self) -> [&str; 2] {
+        let mechanism = &self.columns.scene.mechanism;
+        self.joint.bodies.map(|b| mechanism.body_name(b))
+    }
+}
+
+/// Along directions of a body, at the anchor.
+fn along_body(body: BodyId, parts: Vec<ForcePart>) -> Direction {
+    Direction::Body {
+        body: body.0,
+        parts,
+        offset: Vec::new(),
+    }
+}
+
+/// On the second of two points, along the line from the first.
+fn pushing_apart(column: usize, ends: [Anchor; 2]) -> Direction {
+    let axis = vec![1.0, 0.0];
+    Direction::Line {
+        ends,
+        parts: vec![ForcePart { column, axis }],
+        place: 1.0,
+    }
+}
+
+/// Where a load acts and where it points to; none where it is no force at one place, and of separating forces, which are drawn
+/// with the teeth.
 fn load_direction(scene: &Scene, kind: &LoadKind, column: usize) -> Option<(Anchor, Direction)> {
     match kind {
         LoadKind::Force {
@@ -119,24 +171,14 @@ fn load_direction(scene: &Scene, kind: &LoadKind, column: usize) -> Option<(Anch
                 scene.mechanism.ground
             };
             let axis = point(*direction);
-            let along = Direction::Along {
-                column,
-                body: frame,
-                axis,
-            };
+            let along = along_body(BodyId(frame), vec![ForcePart { column, axis }]);
             Some((anchor(*body, *at), along))
         }
         LoadKind::Spring { bodies, points, .. }
         | LoadKind::Damper { bodies, points }
         | LoadKind::PointToPointForce { bodies, points } => {
             let ends = anchors(*bodies, *points);
-            let line = Direction::Line {
-                column,
-                ends,
-                across: false,
-                part: 1.0,
-            };
-            Some((anchor(bodies[1], points[1]), line))
+            Some((anchor(bodies[1], points[1]), pushing_apart(column, ends)))
         }
         LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
             let Guide {
@@ -144,11 +186,8 @@ fn load_direction(scene: &Scene, kind: &LoadKind, column: usize) -> Option<(Anch
                 points,
                 axis,
             } = *guide;
-            let along = Direction::Along {
-                column,
-                body: bodies[0].0,
-                axis: point(axis),
-            };
+            let axis = point(axis);
+            let along = along_body(bodies[0], vec![ForcePart { column, axis }]);
             Some((anchor(bodies[1], points[1]), along))
         }
         LoadKind::Gravity { .. }
@@ -156,47 +195,5 @@ fn load_direction(scene: &Scene, kind: &LoadKind, column: usize) -> Option<(Anch
         | LoadKind::TorsionSpring { .. }
         | LoadKind::RotationalDamper { .. }
         | LoadKind::SeparatingForce(_) => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use dwell_geometry::{BodyId, vec2};
-
-    /// The pitch point is on both pitch circles, and a positive tooth force turns the second gear counter-clockwise by its
-    /// pitch radius, whichever gear is the ring.
-    #[test]
-    fn a_tooth_force_acts_at_the_pitch_point_and_turns_the_second_gear() {
-        let along = vec2(0.6, 0.8);
-        for (radii, internal) in [
-            ([0.3, 0.2], false),
-            ([0.2, 0.5], false),
-            ([0.5, 0.2], true),
-            ([0.2, 0.5], true),
-        ] {
-            let [r1, r2] = radii;
-            let distance: f64 = if internal { r1 - r2 } else { r1 + r2 };
-            let centers = [vec2(1.0, -2.0), vec2(1.0, -2.0) + along * distance.abs()];
-            let joint = Joint {
-                name: "gears".to_owned(),
-                bodies: [BodyId(1), BodyId(2)],
-                points: centers,
-                kind: JointKind::Gear { radii, internal },
-            };
-            let Direction::Line {
-                ends, across, part, ..
-            } = tooth_line(&joint, radii, internal, 0)
-            else {
-                panic!("a line");
-            };
-            let [from, to] = ends.map(|end| vec2(end.point[0], end.point[1]));
-            let pitch = from + (to - from) * part;
-            let direction = (to - from).perp() * (1.0 / (to - from).norm());
-            for (center, radius) in centers.into_iter().zip(radii) {
-                assert!(((pitch - center).norm() - radius).abs() < 1e-12);
-            }
-            assert!(across && ((pitch - centers[1]).cross(direction) - r2).abs() < 1e-12);
-        }
     }
 }

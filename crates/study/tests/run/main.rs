@@ -2,6 +2,7 @@
 //! nothing with them but the table itself.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
+mod arrows;
 mod branch_hints;
 mod early_stops;
 mod errors;

@@ -121,6 +121,9 @@ fn document(
     }
 }
 
+/// Forces that are all smaller than this part of the moments over the size, and moments than the forces times the size, are rounding.
+const NO_PART: f64 = 1e-6;
+
 /// The reduced model at eight positions, to seven digits after the first of the largest value of its kind, and which findings pass.
 fn snapshot(
     prepared: &PreparedSpaceScene<'_>,
@@ -140,14 +143,19 @@ fn snapshot(
         };
         all.iter().map(of_row).fold(0.0, f64::max)
     };
-    let [forces, moments] = ["N", "N m"].map(of_unit);
+    let ([forces, moments], size) = (["N", "N m"].map(of_unit), prepared.size());
+    // What all is rounding beside the other unit has no digits.
+    let scales = [
+        forces.max(NO_PART * moments / size),
+        moments.max(NO_PART * forces * size),
+    ];
     let mut text = format!("{}\n\n", prepared.scene.title);
     // Writing to a string cannot fail.
     for (q, at) in q.iter().zip(&all) {
         let [m, half_dm] = [at.m, at.half_dm].map(|value| rounded(value, m_max));
         let _ = writeln!(text, "q = {q:.7}  m = {m}  half_dm = {half_dm}");
         for (k, (name, unit)) in names.iter().enumerate() {
-            let scale = if *unit == "N" { forces } else { moments };
+            let scale = if *unit == "N" { scales[0] } else { scales[1] };
             let [a, b] = [at.a[k], at.b[k]].map(|value| rounded(value, scale));
             let _ = writeln!(text, "    {name}  a = {a}  b = {b}");
         }

@@ -62,6 +62,7 @@ fn arrows(
             name: joint.name.clone(),
             group: "Reactions".to_owned(),
             title: format!("{}: force of {one} on {two}", joint.name),
+            initially_visible: true,
             at: anchor(joint.side_body(1), joint.sides[1].point),
             direction: Direction::Components { columns },
         })

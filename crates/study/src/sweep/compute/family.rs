@@ -1,13 +1,16 @@
 //! Variants of a scene that share one structure: it is compiled once, and the numbers of each variant are filled in.
 //!
-//! Points, centres, masses, moments of inertia and the start of the motion are affine functions of the varied numbers as
-//! long as no direction varies. The function is found by differences of variants that are read as scenes, and verified at
+//! Points, centres, masses, moments of inertia, the numbers of loads and the start of the motion are affine functions of the
+//! varied numbers as long as no direction varies. The function is found by differences of variants that are read as scenes, and verified at
 //! another one. The structure is that of a variant whose numbers coincide by identity only, not by chance.
 
 use crate::models::{compile_model, initial_reduced_state};
+use crate::sweep::compute::family_forces::FamilyForces;
 use crate::sweep::compute::point::{RequestedQuantities, ResultKind, SweepQuantity};
 use crate::sweep::compute::{Axis, Design};
-use dwell_kinetostatics::variants::{Extremum, Turn, VariantModel};
+use dwell_geometry::Reaction;
+use dwell_kinetostatics::InverseDynamics;
+use dwell_kinetostatics::variants::{Extremum, Turn, TurningVariant, VariantModel};
 use dwell_scene::Scene;
 use std::cell::Cell;
 
@@ -28,8 +31,10 @@ const OF_START: usize = 2;
 pub struct VariantFamily {
     model: VariantModel,
     numbers: AffineNumbers,
-    /// The reactions of the model, by their index among those of the mechanism.
+    /// The reactions of the free rotation, by their index among those of the mechanism.
     reactions: Vec<usize>,
+    /// The forces along the scene's trajectory, where they are wanted.
+    forces: Option<FamilyForces>,
 }
 
 /// Numbers that are affine functions of the varied ones.
@@ -43,6 +48,38 @@ struct AffineNumbers {
 }
 
 impl AffineNumbers {
+    /// The function through its values at the reference and where one varied number after another is displaced; none where it
+    /// is another one `elsewhere`.
+    fn find(
+        reference: Vec<f64>,
+        displaced: &[f64],
+        elsewhere: &[f64],
+        numbers_at: &dyn Fn(&[f64]) -> Option<Vec<f64>>,
+    ) -> Option<Self> {
+        let constant = numbers_at(&reference)?;
+        let mut slopes = Vec::with_capacity(displaced.len());
+        for (k, &value) in displaced.iter().enumerate() {
+            let mut values = reference.clone();
+            values[k] = value;
+            let change = value - reference[k];
+            let numbers = numbers_at(&values)?;
+            let each = constant.iter().zip(numbers).enumerate();
+            let changed = each.filter(|(_, (before, after))| *before != after);
+            slopes.push(
+                changed
+                    .map(|(i, (before, after))| (i, (after - before) / change))
+                    .collect(),
+            );
+        }
+        let numbers = Self {
+            reference,
+            constant,
+            slopes,
+        };
+        let expected = numbers_at(elsewhere)?;
+        numbers.agree(elsewhere, &expected).then_some(numbers)
+    }
+
     /// Writes the numbers at some values of the varied ones.
     fn fill(&self, values: &[f64], numbers: &mut [f64]) {
         numbers.copy_from_slice(&self.constant);
@@ -88,50 +125,51 @@ fn scene_at(scene: &Scene, design: &Design, values: &[f64]) -> Option<Scene> {
     scene.with_values(&values).ok()
 }
 
-/// Whether two variants differ in numbers of the mechanism, of the masses and of the start alone.
-fn differ_in_numbers_only(one: &Scene, other: &Scene) -> bool {
+/// Whether two variants differ in numbers of the mechanism, of the masses and of the start alone, and besides in their loads
+/// where the model [has](VariantModel::numbers) these.
+fn differ_in_numbers_only(one: &Scene, other: &Scene, has_loads: bool) -> bool {
     one.assembly == other.assembly
         && one.varying_inertias == other.varying_inertias
-        && one.loads == other.loads
+        && (has_loads || one.loads == other.loads)
         && one.drives == other.drives
+        && one.prescribed == other.prescribed
+        && one.sweep == other.sweep
         && one.requests.reactions == other.requests.reactions
         && one.motion.is_some() == other.motion.is_some()
 }
 
 impl VariantFamily {
-    /// The family of a sweep; none where its variants need a compilation each: for results other than inertia, period,
-    /// energy and the reactions of the free rotation, under loads, or where a varied number is a direction, say.
+    /// The family of a sweep; none where its variants need a compilation each: for motions, cycles and periods under
+    /// loads, under friction, or where a varied number is a direction, say.
     pub(crate) fn new(
         scene: &Scene,
         design: &Design,
         requested: &RequestedQuantities,
     ) -> Option<Self> {
-        use ResultKind::{FreeReaction, FreeReactionPlace, Inertia, InertiaPlace, Orbit, Range};
-        let known = [
-            Inertia,
-            InertiaPlace,
-            Range,
-            Orbit,
-            FreeReaction,
-            FreeReactionPlace,
-        ];
-        let without_loads = |q: &SweepQuantity| {
-            let of_inertia = matches!(q.kind, Inertia | InertiaPlace | Range);
-            known.contains(&q.kind) && (of_inertia || scene.loads.is_empty())
+        let is_known = |q: &SweepQuantity| match q.kind {
+            ResultKind::Inertia
+            | ResultKind::InertiaPlace
+            | ResultKind::Range
+            | ResultKind::Reaction
+            | ResultKind::ActuatorForce => true,
+            ResultKind::Orbit | ResultKind::FreeReaction | ResultKind::FreeReactionPlace => {
+                scene.loads.is_empty()
+            }
+            ResultKind::Motion | ResultKind::Cycle => false,
         };
-        if !requested.quantities.iter().all(without_loads) {
+        if !requested.quantities.iter().all(is_known) {
             return None;
         }
-        let free = |q: &&SweepQuantity| matches!(q.kind, FreeReaction | FreeReactionPlace);
-        let wanted = requested.quantities.iter().filter(free);
-        let mut reactions: Vec<usize> = wanted.map(|q| q.index).collect();
-        reactions.sort_unstable();
-        reactions.dedup();
-        (0..PARTS.len()).find_map(|attempt| Self::about(scene, design, &reactions, attempt))
+        (0..PARTS.len()).find_map(|attempt| Self::about(scene, design, requested, attempt))
     }
 
     /// The family whose structure is that of a typical variant.
-    fn about(scene: &Scene, design: &Design, reactions: &[usize], attempt: usize) -> Option<Self> {
+    fn about(
+        scene: &Scene,
+        design: &Design,
+        requested: &RequestedQuantities,
+        attempt: usize,
+    ) -> Option<Self> {
         let at = |number: usize, axis: &Axis, which: usize| {
             let nominal = scene.value(&axis.path).unwrap_or_default();
             place(axis, nominal, (number, attempt), PLACES[which])
@@ -143,49 +181,39 @@ impl VariantFamily {
         let reference = all_at(0);
         let typical = scene_at(scene, design, &reference)?;
         let all = typical.mechanism.reactions();
-        let wanted: Vec<_> = reactions
-            .iter()
-            .filter_map(|&k| all.get(k).copied())
-            .collect();
-        let model = VariantModel::new(compile_model(&typical, &wanted).ok()?)?;
+        let wanted = |reactions: &[usize]| -> Vec<Reaction> {
+            let each = reactions.iter().filter_map(|&k| all.get(k).copied());
+            each.collect()
+        };
+        let free_kinds = [ResultKind::FreeReaction, ResultKind::FreeReactionPlace];
+        let reactions = requested.indices(&free_kinds);
+        let model = VariantModel::new(compile_model(&typical, &wanted(&reactions)).ok()?)?;
+        let (mut model, mut forces) = (model, None);
+        if [ResultKind::Reaction, ResultKind::ActuatorForce]
+            .into_iter()
+            .any(|kind| requested.includes(kind))
+        {
+            let of_family = FamilyForces::new(&typical, requested)?;
+            model = of_family.add_to(&model, &wanted(&of_family.reactions))?;
+            forces = Some(of_family);
+        }
         let numbers_at = |values: &[f64]| -> Option<Vec<f64>> {
             let variant = scene_at(scene, design, values)?;
-            if !differ_in_numbers_only(&typical, &variant) {
+            if !differ_in_numbers_only(&typical, &variant, forces.is_some()) {
                 return None;
             }
-            let mut numbers = model.numbers(&variant.mechanism, &variant.masses)?;
+            let mut numbers = model.numbers(&variant.mechanism, &variant.masses, &variant.loads)?;
             let start = initial_reduced_state(&variant);
             numbers.extend(start.map_or([0.0; OF_START], |start| [start.q, start.q_dot]));
             Some(numbers)
         };
-        let constant = numbers_at(&reference)?;
-        let mut slopes = Vec::with_capacity(design.axes.len());
-        for (k, axis) in design.axes.iter().enumerate() {
-            let mut values = reference.clone();
-            values[k] = at(k, axis, 1);
-            let change = values[k] - reference[k];
-            let displaced = numbers_at(&values)?;
-            let each = constant.iter().zip(displaced).enumerate();
-            let changed = each.filter(|(_, (before, after))| *before != after);
-            slopes.push(
-                changed
-                    .map(|(i, (before, after))| (i, (after - before) / change))
-                    .collect(),
-            );
-        }
-        let numbers = AffineNumbers {
-            reference,
-            constant,
-            slopes,
-        };
-        let elsewhere = all_at(2);
-        if !numbers.agree(&elsewhere, &numbers_at(&elsewhere)?) {
-            return None;
-        }
+        let (displaced, elsewhere) = (all_at(1), all_at(2));
+        let numbers = AffineNumbers::find(reference, &displaced, &elsewhere, &numbers_at)?;
         Some(Self {
             model,
             numbers,
-            reactions: reactions.to_vec(),
+            reactions,
+            forces,
         })
     }
 
@@ -206,9 +234,15 @@ impl VariantFamily {
             start_velocity.set(start[1]);
             start[0]
         };
-        let mut take = |k: usize, turn: Option<&Turn>| {
+        let mut take = |k: usize, variant: Option<TurningVariant<'_>>| {
             let velocity = start_velocity.get();
-            let values = turn.map(|turn| self.values(turn, velocity, quantities));
+            let values = variant.and_then(|variant| {
+                let peaks = match &self.forces {
+                    Some(forces) => Some(forces.peaks(variant)?),
+                    None => None,
+                };
+                Some(self.values((variant.turn, peaks.as_ref()), velocity, quantities))
+            });
             // Of a start from rest the old way knows what to say.
             let finite = |values: &Vec<f64>| {
                 let mut each = quantities.iter().zip(values);
@@ -220,7 +254,12 @@ impl VariantFamily {
     }
 
     /// The values of the quantities, for a start with this velocity, rad/s.
-    fn values(&self, turn: &Turn, velocity: f64, quantities: &[SweepQuantity]) -> Vec<f64> {
+    fn values(
+        &self,
+        (turn, peaks): (&Turn, Option<&InverseDynamics<f64>>),
+        velocity: f64,
+        quantities: &[SweepQuantity],
+    ) -> Vec<f64> {
         let energy = 0.5 * turn.m_at_start * velocity * velocity;
         let period = std::f64::consts::TAU * turn.mean_root_m / (2.0 * energy).sqrt();
         let inertia = |index: usize| match index {
@@ -231,7 +270,16 @@ impl VariantFamily {
             let k = self.reactions.binary_search(&index).ok()?;
             turn.free_reactions.get(k).copied()
         };
+        let forces = self.forces.as_ref().zip(peaks);
+        let reaction = |index: usize| -> Option<f64> {
+            let (forces, peaks) = forces?;
+            let k = forces.reactions.binary_search(&index).ok()?;
+            peaks.reactions.get(k).copied()
+        };
+        let actuator = |index: usize| forces.and_then(|(_, peaks)| peaks.tau.get(index).copied());
         let value = |quantity: &SweepQuantity| match quantity.kind {
+            ResultKind::Reaction => reaction(quantity.index).unwrap_or(f64::NAN),
+            ResultKind::ActuatorForce => actuator(quantity.index).unwrap_or(f64::NAN),
             ResultKind::Inertia => inertia(quantity.index).value,
             ResultKind::InertiaPlace => inertia(quantity.index).q,
             ResultKind::Orbit => [period, energy][quantity.index],

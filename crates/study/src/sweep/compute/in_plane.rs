@@ -13,7 +13,7 @@ use crate::sweep::compute::motions::{
 use crate::sweep::compute::point::{ResultKind, Results};
 use crate::sweep::compute::{Design, RequestedQuantities, SweptScene, VariantFamily};
 use crate::trajectory::compute::{
-    Analysis, WantedForces, check_variables, default_limits, peak_forces,
+    WantedForces, check_variables, default_limits, peak_analysis, peak_forces,
 };
 use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Orbit, ReducedState};
 use dwell_kinetostatics::Model;
@@ -148,15 +148,6 @@ fn free_reaction_curves(
     let (limits, ..) = default_limits(scene, model.plan());
     let curves = RangeCurves::of_free_reactions(exact, limits, energy);
     curves.map_err(|e| explain_position(scene, model.plan(), &e))
-}
-
-/// The analysis for peak forces: along the scene's motion or sweep, or statics over its range.
-fn peak_analysis(scene: &Scene) -> Option<Analysis> {
-    if scene.prescribed.is_some() || scene.sweep.is_some() {
-        return Some(Analysis::Kinetostatics);
-    }
-    let single = scene.mechanism.actuators.len() == 1;
-    (single && !scene.loads.is_empty()).then_some(Analysis::Statics)
 }
 
 /// The requested reactions that are results, with their index in the model, name and unit: not those that are statically

@@ -5,6 +5,7 @@ mod axis;
 mod design;
 mod extremes;
 mod family;
+mod family_forces;
 mod in_plane;
 mod motions;
 mod point;

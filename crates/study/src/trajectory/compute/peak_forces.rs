@@ -20,6 +20,15 @@ pub(crate) struct WantedForces {
     pub(crate) actuators: Vec<usize>,
 }
 
+/// The analysis for peak forces: along the scene's motion or sweep, or statics over its range.
+pub(crate) fn peak_analysis(scene: &Scene) -> Option<Analysis> {
+    if scene.prescribed.is_some() || scene.sweep.is_some() {
+        return Some(Analysis::Kinetostatics);
+    }
+    let single = scene.mechanism.actuators.len() == 1;
+    (single && !scene.loads.is_empty()).then_some(Analysis::Statics)
+}
+
 /// The largest absolute values of statics or kinetostatics along the scene's trajectory: of the wanted forces also between
 /// its positions.
 ///

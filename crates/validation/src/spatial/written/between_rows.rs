@@ -2,12 +2,13 @@
 
 use super::super::worst::{Comparison, Worst};
 use super::finding;
-use super::scenes::{Scenes, sinusoid};
-use crate::written::motions::simpson;
+use super::scenes::{ROWS, Scenes, sinusoid};
+use crate::written::motions::{simpson, summary_of_rows};
 use crate::written::poses::difference::{Differences, Texts};
 use crate::written::poses::rows::Rows;
 use dwell_findings::{Check, Finding};
 use dwell_scene::SpaceScene;
+use serde_json::Value;
 
 const LAWS: Comparison = Comparison {
     key: "written-kinetostatics-laws",
@@ -25,6 +26,22 @@ const AGAIN: Texts<'_> = Texts {
     scale: "the largest coordinate, or the largest speed",
     tolerance: 1e-6,
     tolerance_reason: "the errors of both motions",
+};
+const SUMMARY: Texts<'_> = Texts {
+    key: "written-motion-summary",
+    check: Check::WrittenTotals,
+    comparison: "energies and events of the summary of `simulate` with rows and events",
+    scale: "the largest energy, or the time",
+    tolerance: 5e-6,
+    tolerance_reason: "the tolerance of the integration",
+};
+const DEFAULT_ROWS: Texts<'_> = Texts {
+    key: "written-motion-rows",
+    check: Check::WrittenPositions,
+    comparison: "the number of rows without an interval with 1001, and their end with that of other rows",
+    scale: "the number, or the end",
+    tolerance: 1e-12,
+    tolerance_reason: "rounding of times",
 };
 const STOPS: Texts<'_> = Texts {
     key: "written-motion-stops",
@@ -150,4 +167,26 @@ pub(super) fn stops(scene: &SpaceScene, both: [&Rows; 2]) -> Option<Finding> {
         }
     }
     found.finding(STOPS, "motion")
+}
+
+/// The summary of a motion with its rows and events.
+pub(super) fn summary(summary: &Value, rows: &Rows, events: Option<&Rows>) -> Option<Finding> {
+    summary_of_rows(summary, rows, events).finding(SUMMARY, "simulate")
+}
+
+/// Rows without an interval of their own: a thousand equal ones, to the same end.
+pub(super) fn default_rows(all: &Rows, others: &Rows) -> Option<Finding> {
+    let mut found = Differences::default();
+    // A motion that ends early has fewer, and one that strikes a stop has those of its impacts besides.
+    if others.count == ROWS + 1 {
+        let count = all.count as f64;
+        found.add(count - 1001.0, 1001.0, "", || {
+            "the number of rows".to_owned()
+        });
+    }
+    let end = |rows: &Rows| rows.time(rows.count.saturating_sub(1));
+    found.add(end(all) - end(others), end(others), "s", || {
+        "the end".to_owned()
+    });
+    found.finding(DEFAULT_ROWS, "simulate")
 }

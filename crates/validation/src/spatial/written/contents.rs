@@ -10,6 +10,7 @@ use dwell_scene::SpaceScene;
 use dwell_verify::space::DenseSpace;
 
 /// The findings of its sentences.
+// Long because each sentence of `check` is judged in its own way, into one finding.
 pub(super) fn findings(
     program: &Program,
     (claims, scene): (&SpaceClaims<'_>, &SpaceScene),

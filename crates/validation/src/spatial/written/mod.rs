@@ -29,8 +29,9 @@ use dwell_scene::SpaceScene;
 use scenes::Scenes;
 use std::path::Path;
 
-/// The accuracy of one of the motions.
+/// The accuracy of one of the motions; with end stops a coarse one, whose steps are long enough to pass a stop.
 const ACCURACY: &str = "1e-8";
+const ACCURACY_WITH_STOPS: &str = "1e-6";
 
 /// The findings of what the program at a path writes of a scene.
 pub(super) fn written_findings(
@@ -103,15 +104,23 @@ fn free(
         found.extend(between_rows::motion(scene, &rows));
     }
     found.extend(twice(&first, "motion", "simulate")?);
-    let arguments = [&arguments[..], &["--accuracy", ACCURACY]].concat();
-    let other = run(
-        program,
-        &format!("{}-to-accuracy", scene.name),
-        text,
-        &arguments,
-    )?;
+    let summary = first.json("-simulate.json")?;
+    let events = first.csv("-motion-events.csv").ok();
+    found.extend(between_rows::summary(&summary, &rows, events.as_ref()));
+    let name = format!("{}-default-rows", scene.name);
+    let all = run(program, &name, text, &["simulate"])?.csv("-motion.csv")?;
+    found.extend(between_rows::default_rows(&all, &rows));
+    let accuracy = match scene.stops.is_empty() {
+        true => ACCURACY,
+        false => ACCURACY_WITH_STOPS,
+    };
+    let arguments = [&arguments[..], &["--accuracy", accuracy]].concat();
+    let name = format!("{}-to-accuracy", scene.name);
+    let other = run(program, &name, text, &arguments)?;
     let others = other.csv("-motion.csv")?;
-    found.extend(between_rows::again(scene, [&rows, &others]));
+    if scene.stops.is_empty() {
+        found.extend(between_rows::again(scene, [&rows, &others]));
+    }
     found.extend(between_rows::stops(scene, [&rows, &others]));
     Ok(found)
 }

@@ -53,6 +53,7 @@ pub(super) fn findings(
 }
 
 /// The three passes of a row.
+// Long because each pass has its columns, its signs and its scales.
 fn compare(
     worst: &mut Worst,
     samples: &mut Samples<'_>,

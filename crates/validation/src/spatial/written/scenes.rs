@@ -15,7 +15,7 @@ pub(super) const PERIOD: f64 = 1.0;
 const SPEED: f64 = 1.5;
 const DURATION: f64 = 0.3;
 /// Rows of a free motion, and the longest time that is looked at, s.
-const ROWS: f64 = 150.0;
+pub(super) const ROWS: usize = 150;
 const MAX_DURATION: f64 = 1.0;
 
 /// Texts of scenes.
@@ -94,7 +94,7 @@ fn free(scene: &SpaceScene, mut table: Table, speed: f64) -> Option<(String, Str
     if scene.motion.is_none() {
         motion.insert("initial-velocity".to_owned(), Value::Float(speed));
     }
-    let interval = format!("{:e}", duration / ROWS);
+    let interval = format!("{:e}", duration / ROWS as f64);
     Some((text_of(&table).ok()?, interval))
 }
 

@@ -75,6 +75,7 @@ pub(super) fn findings(
 }
 
 /// Powers, kinetic energy, force and moment on the ground.
+// Long because all sums are over the same bodies.
 fn of_bodies(scene: &SpaceScene, state: &SpaceState, mechanism_size: f64) -> Sums {
     let weight = gravity(state);
     let (mut force, mut moment, mut energy) = (Vec3::ZERO, Vec3::ZERO, 0.0);

@@ -18,4 +18,4 @@ pub(crate) use between_rows::simpson;
 pub(crate) use drives::{Drive, DriveKind};
 pub(crate) use motion_files::findings;
 pub(crate) use row_forces::MotionReading;
-pub(crate) use summary::sentences;
+pub(crate) use summary::{sentences, summary_of_rows};

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 const FACTORS: [f64; 4] = [1.0, 180.0 / PI, 1e3, 30.0 / PI];
 
 /// Energies and events of the summary with the rows.
-pub(super) fn summary_of_rows(summary: &Value, rows: &Rows, events: Option<&Rows>) -> Differences {
+pub(crate) fn summary_of_rows(summary: &Value, rows: &Rows, events: Option<&Rows>) -> Differences {
     let mut found = Differences::default();
     let result = |name: &str| summary["results"][name]["value"].as_f64();
     let column = |name: &str| rows.columns.get(name).cloned().unwrap_or_default();
@@ -67,7 +67,7 @@ fn add_events(found: &mut Differences, summary: &Value, events: Option<&Rows>) {
     let stated: Vec<(&str, f64)> = stated.collect();
     let rows = events.map_or(0, |events| events.count);
     let sum: f64 = stated.iter().map(|(_, count)| count).sum();
-    if !stated.is_empty() {
+    if !stated.is_empty() || rows > 0 {
         found.add(sum - rows as f64, 1.0, "", || "number of events".to_owned());
     }
     let times = events.and_then(|events| events.columns.get("t"));

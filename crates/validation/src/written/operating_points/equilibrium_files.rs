@@ -3,7 +3,7 @@
 
 use super::characteristic::Complex;
 use super::modes::{eigenvalues, number};
-use super::starts::Start;
+use super::starts::{FreeCoordinate, Start};
 use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::program::{Program, Run};
@@ -120,6 +120,7 @@ fn add_words(to: &mut Differences, printed: &str, summary: &Json, names: &[Strin
 }
 
 /// The equilibrium of `linearise` is one of the table, with its modes.
+// Long because place, nearness and modes are of one pair of equilibria.
 fn add_same(
     to: &mut Differences,
     start: &Start<'_>,
@@ -186,62 +187,121 @@ fn add_same(
     }
 }
 
-/// The smallest and largest static force with the rows of `statics` over the interval that was searched.
+/// The rows of `statics` over the interval that was searched: the smallest and largest static force, and an equilibrium wherever the force
+/// changes its sign.
 fn static_force(
     compared: &mut Compared,
     program: &Program,
     start: &Start<'_>,
     summary: &Json,
 ) -> Result<(), String> {
-    let ([free], Some(low), Some(high)) = (
-        start.free.as_slice(),
-        number(summary, "static_force.min"),
-        number(summary, "static_force.max"),
-    ) else {
+    let [free] = start.free.as_slice() else {
         return Ok(());
     };
     let end = |end: &str| number(summary, &format!("searched.{}.{end}", free.name));
-    let (Some(from), Some(to), true) = (end("from"), end("to"), start.drives_at_rest().is_some())
+    let (Some(from), Some(to), Some(drives)) = (end("from"), end("to"), start.drives_at_rest())
     else {
         return Ok(());
     };
+    // Friction that holds is no load of `statics`.
+    if start.scene.contains_key("friction") {
+        return Ok(());
+    }
+    let Some([places, forces]) = static_rows(program, start, free, [from, to])? else {
+        return Ok(());
+    };
+    let found = compared.of("written-static-force");
+    let ends = ["min", "max"].map(|end| number(summary, &format!("static_force.{end}")));
+    if let [Some(low), Some(high)] = ends {
+        let [low_row, high_row] = extent(&forces);
+        let scale = low.abs().max(high.abs());
+        // A drive at rest adds the same everywhere.
+        found.add((high - low) - (high_row - low_row), scale, "", || {
+            "largest less smallest".to_owned()
+        });
+        if drives == 0 {
+            found.add(low - low_row, scale, "", || "the smallest".to_owned());
+        }
+    }
+    if drives == 0 {
+        let count = number(summary, "equilibria").unwrap_or(0.0) as usize;
+        let at = |k: usize| number(summary, &format!("equilibrium.{k}.{}", free.name));
+        let known: Vec<f64> = (1..=count).filter_map(at).collect();
+        add_sign_changes(found, &known, [&places, &forces]);
+    }
+    Ok(())
+}
+
+/// Coordinates, and what the loads do there; none where the loads are refused, as those in time.
+fn static_rows(
+    program: &Program,
+    start: &Start<'_>,
+    free: &FreeCoordinate,
+    interval: [f64; 2],
+) -> Result<Option<[Vec<f64>; 2]>, String> {
     let mut scene = start.scene.clone();
     for section in ["motion", "prescribed", "coordinate-sweep", "requests"] {
         scene.remove(section);
     }
-    let ends = [from, to].map(|q| Value::Float(q / free.unit()));
+    let ends = interval.map(|q| Value::Float(q / free.unit()));
     let sweep = Table::from_iter([(free.name.clone(), Value::Array(ends.to_vec()))]);
     scene.insert("coordinate-sweep".to_owned(), Value::Table(sweep));
-    let run = program.run(
-        "static-force",
-        &text_of(&scene)?,
-        &["statics", "--points", POSITIONS],
-    );
-    // Loads in time are refused: such a scene has no equilibrium.
-    let Ok(run) = run else { return Ok(()) };
-    let rows = run.csv("-statics.csv")?;
-    let name = format!("{}.actuator_force", free.name);
-    let forces = rows.columns.get(&name).ok_or("no actuator force")?;
-    // The actuator holds what the loads do; a drive at rest adds the same everywhere.
-    let [low_row, high_row] = forces
-        .iter()
-        .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], f| {
-            [a.min(-f), b.max(-f)]
-        });
-    let scale = low.abs().max(high.abs());
-    let found = compared.of("written-static-force");
-    found.add((high - low) - (high_row - low_row), scale, "", || {
-        "largest less smallest".to_owned()
-    });
-    if start.drives_at_rest() == Some(0) {
-        found.add(low - low_row, scale, "", || "the smallest".to_owned());
+    let arguments = ["statics", "--points", POSITIONS];
+    let Ok(run) = program.run("static-force", &text_of(&scene)?, &arguments) else {
+        return Ok(None);
+    };
+    let mut rows = run.csv("-statics.csv")?;
+    let mut column = |name: &str| rows.columns.remove(name).ok_or(format!("no column {name}"));
+    // The actuator holds what the loads do.
+    let forces = column(&format!("{}.actuator_force", free.name))?;
+    let forces = forces.iter().map(|f| -f).collect();
+    Ok(Some([column(&free.name)?, forces]))
+}
+
+fn extent(values: &[f64]) -> [f64; 2] {
+    let ends = [f64::INFINITY, f64::NEG_INFINITY];
+    values.iter().fold(ends, |[a, b], v| [a.min(*v), b.max(*v)])
+}
+
+/// Between two rows with forces of different sign is an equilibrium.
+fn add_sign_changes(to: &mut Differences, known: &[f64], [places, forces]: [&[f64]; 2]) {
+    let [low, high] = extent(forces);
+    let clear = 1e-9 * low.abs().max(high.abs());
+    for (q, force) in places.windows(2).zip(forces.windows(2)) {
+        let is_change = force[0] * force[1] < 0.0 && force.iter().all(|f| f.abs() > clear);
+        if !is_change {
+            continue;
+        }
+        to.add(0.0, 1.0, "", String::new);
+        let [from, to_here] = [q[0].min(q[1]), q[0].max(q[1])];
+        let slack = 1e-6 * (to_here - from);
+        if !known
+            .iter()
+            .any(|k| (from - slack..=to_here + slack).contains(k))
+        {
+            to.fail(format!(
+                "no equilibrium between {from} and {to_here}, where the force changes its sign"
+            ));
+        }
     }
-    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_missing_equilibrium_is_found() {
+        let [places, forces] = [[0.0, 1.0, 2.0], [1.0, -1.0, -2.0]];
+        for (known, passes) in [(vec![0.5], true), (vec![1.5], false), (vec![], false)] {
+            let mut found = Differences::default();
+            add_sign_changes(&mut found, &known, [&places, &forces]);
+            let mut none = Differences::default();
+            none.add(0.0, 1.0, "", String::new);
+            none.merge(found);
+            assert_eq!(none.failure().is_none(), passes, "{known:?}");
+        }
+    }
 
     #[test]
     fn words_are_those_of_the_eigenvalues() {

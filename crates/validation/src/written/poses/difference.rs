@@ -56,6 +56,12 @@ impl Differences {
         self.relative
     }
 
+    /// Why something could not be compared.
+    #[cfg(test)]
+    pub(crate) fn failure(&self) -> Option<&str> {
+        self.failure.as_deref()
+    }
+
     /// The worse of both.
     pub(crate) fn merge(&mut self, other: Self) {
         let failure = self.failure.take().or(other.failure.clone());

@@ -23,6 +23,7 @@ use super::table_file::{table_differences, table_rows};
 use super::variants::calibration_differences;
 
 /// Runs `reduce` and its like on a scene with one actuator, as it is and with everything requested.
+// Long because it is the list of all files of `reduce` and its like.
 pub(crate) fn compare_reduced(
     compared: &mut Compared,
     program: &Program,
@@ -207,6 +208,7 @@ const TABLE_ACCURACY: &str = "1e-7";
 type Comparison = fn(&str, &Rows, &str, &str) -> Differences;
 
 /// The reduced model once more: as a table, as code in three languages, and as formulas.
+// Long because it is the list of all copies of the reduced model.
 fn compare_copies(
     compared: &mut Compared,
     program: &Program,

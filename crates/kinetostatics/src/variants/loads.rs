@@ -1,0 +1,183 @@
+//! The numbers of loads apart from their structure: points, free lengths and angles, constant magnitudes.
+
+use crate::load::{
+    CompiledLoads, CompiledSignal, Guide, Load, LoadKind, Magnitude, Signal, compile_signals,
+};
+use crate::mass::Mass;
+use dwell_geometry::body_states::CoordinateFunction;
+use dwell_geometry::{Coordinate, Mechanism, Vec2};
+
+/// What is done with each number.
+type Visit<'a> = &'a mut dyn FnMut(&mut f64);
+
+fn visit_points(points: &mut [Vec2], visit: Visit<'_>) {
+    for point in points {
+        visit(&mut point.x);
+        visit(&mut point.y);
+    }
+}
+
+/// Visits the numbers of a load that may differ between variants. Directions are none of them.
+fn visit_load(load: &mut Load, visit: Visit<'_>) {
+    match &mut load.kind {
+        LoadKind::Gravity { .. } | LoadKind::Torque { .. } | LoadKind::RotationalDamper { .. } => {}
+        LoadKind::Force { point, .. } => visit_points(std::slice::from_mut(point), visit),
+        LoadKind::Spring {
+            points,
+            free_length,
+            ..
+        } => {
+            visit_points(points, visit);
+            visit(free_length);
+        }
+        LoadKind::TorsionSpring { free_angle, .. } => visit(free_angle),
+        LoadKind::Damper { points, .. }
+        | LoadKind::PointToPointForce { points, .. }
+        | LoadKind::SlideForce(Guide { points, .. })
+        | LoadKind::SlideDamper(Guide { points, .. }) => visit_points(points, visit),
+        // Not among the loads of variants.
+        LoadKind::SeparatingForce(_) => {}
+    }
+    match &mut load.magnitude {
+        Magnitude::Constant(value) => visit(value),
+        Magnitude::Law(signal, _) => visit_signal(signal, visit),
+        Magnitude::Expression(_, signals)
+        | Magnitude::Function(_, signals)
+        | Magnitude::External(signals) => {
+            signals.iter_mut().for_each(|s| visit_signal(s, visit));
+        }
+        Magnitude::Friction(_) | Magnitude::Separating(_) => {}
+    }
+}
+
+fn visit_signal(signal: &mut Signal, visit: Visit<'_>) {
+    match signal {
+        Signal::Value(Coordinate::Length { points, .. })
+        | Signal::Velocity(Coordinate::Length { points, .. }) => visit_points(points, visit),
+        Signal::Value(Coordinate::Angle(_) | Coordinate::Travel(_))
+        | Signal::Velocity(Coordinate::Angle(_) | Coordinate::Travel(_))
+        | Signal::Time => {}
+    }
+}
+
+/// Visits the points of a coordinate on which a magnitude depends.
+fn visit_compiled_signal(signal: &mut CompiledSignal, visit: Visit<'_>) {
+    let (Signal::Value(function) | Signal::Velocity(function)) = signal else {
+        return;
+    };
+    match function {
+        CoordinateFunction::Travel { points, .. } | CoordinateFunction::Length { points, .. } => {
+            visit_points(points, visit);
+        }
+        CoordinateFunction::Angle(_) => {}
+    }
+}
+
+/// Whether a load keeps its meaning with other numbers: its magnitude is known from the state alone.
+pub(super) fn is_supported(load: &Load) -> bool {
+    let by_state = match load.magnitude {
+        Magnitude::Constant(_)
+        | Magnitude::Law(..)
+        | Magnitude::Expression(..)
+        | Magnitude::Function(..) => true,
+        Magnitude::Friction(_) | Magnitude::Separating(_) | Magnitude::External(_) => false,
+    };
+    by_state && !matches!(load.kind, LoadKind::SeparatingForce(_))
+}
+
+/// Whether a load with these numbers is one that a compilation takes: stiffness, damping and gravity above zero, free
+/// lengths not below. What else there is, a compilation decides.
+fn is_sound(load: &Load) -> bool {
+    let is_free_length_sound = match load.kind {
+        LoadKind::Spring { free_length, .. } => free_length >= 0.0,
+        _ => true,
+    };
+    let may_have_any_sign = match load.kind {
+        LoadKind::Force { .. }
+        | LoadKind::Torque { .. }
+        | LoadKind::PointToPointForce { .. }
+        | LoadKind::SlideForce(_)
+        | LoadKind::SeparatingForce(_) => true,
+        LoadKind::Gravity { .. }
+        | LoadKind::Spring { .. }
+        | LoadKind::TorsionSpring { .. }
+        | LoadKind::Damper { .. }
+        | LoadKind::RotationalDamper { .. }
+        | LoadKind::SlideDamper(_) => false,
+    };
+    let is_magnitude_sound = match load.magnitude {
+        Magnitude::Constant(value) => value > 0.0 || may_have_any_sign,
+        _ => true,
+    };
+    is_free_length_sound && is_magnitude_sound
+}
+
+/// The load with all its numbers zero.
+fn structure(load: &Load) -> Load {
+    let mut load = load.clone();
+    visit_load(&mut load, &mut |number| *number = 0.0);
+    load
+}
+
+impl CompiledLoads {
+    /// The numbers of other loads of the same structure, on a mechanism of the same structure. None where they have
+    /// another one: other bodies, directions, laws.
+    pub(super) fn numbers_of(&self, mechanism: &Mechanism, loads: &[Load]) -> Option<Vec<f64>> {
+        let same = |(one, other): (&Load, &Load)| structure(one) == structure(other);
+        if loads.len() != self.loads.len() || !self.loads.iter().zip(loads).all(same) {
+            return None;
+        }
+        let mut numbers = Vec::new();
+        let mut note = |number: &mut f64| numbers.push(*number);
+        for load in loads {
+            visit_load(&mut load.clone(), &mut note);
+            let mut signals = compile_signals(mechanism, &load.magnitude).ok()?;
+            signals
+                .iter_mut()
+                .for_each(|signal| visit_compiled_signal(signal, &mut note));
+        }
+        Some(numbers)
+    }
+
+    /// Takes the numbers of a variant with these masses, by body; false where a compilation has to decide on them. The
+    /// points at which couples are shown stay: a couple acts alike at each.
+    pub(super) fn set_numbers(&mut self, numbers: &[f64], masses: &[Mass]) -> bool {
+        let mut next = numbers.iter().copied();
+        let mut fill = |to: &mut f64| *to = next.next().unwrap_or(f64::NAN);
+        for (load, signals) in self.loads.iter_mut().zip(&mut self.compiled_signals) {
+            visit_load(load, &mut fill);
+            signals
+                .iter_mut()
+                .for_each(|signal| visit_compiled_signal(signal, &mut fill));
+        }
+        let mut with_weight = 0;
+        for (body, mass) in &mut self.weighted_bodies {
+            *mass = masses[body.0];
+            with_weight += usize::from(mass.mass > 0.0);
+        }
+        let with_mass = masses.iter().filter(|mass| mass.mass > 0.0);
+        with_mass.count() == with_weight
+            && numbers.iter().all(|number| number.is_finite())
+            && self.loads.iter().all(is_sound)
+    }
+
+    /// How many numbers [`numbers_of`](Self::numbers_of) gives.
+    pub(super) fn number_count(&self) -> usize {
+        let mut count = 0;
+        let mut note = |_: &mut f64| count += 1;
+        for (load, signals) in self.loads.iter().zip(&self.compiled_signals) {
+            visit_load(&mut load.clone(), &mut note);
+            let mut signals = signals.clone();
+            signals
+                .iter_mut()
+                .for_each(|signal| visit_compiled_signal(signal, &mut note));
+        }
+        count
+    }
+
+    /// Whether all magnitudes are constant.
+    pub(super) fn are_constant(&self) -> bool {
+        let mut loads = self.loads.iter();
+        loads.all(|load| matches!(load.magnitude, Magnitude::Constant(_)))
+    }
+}
