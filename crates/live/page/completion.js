@@ -64,10 +64,11 @@ class Completion {
     this.chosen = (k + this.choices.length) % this.choices.length;
     [...this.list.children].forEach((item, i) => item.setAttribute('aria-selected', String(i === this.chosen)));
     this.list.children[this.chosen].scrollIntoView({ block: 'nearest' });
-    const { name, doc, example } = this.choices[this.chosen];
-    this.editor.hint.className = '';
-    this.editor.hint.textContent = `${name}: ${doc}${example ? ` Example: ${example}` : ''}`;
+    this.editor.showHint();
   }
+
+  // What the chosen key means.
+  get meaning() { return Schema.sentence(this.choices[this.chosen]); }
 
   accept(k) {
     const { name } = this.choices[k];
@@ -87,7 +88,10 @@ class Completion {
       ArrowUp: () => this.choose(this.chosen - 1),
       Enter: () => this.accept(this.chosen),
       Tab: () => this.accept(this.chosen),
-      Escape: () => this.close(),
+      Escape: () => {
+        this.close();
+        this.editor.showHint();
+      },
     };
     const act = Object.hasOwn(acts, event.key) ? acts[event.key] : null;
     if (!act) return false;

@@ -44,6 +44,8 @@ class Editor {
     this.messages = [];
     this.draw();
     this.completion.update(false);
+    // The event of the cursor comes only with the next frame of the browser.
+    this.showHint();
     this.changed(this.text);
   }
 
@@ -157,8 +159,13 @@ class Editor {
     }
   }
 
-  // What is wrong where the cursor is; else what the key there means.
+  // What the key chosen in the list means; else what is wrong where the cursor is, and what the key there means.
   showHint() {
+    if (this.completion.isOpen) {
+      this.hint.className = '';
+      this.hint.textContent = this.completion.meaning;
+      return;
+    }
     const at = this.area.selectionStart;
     const here = this.messages.find((m) => m.labels.some((l) => l.from <= at && at <= Math.max(l.to, l.from + 1)));
     const wrong = here ? [here.message, here.help].filter(Boolean).join('; ') : '';
@@ -174,8 +181,7 @@ class Editor {
     if (!place) return '';
     const path = place.valued ? [...place.path, ...place.key] : [...place.path, ...(place.word ? [place.word] : [])];
     const key = this.schema.describe(path.filter((step, k) => k < path.length - 1 || step !== '[]'), this.inSpace);
-    if (!key || !key.doc) return '';
-    return `${key.name}: ${key.doc}${key.example ? ` Example: ${key.example}` : ''}`;
+    return key && key.doc ? Schema.sentence(key) : '';
   }
 
   select(label) {

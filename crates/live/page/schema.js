@@ -59,6 +59,9 @@ class Schema {
     return null;
   }
 
+  // What a key means, in a line.
+  static sentence({ name, doc, example }) { return `${name}: ${doc}${example ? ` Example: ${example}` : ''}`; }
+
   static words(key) {
     const example = key.examples && key.examples.length ? inToml(key.examples[0]) : '';
     return { doc: key.description || '', example };
