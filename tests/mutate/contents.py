@@ -31,6 +31,11 @@ OF_UNIT = 1e-6
 UNIT = re.compile(r"\[[^]]*\]$")
 # A motion has changed where it differs by more than so many times what half the tolerance changes of it.
 TIMES_TOLERANCE = 4.0
+# A result within the error that is stated beside it is no wrong number. What the changed program states counts up to so many times what is
+# stated without the change, for it may be wrong itself.
+TIMES_STATED = 10.0
+# Around the name of a quantity in the labels of tables, files and summaries.
+AROUND = re.compile(r"^\| |^\.extrema\.|^\.results\.| \[[^]]*\]$|\.npy$|\.(?:min|max)(?: at \S+ \[[^]]*\]$|\.value$|$)|\.value$| \|.*$")
 
 
 # A printed number with other digits is the same where it agrees to the fewer of both, if these are not fewer than about three.
@@ -150,13 +155,44 @@ def of_text(text):
     return found
 
 
-def is_other_place(label, differs, a, b):
-    """Whether this is the place of an extremum of the same value: as near as the value's rounding shows, or reached elsewhere, too, a period
-    later, for instance."""
-    if SAME_PLACE < differs < OTHER_PLACE or not PLACE.search(label):
+def is_other_place(label, differs, sizes_here, threshold):
+    """Whether this is the place of an extremum of the same value: as near as the value's rounding or error shows, or reached elsewhere, too,
+    a period later, for instance. `threshold(label)` is the size from which on a value has changed."""
+    if not PLACE.search(label):
         return False
     value = next((label[: -len(end)] + new for end, new in VALUES.items() if label.endswith(end)), PLACE.sub("", label))
-    return value in a and size(a[value], b.get(value, ())) <= EFFECTIVE
+    if value not in sizes_here or sizes_here[value] > threshold(value):
+        return False
+    same_place = max(SAME_PLACE, math.sqrt(threshold(value)))
+    return differs <= same_place or differs >= OTHER_PLACE
+
+
+def quantity_of(label):
+    """The quantity that a label is of, whatever file it stands in."""
+    before = None
+    while before != label:
+        before, label = label, AROUND.sub("", label)
+    return label
+
+
+def stated(written):
+    """The errors that a run states beside its results, by the quantities."""
+    errors = {}
+    for name, data in written.files.items():
+        if not name.endswith(".json"):
+            continue
+        summary = json.loads(data)
+        for entry in summary.get("extrema", ()):
+            errors[entry["quantity"]] = entry.get("estimated_error") or 0.0
+        for key, entry in summary.get("results", {}).items():
+            errors[key] = entry.get("estimated_error") or 0.0
+    return errors
+
+
+def slack(base, other):
+    """By how much each quantity may differ: by both stated errors."""
+    of_base, of_other = stated(base), stated(other)
+    return {name: error + min(of_other.get(name, 0.0), TIMES_STATED * error) for name, error in of_base.items() if math.isfinite(error)}
 
 
 class Difference:
@@ -190,9 +226,10 @@ def difference(base, other, effective=None):
             found.add(name, "the file", math.inf)
         else:
             pairs.append((name, base.files[name], other.files[name]))
+    errors = slack(base, other)
     for name, a, b in pairs:
         if a != b:
-            compare(found, name, numbers(name, a), numbers(name, b), effective)
+            compare(found, name, numbers(name, a), numbers(name, b), effective, errors)
     return found if found.count else None
 
 
@@ -209,9 +246,10 @@ def sizes(a, b):
     return found
 
 
-def all_sizes(a, b):
-    """By label: the difference of its numbers. An extremum that is zero is compared by the other end, a column that is zero but for
-    rounding by the others of its unit."""
+def all_sizes(a, b, errors=None):
+    """By label: the difference of its numbers beyond the error of its quantity. An extremum that is zero is compared by the other end, a
+    column that is zero but for rounding by the others of its unit."""
+    errors = errors or {}
     largest_of = {label: max((abs(x) for x in values if math.isfinite(x)), default=0.0) for label, values in a.items()}
     of_unit = {}
     for label, largest in largest_of.items():
@@ -220,7 +258,9 @@ def all_sizes(a, b):
     def floor(label):
         unit = UNIT.search(label)
         return max(largest_of.get(other_end(label), 0.0), OF_UNIT * of_unit.get(unit[0], 0.0) if unit else 0.0)
-    return {label: size(a.get(label, ()), b.get(label, ()), floor(label)) for label in a.keys() | b.keys()}
+    def error(label):
+        return 0.0 if PLACE.search(label) or ESTIMATES.search(label) else errors.get(quantity_of(label), 0.0)
+    return {label: size(a.get(label, ()), b.get(label, ()), floor(label), error(label)) for label in a.keys() | b.keys()}
 
 
 def other_end(label):
@@ -231,8 +271,9 @@ def other_end(label):
     return swapped if swapped != label else ""
 
 
-def size(a, b, floor=0.0):
-    """The largest difference of two lists of numbers, relative to the largest of the first, or a floor; infinite where they cannot be compared."""
+def size(a, b, floor=0.0, error=0.0):
+    """The largest difference of two lists of numbers beyond an error, relative to the largest of the first, or a floor; infinite where they
+    cannot be compared."""
     if len(a) != len(b):
         return math.inf
     scale = max((abs(x) for x in a if math.isfinite(x)), default=0.0)
@@ -241,13 +282,16 @@ def size(a, b, floor=0.0):
     for x, y in zip(a, b):
         if x == y or math.isnan(x) and math.isnan(y) or same_printed(x, y):
             continue
-        differs = abs(x - y) / scale if scale else math.inf
+        beyond = max(abs(x - y) - error, 0.0)
+        differs = 0.0 if not beyond else beyond / scale if scale else math.inf
         largest = max(largest, differs if differs == differs else math.inf)
     return largest
 
 
-def compare(found, name, a, b, effective):
-    for label, differs in all_sizes(a, b).items():
+def compare(found, name, a, b, effective, errors):
+    sizes_here = all_sizes(a, b, errors)
+    threshold = lambda label: effective.get((name, label), EFFECTIVE)
+    for label, differs in sizes_here.items():
         if not IGNORED.search(label):
-            if differs > effective.get((name, label), EFFECTIVE) and not is_other_place(label, differs, a, b):
+            if differs > threshold(label) and not is_other_place(label, differs, sizes_here, threshold):
                 found.add(name, label, differs)

@@ -26,8 +26,8 @@ import selection
 
 # Outcomes that a later run need not look at again.
 SETTLED = {judge.CAUGHT, "no number changed", "not reached", "refused", "endless"}
-# A number is known to change, and only the checks are to be tried again.
-OPEN = {"caught by one", "not caught"}
+# A number is known to change, and only the checks are to be tried again. What no check catches is tried from its beginning.
+OPEN = {"caught by one"}
 
 
 def main():

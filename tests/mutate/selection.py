@@ -1,6 +1,6 @@
 """Which lines are changed: all of the laws, and those drawn from the crates between the scene and the written files."""
+import hashlib
 import pathlib
-import random
 import re
 
 from changes import changes_of
@@ -38,12 +38,17 @@ def exhaustive_changes(top):
 
 def drawn_changes(top, lines, seed):
     """One change of each of so many lines, drawn by the seed: every line that computes is as probable as any other."""
-    by_line = {}
+    by_line, seen = {}, {}
     for change in every_change(top, DRAWN):
         by_line.setdefault((change.path, change.line), []).append(change)
-    rng = random.Random(seed)
-    places = rng.sample(sorted(by_line), min(lines, len(by_line)))
-    return [rng.choice(by_line[place]) for place in sorted(places)]
+    def lot(place):
+        """Of the line's text, not its number, and of its count among the same ones of its file: a line keeps its lot where others change."""
+        (path, line), text = place, line_of(top, by_line[place][0])
+        seen[path, text] = seen.get((path, text), 0) + 1
+        return hashlib.sha256(f"{seed} {path} {text} {seen[path, text]}".encode()).digest()
+    lots = {place: lot(place) for place in sorted(by_line)}
+    places = sorted(lots, key=lots.get)[:lines]
+    return [by_line[place][int.from_bytes(lots[place][:8], "big") % len(by_line[place])] for place in sorted(places)]
 
 
 def top():
