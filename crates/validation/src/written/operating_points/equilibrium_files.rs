@@ -6,6 +6,7 @@ use super::modes::{eigenvalues, number};
 use super::starts::{FreeCoordinate, Start};
 use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
+use crate::written::poses::equilibrium::equilibrium;
 use crate::written::poses::program::{Program, Run};
 use crate::written::poses::scene_text::text_of;
 use serde_json::Value as Json;
@@ -204,10 +205,10 @@ fn static_force(
         return Ok(());
     };
     // Friction that holds is no load of `statics`.
-    if start.scene.contains_key("friction") {
+    if holds(&start.scene) {
         return Ok(());
     }
-    let Some([places, forces]) = static_rows(program, start, free, [from, to])? else {
+    let Some([places, forces]) = static_rows(compared, program, start, free, [from, to])? else {
         return Ok(());
     };
     let found = compared.of("written-static-force");
@@ -232,15 +233,26 @@ fn static_force(
     Ok(())
 }
 
-/// Coordinates, and what the loads do there; none where the loads are refused, as those in time.
+/// Whether there is friction that is not zero at rest.
+fn holds(scene: &Table) -> bool {
+    let all = scene.get("friction").and_then(Value::as_table);
+    all.is_some_and(|all| {
+        all.values()
+            .any(|one| one.get("regularization-speed").is_none())
+    })
+}
+
+/// Coordinates, and what the loads do there, by rows in which each body is in equilibrium under the loads of the scene's text; none where the
+/// loads are refused, as those in time.
 fn static_rows(
+    compared: &mut Compared,
     program: &Program,
     start: &Start<'_>,
     free: &FreeCoordinate,
     interval: [f64; 2],
 ) -> Result<Option<[Vec<f64>; 2]>, String> {
     let mut scene = start.scene.clone();
-    for section in ["motion", "prescribed", "coordinate-sweep", "requests"] {
+    for section in ["motion", "prescribed", "coordinate-sweep"] {
         scene.remove(section);
     }
     let ends = interval.map(|q| Value::Float(q / free.unit()));
@@ -251,6 +263,11 @@ fn static_rows(
         return Ok(None);
     };
     let mut rows = run.csv("-statics.csv")?;
+    let file = "statics over the searched interval";
+    let forces = equilibrium(&start.motion.reading, &rows, file, true);
+    compared.merge("written-equilibrium", forces.bodies);
+    compared.merge("written-loads", forces.loads);
+    compared.merge("written-totals", forces.totals);
     let mut column = |name: &str| rows.columns.remove(name).ok_or(format!("no column {name}"));
     // The actuator holds what the loads do.
     let forces = column(&format!("{}.actuator_force", free.name))?;

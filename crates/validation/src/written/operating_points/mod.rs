@@ -5,6 +5,7 @@
 //! program as a process ── matrices, table, summary, sentences ── characteristic (determinant), modes ── findings
 //!      └── starts (changed states and inputs) ── rows of simulate ── slopes (A, B, C, D by differences) ────┤
 //!      └── starts in equilibria ── rows of simulate, modes of linearise ── rest ────────────────────────────┤
+//!      └── starts beside equilibria ── places of linearise ── nearest ─────────────────────────────────────┤
 //! summaries, sentences, rows of statics ── equilibrium_files ──────────────────────────────────────────────┘
 //! ```
 
@@ -12,6 +13,7 @@ mod characteristic;
 mod equilibrium_files;
 mod linear_file;
 mod modes;
+mod nearest;
 mod point_files;
 mod rest;
 mod runs;

@@ -5,6 +5,7 @@
 use super::characteristic::size;
 use super::linear_file::LinearFile;
 use super::modes::eigenvalues;
+use super::nearest;
 use super::runs::{linearise, simulate};
 use super::starts::{Changed, FreeCoordinate, Start};
 use crate::written::poses::compared::Compared;
@@ -32,6 +33,7 @@ impl Rest<'_> {
         for row in 0..self.rows.count {
             self.compare_place(compared, row)?;
         }
+        nearest::compare(self, compared)?;
         if let Some(order) = self.order() {
             compared.merge("written-rest-order", order);
         }
@@ -72,11 +74,15 @@ impl Rest<'_> {
         (all.count > 0).then_some(all)
     }
 
+    /// Where an equilibrium is, by free coordinate.
+    pub(super) fn coordinates(&self, row: usize) -> Option<Vec<f64>> {
+        let of = |free: &FreeCoordinate| self.rows.get(row, &free.name);
+        self.start.free.iter().map(of).collect()
+    }
+
     /// The scene at rest in an equilibrium, and what the state of a drive adds there.
     fn place(&self, row: usize) -> Option<(Start<'_>, Changed, f64)> {
-        let of = |free: &FreeCoordinate| self.rows.get(row, &free.name);
-        let values: Vec<f64> = self.start.free.iter().map(of).collect::<Option<_>>()?;
-        let start = self.start.at_rest_in(&values);
+        let start = self.start.at_rest_in(&self.coordinates(row)?);
         let state = self
             .start
             .changes()

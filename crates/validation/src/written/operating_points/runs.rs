@@ -1,4 +1,4 @@
-//! The two commands that tell how a motion starts.
+//! The commands that tell how a motion starts, and what is linear about its start.
 
 use super::starts::DURATION;
 use crate::written::motions::MotionReading;
@@ -39,5 +39,11 @@ pub(super) fn simulate(program: &Program, name: &str, text: &str) -> Result<Simu
 pub(super) fn linearise(program: &Program, name: &str, text: &str) -> Result<Run, String> {
     let options = ["linearise", "--about", "initial"];
     let run = program.run(&format!("linearise-{name}"), text, &options);
+    run.map_err(|e| e.to_string())
+}
+
+/// Runs `linearise` about the equilibrium that is nearest to the start.
+pub(super) fn linearise_nearest(program: &Program, name: &str, text: &str) -> Result<Run, String> {
+    let run = program.run(&format!("linearise-{name}"), text, &["linearise"]);
     run.map_err(|e| e.to_string())
 }

@@ -39,7 +39,7 @@ pub(super) struct FreeCoordinate {
 #[derive(Debug)]
 pub(super) struct Start<'a> {
     pub(super) scene: Table,
-    motion: &'a MotionReading,
+    pub(super) motion: &'a MotionReading,
     pub(super) free: Vec<FreeCoordinate>,
 }
 

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 type Spec = (&'static str, Check, &'static str, f64);
 
 #[rustfmt::skip]
-const SPECS: [Spec; 77] = [
+const SPECS: [Spec; 78] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
     ("written-quotients", Check::WrittenRates, "velocity ratios with the velocities that they are of, and transmission angles with the places of the pins", 5e-14),
@@ -70,6 +70,7 @@ const SPECS: [Spec; 77] = [
     ("written-rest-order", Check::WrittenTotals, "stability of neighbouring equilibria of one coordinate: the force at rest crosses zero in turn", 0.5),
     ("written-rest-start", Check::WrittenTotals, "distances of equilibria from the start with the start of the motion, and what was searched with one revolution", 1e-14),
     ("written-rest-words", Check::WrittenSentences, "the stability that `equilibria` and `linearise` print with their eigenvalues", 0.5),
+    ("written-rest-nearest", Check::WrittenTotals, "the equilibrium that `linearise` takes from a start beside each of the table with the distance between both", 5e-15),
     ("written-rest-again", Check::WrittenTwice, "the equilibrium of `linearise` and its modes with the table of `equilibria`", 1e-14),
     ("written-static-force", Check::WrittenTotals, "the smallest and the largest static force of `equilibria` with rows of `statics`, and an equilibrium wherever it changes its sign", 1e-14),
     ("written-damped", Check::WrittenTotals, "the modes of `equilibria` with a damper of known damping ratio, with those of a damped oscillator", 1e-14),

@@ -1,0 +1,79 @@
+//! `linearise` takes the equilibrium that is nearest to the start. From a start beside each equilibrium of the table it must be that one.
+
+use super::modes::number;
+use super::rest::Rest;
+use super::runs::linearise_nearest;
+use super::starts::Start;
+use crate::written::poses::compared::Compared;
+
+/// A start is so far from its equilibrium, in parts of the distance to the next one.
+const ASIDE: f64 = 0.1;
+
+/// Moves the start beside each equilibrium. One that is alone has no other that could be taken.
+pub(super) fn compare(rest: &Rest<'_>, compared: &mut Compared) -> Result<(), String> {
+    let places: Option<Vec<Vec<f64>>> = (0..rest.rows.count)
+        .map(|row| rest.coordinates(row))
+        .collect();
+    let places = places.ok_or("an equilibrium without a place")?;
+    // Friction holds in whole intervals, and the ends of these are no equilibria of their own; of neutral ones each position is one.
+    let is_neutral = rest.summary["results"]
+        .as_object()
+        .is_some_and(|all| all.keys().any(|key| key.contains(".neutral")));
+    if rest.start.scene.contains_key("friction") || is_neutral {
+        return Ok(());
+    }
+    for (row, place) in places.iter().enumerate() {
+        let others = places.iter().enumerate().filter(|(k, _)| *k != row);
+        let next = others.min_by(|(_, a), (_, b)| {
+            let [a, b] = [a, b].map(|other| distance(rest.start, place, other));
+            a.total_cmp(&b)
+        });
+        if let Some((_, next)) = next {
+            compare_beside(rest, compared, (row, place), next)?;
+        }
+    }
+    Ok(())
+}
+
+fn compare_beside(
+    rest: &Rest<'_>,
+    compared: &mut Compared,
+    (row, place): (usize, &[f64]),
+    next: &[f64],
+) -> Result<(), String> {
+    let beside = |(a, b): (&f64, &f64)| a + ASIDE * (b - a);
+    let from: Vec<f64> = place.iter().zip(next).map(beside).collect();
+    let start = rest.start.at_rest_in(&from);
+    let text = start.text_of_scene(start.scene.clone())?;
+    let run = linearise_nearest(rest.program, &format!("beside{row}"), &text)?;
+    let summary = run.json("-linearise.json")?;
+    for (k, free) in start.free.iter().enumerate() {
+        let what = || {
+            format!(
+                "equilibrium {}, {} from a start beside it",
+                row + 1,
+                free.name
+            )
+        };
+        let at = number(&summary, &format!("equilibrium.{}", free.name));
+        let at = at.ok_or("`linearise` without the place of its equilibrium")?;
+        let again = compared.of("written-rest-again");
+        again.add(at - place[k], free.size.max(place[k].abs()), "", what);
+        let away = number(&summary, &format!("equilibrium.{}.from_start", free.name));
+        let away = away.ok_or("`linearise` without the distance from the start")?;
+        let nearest = compared.of("written-rest-nearest");
+        nearest.add(
+            away - (place[k] - from[k]),
+            free.size.max(place[k].abs()),
+            "",
+            what,
+        );
+    }
+    Ok(())
+}
+
+fn distance(start: &Start<'_>, one: &[f64], other: &[f64]) -> f64 {
+    let free = start.free.iter().zip(one.iter().zip(other));
+    free.map(|(free, (a, b))| ((a - b) / free.size).abs())
+        .fold(0.0, f64::max)
+}
