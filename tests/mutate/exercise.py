@@ -46,8 +46,8 @@ COMMANDS = [
 ]
 # Parts of a tolerance with which a motion is run again.
 PARTS_OF_TOLERANCE = [0.35, 0.5, 0.7]
-# No run takes longer, s, and one that takes longer than this without a change is not among them.
-LONGEST, LONGEST_BASE = 20.0, 5.0
+# No run takes longer, s of the clock, beside other work, too; and one that takes longer than this of the processors without a change is not among them.
+LONGEST, LONGEST_BASE = 90.0, 5.0
 
 
 class Written:
