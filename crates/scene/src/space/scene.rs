@@ -49,6 +49,13 @@ impl Deref for SpaceScene {
 }
 
 impl SpaceScene {
+    /// The name of a coordinate: an actuator's, or one of `[coordinates]`; empty if it has none.
+    pub fn name_of(&self, coordinate: Coordinate) -> String {
+        let mut named = self.all_coordinates();
+        let found = named.find(|(_, c)| *c == coordinate);
+        found.map_or_else(String::new, |(name, _)| name.to_owned())
+    }
+
     /// Every coordinate that has a name, those of the actuators first.
     pub fn all_coordinates(&self) -> impl Iterator<Item = (&str, Coordinate)> + Clone {
         let actuators = self.mechanism.actuators.iter();

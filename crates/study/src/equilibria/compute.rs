@@ -55,12 +55,24 @@ pub(crate) fn find_equilibria(
 ) -> Result<(Vec<Equilibrium>, SearchedRange), StudyError> {
     prepared.require_autonomous("an equilibrium")?;
     let (machine, start) = (&prepared.machine, prepared.initial_state());
-    let searched = searched_range(prepared);
+    let searched = match searched_range(prepared) {
+        SearchedRange::Interval(interval) => {
+            SearchedRange::Interval(prepared.covered_interval(interval)?)
+        }
+        starts @ SearchedRange::Starts { .. } => {
+            prepared.require_covered(&start, "at the start")?;
+            starts
+        }
+    };
     let found = match &searched {
         SearchedRange::Interval(interval) => equilibria_over(machine, *interval)
             .and_then(|found| found.into_iter().map(|e| nearest_to(prepared, e)).collect()),
         SearchedRange::Starts { starts, ranges } => {
-            equilibria_from_starts(machine, &start, ranges, *starts)
+            equilibria_from_starts(machine, &start, ranges, *starts).map(|mut found| {
+                // Beyond the end of a table nothing is known of its load.
+                found.retain(|e| prepared.uncovered(&e.y).is_none());
+                found
+            })
         }
     };
     Ok((found.map_err(|e| prepared.explain(&e))?, searched))

@@ -84,7 +84,12 @@ fn summary(results: &EquilibriaResults<'_, impl MachineScene>) -> String {
                 false => "",
             };
             let interval = interval_text(prepared, coordinate, [*from, *to]);
-            format!("{title}: {found_count} of {interval}{period}\n")
+            let ends = [(*from, from - to), (*to, to - from)];
+            let tables = ends.map(|(end, width)| prepared.table_that_ends(end, width));
+            let tables = tables.iter().flatten();
+            let tables = tables.map(|load| format!("; the table of load `{load}` ends there"));
+            let tables: String = tables.take(1).collect();
+            format!("{title}: {found_count} of {interval}{period}{tables}\n")
         }
         SearchedRange::Starts { starts, ranges } => {
             let ranges = free.iter().zip(ranges);

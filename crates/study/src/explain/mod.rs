@@ -4,6 +4,7 @@ mod assembly;
 mod contacts;
 mod coupling;
 mod labels;
+mod load_table;
 mod motion;
 mod named_scene;
 mod position;
@@ -17,6 +18,7 @@ pub(crate) use labels::{
     Labels, actuator_labels, body_labels, body_names, body_names_or_mechanism, joint_labels,
     joint_names, labels, missing_section_label, start_labels,
 };
+pub(crate) use load_table::{TableArgument, covers, table_of};
 pub use motion::explain_motion;
 pub(crate) use motion::{StepLimits, explain_any_motion, explain_max_steps};
 pub use named_scene::NamedScene;

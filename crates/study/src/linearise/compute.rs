@@ -128,6 +128,7 @@ pub fn compute_linearisation<S: MachineScene>(
             (equilibrium.y.clone(), Some(equilibrium))
         }
     };
+    prepared.require_covered(&state, "there")?;
     let explain = |e: DynamicsError| prepared.explain(&e);
     let linear = linearise_about(&machine, 0.0, &state).map_err(explain)?;
     let is_equilibrium =

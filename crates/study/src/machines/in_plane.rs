@@ -39,6 +39,10 @@ impl MachineScene for Scene {
         model.reactions().iter().map(column).collect()
     }
 
+    fn name_of_coordinate(&self, coordinate: dwell_geometry::Coordinate) -> String {
+        self.name_of(coordinate)
+    }
+
     fn name_of_reaction(&self, reaction: Reaction) -> String {
         self.mechanism.reaction_name(reaction)
     }

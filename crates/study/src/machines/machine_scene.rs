@@ -66,6 +66,9 @@ pub trait MachineScene: NamedScene {
     /// Names and units of the reactions of a model.
     fn reaction_columns(&self, model: &Self::Model) -> Vec<Column>;
 
+    /// The name of a coordinate; empty if it has none.
+    fn name_of_coordinate(&self, coordinate: CoordinateOf<Self>) -> String;
+
     /// The name of a reaction.
     fn name_of_reaction(&self, reaction: Self::Reaction) -> String;
 

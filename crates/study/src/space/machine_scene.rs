@@ -49,6 +49,10 @@ impl MachineScene for SpaceScene {
         model.reactions().map(column).collect()
     }
 
+    fn name_of_coordinate(&self, coordinate: Coordinate) -> String {
+        self.name_of(coordinate)
+    }
+
     fn name_of_reaction(&self, reaction: Reaction) -> String {
         self.reaction_name(reaction)
     }

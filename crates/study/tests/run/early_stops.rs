@@ -1,7 +1,11 @@
 //! Trajectories that end early, and scenes that define no trajectory.
 
 use crate::table::{Table, WEIGHTS, analyse, case, file, scene};
-use dwell_study::{Analysis, StudyError, analyse_trajectory, check, no_progress};
+use dwell_study::equilibria::compute::SearchedRange;
+use dwell_study::{
+    Analysis, OperatingPoint, StudyError, analyse_trajectory, check, equilibria, linearise,
+    no_progress,
+};
 
 /// Crank 0.3, coupler 0.2, rocker 0.25 on a base of 0.4 m.
 fn limited(sweep: &str) -> String {
@@ -113,6 +117,61 @@ fn changed(old: &str, new: &str) -> (usize, String, String) {
             (table.column("t").len(), message, at)
         }
     }
+}
+
+/// A pendulum that an engine turns by a table from −1 to 2 rad: 4 − 2φ less its weight crosses zero at one place of this interval.
+const DRIVEN: &str = r#"
+[bodies.ground]
+points = { A = [0, 0] }
+[bodies.bar]
+points = { A = [0, 0] }
+mass = 1
+center = [0.1, 0]
+inertia = 0.02
+[joints]
+A = { revolute = ["ground.A", "bar.A"] }
+[actuators]
+phi = { angle = ["ground", "bar"] }
+[loads]
+engine = { torque = "bar", magnitude = { table = [[-1, 6], [2, 0]], interpolation = "linear", of = "phi" } }
+weight = { gravity = [0, -9.81] }
+[motion]
+duration = 1
+initial-coordinate = { phi = START }
+"#;
+
+/// Nothing is known of a load beyond its table: equilibria are searched within, and a state beyond is not linearised.
+#[test]
+fn equilibria_are_those_within_the_tables_of_loads() {
+    let started = |at: &str| scene(&DRIVEN.replace("START", at));
+    let from_inside = started("0.5");
+    let results = dwell_study::compute_equilibria(&from_inside).unwrap();
+    let SearchedRange::Interval([from, to]) = results.searched else {
+        panic!("one coordinate has an interval");
+    };
+    assert!(
+        (from + 1.0).abs() < 1e-11 && (to - 2.0).abs() < 1e-11,
+        "{from} {to}"
+    );
+    let force = |q: f64| 4.0 - 2.0 * q - 0.981 * q.cos();
+    let places: Vec<f64> = results.found.iter().map(|e| e.y[0]).collect();
+    assert!(
+        places.len() == 1 && force(places[0]).abs() < 1e-13,
+        "{places:?}"
+    );
+    let said = equilibria(&from_inside).unwrap().summary;
+    assert!(
+        said.contains("the table of load `engine` ends there"),
+        "{said}"
+    );
+    let outside = started("-1.5");
+    let message = "the table of load `engine` covers phi from -1 rad (-57.2958°) to 2 rad (114.592°), but phi is \
+                   -1.5 rad (-85.9437°) at the start";
+    let error = equilibria(&outside).unwrap_err().to_string();
+    assert_eq!(error, message);
+    let error = linearise(&outside, OperatingPoint::InitialState).unwrap_err();
+    assert_eq!(error.to_string(), message.replace("at the start", "there"));
+    assert!(linearise(&from_inside, OperatingPoint::InitialState).is_ok());
 }
 
 #[test]

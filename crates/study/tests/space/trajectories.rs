@@ -385,3 +385,25 @@ fn gears_are_reduced_over_their_whole_period() {
     let all = &reduction.curves.coefficients;
     assert!((all[0].m - all[6].m).abs() < 1e-14 * all[0].m);
 }
+
+/// Nothing is known of a load beyond its table: the rows end there, as in the plane.
+#[test]
+fn rows_end_where_a_load_leaves_its_table() {
+    let driven = "push = { torque = \"crank\", axis = [0, 0, 1], magnitude = { table = [[0, 2], [1, 3]], of = \"q\" } }\n\
+                  [coordinate-sweep]\nq = [0.5, 1.5]\n";
+    let scene = scene("rssr", driven);
+    let done = analyse_in_space(
+        &scene,
+        Analysis::Statics,
+        Some(11),
+        PictureSpan::default(),
+        &no_progress,
+    )
+    .unwrap_or_else(|e| panic!("{e}"));
+    // 0.5 to 1 rad by tenths.
+    assert_eq!(written(&done).column("q").len(), 6);
+    let message = done.early_stop.map(|error| error.to_string());
+    let expected = "the table of load `push` covers q from 0 rad (0°) to 1 rad (57.2958°), but q is 1.1 rad (63.0254°) \
+                    at one of the positions";
+    assert_eq!(message.as_deref(), Some(expected));
+}

@@ -2,10 +2,11 @@
 
 use super::reactions::JointReactions;
 use super::totals::Totals;
+use crate::machines::first_uncovered;
 use crate::trajectory::compute::{Analysis, Quantity, RowEvaluator, StopCause, TrajectorySample};
 use dwell_geometry::space::{BodyMotion, Placement, Pose, Vec3};
-use dwell_kinetostatics::InverseDynamics;
 use dwell_kinetostatics::space::{Model, Workspace};
+use dwell_kinetostatics::{InverseDynamics, MachineModel as _};
 use dwell_scene::SpaceScene;
 use std::f64::consts::TAU;
 
@@ -63,6 +64,10 @@ impl<'a> SpaceEvaluator<'a> {
         let (workspace, results) = (&mut self.workspace, &mut self.results);
         self.totals
             .evaluate_loads(self.model, at, given, workspace, results)?;
+        let motion_of = |of| self.model.coordinate_motion(of, &self.workspace);
+        if let Some((load, value)) = first_uncovered(self.model, t, motion_of) {
+            return Err(StopCause::OffTable { load, value });
+        }
         let bodies = (&self.placements[..], &self.motions[..]);
         self.totals
             .compute(self.scene, bodies, (&self.results.tau, q_dot));

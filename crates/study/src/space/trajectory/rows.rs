@@ -5,7 +5,7 @@ use super::evaluator::SpaceEvaluator;
 use super::page::space_page;
 use super::path::followed_scene;
 use super::reactions::JointReactions;
-use crate::explain::{StudyError, scene_error};
+use crate::explain::{StudyError, TableArgument, scene_error};
 use crate::progress::{Progress, Step};
 use crate::space::explain::{explain_loads, explain_position};
 use crate::trajectory::compute::{
@@ -167,7 +167,20 @@ pub(crate) fn explain_stop(scene: &SpaceScene, plan: &Plan, cause: StopCause) ->
             explain_position(scene, plan, &error)
         }
         StopCause::NoSolution(error) => explain_loads(scene, plan, &error),
-        StopCause::OffTable { .. } | StopCause::Discontinuity { .. } => {
+        StopCause::OffTable { load, value } => {
+            let magnitude = &scene.loads[load].magnitude;
+            let argument = TableArgument::of(magnitude, |c| scene.name_of(c), |c| c.is_angle());
+            match argument {
+                Some(argument) => argument.error(scene, (load, value), "at one of the positions"),
+                None => explain_loads(
+                    scene,
+                    plan,
+                    &KinetostaticsError::MagnitudeNotFinite { load },
+                ),
+            }
+        }
+        // Couplings stand in scenes of the plane alone.
+        StopCause::Discontinuity { .. } => {
             scene_error::<String>(scene, "the trajectory cannot go on", "", [])
         }
     }

@@ -1,7 +1,8 @@
 //! The largest actuator force and reactions of the variants of a family, along the scene's trajectory.
 
+use crate::explain::table_of;
 use crate::sweep::compute::point::{RequestedQuantities, ResultKind};
-use crate::trajectory::compute::{Analysis, WantedForces, peak_analysis, peak_forces, table_of};
+use crate::trajectory::compute::{Analysis, WantedForces, peak_analysis, peak_forces};
 use dwell_geometry::{Coordinate, Reaction};
 use dwell_kinetostatics::variants::{TurningVariant, VariantModel};
 use dwell_kinetostatics::{InverseDynamics, Load, Signal};

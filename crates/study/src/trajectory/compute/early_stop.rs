@@ -1,14 +1,14 @@
 //! The early end of a trajectory: where, why, and its message.
 
 use crate::explain::{
-    StudyError, body_names_or_mechanism, describe_coordinate, describe_ends, describe_limit,
-    joint_labels, non_finite_coupling, non_finite_coupling_error, scene_error,
+    StudyError, TableArgument, body_names_or_mechanism, describe_coordinate, describe_ends,
+    describe_limit, joint_labels, non_finite_coupling, non_finite_coupling_error, scene_error,
 };
-use crate::number_format::{coordinate_unit, digits, number};
-use crate::trajectory::compute::{Trajectory, TrajectorySample, table_of};
+use crate::number_format::digits;
+use crate::trajectory::compute::{Trajectory, TrajectorySample};
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{BodyId, JointId, Plan, PositionError, RangeLimit};
-use dwell_kinetostatics::{KinetostaticsError, LoadKind, Signal};
+use dwell_kinetostatics::{KinetostaticsError, LoadKind};
 use dwell_scene::{Scene, SceneLocation};
 use std::f64::consts::TAU;
 
@@ -329,38 +329,13 @@ fn load_name(scene: &Scene, load: usize) -> &str {
 
 /// The error where a load's table does not cover a value of its argument.
 fn off_table_error(scene: &Scene, load: usize, value: f64, when: &str) -> StudyError {
-    let table = scene.loads.get(load).and_then(|l| table_of(&l.magnitude));
-    let (signal, [first, last]) = match table {
-        Some((signal, spline)) => (signal, spline.range()),
-        None => (Signal::Time, [f64::NAN; 2]),
-    };
-    let (name, unit) = match signal {
-        Signal::Time => ("t".to_owned(), "s"),
-        Signal::Value(c) => (scene.name_of(c), coordinate_unit(c.is_angle())),
-        Signal::Velocity(c) => {
-            let unit = if c.is_angle() { "rad/s" } else { "m/s" };
-            (format!("{}.velocity", scene.name_of(c)), unit)
-        }
-    };
-    let angle = unit == "rad";
-    let value_text = |value: f64| match angle {
-        true => format!("{} rad ({}°)", number(value), number(value.to_degrees())),
-        false => format!("{} {unit}", number(value)),
-    };
-    let table_range = format!("from {} to {}", value_text(first), value_text(last));
-    let help = match angle {
-        true => format!(
-            "extend the table to the angles of the motion, which are not reduced to one revolution; or write an \
-             expression, in which `{name} - tau*floor({name}/tau)` is the angle within a revolution"
-        ),
-        false => "extend the table, or write an expression".to_owned(),
-    };
-    let (load_name, value) = (load_name(scene, load), value_text(value));
-    let message = format!(
-        "the table of load `{load_name}` covers {name} {table_range}, but {name} is {value} {when}"
-    );
-    let place = (SceneLocation::Magnitude(load), table_range);
-    scene_error(scene, message, help, [place])
+    let magnitude = scene.loads.get(load).map(|l| &l.magnitude);
+    let argument = magnitude
+        .and_then(|magnitude| TableArgument::of(magnitude, |c| scene.name_of(c), |c| c.is_angle()));
+    match argument {
+        Some(argument) => argument.error(scene, (load, value), when),
+        None => explain_load(scene, KinetostaticsError::MagnitudeNotFinite { load }, when),
+    }
 }
 
 /// The first group with a body whose angular velocity diverges at unit speed of the actuators.

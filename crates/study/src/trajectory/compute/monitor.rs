@@ -1,7 +1,7 @@
 //! Faults that end a trajectory although the mechanism can be assembled: a load's table is exceeded, or a
 //! coupling function is discontinuous between two positions.
 
-use crate::explain::couplings;
+use crate::explain::{couplings, covers, table_of};
 use crate::trajectory::compute::StopCause;
 use dwell_geometry::JointId;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
@@ -32,14 +32,6 @@ struct MonitoredCoupling<'a> {
 pub(crate) struct TrajectoryMonitor<'a> {
     tables: Vec<MonitoredTable<'a>>,
     couplings: Vec<MonitoredCoupling<'a>>,
-}
-
-/// The table of a load and its argument, if it has one.
-pub(crate) fn table_of(magnitude: &Magnitude) -> Option<(Signal, &Spline)> {
-    match magnitude {
-        Magnitude::Law(signal, Law::Spline(spline)) => Some((*signal, spline)),
-        _ => None,
-    }
 }
 
 impl<'a> TrajectoryMonitor<'a> {
@@ -76,14 +68,12 @@ impl<'a> TrajectoryMonitor<'a> {
     /// Fails at the first load whose table does not cover the state of the bodies at time `t` (s).
     pub(crate) fn check_tables(&self, t: f64, states: &BodyStates) -> Result<(), StopCause> {
         for table in &self.tables {
-            let (load, [first, last]) = (table.load, table.spline.range());
+            let load = table.load;
             let value = match table.argument {
                 None => t,
                 Some((measured, order)) => states.coordinate(measured)[order],
             };
-            // Angles and lengths computed from the pose carry a few roundings.
-            let tolerance = RANGE_TOLERANCE * (last - first);
-            if !(value >= first - tolerance && value <= last + tolerance) {
+            if !covers(table.spline, value) {
                 return Err(StopCause::OffTable { load, value });
             }
         }
@@ -104,6 +94,3 @@ impl<'a> TrajectoryMonitor<'a> {
         Ok(())
     }
 }
-
-/// Fraction of a table's range by which a value may exceed it.
-const RANGE_TOLERANCE: f64 = 1e-12;
