@@ -2,7 +2,7 @@
 
 import { join } from 'node:path';
 import { read } from './csv.mjs';
-import { expect } from './expect.mjs';
+import { expect, same } from './expect.mjs';
 
 // By row the numbers of the table.
 function table(pages, stem) {
@@ -106,6 +106,29 @@ export async function arrowTests({ onPage, pages, pictures }) {
       };
     });
     await page.screenshot({ path: join(pictures, 'teeth.png') });
+  });
+
+  // The longest is 154 px; in this run the picture has room for all of it.
+  await onPage('arrows stay in the picture', 'slider-crank-kinetostatics.html', async page => {
+    const found = await page.evaluate(() => {
+      const picture = document.querySelector('svg.mechanism');
+      const { width, height } = picture.viewBox.baseVal;
+      const tips = [];
+      let longest = 0;
+      for (let row = 0; row < window.dwellPage.run().rows; row += 7) {
+        window.dwellPage.move(row);
+        for (const arrow of picture.querySelectorAll('[data-arrow]')) {
+          const ends = /^M([-\d.e]+) ([-\d.e]+)L[^M]*M([-\d.e]+) ([-\d.e]+)/.exec(arrow.querySelector('path').getAttribute('d') || '');
+          if (!ends) continue;
+          const [x, y, tx, ty] = ends.slice(1).map(Number);
+          longest = Math.max(longest, Math.hypot(tx - x, ty - y));
+          if (tx < 0 || ty < 0 || tx > width || ty > height) tips.push(`${arrow.dataset.arrow} in row ${row}`);
+        }
+      }
+      return { tips: tips.join(), longest };
+    });
+    same(found.tips, '', 'tips beyond the picture');
+    expect(found.longest > 60 && found.longest < 155, `the longest arrow has ${found.longest} px`);
   });
 
   await onPage('the forces of a rack are at its pitch point', 'rack-pinion-teeth-kinetostatics.html', async page => {

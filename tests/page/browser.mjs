@@ -37,3 +37,8 @@ export async function openRun(browser, file, options) {
   await opened.page.waitForFunction(() => document.documentElement.dataset.ready === 'yes', null, { timeout: 60000 });
   return opened;
 }
+
+// After so many frames: what an observer of the layout or a timer of the page would do has been done.
+export const frames = (page, count) => page.evaluate(async number => {
+  for (let k = 0; k < number; k++) await new Promise(requestAnimationFrame);
+}, count);

@@ -27,8 +27,7 @@ export async function chartTests({ onPage, test, pages }) {
     await page.mouse.up();
     const zoomed = await ticks(page);
     zoomed.forEach((text, k) => expect(text !== before[k], `chart ${k + 1} is not zoomed`));
-    await page.waitForTimeout(450);
-    expect((await page.evaluate(() => location.hash)).includes('zoom='), 'the zoom is not in the address');
+    await page.waitForFunction(() => location.hash.includes('zoom='));
     await page.keyboard.press('Escape');
     same((await ticks(page)).join(), before.join(), 'the axes after Escape');
   });
@@ -37,7 +36,7 @@ export async function chartTests({ onPage, test, pages }) {
     await page.selectOption('.chart-head select >> nth=0', { index: 2 });
     await page.click('.badge ~ button >> nth=0');
     await page.keyboard.press('End');
-    await page.waitForTimeout(450);
+    await page.waitForFunction(() => ['at=', 'units=si', 'chart1='].every(part => location.hash.includes(part)));
     const hash = await page.evaluate(() => location.hash);
     const chosen = await page.locator('.chart-head select').first().inputValue();
     const browser = await launch();

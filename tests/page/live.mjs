@@ -9,7 +9,8 @@ import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { deflateRawSync } from 'node:zlib';
-import { launch, open } from './browser.mjs';
+import { frames, launch, open } from './browser.mjs';
+import { carelessTests } from './careless.mjs';
 import { parse } from './csv.mjs';
 import { expect, same } from './expect.mjs';
 
@@ -114,7 +115,13 @@ await test('a changed length gives the numbers of the command line', async page 
 });
 
 // All that the results show, as text.
-const shownResults = page => page.evaluate(() => {
+const shownResults = async page => {
+  // Lines of the table say what is now when an observer has seen them.
+  await frames(page, 3);
+  return page.evaluate(shownNow);
+};
+
+const shownNow = () => {
   const all = (selector, of) => [...document.querySelectorAll(selector)].map(of);
   const attributes = element => [...element.attributes].map(a => `${a.name}=${a.value}`).sort().join(' ');
   return {
@@ -127,7 +134,7 @@ const shownResults = page => page.evaluate(() => {
     choices: all('.choices label', label => label.textContent),
     words: all('.words .card', card => card.textContent),
   };
-});
+};
 
 // So little that the same curves vary most: charts keep theirs while a scene is changed.
 for (const [name, changed] of [['jansen', scene => longer(scene, 1.001)], ['spatial/rssr', scene => scene.replace(/mass = (\d+\.?\d*)/, (_, mass) => `mass = ${1.5 * mass}`)]]) {
@@ -344,12 +351,10 @@ await test('what takes too long is ended', async page => {
 });
 
 await test('the machine as C', async page => {
-  const downloads = [];
-  page.on('download', download => downloads.push(download.suggestedFilename()));
+  const saves = ['.h', '.c'].map(end => page.waitForEvent('download', { predicate: download => download.suggestedFilename().endsWith(end), timeout: 60000 }));
   await page.click('#live-c');
-  await page.waitForFunction(() => /exported/.test(document.getElementById('live-status').textContent), null, { timeout: 60000 });
-  await page.waitForTimeout(500);
-  expect(downloads.some(name => name.endsWith('.h')) && downloads.some(name => name.endsWith('.c')), `saved: ${downloads}`);
+  await Promise.all(saves);
+  await page.waitForFunction(() => /exported/.test(document.getElementById('live-status').textContent));
 });
 
 await test('narrow screens', async page => {
@@ -372,12 +377,25 @@ const labelsMeet = page => page.evaluate(() => {
   return count;
 });
 
+// Two pairs are left, each in one row: of pins that come so near that there is no room.
+const NEAR_PINS = { 'four-bar': 1, 'bricard-a04': 1 };
+
 await test('labels keep apart on narrow screens', async page => {
-  for (const name of ['single-dwell', 'whitworth', 'watt-six-bar', 'planetary']) {
+  const names = await page.locator('#live-example option').evaluateAll(all => all.map(one => one.value).filter(Boolean));
+  for (const name of names) {
     await page.selectOption('#live-example', name);
     await settled(page);
-    same(await labelsMeet(page), 0, `${name}: labels over each other`);
+    const count = await labelsMeet(page);
+    expect(count <= (NEAR_PINS[name] || 0), `${name}: labels over each other, ${count}`);
   }
+  // A long name is not cut by the edge.
+  await write(page, caseText('single-dwell').replace(/\bA\b(?= = \[)/g, 'point_of_a_long_name').replace(/\.A"/g, '.point_of_a_long_name"').replace('"A"', '"point_of_a_long_name"').replace(/^A = /m, 'point_of_a_long_name = '));
+  const outside = await page.$$eval('svg.mechanism text.label', all => all.filter(label => {
+    const [own, picture] = [label.getBoundingClientRect(), label.ownerSVGElement.getBoundingClientRect()];
+    return own.left < picture.left || own.right > picture.right;
+  }).map(label => label.textContent).join());
+  same(outside, '', 'labels beyond the picture');
+  expect((await page.locator('svg.mechanism text.label').allTextContents()).some(name => name.includes('long_name')), 'no long label');
 }, { viewport: { width: 390, height: 844 } });
 
 await test('examples', async page => {
@@ -422,6 +440,8 @@ await test('dwell view opens its scene', async page => {
   same(await text(page), caseText('four-bar'), 'the scene');
   expect(/computed in/.test(await status(page)), await status(page));
 }, { file: join(scratch, 'four-bar-live.html') });
+
+await carelessTests({ test, settled, paste, write, text, status, caseText, linked });
 
 await test('times', async page => {
   const scene = caseText('jansen');

@@ -1,6 +1,7 @@
 // What a page looks like: dark, in print, on a phone, for those who want no motion. Pictures are kept to be looked at.
 
 import { join } from 'node:path';
+import { frames } from './browser.mjs';
 import { expect, same } from './expect.mjs';
 
 const NARROW = { viewport: { width: 390, height: 844 } };
@@ -18,6 +19,21 @@ export async function lookTests({ onPage, pictures }) {
     expect((await ground(page)) !== light, 'the button does not make it dark');
     await picture(page, 'dark');
   });
+  await onPage('names of the largest values are not broken within a word', file, async page => {
+    const broken = await page.$$eval('.chip-name', all => all.flatMap(name => {
+      const node = name.firstChild;
+      let from = 0;
+      return node.nodeValue.split(/(?<=[._])\u200b?/).filter(word => {
+        const range = document.createRange();
+        range.setStart(node, node.nodeValue.indexOf(word, from));
+        from = range.startOffset + word.length;
+        range.setEnd(node, from);
+        return new Set([...range.getClientRects()].map(box => box.top)).size > 1;
+      });
+    }).join());
+    same(broken, '', 'broken words');
+  });
+
   await onPage('dark by the system', file, async page => same(await ground(page), 'rgb(22, 23, 26)', 'the ground'), { colorScheme: 'dark' });
 
   await onPage('a phone does not scroll sideways', file, async page => {
@@ -37,7 +53,7 @@ export async function lookTests({ onPage, pictures }) {
 
   await onPage('nothing moves by itself', file, async page => {
     const before = await page.evaluate(() => window.dwellPage.row());
-    await page.waitForTimeout(400);
+    await frames(page, 25);
     same(await page.evaluate(() => window.dwellPage.row()), before, 'the row');
     same(await page.evaluate(() => document.getAnimations().length), 0, 'animations');
   }, { reducedMotion: 'reduce' });

@@ -1,6 +1,7 @@
 // The mechanism, its slider and its keys.
 
 import { join } from 'node:path';
+import { frames } from './browser.mjs';
 import { read } from './csv.mjs';
 import { expect, near, printed, same } from './expect.mjs';
 
@@ -44,7 +45,7 @@ export async function mechanismTests({ onPage, pages, pictures }) {
     await page.waitForFunction(() => window.dwellPage.row() > 3);
     await page.keyboard.press('Space');
     const at = await row(page);
-    await page.waitForTimeout(150);
+    await frames(page, 10);
     same(await row(page), at, 'the row after a pause');
     const text = await page.getAttribute('.slider', 'aria-valuetext');
     expect(/^t = .* s$/.test(text), `aria-valuetext ${text}`);
@@ -84,7 +85,6 @@ export async function mechanismTests({ onPage, pages, pictures }) {
     expect((await drawn()) !== before, 'the view has not turned');
     expect((await page.locator('.mechanism .bar').count()) > 1, 'no bars');
     await page.screenshot({ path: join(pictures, 'space-turned.png') });
-    await page.waitForTimeout(500);
-    expect((await page.evaluate(() => location.hash)).includes('view='), 'the view is not in the address');
+    await page.waitForFunction(() => location.hash.includes('view='));
   });
 }

@@ -2,6 +2,7 @@
 
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
+import { frames } from './browser.mjs';
 import { parse, read } from './csv.mjs';
 import { expect, same } from './expect.mjs';
 
@@ -54,8 +55,7 @@ export async function numberTests({ onPage, pages }) {
     });
     expect(Math.abs(found[0] - found[1]) < 1e-3 * found[1], `${found[0]} at the peak ${found[1]}`);
     await page.click('button:has-text("copy as CSV")');
-    const copied = await page.evaluate(() => navigator.clipboard.readText());
-    expect(copied.split('\n').length === 3 && copied.includes('guide.travel.velocity,m/s,'), copied);
+    await page.waitForFunction(() => navigator.clipboard.readText().then(copied => copied.split('\n').length === 3 && copied.includes('guide.travel.velocity,m/s,')));
   });
 
   await onPage('a hostile title and note are text', 'hostile-kinematics.html', async (page, opened) => {
@@ -63,8 +63,9 @@ export async function numberTests({ onPage, pages }) {
     same(await page.textContent('h1'), title, 'the heading');
     same(await page.title(), title, 'the title');
     same(await page.locator('img, b').count(), 0, 'elements of a scene');
-    await page.waitForTimeout(200);
+    await frames(page, 10);
     // A script that is put into the page does not run.
+    const told = page.waitForEvent('console', message => message.type() === 'error');
     const ran = await page.evaluate(() => {
       const script = document.createElement('script');
       script.textContent = 'window.intruder = 1';
@@ -72,7 +73,7 @@ export async function numberTests({ onPage, pages }) {
       return window.intruder;
     });
     same(ran, undefined, 'a script without a hash');
-    await page.waitForTimeout(100);
+    await told;
     const refused = opened.faults.splice(0);
     expect(refused.length === 1 && refused[0].includes('Content Security Policy'), `the browser does not say why: ${refused}`);
   });

@@ -2,6 +2,9 @@
 
 // What has a colour of its own.
 const COLOURED = new Set(['comment', 'header', 'key', 'string', 'number']);
+// A longer text, in characters, is shown without colours, completion and explanations: a million elements end the tab. The longest
+// case has a quarter of it.
+const LONGEST_COLOURED = 50000;
 
 class Editor {
   // `changed(text)` is called after every change.
@@ -43,7 +46,7 @@ class Editor {
     this.slider.close();
     this.messages = [];
     this.draw();
-    this.completion.update(false);
+    if (!this.isLong) this.completion.update(false);
     // The event of the cursor comes only with the next frame of the browser.
     this.showHint();
     this.changed(this.text);
@@ -78,7 +81,17 @@ class Editor {
     this.showHint();
   }
 
+  get isLong() { return this.text.length > LONGEST_COLOURED; }
+
   draw() {
+    this.paint(this.isLong ? [[this.text, '']] : this.parts());
+    // The colours are scrolled with the text, by its event: to ask where it is would lay out the page.
+    this.slider.place();
+    this.completion.place();
+  }
+
+  // The text in pieces, each with the classes of its look.
+  parts() {
     const marks = this.messages.flatMap((message) => message.labels.map((label) => ({ ...label, severity: message.severity })));
     const { text } = this;
     const parts = [];
@@ -93,10 +106,7 @@ class Editor {
         else parts.push([text.slice(from, to), name + severity]);
       }
     });
-    this.paint(parts);
-    // The colours are scrolled with the text, by its event: to ask where it is would lay out the page.
-    this.slider.place();
-    this.completion.place();
+    return parts;
   }
 
   // Shows texts with their classes. Those before and after what has changed stay.
@@ -156,6 +166,10 @@ class Editor {
     if (event.key === ' ' && event.ctrlKey) {
       event.preventDefault();
       this.completion.update(true);
+      // Where there is no key to be completed: the slider of a number, by the keyboard.
+      if (this.completion.isOpen) return;
+      this.slider.openAt(this.area.selectionStart);
+      this.slider.focus();
     }
   }
 
@@ -174,7 +188,7 @@ class Editor {
   }
 
   meaningAt(offset) {
-    if (!this.schema) return '';
+    if (!this.schema || this.isLong) return '';
     // To the end of the word in which the cursor is.
     const rest = /^[\p{L}\p{N}_-]*/u.exec(this.text.slice(offset))[0].length;
     const place = placeAt(this.text, offset + rest);

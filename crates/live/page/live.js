@@ -25,12 +25,12 @@ class Live {
     this.asked = new Engine(module, worker);
     this.page = DwellPage.create(element('page'), { hash: false });
     this.editor = new Editor(element('live-editor'), () => this.edited());
+    this.files = new SceneFiles(this);
     this.command = 'motion';
     this.version = 0;
     this.buttons = COMMANDS.map(([name, command]) => this.tab(name, command));
     document.querySelector('.live-tabs').append(...this.buttons);
     element('live-again').addEventListener('click', () => this.work(this.ask()));
-    this.files = new SceneFiles(this);
   }
 
   tab(name, command) {
@@ -57,6 +57,8 @@ class Live {
   follows(command) { return COMMANDS.find(([, name]) => name === command)[2]; }
 
   choose(command, quietly) {
+    // What was asked for and is not looked at any more is ended.
+    if (!this.follows(this.command)) this.asked.stop();
     this.command = command;
     for (const button of this.buttons) button.setAttribute('aria-pressed', String(button.dataset.command === command));
     this.stale(false);
@@ -68,6 +70,7 @@ class Live {
   // After every change: what follows is computed for the newest text, one after the other.
   edited() {
     this.version += 1;
+    this.files.keep();
     if (!this.follows(this.command)) this.stale(true);
     if (this.busy) return;
     this.busy = this.follow().finally(() => { this.busy = null; });

@@ -56,6 +56,10 @@ class NumberSlider {
     this.box.style.top = `${at.bottom + 2}px`;
   }
 
+  focus() {
+    if (!this.box.hidden) this.input.focus();
+  }
+
   close() { this.box.hidden = true; }
 }
 

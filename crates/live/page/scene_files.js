@@ -1,33 +1,78 @@
-// Scenes from examples, files and links, and to files and links.
+// Scenes from examples, files and links, and to files and links. The text is kept in the history of the tab: a reload does not lose
+// it, and going back leads to what was there before another scene was opened.
+
+// After so long without a change, ms: browsers limit how often the history may change.
+const KEEP_AFTER = 300;
 
 class SceneFiles {
   constructor(live) {
     this.live = live;
+    // A page that was written anew, with another scene, begins with that.
+    this.carried = element('live-scene').textContent;
+    this.waiting = null;
     this.examples = JSON.parse(element('live-examples').textContent);
     const choice = element('live-example');
     for (const { name, title } of this.examples) choice.append(new Option(title, name));
     choice.addEventListener('change', () => {
       const example = this.examples.find(({ name }) => name === choice.value);
-      if (example) live.open(example.text);
+      if (example) this.openNext(example.text);
       choice.value = '';
     });
     const file = element('live-file');
     element('live-open').addEventListener('click', () => file.click());
     file.addEventListener('change', async () => {
-      if (file.files.length) live.open(await file.files[0].text());
+      const [chosen] = file.files;
+      if (chosen && chosen.size > LONGEST_SCENE) live.say(`not opened: ${chosen.name} is longer than ${LONGEST_SCENE} bytes`);
+      else if (chosen) this.openNext(await chosen.text());
       file.value = '';
     });
     element('live-save').addEventListener('click', () => download('scene.toml', live.editor.text));
     element('live-share').addEventListener('click', () => this.share());
     element('live-c').addEventListener('click', () => this.exportC());
     window.addEventListener('hashchange', async () => {
+      if (this.kept() !== null) return;
       const text = await this.linkedScene();
+      if (text !== null) live.open(text);
+    });
+    window.addEventListener('popstate', () => {
+      clearTimeout(this.waiting);
+      const text = this.kept();
       if (text !== null) live.open(text);
     });
   }
 
-  // That of the link; else that of the file; else the first example.
+  // What is kept of this place in the history, or nothing.
+  kept() {
+    const { state } = history;
+    return state && typeof state.scene === 'string' && state.carried === this.carried ? state.scene : null;
+  }
+
+  // Keeps the text when it has not changed for a moment. The address then holds no other scene.
+  keep() {
+    clearTimeout(this.waiting);
+    this.waiting = setTimeout(() => this.keepNow(location.pathname + location.search), KEEP_AFTER);
+  }
+
+  keepNow(address) {
+    clearTimeout(this.waiting);
+    try {
+      history.replaceState({ scene: this.live.editor.text, carried: this.carried }, '', address);
+    } catch {
+      // A text that is too long for the browser's history is not kept.
+    }
+  }
+
+  // Opens another scene, from which a step back leads to this one.
+  openNext(text) {
+    this.keepNow(location.href);
+    history.pushState(null, '', location.pathname + location.search);
+    this.live.open(text);
+  }
+
+  // That of the history; else that of the link; else that of the file; else the first example.
   async firstScene() {
+    const kept = this.kept();
+    if (kept !== null) return kept;
     const linked = await this.linkedScene();
     if (linked !== null) return linked;
     return JSON.parse(element('live-scene').textContent) ?? this.examples[0].text;
@@ -37,6 +82,7 @@ class SceneFiles {
   async linkedScene() {
     const packed = packedScene(location.hash);
     if (!packed) return null;
+    clearTimeout(this.waiting);
     history.replaceState(null, '', location.pathname + location.search);
     try {
       return await this.live.asked.inflate(packed, LONGEST_SCENE, LINK_LIMIT);
@@ -46,9 +92,10 @@ class SceneFiles {
   }
 
   async share() {
-    const packed = await packScene(this.live.editor.text);
-    const address = `${location.href.split('#')[0]}#scene=${packed}`;
-    history.replaceState(null, '', address);
+    const { text } = this.live.editor;
+    if (new Blob([text]).size > LONGEST_SCENE) return this.live.say(`no link: the scene is longer than ${LONGEST_SCENE} bytes; save it instead`);
+    const address = `${location.href.split('#')[0]}#scene=${await packScene(text)}`;
+    this.keepNow(address);
     try {
       await navigator.clipboard.writeText(address);
       this.live.say(`copied: a link of ${address.length} characters that holds the scene`);
@@ -64,7 +111,7 @@ class SceneFiles {
       for (const [name, text] of answer.files || []) download(name, text);
       this.live.say(answer.files ? `exported: ${answer.files.map(([name]) => name).join(', ')}` : 'not exported: see the messages beside');
     } catch (error) {
-      this.live.failed(error);
+      if (error.message !== 'stopped') this.live.failed(error);
     }
   }
 }

@@ -1,6 +1,11 @@
 // What lies over the mechanism: forces as arrows, and paths of points, each by choice.
 
-const ARROW_PART = 0.24;
+// The longest arrow, px; shorter where it would leave the picture, but not below a part of it.
+const ARROW_LENGTH = 154;
+const LEAST_PART = 0.4;
+// In so many rows it is seen whether arrows leave the picture, and so near to its edge they may come, px.
+const ARROW_ROWS = 24;
+const ARROW_EDGE = 4;
 
 function createOverlay(first, layers, state) {
   let drawing = first;
@@ -9,6 +14,8 @@ function createOverlay(first, layers, state) {
   let view = null;
   let arrows = [];
   let largest = {};
+  // By group the longest arrow, px.
+  let lengths = {};
   const w = [0, 0, 0];
   const u = [0, 0, 0];
 
@@ -66,6 +73,31 @@ function createOverlay(first, layers, state) {
     return [at, force];
   }
 
+  // A force of a row in px beside the largest of its group, which has so many: where its arrow begins, and how far it goes.
+  function onScreen(arrow, row, length) {
+    const [at, force] = forceOf(arrow, row);
+    const scale = largest[arrow.group] > 0 ? length / (largest[arrow.group] * view.scale) : 0;
+    return [...view.screen(at), ...view.direction(force.map(c => c * scale))];
+  }
+
+  // So long that arrows stay in the picture. All of a group have one scale in all rows, whichever are chosen.
+  function fitLengths(width, height) {
+    lengths = {};
+    // In space the scale would change while the view is turned.
+    const stride = Math.max(1, Math.floor(run.rows / ARROW_ROWS));
+    for (const arrow of arrows) {
+      let part = lengths[arrow.group] === undefined ? 1 : lengths[arrow.group] / ARROW_LENGTH;
+      for (let row = 0; frames.isPlane && row < run.rows; row += stride) {
+        const [x, y, dx, dy] = onScreen(arrow, row, ARROW_LENGTH);
+        for (const [from, by, end] of [[x, dx, width], [y, dy, height]]) {
+          const free = by < 0 ? from - ARROW_EDGE : end - ARROW_EDGE - from;
+          if (free < part * Math.abs(by)) part = Math.max(LEAST_PART, free / Math.abs(by));
+        }
+      }
+      lengths[arrow.group] = part * ARROW_LENGTH;
+    }
+  }
+
   function layOut() {
     drawing.paths.forEach((path, k) => {
       const isShown = state.paths.has(path.name);
@@ -85,18 +117,12 @@ function createOverlay(first, layers, state) {
 
   function move(row) {
     if (state.forces === false) return;
-    const reach = ARROW_PART * 640;
     arrows.forEach((arrow, k) => {
-      if (!state.arrows.has(arrow.name)) return;
-      const [at, force] = forceOf(arrow, row);
-      const scale = largest[arrow.group] > 0 ? reach / (largest[arrow.group] * view.scale) : 0;
-      const [x, y] = view.screen(at);
-      const [dx, dy] = view.direction(force.map(c => c * scale));
-      elements[k].path.setAttribute('d', arrowPath(x, y, dx, dy));
+      if (state.arrows.has(arrow.name)) elements[k].path.setAttribute('d', arrowPath(...onScreen(arrow, row, lengths[arrow.group])));
     });
   }
 
-  return { show, layOut, move, arrows: () => arrows, paths: () => drawing.paths };
+  return { show, fitLengths, layOut, move, arrows: () => arrows, paths: () => drawing.paths };
 }
 
 // The names of what is shown, as someone has chosen; of what was not there to be chosen before, what is shown at first.

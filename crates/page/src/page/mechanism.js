@@ -3,10 +3,14 @@
 const HEIGHT = 400;
 const MARGIN = 34;
 // Where labels are beside their marks, and how large they are, px: width of a letter, and height.
-const LABEL_PLACES = [{ x: 10, y: -10 }, { x: -11, y: -10 }, { x: 10, y: 21 }, { x: -11, y: 21 }];
+const LABEL_PLACES = [{ x: 10, y: -10 }, { x: -11, y: -10 }, { x: 10, y: 21 }, { x: -11, y: 21 }, { x: 0, y: -14 }, { x: 13, y: 5 }, { x: -13, y: 5 }, { x: 0, y: 26 }];
+// The same for a pin on the ground, whose mark goes on below it.
+const GROUND_PLACES = [1, 0, 4, 6, 5, 3, 2].map(k => LABEL_PLACES[k]);
 const LABEL_SIZE = [9, 13];
+// Letters over letters are worse than letters over a mark; a name that leaves the picture is cut.
+const [OVER_LABEL, OVER_EDGE] = [3, 2];
 // In so many rows it is seen what is in their way.
-const LABEL_ROWS = 12;
+const LABEL_ROWS = 24;
 
 function createMechanism(state, onMove, onTurn) {
   const root = svg('svg', { class: 'mechanism', role: 'img', tabindex: 0, height: HEIGHT });
@@ -67,6 +71,7 @@ function createMechanism(state, onMove, onTurn) {
     [view.x, view.y] = [0, 0];
     const [x, y] = view.screen(middle);
     [view.x, view.y] = [width / 2 - x, HEIGHT / 2 - y];
+    overlay.fitLengths(width, HEIGHT);
     overlay.layOut();
     if (!frames.isPlane) drawAxes();
     placeLabels();
@@ -79,7 +84,10 @@ function createMechanism(state, onMove, onTurn) {
     const rows = Array.from({ length: Math.min(LABEL_ROWS, run.rows) }, (_, k) => Math.round((k * last) / LABEL_ROWS));
     const marks = items.filter(item => item.placeLabel);
     const taken = rows.map(r => marks.flatMap(mark => mark.boxes(r)));
-    for (const mark of marks) mark.placeLabel(rows, taken);
+    // A second time with what came later, where any label is still over something.
+    for (let pass = 0; pass < 3; pass++) {
+      if (!marks.map(mark => mark.placeLabel(rows, taken)).some(Boolean)) break;
+    }
   }
 
   // The axes of the ground, in a corner.
@@ -192,7 +200,9 @@ function createMechanism(state, onMove, onTurn) {
     layers.marks.append(shape);
     if (label) layers.words.append(label);
     // Beside the mark, where no other label is in the row of the first picture.
-    let place = part.look === 'ground-pin' ? LABEL_PLACES[1] : LABEL_PLACES[0];
+    const places = part.look === 'ground-pin' ? GROUND_PLACES : LABEL_PLACES;
+    let [place] = places;
+    let labelBoxes = [];
     const axisLine = shape.querySelector('.axis-line');
     const axisMark = shape.querySelector('.axis-mark');
     return {
@@ -205,18 +215,20 @@ function createMechanism(state, onMove, onTurn) {
         if (part.look === 'ground-pin') own.push([x - 20, y + 5, 40, 24, shape]);
         return own;
       },
-      // Takes the place with the fewest boxes of others, and adds its own.
+      // Takes the place with the least in its way, and adds its own boxes. Says how much is in its way.
       placeLabel(rows, taken) {
-        if (!label) return;
-        const long = part.label.length * LABEL_SIZE[0];
+        if (!label) return 0;
+        rows.forEach((_, k) => { taken[k] = taken[k].filter(box => box !== labelBoxes[k]); });
         const middles = rows.map(r => at(part.at, r));
-        const boxOf = (p, [x, y]) => [p.x < 0 ? x + p.x - long : x + p.x, y + p.y - LABEL_SIZE[1], long, LABEL_SIZE[1], shape];
-        const meets = ([ax, ay, v, g], [bx, by, w, h, of]) => of !== shape && ax < bx + w && bx < ax + v && ay < by + h && by < ay + g;
-        const countOf = p => middles.reduce((sum, middle, k) => { const box = boxOf(p, middle); return sum + taken[k].filter(other => meets(box, other)).length; }, 0);
-        const own = (part.look === 'ground-pin' ? [1, 0, 3, 2] : [0, 1, 2, 3]).map(k => LABEL_PLACES[k]);
-        const counts = own.map(countOf);
-        place = own[counts.indexOf(Math.min(...counts))];
-        middles.forEach((middle, k) => taken[k].push(boxOf(place, middle)));
+        let least = Infinity;
+        for (const candidate of places) {
+          const boxes = middles.map(middle => labelBox(part.label, candidate, middle, shape));
+          const inWay = boxes.reduce((sum, box, k) => sum + inWayOf(box, taken[k], width), 0);
+          if (inWay < least) [least, place, labelBoxes] = [inWay, candidate, boxes];
+          if (!least) break;
+        }
+        labelBoxes.forEach((box, k) => taken[k].push(box));
+        return least;
       },
       inMarks: true,
       depth: r => view.nearness(frames.place(part.at.body, part.at.point, r, w)),
@@ -226,7 +238,7 @@ function createMechanism(state, onMove, onTurn) {
         if (label) {
           label.setAttribute('x', x + place.x);
           label.setAttribute('y', y + place.y);
-          label.setAttribute('text-anchor', place.x < 0 ? 'end' : 'start');
+          label.setAttribute('text-anchor', place.x < 0 ? 'end' : place.x > 0 ? 'start' : 'middle');
         }
         if (axisMark && part.axis.length) {
           const [dx, dy] = view.direction(frames.direct(part.at.body, part.axis, r, w)).map(v => v / view.scale);
@@ -293,6 +305,23 @@ function createMechanism(state, onMove, onTurn) {
     if (drawing) fit();
   }).observe(root);
   return { root, show, move, overlay: () => overlay, refresh: () => { if (drawing) { overlay.layOut(); overlay.move(row); } }, angles: () => view && view.angles };
+}
+
+// The box of a label at a place beside its mark, px: left, top, width, height, and which mark it is of.
+function labelBox(text, place, [x, y], mark) {
+  const long = text.length * LABEL_SIZE[0];
+  const before = place.x < 0 ? long : place.x > 0 ? 0 : 0.5 * long;
+  return Object.assign([x + place.x - before, y + place.y - LABEL_SIZE[1], long, LABEL_SIZE[1], mark], { isLabel: true });
+}
+
+// How much a label is over boxes of others, and over the edges of the picture.
+function inWayOf([left, top, long, high, mark], others, width) {
+  let sum = left < 0 || left + long > width || top < 0 || top + high > HEIGHT ? OVER_EDGE : 0;
+  for (const other of others) {
+    const [x, y, w, h, of] = other;
+    if (of !== mark && left < x + w && x < left + long && top < y + h && y < top + high) sum += other.isLabel ? OVER_LABEL : 1;
+  }
+  return sum;
 }
 
 // What the elements of a drawing are made of: two drawings of one shape differ in numbers only.

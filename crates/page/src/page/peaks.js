@@ -121,13 +121,14 @@ function createPeaks(units, actions, later) {
       const chip = el('button', { type: 'button', class: 'chip', onclick: () => actions.move(run.rowAt(chip.at)) }, el('span', { class: 'chip-name' }), el('strong'), el('span', { class: 'chip-at' }));
       chips.append(chip);
     }
+    // A long name goes on in another line after one of its points.
     chosen.forEach((column, k) => {
       const chip = chips.children[k];
       const { min, max } = column.peak;
       const end = Math.abs(min.value) > Math.abs(max.value) ? min : max;
       chip.at = end.at;
       if (chip.title !== column.description) chip.title = column.description;
-      [column.label, units.text(end.value, column.unit), `at ${units.text(end.at, run.axis.unit, 5)}`].forEach((text, part) => setText(chip.children[part], text));
+      [column.label.replace(/[._]/g, '$&\u200b'), units.text(end.value, column.unit), `at ${units.text(end.at, run.axis.unit, 5)}`].forEach((text, part) => setText(chip.children[part], text));
     });
   }
 
