@@ -10,6 +10,8 @@ use dwell_kinetostatics::{MachineModel, Signal};
 const POSITIONS: usize = 360;
 /// Halvings of the distance between two of them: to a rounding of the interval.
 const HALVINGS: usize = 50;
+/// So near to an end of a table, in parts of the interval, its end is that of the table.
+const OWN_END: f64 = 1e-9;
 
 /// The first load whose table does not cover its argument, and the argument; `motion_of` gives a coordinate with its rate and acceleration.
 pub(crate) fn first_uncovered<M: MachineModel>(
@@ -68,6 +70,9 @@ impl<S: MachineScene> SceneMachine<'_, S> {
         };
         let start = self.initial_state()[0];
         self.require_covered(&at(start), "at the start")?;
+        let loads = self.machine.model().loads();
+        let tables = loads.iter().filter_map(|load| table_of(&load.magnitude));
+        let own_ends: Vec<f64> = tables.flat_map(|(_, table)| table.range()).collect();
         let end_towards = |end: f64| {
             let beyond = |q: &f64| self.uncovered(&at(*q)).is_some();
             let places = equally_spaced([start, end], POSITIONS);
@@ -82,7 +87,12 @@ impl<S: MachineScene> SceneMachine<'_, S> {
                     false => inside = middle,
                 }
             }
-            inside
+            // Where the coordinate itself is the argument, the interval ends where the table does, to the last bit.
+            let own = own_ends
+                .iter()
+                .copied()
+                .find(|own| (own - inside).abs() <= OWN_END * (end - start).abs() && !beyond(own));
+            own.unwrap_or(inside)
         };
         Ok([end_towards(from), end_towards(to)])
     }
