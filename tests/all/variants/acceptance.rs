@@ -4,17 +4,19 @@
 
 use super::{compile, difference, expected, random};
 use dwell_geometry::{Range, vec2};
-use dwell_kinetostatics::variants::{Turn, TurningVariant, VariantModel};
 use dwell_kinetostatics::Mass;
+use dwell_kinetostatics::variants::{Turn, TurningVariant, VariantModel};
 use dwell_scene::Scene;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
 /// Variants of each family.
 const VARIANTS: usize = 160;
-/// Largest difference, as a part of the curve's largest magnitude: seen are 3.9e-12, next to change points, where a curve
-/// has no more digits.
-const TOLERANCE: f64 = 1e-10;
+/// Largest differences, as a part of the curve's largest magnitude. Next to a change point, where a curve has no more digits,
+/// 3.5e-12 are seen; beside it, and without mass there, 2.0e-14; of numbers alone 6.5e-15.
+const NEAR_CHANGE_POINT: f64 = 1e-10;
+const CLEAR: f64 = 1e-12;
+const OF_NUMBERS: f64 = 5e-13;
 /// Distance of E from A on the crank, m.
 const CRANK_POINT: f64 = 0.6;
 /// The approximate angle of the bar EF in the assembly, rad.
@@ -69,7 +71,10 @@ impl Linkage {
         };
         let body = |name: &str, points: &str, length: f64| {
             let points = points.replace("end", &format!("[{length:?}, 0]"));
-            format!("[bodies.{name}]\npoints = {{ {points} }}\n{}", inertia(length))
+            format!(
+                "[bodies.{name}]\npoints = {{ {points} }}\n{}",
+                inertia(length)
+            )
         };
         let bodies = [
             body("coupler", "B = [0, 0], C = end", coupler),
@@ -115,7 +120,7 @@ fn offset(number: u64) -> f64 {
     size.copysign(random(3 * number + 1))
 }
 
-/// The same number in all variants of a family but one of eight, where it is zero: events of these are at positions of the
+/// By how much a variant is turned, rad: not at all in one of eight, whose crank is along the ground at a position of the
 /// rules.
 fn shift(number: u64) -> f64 {
     let shift = 0.1 * random(3 * number + 2);
@@ -141,9 +146,7 @@ fn compare(structure: &VariantModel, variants: &[Scene], reaction: &str) -> Outc
     let mut reactions = mechanism.reactions().into_iter();
     let reaction = reactions.find(|&r| mechanism.reaction_name(r) == reaction);
     let reaction = reaction.expect("a reaction");
-    let starts: Vec<f64> = (0..variants.len())
-        .map(|k| PI * random(k as u64))
-        .collect();
+    let starts: Vec<f64> = (0..variants.len()).map(|k| PI * random(k as u64)).collect();
     let numbers = |scene: &Scene| structure.numbers(&scene.mechanism, &scene.masses, &[]);
     let numbers: Vec<_> = variants.iter().map(numbers).collect();
     let fitting: Vec<usize> = (0..variants.len())
@@ -194,22 +197,25 @@ fn structure(scene: &Scene, reaction: &str) -> VariantModel {
 }
 
 /// Compares a family, and asserts that none is accepted wrongly and that there are variants on both sides of the border.
-fn check_family(name: &str, typical: &Linkage, vary: impl Fn(u64) -> Linkage) {
+fn check_family(name: &str, tolerance: f64, typical: &Linkage, vary: impl Fn(u64) -> Linkage) {
     let structure = structure(&typical.scene(), "A.x");
     let variants: Vec<Scene> = (0..VARIANTS as u64).map(|k| vary(k).scene()).collect();
     let outcome = compare(&structure, &variants, "A.x");
     println!("{name}: {outcome:?}");
     assert_eq!(outcome.wrong, 0, "{name}");
-    assert!(outcome.difference < TOLERANCE, "{name}: {outcome:?}");
-    assert!(outcome.accepted > 0 && outcome.left_other > 0, "{name}: {outcome:?}");
+    assert!(outcome.difference < tolerance, "{name}: {outcome:?}");
+    assert!(
+        outcome.accepted > 0 && outcome.left_other > 0,
+        "{name}: {outcome:?}"
+    );
 }
 
 #[test]
 fn val_variants_about_the_grashof_border_are_left_or_equal() {
-    for mass in [1.0, 0.0] {
+    for (mass, tolerance) in [(1.0, NEAR_CHANGE_POINT), (0.0, CLEAR)] {
         let typical = Linkage::new(mass);
         // The crank opposite to the ground, where the dyad is stretched.
-        check_family("stretched", &typical, |k| {
+        check_family("stretched", tolerance, &typical, |k| {
             let mut linkage = typical;
             linkage.direction = shift(k);
             let [crank, coupler, rocker, ground] = &mut linkage.bars;
@@ -219,7 +225,7 @@ fn val_variants_about_the_grashof_border_are_left_or_equal() {
         // The crank along the ground, where the dyad is folded.
         let mut typical = typical;
         (typical.bars, typical.coupler_guess) = ([1.0, 3.2, 1.9, 2.7], 0.4);
-        check_family("folded", &typical, |k| {
+        check_family("folded", CLEAR, &typical, |k| {
             let mut linkage = typical;
             linkage.direction = shift(k);
             let [crank, coupler, rocker, ground] = &mut linkage.bars;
@@ -231,9 +237,9 @@ fn val_variants_about_the_grashof_border_are_left_or_equal() {
 
 #[test]
 fn val_variants_whose_second_loop_opens_are_left_or_equal() {
-    for mass in [1.0, 0.0] {
+    for (mass, tolerance) in [(1.0, NEAR_CHANGE_POINT), (0.0, CLEAR)] {
         let typical = Linkage::new(mass);
-        check_family("second loop", &typical, |k| {
+        check_family("second loop", tolerance, &typical, |k| {
             let mut linkage = typical;
             let [ground, direction, arm, tip] = &mut linkage.dyad;
             *direction += shift(k);
@@ -250,7 +256,7 @@ fn val_variants_that_assemble_on_the_other_branch_are_left() {
     let mut typical = Linkage::new(1.0);
     typical.coupler_guess = (-sin).atan2(BARS[3] - cos);
     typical.direction = 0.25;
-    check_family("other branch", &typical, |k| {
+    check_family("other branch", CLEAR, &typical, |k| {
         let mut linkage = typical;
         linkage.direction = offset(k);
         linkage
@@ -259,7 +265,7 @@ fn val_variants_that_assemble_on_the_other_branch_are_left() {
     let mut typical = Linkage::new(1.0);
     let ambiguous = ARM_GUESS - (CRANK_POINT * (ARM_GUESS - 1.0).sin() / DYAD[0]).asin();
     typical.dyad[1] = ambiguous - 0.25;
-    check_family("other branch of the second loop", &typical, |k| {
+    check_family("other branch of the second loop", CLEAR, &typical, |k| {
         let mut linkage = typical;
         linkage.dyad[1] = ambiguous + offset(k);
         linkage
@@ -292,7 +298,11 @@ fn val_numbers_that_do_not_fit_the_structure_are_left_or_equal() {
     };
     let cases = [
         // Mass where the structure has inertia alone, and the other way.
-        ("mass", with(&|m| m.mass = 0.0), with(&|m| m.center = vec2(0.0, 0.0))),
+        (
+            "mass",
+            with(&|m| m.mass = 0.0),
+            with(&|m| m.center = vec2(0.0, 0.0)),
+        ),
         ("no mass", full.scene(), with(&|m| m.mass = 0.0)),
         ("massless", full.scene(), with(&|m| *m = Mass::default())),
         ("body", with(&|m| *m = Mass::default()), full.scene()),
@@ -306,7 +316,11 @@ fn val_numbers_that_do_not_fit_the_structure_are_left_or_equal() {
         ("vanishes", full.scene(), at(0.0)),
         // What is no mass.
         ("negative", full.scene(), with(&|m| m.mass = -0.1)),
-        ("negative inertia", full.scene(), with(&|m| m.inertia = -0.1)),
+        (
+            "negative inertia",
+            full.scene(),
+            with(&|m| m.inertia = -0.1),
+        ),
         ("no number", full.scene(), with(&|m| m.inertia = f64::NAN)),
         ("infinite", full.scene(), with(&|m| m.mass = f64::INFINITY)),
         ("no centre", full.scene(), with(&|m| m.center.x = f64::NAN)),
@@ -317,7 +331,7 @@ fn val_numbers_that_do_not_fit_the_structure_are_left_or_equal() {
         let outcome = compare(&structure(&typical, "A.x"), &variants, "A.x");
         println!("{name}: {outcome:?}");
         assert_eq!(outcome.wrong, 0, "{name}");
-        assert!(outcome.difference < TOLERANCE, "{name}: {outcome:?}");
+        assert!(outcome.difference < OF_NUMBERS, "{name}: {outcome:?}");
         assert!(outcome.accepted > 0, "{name}: {outcome:?}");
     }
 }
