@@ -9,6 +9,7 @@ use dwell_tests::fixtures;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
+mod acceptance;
 mod under_loads;
 
 /// Variants of each mechanism at each deviation: 12 000 in all.

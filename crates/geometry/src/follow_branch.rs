@@ -1,6 +1,7 @@
 //! Follows the branch of the assembly over the range of a single actuator, and stores poses along it for the groups
 //! whose positions are found by iteration.
 
+mod margins;
 mod separation;
 mod step_buffers;
 
@@ -100,7 +101,7 @@ impl Plan {
         let mut pose = poses.last()?.clone();
         let q0 = pose.q[0];
         let mut buffers = StepBuffers::new(self);
-        let Some(mut margins) = self.determinant_margins(&pose, &mut buffers.with_slopes) else {
+        let Some(mut margins) = self.margins_of_pose(&pose, &mut buffers) else {
             return Some(RangeLimit {
                 q: q0,
                 group: 0,
@@ -227,29 +228,6 @@ impl Plan {
         (limit, behind)
     }
 
-    /// By group, the size of its determinant, with its derivative by the coordinate: how far the
-    /// group is from where its branch ends. None where it has ended.
-    fn determinant_margins(&self, at: &Pose<f64>, pose: &mut Pose<Dual>) -> Option<Vec<Dual>> {
-        self.margins_at(at.q[0], at, pose)
-    }
-
-    /// The same at a coordinate, started from a pose.
-    fn margins_at(&self, q: f64, start: &Pose<f64>, pose: &mut Pose<Dual>) -> Option<Vec<Dual>> {
-        pose.start_from(start);
-        let q = [Dual::variable(q)];
-        self.positions_from(&q, pose, InitialIterate::CurrentPose)
-            .ok()?;
-        let margin = |(g, _): (usize, &AssurGroup)| {
-            let determinant = self.group_determinant(g, pose);
-            if determinant.v < 0.0 {
-                -determinant
-            } else {
-                determinant
-            }
-        };
-        Some(self.groups.iter().enumerate().map(margin).collect())
-    }
-
     /// The pose at `q` on the same branch as a nearby pose, with its margins, if it is certain to be
     /// the same branch. Where the tangent of a margin, from either end, reaches zero within the step,
     /// two branches may meet in between: a parallelogram's margin falls to zero and rises again on
@@ -266,18 +244,12 @@ impl Plan {
             return None;
         }
         let is_clear = |new: &Vec<Dual>| new.iter().all(|b| b.v - b.d * clearance > 0.0);
-        let StepBuffers {
-            reached,
-            with_slopes,
-        } = buffers;
         let found = if self.is_dyadic() {
-            // Closed forms need no prediction: one evaluation gives the pose and the margins.
-            let found = self.margins_at(q, from, with_slopes)?;
-            reached.take_values(with_slopes);
-            found
+            // Closed forms need no prediction.
+            self.closed_form_margins((from, q), buffers)?
         } else {
-            *reached = self.corrected_pose(from, q)?;
-            self.determinant_margins(reached, with_slopes)?
+            buffers.reached = self.corrected_pose(from, q)?;
+            self.margins_by_duals(&buffers.reached, &mut buffers.with_slopes)?
         };
         Some(found).filter(is_clear)
     }
@@ -285,6 +257,10 @@ impl Plan {
     /// The pose at `q` near another one, if every correction is small beside its prediction.
     fn corrected_pose(&self, from: &Pose<f64>, q: f64) -> Option<Pose<f64>> {
         let mut pose = from.clone();
+        if self.is_explicit() {
+            let found = self.positions_from(&[q], &mut pose, InitialIterate::CurrentPose);
+            return found.is_ok().then_some(pose);
+        }
         self.predict_unknowns(from, q - from.q[0], &mut pose);
         let predicted = pose.clone();
         self.positions_from(&[q], &mut pose, InitialIterate::CurrentPose)

@@ -146,6 +146,18 @@ impl Plan {
         self.run_steps(&self.steps, pose, initial_iterate)
     }
 
+    /// The positions at the coordinates `q` of a group and all before it.
+    pub(crate) fn positions_up_to<T: Scalar>(
+        &self,
+        group: usize,
+        q: &[T],
+        pose: &mut Pose<T>,
+    ) -> Result<(), PositionError> {
+        pose.q.copy_from_slice(q);
+        let steps = &self.steps[..=self.solve_steps[group]];
+        self.run_steps(steps, pose, InitialIterate::CurrentPose)
+    }
+
     /// Runs the steps after the group before, this group's solution included: at assembly, when all groups before it are
     /// solved.
     pub(crate) fn group_positions(

@@ -26,6 +26,9 @@ use std::time::Instant;
 const ROUNDS: usize = 200;
 /// The chains: numbers of four-bars.
 const CHAINS: [usize; 7] = [1, 3, 10, 30, 100, 300, 1000];
+/// The chains that are compiled, and how many times each.
+const COMPILED_CHAINS: [usize; 4] = [100, 1000, 10_000, 100_000];
+const COMPILATIONS: usize = 3;
 
 /// By hand: from coordinates to m, ½m′, a and b; one after another where each coordinate has something of the last
 /// m, as an integrator's has, or as the processor likes.
@@ -71,6 +74,7 @@ fn main() {
         }
     }
     chains(&threads.one);
+    compilations();
     requested();
 }
 
@@ -235,6 +239,20 @@ fn chains(thread: &ThreadPool) {
             }
         }
         println!("{n:8}{:16.1}{:16.1}", min_ns[0], min_ns[1]);
+    }
+}
+
+/// What it takes to describe and compile chains of more and more four-bars.
+fn compilations() {
+    println!("\nA chain of N four-bars (A02) compiled: least s, and us a four-bar");
+    for n in COMPILED_CHAINS {
+        let spent = (0..COMPILATIONS).map(|_| {
+            let start = Instant::now();
+            black_box(chain(n));
+            start.elapsed().as_secs_f64()
+        });
+        let min = spent.fold(f64::INFINITY, f64::min);
+        println!("{n:8}{min:12.4}{:12.1}", min / n as f64 * 1e6);
     }
 }
 

@@ -69,7 +69,8 @@ impl PassModel {
             } = masses[body.body];
             with_mass += usize::from(mass > 0.0 || inertia > 0.0);
             let to_center = vector_to(&self.plan, body.body, center);
-            fits &= mass > 0.0 || body.mass == 0.0;
+            // Its inertia force has to have a place where its origin moves.
+            let mut has_place = mass == 0.0 || body.fixed_origin;
             fits &= replace_vector(&mut body.first_moment, to_center * mass);
             (body.mass, body.inertia) = (mass, inertia);
             body.inertia_about_joint = inertia + mass * to_center.dot(to_center);
@@ -78,8 +79,10 @@ impl PassModel {
             while let Some(other) = accelerated.next_if(|a| a.moving_body <= body.moving_body) {
                 if other.moving_body == body.moving_body {
                     (other.mass, other.first_moment) = (body.mass, body.first_moment);
+                    has_place = true;
                 }
             }
+            fits &= has_place;
         }
         let given = masses.iter().filter(|m| m.mass > 0.0 || m.inertia > 0.0);
         fits && given.count() == with_mass

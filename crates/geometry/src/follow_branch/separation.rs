@@ -14,7 +14,6 @@
 
 use crate::plan::range::NearBranch;
 use crate::plan::{GroupKind, Plan, Pose};
-use crate::positions::InitialIterate;
 use dwell_numerics::{DoubleDouble, Dual, Scalar};
 
 /// Branches that come closer than this part of the coordinate (rad, or of the mechanism's size) meet: lengths that are
@@ -59,8 +58,7 @@ impl Plan {
             pose = self.corrected_pose(&pose, at)?;
             fine.start_from(&pose);
             let coordinate = [DoubleDouble::from_f64(at)];
-            self.positions_from(&coordinate, &mut fine, InitialIterate::CurrentPose)
-                .ok()?;
+            self.positions_up_to(group, &coordinate, &mut fine).ok()?;
             let determinant = self.group_determinant(group, &fine);
             *square = determinant * determinant;
         }
@@ -113,11 +111,13 @@ impl Plan {
         pairs.filter_map(move |(group, (a, b))| {
             // Half the derivative of D², and its rate.
             let slopes = [a.v * a.d, b.v * b.d];
+            if slopes[0] * slopes[1] > 0.0 {
+                return None;
+            }
             let rate = (slopes[1] - slopes[0]) / (to - from);
             let to_center = -slopes[0] / rate;
-            let is_within = rate > 0.0 && slopes[0] * slopes[1] <= 0.0;
             let half_width = (a.v * a.v / rate - to_center * to_center).max(0.0).sqrt();
-            (is_within && half_width < widest).then_some(NearBranch {
+            (rate > 0.0 && half_width < widest).then_some(NearBranch {
                 q: from + to_center,
                 half_width,
                 group,

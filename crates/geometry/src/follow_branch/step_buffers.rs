@@ -1,6 +1,7 @@
 //! What is kept of the steps along a branch: of one whose poses follow from the coordinate alone, by closed forms, the
 //! coordinates.
 
+use crate::motion::Motion;
 use crate::plan::{Plan, Pose};
 use crate::positions::InitialIterate;
 use dwell_numerics::Dual;
@@ -8,6 +9,8 @@ use dwell_numerics::Dual;
 /// What a step reaches, and working memory.
 pub(super) struct StepBuffers {
     pub(super) reached: Pose<f64>,
+    /// At unit velocity.
+    pub(super) motion: Motion<f64>,
     pub(super) with_slopes: Pose<Dual>,
 }
 
@@ -15,6 +18,7 @@ impl StepBuffers {
     pub(super) fn new(plan: &Plan) -> Self {
         Self {
             reached: plan.pose(),
+            motion: plan.motion(),
             with_slopes: plan.pose(),
         }
     }

@@ -1,8 +1,8 @@
 //! Where everything is at given coordinates.
 
 use crate::plan::{FactoredGroup, GroupKind, Plan};
-use crate::plane::{Vec2, vec2};
-use dwell_numerics::{Dual, Scalar};
+use crate::plane::Vec2;
+use dwell_numerics::Scalar;
 
 /// What the computation of positions gives: the orientation of every frame and every rotated vector.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,32 +43,6 @@ impl<T: Scalar> Pose<T> {
         for (value, &other) in angles.chain(travels) {
             *value = T::from_f64(other);
         }
-    }
-}
-
-impl Pose<f64> {
-    /// Takes the values of a pose that has derivatives, too.
-    pub(crate) fn take_values(&mut self, other: &Pose<Dual>) {
-        let value = |of: &Dual| of.v;
-        let of_vector = |of: &Vec2<Dual>| vec2(of.x.v, of.y.v);
-        self.q
-            .iter_mut()
-            .zip(&other.q)
-            .for_each(|(to, of)| *to = value(of));
-        let rotations = self.rotation.iter_mut().zip(&other.rotation);
-        let vectors = self.vector.iter_mut().zip(&other.vector);
-        rotations
-            .chain(vectors)
-            .for_each(|(to, of)| *to = of_vector(of));
-        let angles = self.angle.iter_mut().zip(&other.angle);
-        let travels = self.slide_travel.iter_mut().zip(&other.slide_travel);
-        let closures = self.closure_travel.iter_mut().zip(&other.closure_travel);
-        let determinants = self
-            .inverse_determinant
-            .iter_mut()
-            .zip(&other.inverse_determinant);
-        let numbers = angles.chain(travels).chain(closures).chain(determinants);
-        numbers.for_each(|(to, of)| *to = value(of));
     }
 }
 

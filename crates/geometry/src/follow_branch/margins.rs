@@ -1,0 +1,69 @@
+//! How far each group is from where its branch ends: the size of its determinant, with its derivative by the coordinate.
+
+use super::step_buffers::StepBuffers;
+use crate::plan::{Plan, Pose};
+use crate::positions::InitialIterate;
+use dwell_numerics::Dual;
+
+impl Plan {
+    /// By group, its margin at a pose. None where its branch has ended.
+    pub(super) fn margins_of_pose(
+        &self,
+        at: &Pose<f64>,
+        buffers: &mut StepBuffers,
+    ) -> Option<Vec<Dual>> {
+        if self.is_dyadic() {
+            self.closed_form_margins((at, at.q[0]), buffers)
+        } else {
+            self.margins_by_duals(at, &mut buffers.with_slopes)
+        }
+    }
+
+    /// The margins at a coordinate if every group is a closed form, with the pose there, whose revolutions are counted
+    /// from another one. The slopes follow from the motion at unit velocity, in a third of the operations of dual numbers.
+    pub(super) fn closed_form_margins(
+        &self,
+        (from, q): (&Pose<f64>, f64),
+        StepBuffers {
+            reached, motion, ..
+        }: &mut StepBuffers,
+    ) -> Option<Vec<Dual>> {
+        if !self.is_explicit() {
+            reached.start_from(from);
+        }
+        self.positions_from(&[q], reached, InitialIterate::CurrentPose)
+            .ok()?;
+        self.velocities(reached, &[1.0], motion);
+        let margin = |group: usize| {
+            let [product, slope] = self.determinant_and_slope(group, reached, motion);
+            // The product of two vectors that are nearly parallel loses digits that the pose has.
+            let size = (1.0 / reached.inverse_determinant[group]).abs();
+            Dual {
+                v: size,
+                d: slope.copysign(slope * product),
+            }
+        };
+        Some((0..self.groups.len()).map(margin).collect())
+    }
+
+    /// The margins at a pose, by dual numbers.
+    pub(super) fn margins_by_duals(
+        &self,
+        at: &Pose<f64>,
+        pose: &mut Pose<Dual>,
+    ) -> Option<Vec<Dual>> {
+        pose.start_from(at);
+        let q = [Dual::variable(at.q[0])];
+        self.positions_from(&q, pose, InitialIterate::CurrentPose)
+            .ok()?;
+        let margin = |group: usize| {
+            let determinant = self.group_determinant(group, pose);
+            if determinant.v < 0.0 {
+                -determinant
+            } else {
+                determinant
+            }
+        };
+        Some((0..self.groups.len()).map(margin).collect())
+    }
+}
