@@ -28,7 +28,7 @@ const TOGETHER: f64 = 16.0 * f64::EPSILON;
 const MAX_TOGETHER: usize = 64;
 /// Events at one time, beside those of other contacts, after which they repeat each other.
 const REPEATED: usize = 8;
-/// A margin below this is beyond its limit where a motion begins, or where a coordinate leaves its stop from rest.
+/// A margin below this is beyond its limit where a motion begins.
 const BEYOND: f64 = 1e-12;
 
 /// Watches the contacts of a system during its integration.
@@ -237,8 +237,7 @@ impl ContactMonitor {
         Ok(())
     }
 
-    /// Whether a coordinate still leaves its stop at a time `t` of the step, by (1): it is driven away from it, or lies at its
-    /// limit within [`BEYOND`].
+    /// Whether a coordinate still leaves its stop at a time `t` of the step, by (1): its acceleration leads away from it.
     fn is_leaving(
         &mut self,
         k: usize,
@@ -254,7 +253,7 @@ impl ContactMonitor {
         let state = state_at(t, now, dense)?;
         let mut rates = vec![0.0; state.y.len()];
         system.rhs(t, &state.y, &mut rates)?;
-        let leaves = away * rates[speed] > 0.0 || self.values[k].abs() <= BEYOND;
+        let leaves = away * rates[speed] > 0.0;
         if !leaves {
             margin.leaving = None;
         }
