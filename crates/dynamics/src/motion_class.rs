@@ -450,6 +450,7 @@ mod tests {
             let off = (a + amplitude).abs().max((b - amplitude).abs());
             println!("{amplitude}: {off:.1e}, {evaluations} evaluations");
             assert!(off < allowed, "{amplitude}: {off:e}");
+            // Seen: 113.
             assert!(evaluations < 200, "{evaluations}");
         }
         let speed = 2.0 * (0.5 * (1.0 + 0.3_f64.cos())).sqrt();
@@ -462,13 +463,13 @@ mod tests {
     fn a_narrow_hill_is_not_passed_over() {
         let hill = |q: f64| {
             let width = 0.03;
-            let at = (q - 1.0) / width;
+            let at = ((q - 1.0 + 0.5 * TAU).rem_euclid(TAU) - 0.5 * TAU) / width;
             let bump = 3.0 * (-at * at).exp();
             [bump - q.cos(), 2.0 * at / width * bump - q.sin()]
         };
         for k in 0..40 {
             let q = -0.6 + 0.02 * f64::from(k);
-            let (found, _) = class(hill, q, 2.0);
+            let (found, _) = class(hill, q, 2.1);
             let MotionClass::Libration { turning_points } = found else {
                 panic!("{found:?} from {q}")
             };
