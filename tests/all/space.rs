@@ -9,6 +9,7 @@ mod friction;
 mod friction_in_motion;
 mod holding_tubes;
 mod hooke_joint;
+mod leaving_stops;
 mod loads;
 mod motions;
 mod mutations;

@@ -14,7 +14,7 @@ use dwell_study::{
 };
 use std::path::{Path, PathBuf};
 
-/// Kinetostatics and dynamics of planar mechanisms, with independent checks
+/// Kinetostatics and dynamics of mechanisms in the plane and in space, with independent checks
 #[derive(Debug, Parser)]
 #[command(name = "dwell", version, arg_required_else_help = true)]
 pub(crate) struct Options {

@@ -145,6 +145,10 @@ impl<M: MovingModel> ConservativeSystem for LoadedSystem<M> {
     fn is_angle(&self) -> bool {
         self.model.is_angle(0)
     }
+
+    fn is_potential_free(&self) -> bool {
+        self.model.loads().is_empty()
+    }
 }
 
 /// The ends of the range in the revolution in which `q` lies, rad or m; none if there are no limits.

@@ -146,8 +146,8 @@ pub enum DynamicsError {
         /// Which: the index of a load.
         source_index: usize,
     },
-    /// Impacts on end stops follow each other without end at one instant.
-    #[error("the impacts on end stop {stop} follow each other without end")]
+    /// A coordinate meets its end stop and leaves it without end at one instant.
+    #[error("at end stop {stop} a coordinate strikes, rests and leaves without end at one instant")]
     StopsWithoutEnd {
         /// Which end stop.
         stop: usize,

@@ -132,7 +132,18 @@ impl SampledLibration {
             system.energy_terms(q)
         };
         let samples = std::mem::take(&mut self.samples);
-        self.samples = refine_samples(samples, first, &mut terms_at)?;
+        // Downwards is as upwards: half of a period is evaluated.
+        let (known, mut found) = (samples.len(), Vec::new());
+        self.samples = refine_samples::<_, DynamicsError>(samples, first, |part| {
+            let k = found.len();
+            let terms = match (part <= 0.5, known) {
+                (true, _) => terms_at(part)?,
+                (false, 0) => found[first - k],
+                (false, _) => found[known - 1 - k],
+            };
+            found.push(terms);
+            Ok(terms)
+        })?;
         let forces: Vec<f64> = self.samples.iter().map(|h| h.force).collect();
         let size = forces.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
         self.force_series = FourierSeries::new(&forces, size);

@@ -2,7 +2,7 @@
 
 use crate::contact::{ContactEvent, ContactMode, ContactStep};
 use crate::contact_events::pass;
-use crate::error::Result;
+use crate::error::{DynamicsError, Result};
 use crate::interruption;
 use crate::machine::{Machine, MachineState, MachineWorkspace, MovingModel};
 use crate::ode::{DualWorkspace, OdeState, OdeSystem};
@@ -187,9 +187,27 @@ impl<M: MovingModel> OdeSystem for MachineOde<'_, M> {
         self.machine.contact_count()
     }
 
-    fn contact_source(&self, contact: usize) -> usize {
-        let friction = self.machine.contacts.get(contact);
-        friction.map_or(0, |friction| friction.load)
+    fn contact_without_mode(&self, contact: usize) -> DynamicsError {
+        let (frictions, stops) = (&self.machine.contacts, &self.machine.stops);
+        match frictions.get(contact) {
+            Some(friction) => DynamicsError::NoContactMode {
+                source_index: friction.load,
+            },
+            // The stops are behind them.
+            None => DynamicsError::StopsWithoutEnd {
+                stop: stops[contact - frictions.len()].stop,
+            },
+        }
+    }
+
+    fn speed_at_stop(&self, contact: usize, y: &[f64]) -> Option<(usize, f64)> {
+        let k = contact.checked_sub(self.machine.contacts.len())?;
+        let stop = &self.machine.stops[k];
+        let speed = self.machine.free().len() + stop.free;
+        let code = y[self.machine.stop_states().start + k];
+        let is_free = stop.yielding.is_none() && ContactMode::of_code(code) != ContactMode::Holds;
+        let is_there = y[stop.free] == stop.at && y[speed] == 0.0;
+        (is_free && is_there).then_some((speed, stop.side))
     }
 
     fn contact_margins(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<bool> {

@@ -114,9 +114,15 @@ pub trait OdeSystem {
         0
     }
 
-    /// The index of the load to which a contact belongs.
-    fn contact_source(&self, _contact: usize) -> usize {
-        0
+    /// What is wrong where the modes of a contact change without end at one instant.
+    fn contact_without_mode(&self, _contact: usize) -> DynamicsError {
+        DynamicsError::NoContactMode { source_index: 0 }
+    }
+
+    /// The state that is the speed of a coordinate which lies at its rigid end stop without speed and does not rest on it,
+    /// and the sign of the direction away from the stop; none of any other contact.
+    fn speed_at_stop(&self, _contact: usize, _y: &[f64]) -> Option<(usize, f64)> {
+        None
     }
 
     /// By contact: how far it is from a change of its mode, negative beyond; not a number where none is near. Whether a

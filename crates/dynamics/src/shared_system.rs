@@ -1,7 +1,7 @@
 //! A system that an integrator and the monitors of its events evaluate in turn.
 
 use crate::contact::ContactStep;
-use crate::error::Result;
+use crate::error::{DynamicsError, Result};
 use crate::ode::{OdeState, OdeSystem};
 use crate::sliding::Sliding;
 use dwell_laws::SwitchKind;
@@ -99,8 +99,12 @@ impl OdeSystem for &SharedSystem<'_> {
         self.inner.borrow().contact_count()
     }
 
-    fn contact_source(&self, contact: usize) -> usize {
-        self.inner.borrow().contact_source(contact)
+    fn contact_without_mode(&self, contact: usize) -> DynamicsError {
+        self.inner.borrow().contact_without_mode(contact)
+    }
+
+    fn speed_at_stop(&self, contact: usize, y: &[f64]) -> Option<(usize, f64)> {
+        self.inner.borrow().speed_at_stop(contact, y)
     }
 
     fn contact_margins(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<bool> {

@@ -8,7 +8,7 @@
 //! with the switching function g and its rates along f⁻ and f⁺. The motion leaves the switch where α comes to 0 or 1.
 
 use crate::contact::ContactStep;
-use crate::error::Result;
+use crate::error::{DynamicsError, Result};
 use crate::ode::{OdeState, OdeSystem};
 use crate::shared_system::SharedSystem;
 use crate::sliding::{SideRates, Sliding};
@@ -147,8 +147,12 @@ impl OdeSystem for SlidingSystem<'_, '_> {
         self.shared.contact_count()
     }
 
-    fn contact_source(&self, contact: usize) -> usize {
-        self.shared.contact_source(contact)
+    fn contact_without_mode(&self, contact: usize) -> DynamicsError {
+        self.shared.contact_without_mode(contact)
+    }
+
+    fn speed_at_stop(&self, contact: usize, y: &[f64]) -> Option<(usize, f64)> {
+        self.shared.speed_at_stop(contact, y)
     }
 
     fn contact_margins(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<bool> {

@@ -15,7 +15,7 @@ const TIME_BUDGET: Duration = Duration::from_millis(250);
 const MIN_REPETITIONS: usize = 5;
 const MAX_REPETITIONS: usize = 2000;
 /// What the rules of a quadrature leave, as a part of the mean.
-pub(crate) const QUADRATURE_ACCURACIES: [f64; 5] = [1e-4, 1e-6, 1e-9, 1e-12, 0.0];
+pub(crate) const QUADRATURE_ACCURACIES: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-9, 1e-12, 0.0];
 /// Times at which a rule is compared with that of all digits.
 const COMPARED_TIMES: u32 = 23;
 /// A method that takes longer than this is not asked for more digits, s.

@@ -7,9 +7,18 @@
 //! ```
 //!
 //! on the dense output: the modes are held within a step, so that everything is smooth, and a step may lead beyond.
+//!
+//! Where the force that keeps a coordinate q on its stop passes zero at t₁, the coordinate leaves with q̈ = 0, too:
+//!
+//! ```text
+//! q − q₁ = ½ q̈(t₁)(t − t₁)² + ⅙ q⃛ (t − t₁)³ + …,    q̈(t₁) = 0 but for rounding,    q⃛ > 0                       (1)
+//! ```
+//!
+//! so that at first its distance is less than the error of the method, and the sign of what is computed says nothing. The
+//! sign of q̈ behind t₁ does: as long as it leads away from the stop, there is no contact.
 
 use crate::contact::ContactStep;
-use crate::error::{DynamicsError, Result};
+use crate::error::Result;
 use crate::ode::{DenseOutput, OdeState, OdeSystem, root_subintervals, state_at};
 use crate::switch_monitor::vertex;
 use dwell_numerics::root;
@@ -41,6 +50,8 @@ struct Margin {
     largest: f64,
     /// Whether it was positive since the integration began: surfaces that have just let go have no speed yet.
     is_inside: bool,
+    /// Of a coordinate that leaves its stop from rest, by (1): the state that is its speed, and the sign of the direction away.
+    leaving: Option<(usize, f64)>,
 }
 
 impl ContactMonitor {
@@ -51,6 +62,7 @@ impl ContactMonitor {
             points: [(f64::NAN, f64::NAN); 2],
             largest: 0.0,
             is_inside: false,
+            leaving: None,
         };
         (count > 0).then(|| Self {
             margins: vec![margin; count],
@@ -70,7 +82,7 @@ impl ContactMonitor {
         // A margin that is not a number is none.
         let touched: Vec<bool> = self.values.iter().map(|margin| *margin < -BEYOND).collect();
         if !is_open && !touched.contains(&true) {
-            return Ok(());
+            return self.find_leaving(system, at, None);
         }
         self.change_modes(system, at, &touched)
     }
@@ -109,7 +121,7 @@ impl ContactMonitor {
         for (margin, &value) in self.margins.iter_mut().zip(&self.values) {
             margin.points = [(before.t, value), (f64::NAN, f64::NAN)];
             margin.largest = value.abs();
-            margin.is_inside |= value > 0.0;
+            margin.is_inside |= value > 0.0 && margin.leaving.is_none();
         }
         for t in root_subintervals(before, now) {
             let point = state_at(t, now, dense)?;
@@ -147,6 +159,11 @@ impl ContactMonitor {
         dense: DenseOutput<'_>,
     ) -> Result<Option<f64>> {
         let value = self.values[k];
+        if self.is_leaving(k, t, system, now, dense)? {
+            let margin = &mut self.margins[k];
+            margin.points = [(t, value), margin.points[0]];
+            return Ok(None);
+        }
         let margin = &mut self.margins[k];
         let earlier = margin.points;
         margin.points = [(t, value), earlier[0]];
@@ -192,6 +209,57 @@ impl ContactMonitor {
         root::find(margin_at, from.0, end)
     }
 
+    /// Which coordinates leave their stops from rest: those that a force of zero has let go, which is touched, and those that
+    /// no force holds; the others where no mode has changed go on doing so.
+    fn find_leaving(
+        &mut self,
+        system: &mut dyn OdeSystem,
+        at: &OdeState,
+        touched: Option<&[bool]>,
+    ) -> Result<()> {
+        let mut rates = Vec::new();
+        for (k, margin) in self.margins.iter_mut().enumerate() {
+            if margin.leaving.is_some() && touched.is_none() {
+                continue;
+            }
+            margin.leaving = system.speed_at_stop(k, &at.y);
+            let is_touched = touched.is_some_and(|touched| touched[k]);
+            let Some((speed, away)) = margin.leaving.filter(|_| !is_touched) else {
+                continue;
+            };
+            if rates.is_empty() {
+                rates.resize(at.y.len(), 0.0);
+                system.rhs(at.t, &at.y, &mut rates)?;
+            }
+            // What is pushed onto its stop comes to rest there.
+            margin.leaving = margin.leaving.filter(|_| away * rates[speed] >= 0.0);
+        }
+        Ok(())
+    }
+
+    /// Whether a coordinate still leaves its stop at a time `t` of the step, by (1): its acceleration leads away from it.
+    fn is_leaving(
+        &mut self,
+        k: usize,
+        t: f64,
+        system: &mut dyn OdeSystem,
+        now: &OdeState,
+        dense: DenseOutput<'_>,
+    ) -> Result<bool> {
+        let margin = &mut self.margins[k];
+        let Some((speed, away)) = margin.leaving else {
+            return Ok(false);
+        };
+        let state = state_at(t, now, dense)?;
+        let mut rates = vec![0.0; state.y.len()];
+        system.rhs(t, &state.y, &mut rates)?;
+        let leaves = away * rates[speed] > 0.0;
+        if !leaves {
+            margin.leaving = None;
+        }
+        Ok(leaves)
+    }
+
     /// A time soon after the start of a step at which the margin of a contact is positive, and a later one at which it is
     /// not: a short rebound lies between two points of a step.
     fn first_inside(
@@ -234,8 +302,8 @@ impl ContactMonitor {
         let together = (at.t - self.last.0).abs() <= TOGETHER * at.t.abs();
         self.last = (at.t, if together { self.last.1 + 1 } else { 0 });
         if self.last.1 > MAX_TOGETHER {
-            let source_index = system.contact_source(touched.iter().position(|t| *t).unwrap_or(0));
-            return Err(DynamicsError::NoContactMode { source_index });
+            let first = touched.iter().position(|touched| *touched);
+            return Err(system.contact_without_mode(first.unwrap_or(0)));
         }
         let largest: Vec<f64> = self.margins.iter().map(|margin| margin.largest).collect();
         let step = ContactStep {
@@ -245,6 +313,7 @@ impl ContactMonitor {
             repeated: self.last.1 > REPEATED,
         };
         self.begin_anew();
-        system.pass_contacts(at.t, &mut at.y, &step)
+        system.pass_contacts(at.t, &mut at.y, &step)?;
+        self.find_leaving(system, at, Some(touched))
     }
 }

@@ -28,7 +28,8 @@ impl Mass {
         vec3(x.dot(w), y.dot(w), z.dot(w))
     }
 
-    /// Whether it is a mass: not negative, with a tensor that no distribution of mass contradicts by more than rounding.
+    /// Whether it is a mass: not negative, with a tensor that is positive semidefinite but for rounding. That no moment exceeds the sum of the
+    /// two others is not asked: tensors of published mechanisms exceed it (Haug's spatial slider-crank).
     pub fn is_valid(&self) -> bool {
         let [xx, yy, zz, xy, xz, yz] = self.inertia;
         let finite = self.mass.is_finite()

@@ -54,12 +54,16 @@ pub(super) fn explain_stop(scene: &impl NamedScene, stop: usize, what: &str) -> 
     scene_error(scene, message, help, [place])
 }
 
-/// Explains impacts that follow each other without end.
+/// Explains impacts on an end stop, or changes between rest and motion, that follow each other without end.
 pub(super) fn explain_endless_impacts(scene: &impl NamedScene, stop: usize) -> StudyError {
     let name = stop_name(scene, stop);
-    let message = format!("the impacts on end stop `{name}` follow each other without end");
+    let message = format!(
+        "at end stop `{name}` a coordinate strikes, rests or leaves without end at one instant"
+    );
     let place = (SceneLocation::Stop(stop), "this end stop");
-    scene_error(scene, message, "give it a smaller restitution", [place])
+    let help = "give it a smaller restitution, or keep other stops from being met at the same instant; one with a `stiffness` \
+                has no impacts";
+    scene_error(scene, message, help, [place])
 }
 
 fn stop_name(scene: &impl NamedScene, stop: usize) -> &str {

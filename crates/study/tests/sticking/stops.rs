@@ -107,9 +107,12 @@ fn a_thousand_rebounds_without_loss_keep_the_energy() {
 #[test]
 fn a_lift_stands_on_its_floor_until_it_is_lifted() {
     let loads = r#"rope = { force = "ball.A", direction = [0, 1], magnitude = "10*t" }"#;
-    let text = ball("min = 1.0", loads, "duration = 3.0");
     let lifted = 2.0 * G / 10.0;
-    for method in Method::ALL {
+    // At zero the positions soon after are not rounded to the stop's own.
+    let methods = Method::ALL.into_iter();
+    for (method, floor) in methods.flat_map(|method| [(method, 1.0), (method, 0.0)]) {
+        let text = ball(&format!("min = {floor:?}"), loads, "duration = 3.0");
+        let text = text.replace("z = 1.0", &format!("z = {floor:?}"));
         let [rtol, allowed] = tolerance(method);
         let run = run(&text, method, rtol);
         assert_eq!(run.stops(is_impact), Vec::<f64>::new());
@@ -120,10 +123,10 @@ fn a_lift_stands_on_its_floor_until_it_is_lifted() {
             run.steps
                 .iter()
                 .filter(|s| s.t <= lifted)
-                .all(|s| s.y[..2] == [1.0, 0.0])
+                .all(|s| s.y[..2] == [floor, 0.0])
         );
         let after = 3.0 - lifted;
-        near(run.end()[0], 1.0 + 10.0 * after.powi(3) / 12.0, allowed);
+        near(run.end()[0], floor + 10.0 * after.powi(3) / 12.0, allowed);
     }
 }
 

@@ -69,6 +69,15 @@ const REACTIONS: Comparison = Comparison {
     tolerance: 1e-10,
     reason: ROUNDING,
 };
+const IN_PASSES: Comparison = Comparison {
+    key: "reduced-passes",
+    check: Check::NewtonEuler,
+    comparison: "m, ½m′, a and b of the reduced model with the two runs of the mechanism in space",
+    scale: "m, and the largest reaction of the run there",
+    // Seen: 3.5e-15.
+    tolerance: 3e-13,
+    reason: ROUNDING,
+};
 const FORCES: Comparison = Comparison {
     key: "newton-force",
     check: Check::NewtonEuler,
@@ -121,6 +130,7 @@ pub(super) fn findings(
     let [closure, actions, reactions, energy, power] = against_dense(samples)?;
     let [forces, moments] = body_by_body(samples)?;
     let [slope, digits] = by_evaluation(samples)?;
+    let in_passes = against_passes(prepared, &samples.q)?;
     for (worst, of) in [
         (closure, &CLOSURE),
         (energy, &ENERGY),
@@ -128,6 +138,7 @@ pub(super) fn findings(
         (power, &POWER),
         (actions, &ACTIONS),
         (reactions, &REACTIONS),
+        (in_passes, &IN_PASSES),
         (forces, &FORCES),
         (moments, &MOMENTS),
         (digits, &DIGITS),
@@ -266,6 +277,31 @@ fn compare_reactions(
             at(&format!("{joint}.{what}{axis}"))
         });
     }
+}
+
+/// The reduced coefficients, which may come from a planar equivalent, with the passes that the dense equations judge.
+fn against_passes(prepared: &PreparedSpaceScene<'_>, q: &[f64]) -> Result<Worst, ValidationError> {
+    let mut worst = Worst::default();
+    let model = prepared.model.model();
+    let (mut workspace, mut found) = (model.workspace(), model.result_buffer());
+    let names = prepared.reaction_units();
+    for (&q, at) in q.iter().zip(&prepared.coefficients(q)?) {
+        let runs = [(&PASSES[0], at.half_dm, &at.b), (&PASSES[1], at.m, &at.a)];
+        for (pass, action, reactions) in runs {
+            let rates = [[pass.q_dot], [pass.q_ddot]];
+            let done =
+                model.inverse_dynamics(&[q], &rates[0], &rates[1], &mut workspace, &mut found);
+            done.map_err(|e| prepared.explain(&e))?;
+            let place = |what: &str| format!("q = {q:.4}, {what}");
+            worst.add([action, found.tau[0], at.m], "kg m2", || place("m or ½m′"));
+            let wanted = &found.reactions;
+            let largest = wanted.iter().fold(0.0_f64, |max, r| max.max(r.abs()));
+            for ((name, _), (found, wanted)) in names.iter().zip(reactions.iter().zip(wanted)) {
+                worst.add([*found, *wanted, largest], "", || place(name));
+            }
+        }
+    }
+    Ok(worst)
 }
 
 /// ½m′ by differences of m, and the rounding errors.
