@@ -37,6 +37,12 @@ pub(crate) trait ConservativeSystem {
         false
     }
 
+    /// Whether a position follows a function of the scene, such as that of a cam, whose potential may change within a small part of the
+    /// range.
+    fn follows_functions(&self) -> bool {
+        false
+    }
+
     /// The angle after which everything repeats itself, rad; none if it never does.
     fn period(&mut self, q: f64) -> Result<Option<f64>> {
         if !self.is_angle() || self.range().limits().is_some() {
@@ -148,6 +154,10 @@ impl<M: MovingModel> ConservativeSystem for LoadedSystem<M> {
 
     fn is_potential_free(&self) -> bool {
         self.model.loads().is_empty()
+    }
+
+    fn follows_functions(&self) -> bool {
+        self.model.follows_functions()
     }
 }
 

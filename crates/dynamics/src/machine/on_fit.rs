@@ -4,7 +4,7 @@ use super::workspace::EquationWorkspace;
 use super::{Machine, MachineState};
 use crate::change_point_fit::{FitWindow, FitWorkspace, set_motion};
 use crate::error::{Result, positive_inertia};
-use dwell_geometry::{Motion, Pose};
+use dwell_geometry::{JointKind, Motion, Pose};
 use dwell_kinetostatics::{
     EvaluatedState, ForceState, InverseDynamics, MachineModel, Magnitude, Model, Workspace,
 };
@@ -56,6 +56,11 @@ const REACTION_DEGREE: usize = 8;
 pub trait MovingModel: MachineModel {
     /// The part of the coordinate on which a fit takes the place of the model.
     type FitWindow: Debug + Clone + PartialEq + Send + Sync;
+
+    /// Whether a position follows a function of the scene, such as that of a cam.
+    fn follows_functions(&self) -> bool {
+        false
+    }
 
     /// The distance of a coordinate from the change point of a window, if it is within.
     fn offset_within(window: &Self::FitWindow, q: f64) -> Option<f64>;
@@ -109,6 +114,11 @@ impl<M: MovingModel> Machine<M> {
 
 impl MovingModel for Model {
     type FitWindow = FitWindow;
+
+    fn follows_functions(&self) -> bool {
+        let mut joints = self.mechanism().joints.iter();
+        joints.any(|joint| matches!(joint.kind, JointKind::Coupling(_)))
+    }
 
     #[inline]
     fn offset_within(window: &FitWindow, q: f64) -> Option<f64> {
