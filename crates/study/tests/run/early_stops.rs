@@ -119,7 +119,7 @@ fn changed(old: &str, new: &str) -> (usize, String, String) {
     }
 }
 
-/// A pendulum that an engine turns by a table from −1 to 2 rad: 4 − 2φ less its weight crosses zero at one place of this interval.
+/// A pendulum that an engine turns by a table from −1 to 2 rad: 6 − 7⁄3 (φ + 1) less its weight crosses zero at one place of this interval.
 const DRIVEN: &str = r#"
 [bodies.ground]
 points = { A = [0, 0] }
@@ -133,7 +133,7 @@ A = { revolute = ["ground.A", "bar.A"] }
 [actuators]
 phi = { angle = ["ground", "bar"] }
 [loads]
-engine = { torque = "bar", magnitude = { table = [[-1, 6], [2, 0]], interpolation = "linear", of = "phi" } }
+engine = { torque = "bar", magnitude = { table = [[-1, 6], [2, -1]], interpolation = "linear", of = "phi" } }
 weight = { gravity = [0, -9.81] }
 [motion]
 duration = 1
@@ -150,7 +150,7 @@ fn equilibria_are_those_within_the_tables_of_loads() {
         panic!("one coordinate has an interval");
     };
     assert_eq!([from, to], [-1.0, 2.0]);
-    let force = |q: f64| 4.0 - 2.0 * q - 0.981 * q.cos();
+    let force = |q: f64| 6.0 - 7.0 / 3.0 * (q + 1.0) - 0.981 * q.cos();
     let places: Vec<f64> = results.found.iter().map(|e| e.y[0]).collect();
     assert!(
         places.len() == 1 && force(places[0]).abs() < 1e-13,
