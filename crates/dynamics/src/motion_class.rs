@@ -338,7 +338,7 @@ impl<'a> EnergyScan<'a> {
         for count in STEPS_AT_ONCE {
             let to = steps.at(k + count);
             let leaves = end.is_some_and(|end| (to - end) * direction >= -LIMIT_TOLERANCE);
-            if k % count != 0 || k + count > steps.count || leaves {
+            if !k.is_multiple_of(count) || k + count > steps.count || leaves {
                 continue;
             }
             let mut points = [before; 2];
