@@ -5,7 +5,7 @@
 //! program as a process ── matrices, table, summary, sentences ── characteristic (determinant), modes ── findings
 //!      └── starts (changed states and inputs) ── rows of simulate ── slopes (A, B, C, D by differences) ────┤
 //!      └── starts in equilibria ── rows of simulate, modes of linearise ── rest ────────────────────────────┤
-//!      └── starts beside equilibria ── places of linearise ── nearest ─────────────────────────────────────┤
+//!      └── starts near equilibria ── places of linearise ── nearest ───────────────────────────────────────┤
 //! summaries, sentences, rows of statics ── equilibrium_files ──────────────────────────────────────────────┘
 //! ```
 

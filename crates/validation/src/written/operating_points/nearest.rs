@@ -1,4 +1,4 @@
-//! `linearise` takes the equilibrium that is nearest to the start. From a start beside each equilibrium of the table it must be that one.
+//! `linearise` takes the equilibrium that is nearest to the start. From a start near each equilibrium of the table it must be that one.
 
 use super::modes::number;
 use super::rest::Rest;
@@ -9,7 +9,7 @@ use crate::written::poses::compared::Compared;
 /// A start is so far from its equilibrium, in parts of the distance to the next one.
 const ASIDE: f64 = 0.1;
 
-/// Moves the start beside each equilibrium. One that is alone has no other that could be taken.
+/// Moves the start near each equilibrium. One that is alone has no other that could be taken.
 pub(super) fn compare(rest: &Rest<'_>, compared: &mut Compared) -> Result<(), String> {
     let places: Option<Vec<Vec<f64>>> = (0..rest.rows.count)
         .map(|row| rest.coordinates(row))
@@ -29,28 +29,28 @@ pub(super) fn compare(rest: &Rest<'_>, compared: &mut Compared) -> Result<(), St
             a.total_cmp(&b)
         });
         if let Some((_, next)) = next {
-            compare_beside(rest, compared, (row, place), next)?;
+            compare_near(rest, compared, (row, place), next)?;
         }
     }
     Ok(())
 }
 
-fn compare_beside(
+fn compare_near(
     rest: &Rest<'_>,
     compared: &mut Compared,
     (row, place): (usize, &[f64]),
     next: &[f64],
 ) -> Result<(), String> {
-    let beside = |(a, b): (&f64, &f64)| a + ASIDE * (b - a);
-    let from: Vec<f64> = place.iter().zip(next).map(beside).collect();
+    let near = |(a, b): (&f64, &f64)| a + ASIDE * (b - a);
+    let from: Vec<f64> = place.iter().zip(next).map(near).collect();
     let start = rest.start.at_rest_in(&from);
     let text = start.text_of_scene(start.scene.clone())?;
-    let run = linearise_nearest(rest.program, &format!("beside{row}"), &text)?;
+    let run = linearise_nearest(rest.program, &format!("near{row}"), &text)?;
     let summary = run.json("-linearise.json")?;
     for (k, free) in start.free.iter().enumerate() {
         let what = || {
             format!(
-                "equilibrium {}, {} from a start beside it",
+                "equilibrium {}, {} from a start near it",
                 row + 1,
                 free.name
             )

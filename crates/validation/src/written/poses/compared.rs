@@ -70,7 +70,7 @@ const SPECS: [Spec; 78] = [
     ("written-rest-order", Check::WrittenTotals, "stability of neighbouring equilibria of one coordinate: the force at rest crosses zero in turn", 0.5),
     ("written-rest-start", Check::WrittenTotals, "distances of equilibria from the start with the start of the motion, and what was searched with one revolution", 1e-14),
     ("written-rest-words", Check::WrittenSentences, "the stability that `equilibria` and `linearise` print with their eigenvalues", 0.5),
-    ("written-rest-nearest", Check::WrittenTotals, "the equilibrium that `linearise` takes from a start beside each of the table with the distance between both", 5e-15),
+    ("written-rest-nearest", Check::WrittenTotals, "the equilibrium that `linearise` takes from a start near each of the table with the distance between both", 5e-15),
     ("written-rest-again", Check::WrittenTwice, "the equilibrium of `linearise` and its modes with the table of `equilibria`", 1e-14),
     ("written-static-force", Check::WrittenTotals, "the smallest and the largest static force of `equilibria` with rows of `statics`, and an equilibrium wherever it changes its sign", 1e-14),
     ("written-damped", Check::WrittenTotals, "the modes of `equilibria` with a damper of known damping ratio, with those of a damped oscillator", 1e-14),
