@@ -98,6 +98,7 @@ impl<S: MachineScene> SceneMachine<'_, S> {
     }
 
     /// The name of the load whose table ends next to a value of the only coordinate, within a part of an interval's width.
+    #[cfg(feature = "output")]
     pub(crate) fn table_that_ends(&self, q: f64, width: f64) -> Option<&str> {
         let mut y = self.initial_state();
         (y[0], y[1]) = (q + 1e-6 * width, 0.0);

@@ -4,6 +4,7 @@
 //! whatever the motion does. About a local extremum there, three positions enclose one of the column. It is found by
 //! parabolas and golden sections, each of whose points is evaluated like a row.
 
+use crate::trajectory::compute::corners::{Sharp, beside_jump, sharp_maxima};
 use crate::trajectory::compute::maximum::{NO_GAIN, promising, refine_maximum};
 use crate::trajectory::compute::{
     BALANCE, Column, Point, Quantity, RowEvaluator, Trajectory, TrajectorySample,
@@ -318,7 +319,12 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
         // Each with its abscissa, where that is known.
         let mut found: Vec<(Point, Option<f64>)> = vec![(largest, None)];
         let unwraps = self.columns[k].unwraps();
-        for (near, bracket) in promising(points, sign, largest[1], refined) {
+        let smooth = promising(points, sign, largest[1], refined);
+        let smooth = smooth
+            .into_iter()
+            .map(|(near, bracket)| (near, Sharp::Corner(bracket)));
+        let sharp = sharp_maxima(points, sign, (largest[1], scale));
+        for (near, place) in smooth.chain(sharp) {
             let columns = [k, self.abscissa];
             let mut value = |u: f64, precision: SamplePrecision| {
                 let [mut value, at] = self.evaluate(columns, (u, precision))?;
@@ -328,7 +334,10 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
                 Some((sign * value, at)).filter(|(value, _)| value.is_finite())
             };
             let interpolated = &mut |u| Some(value(u, Interpolated)?.0);
-            let top = refine_maximum(interpolated, bracket, scale);
+            let top = match place {
+                Sharp::Corner(bracket) => refine_maximum(interpolated, bracket, scale),
+                Sharp::Jump(sides) => beside_jump(interpolated, sides),
+            };
             found.extend(top.and_then(|[u, _]| {
                 let (value, at) = value(u, Exact)?;
                 Some(([u, value], Some(at)))

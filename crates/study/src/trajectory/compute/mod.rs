@@ -3,6 +3,7 @@
 mod analysis;
 mod column;
 mod columns;
+mod corners;
 mod dyads;
 mod early_stop;
 mod evaluator;

@@ -21,6 +21,7 @@ use super::claims::SpaceClaims;
 use super::worst::Worst;
 use crate::error::ValidationError;
 use crate::written::poses::difference::{Differences, Texts};
+use crate::written::poses::extrema_again::same_extrema;
 use crate::written::poses::formats::{Formats, formats};
 use crate::written::poses::program::{Program, Run};
 use crate::written::poses::rows::Rows;
@@ -32,6 +33,18 @@ use std::path::Path;
 /// The accuracy of one of the motions; with end stops a coarse one, whose steps are long enough to pass a stop.
 const ACCURACY: &str = "1e-8";
 const ACCURACY_WITH_STOPS: &str = "1e-6";
+
+/// Intervals between the rows of another run.
+const OTHER_ROWS: f64 = 88.3;
+const EXTREMA_AGAIN: Texts<'_> = Texts {
+    key: "written-motion-extrema-again",
+    check: Check::WrittenTwice,
+    comparison: "extrema of `simulate` with those of the same motion by esdirk34 in other rows",
+    scale: "the largest extremum of the unit",
+    // The largest seen in a case is 8.6e-6, of a motion that strikes stops.
+    tolerance: 1e-4,
+    tolerance_reason: "the errors of both motions",
+};
 
 /// The findings of what the program at a path writes of a scene.
 pub(super) fn written_findings(
@@ -122,6 +135,14 @@ fn free(
         found.extend(between_rows::again(scene, [&rows, &others]));
     }
     found.extend(between_rows::stops(scene, [&rows, &others]));
+    let duration = rows.time(rows.count.saturating_sub(1));
+    let interval = format!("{:e}", duration / OTHER_ROWS);
+    let arguments = ["simulate", "--method", "esdirk34", "--rtol", "1e-9"];
+    let arguments = [&arguments[..], &["--sample-interval", &interval]].concat();
+    let name = format!("{}-other-rows", scene.name);
+    let again = run(program, &name, text, &arguments)?.json("-simulate.json")?;
+    let same = same_extrema([&summary, &again], "simulate and simulate by esdirk34");
+    found.extend(same.finding(EXTREMA_AGAIN, "simulate"));
     Ok(found)
 }
 

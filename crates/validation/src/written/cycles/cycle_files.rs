@@ -76,6 +76,7 @@ fn compare(
             "cycle with flywheel",
         );
     }
+    add_need(compared.of("written-cycle"), &run, &summary);
     compared.merge("written-cycle-sentences", sentences(&run, &summary));
     let angle = Units::read(table).map_or(1.0, |units| units.angle);
     compared.merge(
@@ -84,6 +85,24 @@ fn compare(
     );
     with_heavier_body(compared, program, (scene, table, &coordinate), &summary)?;
     long_motion(compared, program, (table, &coordinate), &summary, period)
+}
+
+/// A flywheel is needed where the coefficient of fluctuation is above the wanted one, and nowhere else; then its cycle has a file.
+fn add_need(to: &mut Differences, run: &Run, summary: &Value) {
+    let of = |name: &str| result(summary, name);
+    let (Some(inertia), Some(fluctuation)) =
+        (of("flywheel.inertia"), of("coefficient_of_fluctuation"))
+    else {
+        return;
+    };
+    let is_needed = fluctuation > FLUCTUATION;
+    let has_file = run.csv("-cycle-flywheel.csv").is_ok();
+    to.add(0.0, 1.0, "", String::new);
+    if is_needed != (inertia > 0.0) || is_needed != has_file {
+        to.fail(format!(
+            "a flywheel of {inertia} kg m2 where the coefficient of fluctuation is {fluctuation}, and its file: {has_file}"
+        ));
+    }
 }
 
 /// The lines that the summary asks for; angles of the scene are in this unit, rad.
@@ -214,6 +233,12 @@ fn compare_rows(
             place("period")
         });
     }
+    // A cycle begins in the first revolutions of its coordinate.
+    let turns = result(summary, "revolutions").unwrap_or(f64::NAN);
+    let start = q.first().copied().unwrap_or(f64::NAN);
+    let outside = (-start).max(start - TAU * turns).max(0.0);
+    found.add(outside, TAU, "rad", || place("the first coordinate"));
+    found.add(ends(&q) - TAU * turns, TAU, "rad", || place("revolutions"));
     add_speeds(found, &of, &speed, file);
     let fluctuation = (of("fastest_speed").abs() - of("slowest_speed").abs()) / mean.abs();
     // With the flywheel it is the wanted one.

@@ -195,6 +195,33 @@ impl Drive {
         (*inductance > 0.0).then(|| (voltage - resistance * current - k * n * speed) / inductance)
     }
 
+    /// Of a circuit: voltage times current, and what its resistance turns into heat, W.
+    pub(super) fn circuit_powers(
+        &self,
+        reading: &Reading,
+        rows: &Rows,
+        row: usize,
+        motion: &Motion,
+    ) -> Option<[f64; 2]> {
+        let DriveKind::Circuit {
+            voltage,
+            torque_constant: k,
+            resistance,
+            inductance,
+            shaft: Shaft { gear_ratio: n, .. },
+        } = &self.kind
+        else {
+            return None;
+        };
+        let voltage = voltage.at(reading, motion, rows.time(row))?;
+        let speed = motion.measure(self.measure).0[1];
+        let current = match *inductance > 0.0 {
+            true => rows.get(row, &format!("{}.current", self.name))?,
+            false => (voltage - k * n * speed) / resistance,
+        };
+        Some([voltage * current, resistance * current * current])
+    }
+
     /// The force as it is written: what remains of it beside what accelerates the rotor.
     pub(super) fn written_force(&self, rows: &Rows, row: usize) -> Option<f64> {
         let of = |end: &str| rows.get(row, &format!("{}.load_{end}", self.name));

@@ -11,6 +11,7 @@ mod between_rows;
 mod drives;
 mod events;
 mod motion_files;
+mod motors;
 mod row_forces;
 mod summary;
 

@@ -2,11 +2,13 @@
 
 use super::between_rows::between_rows;
 use super::events::{change_points, missing_events};
+use super::motors::motors;
 use super::row_forces::MotionReading;
 use super::summary::{sentences, summary_of_rows};
 use crate::written::poses::closure::closure;
 use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
+use crate::written::poses::extrema_again::same_extrema;
 use crate::written::poses::formats::formats;
 use crate::written::poses::headings::heading_differences;
 use crate::written::poses::joint_forces::joint_force_differences;
@@ -22,6 +24,9 @@ use std::path::Path;
 /// The accuracy of one of the runs.
 const ACCURACY: &str = "1e-8";
 
+/// Intervals between the rows of another.
+const OTHER_ROWS: f64 = 131.7;
+
 /// Runs `simulate` on a scene and compares its files; nothing of a scene without a motion. A run that fails is a failed
 /// finding.
 pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
@@ -32,6 +37,7 @@ pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
     compared.findings()
 }
 
+// Long because it is the list of all runs of a motion and what is compared of them.
 fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Result<(), String> {
     let everything = requests_everything(scene)?;
     if !everything.contains_key("motion") {
@@ -55,16 +61,31 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
     for (rows, file) in [&rows, &rows_again, &rows_wanted].into_iter().zip(files) {
         compare_rows(compared, &motion, rows, file)?;
     }
-    let events = [&first, &again, &wanted].map(|run| run.csv("-motion-events.csv").ok());
+    let other_rows = other_rows(&run, &rows)?;
+    let events =
+        [&first, &again, &wanted, &other_rows].map(|run| run.csv("-motion-events.csv").ok());
     for (other, its_events) in [(&rows_again, &events[1]), (&rows_wanted, &events[2])] {
-        let mut same = same_motion(&motion.reading, [&rows, other]);
-        if let (Some(events), Some(others)) = (&events[0], its_events) {
-            let end = rows.time(rows.count.saturating_sub(1));
-            same_column(&mut same, "t", [events, others], end, "events");
-            same_column(&mut same, "event", [events, others], 1.0, "events");
-        }
+        let same = same_motion(&motion.reading, [&rows, other]);
+        compared.merge("written-motion-again", same);
+        let same = same_events(&rows, [&events[0], its_events]);
         compared.merge("written-motion-again", same);
     }
+    compared.merge(
+        "written-motion-again",
+        same_events(&rows, [&events[0], &events[3]]),
+    );
+    let summaries = [&first, &other_rows].map(|run| run.json("-simulate.json"));
+    if let [Ok(one), Ok(other)] = &summaries {
+        let same = same_extrema(
+            [one, other],
+            "simulate and simulate by esdirk34 in other rows",
+        );
+        compared.merge("written-motion-extrema-again", same);
+    }
+    // Both are free of the error of the default method.
+    let accurate = same_motion(&motion.reading, [&rows_wanted, &rows_again]);
+    compared.merge("written-motion-accuracy", accurate);
+    compared.merge("written-motion-accuracy", stated_accuracy(&wanted)?);
     let missing = missing_events(&motion.reading, &everything, &rows, events[0].as_ref());
     compared.merge("written-motion-events", missing);
     let contents = program.run("contents", &text, &["check"]);
@@ -117,6 +138,9 @@ fn compare_rows(
     );
     let pins = joint_force_differences(&motion.reading, rows, file);
     compared.merge("written-motion-joint-forces", pins);
+    let of_motors = motors(motion, rows, file);
+    compared.merge("written-motion-motors", of_motors.electrical);
+    compared.merge("written-motion-efficiency", of_motors.delivered);
     let of = motion.compare(rows, file);
     let of = of.ok_or_else(|| format!("{file}: a column is missing"))?;
     let energy = between_rows(motion, &of, rows, file);
@@ -131,6 +155,57 @@ fn compare_rows(
         );
     }
     Ok(())
+}
+
+/// The motion once more by another method, with rows at other times, which do not meet those of the first.
+fn other_rows(
+    run: &dyn Fn(&str, &[&str]) -> Result<Run, String>,
+    rows: &Rows,
+) -> Result<Run, String> {
+    let end = rows.time(rows.count.saturating_sub(1));
+    let interval = format!("{:e}", (end - rows.time(0)) / OTHER_ROWS);
+    let method = ["--method", "esdirk34", "--rtol", "1e-10"];
+    run(
+        "other-rows",
+        &[&method[..], &["--sample-interval", &interval]].concat(),
+    )
+}
+
+/// The stated errors of a motion to an accuracy are below it, or the accuracy is not reached.
+fn stated_accuracy(wanted: &Run) -> Result<Differences, String> {
+    let summary = wanted.json("-simulate.json")?;
+    let of = |name: &str| summary["results"][name]["value"].as_f64();
+    let mut found = Differences::default();
+    let Some(accuracy) = of("accuracy") else {
+        found.fail("the summary does not say which accuracy was asked for".to_owned());
+        return Ok(found);
+    };
+    let is_reached = !wanted.messages.contains("is not reached");
+    for name in ["coordinates", "kinetic_energy", "reactions"] {
+        let error = of(&format!("error.{name}")).filter(|error| is_reached && *error > accuracy);
+        found.add(0.0, 1.0, "", String::new);
+        if let Some(error) = error {
+            found.fail(format!(
+                "the stated error of {name}, {error:.1e}, is above the accuracy of {accuracy:.1e} that is said to be reached"
+            ));
+        }
+    }
+    Ok(found)
+}
+
+/// The events of two motions: as many, of the same kinds, at the same times.
+fn same_events(rows: &Rows, events: [&Option<Rows>; 2]) -> Differences {
+    let mut same = Differences::default();
+    match events {
+        [Some(events), Some(others)] => {
+            let end = rows.time(rows.count.saturating_sub(1));
+            same_column(&mut same, "t", [events, others], end, "events");
+            same_column(&mut same, "event", [events, others], 1.0, "events");
+        }
+        [None, None] => {}
+        _ => same.fail("events in a file of one run alone".to_owned()),
+    }
+    same
 }
 
 /// The coordinates of two motions of the same rows.

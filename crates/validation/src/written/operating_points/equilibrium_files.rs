@@ -110,7 +110,14 @@ fn add_words(to: &mut Differences, printed: &str, summary: &Json, names: &[Strin
     let said: Vec<&str> = said.map(|(_, words)| words.trim()).collect();
     for (k, name) in names.iter().enumerate() {
         let error = number(summary, &format!("{name}.error.eigenvalues")).unwrap_or(0.0);
-        let Some(expected) = word(&eigenvalues(summary, name), error) else {
+        let values = eigenvalues(summary, name);
+        let grows = values.iter().any(|[re, _]| *re > error);
+        let expected = match is_neutral(summary, name) {
+            true if grows => Some("unstable"),
+            true => Some("neutral"),
+            false => word(&values, error),
+        };
+        let Some(expected) = expected else {
             continue;
         };
         match said.get(k) {
@@ -118,6 +125,13 @@ fn add_words(to: &mut Differences, printed: &str, summary: &Json, names: &[Strin
             other => to.fail(format!("{name} is {expected}, and printed is {other:?}")),
         }
     }
+}
+
+/// Whether equilibria go on from one along a direction.
+pub(super) fn is_neutral(summary: &Json, name: &str) -> bool {
+    let start = format!("{name}.neutral");
+    let results = summary["results"].as_object();
+    results.is_some_and(|all| all.keys().any(|key| key.starts_with(&start)))
 }
 
 /// The equilibrium of `linearise` is one of the table, with its modes.
@@ -139,13 +153,7 @@ fn add_same(
         of.fold(0.0, f64::max)
     };
     // Where every position is one, it is no other.
-    let is_neutral = |name: &String| {
-        summary["results"].as_object().is_some_and(|all| {
-            all.keys()
-                .any(|key| key.starts_with(&format!("{name}.neutral")))
-        })
-    };
-    if names.iter().any(is_neutral) {
+    if names.iter().any(|name| is_neutral(summary, name)) {
         return;
     }
     let Some(nearest) = names.iter().min_by(|a, b| away(a).total_cmp(&away(b))) else {

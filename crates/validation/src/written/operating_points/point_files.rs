@@ -27,9 +27,10 @@ pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
         .is_ok_and(|s| s.contains_key("motion"));
     let program = Program::new(path, &format!("{name}-points"));
     if let (true, Ok(program)) = (has_motion, program) {
-        let linear = program.run("linear", scene, &["linearise", "--about", "initial"]);
+        let linear_run = program.run("linear", scene, &["linearise", "--about", "initial"]);
         let rest = program.run("rest", scene, &["equilibria"]);
-        let linear = linear.map_or(Ok(()), |run| linearised(&mut compared, &run));
+        let linear = linear_run.as_ref();
+        let linear = linear.map_or(Ok(()), |run| linearised(&mut compared, run));
         let points = rest
             .as_ref()
             .map_or(Ok(()), |run| equilibria(&mut compared, run));
@@ -37,6 +38,19 @@ pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
             compared.fail("written-modes", reason);
         }
         let about = program.run("about", scene, &["linearise"]);
+        for (run, words) in [
+            (&linear_run, "the initial state"),
+            (&about, "its equilibrium"),
+        ] {
+            if let Ok(run) = run {
+                let found = compared.of("written-rest-words");
+                found.add(0.0, 1.0, "", String::new);
+                let first = run.printed.lines().next().unwrap_or("");
+                if !first.ends_with(&format!(": linearised about {words}")) {
+                    found.fail(format!("`linearise` about {words} prints `{first}`"));
+                }
+            }
+        }
         let rest = rest.as_ref().ok().zip(Some(about.as_ref().ok()));
         if let Err(reason) = other_starts(&mut compared, &program, scene, rest) {
             compared.fail("written-linear", reason);
@@ -146,6 +160,7 @@ fn add_row(compared: &mut Compared, summary: &Value, rows: &Rows, row: usize) {
     let name = format!("equilibrium.{}", row + 1);
     let known: Vec<f64> = eigenvalues(summary, &name).into_iter().map(size).collect();
     let largest = known.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let mut modes = 0;
     for mode in 1.. {
         let of = |what: &str| rows.get(row, &format!("mode{mode}.{what}"));
         let Some(angular) = of("angular_frequency") else {
@@ -155,6 +170,7 @@ fn add_row(compared: &mut Compared, summary: &Value, rows: &Rows, row: usize) {
         if angular.is_nan() {
             continue;
         }
+        modes += 1;
         let hertz = of("frequency").unwrap_or(f64::NAN);
         compared
             .of("written-modes")
@@ -172,6 +188,18 @@ fn add_row(compared: &mut Compared, summary: &Value, rows: &Rows, row: usize) {
                     place(&format!("mode {mode} in table and summary"))
                 });
         }
+    }
+    let error = number(summary, &format!("{name}.error.eigenvalues")).unwrap_or(0.0);
+    let values = eigenvalues(summary, &name);
+    // One of each pair whose imaginary parts are clear of their errors.
+    let pairs = values.iter().filter(|[_, im]| *im > 2.0 * error).count();
+    if values
+        .iter()
+        .all(|[_, im]| *im == 0.0 || im.abs() > 2.0 * error)
+    {
+        let modes = f64::from(modes) - pairs as f64;
+        let of = compared.of("written-modes");
+        of.add(modes, 1.0, "", || place("the number of modes"));
     }
     for (column, values) in &rows.columns {
         if let Some(stated) = number(summary, &format!("{name}.{column}")) {

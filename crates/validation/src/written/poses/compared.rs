@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 type Spec = (&'static str, Check, &'static str, f64);
 
 #[rustfmt::skip]
-const SPECS: [Spec; 78] = [
+const SPECS: [Spec; 86] = [
     ("written-closure", Check::WrittenPositions, "joints, points and coordinates of every row with the scene's text: values, velocities, accelerations", 5e-13),
     ("written-rates", Check::WrittenRates, "changes between rows with the integrals of their rates", 1e-9),
     ("written-quotients", Check::WrittenRates, "velocity ratios with the velocities that they are of, and transmission angles with the places of the pins", 5e-14),
@@ -17,6 +17,10 @@ const SPECS: [Spec; 78] = [
     ("written-law-rates", Check::WrittenRates, "changes between rows of drawn laws with the integrals of their rates", 1e-6),
     ("written-extrema", Check::WrittenRates, "extrema of the summary with the rows around them", 1e-6),
     ("written-places", Check::WrittenRates, "slopes at the places of the summary's extrema by the rows around them, over one row", 1e-6),
+    ("written-extrema-again", Check::WrittenTwice, "extrema of `kinematics`, `statics` and `kinetostatics` with those of fewer rows of the same motion", 2e-6),
+    ("written-movement", Check::WrittenTotals, "by how much bodies turn and slides travel with the rows and the extrema of `kinematics`", 1e-13),
+    ("written-movement-sentences", Check::WrittenSentences, "what `kinematics` prints of it with the summary, to its digits", 1e-12),
+    ("written-range", Check::WrittenTotals, "the ends of the rows of `reduce` with the limit positions of `check`", 1e-14),
     ("written-equilibrium", Check::WrittenForces, "Newton's and Euler's equations of every body with the written forces", 2e-14),
     ("written-coefficients", Check::WrittenForces, "a, b and c of `reduce` in the equations of every body", 1e-13),
     ("written-sections", Check::WrittenForces, "internal forces of links with equilibrium of the part beyond each cut", 2e-14),
@@ -59,6 +63,10 @@ const SPECS: [Spec; 78] = [
     ("written-motion-files", Check::WrittenTwice, "CSV of `simulate` with NPZ, extrema of the summary with the rows", 1e-11),
     ("written-motion-extrema", Check::WrittenRates, "extrema of the summary of `simulate` with the rows around them", 1e-6),
     ("written-motion-places", Check::WrittenRates, "slopes at the places of extrema of `simulate` by the rows around them, over one row", 1e-6),
+    ("written-motion-extrema-again", Check::WrittenTwice, "extrema of `simulate` with those of the same motion by esdirk34 in other rows", 4e-5),
+    ("written-motion-accuracy", Check::WrittenTwice, "coordinates of `simulate --accuracy 1e-8` with those by dop853 to 1e-12, and stated errors with the accuracy", 1e-8),
+    ("written-motion-motors", Check::WrittenLaws, "electrical powers of motors in rows of `simulate` with voltage and current of the scene's text", 1e-14),
+    ("written-motion-efficiency", Check::WrittenTotals, "efficiencies of motors in rows of `simulate` with the power at the shaft", 1e-14),
     ("written-motion-summary", Check::WrittenTotals, "energies and events of the summary of `simulate` with rows and events", 5e-6),
     ("written-motion-events", Check::WrittenRates, "events of `simulate` with changes of sign between rows: none is missing", 0.5),
     ("written-motion-change-points", Check::WrittenSentences, "change points that `check` names with those that `simulate` says it crosses", 1e-12),

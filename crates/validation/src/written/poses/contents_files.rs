@@ -35,6 +35,7 @@ pub(super) fn contents_differences(
     let mut lines = expected.sentences(reading);
     lines.extend(motion_lines(reading, &table));
     let mut printed = sentence_differences(&run.printed, &lines, "check");
+    add_modes(&mut printed, &run.printed);
     add_requests(&mut printed, program, &table, &run.printed)?;
     Ok([summed, printed, warning_count(&table, &run.messages)])
 }
@@ -50,6 +51,7 @@ fn add_requests(
     everything.remove("requests");
     let run = program.run("all-reactions", &text_of(&everything)?, &["check"]);
     let all = run.map_err(|e| e.to_string())?.printed;
+    add_single_request(to, program, &everything, &all)?;
     let listed = |printed: &str| -> Option<(usize, usize)> {
         let rest = printed
             .lines()
@@ -69,6 +71,65 @@ fn add_requests(
         });
     }
     Ok(())
+}
+
+/// A single component that is requested is the one that is listed, and all others are not computed.
+fn add_single_request(
+    to: &mut Differences,
+    program: &Program,
+    scene: &toml::Table,
+    all: &str,
+) -> Result<(), String> {
+    let listed = |printed: &str| -> Option<String> {
+        let mut lines = printed.lines();
+        let rest = lines.find_map(|line| line.trim().strip_prefix("reactions requested: "))?;
+        Some(rest.to_owned())
+    };
+    let names = listed(all).unwrap_or_default();
+    let names: Vec<&str> = names.split(", ").collect();
+    // The last of a joint with several: the first would be taken for it most easily.
+    let Some(name) = names.last().filter(|name| name.contains('.')) else {
+        return Ok(());
+    };
+    let mut single = scene.clone();
+    let list = toml::Value::Array(vec![toml::Value::String((*name).to_owned())]);
+    let requests = toml::Table::from_iter([("reactions".to_owned(), list)]);
+    single.insert("requests".to_owned(), toml::Value::Table(requests));
+    let run = program.run("single-reaction", &text_of(&single)?, &["check"]);
+    let printed = run.map_err(|e| e.to_string())?.printed;
+    let others = match names.len() - 1 {
+        0 => String::new(),
+        others => format!(" ({others} others are not computed: not requested)"),
+    };
+    to.add(0.0, 1.0, "", String::new);
+    let said = listed(&printed).unwrap_or_default();
+    if said != format!("{name}{others}") {
+        to.fail(format!(
+            "`check` with {name} alone requested lists `{said}`"
+        ));
+    }
+    Ok(())
+}
+
+/// A dyad with three pins has two assembly modes, which are listed below its group.
+fn add_modes(to: &mut Differences, printed: &str) {
+    let lines: Vec<&str> = printed.lines().map(str::trim).collect();
+    let dyads = (0..lines.len()).filter(|k| lines[*k].contains(" unknowns, pinned dyad"));
+    for k in dyads {
+        let next = [k + 1, k + 2].map(|k| lines.get(k).copied().unwrap_or(""));
+        to.add(0.0, 1.0, "", String::new);
+        let starts = ["assembly mode in use: ", "other assembly mode: "];
+        if !next
+            .iter()
+            .zip(starts)
+            .all(|(line, start)| line.starts_with(start))
+        {
+            to.fail(format!(
+                "`check` lists no two assembly modes of `{}`",
+                lines[k]
+            ));
+        }
+    }
 }
 
 /// How the bodies are at the start, by the first row of a sweep from there.

@@ -2,6 +2,7 @@
 //! printed sentences against the summary.
 
 use super::difference::Differences;
+use super::largest_values::add_largest;
 use super::program::Run;
 use super::rows::Rows;
 use super::units::{ANGLES, LENGTHS};
@@ -44,6 +45,7 @@ pub(crate) fn formats(
     for line in run.printed.lines() {
         add_sentence(&mut found.printed, line, &summary, command);
     }
+    add_largest(&mut found.printed, &run.printed, &summary, command);
     Ok(found)
 }
 
@@ -183,11 +185,17 @@ fn add_extrema(found: &mut Formats, summary: &Value, rows: &Rows, command: &str,
     }
 }
 
-/// Whether the extrema of a column are those of its rows: errors, and what is infinite in some positions.
-fn is_of_rows(quantity: &str) -> bool {
-    ["mechanical_advantage", "pole", "balance", "residual"]
-        .iter()
-        .any(|part| quantity.contains(part))
+/// Whether the extrema of a column are those of its rows: errors, what is infinite in some positions, and rotations in space.
+pub(super) fn is_of_rows(quantity: &str) -> bool {
+    [
+        "mechanical_advantage",
+        "pole",
+        "balance",
+        "residual",
+        ".rotation.",
+    ]
+    .iter()
+    .any(|part| quantity.contains(part))
 }
 
 /// A polynomial through rows: its value, and its slope times the distance of two rows.
@@ -197,7 +205,7 @@ struct Through {
 }
 
 /// By unit: the largest extremum. What is zero but for rounding is compared by others of its unit.
-fn scales(extrema: &[Value]) -> BTreeMap<&str, f64> {
+pub(super) fn scales(extrema: &[Value]) -> BTreeMap<&str, f64> {
     let mut all = BTreeMap::new();
     for entry in extrema {
         let largest: &mut f64 = all.entry(entry["unit"].as_str().unwrap_or("")).or_default();

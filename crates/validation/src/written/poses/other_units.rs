@@ -6,6 +6,9 @@ use super::reading::{JointKind, Measure, Reading};
 use super::units::{ANGLES, LENGTHS, MASSES, Units};
 use toml::{Table, Value};
 
+/// By which components of directions are multiplied, whose ratio alone counts.
+const LENGTH_OF_DIRECTIONS: f64 = 3.7;
+
 /// By which numbers of the scene are multiplied.
 struct Factors {
     length: f64,
@@ -99,6 +102,12 @@ impl Factors {
     fn convert(&self, scene: &mut Table, reading: &Reading) {
         for (_, body) in tables(scene, "bodies") {
             self.convert_body(body);
+        }
+        // A direction has no unit, and any length.
+        for (section, key) in [("loads", "direction"), ("joints", "axis")] {
+            for (_, entry) in tables(scene, section) {
+                scale(entry.get_mut(key), LENGTH_OF_DIRECTIONS);
+            }
         }
         for (name, joint) in tables(scene, "joints") {
             self.convert_joint(joint, &name, reading);

@@ -5,10 +5,12 @@ use super::compared::Compared;
 use super::contents_files::contents_differences;
 use super::dwell::dwell_differences;
 use super::equilibrium::equilibrium;
+use super::extrema_again::same_extrema;
 use super::formats::formats;
 use super::headings::heading_differences;
 use super::joint_forces::joint_force_differences;
 use super::law::{Law, number};
+use super::movement::movement;
 use super::program::{Program, Run};
 use super::quotients::quotient_differences;
 use super::rates::rates;
@@ -22,6 +24,8 @@ use std::path::Path;
 
 /// The pressure angle of teeth where the scene gives none, rad: 20°.
 const PRESSURE_ANGLE: f64 = 0.349_065_850_398_865_9;
+/// Rows of a motion whose extrema are looked for once more.
+const OTHER_POINTS: &str = "26";
 /// How far a case without a motion is swept, rad or m.
 const SWEEP: f64 = 0.4;
 
@@ -110,6 +114,10 @@ fn compare_kinematics(
         .map_err(|e| e.to_string())?;
     let rows = run.csv("-kinematics.csv")?;
     add_formats(compared, &run, reading, "kinematics")?;
+    let of_movement = movement(&run, reading, &rows)?;
+    compared.merge("written-movement", of_movement.numbers);
+    compared.merge("written-movement-sentences", of_movement.sentences);
+    add_other_rows(compared, program, (&run, reading), (scene, "kinematics"))?;
     let of = closure(reading, &rows, "kinematics");
     compared.merge("written-closure", of.joints);
     compared.merge("written-laws", of.laws);
@@ -165,6 +173,7 @@ fn compare_forces(
         let pins = joint_force_differences(reading, &rows, command);
         compared.merge("written-joint-forces", pins);
         add_formats(compared, &run, reading, command)?;
+        add_other_rows(compared, program, (&run, reading), (scene, command))?;
     }
     if has_motion {
         compare_sections(compared, program, reading, scene, draws)?;
@@ -223,6 +232,25 @@ fn compare_teeth(compared: &mut Compared, program: &Program, scene: &str) -> Res
     add_formats(compared, &run, &reading, "kinetostatics")?;
     let [_, sentences, _] = contents_differences(program, &reading, scene)?;
     compared.merge("written-contents-sentences", sentences);
+    Ok(())
+}
+
+/// The extrema of the same motion in fewer rows.
+fn add_other_rows(
+    compared: &mut Compared,
+    program: &Program,
+    (run, reading): (&Run, &Reading),
+    (scene, command): (&str, &str),
+) -> Result<(), String> {
+    // Where smoothed friction reverses, forces may have peaks that are narrower than what is looked at between rows.
+    if !reading.frictions.is_empty() {
+        return Ok(());
+    }
+    let other = program.run("other-rows", scene, &[command, "--points", OTHER_POINTS]);
+    let end = format!("-{command}.json");
+    let other = other.map_err(|e| e.to_string())?.json(&end)?;
+    let same = same_extrema([&run.json(&end)?, &other], command);
+    compared.merge("written-extrema-again", same);
     Ok(())
 }
 

@@ -12,6 +12,7 @@ use super::overshoot::warning_differences;
 use super::positions::corners;
 use super::printed_formulas::formula_differences;
 use super::program::{Program, Run};
+use super::range::range_differences;
 use super::rates::rates;
 use super::reading::Reading;
 use super::reduced::{ReducedFiles, reduced};
@@ -43,6 +44,15 @@ pub(crate) fn compare_reduced(
     let headings = heading_differences(&file, reading, "reduce");
     compared.merge("written-headings", headings);
     compare_stated(compared, &whole_run, &all)?;
+    let contents = program.run("range", everything, &["check"]);
+    let contents = contents.map_err(|e| e.to_string())?;
+    let coordinate = &reading.coordinates[0].name;
+    let range = range_differences(
+        (&contents.json("-check.json")?, &contents.printed),
+        &all,
+        coordinate,
+    );
+    compared.merge("written-range", range);
     let requested = run("requested", scene, "reduce")?.npz("-reduced.npz")?;
     let swept = swept(everything, reading, &all)?;
     let run_i = run("sweep", &swept, "kinetostatics")?.npz("-kinetostatics.npz")?;

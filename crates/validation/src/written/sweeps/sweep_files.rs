@@ -17,9 +17,9 @@ use std::path::Path;
 use toml::{Table, Value};
 
 /// Samples of every value of the grid.
-const SAMPLES: usize = 256;
+const SAMPLES: usize = 192;
 /// Values of the grid.
-const VALUES: usize = 2;
+const VALUES: usize = 3;
 /// Rows that `reduce` repeats.
 const REPEATED: usize = 2;
 /// √n times the distance from its distribution that one sample in 8000 exceeds (Smirnov, 1948).
@@ -235,10 +235,9 @@ impl Variation {
             Varied::Even { nominal, percent } => {
                 nominal * (1.0 + percent / 100.0 * (2.0 * uniform[0] - 1.0))
             }
-            Varied::Grid { from, to } => match row / SAMPLES {
-                0 => from,
-                _ => to,
-            },
+            Varied::Grid { from, to } => {
+                from + (to - from) * (row / SAMPLES) as f64 / (VALUES - 1) as f64
+            }
         }
     }
 

@@ -1,0 +1,131 @@
+//! Maxima at which a function is not smooth, between two of its points: at a corner, as the magnitude of a force that passes through zero has
+//! one, and at a jump, as where friction changes its sign. Three points about such a place do not show it; the straight lines through
+//! the points before it and behind it do.
+
+use super::maximum::{Bracket, Point};
+
+/// A slope changes so many times more between two points than next to them where it has a corner there, and a value where it jumps. A smooth
+/// function's slope changes about twice as much.
+const SHARP: f64 = 8.0;
+/// A gain of less than this part of the largest value is not looked for.
+const MIN_GAIN: f64 = 1e-6;
+/// Halvings of the interval in which a jump is.
+const MAX_HALVINGS: usize = 40;
+
+/// Where a maximum may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Sharp {
+    /// Within three points, the middle one not below the others.
+    Corner(Bracket),
+    /// Next to a jump between two points.
+    Jump([Point; 2]),
+}
+
+/// Of `sign` times the values the corner and the jump at which it may be highest, each with a value next to it, where it may be higher there than
+/// what is the largest so far. `scale` is the largest size of a value.
+pub(super) fn sharp_maxima(
+    points: &[Point],
+    sign: f64,
+    (largest, scale): (f64, f64),
+) -> Vec<(f64, Sharp)> {
+    let slope = |[a, b]: [Point; 2]| sign * (b[1] - a[1]) / (b[0] - a[0]);
+    let mut best: [Option<(f64, f64, Sharp)>; 2] = [None; 2];
+    let wanted = largest + MIN_GAIN * scale;
+    for six in points.windows(6) {
+        let [low, high] = [six[2], six[3]];
+        let [low_value, high_value] = [sign * low[1], sign * high[1]];
+        let [before, rise, after] = [[six[1], low], [low, high], [high, six[4]]].map(slope);
+        let changes = [
+            slope([six[0], six[1]]) - before,
+            after - slope([six[4], six[5]]),
+        ];
+        let change = changes[0].abs().max(changes[1].abs());
+        let signed = |[u, value]: Point| [u, sign * value];
+        let width = high[0] - low[0];
+        // Along the straight lines through the points on either side.
+        let [ahead, back] = [low_value + before * width, high_value - after * width];
+        if (rise - 0.5 * (before + after)).abs() > SHARP * change.max(before.abs()).max(after.abs())
+        {
+            let reach = low_value.max(high_value).max(ahead).max(back);
+            let found = (
+                reach,
+                low_value.max(high_value),
+                Sharp::Jump([low, high].map(signed)),
+            );
+            take(&mut best[1], found, wanted);
+        } else if before - after > SHARP * change && before > 0.0 && after < 0.0 {
+            let reach =
+                low_value + before * (high_value - low_value - after * width) / (before - after);
+            let bracket = match low_value >= high_value {
+                true => (signed(six[1]), Some(signed(low)), signed(high)),
+                false => (signed(low), Some(signed(high)), signed(six[4])),
+            };
+            let found = (reach, low_value.max(high_value), Sharp::Corner(bracket));
+            take(&mut best[0], found, wanted);
+        }
+    }
+    let found = best.into_iter().flatten();
+    found.map(|(_, value, sharp)| (value, sharp)).collect()
+}
+
+/// The one that may be higher, if that is above what is wanted.
+fn take(best: &mut Option<(f64, f64, Sharp)>, found: (f64, f64, Sharp), wanted: f64) {
+    if found.0 > wanted && best.is_none_or(|best| found.0 > best.0) {
+        *best = Some(found);
+    }
+}
+
+/// The higher side of a jump between two points, as near to it as numbers tell; every value is evaluated.
+pub(super) fn beside_jump(
+    value: &mut dyn FnMut(f64) -> Option<f64>,
+    [mut low, mut high]: [Point; 2],
+) -> Option<Point> {
+    for _ in 0..MAX_HALVINGS {
+        let u = 0.5 * (low[0] + high[0]);
+        if u <= low[0] || u >= high[0] {
+            break;
+        }
+        let middle = [u, value(u)?];
+        match (middle[1] - low[1]).abs() < (high[1] - middle[1]).abs() {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    Some(if high[1] > low[1] { high } else { low })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(f: impl Fn(f64) -> f64) -> Vec<Point> {
+        let at = (0..40).map(|k| 0.1 * f64::from(k));
+        at.map(|u| [u, f(u)]).collect()
+    }
+
+    /// −|sin| is zero at π, where the nearest points have −0.04; a smooth maximum is none.
+    #[test]
+    fn a_corner_between_points_is_found() {
+        let all = points(|u| -(u + 0.3).sin().abs());
+        let found = sharp_maxima(&all, 1.0, (-0.05, 1.0));
+        let [(_, Sharp::Corner((a, _, b)))] = found[..] else {
+            panic!("{found:?}");
+        };
+        let at = std::f64::consts::PI - 0.3;
+        assert!(a[0] < at && at < b[0], "{a:?} {b:?}");
+        assert!(sharp_maxima(&points(f64::sin), 1.0, (0.9, 1.0)).is_empty());
+        assert!(sharp_maxima(&points(f64::sin), -1.0, (-2.0, 1.0)).is_empty());
+    }
+
+    /// A curve that rises to 1 at u = 1.234 and falls to −1 there.
+    #[test]
+    fn the_side_of_a_jump_is_found() {
+        let f = |u: f64| if u < 1.234 { u / 1.234 } else { -1.0 };
+        let found = sharp_maxima(&points(f), 1.0, (f(1.2), 1.0));
+        let [(_, Sharp::Jump(pair))] = found[..] else {
+            panic!("{found:?}");
+        };
+        let [at, value] = beside_jump(&mut |u| Some(f(u)), pair).expect("a value");
+        assert!((at - 1.234).abs() < 1e-10 && (value - 1.0).abs() < 1e-10);
+    }
+}

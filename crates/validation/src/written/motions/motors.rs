@@ -1,0 +1,62 @@
+//! What motors take and what they deliver: their columns of electrical power with voltage and current of the scene's text, and of efficiency
+//! with the power at the shaft.
+
+use super::drives::DriveKind;
+use super::row_forces::MotionReading;
+use crate::written::poses::difference::Differences;
+use crate::written::poses::motion::Motion;
+use crate::written::poses::rows::Rows;
+
+/// Differences of the columns of motors.
+#[derive(Debug, Default)]
+pub(super) struct Motors {
+    /// Electrical power with that of the circuit in the scene's text, W.
+    pub(super) electrical: Differences,
+    /// The delivered part: the efficiency times what is not stored, with the power at the shaft by the columns of the force, W.
+    pub(super) delivered: Differences,
+}
+
+/// The columns of all motors with a circuit.
+pub(super) fn motors(motion: &MotionReading, rows: &Rows, file: &str) -> Motors {
+    let mut found = Motors::default();
+    for drive in &motion.drives {
+        if !matches!(drive.kind, DriveKind::Circuit { .. }) {
+            continue;
+        }
+        let column = |end: &str| rows.columns.get(&format!("{}.{end}", drive.name));
+        let (Some(taken), Some(efficiency)) = (column("electrical_power"), column("efficiency"))
+        else {
+            found
+                .electrical
+                .fail(format!("{file}: no electrical power of `{}`", drive.name));
+            continue;
+        };
+        let scale = taken
+            .iter()
+            .fold(0.0_f64, |max, power| max.max(power.abs()));
+        for (row, (taken, efficiency)) in taken.iter().zip(efficiency).enumerate() {
+            let Some(state) = Motion::new(&motion.reading, rows, row) else {
+                continue;
+            };
+            let place = || format!("{file}, row {row}, `{}`", drive.name);
+            let Some([electrical, lost]) = drive.circuit_powers(&motion.reading, rows, row, &state)
+            else {
+                continue;
+            };
+            found.electrical.add(taken - electrical, scale, "W", place);
+            let [_, speed, acceleration] = state.measure(drive.measure).0;
+            let Some(net) = drive.written_force(rows, row) else {
+                continue;
+            };
+            // With what accelerates the rotor.
+            let delivered = (net + drive.rotor_inertia() * acceleration) * speed;
+            // None is delivered by a motor that brakes.
+            let difference = match delivered > 0.0 {
+                true => efficiency * (delivered + lost) - delivered,
+                false => efficiency * scale,
+            };
+            found.delivered.add(difference, scale, "W", place);
+        }
+    }
+    found
+}
