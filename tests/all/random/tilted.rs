@@ -34,6 +34,9 @@ struct Coverage {
     /// Those whose reactions are those of their planar equivalent, and how far they are from those of both models in space.
     reactions: u32,
     worst_reactions: f64,
+    /// Limit positions at ends of ranges, and those at which both models in space end at other positions.
+    limits: u32,
+    short_of_limits: u32,
 }
 
 /// A plane somewhere, and heights.
@@ -61,15 +64,29 @@ fn lifted(built: &BuiltMechanism, seed: u64) -> Option<Lifted> {
 /// that is the same with planes and without, to the smallest step. Where the plane calls an end a change point the determinant falls as δ or faster: two branches
 /// meet there or pass each other closely, or two slides become parallel and their travels grow as 1/δ. There the rounding of the loops, over the
 /// determinant, is larger than what Newton's method asks of its steps, from some δ on that the rounding decides.
-fn compare_ranges(built: &BuiltMechanism, ranges: [Range; 2]) -> Result<(), String> {
+/// In one of 2000 mechanisms, of ten slides, they end 2.6e-5 and 1.4e-5 short of a limit position: never beyond, and never but in a few.
+fn compare_ranges(
+    built: &BuiltMechanism,
+    ranges: [Range; 2],
+    coverage: &mut Coverage,
+) -> Result<(), String> {
     let kinds = ranges.map(|range| std::mem::discriminant(&range));
     let limits = ranges.map(|range| range.limits().unwrap_or((0.0, 0.0)));
     let planar = built.model.plan().range_limits();
     let gaps = [limits[0].0 - limits[1].0, limits[0].1 - limits[1].1];
-    let agree = gaps.into_iter().zip(planar).all(|(gap, limit)| {
-        // Seen: 1.2e-4; and 0 at limit positions, where the smallest step is 6e-9 rad.
-        let is_change_point = limit.is_some_and(|limit| limit.change_point);
-        gap.abs() < if is_change_point { 1e-3 } else { 2e-8 }
+    let [low, high] = planar.map(|limit| limit.map_or(0.0, |limit| limit.q));
+    let short = limits.map(|(from, to)| [from - low, high - to]);
+    let agree = (0..2).all(|end| {
+        // Seen: 1.2e-4; and 0 at nearly all limit positions, where the smallest step is 6e-9 rad.
+        match planar[end] {
+            Some(limit) if limit.change_point => gaps[end].abs() < 1e-3,
+            Some(_) => {
+                coverage.limits += 1;
+                coverage.short_of_limits += u32::from(gaps[end].abs() >= 2e-8);
+                gaps[end].abs() < 2e-8 || short.iter().all(|of| (-2e-8..1e-4).contains(&of[end]))
+            }
+            None => gaps[end].abs() < 2e-8,
+        }
     });
     match agree && kinds[0] == kinds[1] {
         true => Ok(()),
@@ -106,7 +123,8 @@ fn check(built: &BuiltMechanism, seed: u64, coverage: &mut Coverage) -> Result<(
             false => Err(format!("{refusals:?}")),
         };
     };
-    compare_ranges(built, [&with, &without].map(|model| model.plan().range()))?;
+    let ranges = [&with, &without].map(|model| model.plan().range());
+    compare_ranges(built, ranges, coverage)?;
     let mobilities = [&with, &without].map(|model| model.plan().mobility());
     if mobilities[0] != mobilities[1] {
         return Err(format!("{mobilities:?}"));
@@ -246,6 +264,8 @@ fn random_planar_mechanisms_agree_in_oblique_planes() {
             // Seen: 42 of 43.
             && 10 * coverage.in_plane >= 8 * coverage.as_in_plane
             && coverage.in_plane > 0
+            // Seen: 1 of about 2000.
+            && 20 * coverage.short_of_limits <= coverage.limits.max(20)
             && coverage.reactions > 0,
         "{coverage:?}"
     );

@@ -33,6 +33,14 @@ pub(super) fn sharp_maxima(
     let wanted = largest + MIN_GAIN * scale;
     for six in points.windows(6) {
         let [low, high] = [six[2], six[3]];
+        // Nearly all places are decided by differences alone: no corner without a rise before and a fall behind it, no jump that is
+        // smaller than the changes next to it.
+        let step = |[a, b]: [Point; 2]| sign * (b[1] - a[1]);
+        let [ahead, within, behind] = [[six[1], low], [low, high], [high, six[4]]].map(step);
+        let may_be_corner = ahead > 0.0 && behind < 0.0;
+        if !may_be_corner && within.abs() <= ahead.abs().max(behind.abs()) {
+            continue;
+        }
         let [low_value, high_value] = [sign * low[1], sign * high[1]];
         let [before, rise, after] = [[six[1], low], [low, high], [high, six[4]]].map(slope);
         let changes = [
@@ -43,10 +51,10 @@ pub(super) fn sharp_maxima(
         let signed = |[u, value]: Point| [u, sign * value];
         let width = high[0] - low[0];
         // Along the straight lines through the points on either side.
-        let [ahead, back] = [low_value + before * width, high_value - after * width];
+        let [onward, backward] = [low_value + before * width, high_value - after * width];
         if (rise - 0.5 * (before + after)).abs() > SHARP * change.max(before.abs()).max(after.abs())
         {
-            let reach = low_value.max(high_value).max(ahead).max(back);
+            let reach = low_value.max(high_value).max(onward).max(backward);
             let found = (
                 reach,
                 low_value.max(high_value),
@@ -76,7 +84,7 @@ fn take(best: &mut Option<(f64, f64, Sharp)>, found: (f64, f64, Sharp), wanted: 
 }
 
 /// The higher side of a jump between two points, as near to it as numbers tell; every value is evaluated.
-pub(super) fn beside_jump(
+pub(super) fn side_of_jump(
     value: &mut dyn FnMut(f64) -> Option<f64>,
     [mut low, mut high]: [Point; 2],
 ) -> Option<Point> {
@@ -125,7 +133,7 @@ mod tests {
         let [(_, Sharp::Jump(pair))] = found[..] else {
             panic!("{found:?}");
         };
-        let [at, value] = beside_jump(&mut |u| Some(f(u)), pair).expect("a value");
+        let [at, value] = side_of_jump(&mut |u| Some(f(u)), pair).expect("a value");
         assert!((at - 1.234).abs() < 1e-10 && (value - 1.0).abs() < 1e-10);
     }
 }

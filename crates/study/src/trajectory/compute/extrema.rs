@@ -4,7 +4,7 @@
 //! whatever the motion does. About a local extremum there, three positions enclose one of the column. It is found by
 //! parabolas and golden sections, each of whose points is evaluated like a row.
 
-use crate::trajectory::compute::corners::{Sharp, beside_jump, sharp_maxima};
+use crate::trajectory::compute::corners::{Sharp, sharp_maxima, side_of_jump};
 use crate::trajectory::compute::maximum::{NO_GAIN, promising, refine_maximum};
 use crate::trajectory::compute::{
     BALANCE, Column, Point, Quantity, RowEvaluator, Trajectory, TrajectorySample,
@@ -336,7 +336,7 @@ impl<E: RowEvaluator> ColumnSearch<'_, '_, E> {
             let interpolated = &mut |u| Some(value(u, Interpolated)?.0);
             let top = match place {
                 Sharp::Corner(bracket) => refine_maximum(interpolated, bracket, scale),
-                Sharp::Jump(sides) => beside_jump(interpolated, sides),
+                Sharp::Jump(sides) => side_of_jump(interpolated, sides),
             };
             found.extend(top.and_then(|[u, _]| {
                 let (value, at) = value(u, Exact)?;
