@@ -187,8 +187,8 @@ impl Plan {
         back.reverse();
         back.extend(forward.into_iter().skip(1));
         let [from, to] = [0, back.len() - 1].map(|k| back[k].q);
-        let blocked = to < first.q + 0.99 * far && blocked_back;
-        self.range = match (blocked, is_angle) {
+        self.range_ends = [blocked_back, to < first.q + 0.99 * far];
+        self.range = match (self.range_ends == [true; 2], is_angle) {
             (true, true) => Range::Limited(from, to),
             (true, false) => Range::Stroke(from, to),
             (false, _) => Range::Unresolved(from, to),

@@ -6,6 +6,7 @@
     reason = "tests"
 )]
 
+mod as_in_the_plane;
 mod pictures;
 mod trajectories;
 

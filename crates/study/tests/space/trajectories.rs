@@ -33,7 +33,7 @@ fn accelerated(name: &str) -> SpaceScene {
 }
 
 /// The table that an analysis writes, as a reader of the file gets it.
-fn written(done: &TrajectoryOutcome) -> Table {
+pub(super) fn written(done: &TrajectoryOutcome) -> Table {
     let mut files = done.outcome.files.iter();
     let table = files.find(|(path, _)| {
         let name = path.to_string_lossy();
