@@ -168,8 +168,8 @@ fn loads_travels_and_named_coordinates_have_the_columns_of_the_plane() {
     println!("columns of loads and coordinates: {largest:.1e}");
 }
 
-/// The range of a coordinate that a slide has between limit positions, with the margin of the plane: m, a and b there. Largest
-/// difference seen 2e-8, where the margin of 1e-3 of the range is 4e-8 of it off.
+/// The range of a coordinate that a slide has between limit positions, with the margin of the plane: m and ½m′ there, which grow with the
+/// power −1 and −2 of the distance from a limit position that is found to 1e-6 of that margin. Largest difference seen 4e-6.
 #[test]
 fn a_driven_slide_has_the_range_of_the_plane() {
     let (plane, space) = both(SLIDE, ["", ""], "");
@@ -194,7 +194,7 @@ fn a_driven_slide_has_the_range_of_the_plane() {
     {
         let both = number(&plane, name).zip(number(&space, name));
         let (a, b) = both.unwrap_or_else(|| panic!("no {name}"));
-        assert!((a - b).abs() < 1e-6 * a.abs(), "{name}: {a} {b}");
+        assert!((a - b).abs() < 1e-4 * a.abs(), "{name}: {a} {b}");
         compared += 1;
     }
     assert!(compared >= 2, "{compared}");
@@ -315,7 +315,7 @@ fn a_motion_ends_at_a_dead_point_that_no_other_coordinate_takes_it_through() {
     let scene = SpaceScene::parse("jack", text).unwrap_or_else(|e| panic!("{e}"));
     let solver = MotionSolver::Settings(SolverSettings::default());
     let done = simulated(&scene, &solver, None);
-    let error = message(&done.early_stop.expect("an end"));
+    let error = message(done.early_stop.as_ref().expect("an end"));
     assert!(
         error.contains("jack") && error.contains("drive a joint that moves on"),
         "{error}"
@@ -342,7 +342,7 @@ fn the_end_of_a_table_is_named_where_it_is_met() {
         "[motion]\nduration = 1\ninitial-velocity = -1\n",
     );
     let done = simulated(&space, &by_dop853(), None);
-    let error = message(&done.early_stop.expect("an end"));
+    let error = message(done.early_stop.as_ref().expect("an end"));
     assert!(
         error.contains("the table of load `force`") && error.contains("soon after t = 0.0"),
         "{error}"

@@ -37,7 +37,7 @@ pub(super) fn written(done: &TrajectoryOutcome) -> Table {
     let mut files = done.outcome.files.iter();
     let table = files.find(|(path, _)| {
         let name = path.to_string_lossy();
-        name.ends_with(".csv") && !name.ends_with("-extrema.csv")
+        name.ends_with(".csv") && !name.ends_with("-extrema.csv") && !name.ends_with("-events.csv")
     });
     let (_, bytes) = table.expect("a table");
     let text = std::str::from_utf8(bytes).expect("text");

@@ -15,7 +15,7 @@ const MAX_LISTED: usize = 6;
 /// the coordinate moves by a fifth of what it does elsewhere.
 const NEAR_LIMIT: f64 = 0.02;
 /// The same where it ends because no other coordinate takes over.
-const AT_LIMIT: f64 = 1e-5;
+const AT_LIMIT: f64 = 1e-4;
 /// How far in front of a change point that it cannot cross a motion ends, in half windows: at their edge nothing is evaluated any more.
 const IN_FRONT: f64 = 1.02;
 
@@ -103,6 +103,8 @@ pub(super) struct Barrier {
     pub(super) error: DynamicsError,
     /// Whether the coordinate folds back a little behind it: in another coordinate the motion goes on.
     pub(super) folds: bool,
+    /// The coordinate that it is in front of.
+    at: f64,
     /// Whether the motion starts beyond it.
     pub(super) is_behind: bool,
 }
@@ -125,7 +127,7 @@ impl SpaceMotionProblem<'_> {
             return Vec::new();
         };
         let at = |q: f64, group: usize, singular: f64| {
-            let singular = PositionError::Singular {
+            let error = PositionError::Singular {
                 group,
                 q: singular,
                 relative_determinant: 0.0,
@@ -135,8 +137,9 @@ impl SpaceMotionProblem<'_> {
                     kind: EventKind::Reaches(coordinate, q),
                     terminal: Some(NonZeroUsize::MIN),
                 },
-                error: DynamicsError::from(singular),
+                error: DynamicsError::from(error),
                 folds: false,
+                at: singular,
                 is_behind: false,
             }
         };
@@ -196,7 +199,7 @@ impl SpaceMotionProblem<'_> {
             .collect()
     }
 
-    /// The barrier that a motion came to: it ends there.
+    /// The barrier that a motion came to: it ends there. Where a step next to a limit position would lead beyond it, that is the barrier.
     pub(super) fn barrier_of(
         &self,
         solution: &mut Solution,
@@ -204,10 +207,20 @@ impl SpaceMotionProblem<'_> {
     ) -> Option<Barrier> {
         let own = self.events.len();
         let reached = solution.event_occurrences.iter().map(|o| o.event);
-        let reached = reached.filter(|event| *event >= own).min()?;
-        solution.event_occurrences.retain(|o| o.event < own);
-        solution.terminated_by_event = false;
-        Some(barriers.swap_remove(reached - own))
+        if let Some(reached) = reached.filter(|event| *event >= own).min() {
+            solution.event_occurrences.retain(|o| o.event < own);
+            solution.terminated_by_event = false;
+            return Some(barriers.swap_remove(reached - own));
+        }
+        let failed = matches!(solution.error, Some(DynamicsError::Position(_)));
+        let last = solution.steps.last().filter(|_| failed)?.y[0];
+        let near = self.limits(true).into_iter();
+        let mut near = near.filter(|[from, limit]| (last - from) * (limit - from) > 0.0);
+        let [_, limit] = near.next()?;
+        let is_it = |barrier: &Barrier| barrier.folds && barrier.at == limit;
+        let reached = barriers.iter().position(is_it)?;
+        solution.error = None;
+        Some(barriers.swap_remove(reached))
     }
 }
 
