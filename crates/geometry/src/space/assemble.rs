@@ -55,6 +55,7 @@ impl Plan {
             assembly_q: Vec::new(),
             closure_angles: Vec::new(),
             freedom_gains: Vec::new(),
+            geared: Vec::new(),
             change_points: Vec::new(),
             mobility: Mobility::default(),
         };

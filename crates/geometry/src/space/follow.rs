@@ -258,6 +258,11 @@ impl Plan {
         let from = &self.assembly_q;
         let mut real = self.pose::<f64>();
         self.start_from(&self.start, 0.0, &mut real);
+        if self.groups.is_empty() {
+            // Nothing has to be followed.
+            self.start_from(&self.start, 0.0, pose);
+            return self.close(q, None, pose);
+        }
         let span = q
             .iter()
             .zip(from)

@@ -69,6 +69,8 @@ pub struct Plan {
     pub(super) closure_angles: Vec<StoredAngles>,
     /// By freedom: what it gains in a period of the only coordinate.
     pub(super) freedom_gains: Vec<f64>,
+    /// The freedoms that teeth turn, which keep count of all periods.
+    pub(super) geared: Vec<usize>,
     /// In the range of the only coordinate.
     pub(super) change_points: Vec<ChangePoint>,
 }
