@@ -68,6 +68,16 @@ impl Plan {
         }
     }
 
+    /// The size of the largest coordinate, to whose rounding steps can be small: those that teeth turn count all revolutions.
+    #[inline(always)]
+    fn count_size<T: Scalar>(&self, pose: &Pose<T>) -> f64 {
+        let counted = self
+            .geared
+            .iter()
+            .map(|f| pose.coordinates[*f].value().abs());
+        counted.fold(1.0, f64::max)
+    }
+
     /// Closes all groups in order, from the coordinates in the pose, which are those of a prediction at a coordinate if that is given.
     #[inline(always)]
     pub(super) fn close<T: Scalar>(
@@ -204,7 +214,7 @@ impl Plan {
             }
             // Derivatives are exact after one step more than values.
             settled = match T::HAS_DERIVATIVES {
-                true => step < 1e-14 / outcome.pivot_ratio,
+                true => step < 1e-14 * self.count_size(pose) / outcome.pivot_ratio,
                 false => step * step / outcome.pivot_ratio < NO_STEP,
             };
         }

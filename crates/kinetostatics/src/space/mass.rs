@@ -46,22 +46,6 @@ impl Mass {
                 .iter()
                 .all(|m| *m >= -slack * slack.max(xx + yy + zz))
             && determinant >= -slack * (xx + yy + zz).powi(2)
-            && self.has_distributed_mass()
-    }
-
-    /// Whether some distribution of mass has the tensor: with tr I/2 − I, the second moments ∫ r rᵀ dm, that is not negative. It is
-    /// so where no principal moment is above the sum of the others.
-    fn has_distributed_mass(&self) -> bool {
-        let [xx, yy, zz, xy, xz, yz] = self.inertia;
-        let half = 0.5 * (xx + yy + zz);
-        let [a, b, c] = [xx, yy, zz].map(|moment| half - moment);
-        let slack = 1e-9 * half;
-        let minors = [a * b - xy * xy, a * c - xz * xz, b * c - yz * yz];
-        // The products of inertia have the other sign there.
-        let determinant = a * (b * c - yz * yz) - xy * (xy * c + yz * xz) - xz * (xy * yz + b * xz);
-        [a, b, c].iter().all(|moment| *moment >= -slack)
-            && minors.iter().all(|minor| *minor >= -slack * half)
-            && determinant >= -slack * half * half
     }
 
     /// Whether a body's inertia couples its rotation about a line with the motion: the centre is off it, or the inertia is not that of a body of revolution.

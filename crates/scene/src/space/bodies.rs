@@ -46,7 +46,7 @@ impl Dimensions for Space {
         }
         if let (Some(entry), false) = (fields.get("inertia"), found.is_valid()) {
             let message = format!("no body has the inertia of {}", fields.what);
-            let help = "moments of inertia are not negative, and products of inertia not above what they allow, and no principal moment is above the sum of the others";
+            let help = "moments of inertia are not negative, and products of inertia not above what they allow";
             (entry.value).reject::<()>(message, "not a tensor of inertia", help);
         }
         found
