@@ -102,7 +102,7 @@ fn describe_masses(
         });
         let sum = moments.fold(Vec3::ZERO, |sum, moment| sum + moment);
         let center = sum.scaled(1.0 / total);
-        let shown = |part: f64| {
+        let written = |part: f64| {
             if part.abs() < ROUNDING * size {
                 0.0
             } else {
@@ -110,9 +110,9 @@ fn describe_masses(
             }
         };
         let center = Vec3 {
-            x: shown(center.x),
-            y: shown(center.y),
-            z: shown(center.z),
+            x: written(center.x),
+            y: written(center.y),
+            z: written(center.z),
         };
         for (axis, part) in ["x", "y", "z"]
             .into_iter()
@@ -139,8 +139,8 @@ fn describe_mass(name: &str, mass: &Mass, record: &mut Record) -> String {
         record.add(format!("inertia.{name}.{part}"), "kg m2", value);
     }
     let has_products = mass.inertia[3..].iter().any(|part| *part != 0.0);
-    let shown = if has_products { 6 } else { 3 };
-    let tensor = mass.inertia[..shown].iter().map(|part| number(*part));
+    let written = if has_products { 6 } else { 3 };
+    let tensor = mass.inertia[..written].iter().map(|part| number(*part));
     let tensor: Vec<String> = tensor.collect();
     format!(
         "    {name}: {} kg, [{}] kg m² about its centre of mass, in its axes\n",

@@ -334,7 +334,7 @@ fn a_motion_ends_at_a_dead_point_that_no_other_coordinate_takes_it_through() {
 
 /// Rows end where the table of a load does, and say where that is; a motion that would end later for another reason does not.
 #[test]
-fn the_end_of_a_table_is_named_where_it_is_met() {
+fn the_end_of_a_table_is_named_where_it_is_reached() {
     let table = "force = { force = \"piston.C\", direction = [-1, 0, 0], magnitude = { table = [[0.25, 1], [0.3, 2], [0.4, 3]], of = \"s\" } }\n";
     let (_, space) = both(
         SLIDE,

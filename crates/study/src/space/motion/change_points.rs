@@ -101,12 +101,12 @@ pub(super) struct Barrier {
     pub(super) event: Event<CoordinateFunction>,
     /// Why a motion ends there.
     pub(super) error: DynamicsError,
-    /// Whether the coordinate folds back a little behind it: in another coordinate the motion goes on.
-    pub(super) folds: bool,
+    /// Whether the coordinate turns back a little beyond it: in another coordinate the motion goes on.
+    pub(super) turns_back: bool,
     /// The coordinate that it is in front of.
     at: f64,
     /// Whether the motion starts beyond it.
-    pub(super) is_behind: bool,
+    pub(super) is_beyond: bool,
 }
 
 impl SpaceMotionProblem<'_> {
@@ -138,9 +138,9 @@ impl SpaceMotionProblem<'_> {
                     terminal: Some(NonZeroUsize::MIN),
                 },
                 error: DynamicsError::from(error),
-                folds: false,
+                turns_back: false,
                 at: singular,
-                is_behind: false,
+                is_beyond: false,
             }
         };
         let start = from.y[0];
@@ -150,8 +150,8 @@ impl SpaceMotionProblem<'_> {
             .limits(may_change)
             .into_iter()
             .map(|[q, limit]| Barrier {
-                folds: true,
-                is_behind: (start - q) * (limit - q) >= 0.0,
+                turns_back: true,
+                is_beyond: (start - q) * (limit - q) >= 0.0,
                 ..at(q, 0, limit)
             });
         uncrossed.chain(limits).collect()
@@ -217,7 +217,7 @@ impl SpaceMotionProblem<'_> {
         let near = self.limits(true).into_iter();
         let mut near = near.filter(|[from, limit]| (last - from) * (limit - from) > 0.0);
         let [_, limit] = near.next()?;
-        let is_it = |barrier: &Barrier| barrier.folds && barrier.at == limit;
+        let is_it = |barrier: &Barrier| barrier.turns_back && barrier.at == limit;
         let reached = barriers.iter().position(is_it)?;
         solution.error = None;
         Some(barriers.swap_remove(reached))

@@ -1,6 +1,6 @@
 //! Other coordinates in which a motion in space goes on.
 //!
-//! Next to a limit position of its coordinate, where that folds back and its inertia tends to infinity, a motion of one degree of
+//! Next to a limit position of its coordinate, where that turns back and its inertia tends to infinity, a motion of one degree of
 //! freedom continues in the coordinate of another joint: in a *chart*, the same scene driven there. It keeps loads, drives and
 //! all else, and the bodies where they are; the coordinate of the scene is a function of the chart's.
 
@@ -208,7 +208,7 @@ impl SpaceMotionProblem<'_> {
         !self
             .barriers(&at, true)
             .iter()
-            .any(|barrier| barrier.is_behind)
+            .any(|barrier| barrier.is_beyond)
     }
 
     fn drives(&self, kind: ActuatorKind) -> bool {

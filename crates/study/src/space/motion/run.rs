@@ -134,12 +134,12 @@ impl SpaceMotionProblem<'_> {
                 // Those of the whole motion.
                 *of = max_steps;
             }
-            let (last, folds) = (
+            let (last, turns_back) = (
                 solution.steps.last().cloned(),
-                barrier.as_ref().is_some_and(|barrier| barrier.folds),
+                barrier.as_ref().is_some_and(|barrier| barrier.turns_back),
             );
             let has_moved = last.as_ref().is_some_and(|last| is_first || last.t > at.t);
-            let last = last.filter(|_| folds && may_change && has_moved);
+            let last = last.filter(|_| turns_back && may_change && has_moved);
             let next = last
                 .as_ref()
                 .and_then(|last| problem.next_chart(self, &motion.charts, last));
@@ -168,7 +168,7 @@ impl SpaceMotionProblem<'_> {
         (is_first, may_change): (bool, bool),
     ) -> Result<(Solution, Option<Barrier>), DynamicsError> {
         let mut barriers = self.barriers(at, may_change);
-        if let (true, Some(k)) = (may_change, barriers.iter().position(|b| b.is_behind)) {
+        if let (true, Some(k)) = (may_change, barriers.iter().position(|b| b.is_beyond)) {
             let solution = Solution {
                 steps: vec![at.clone()],
                 samples: is_first.then(|| at.clone()).into_iter().collect(),
@@ -176,7 +176,7 @@ impl SpaceMotionProblem<'_> {
             };
             return Ok((solution, Some(barriers.swap_remove(k))));
         }
-        barriers.retain(|barrier| !barrier.is_behind);
+        barriers.retain(|barrier| !barrier.is_beyond);
         let of_barriers = barriers.iter().map(|barrier| barrier.event);
         let events: Vec<_> = self.events.iter().copied().chain(of_barriers).collect();
         let (machine, model) = (&self.machine, &self.event_model);

@@ -60,8 +60,8 @@ fn rare_joints(scene: &SpaceScene) -> String {
             " A dot between two bodies is a weld.",
         ),
     ];
-    let shown = symbols.into_iter().filter(|(is_there, _)| *is_there);
-    shown.map(|(_, text)| text).collect()
+    let named = symbols.into_iter().filter(|(is_there, _)| *is_there);
+    named.map(|(_, text)| text).collect()
 }
 
 /// A mechanism in positions that follow each other.
