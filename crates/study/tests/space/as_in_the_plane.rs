@@ -89,14 +89,14 @@ fn both(driver: [&str; 2], loads: [&str; 2], rest: &str) -> (Scene, SpaceScene) 
     (plane, space)
 }
 
-fn column(table: &Table, name: &str) -> Vec<f64> {
+pub(super) fn column(table: &Table, name: &str) -> Vec<f64> {
     let k = table.columns.iter().position(|c| c.name == name);
     let k = k.unwrap_or_else(|| panic!("no column {name}"));
     table.rows.iter().map(|row| row[k]).collect()
 }
 
 /// The largest difference of two columns, relative to the largest value.
-fn difference(one: &[f64], other: &[f64]) -> f64 {
+pub(super) fn difference(one: &[f64], other: &[f64]) -> f64 {
     assert_eq!(one.len(), other.len());
     let size = one.iter().fold(0.0_f64, |size, v| size.max(v.abs()));
     assert!(size > 0.0);
@@ -104,7 +104,7 @@ fn difference(one: &[f64], other: &[f64]) -> f64 {
     pairs.fold(0.0_f64, |off, (a, b)| off.max((a - b).abs())) / size
 }
 
-fn analysed(scene: &SpaceScene, analysis: Analysis) -> TrajectoryOutcome {
+pub(super) fn analysed(scene: &SpaceScene, analysis: Analysis) -> TrajectoryOutcome {
     let done = analyse_in_space(scene, analysis, None, PictureSpan::default(), &no_progress);
     done.unwrap_or_else(|e| panic!("{e:?}"))
 }
@@ -200,7 +200,7 @@ fn a_driven_slide_has_the_range_of_the_plane() {
     assert!(compared >= 2, "{compared}");
 }
 
-fn by_dop853() -> MotionSolver {
+pub(super) fn by_dop853() -> MotionSolver {
     MotionSolver::Settings(SolverSettings {
         method: dwell_dynamics::Method::Dop853,
         rtol: 1e-12,
@@ -210,7 +210,7 @@ fn by_dop853() -> MotionSolver {
     })
 }
 
-fn simulated(
+pub(super) fn simulated(
     scene: &SpaceScene,
     solver: &MotionSolver,
     times: Option<&[f64]>,
@@ -408,96 +408,4 @@ fn a_scene_is_described_with_its_loads_and_motions() {
     ] {
         assert!(text.contains(line), "{line} is not in\n{text}");
     }
-}
-
-/// Two gears, of which the second is wound up by a torsion spring: over many revolutions, forwards and back beyond the start, its angle,
-/// the moment of the spring and the motion are those of the plane, with an implicit method, too. Largest difference seen 2e-9.
-#[test]
-fn geared_wheels_count_all_revolutions() {
-    let text = |space: bool| {
-        let point = |p: &str| {
-            if space {
-                format!("[{p}, 0]")
-            } else {
-                format!("[{p}]")
-            }
-        };
-        let [o, c, far, center] = ["0, 0", "0.05, 0", "0.03, 0", "0.003, 0.001"].map(point);
-        let inertia = |of: &str| {
-            if space {
-                format!("[{of}, {of}, {of}]")
-            } else {
-                of.to_owned()
-            }
-        };
-        let axis = if space { ", axis = [0, 0, 1]" } else { "" };
-        let (mesh, angle, other) = match space {
-            true => (
-                "{ gear = [\"one\", \"two\"], pitch-point = \"ground.P\", normal = [0, 1, 0] }",
-                "\"A\"",
-                "\"C\"",
-            ),
-            false => (
-                "{ gear = [\"one.A\", \"two.C\"], radii = [0.03, 0.02] }",
-                "[\"ground\", \"one\"]",
-                "[\"ground\", \"two\"]",
-            ),
-        };
-        let gravity = point("0, -9.81");
-        let place = if space {
-            "two = { at = [0.05, 0, 0] }"
-        } else {
-            ""
-        };
-        format!(
-            "bodies.ground.points = {{ A = {o}, C = {c}, P = {far} }}\n\
-             bodies.one = {{ points = {{ A = {o} }}, mass = 1, center = {center}, inertia = {} }}\n\
-             bodies.two = {{ points = {{ C = {o} }}, mass = 0.6, center = {center}, inertia = {} }}\n\
-             joints.A = {{ revolute = [\"ground.A\", \"one.A\"]{axis} }}\n\
-             joints.C = {{ revolute = [\"ground.C\", \"two.C\"]{axis} }}\n\
-             joints.mesh = {mesh}\n\
-             actuators.phi = {{ angle = {angle} }}\n\
-             coordinates.psi = {{ angle = {other} }}\n\
-             loads.weight = {{ gravity = {gravity} }}\n\
-             loads.coil = {{ torsion-spring = {other}, stiffness = 0.02, free-angle = -60 }}\n\
-             motion = {{ duration = 2, initial-velocity = -40 }}\n\
-             [assembly]\nphi = 0\n{place}\n\
-             [prescribed]\nduration = 1\npoints = 41\nphi = {{ expression = \"-30 + 75*t\" }}\n",
-            inertia("5e-4"),
-            inertia("2e-4"),
-        )
-    };
-    let plane = Scene::parse("plane", &text(false)).unwrap_or_else(|e| panic!("{e}"));
-    let space = SpaceScene::parse("space", &text(true)).unwrap_or_else(|e| panic!("{e}"));
-    let names = ["psi", "coil.load_moment", "coil.power", "A.x", "C.y"];
-    let mut largest = 0.0_f64;
-    let mut compare = |plane: &Table, space: &Table, allowed: f64| {
-        for name in names {
-            let off = difference(&column(plane, name), &column(space, name));
-            assert!(off < allowed, "{name}: {off:.1e}");
-            largest = largest.max(off);
-        }
-    };
-    let done = analyse_trajectory(&plane, Analysis::Kinetostatics, None, &no_progress);
-    let prescribed = written(&done.unwrap_or_else(|e| panic!("{e:?}")));
-    let found = written(&analysed(&space, Analysis::Kinetostatics));
-    compare(&prescribed, &found, 1e-12);
-    let (phi, psi) = (column(&found, "phi"), column(&found, "psi"));
-    assert!(
-        phi.iter()
-            .zip(&psi)
-            .all(|(phi, psi)| (psi + 1.5 * phi).abs() < 1e-12)
-    );
-    for method in [dwell_dynamics::Method::Dop853, dwell_dynamics::Method::Bdf] {
-        let solver = MotionSolver::Settings(SolverSettings {
-            method,
-            ..SolverSettings::default()
-        });
-        let plane = simulate_with(&plane, &solver, None, &no_progress);
-        let plane = written(&plane.unwrap_or_else(|e| panic!("{e:?}")));
-        let found = simulated(&space, &solver, None);
-        assert!(found.early_stop.is_none(), "{:?}", found.early_stop);
-        compare(&plane, &written(&found), 1e-7);
-    }
-    println!("geared wheels: {largest:.1e}");
 }

@@ -8,6 +8,7 @@
 
 mod as_in_the_plane;
 mod pictures;
+mod revolutions;
 mod trajectories;
 
 use dwell_scene::SpaceScene;
