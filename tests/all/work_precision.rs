@@ -430,3 +430,21 @@ fn tables_of_a_reduced_model_in_space_are_studied() {
     // Seen: 2.8e-5 and 7.0e-6 rad.
     assert!(table > 2.0 * sound && table < 1e-3, "{table:e} {sound:e}");
 }
+
+/// A linkage in an oblique plane is reduced by its planar equivalent, in single precision, too, whose working memory is its own: with
+/// that of the model of the coefficients this panicked.
+#[test]
+fn a_linkage_in_an_oblique_plane_is_studied() {
+    let scene = scene_in_space(
+        "planar-oblique-rcsr",
+        "\n[motion]\nduration = 2\ninitial-velocity = 3\n",
+    );
+    let found = measure(&scene, &effort(&[-3, -4], &[]), &no_progress).expect("a study");
+    let of = |name: &str| {
+        let result = result_of(&found, Integrator::Steps(Method::Dop853, 1e-4), name);
+        result.errors.coordinate
+    };
+    // Seen: 7e-5 and 4e-3 rad.
+    let [double, single] = ["exact f64", "exact f32"].map(of);
+    assert!(double < 1e-2 && single < 0.1, "{double:e} {single:e}");
+}

@@ -108,7 +108,7 @@ pub use reduced_ode::{ReducedCoordinate, ReducedOde, ReducedOutputs, solve_reduc
 pub use sliding::Sliding;
 pub use solve::{
     Event, EventKind, EventOccurrence, Observed, ObservedMachine, ObservedValue, Solution, solve,
-    solve_orbit, solve_system,
+    solve_further, solve_orbit, solve_system,
 };
 pub use state_space::{StateSpace, eigenvalues_about, is_equilibrium, linearise};
 pub use tabulated::{TabulatedMachine, TabulatedMachineOde, TabulationError};

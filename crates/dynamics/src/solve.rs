@@ -120,6 +120,36 @@ pub fn solve<M: MovingModel>(
     Ok(solution)
 }
 
+/// The same of a motion that began at t = 0 in another coordinate: its samples go on at multiples of their interval.
+///
+/// # Errors
+/// As [`solve`].
+pub fn solve_further<M: MovingModel>(
+    machine: &Machine<M>,
+    output_model: &M,
+    start: &OdeState,
+    end: f64,
+    options: &Options,
+    events: &[Event<M::CoordinateFunction>],
+) -> Result<Solution> {
+    machine.check_start(&start.y)?;
+    let mut ode = MachineOde::until(machine, start.t, &start.y, Some(end))?;
+    let observed = ObservedMachine::new(machine, output_model);
+    let tolerance = TouchTolerance::of_integration(options);
+    let recorder_state = RecorderState::new(0.0, events, tolerance);
+    let recorder_state = recorder_state.sampled_until(start.t, options);
+    let system = &mut ode;
+    let mut solution = record(
+        system,
+        (observed, recorder_state),
+        start,
+        Some(end),
+        options,
+    )?;
+    solution.add_contact_events(ode.take_contact_events());
+    Ok(solution)
+}
+
 /// Integrates any system from `start` until `end` (s), or without an end until a terminal event; `observed`
 /// evaluates the events at its states.
 ///
@@ -147,7 +177,18 @@ pub(crate) fn solve_with_limits<O: Observed>(
     [events, limits]: [&[Event<O::Coordinate>]; 2],
 ) -> Result<Solution> {
     let tolerance = TouchTolerance::of_integration(options);
-    let mut recorder_state = RecorderState::new(start.t, events, tolerance).with_limits(limits);
+    let recorder_state = RecorderState::new(start.t, events, tolerance).with_limits(limits);
+    record(system, (observed, recorder_state), start, end, options)
+}
+
+/// Integrates and records.
+fn record<O: Observed>(
+    system: &mut dyn OdeSystem,
+    (observed, mut recorder_state): (O, RecorderState<'_, O::Coordinate>),
+    start: &OdeState,
+    end: Option<f64>,
+    options: &Options,
+) -> Result<Solution> {
     let mut recorder = recorder_state.recorder(observed, start)?;
     let mut solution = recorder.begin_solution(start, options);
     let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
@@ -179,6 +220,14 @@ impl<'e, C: Copy> RecorderState<'e, C> {
             start_time,
             sample_count: 0,
         }
+    }
+
+    /// The same of a motion that has its samples up to a time, s.
+    fn sampled_until(mut self, t: f64, options: &Options) -> Self {
+        if let Some(interval) = options.sample_interval {
+            self.sample_count = (t / interval).floor() as usize + 1;
+        }
+        self
     }
 
     /// The same with further events that happen where their value is touched.

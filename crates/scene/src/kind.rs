@@ -34,7 +34,11 @@ pub(crate) fn kind_among<'f, 'a>(
         let (kind, key) = (entry.written(), other.written());
         let message = format!("{} is of kind `{kind}` and has no `{key}`", fields.what);
         let label = format!("not for this kind of {thing}");
-        other.reject::<()>(message, &label, "leave it out");
+        let help = match other.name == "axis" && table.contains_key("axes") {
+            true => "write `axes = [[0, 1, 0], [1, 0, 0]]`, one for each body",
+            false => "leave it out",
+        };
+        other.reject::<()>(message, &label, help);
     }
     Some((table.kind_key(), entry))
 }

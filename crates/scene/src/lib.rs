@@ -113,7 +113,7 @@ pub use scene::{
     Scene, SectionRequest,
 };
 pub use schema::schema;
-pub use space::{AnyScene, SpaceScene};
+pub use space::{AnyScene, SpacePathPoint, SpaceScene};
 pub use spans::SceneLocation;
 pub use value::MAX_ANGLE;
 pub use wording::choices;

@@ -2,6 +2,7 @@
 
 use crate::bodies::Bodies;
 use crate::diagnostics::Span;
+use crate::dimensions::Dimensions;
 use crate::joints::Joints;
 use crate::keys::table;
 use crate::scene::{DwellRequest, PathPoint, Requests, SectionRequest};
@@ -109,6 +110,16 @@ pub(crate) fn components(
 }
 
 fn paths_of(entry: &Entry<'_>, bodies: &Bodies<'_>) -> Vec<PathPoint> {
+    let points = path_points(entry, bodies).into_iter();
+    let point = |(body, name, at)| PathPoint { body, name, at };
+    points.map(point).collect()
+}
+
+/// The points of moving bodies in a list, each once: the body, the name and the place of each.
+pub(crate) fn path_points<D: Dimensions>(
+    entry: &Entry<'_>,
+    bodies: &Bodies<'_, D>,
+) -> Vec<(BodyId, String, D::Point)> {
     let (mut requested, mut paths) = (HashSet::new(), Vec::new());
     for (text, span) in strings(entry, "an array such as [\"coupler.P\"]") {
         let Some((body, k)) = bodies.find_point(text, &span) else {
@@ -124,8 +135,7 @@ fn paths_of(entry: &Entry<'_>, bodies: &Bodies<'_>) -> Vec<PathPoint> {
             let location = SceneLocation::Path(paths.len());
             entry.log().place(location, &span);
             let (name, at) = bodies.list[body.0].points[k];
-            let name = name.to_owned();
-            paths.push(PathPoint { body, name, at });
+            paths.push((body, name.to_owned(), at));
         }
     }
     paths
@@ -170,7 +180,7 @@ fn dwell_of(entry: &Entry<'_>, bodies: &Bodies<'_>) -> Option<DwellRequest> {
 }
 
 /// The names of columns, each once.
-fn variables_of(entry: &Entry<'_>) -> Vec<String> {
+pub(crate) fn variables_of(entry: &Entry<'_>) -> Vec<String> {
     let mut requested = HashSet::new();
     let mut names = strings(entry, "an array such as [\"crank.angle\"]");
     names.retain(|(name, _)| requested.insert(*name));

@@ -3,19 +3,41 @@
 use crate::explain::NamedScene;
 use crate::number_format::{coordinate_unit, count, digits, force_unit, number};
 use dwell_findings::Record;
-use dwell_geometry::{BodyId, Plan, Vec2, vec2};
-use dwell_kinetostatics::{DriveKind, LoadKind, Magnitude, Signal, VaryingInertia};
-use dwell_scene::{CoordinateSweep, FreeMotionSpec, MotionDuration, Scene};
+use dwell_geometry::{BodyId, Coordinate, Plan, Vec2, vec2};
+use dwell_kinetostatics::{Drive, DriveKind, LoadKind, Magnitude, Signal, VaryingInertia};
+use dwell_scene::{CoordinateSweep, FreeMotionSpec, MotionDuration, PrescribedMotion, Scene};
 
 /// Its size, masses, loads, drives, stops and motions as lines of text; the numbers go into the record.
 pub(crate) fn describe_contents(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
+    let coordinates = Coordinates {
+        name: &|coordinate: Coordinate| scene.name_of(coordinate),
+        is_angle: Coordinate::is_angle,
+    };
+    let motions = ScheduledMotions {
+        prescribed: scene.prescribed.as_ref(),
+        sweep: scene.sweep.as_ref(),
+        motion: scene.motion.as_ref(),
+    };
     describe_size(scene, plan, record)
         + &describe_masses(scene, plan, record)
         + &describe_varying_inertias(scene, record)
         + &describe_loads(scene, record)
-        + &describe_drives(scene, record)
+        + &describe_drives(&scene.drives, &coordinates, record)
         + &describe_stops(scene, record)
-        + &describe_motions(scene, record)
+        + &describe_motions(scene, &motions, record)
+}
+
+/// How coordinates are called, and whether they are angles.
+pub(crate) struct Coordinates<'a, C> {
+    pub(crate) name: &'a dyn Fn(C) -> String,
+    pub(crate) is_angle: fn(C) -> bool,
+}
+
+/// The motions of a scene in the plane or in space.
+pub(crate) struct ScheduledMotions<'a, C, R> {
+    pub(crate) prescribed: Option<&'a PrescribedMotion>,
+    pub(crate) sweep: Option<&'a CoordinateSweep>,
+    pub(crate) motion: Option<&'a FreeMotionSpec<C, R>>,
 }
 
 /// The frames of all bodies at the start: origin, m, and angle, rad.
@@ -164,9 +186,9 @@ fn load_unit(kind: &LoadKind) -> &'static str {
 }
 
 /// A constant, or what a magnitude depends on.
-fn magnitude(
-    scene: &Scene,
-    of: &Magnitude,
+pub(crate) fn magnitude<C: Copy>(
+    name_of: &dyn Fn(C) -> String,
+    of: &Magnitude<C>,
     (name, unit): (&str, &str),
     record: &mut Record,
 ) -> String {
@@ -179,7 +201,7 @@ fn magnitude(
         Magnitude::Separating(_) => "from the tooth force".to_owned(),
         other => {
             let signals = other.signals().iter();
-            let mut names: Vec<String> = signals.map(|s| signal_name(scene, s)).collect();
+            let mut names: Vec<String> = signals.map(|s| signal_name(name_of, s)).collect();
             names.dedup();
             match names.is_empty() {
                 true => format!("in {unit}"),
@@ -189,11 +211,11 @@ fn magnitude(
     }
 }
 
-fn signal_name(scene: &Scene, signal: &Signal) -> String {
+fn signal_name<C: Copy>(name_of: &dyn Fn(C) -> String, signal: &Signal<C>) -> String {
     match signal {
         Signal::Time => "t".to_owned(),
-        Signal::Value(coordinate) => scene.name_of(*coordinate),
-        Signal::Velocity(coordinate) => format!("{}.velocity", scene.name_of(*coordinate)),
+        Signal::Value(coordinate) => name_of(*coordinate),
+        Signal::Velocity(coordinate) => format!("{}.velocity", name_of(*coordinate)),
     }
 }
 
@@ -204,18 +226,24 @@ fn describe_loads(scene: &Scene, record: &mut Record) -> String {
     let lines = scene.loads.iter().map(|load| {
         let (kind, unit) = (load_kind(scene, &load.kind), load_unit(&load.kind));
         let name = format!("load.{}", load.name);
-        let magnitude = magnitude(scene, &load.magnitude, (&name, unit), record);
+        let name_of = |coordinate| scene.name_of(coordinate);
+        let magnitude = magnitude(&name_of, &load.magnitude, (&name, unit), record);
         format!("    {}: {kind}, {magnitude}\n", load.name)
     });
     "  loads:\n".to_owned() + &lines.collect::<String>()
 }
 
-fn describe_drives(scene: &Scene, record: &mut Record) -> String {
-    if scene.drives.is_empty() {
+/// The drives of a scene in the plane or in space.
+pub(crate) fn describe_drives<C: Copy>(
+    drives: &[Drive<C>],
+    coordinates: &Coordinates<'_, C>,
+    record: &mut Record,
+) -> String {
+    if drives.is_empty() {
         return "  no drives\n".to_owned();
     }
-    let lines = scene.drives.iter().map(|drive| {
-        let is_angle = drive.coordinate.is_angle();
+    let lines = drives.iter().map(|drive| {
+        let is_angle = (coordinates.is_angle)(drive.coordinate);
         let speed_unit = format!("{}/s", coordinate_unit(is_angle));
         let (kind, unit) = match &drive.kind {
             DriveKind::AppliedForce(_) => ("applied force", force_unit(is_angle)),
@@ -223,8 +251,8 @@ fn describe_drives(scene: &Scene, record: &mut Record) -> String {
             DriveKind::SpeedController(_) => ("speed controller", speed_unit.as_str()),
         };
         let name = format!("drive.{}", drive.name);
-        let input = magnitude(scene, drive.kind.input(), (&name, unit), record);
-        let on = scene.name_of(drive.coordinate);
+        let input = magnitude(coordinates.name, drive.kind.input(), (&name, unit), record);
+        let on = (coordinates.name)(drive.coordinate);
         format!("    {}: {kind} on {on}, {input}\n", drive.name)
     });
     "  drives:\n".to_owned() + &lines.collect::<String>()
@@ -268,28 +296,32 @@ pub(crate) fn describe_stops(scene: &impl NamedScene, record: &mut Record) -> St
     lines.collect()
 }
 
-/// The prescribed motion or sweep, and the free motion.
-fn describe_motions(scene: &Scene, record: &mut Record) -> String {
-    let actuators = &scene.mechanism.actuators;
+/// The prescribed motion or sweep, and the free motion, of a scene in the plane or in space.
+pub(crate) fn describe_motions<C, R>(
+    scene: &impl NamedScene,
+    motions: &ScheduledMotions<'_, C, R>,
+    record: &mut Record,
+) -> String {
     let coordinate = |i: usize, value: f64| {
-        let (value, unit) = scene.to_scene_unit(value, actuators[i].coordinate().is_angle());
+        let is_angle = scene.actuator(i).is_none_or(|(_, is_angle)| is_angle);
+        let (value, unit) = scene.to_scene_unit(value, is_angle);
         format!("{} {unit}", number(value))
     };
     let mut text = String::new();
-    if let Some(prescribed) = &scene.prescribed {
+    if let Some(prescribed) = motions.prescribed {
         record.add("prescribed.duration", "s", prescribed.duration);
         record.add_count("prescribed.positions", prescribed.points);
         let (duration, points) = (digits(prescribed.duration, 6), prescribed.points);
         let points = count(points, "position");
         text += &format!("  prescribed motion: {duration} s, {points}\n");
     }
-    if let Some(sweep) = &scene.sweep {
+    if let Some(sweep) = motions.sweep {
         text += &describe_sweep(scene, sweep, record);
     }
-    if let Some(motion) = &scene.motion {
+    if let Some(motion) = motions.motion {
         record_motion(scene, motion, record);
-        let starts = actuators.iter().enumerate().map(|(i, actuator)| {
-            let name = &actuator.name;
+        let starts = (0..motion.laws.len()).map(|i| {
+            let name = scene.actuator(i).map_or("", |(name, _)| name);
             let [q, speed] = [
                 coordinate(i, motion.initial_coordinates[i]),
                 coordinate(i, motion.initial_velocities[i]),
@@ -321,9 +353,8 @@ fn describe_motions(scene: &Scene, record: &mut Record) -> String {
 }
 
 /// The coordinate sweep.
-fn describe_sweep(scene: &Scene, sweep: &CoordinateSweep, record: &mut Record) -> String {
-    let actuator = &scene.mechanism.actuators[sweep.actuator.0];
-    let is_angle = actuator.coordinate().is_angle();
+fn describe_sweep(scene: &impl NamedScene, sweep: &CoordinateSweep, record: &mut Record) -> String {
+    let (name, is_angle) = scene.actuator(sweep.actuator.0).unwrap_or(("", true));
     let unit = coordinate_unit(is_angle);
     let coordinate = |value: f64| {
         let (value, unit) = scene.to_scene_unit(value, is_angle);
@@ -340,16 +371,20 @@ fn describe_sweep(scene: &Scene, sweep: &CoordinateSweep, record: &mut Record) -
     record.add_count("coordinate_sweep.positions", sweep.points);
     record.add("coordinate_sweep.speed", &format!("{unit}/s"), sweep.speed);
     let points = count(sweep.points, "position");
-    let (name, speed) = (&actuator.name, coordinate(sweep.speed));
+    let speed = coordinate(sweep.speed);
     format!("  coordinate sweep: {name} {over}, {points}, at {speed}/s\n")
 }
 
 /// The numbers of a free motion.
-fn record_motion(scene: &Scene, motion: &FreeMotionSpec, record: &mut Record) {
-    let actuators = scene.mechanism.actuators.iter().enumerate();
-    for (i, actuator) in actuators.filter(|(i, _)| motion.laws[*i].is_none()) {
-        let unit = coordinate_unit(actuator.coordinate().is_angle());
-        let name = format!("free_motion.{}", actuator.name);
+fn record_motion<C, R>(
+    scene: &impl NamedScene,
+    motion: &FreeMotionSpec<C, R>,
+    record: &mut Record,
+) {
+    let free = (0..motion.laws.len()).filter(|i| motion.laws[*i].is_none());
+    for (i, (name, is_angle)) in free.filter_map(|i| Some((i, scene.actuator(i)?))) {
+        let unit = coordinate_unit(is_angle);
+        let name = format!("free_motion.{name}");
         let [q, speed] = [&motion.initial_coordinates, &motion.initial_velocities].map(|of| of[i]);
         record.add(&name, unit, q);
         record.add(format!("{name}.velocity"), &format!("{unit}/s"), speed);

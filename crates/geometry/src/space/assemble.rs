@@ -51,9 +51,11 @@ impl Plan {
             start: Node::default(),
             predictions: Predictions::default(),
             range: Range::Unbounded,
+            range_ends: [false; 2],
             assembly_q: Vec::new(),
             closure_angles: Vec::new(),
             freedom_gains: Vec::new(),
+            geared: Vec::new(),
             change_points: Vec::new(),
             mobility: Mobility::default(),
         };

@@ -11,6 +11,7 @@
 //! An angle counts whole revolutions: of a joint of the tree by its coordinate, of one that closes a loop by its angles along the
 //! range.
 
+use super::closure::RowKind;
 use super::frames::BodyMotion;
 use super::mechanism::{ActuatorKind, Joint, JointKind, Mechanism};
 use super::plan::{Plan, Pose};
@@ -254,7 +255,20 @@ impl Plan {
         }
         let gains = ends[1].iter().zip(&ends[0]).map(|(b, a)| b - a);
         self.freedom_gains = gains.collect();
+        self.geared = self.find_geared();
         self.closure_angles = stored;
+    }
+
+    /// The freedoms on the paths of gear pairs that no actuator moves.
+    fn find_geared(&self) -> Vec<usize> {
+        let is_gear = |kinds: &[RowKind]| matches!(kinds, [RowKind::Mesh(_)]);
+        let gears = self.closures.iter().filter(|c| is_gear(&c.kinds));
+        let on_paths = gears.flat_map(|gear| gear.path.iter().map(|(freedom, _)| *freedom));
+        let is_driven = |f: &usize| self.drivers.iter().any(|driver| driver.freedom == *f);
+        let mut geared: Vec<usize> = on_paths.filter(|f| !is_driven(f)).collect();
+        geared.sort_unstable();
+        geared.dedup();
+        geared
     }
 
     /// An angle without its revolutions, from −π to π.
@@ -303,7 +317,9 @@ impl Plan {
         match counting {
             Counting::Freedom(freedom, sign) => {
                 let value = pose.coordinates[freedom] * T::from_f64(sign);
-                if self.drivers.iter().any(|driver| driver.freedom == freedom) {
+                // Coordinates that actuators and teeth move count all periods themselves.
+                let is_driven = self.drivers.iter().any(|driver| driver.freedom == freedom);
+                if is_driven || self.geared.contains(&freedom) {
                     return value;
                 }
                 let gain = self.freedom_gains.get(freedom).copied().unwrap_or(0.0);

@@ -187,8 +187,8 @@ impl Plan {
         back.reverse();
         back.extend(forward.into_iter().skip(1));
         let [from, to] = [0, back.len() - 1].map(|k| back[k].q);
-        let blocked = to < first.q + 0.99 * far && blocked_back;
-        self.range = match (blocked, is_angle) {
+        self.range_ends = [blocked_back, to < first.q + 0.99 * far];
+        self.range = match (self.range_ends == [true; 2], is_angle) {
             (true, true) => Range::Limited(from, to),
             (true, false) => Range::Stroke(from, to),
             (false, _) => Range::Unresolved(from, to),
@@ -258,6 +258,11 @@ impl Plan {
         let from = &self.assembly_q;
         let mut real = self.pose::<f64>();
         self.start_from(&self.start, 0.0, &mut real);
+        if self.groups.is_empty() {
+            // Nothing has to be followed.
+            self.start_from(&self.start, 0.0, pose);
+            return self.close(q, None, pose);
+        }
         let span = q
             .iter()
             .zip(from)

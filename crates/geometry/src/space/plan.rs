@@ -60,6 +60,8 @@ pub struct Plan {
     /// The poses stored along the range of one actuator.
     pub(super) predictions: Predictions,
     pub(super) range: Range,
+    /// Whether the branch ends at the lower and at the upper end of the range; otherwise it was not followed any further.
+    pub(super) range_ends: [bool; 2],
     /// The coordinates at the assembly.
     pub(super) assembly_q: Vec<f64>,
     pub(super) mobility: Mobility,
@@ -67,6 +69,8 @@ pub struct Plan {
     pub(super) closure_angles: Vec<StoredAngles>,
     /// By freedom: what it gains in a period of the only coordinate.
     pub(super) freedom_gains: Vec<f64>,
+    /// The freedoms that teeth turn, which keep count of all periods.
+    pub(super) geared: Vec<usize>,
     /// In the range of the only coordinate.
     pub(super) change_points: Vec<ChangePoint>,
 }
@@ -204,6 +208,11 @@ impl Plan {
     /// The range of the coordinate.
     pub fn range(&self) -> Range {
         self.range
+    }
+
+    /// Whether a limit position was found at the lower and at the upper end of the range.
+    pub fn range_ends(&self) -> [bool; 2] {
+        self.range_ends
     }
 
     /// Degrees of freedom, redundant constraints and determined reactions, by rank.

@@ -47,10 +47,35 @@ impl Plan {
         let value = self.within_range(first.value())?;
         let at = self.predictions.at(value);
         match at {
-            Some(at) => self.predictions.predict(at, pose),
+            Some(at) => {
+                self.predictions.predict(at, pose);
+                self.count_teeth(first.value(), pose);
+            }
             None => self.start_from(&self.start, value - self.start.q, pose),
         }
         self.close(q, at, pose)
+    }
+
+    /// Adds to the freedoms that teeth turn what they gain in whole periods: the row of a gear pair counts all revolutions.
+    #[inline(always)]
+    fn count_teeth<T: Scalar>(&self, q: f64, pose: &mut Pose<T>) {
+        if self.geared.is_empty() {
+            return;
+        }
+        let periods = self.periods(q);
+        for &freedom in &self.geared {
+            pose.coordinates[freedom] += T::from_f64(periods * self.freedom_gains[freedom]);
+        }
+    }
+
+    /// The size of the largest coordinate, to whose rounding steps can be small: those that teeth turn count all revolutions.
+    #[inline(always)]
+    fn count_size<T: Scalar>(&self, pose: &Pose<T>) -> f64 {
+        let counted = self
+            .geared
+            .iter()
+            .map(|f| pose.coordinates[*f].value().abs());
+        counted.fold(1.0, f64::max)
     }
 
     /// Closes all groups in order, from the coordinates in the pose, which are those of a prediction at a coordinate if that is given.
@@ -189,7 +214,7 @@ impl Plan {
             }
             // Derivatives are exact after one step more than values.
             settled = match T::HAS_DERIVATIVES {
-                true => step < 1e-14 / outcome.pivot_ratio,
+                true => step < 1e-14 * self.count_size(pose) / outcome.pivot_ratio,
                 false => step * step / outcome.pivot_ratio < NO_STEP,
             };
         }

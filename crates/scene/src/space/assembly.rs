@@ -54,6 +54,11 @@ pub(super) fn assembly(
 }
 
 fn placement(entry: &Entry<'_>, what: String) -> Option<Placement> {
+    if entry.value.is_number() {
+        let message = format!("{what}: a number does not place a body in space");
+        let help = "write where it is, as in `{ at = [100, 0, 0], turn = [0, 0, 90] }`";
+        return entry.value.reject(message, "expected a table", help);
+    }
     let fields = TableReader::open(entry, what)?;
     fields.reject_unknown_keys(table("placement"));
     let position = fields.get("at").map(|e| point(e.value, &fields.name_of(e)));

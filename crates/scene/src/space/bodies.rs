@@ -33,6 +33,14 @@ impl Dimensions for Space {
             inertia: inertia.unwrap_or_default(),
         };
         let turned = fields.get("inertia-axes").and_then(|e| axes(e, fields));
+        if let (Some(entry), None) = (fields.get("inertia-axes"), fields.get("inertia")) {
+            let message = format!(
+                "inertia-axes of {} have no inertia to refer to",
+                fields.what
+            );
+            let help = "add `inertia = [10.0, 1666.0, 1666.0]`, or leave the axes out";
+            (entry.value).reject::<()>(message, "of no inertia", help);
+        }
         if let Some(axes) = turned {
             found.inertia = found.turned(&axes).inertia;
         }

@@ -7,7 +7,7 @@ use super::coordinates::coordinates;
 use super::friction::add_friction;
 use super::joints::Joints;
 use super::loads::LoadReader;
-use super::requests::{in_ground_axes, one_reaction, reactions};
+use super::requests::{SpaceRequests, in_ground_axes, one_reaction, requests};
 use super::scene::SpaceScene;
 use crate::bodies::Bodies;
 use crate::build::is_filled;
@@ -139,7 +139,13 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
     }
     let stops = section("stops");
     let stops = stops.map_or_else(Vec::new, |f| stops_of(&f, &by_name, motion.as_ref()));
-    let listed = section("requests").and_then(|f| reactions(&f, &joints, ground));
+    let requested = section("requests");
+    let requested = requested.map(|f| requests(&f, &bodies, &joints, ground));
+    let SpaceRequests {
+        reactions: listed,
+        paths,
+        variables,
+    } = requested.unwrap_or_default();
     let joined = || joints.list.iter().filter_map(|j| j.joint.as_ref());
     // A joint that could not be read may be the one that holds a body.
     if !joints.list.is_empty() && joined().count() == joints.list.len() {
@@ -171,6 +177,8 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Space
     });
     Some(SpaceScene {
         lists_reactions: listed.is_some(),
+        paths,
+        variables,
         reactions: listed.unwrap_or_else(|| all.collect()),
         masses: bodies.list.iter().map(|b| b.mass).collect(),
         points: points.collect(),
@@ -224,7 +232,12 @@ fn reject_unknown_sections(fields: &TableReader<'_>) {
     for entry in fields.unknown_entries(table("scene-in-space")) {
         if planar.contains_key(entry.name) {
             let message = format!("a scene in space has no `[{}]` yet", entry.name);
-            let help = "its points have three numbers; leave this section out";
+            let help = match entry.name {
+                "calibration" => {
+                    "leave it out: `dwell calibrate --parameter rod.mass --period 5.42` does it"
+                }
+                _ => "its points have three numbers; leave this section out",
+            };
             entry.reject::<()>(message, "for scenes in the plane", help);
         } else {
             fields.report_unknown_key(entry, "keys here", table("scene-in-space").names());

@@ -74,9 +74,48 @@ impl<'a> Joints<'a> {
     }
 }
 
+/// The kinds of joints that scenes in the plane alone have, and what stands for them in space.
+const PLANAR_KINDS: [(&str, &str); 4] = [
+    (
+        "slot",
+        "a prismatic and a revolute joint with a body between them do what a slot does",
+    ),
+    (
+        "rack",
+        "a `gear` pair in which one of the bodies slides is a rack and a pinion",
+    ),
+    (
+        "rolling",
+        "a `gear` pair in which one of the bodies slides moves alike",
+    ),
+    (
+        "coupling",
+        "cams and other functions of a coordinate are for scenes in the plane",
+    ),
+];
+
+/// Rejects a kind of joint of scenes in the plane by its name.
+fn reject_planar_kind(fields: &TableReader<'_>) -> Option<()> {
+    let found = PLANAR_KINDS.iter().find_map(|(kind, help)| {
+        let entry = fields.get(kind)?;
+        Some((entry, kind, help))
+    });
+    match found {
+        None => Some(()),
+        Some((entry, kind, help)) => {
+            let message = format!(
+                "{}: a scene in space has no joint of kind `{kind}`",
+                fields.what
+            );
+            entry.reject(message, "for scenes in the plane", *help)
+        }
+    }
+}
+
 /// The joint, and whether the zero of its angle is stated.
 fn read_joint(entry: &Entry<'_>, id: JointId, bodies: &Bodies<'_, Space>) -> Option<(Joint, bool)> {
     let fields = TableReader::open(entry, format!("joint `{}`", shorten(entry.name)))?;
+    reject_planar_kind(&fields)?;
     let (kind, kind_entry) = kind_among(&fields, "joint", &kinds("joints-in-space"))?;
     for key in ["axis", "axes"] {
         fields.place(key, SceneLocation::Axis(id));

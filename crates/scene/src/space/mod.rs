@@ -16,4 +16,4 @@ mod values;
 
 pub use any_scene::AnyScene;
 pub(crate) use points::{planar_only, three_numbers};
-pub use scene::SpaceScene;
+pub use scene::{SpacePathPoint, SpaceScene};

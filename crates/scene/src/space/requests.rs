@@ -1,9 +1,12 @@
 //! The requested reactions.
 
+use super::bodies::Space;
 use super::joints::Joints;
+use super::scene::SpacePathPoint;
+use crate::bodies::Bodies;
 use crate::diagnostics::Span;
 use crate::keys::table;
-use crate::requests::{joint_and_component, strings};
+use crate::requests::{joint_and_component, path_points, strings, variables_of};
 use crate::spans::SceneLocation;
 use crate::table_reader::TableReader;
 use crate::wording::{list, shorten};
@@ -82,13 +85,48 @@ fn has_axis(kind: JointKind) -> bool {
     !matches!(kind, JointKind::Spherical | JointKind::Distance { .. })
 }
 
+/// `[requests]`.
+#[derive(Debug, Default)]
+pub(super) struct SpaceRequests {
+    /// None where they are not listed.
+    pub(super) reactions: Option<Vec<Reaction>>,
+    pub(super) paths: Vec<SpacePathPoint>,
+    pub(super) variables: Option<Vec<String>>,
+}
+
+/// What is requested; what scenes in the plane alone have is named as such.
+pub(super) fn requests(
+    fields: &TableReader<'_>,
+    bodies: &Bodies<'_, Space>,
+    joints: &Joints<'_>,
+    ground: usize,
+) -> SpaceRequests {
+    let known = table("requests-in-space");
+    for entry in fields.unknown_entries(known) {
+        if table("requests").contains_key(entry.name) {
+            let message = format!("a scene in space has no `{}` in [requests]", entry.name);
+            let help = "leave it out: a dwell is that of an angle, and internal forces are computed in the plane only";
+            entry.reject::<()>(message, "for scenes in the plane", help);
+        } else {
+            fields.report_unknown_key(entry, "keys here", known.names());
+        }
+    }
+    let paths = fields.get("paths").map(|entry| path_points(entry, bodies));
+    let path = |(body, name, at)| SpacePathPoint { body, name, at };
+    let paths = paths.into_iter().flatten().map(path);
+    SpaceRequests {
+        reactions: reactions(fields, joints, ground),
+        paths: paths.collect(),
+        variables: fields.get("variables").map(variables_of),
+    }
+}
+
 /// The reactions that are listed, each once.
-pub(super) fn reactions(
+fn reactions(
     fields: &TableReader<'_>,
     joints: &Joints<'_>,
     ground: usize,
 ) -> Option<Vec<Reaction>> {
-    fields.reject_unknown_keys(table("requests-in-space"));
     let entry = fields.get("reactions")?;
     let mut found: Vec<Reaction> = Vec::new();
     for (text, at) in strings(entry, "an array such as [\"A.z\"]") {

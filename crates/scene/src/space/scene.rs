@@ -2,6 +2,7 @@
 
 use crate::file::SceneFile;
 use crate::scene::{CoordinateSweep, FreeMotionSpec, NamedCoordinate, NamedStop, PrescribedMotion};
+use dwell_geometry::BodyId;
 use dwell_geometry::space::{Assembly, Coordinate, Mechanism, Vec3};
 use dwell_kinetostatics::Drive;
 use dwell_kinetostatics::space::{Load, Mass, Reaction};
@@ -38,6 +39,21 @@ pub struct SpaceScene {
     pub reactions: Vec<Reaction>,
     /// Whether the file lists the reactions; otherwise all in the axes of the ground are requested.
     pub lists_reactions: bool,
+    /// The points whose paths are drawn; all where there are none.
+    pub paths: Vec<SpacePathPoint>,
+    /// The requested columns; all where there is no list.
+    pub variables: Option<Vec<String>>,
+}
+
+/// A point of a moving body in space whose path is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpacePathPoint {
+    /// The body.
+    pub body: BodyId,
+    /// The point's name within the body.
+    pub name: String,
+    /// The point in the body's frame, m.
+    pub at: Vec3,
 }
 
 impl Deref for SpaceScene {

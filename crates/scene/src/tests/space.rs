@@ -283,6 +283,10 @@ fn every_example_of_a_key_in_space_is_read() {
             };
             let first = table.kind_key();
             let fragment = match table.name.as_str() {
+                "[bodies.<body>] in space" if inner.contains("inertia-axes") => {
+                    let inner = inner.trim_end_matches('}');
+                    format!("bodies.crank = {inner}, inertia = [10, 10, 10] }}")
+                }
                 "[bodies.<body>] in space" => format!("bodies.crank = {inner}"),
                 "[actuators.<actuator>] in space" if inner.contains("length") => format!(
                     "joints.link = {{ distance = [\"ground.A\", \"nut.A\"] }}\nactuators.other = {inner}"

@@ -84,7 +84,9 @@ pub(crate) fn page_columns(results: &TrajectoryResults, choice: &RowChoice) -> V
 fn group(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Time => "Time",
-        Quantity::ActuatorCoordinate(..) | Quantity::Measured(..) => "Coordinates",
+        Quantity::ActuatorCoordinate(..)
+        | Quantity::Measured(..)
+        | Quantity::MeasuredInSpace(..) => "Coordinates",
         Quantity::ActuatorForce(_) => "Actuator forces",
         Quantity::BodyAngle(..) | Quantity::RotationInSpace(..) => "Bodies",
         Quantity::VelocityRatio(_) => "Velocity ratios",

@@ -1,8 +1,9 @@
 //! `dwell check` of a scene in space: degrees of freedom, range, groups, placements and reactions, before anything moves.
 
+use super::contents::describe_contents;
 use super::prepared::{compile, is_angle, sort_reactions};
+use super::trajectory::{JointReactions, reject_unknown_variables};
 use crate::check::driven_by;
-use crate::contents::describe_stops;
 use crate::explain::{StudyError, describe_coordinate, describe_ends};
 use crate::number_format::{coordinate_unit, count, number};
 #[cfg(feature = "output")]
@@ -40,6 +41,10 @@ fn description(scene: &SpaceScene, record: &mut Record) -> Result<String, StudyE
     let model = compile(scene, &scene.reactions)?;
     let sorted = sort_reactions(scene, &model)?;
     let plan = model.plan();
+    if scene.variables.is_some() {
+        let (reactions, _) = JointReactions::new(scene)?;
+        reject_unknown_variables(scene, (&reactions, plan))?;
+    }
     let names = mechanism.actuators.iter().map(|a| a.name.as_str());
     let mut text = format!(
         "{}\n  in space: {}, {}, {}{}\n",
@@ -57,7 +62,7 @@ fn description(scene: &SpaceScene, record: &mut Record) -> Result<String, StudyE
     text += &describe_groups(scene, plan, record);
     text += &describe_placements(scene, &model, record);
     text += &describe_reactions(scene, &sorted, record);
-    text += &describe_stops(scene, record);
+    text += &describe_contents(scene, plan, record);
     if let Some(note) = &scene.note {
         text += &format!("  note: {note}\n");
     }
@@ -119,13 +124,22 @@ fn describe_range(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Strin
             )
         }
         Range::Unbounded => format!("  no limit of {name} was found\n"),
-        Range::Limited(from, to) => {
+        Range::Limited(from, to) | Range::Stroke(from, to) => {
             let ends = describe_ends(from, to, is_angle);
             format!("  {name} ranges from {ends}: limit positions at both ends\n")
         }
-        Range::Stroke(from, to) | Range::Unresolved(from, to) => {
+        Range::Unresolved(from, to) => {
             let ends = describe_ends(from, to, is_angle);
-            format!("  {name} ranges from {ends}; how it goes on from there is not known\n")
+            let note = match plan.range_ends() {
+                [true, _] => {
+                    "a limit position at the lower end; no upper limit was found up to there"
+                }
+                [_, true] => {
+                    "a limit position at the upper end; no lower limit was found down to there"
+                }
+                _ => "how it goes on from there is not known",
+            };
+            format!("  {name} ranges from {ends}; {note}\n")
         }
     };
     text + &describe_change_points(scene, plan, record)

@@ -222,7 +222,9 @@ pub(super) fn explain_position(
             ),
             match plan.range().limits() {
                 None => "it is a change point: change a length, or drive another joint",
-                Some(_) => RANGE_ENDS,
+                Some(_) => {
+                    "at a limit position its coordinate turns back: drive a joint that moves on there; `dwell check` shows the range"
+                }
             },
         ),
         PositionError::NoAssembly { gap, .. } => (
@@ -232,7 +234,10 @@ pub(super) fn explain_position(
             ),
             RANGE_ENDS,
         ),
-        _ => (format!("there is no position at {at}: {error}"), RANGE_ENDS),
+        _ => (
+            format!("there is no position at {at}: the loops do not close there"),
+            RANGE_ENDS,
+        ),
     };
     let places = labels(
         std::iter::once(SceneLocation::Actuator(ActuatorId(0))),

@@ -3,12 +3,16 @@
 use super::explain::explain_position;
 use super::prepared::PreparedSpaceScene;
 use crate::explain::StudyError;
+#[cfg(feature = "output")]
+use crate::explain::scene_error;
 use crate::export::description::{
     domain, drive_effect, magnitude_effect, reject_friction, reject_stops, varying_input,
 };
 #[cfg(feature = "output")]
 use crate::export::output::{ExportTarget, export_machine};
 use crate::export::{ExportRequest, explain_fit, no_operations};
+#[cfg(feature = "output")]
+use crate::number_format::count;
 #[cfg(feature = "output")]
 use crate::output::Outcome;
 use crate::reduce::compute::ReducedScene as _;
@@ -18,9 +22,13 @@ use dwell_export::{
     Domain, Export, FitError, Function, FunctionSampler, LoadDescription, MachineDescription,
     PartKind, ReferenceSizes,
 };
+#[cfg(feature = "output")]
+use dwell_geometry::ActuatorId;
 use dwell_geometry::PositionError;
 use dwell_kinetostatics::space::{LoadKind, Workspace};
 use dwell_kinetostatics::{Coefficients, InverseDynamics, ReducedModel as _};
+#[cfg(feature = "output")]
+use dwell_scene::SceneLocation;
 use dwell_scene::SpaceScene;
 
 /// Exports the reduced model of a machine in space.
@@ -33,6 +41,15 @@ pub fn export_in_space(
     target: ExportTarget,
     asked: &ExportRequest,
 ) -> Result<Outcome, StudyError> {
+    if scene.mechanism.actuators.len() > 1 {
+        let given = count(scene.mechanism.actuators.len(), "actuator");
+        let message =
+            format!("the scene has {given}: in space several degrees of freedom are not exported");
+        let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
+        let labels = actuators.map(|a| (SceneLocation::Actuator(a), "drives it"));
+        let help = "give exactly one actuator in [actuators]; of mechanisms in the plane several degrees of freedom are exported as C";
+        return Err(scene_error(scene, message, help, labels));
+    }
     let table = || Ok(Reduction::new(PreparedSpaceScene::new(scene)?, None)?.table());
     export_machine(scene, target, asked, table, || {
         compute_export_in_space(scene, asked)

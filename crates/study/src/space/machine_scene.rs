@@ -2,6 +2,7 @@
 
 use super::explain::{explain_load_error, explain_loads, explain_position};
 use super::prepared::{PreparedSpaceScene, compile, sort_reactions};
+use super::trajectory::{JointReactions, reject_unknown_variables};
 use super::views::page_drawing;
 use crate::explain::{StudyError, explain_any_motion, scene_error};
 use crate::machines::{MachineScene, MotionStart};
@@ -83,8 +84,11 @@ impl MachineScene for SpaceScene {
     }
 
     fn reject_unknown_columns(&self) -> Result<(), StudyError> {
-        // It names no columns.
-        Ok(())
+        if self.variables.is_none() {
+            return Ok(());
+        }
+        let (reactions, model) = JointReactions::new(self)?;
+        reject_unknown_variables(self, (&reactions, model.plan()))
     }
 
     fn drawing_along(&self, coordinate: &[f64]) -> Option<Drawing> {

@@ -1,6 +1,7 @@
 //! Scenes of mechanisms in space: what can be said of them before they move, and their reduced parameters.
 
 mod check;
+mod contents;
 mod explain;
 mod export;
 mod machine_scene;

@@ -218,7 +218,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
     }
 
     fn has_limits(&self) -> [bool; 2] {
-        [matches!(self.range(), Range::Limited(..)); 2]
+        range_limits(self.scene, self.model.model().plan()).1
     }
 
     fn positions(&self, intervals: usize) -> Vec<f64> {
@@ -351,16 +351,25 @@ pub(super) fn range_limits(scene: &SpaceScene, plan: &Plan) -> ([f64; 2], [bool;
     let (start, is_angle) = (scene.assembly.q[0], is_angle(scene));
     let half_stroke = DEFAULT_STROKE * plan.size();
     match range_between_change_points(plan, start) {
-        Range::Limited(from, to) => {
+        Range::Limited(from, to) | Range::Stroke(from, to) => {
             let margin = LIMIT_MARGIN * (to - from);
             ([from + margin, to - margin], [true; 2], "the range")
         }
         Range::Full => ([0.0, TAU], [false; 2], "one revolution"),
         Range::Revolutions(count) => ([0.0, TAU * f64::from(count)], [false; 2], "the period"),
-        Range::Stroke(from, to) | Range::Unresolved(from, to) => {
+        Range::Unresolved(from, to) => {
+            // An end that was not found is only where the search stopped.
+            let found = plan.range_ends();
             let half = if is_angle { TAU } else { half_stroke };
-            let ends = [from.max(start - half), to.min(start + half)];
-            (ends, [false; 2], "the range")
+            let low = if found[0] {
+                from
+            } else {
+                from.max(start - half)
+            };
+            let high = if found[1] { to } else { to.min(start + half) };
+            let margin = LIMIT_MARGIN * (high - low);
+            let [below, above] = found.map(|found| if found { margin } else { 0.0 });
+            ([low + below, high - above], found, "the range")
         }
         Range::Unbounded if is_angle => ([start, start + TAU], [false; 2], "one revolution"),
         Range::Unbounded => {

@@ -334,7 +334,7 @@ fn motion_values(
 ) -> Result<Vec<(String, f64)>, StudyError> {
     let solver = MotionSolver::Settings(SolverSettings::default());
     let problem = SpaceMotionProblem::new(scene)?.for_solver(&solver);
-    let (_, mut computed, _) = problem.simulate(&solver, None, &no_progress)?;
+    let mut computed = problem.simulate(&solver, None, &no_progress)?.computed;
     if let Some(error) = computed.early_stop.take() {
         return Err(error);
     }

@@ -33,7 +33,7 @@ const LARGEST_OF_ROWS: &str =
 /// The results of a trajectory analysis as text.
 pub(crate) struct Document<'a> {
     scene: &'a SceneFile,
-    /// What a designer asks first of a movement, in the plane.
+    /// What a designer asks first of a movement.
     movement: Option<Movement<'a>>,
     /// The bodies that are not modelled.
     unmodelled: Vec<String>,
@@ -53,7 +53,8 @@ impl<'a> Document<'a> {
     pub(crate) fn new(scene: &'a Scene, computed: &'a ComputedTrajectory<'a>) -> Self {
         let results = &computed.results;
         let movement = Movement {
-            scene,
+            file: &scene.file,
+            scene: Some(scene),
             results,
             abscissa: results.abscissa(&computed.trajectory),
         };
@@ -80,7 +81,12 @@ impl<'a> Document<'a> {
         let listed: Vec<usize> = selected.iter().copied().filter(is_result).collect();
         Self {
             scene,
-            movement: None,
+            movement: Some(Movement {
+                file: scene,
+                scene: None,
+                results,
+                abscissa,
+            }),
             unmodelled: Vec::new(),
             results,
             trajectory,

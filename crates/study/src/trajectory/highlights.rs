@@ -3,7 +3,7 @@
 use crate::number_format::digits;
 use crate::trajectory::compute::{Column, Quantity, TrajectoryResults};
 use dwell_findings::Record;
-use dwell_scene::Scene;
+use dwell_scene::{Scene, SceneFile};
 use std::collections::VecDeque;
 
 /// Lines of each kind.
@@ -15,7 +15,9 @@ const ROUNDING: f64 = 1e-9;
 
 /// A movement along a trajectory: its scene, its results and their abscissa.
 pub(crate) struct Movement<'a> {
-    pub(crate) scene: &'a Scene,
+    pub(crate) file: &'a SceneFile,
+    /// In the plane.
+    pub(crate) scene: Option<&'a Scene>,
     pub(crate) results: &'a TrajectoryResults,
     /// The column of time, or of the swept coordinate.
     pub(crate) abscissa: usize,
@@ -42,7 +44,7 @@ impl Movement<'_> {
 
     /// A number in the scene's unit of angles or lengths.
     fn text(&self, value: f64, is_angle: bool) -> String {
-        let (value, unit) = self.scene.to_scene_unit(value, is_angle);
+        let (value, unit) = self.file.to_scene_unit(value, is_angle);
         format!("{} {unit}", digits(value, DIGITS))
     }
 
@@ -51,6 +53,7 @@ impl Movement<'_> {
         let is_of_kind = |c: &Column, is_angle: bool| match c.quantity {
             Quantity::BodyAngle(_, 0) => is_angle,
             Quantity::Measured(_, 0) => !is_angle && c.unit == "m",
+            Quantity::MeasuredInSpace(_, 0) => (c.unit == "rad") == is_angle,
             _ => false,
         };
         let mut text = String::new();
@@ -102,7 +105,9 @@ impl Movement<'_> {
     /// Where the body of the requested dwell rests: the longest part of the trajectory over which its angle stays within
     /// the band.
     fn dwell(&self, record: &mut Record) -> String {
-        let Some(request) = &self.scene.requests.dwell else {
+        let Some((scene, request)) =
+            (self.scene).and_then(|s| Some((s, s.requests.dwell.as_ref()?)))
+        else {
             return String::new();
         };
         let column = Quantity::BodyAngle(request.body, 0);
@@ -113,7 +118,7 @@ impl Movement<'_> {
         let angles: Vec<f64> = rows.iter().map(|row| row[angle]).collect();
         let [low, high] = crate::ranges::extent(angles.iter().copied());
         let band = request.relative_band * (high - low);
-        let name = self.scene.mechanism.body_name(request.body);
+        let name = scene.mechanism.body_name(request.body);
         let Some([first, last]) = max_window(&angles, band).filter(|[a, b]| b > a) else {
             return String::new();
         };

@@ -6,7 +6,9 @@
     reason = "tests"
 )]
 
+mod as_in_the_plane;
 mod pictures;
+mod revolutions;
 mod trajectories;
 
 use dwell_scene::SpaceScene;

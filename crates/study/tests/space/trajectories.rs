@@ -33,11 +33,11 @@ fn accelerated(name: &str) -> SpaceScene {
 }
 
 /// The table that an analysis writes, as a reader of the file gets it.
-fn written(done: &TrajectoryOutcome) -> Table {
+pub(super) fn written(done: &TrajectoryOutcome) -> Table {
     let mut files = done.outcome.files.iter();
     let table = files.find(|(path, _)| {
         let name = path.to_string_lossy();
-        name.ends_with(".csv") && !name.ends_with("-extrema.csv")
+        name.ends_with(".csv") && !name.ends_with("-extrema.csv") && !name.ends_with("-events.csv")
     });
     let (_, bytes) = table.expect("a table");
     let text = std::str::from_utf8(bytes).expect("text");
@@ -404,6 +404,6 @@ fn rows_end_where_a_load_leaves_its_table() {
     assert_eq!(written(&done).rows.len(), 6);
     let message = done.early_stop.map(|error| error.to_string());
     let expected = "the table of load `push` covers q from 0 rad (0°) to 1 rad (57.2958°), but q is 1.1 rad (63.0254°) \
-                    at one of the positions";
+                    soon after q = 1 rad (57.2958°)";
     assert_eq!(message.as_deref(), Some(expected));
 }

@@ -145,13 +145,18 @@ impl<M: ReducibleModel + Clone> SinglePrecisionModel<M> {
 }
 
 impl<M: ReducibleModel> ReducedModel for SinglePrecisionModel<M> {
+    /// Of the inertia and of the coefficients in single precision, then in double precision.
     type Workspace = (
-        M::Workspace<f32>,
+        [M::Workspace<f32>; 2],
         <ExactModel<M> as ReducedModel>::Workspace,
     );
 
     fn workspace(&self) -> Self::Workspace {
-        (self.exact.model().pass_workspace(), self.exact.workspace())
+        let models = [&self.inertia_model, self.exact.model()];
+        (
+            models.map(ReducibleModel::pass_workspace),
+            self.exact.workspace(),
+        )
     }
 
     fn reactions(&self) -> usize {
@@ -162,7 +167,11 @@ impl<M: ReducibleModel> ReducedModel for SinglePrecisionModel<M> {
         self.exact.range()
     }
 
-    fn inertia(&self, q: f64, (at, _): &mut Self::Workspace) -> Result<(f64, f64), PositionError> {
+    fn inertia(
+        &self,
+        q: f64,
+        ([at, _], _): &mut Self::Workspace,
+    ) -> Result<(f64, f64), PositionError> {
         let mut out = Coefficients::default();
         self.inertia_model.reduce_at(q as f32, at, &mut out)?;
         Ok((f64::from(out.m), f64::from(out.half_dm)))
@@ -179,7 +188,7 @@ impl<M: ReducibleModel> ReducedModel for SinglePrecisionModel<M> {
     fn coefficients(
         &self,
         q: f64,
-        (workspace, _): &mut Self::Workspace,
+        ([_, workspace], _): &mut Self::Workspace,
         out: &mut Coefficients,
     ) -> Result<(), PositionError> {
         let model = self.exact.model();

@@ -3,12 +3,14 @@
 use crate::cases::reference::Reference;
 use crate::checked::free_motion_setup::FreeMotionSetup;
 use dwell_dynamics::{
-    DynamicsError, Machine, OdeState, Options, TabulatedMachine, TabulationError, solve,
+    DynamicsError, Event, EventKind, Machine, OdeState, Options, TabulatedMachine, TabulationError,
+    solve,
 };
 use dwell_export::Export;
 use dwell_geometry::JointId;
+use dwell_geometry::space::CoordinateFunction;
 use dwell_kinetostatics::TableDomain;
-use dwell_kinetostatics::space::{Axes, Component};
+use dwell_kinetostatics::space::{Axes, Component, Model as SpaceModel};
 use dwell_kinetostatics::table::TableModel;
 use dwell_scene::{FreeMotionSpec, MotionDuration, Scene, SpaceScene};
 use dwell_study::explain::NamedScene as _;
@@ -22,6 +24,10 @@ use dwell_study::{
     compute_period_in_space, no_progress, simulate_in_space, simulate_to_accuracy,
 };
 use std::f64::consts::TAU;
+use std::num::NonZeroUsize;
+
+/// How near to a limit position a motion is studied, as a part of the range.
+const NEAR_LIMIT: f64 = 0.02;
 
 /// A motion before it is bounded.
 #[derive(Debug)]
@@ -90,6 +96,33 @@ pub trait StudiedScene: MachineScene<Model: TableModel> + Clone {
     /// # Errors
     /// [`StudyError`] where the motion cannot be computed.
     fn simulated(&self, accuracy: f64) -> Result<Outcome, StudyError>;
+}
+
+/// The limit positions of the only coordinate of a scene in space, a little in front of each: there a motion in it ends.
+fn range_ends(scene: &SpaceScene, machine: &Machine<SpaceModel>) -> Vec<Event<CoordinateFunction>> {
+    let plan = machine.model().plan();
+    let ([actuator], [0], Some((from, to))) = (
+        &scene.mechanism.actuators[..],
+        machine.free(),
+        plan.range().limits(),
+    ) else {
+        return Vec::new();
+    };
+    let joint = &scene.mechanism.joints[actuator.kind.joint().0];
+    let coordinate = actuator.kind.coordinate(joint);
+    let Ok(coordinate) = plan.coordinate_function(&scene.mechanism, coordinate) else {
+        return Vec::new();
+    };
+    let margin = NEAR_LIMIT * (to - from);
+    let ends = [from + margin, to - margin]
+        .into_iter()
+        .zip(plan.range_ends());
+    let ends = ends.filter(|(_, found)| *found);
+    let event = |(q, _): (f64, bool)| Event {
+        kind: EventKind::Reaches(coordinate, q),
+        terminal: Some(NonZeroUsize::MIN),
+    };
+    ends.map(event).collect()
 }
 
 fn to_accuracy(accuracy: f64) -> MotionSolver {
@@ -235,11 +268,12 @@ impl StudiedScene for SpaceScene {
         end: f64,
         options: &Options,
     ) -> Result<PreliminaryRun, StudyError> {
-        let solution = solve(machine, machine.model(), start, end, options, &[]);
+        let ends = range_ends(self, machine);
+        let solution = solve(machine, machine.model(), start, end, options, &ends);
         let solution = solution.map_err(|e| self.explain(machine.model(), &e))?;
         Ok(PreliminaryRun {
             steps: solution.steps,
-            has_one_chart: true,
+            has_one_chart: !solution.terminated_by_event,
             failure: solution.error,
         })
     }

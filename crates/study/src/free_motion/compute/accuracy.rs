@@ -219,7 +219,7 @@ fn reached_end(motion: &SegmentedMotion) -> bool {
 }
 
 /// A number with two significant digits.
-fn two_digits(value: f64) -> String {
+pub(crate) fn two_digits(value: f64) -> String {
     let short = format!("{value:.1e}");
     short.replace(".0e", "e")
 }

@@ -20,16 +20,16 @@ const REST: f64 = 1e-26;
 const HINT_COST_RATIO: f64 = 4.0;
 
 /// The energies of a motion at a time (s), and what the balance of energies and works keeps constant, J.
-struct Energies {
-    t: f64,
-    kinetic: f64,
-    potential: f64,
-    balance: f64,
+pub(crate) struct Energies {
+    pub(crate) t: f64,
+    pub(crate) kinetic: f64,
+    pub(crate) potential: f64,
+    pub(crate) balance: f64,
 }
 
 /// By how much a quantity may be higher between points than at the highest of them: the height of the parabola through it and
 /// its neighbours.
-fn height_between(points: &[Energies], value: impl Fn(&Energies) -> f64) -> f64 {
+pub(crate) fn height_between(points: &[Energies], value: impl Fn(&Energies) -> f64) -> f64 {
     let highest =
         (0..points.len()).max_by(|&a, &b| value(&points[a]).total_cmp(&value(&points[b])));
     let around = highest.and_then(|k| points.get(k.checked_sub(1)?..k + 2));

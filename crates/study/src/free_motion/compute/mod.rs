@@ -16,9 +16,11 @@ mod simulation;
 mod tables;
 mod within_steps;
 
+pub(crate) use accuracy::two_digits;
 pub(crate) use contacts::NamedContacts;
 #[cfg(feature = "output")]
 pub(crate) use contacts::first_impulses;
+pub(crate) use description::{Energies, height_between};
 pub(crate) use difference::Difference;
 pub(crate) use difference::pair_by_time;
 pub use period::compute_period;

@@ -4,49 +4,53 @@ use super::problem::SpaceMotionProblem;
 use super::run::Run;
 use crate::free_motion::compute::{MAX_STEPS, StatesWithinSteps, exact_state, sliding_at};
 use crate::trajectory::compute::{SamplePrecision, TrajectorySample};
-use dwell_dynamics::{MachineOde, MachineWorkspace, OdeState};
+use dwell_dynamics::{MachineOde, MachineWorkspace, OdeState, Solution};
 use dwell_kinetostatics::space::Model;
 
 impl SpaceMotionProblem<'_> {
     /// The motion at its steps; none if there are too many of them.
     pub(super) fn steps_as_samples(&self, run: &Run) -> Option<Vec<(f64, TrajectorySample)>> {
-        let steps = &run.solution.steps;
-        if steps.len() > MAX_STEPS {
+        let steps = run.motion.solutions().map(|solution| solution.steps.len());
+        if steps.sum::<usize>() > MAX_STEPS {
             return None;
         }
-        let mut workspace = self.machine.workspace();
-        let steps = (steps.iter()).filter(|step| !self.machine.is_in_fit_window(&step.y));
-        let samples = steps.map(|step| {
-            let sliding = sliding_at(&run.solution, step.t);
-            let sample = self.sample(step, sliding, &mut workspace).ok()?;
-            Some((step.t, sample))
-        });
-        samples.collect()
+        let mut all = Vec::new();
+        for (problem, solution) in run.motion.parts(self) {
+            let mut workspace = problem.machine.workspace();
+            let steps = solution.steps.iter();
+            let steps = steps.filter(|step| !problem.machine.is_in_fit_window(&step.y));
+            for step in steps {
+                let sliding = sliding_at(solution, step.t);
+                let sample = problem.sample(step, sliding, &mut workspace).ok()?;
+                all.push((step.t, sample));
+            }
+        }
+        Some(all)
     }
 }
 
 /// A motion at any of its times, with the working memory to compute it.
 pub(super) struct MotionSampler<'m> {
-    problem: &'m SpaceMotionProblem<'m>,
     run: &'m Run,
+    parts: Vec<PartSampler<'m>>,
+}
+
+/// The same of a part in one coordinate.
+struct PartSampler<'m> {
+    problem: &'m SpaceMotionProblem<'m>,
+    solution: &'m Solution,
     ode: Option<MachineOde<'m, Model>>,
     workspace: MachineWorkspace<f64, Model>,
     within_steps: StatesWithinSteps<usize>,
 }
 
 impl<'m> MotionSampler<'m> {
-    pub(super) fn new(problem: &'m SpaceMotionProblem<'m>, run: &'m Run) -> Self {
-        let steps = &run.solution.steps;
-        let ends = steps.first().zip(steps.last());
-        let ode = ends.and_then(|(first, last)| {
-            MachineOde::until(&problem.machine, first.t, &first.y, Some(last.t)).ok()
-        });
+    pub(super) fn new(problem: &'m SpaceMotionProblem<'_>, run: &'m Run) -> Self {
+        let parts = run.motion.parts(problem);
+        let parts = parts.map(|(problem, solution)| PartSampler::new(problem, solution));
         Self {
-            problem,
             run,
-            ode,
-            workspace: problem.machine.workspace(),
-            within_steps: StatesWithinSteps::default(),
+            parts: parts.collect(),
         }
     }
 
@@ -57,9 +61,41 @@ impl<'m> MotionSampler<'m> {
         t: f64,
         precision: SamplePrecision,
     ) -> Option<TrajectorySample> {
-        let steps = &self.run.solution.steps;
+        let started = |part: &&mut PartSampler<'_>| part.start().is_some_and(|start| start <= t);
+        let part = self.parts.iter_mut().rev().find(started)?;
+        part.sample_at(t, precision, self.run)
+    }
+}
+
+impl<'m> PartSampler<'m> {
+    fn new(problem: &'m SpaceMotionProblem<'m>, solution: &'m Solution) -> Self {
+        let steps = &solution.steps;
+        let ends = steps.first().zip(steps.last());
+        let ode = ends.and_then(|(first, last)| {
+            MachineOde::until(&problem.machine, first.t, &first.y, Some(last.t)).ok()
+        });
+        Self {
+            problem,
+            solution,
+            ode,
+            workspace: problem.machine.workspace(),
+            within_steps: StatesWithinSteps::default(),
+        }
+    }
+
+    fn start(&self) -> Option<f64> {
+        self.solution.steps.first().map(|step| step.t)
+    }
+
+    fn sample_at(
+        &mut self,
+        t: f64,
+        precision: SamplePrecision,
+        run: &Run,
+    ) -> Option<TrajectorySample> {
+        let steps = &self.solution.steps;
         let step = steps.partition_point(|step| step.t <= t).checked_sub(1)?;
-        let point = match &self.run.orbit {
+        let point = match &run.orbit {
             _ if steps[step].t == t => steps[step].clone(),
             Some((orbit, _)) => OdeState::from(orbit.state_at(t)),
             None => self.state_within(step, t, precision)?,
@@ -67,7 +103,7 @@ impl<'m> MotionSampler<'m> {
         if self.problem.machine.is_in_fit_window(&point.y) {
             return None;
         }
-        let sliding = sliding_at(&self.run.solution, t);
+        let sliding = sliding_at(self.solution, t);
         let sample = self.problem.sample(&point, sliding, &mut self.workspace);
         sample.ok()
     }
@@ -79,7 +115,7 @@ impl<'m> MotionSampler<'m> {
         t: f64,
         precision: SamplePrecision,
     ) -> Option<OdeState> {
-        let (ode, steps) = (self.ode.as_mut()?, &self.run.solution.steps);
+        let (ode, steps) = (self.ode.as_mut()?, &self.solution.steps);
         let ends = [&steps[step], steps.get(step + 1)?];
         match precision {
             SamplePrecision::Interpolated => self.within_steps.interpolated(ode, step, ends, t),

@@ -11,6 +11,11 @@ use std::num::NonZeroUsize;
 
 /// Passages that a summary lists.
 const MAX_LISTED: usize = 6;
+/// How near to a limit position a motion changes its coordinate, as a part of the range, of an angle of more than 1 rad of that: there
+/// the coordinate moves by a fifth of what it does elsewhere.
+const NEAR_LIMIT: f64 = 0.02;
+/// The same where it ends because no other coordinate takes over.
+const AT_LIMIT: f64 = 1e-4;
 /// How far in front of a change point that it cannot cross a motion ends, in half windows: at their edge nothing is evaluated any more.
 const IN_FRONT: f64 = 1.02;
 
@@ -26,17 +31,38 @@ fn count_below(window: &SpaceFitWindow, q: f64) -> f64 {
 impl SpaceMotionProblem<'_> {
     /// Whether a time (s) is in a step that begins or ends within the window of a change point.
     pub(super) fn crosses_at(&self, run: &Run, t: f64) -> bool {
-        let steps = &run.solution.steps;
-        let next = steps.partition_point(|step| step.t <= t);
-        let ends = [next.checked_sub(1), Some(next)].into_iter().flatten();
-        let mut ends = ends.filter_map(|k| steps.get(k));
-        ends.any(|step| self.machine.is_in_fit_window(&step.y))
+        run.motion.parts(self).any(|(problem, solution)| {
+            let steps = &solution.steps;
+            let next = steps.partition_point(|step| step.t <= t);
+            let ends = [next.checked_sub(1), Some(next)].into_iter().flatten();
+            let mut ends = ends.filter_map(|k| steps.get(k));
+            ends.any(|step| problem.machine.is_in_fit_window(&step.y))
+        })
     }
 
-    /// Lines of the summary: where the motion passes change points, and how.
-    pub(super) fn describe_change_points(&self, run: &Run) -> String {
+    /// Lines of the summary: where the motion changes its coordinate, and where it passes change points, and how.
+    pub(super) fn describe_changes(&self, run: &Run) -> String {
+        let changes: Vec<_> = run.motion.changes(self).collect();
+        let listed = changes.iter().take(MAX_LISTED);
+        let listed = listed.map(|(t, [from, to])| {
+            let t = digits(*t, 6);
+            format!(
+                "  t = {t} s: coordinate changed from {from} (next to its dead point) to {to}\n"
+            )
+        });
+        let mut text: String = listed.collect();
+        if let more @ 1.. = changes.len().saturating_sub(MAX_LISTED) {
+            text += &format!("  and {more} more changes\n");
+        }
+        let parts = run.motion.parts(self);
+        let passed = parts.map(|(problem, solution)| problem.describe_change_points(solution));
+        text + &passed.collect::<String>()
+    }
+
+    /// The same of the change points of one coordinate.
+    fn describe_change_points(&self, solution: &Solution) -> String {
         let windows = self.machine.change_point_windows();
-        let steps = &run.solution.steps;
+        let steps = &solution.steps;
         let passages: Vec<f64> = steps
             .windows(2)
             .flat_map(|pair| {
@@ -70,28 +96,72 @@ impl SpaceMotionProblem<'_> {
     }
 }
 
-/// Where a motion ends, and why.
-pub(super) type Barrier = (Event<CoordinateFunction>, DynamicsError);
+/// A coordinate beyond which a motion does not go on in it.
+pub(super) struct Barrier {
+    pub(super) event: Event<CoordinateFunction>,
+    /// Why a motion ends there.
+    pub(super) error: DynamicsError,
+    /// Whether the coordinate turns back a little beyond it: in another coordinate the motion goes on.
+    pub(super) turns_back: bool,
+    /// The coordinate that it is in front of.
+    at: f64,
+    /// Whether the motion starts beyond it.
+    pub(super) is_beyond: bool,
+}
 
 impl SpaceMotionProblem<'_> {
-    /// The ends of the part of its coordinate that it cannot leave: in front of the windows of change points that it cannot cross.
-    pub(super) fn barriers(&self) -> Vec<Barrier> {
-        let windows = self.machine.change_point_windows().iter();
-        let windows = windows.filter(|window| window.fit.is_err());
-        let (Some(actuator), Some(&start)) = (
-            self.scene.mechanism.actuators.first(),
-            self.spec.initial_coordinates.first(),
+    /// The ends of the part of its coordinate that a motion from a state cannot leave: in front of the windows of change points that
+    /// it cannot cross, and of limit positions, where it changes its coordinate if it may.
+    pub(super) fn barriers(&self, from: &OdeState, may_change: bool) -> Vec<Barrier> {
+        let (Some(actuator), [0]) = (
+            self.scene().mechanism.actuators.first(),
+            self.machine.free(),
         ) else {
             return Vec::new();
         };
-        let joint = &self.scene.mechanism.joints[actuator.kind.joint().0];
+        let joint = &self.scene().mechanism.joints[actuator.kind.joint().0];
         let coordinate = self
             .event_model
             .coordinate_function(actuator.kind.coordinate(joint));
         let Ok(coordinate) = coordinate else {
             return Vec::new();
         };
-        let ends = windows.flat_map(|window| {
+        let at = |q: f64, group: usize, singular: f64| {
+            let error = PositionError::Singular {
+                group,
+                q: singular,
+                relative_determinant: 0.0,
+            };
+            Barrier {
+                event: Event {
+                    kind: EventKind::Reaches(coordinate, q),
+                    terminal: Some(NonZeroUsize::MIN),
+                },
+                error: DynamicsError::from(error),
+                turns_back: false,
+                at: singular,
+                is_beyond: false,
+            }
+        };
+        let start = from.y[0];
+        let uncrossed = self.uncrossed(start).into_iter();
+        let uncrossed = uncrossed.map(|(group, [q, singular])| at(q, group, singular));
+        let limits = self
+            .limits(may_change)
+            .into_iter()
+            .map(|[q, limit]| Barrier {
+                turns_back: true,
+                is_beyond: (start - q) * (limit - q) >= 0.0,
+                ..at(q, 0, limit)
+            });
+        uncrossed.chain(limits).collect()
+    }
+
+    /// The next change points that a motion from a coordinate cannot cross: the group of each, and where the motion ends in front of it.
+    fn uncrossed(&self, start: f64) -> Vec<(usize, [f64; 2])> {
+        let windows = self.machine.change_point_windows().iter();
+        let windows = windows.filter(|window| window.fit.is_err());
+        let next = windows.flat_map(|window| {
             let aside = IN_FRONT * window.half_width;
             let [up, down] = [-aside, aside].map(|aside| window.at.q + aside - start);
             // The next ones of all periods.
@@ -105,34 +175,52 @@ impl SpaceMotionProblem<'_> {
                     Some(down).filter(|down| *down <= 0.0),
                 ],
             };
-            let event = move |to: f64| {
-                let singular = PositionError::Singular {
-                    group: window.at.group,
-                    q: start + to + aside.copysign(to),
-                    relative_determinant: 0.0,
-                };
-                let event = Event {
-                    kind: EventKind::Reaches(coordinate, start + to),
-                    terminal: Some(NonZeroUsize::MIN),
-                };
-                (event, DynamicsError::from(singular))
-            };
-            next.into_iter().flatten().map(event)
+            let group = window.at.group;
+            let one = move |to: f64| (group, [start + to, start + to + aside.copysign(to)]);
+            next.into_iter().flatten().map(one)
         });
-        ends.collect()
+        next.collect()
     }
 
-    /// A motion that came to one of them ends there with its error.
-    pub(super) fn end_at_barrier(&self, solution: &mut Solution, barriers: &[Barrier]) {
+    /// The limit positions of the only coordinate, each behind the place in front of it where a motion leaves it.
+    fn limits(&self, may_change: bool) -> Vec<[f64; 2]> {
+        let plan = self.machine.model().plan();
+        let Some((from, to)) = plan.range().limits() else {
+            return Vec::new();
+        };
+        let unit = if plan.is_angle(0) { 1.0 } else { plan.size() };
+        let part = if may_change { NEAR_LIMIT } else { AT_LIMIT };
+        let margin = part * (to - from).min(unit);
+        let ends = [[from + margin, from], [to - margin, to]];
+        let found = ends.into_iter().zip(plan.range_ends());
+        found
+            .filter(|(_, found)| *found)
+            .map(|(end, _)| end)
+            .collect()
+    }
+
+    /// The barrier that a motion came to: it ends there. Where a step next to a limit position would lead beyond it, that is the barrier.
+    pub(super) fn barrier_of(
+        &self,
+        solution: &mut Solution,
+        mut barriers: Vec<Barrier>,
+    ) -> Option<Barrier> {
         let own = self.events.len();
         let reached = solution.event_occurrences.iter().map(|o| o.event);
-        let reached = reached.filter(|event| *event >= own).min();
-        let Some((_, error)) = reached.and_then(|event| barriers.get(event - own)) else {
-            return;
-        };
-        solution.event_occurrences.retain(|o| o.event < own);
-        solution.terminated_by_event = false;
-        solution.error = Some(error.clone());
+        if let Some(reached) = reached.filter(|event| *event >= own).min() {
+            solution.event_occurrences.retain(|o| o.event < own);
+            solution.terminated_by_event = false;
+            return Some(barriers.swap_remove(reached - own));
+        }
+        let failed = matches!(solution.error, Some(DynamicsError::Position(_)));
+        let last = solution.steps.last().filter(|_| failed)?.y[0];
+        let near = self.limits(true).into_iter();
+        let mut near = near.filter(|[from, limit]| (last - from) * (limit - from) > 0.0);
+        let [_, limit] = near.next()?;
+        let is_it = |barrier: &Barrier| barrier.turns_back && barrier.at == limit;
+        let reached = barriers.iter().position(is_it)?;
+        solution.error = None;
+        Some(barriers.swap_remove(reached))
     }
 }
 

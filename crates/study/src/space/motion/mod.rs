@@ -2,6 +2,7 @@
 
 mod between_rows;
 mod change_points;
+mod charts;
 #[cfg(feature = "output")]
 mod output;
 mod problem;
@@ -13,10 +14,11 @@ mod tables;
 pub use self::output::simulate_in_space;
 
 use self::between_rows::MotionSampler;
+use self::charts::Motion;
 pub(super) use self::problem::SpaceMotionProblem;
 pub(super) use self::run::Run;
 use super::trajectory::{
-    SpaceEvaluator, add_rows, all_columns, explain_stop, is_listed, space_page,
+    SpaceEvaluator, add_rows, all_columns, reject_unknown_variables, requested, space_page,
 };
 use crate::explain::StudyError;
 use crate::free_motion::compute::{MotionSolver, check_times};
@@ -51,7 +53,7 @@ pub fn compute_free_motion_in_space(
     progress: Progress<'_>,
 ) -> Result<FreeMotionInSpace, StudyError> {
     let problem = SpaceMotionProblem::new(scene)?.for_solver(solver);
-    let (run, computed, _) = problem.simulate(solver, None, progress)?;
+    let SimulatedMotion { run, computed } = problem.simulate(solver, None, progress)?;
     let events = problem.recorded_events(&run).into_iter();
     let errors = run.accuracy.and_then(|_| problem.errors(&run));
     Ok(FreeMotionInSpace {
@@ -99,13 +101,19 @@ pub fn free_motion_page_in_space(
     progress: Progress<'_>,
 ) -> Result<(Page, Option<StudyError>), StudyError> {
     let problem = SpaceMotionProblem::new(scene)?.for_solver(solver);
-    let (run, computed, evaluator) = problem.simulate(solver, None, progress)?;
-    let mut page = problem.page(&computed, evaluator);
-    let (summary, record) = problem.summary(&run, problem.duration()?);
+    let simulated = problem.simulate(solver, None, progress)?;
+    let mut page = problem.page(&simulated);
+    let (summary, record) = problem.summary(&simulated.run, problem.duration()?);
     page.printed = summary;
     page.numbers = record.numbers;
-    page.events = problem.recorded_events(&run);
-    Ok((page, computed.early_stop))
+    page.events = problem.recorded_events(&simulated.run);
+    Ok((page, simulated.computed.early_stop))
+}
+
+/// A motion and its rows.
+pub(super) struct SimulatedMotion {
+    pub(super) run: Run,
+    pub(super) computed: ComputedTrajectory<'static>,
 }
 
 impl SpaceMotionProblem<'_> {
@@ -116,16 +124,16 @@ impl SpaceMotionProblem<'_> {
         solver: &MotionSolver,
         times: Option<&[f64]>,
         progress: Progress<'_>,
-    ) -> Result<(Run, ComputedTrajectory<'static>, SpaceEvaluator<'_>), StudyError> {
+    ) -> Result<SimulatedMotion, StudyError> {
+        reject_unknown_variables(self.scene(), (&self.reactions, self.output_model.plan()))?;
         let duration = self.duration()?;
         times.map_or(Ok(()), |times| check_times(times, duration))?;
         let run = self.run(solver, duration)?;
-        let reached = run.solution.steps.last().map_or(0.0, |step| step.t);
-        if let (Some(error), true) = (&run.solution.error, reached == 0.0) {
-            return Err(self.explain(error));
+        if let (Some(error), true) = (run.motion.explained_error(self), run.motion.end() == 0.0) {
+            return Err(error);
         }
         let samples = match times {
-            None => self.samples(&run.solution),
+            None => self.samples(&run.motion),
             Some(times) => self.samples_at(&run, times),
         };
         let samples = samples.map_err(|e| self.explain(&e))?;
@@ -139,21 +147,36 @@ impl SpaceMotionProblem<'_> {
                 further,
                 sampler: &sampler,
             });
-        let (mut computed, evaluator) = self.rows(&run, samples, between, progress)?;
+        let (motion, text) = (&run.motion, &run.method_text);
+        let mut computed = self.rows((motion, text), samples, between, progress)?;
         let second = run.second.as_ref().filter(|_| times.is_none());
-        let second = second.and_then(|second| self.samples(second).ok());
-        let second = second.and_then(|samples| self.rows(&run, samples, None, &no_progress).ok());
-        let second = second.map(|(computed, _)| SecondRows::of(computed));
-        computed.set_errors(second.as_ref());
+        let second = second.and_then(|motion| {
+            let samples = self.samples(motion).ok()?;
+            self.rows((motion, text), samples, None, &no_progress).ok()
+        });
+        computed.set_errors(second.map(SecondRows::of).as_ref());
+        // Rows end before the motion where the table of a load does.
         let shortfall = self.shortfall(&run, solver);
-        computed.early_stop = shortfall.or(computed.early_stop);
-        Ok((run, computed, evaluator))
+        computed.early_stop = computed.early_stop.or(shortfall);
+        Ok(SimulatedMotion { run, computed })
+    }
+
+    /// What evaluates the samples of a motion, by chart.
+    fn evaluators<'p>(&'p self, motion: &'p Motion) -> Vec<SpaceEvaluator<'p>> {
+        let all = (0..=motion.charts.len()).map(|chart| {
+            let problem = motion.problem(self, chart);
+            let model = (&problem.output_model, &self.reactions);
+            SpaceEvaluator::new(problem.scene(), model, Analysis::FreeMotion)
+        });
+        all.collect()
     }
 
     /// The rows and the mechanism in them.
-    fn page(&self, computed: &ComputedTrajectory<'_>, evaluator: SpaceEvaluator<'_>) -> Page {
+    fn page(&self, simulated: &SimulatedMotion) -> Page {
+        let SimulatedMotion { run, computed } = simulated;
         let size = self.output_model.plan().size();
-        space_page(self.scene, size, computed, (&self.reactions, evaluator))
+        let evaluators = self.evaluators(&run.motion);
+        space_page(self.scene(), size, computed, (&self.reactions, evaluators))
     }
 
     /// The events that happened, with their times.
@@ -163,13 +186,15 @@ impl SpaceMotionProblem<'_> {
             t: occurrence.state.t,
         };
         let contacts = self.contacts();
-        let changes = contacts.occurrences(0, &run.solution).into_iter();
-        let changes = changes.map(|change| RecordedEvent {
-            name: contacts.name(change.number),
-            t: change.state.t,
-        });
-        let own = run.solution.event_occurrences.iter().map(event);
-        let mut all: Vec<_> = own.chain(changes).collect();
+        let mut all = Vec::new();
+        for solution in run.motion.solutions() {
+            let changes = contacts.occurrences(0, solution).into_iter();
+            let changes = changes.map(|change| RecordedEvent {
+                name: contacts.name(change.number),
+                t: change.state.t,
+            });
+            all.extend(solution.event_occurrences.iter().map(event).chain(changes));
+        }
         all.sort_by(|one, other| one.t.total_cmp(&other.t));
         all
     }
@@ -177,55 +202,49 @@ impl SpaceMotionProblem<'_> {
     /// The rows of a motion.
     fn rows(
         &self,
-        run: &Run,
+        (motion, method_text): (&Motion, &str),
         samples: Vec<TrajectorySample>,
         between: Option<MotionBetweenRows<'_>>,
         progress: Progress<'_>,
-    ) -> Result<(ComputedTrajectory<'static>, SpaceEvaluator<'_>), StudyError> {
-        let (scene, model) = (self.scene, &self.output_model);
+    ) -> Result<ComputedTrajectory<'static>, StudyError> {
+        let mut evaluators = self.evaluators(motion);
+        let (scene, model) = (self.scene(), &self.output_model);
         let end = samples.last().map_or(0.0, |sample| sample.t);
-        let motion = FreeTrajectory {
+        let followed = FreeTrajectory {
             samples,
             extra_columns: self.extra_columns(),
             prescribed: self.spec.laws.iter().map(Option::is_some).collect(),
             charts: Vec::new(),
         };
-        let mut all = all_columns(scene, &self.reactions, (Analysis::FreeMotion, true));
-        all.extend(motion.extra_columns.iter().cloned());
+        let of_model = (&self.reactions, model.plan());
+        let mut all = all_columns(scene, of_model, (Analysis::FreeMotion, true));
+        all.extend(followed.extra_columns.iter().cloned());
         // No actuator drives a coordinate that is free.
         let is_free = |i: usize| self.spec.laws[i].is_none();
         all.retain(|c| !matches!(c.quantity, Quantity::ActuatorForce(i) if is_free(i)));
-        let mut trajectory = Trajectory::of_free_motion(model.plan().range().period(), motion, end);
-        trajectory.method_text.clone_from(&run.method_text);
-        let is_limited = scene.lists_reactions;
-        let mut columns = all.clone();
-        columns.retain(|c| {
-            let is_extra = matches!(c.quantity, Quantity::Extra(_));
-            !is_limited || is_extra || is_listed(c.quantity, &self.reactions)
-        });
+        let mut trajectory =
+            Trajectory::of_free_motion(model.plan().range().period(), followed, end);
+        method_text.clone_into(&mut trajectory.method_text);
+        let (columns, is_limited) = requested(scene, &self.reactions, (Analysis::FreeMotion, &all));
         let written = (0..columns.len()).collect();
         let mut results = TrajectoryResults::of_columns(all, columns, written, is_limited);
         results.keep_rows_in(RowStorage::Bounded, trajectory.points)?;
         let open = self.reactions.indeterminate.iter();
         results.indeterminate = open.map(|r| scene.reaction_name(*r)).collect();
-        let mut evaluator =
-            SpaceEvaluator::new(scene, (model, &self.reactions), Analysis::FreeMotion);
-        let stop = add_rows(&trajectory, &mut evaluator, &mut results, progress);
-        let early_stop = stop.map(|cause| explain_stop(scene, model.plan(), cause));
+        let stop = add_rows(&trajectory, (&mut evaluators, None), &mut results, progress);
+        let early_stop = stop.map(|stop| stop.explain(scene, model.plan()));
         let early_stop = match early_stop {
             Some(error) if results.len() == 0 => return Err(error),
             early_stop => early_stop,
         };
         results.finish_rows()?;
-        let evaluators = [evaluator.clone()];
         results.find_extrema(model.plan().size(), &trajectory, &evaluators, between)?;
-        let computed = ComputedTrajectory {
+        Ok(ComputedTrajectory {
             table: results.table(),
             early_stop,
             notes: String::new(),
             trajectory,
             results,
-        };
-        Ok((computed, evaluator))
+        })
     }
 }

@@ -1,6 +1,6 @@
 //! `dwell simulate` of scenes in space: tables, figures, page and summary.
 
-use super::SpaceMotionProblem;
+use super::{SimulatedMotion, SpaceMotionProblem};
 use crate::explain::StudyError;
 use crate::free_motion::compute::MotionSolver;
 use crate::progress::Progress;
@@ -25,16 +25,18 @@ pub fn simulate_in_space(
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
     let problem = SpaceMotionProblem::new(scene)?.for_solver(solver);
-    let (run, computed, evaluator) = problem.simulate(solver, times, progress)?;
-    let page = problem.page(&computed, evaluator.clone());
-    let positions = drawn_positions(scene, &computed, evaluator, None);
+    let simulated = problem.simulate(solver, times, progress)?;
+    let page = problem.page(&simulated);
+    let SimulatedMotion { run, computed } = simulated;
+    let evaluators = problem.evaluators(&run.motion);
+    let positions = drawn_positions(scene, &computed, evaluators, None);
     let mut all_figures = vec![positions.figure()];
     all_figures.extend(figures(scene, None, &computed, span)?);
     let document = Document::of_file(&scene.file, problem.output_model.plan().size(), &computed);
     let pictures = (all_figures, positions.animation());
     let mut outcome = outcome_of(&scene.file, &computed, &document, pictures)?;
     outcome.run = Some(Box::new(page));
-    let table = problem.event_table(&run.solution);
+    let table = problem.event_table(&run.motion);
     if !table.rows.is_empty() {
         let name = format!("{}-motion-events.csv", scene.name);
         outcome.files.add(name, table.csv()?);

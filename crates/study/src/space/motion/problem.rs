@@ -1,5 +1,6 @@
 //! The initial value problem of a free motion of a scene in space.
 
+use super::charts::OfChart;
 use crate::explain::{StudyError, missing_section_label, scene_error};
 use crate::free_motion::compute::{MotionSolver, NamedContacts};
 use crate::machines::MachineScene;
@@ -10,6 +11,7 @@ use dwell_dynamics::{DynamicsError, Event, EventKind, Machine, OdeState, Orbit, 
 use dwell_kinetostatics::MachineModel as _;
 use dwell_kinetostatics::space::{Coordinate, CoordinateFunction, Model, Reaction};
 use dwell_scene::{EventTrigger, FreeMotionSpec, MotionDuration, SceneLocation, SpaceScene};
+use std::borrow::Cow;
 use std::num::NonZeroUsize;
 
 /// The tolerance of the fits across change points where an accuracy is required, as a part of it.
@@ -20,8 +22,12 @@ pub(super) type Spec = FreeMotionSpec<Coordinate, Reaction>;
 
 /// The initial value problem of a scene's free motion.
 pub(crate) struct SpaceMotionProblem<'a> {
-    pub(super) scene: &'a SpaceScene,
-    pub(super) spec: &'a Spec,
+    scene: Cow<'a, SpaceScene>,
+    pub(super) spec: Spec,
+    /// Of the same scene driven at another joint.
+    pub(super) chart: Option<OfChart>,
+    /// The tolerance to which its machine crosses change points, if it has one.
+    pub(super) tolerance: Option<f64>,
     /// The reactions of the model for outputs, and that model with all loads.
     pub(super) reactions: JointReactions,
     pub(super) output_model: Model,
@@ -40,15 +46,29 @@ impl<'a> SpaceMotionProblem<'a> {
     /// # Errors
     /// [`StudyError::Scene`] when it has no motion, or its machine cannot be built.
     pub(crate) fn new(scene: &'a SpaceScene) -> Result<Self, StudyError> {
-        let Some(spec) = &scene.motion else {
+        Self::compiled(Cow::Borrowed(scene), None)
+    }
+
+    /// The same with reactions that are sorted already.
+    pub(super) fn compiled(
+        scene: Cow<'a, SpaceScene>,
+        sorted: Option<JointReactions>,
+    ) -> Result<Self, StudyError> {
+        let Some(spec) = scene.motion.clone() else {
             return Err(scene_error(
-                scene,
+                &scene,
                 "the scene has no [motion] to simulate",
                 "add [motion] with `initial-velocity`, and `periods` or `duration`",
                 missing_section_label("motion"),
             ));
         };
-        let (reactions, output_model) = JointReactions::new(scene)?;
+        let (reactions, output_model) = match sorted {
+            None => JointReactions::new(&scene)?,
+            Some(reactions) => {
+                let model = reactions.model(&scene)?;
+                (reactions, model)
+            }
+        };
         let of_events = spec.events.iter().filter_map(|event| match event.trigger {
             EventTrigger::Reaction(reaction, _) => Some(reaction),
             EventTrigger::Reaches(..) | EventTrigger::Reversal(_) | EventTrigger::Revolution(_) => {
@@ -56,16 +76,18 @@ impl<'a> SpaceMotionProblem<'a> {
             }
         });
         let of_events: Vec<Reaction> = of_events.collect();
-        let event_model = with_loads(scene, compile(scene, &of_events)?)?;
+        let event_model = with_loads(&scene, compile(&scene, &of_events)?)?;
         let has_impacts = !scene.stops.is_empty();
         let impact_machine = has_impacts.then(|| scene.machine(&reactions.requested));
         let mut problem = Self {
+            machine: scene.machine(&[])?,
             scene,
             spec,
+            chart: None,
+            tolerance: None,
             impact_machine: impact_machine.transpose()?,
             reactions,
             output_model,
-            machine: scene.machine(&[])?,
             events: Vec::new(),
             event_model,
         };
@@ -76,15 +98,17 @@ impl<'a> SpaceMotionProblem<'a> {
 
     /// The same for a solver: its machine crosses the change points of its branch to the tolerance of the solver.
     #[must_use]
-    pub(crate) fn for_solver(mut self, solver: &MotionSolver) -> Self {
+    pub(crate) fn for_solver(self, solver: &MotionSolver) -> Self {
         let tolerance = match solver {
             MotionSolver::Settings(settings) => settings.rtol,
             MotionSolver::Accuracy { accuracy, .. } => TOLERANCE_OF_ACCURACY * accuracy,
         };
-        self.machine = self.machine.with_change_points(tolerance);
-        let impacts = self.impact_machine.take();
-        self.impact_machine = impacts.map(|machine| machine.with_change_points(tolerance));
-        self
+        self.with_tolerance(tolerance)
+    }
+
+    /// Its scene.
+    pub(super) fn scene(&self) -> &SpaceScene {
+        &self.scene
     }
 
     /// Refuses an event of a reaction that redundant constraints leave open.
@@ -94,7 +118,7 @@ impl<'a> SpaceMotionProblem<'a> {
             .event_model
             .determined(&self.spec.initial_coordinates, &mut workspace);
         let determined =
-            determined.map_err(|e| explain_position(self.scene, self.event_model.plan(), &e))?;
+            determined.map_err(|e| explain_position(self.scene(), self.event_model.plan(), &e))?;
         let open = reactions.iter().zip(determined).find(|(_, d)| !d);
         let Some((&reaction, _)) = open else {
             return Ok(());
@@ -102,9 +126,9 @@ impl<'a> SpaceMotionProblem<'a> {
         let event = self.spec.events.iter().position(
             |event| matches!(event.trigger, EventTrigger::Reaction(r, _) if r == reaction),
         );
-        let name = self.scene.reaction_name(reaction);
+        let name = self.scene().reaction_name(reaction);
         Err(scene_error(
-            self.scene,
+            self.scene(),
             format!(
                 "the loads do not determine the reaction `{name}`: redundant constraints share them"
             ),
@@ -127,7 +151,7 @@ impl<'a> SpaceMotionProblem<'a> {
                     let message = format!("event `{}` cannot be located: {what}", named.name);
                     let help = "watch the coordinate of an actuator";
                     scene_error(
-                        self.scene,
+                        self.scene(),
                         message,
                         help,
                         [(SceneLocation::Event(k), "here")],
@@ -153,7 +177,7 @@ impl<'a> SpaceMotionProblem<'a> {
 
     /// The contacts of its machine, whose events are numbered behind those of the scene.
     pub(super) fn contacts(&self) -> NamedContacts {
-        NamedContacts::new(self.scene, &self.machine, self.spec.events.len())
+        NamedContacts::new(self.scene(), &self.machine, self.spec.events.len())
     }
 
     /// The initial state of its machine.
@@ -194,7 +218,7 @@ impl<'a> SpaceMotionProblem<'a> {
         match self.orbit(1.0) {
             Ok(orbit) => Ok(periods * orbit.period),
             Err(DynamicsError::NotConservative { .. }) => Err(scene_error(
-                self.scene,
+                self.scene(),
                 "the motion is not conservative, so its period is not known in advance",
                 "give a `duration` in s",
                 [(SceneLocation::Duration, "a period is needed")],
@@ -205,7 +229,7 @@ impl<'a> SpaceMotionProblem<'a> {
 
     /// An error of its motion in the names of the scene.
     pub(super) fn explain(&self, error: &DynamicsError) -> StudyError {
-        MachineScene::explain(self.scene, &self.output_model, error)
+        MachineScene::explain(self.scene(), &self.output_model, error)
     }
 
     /// Whether a coordinate is an angle.

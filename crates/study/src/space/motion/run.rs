@@ -1,27 +1,34 @@
-//! A free motion in space by a method, or by the cheapest way to an accuracy, with its estimated error.
+//! A free motion in space by a method, or to an accuracy, with its estimated error.
 
+use super::change_points::Barrier;
+use super::charts::Motion;
 use super::problem::SpaceMotionProblem;
 use crate::estimate;
 use crate::explain::StudyError;
 use crate::free_motion::compute::{
-    DEFAULT_SAMPLES, MotionSolver, check_sample_interval, pair_by_time,
+    DEFAULT_SAMPLES, MotionSolver, check_sample_interval, pair_by_time, two_digits,
 };
 use crate::models::SolverSettings;
 use crate::ranges::extent;
 use crate::trajectory::compute::TrajectorySample;
-use dwell_dynamics::{Method, ObservedMachine, Options, Orbit, Solution, solve, solve_orbit};
+use dwell_dynamics::{
+    DynamicsError, Method, ObservedMachine, OdeState, Options, Orbit, Solution, solve,
+    solve_further, solve_orbit,
+};
 use rayon::join;
 
 /// Tolerances of an integration to an accuracy, as parts of it.
 const TOLERANCES: [f64; 5] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5];
+/// How much earlier than a motion that failed its second run ends, as a part of it.
+const BEFORE_END: f64 = 1e-6;
 /// No tolerance is finer.
 const MIN_TOLERANCE: f64 = 1e-14;
 
 /// A computed motion.
 pub(crate) struct Run {
-    pub(super) solution: Solution,
+    pub(super) motion: Motion,
     /// The second run, whose difference shows the errors.
-    pub(super) second: Option<Solution>,
+    pub(super) second: Option<Motion>,
     /// The orbit that it was computed from, by quadrature, and the part of all times by which it may be late.
     pub(super) orbit: Option<(Orbit, f64)>,
     pub(super) method_text: String,
@@ -78,35 +85,107 @@ impl SpaceMotionProblem<'_> {
         options: Options,
         method_text: String,
     ) -> Result<Run, StudyError> {
-        let start = self.initial_state();
-        let barriers = self.barriers();
-        let of_barriers = barriers.iter().map(|(event, _)| *event);
-        let events: Vec<_> = self.events.iter().copied().chain(of_barriers).collect();
-        let by = |options: &Options, end: f64| {
-            let (machine, model) = (&self.machine, &self.event_model);
-            let mut solution = solve(machine, model, &start, end, options, &events)?;
-            self.end_at_barrier(&mut solution, &barriers);
-            solution.sample_end();
-            Ok(solution)
-        };
         let finer = estimate::comparison_options(&options);
-        let (first, second) = join(|| by(&options, duration), || by(&finer, duration));
-        let solution: Solution =
-            first.map_err(|e: dwell_dynamics::DynamicsError| self.explain(&e))?;
-        let end = solution.steps.last().map_or(0.0, |step| step.t);
-        let second = match (&solution.error, end > 0.0) {
-            (Some(_), true) => by(&finer, end).ok(),
-            (Some(_), false) => None,
-            (None, _) => second.ok(),
+        let (first, second) = join(
+            || self.through_charts(&options, duration),
+            || self.through_charts(&finer, duration),
+        );
+        let motion = first.map_err(|e| self.explain(&e))?;
+        let (failed, end) = (motion.error().is_some(), motion.end());
+        let second = match (failed, end > 0.0) {
+            // Up to a little before: at a barrier the second run may be there first.
+            (true, true) => self.through_charts(&finer, end * (1.0 - BEFORE_END)).ok(),
+            (true, false) => None,
+            (false, _) => second.ok(),
         };
         Ok(Run {
-            solution,
-            second: second.filter(|second| second.error.is_none()),
+            motion,
+            second: second.filter(|second| second.error().is_none()),
             orbit: None,
             method_text,
             options,
             accuracy: None,
         })
+    }
+
+    /// The motion in as many coordinates as it takes.
+    fn through_charts(&self, options: &Options, end: f64) -> Result<Motion, DynamicsError> {
+        let mut may_change = self.may_change_coordinate();
+        let mut motion = Motion::default();
+        let (mut chart, mut at) = (0, self.initial_state());
+        let (mut options, max_steps) = (*options, options.max_steps);
+        loop {
+            let problem = motion.problem(self, chart);
+            let is_first = motion.parts.is_empty();
+            let part = problem.part((&at, end), &options, (is_first, may_change));
+            let (mut solution, barrier) = match part {
+                // Nothing is left of the duration after a change.
+                Err(DynamicsError::DurationTooShort) if !is_first => return Ok(motion),
+                Err(error) if is_first => return Err(error),
+                Err(error) => {
+                    motion.end_with(error);
+                    return Ok(motion);
+                }
+                Ok(found) => found,
+            };
+            options.max_steps = options.max_steps.saturating_sub(solution.statistics.steps);
+            if let Some(DynamicsError::MaxStepsReached { max_steps: of, .. }) = &mut solution.error
+            {
+                // Those of the whole motion.
+                *of = max_steps;
+            }
+            let (last, turns_back) = (
+                solution.steps.last().cloned(),
+                barrier.as_ref().is_some_and(|barrier| barrier.turns_back),
+            );
+            let has_moved = last.as_ref().is_some_and(|last| is_first || last.t > at.t);
+            let last = last.filter(|_| turns_back && may_change && has_moved);
+            let next = last
+                .as_ref()
+                .and_then(|last| problem.next_chart(self, &motion.charts, last));
+            let goes_on = next.is_some() || last.is_some();
+            if let (Some(barrier), false) = (barrier, goes_on) {
+                solution.error = Some(barrier.error);
+            }
+            if !goes_on {
+                solution.sample_end();
+            }
+            motion.parts.push((chart, solution));
+            match (next, last) {
+                (Some(next), _) => (chart, at) = motion.enter(next),
+                // No other coordinate takes over: it goes on as near to the limit position as it can.
+                (None, Some(last)) => (at, may_change) = (last, false),
+                (None, None) => return Ok(motion),
+            }
+        }
+    }
+
+    /// A part of the motion in this coordinate, and the barrier that it comes to.
+    fn part(
+        &self,
+        (at, end): (&OdeState, f64),
+        options: &Options,
+        (is_first, may_change): (bool, bool),
+    ) -> Result<(Solution, Option<Barrier>), DynamicsError> {
+        let mut barriers = self.barriers(at, may_change);
+        if let (true, Some(k)) = (may_change, barriers.iter().position(|b| b.is_beyond)) {
+            let solution = Solution {
+                steps: vec![at.clone()],
+                samples: is_first.then(|| at.clone()).into_iter().collect(),
+                ..Solution::default()
+            };
+            return Ok((solution, Some(barriers.swap_remove(k))));
+        }
+        barriers.retain(|barrier| !barrier.is_beyond);
+        let of_barriers = barriers.iter().map(|barrier| barrier.event);
+        let events: Vec<_> = self.events.iter().copied().chain(of_barriers).collect();
+        let (machine, model) = (&self.machine, &self.event_model);
+        let mut solution = match is_first {
+            true => solve(machine, model, at, end, options, &events)?,
+            false => solve_further(machine, model, at, end, options, &events)?,
+        };
+        let reached = self.barrier_of(&mut solution, barriers);
+        Ok((solution, reached))
     }
 
     /// The motion by quadrature, if it is conservative and periodic.
@@ -137,8 +216,8 @@ impl SpaceMotionProblem<'_> {
         }
         let points = orbit.points;
         Some(Run {
-            solution,
-            second: Some(second),
+            motion: Motion::of(solution),
+            second: Some(Motion::of(second)),
             orbit: Some((orbit, late)),
             method_text: format!(
                 "quadrature (conservative, periodic motion), {points} quadrature points"
@@ -157,11 +236,15 @@ impl SpaceMotionProblem<'_> {
                 sample_interval: Some(interval),
                 ..Options::new(Method::Dop853, tolerance)
             };
-            let text = format!("{}, tolerance {tolerance:e}", Method::Dop853.name());
+            let text = format!(
+                "{}, tolerance {}",
+                Method::Dop853.name(),
+                two_digits(tolerance)
+            );
             let mut run = self.integrated(duration, options, text)?;
             run.accuracy = Some(accuracy);
             let keeps = self.errors(&run).is_some_and(|e| e.largest <= accuracy);
-            let failed = run.solution.error.is_some();
+            let failed = run.motion.error().is_some();
             best = Some(run);
             if keeps || failed || tolerance <= MIN_TOLERANCE {
                 break;
@@ -174,7 +257,7 @@ impl SpaceMotionProblem<'_> {
 
     /// The errors of a motion from its second run; none where it has none.
     pub(super) fn errors(&self, run: &Run) -> Option<Errors> {
-        let samples = self.samples(&run.solution).ok()?;
+        let samples = self.samples(&run.motion).ok()?;
         let others = self.samples(run.second.as_ref()?).ok()?;
         let pairs = pair_by_time(&samples, &others);
         let over = |of: &dyn Fn(&TrajectorySample) -> f64, rounding: f64| {
@@ -188,10 +271,10 @@ impl SpaceMotionProblem<'_> {
             largest: 0.0,
         };
         for &i in self.machine.free() {
-            let [from, to] = extent(pairs.iter().map(|(a, _)| a.q[i]));
+            let [from, to] = extent(pairs.iter().map(|(a, _)| a.coordinate(i)));
             let rounding =
                 4.0 * f64::EPSILON * from.abs().max(to.abs()) + f64::EPSILON * (to - from);
-            let error = over(&|s| s.q[i], rounding);
+            let error = over(&|s| s.coordinate(i), rounding);
             let relative = match self.is_angle(i) {
                 true => error,
                 false => error / (to - from).max(f64::MIN_POSITIVE),

@@ -1,12 +1,14 @@
 //! The summary of a motion in space.
 
+use super::charts::Motion;
 use super::problem::SpaceMotionProblem;
 use super::run::Run;
 use crate::estimate;
 use crate::explain::{StepLimits, StudyError, explain_max_steps, scene_error};
-use crate::free_motion::compute::MotionSolver;
+use crate::free_motion::compute::{Energies, MotionSolver, height_between};
 use crate::number_format::{coordinate_unit, digits, digits_within, how_often};
-use dwell_dynamics::{DynamicsError, MotionClass, Solution, motion_class};
+use crate::trajectory::compute::TrajectorySample;
+use dwell_dynamics::{DynamicsError, MotionClass, motion_class};
 use dwell_findings::Record;
 use dwell_scene::SceneLocation;
 
@@ -17,7 +19,7 @@ impl SpaceMotionProblem<'_> {
     /// What is said of a motion, and the numbers in it.
     pub(super) fn summary(&self, run: &Run, duration: f64) -> (String, Record) {
         let mut record = Record::default();
-        let end = run.solution.steps.last().map_or(0.0, |step| step.t);
+        let end = run.motion.end();
         let of_all = match end < duration {
             true => format!(" of {}", digits(duration, 7)),
             false => String::new(),
@@ -27,7 +29,7 @@ impl SpaceMotionProblem<'_> {
         let mut text = format!("  {}{of_all} s by {}\n", digits(end, 7), run.method_text);
         for (i, event) in self.spec.events.iter().enumerate() {
             let happened = self.describe_event(run, (i, &event.name), &mut record);
-            let any = times_of(&run.solution, i).next().is_some();
+            let any = times_of(&run.motion, i).next().is_some();
             let stopped = match any && event.terminal {
                 true => "; the motion ends there",
                 false => "",
@@ -35,11 +37,15 @@ impl SpaceMotionProblem<'_> {
             text += &format!("  {}: {happened}{stopped}\n", event.name);
         }
         let contacts = self.contacts();
-        let changes = |solution: &Solution| contacts.occurrences(0, solution);
+        let changes = |motion: &Motion| -> Vec<_> {
+            let parts = motion.parts.iter();
+            let of_part = parts.map(|(chart, solution)| contacts.occurrences(*chart, solution));
+            of_part.flatten().collect()
+        };
         let second = run.second.as_ref().map(changes);
-        text += &contacts.describe(&changes(&run.solution), second.as_deref(), &mut record);
-        text += &self.describe_change_points(run);
-        let cost = run.solution.statistics;
+        text += &contacts.describe(&changes(&run.motion), second.as_deref(), &mut record);
+        text += &self.describe_changes(run);
+        let cost = run.motion.statistics();
         for (name, count) in [
             ("steps", cost.steps),
             ("rejected_steps", cost.rejected_steps),
@@ -61,7 +67,7 @@ impl SpaceMotionProblem<'_> {
 
     /// How often an event happens in a motion and when first, with the error of that time.
     fn describe_event(&self, run: &Run, (i, name): (usize, &str), record: &mut Record) -> String {
-        let own: Vec<f64> = times_of(&run.solution, i).collect();
+        let own: Vec<f64> = times_of(&run.motion, i).collect();
         record.add_count(format!("event.{name}.count"), own.len());
         let mut text = how_often(own.len());
         let second = run.second.as_ref();
@@ -95,11 +101,11 @@ impl SpaceMotionProblem<'_> {
     /// The class of a conservative motion of one coordinate, from its energy, and its period.
     fn describe_class(&self, record: &mut Record) -> String {
         let is_prescribed = self.spec.laws.iter().any(Option::is_some);
-        if is_prescribed || self.machine.free().len() != 1 || !self.scene.drives.is_empty() {
+        if is_prescribed || self.machine.free().len() != 1 || !self.scene().drives.is_empty() {
             return String::new();
         }
         let (name, unit) = (
-            &self.scene.mechanism.actuators[0].name,
+            &self.scene().mechanism.actuators[0].name,
             coordinate_unit(self.is_angle(0)),
         );
         let class = match motion_class(&self.machine, self.initial_reduced_state()) {
@@ -147,14 +153,23 @@ impl SpaceMotionProblem<'_> {
 
     /// The error of the energy balance.
     fn describe_energy(&self, run: &Run, record: &mut Record) -> String {
-        let Ok(samples) = self.samples(&run.solution) else {
+        let at_steps = self.energies(&self.steps_as_samples(run).unwrap_or_default());
+        let Ok(samples) = self.samples(&run.motion) else {
             return String::new();
         };
-        let largest = |k: usize| {
-            let values = samples.iter().map(|sample| sample.extra_values[k].abs());
-            values.fold(0.0, f64::max)
-        };
-        let (kinetic, potential, drift) = (largest(0), largest(1), largest(self.balance_index()));
+        let samples: Vec<_> = samples
+            .into_iter()
+            .map(|sample| (sample.t, sample))
+            .collect();
+        let at_samples = self.energies(&samples);
+        let both = || at_steps.iter().chain(&at_samples);
+        let largest = |of: fn(&Energies) -> f64| both().map(|e| of(e).abs()).fold(0.0, f64::max);
+        let (kinetic, potential) = (largest(|e| e.kinetic), largest(|e| e.potential));
+        // Steps are counted from zero, samples from the start.
+        let drift = at_samples
+            .iter()
+            .map(|e| e.balance.abs())
+            .fold(0.0, f64::max);
         let (kind, scale) = match estimate::is_rounding(kinetic, potential) {
             true => ("potential", potential),
             false => ("kinetic", kinetic),
@@ -164,11 +179,28 @@ impl SpaceMotionProblem<'_> {
         }
         let relative = drift / scale;
         record.add("energy_balance_error", "", relative);
-        record.add_within(format!("largest_{kind}_energy"), "J", scale, drift);
-        let energy = digits_within(scale, drift, 6);
+        let value = |at: &Energies| match kind {
+            "kinetic" => at.kinetic,
+            _ => at.potential.abs(),
+        };
+        let error = drift.max(height_between(&at_samples, value));
+        record.add_within(format!("largest_{kind}_energy"), "J", scale, error);
+        let energy = digits_within(scale, error, 6);
         format!(
             "  energy balance closes to {relative:.1e} of the largest {kind} energy, {energy} J\n"
         )
+    }
+
+    /// The energies of states of the motion.
+    fn energies(&self, states: &[(f64, TrajectorySample)]) -> Vec<Energies> {
+        let balance = self.balance_index();
+        let one = |(t, sample): &(f64, TrajectorySample)| Energies {
+            t: *t,
+            kinetic: sample.extra_values[0],
+            potential: sample.extra_values[1],
+            balance: sample.extra_values[balance],
+        };
+        states.iter().map(one).collect()
     }
 
     /// The estimated errors.
@@ -179,7 +211,7 @@ impl SpaceMotionProblem<'_> {
         let mut text = "  estimated error over the whole motion:".to_owned();
         for (&i, error) in self.machine.free().iter().zip(&errors.coordinates) {
             let (name, unit) = (
-                &self.scene.mechanism.actuators[i].name,
+                &self.scene().mechanism.actuators[i].name,
                 coordinate_unit(self.is_angle(i)),
             );
             record.add(format!("error.{name}"), unit, *error);
@@ -188,7 +220,7 @@ impl SpaceMotionProblem<'_> {
         record.add("error.kinetic_energy", "", errors.energy);
         let from = match run.orbit {
             Some(_) => "from the rounding of its start",
-            None => "from a second run",
+            None => "from a second run at a tenth of the tolerance",
         };
         format!(
             "{text} {:.1e} of the largest kinetic energy, {from}\n",
@@ -198,18 +230,18 @@ impl SpaceMotionProblem<'_> {
 
     /// Why a motion is not what was required: it ended early, or is less accurate.
     pub(super) fn shortfall(&self, run: &Run, solver: &MotionSolver) -> Option<StudyError> {
-        if let Some(DynamicsError::MaxStepsReached { t, max_steps }) = run.solution.error {
+        if let Some(&DynamicsError::MaxStepsReached { t, max_steps }) = run.motion.error() {
             let limits = StepLimits::of(solver);
-            return Some(explain_max_steps(self.scene, t, max_steps, &limits));
+            return Some(explain_max_steps(self.scene(), t, max_steps, &limits));
         }
-        if let Some(error) = &run.solution.error {
-            return Some(self.explain(error));
+        if let Some(error) = run.motion.explained_error(self) {
+            return Some(error);
         }
         let not_resolved = |what: String| {
             let message = format!("the motion is not resolved: {what}");
             let help = "use a smaller --rtol, or --accuracy; what is chaotic is known for a shorter time only";
             scene_error(
-                self.scene,
+                self.scene(),
                 message,
                 help,
                 [(SceneLocation::Duration, "over this time")],
@@ -226,11 +258,11 @@ impl SpaceMotionProblem<'_> {
                 "the estimated error of the energy is {error:.1e} of the largest kinetic energy"
             )));
         }
-        let samples = self.samples(&run.solution).ok()?;
+        let samples = self.samples(&run.motion).ok()?;
         for (&i, &error) in self.machine.free().iter().zip(&errors.coordinates) {
-            let [from, to] = crate::ranges::extent(samples.iter().map(|s| s.q[i]));
+            let [from, to] = crate::ranges::extent(samples.iter().map(|s| s.coordinate(i)));
             if error > LARGE_ERROR * (to - from) + 100.0 * run.options.atol {
-                let name = &self.scene.mechanism.actuators[i].name;
+                let name = &self.scene().mechanism.actuators[i].name;
                 let unit = coordinate_unit(self.is_angle(i));
                 return Some(not_resolved(format!(
                     "the estimated error of {name} is {error:.1e} {unit}, and it moves by {} {unit}",
@@ -245,12 +277,14 @@ impl SpaceMotionProblem<'_> {
         );
         let help = "the results are written with the error above; require that accuracy, or a shorter motion";
         let place = (SceneLocation::Duration, "the error grows with the duration");
-        (errors.largest > accuracy).then(|| scene_error(self.scene, message, help, [place]))
+        (errors.largest > accuracy).then(|| scene_error(self.scene(), message, help, [place]))
     }
 }
 
 /// The times of an event, s.
-fn times_of(solution: &Solution, event: usize) -> impl Iterator<Item = f64> + '_ {
-    let all = solution.event_occurrences.iter();
+fn times_of(motion: &Motion, event: usize) -> impl Iterator<Item = f64> + '_ {
+    let all = motion
+        .solutions()
+        .flat_map(|solution| &solution.event_occurrences);
     all.filter(move |o| o.event == event).map(|o| o.state.t)
 }

@@ -1,41 +1,39 @@
 //! The samples and the events of a motion as tables.
 
 use super::between_rows::MotionSampler;
+use super::charts::Motion;
 use super::problem::SpaceMotionProblem;
 use super::run::Run;
 #[cfg(feature = "output")]
 use crate::free_motion::compute::first_impulses;
 use crate::free_motion::compute::sliding_at;
 use crate::machines::MachineScene as _;
-use crate::models::states_of_drives;
 #[cfg(feature = "output")]
 use crate::number_format::coordinate_unit;
-use crate::trajectory::compute::{
-    BALANCE, Column, KINETIC, POTENTIAL, Quantity, SamplePrecision, TrajectorySample,
-};
+use crate::space::trajectory::extra_columns;
+use crate::trajectory::compute::{Column, SamplePrecision, TrajectorySample};
 use dwell_dynamics::{
-    DenseOutput, DynamicsError, MachineOde, MachineWorkspace, OdeState, Options, Sliding, Solution,
+    DenseOutput, DynamicsError, MachineOde, MachineWorkspace, OdeState, Options, Sliding,
     StepControl, integrate,
 };
 #[cfg(feature = "output")]
 use dwell_findings::{Column as TableColumn, Table};
-use dwell_kinetostatics::space::{Coordinate, Model};
+use dwell_kinetostatics::space::Model;
 
 impl SpaceMotionProblem<'_> {
     /// Every sample with its accelerations, drive magnitudes and energies.
-    pub(super) fn samples(
-        &self,
-        solution: &Solution,
-    ) -> Result<Vec<TrajectorySample>, DynamicsError> {
-        let mut workspace = self.machine.workspace();
-        let states = solution.samples.iter();
-        // Within the window of a change point no reaction has a value.
-        let states = states.filter(|state| !self.machine.is_in_fit_window(&state.y));
-        let all = states.map(|state| {
-            let sliding = sliding_at(solution, state.t);
-            self.sample(state, sliding, &mut workspace)
-        });
-        let mut all = all.collect::<Result<Vec<_>, _>>()?;
+    pub(super) fn samples(&self, motion: &Motion) -> Result<Vec<TrajectorySample>, DynamicsError> {
+        let mut all = Vec::new();
+        for (problem, solution) in motion.parts(self) {
+            let mut workspace = problem.machine.workspace();
+            let states = solution.samples.iter();
+            // Within the window of a change point no reaction has a value.
+            let states = states.filter(|state| !problem.machine.is_in_fit_window(&state.y));
+            for state in states {
+                let sliding = sliding_at(solution, state.t);
+                all.push(problem.sample(state, sliding, &mut workspace)?);
+            }
+        }
         self.count_balance_from_start(&mut all);
         if let [only] = all.as_slice() {
             // A trajectory needs two samples, even if the motion ends at its start.
@@ -50,10 +48,12 @@ impl SpaceMotionProblem<'_> {
         run: &Run,
         times: &[f64],
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
-        let last = run.solution.steps.last();
-        let end = last.map_or(0.0, |step| step.t);
+        let end = run.motion.end();
+        let [(_, solution)] = &run.motion.parts[..] else {
+            return self.samples_within_steps(run, times, end);
+        };
         if self.machine.has_contacts() {
-            return self.samples_between_contacts(run, times, end);
+            return self.samples_within_steps(run, times, end);
         }
         let wanted: Vec<f64> = times
             .iter()
@@ -87,7 +87,7 @@ impl SpaceMotionProblem<'_> {
         let mut workspace = self.machine.workspace();
         states.retain(|state| !self.machine.is_in_fit_window(&state.y));
         let all = states.iter().map(|state| {
-            let sliding = sliding_at(&run.solution, state.t);
+            let sliding = sliding_at(solution, state.t);
             self.sample(state, sliding, &mut workspace)
         });
         let mut all = all.collect::<Result<Vec<_>, _>>()?;
@@ -102,8 +102,8 @@ impl SpaceMotionProblem<'_> {
         Ok(all)
     }
 
-    /// The same of a motion with surfaces that come to rest, or end stops: from the step before each time.
-    fn samples_between_contacts(
+    /// The same of a motion with surfaces that come to rest, end stops or several coordinates: from the step before each time.
+    fn samples_within_steps(
         &self,
         run: &Run,
         times: &[f64],
@@ -136,7 +136,7 @@ impl SpaceMotionProblem<'_> {
         workspace: &mut MachineWorkspace<f64, Model>,
     ) -> Result<TrajectorySample, DynamicsError> {
         let machine = &self.machine;
-        let loads = self.scene.loads.len();
+        let loads = self.scene().loads.len();
         let state = machine.evaluate(point.t, &point.y, workspace)?;
         let [kinetic, potential] = state.energy();
         let works = point.y.get(machine.work_offset()..).unwrap_or_default();
@@ -166,6 +166,11 @@ impl SpaceMotionProblem<'_> {
             sample.drive_magnitudes = given.map(|load| (load, forces.magnitudes[load])).collect();
             sample.q_ddot = forces.q_ddot;
         }
+        if let Some(chart) = self.chart {
+            sample.chart = chart.number;
+            let at = [&sample.q[..], &sample.q_dot, &sample.q_ddot];
+            sample.actuator_coordinate = self.own_coordinate(chart, at);
+        }
         Ok(sample)
     }
 
@@ -185,43 +190,15 @@ impl SpaceMotionProblem<'_> {
 
     /// The columns of the extra values, in their order.
     pub(super) fn extra_columns(&self) -> Vec<Column> {
-        let mut all = vec![
-            (
-                KINETIC.to_owned(),
-                "J",
-                "kinetic energy of all bodies and rotors",
-            ),
-            (
-                POTENTIAL.to_owned(),
-                "J",
-                "potential energy of gravity, springs and constant forces",
-            ),
-        ];
-        let sources = self.machine.nonconservative_sources().iter();
-        all.extend(sources.map(|&source| {
-            let name = format!("{}.work", self.scene.name_of_source(source));
-            (name, "J", "work since t = 0")
-        }));
-        let balance =
-            "drift of kinetic + potential energy − work since t = 0: error of the integration";
-        all.push((BALANCE.to_owned(), "J", balance));
-        all.extend(states_of_drives(&self.scene.drives, Coordinate::is_angle));
-        let column = |(k, (name, unit, meaning)): (usize, (String, _, &str))| Column {
-            name,
-            former: None,
-            unit,
-            quantity: Quantity::Extra(k),
-            meaning: meaning.to_owned(),
-        };
-        all.into_iter().enumerate().map(column).collect()
+        extra_columns(self.scene(), &self.machine)
     }
 
     /// The time of each event, the actuator coordinates and speeds then, and where there are end stops the impulses of the
     /// requested reactions.
     #[cfg(feature = "output")]
-    pub(super) fn event_table(&self, solution: &Solution) -> Table {
+    pub(super) fn event_table(&self, motion: &Motion) -> Table {
         let mut columns = vec![TableColumn::new("t", "s"), TableColumn::new("event", "")];
-        for (i, actuator) in self.scene.mechanism.actuators.iter().enumerate() {
+        for (i, actuator) in self.scene().mechanism.actuators.iter().enumerate() {
             let (name, unit) = (&actuator.name, coordinate_unit(self.is_angle(i)));
             columns.push(TableColumn::new(name, unit));
             columns.push(TableColumn::new(
@@ -230,7 +207,7 @@ impl SpaceMotionProblem<'_> {
             ));
         }
         let impulses = match &self.impact_machine {
-            Some(machine) => self.scene.reaction_columns(machine.model()),
+            Some(machine) => self.scene().reaction_columns(machine.model()),
             None => Vec::new(),
         };
         // Behind the requested ones are those that friction needs.
@@ -239,18 +216,27 @@ impl SpaceMotionProblem<'_> {
             let (name, unit) = (&reaction.name, &reaction.unit);
             TableColumn::new(format!("{name}.impulse"), format!("{unit} s"))
         }));
-        let mut workspace = self.machine.workspace();
-        let own = solution.event_occurrences.iter();
-        let own = own.map(|o| (o.event + 1, o.state.clone(), Vec::new()));
-        let contacts = self.contacts().occurrences(0, solution).into_iter();
-        let contacts = contacts.map(|o| (o.number, o.state, o.speed_changes));
-        let mut events: Vec<_> = own.chain(contacts).collect();
-        events.sort_by(|(_, one, _), (_, other, _)| one.t.total_cmp(&other.t));
-        let rows = events.iter().map(|(number, at, changes)| {
+        let mut events = Vec::new();
+        for (chart, solution) in &motion.parts {
+            let own = solution.event_occurrences.iter();
+            let own = own.map(|o| (o.event + 1, (*chart, o.state.clone()), Vec::new()));
+            let contacts = self.contacts().occurrences(*chart, solution).into_iter();
+            let contacts = contacts.map(|o| (o.number, (o.chart, o.state), o.speed_changes));
+            events.extend(own.chain(contacts));
+        }
+        events.sort_by(|(_, (_, one), _), (_, (_, other), _)| one.t.total_cmp(&other.t));
+        let rows = events.iter().map(|(number, (chart, at), changes)| {
             let mut row = vec![at.t, *number as f64];
-            if let Ok(state) = self.machine.evaluate(at.t, &at.y, &mut workspace) {
-                let both = state.q().iter().zip(state.q_dot());
-                row.extend(both.flat_map(|(q, speed)| [*q, *speed]));
+            let problem = motion.problem(self, *chart);
+            let mut workspace = problem.machine.workspace();
+            if let Ok(sample) = problem.sample(at, None, &mut workspace) {
+                match sample.actuator_coordinate {
+                    Some([q, speed, _]) => row.extend([q, speed]),
+                    None => {
+                        let both = sample.q.iter().zip(&sample.q_dot);
+                        row.extend(both.flat_map(|(q, speed)| [*q, *speed]));
+                    }
+                }
             }
             row.resize(columns.len() - impulses.len(), f64::NAN);
             if let Some(machine) = &self.impact_machine {

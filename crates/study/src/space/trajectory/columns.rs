@@ -1,11 +1,12 @@
 //! The columns of a trajectory of a scene in space, each with its unit and meaning.
 
+use super::load_forces::{LoadForce, described_drive, described_load};
 use super::reactions::JointReactions;
 use crate::number_format::force_unit;
 use crate::trajectory::compute::{Analysis, Column, POWER_COLUMNS, Quantity};
-use dwell_geometry::space::{ActuatorKind, Vec3};
+use dwell_geometry::space::{ActuatorKind, Coordinate, Plan, Vec3};
 use dwell_geometry::{BodyId, JointId};
-use dwell_kinetostatics::space::{Axes, Component, LoadKind};
+use dwell_kinetostatics::space::{Axes, Component};
 use dwell_scene::SpaceScene;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -31,7 +32,7 @@ const POINT: [(&str, &str); 3] = [("", "m"), ("v", "m/s"), ("a", "m/s2")];
 /// Every column of an analysis of a scene; with the time if `timed`.
 pub(crate) fn all_columns(
     scene: &SpaceScene,
-    reactions: &JointReactions,
+    (reactions, plan): (&JointReactions, &Plan),
     (analysis, timed): (Analysis, bool),
 ) -> Vec<Column> {
     let mut columns = Columns {
@@ -42,9 +43,10 @@ pub(crate) fn all_columns(
         columns.add("t", "s", Quantity::Time, "");
     }
     columns.actuators();
+    columns.coordinates(plan);
     columns.bodies();
     columns.reactions(reactions);
-    columns.loads();
+    columns.loads(plan);
     columns.totals();
     let mut list = columns.list;
     list.retain(|column| column.is_computed_by(analysis));
@@ -110,6 +112,39 @@ impl Columns<'_> {
                 Quantity::ActuatorForce(i),
                 meaning,
             );
+        }
+    }
+
+    /// The named coordinates, and the travels of joints that slide.
+    fn coordinates(&mut self, plan: &Plan) {
+        for named in &self.scene.coordinates {
+            self.measured(plan, &named.name, (named.coordinate, String::new()));
+        }
+        let mechanism = &self.scene.mechanism;
+        for (j, joint) in mechanism.joints.iter().enumerate() {
+            let [one, two] = joint.bodies.map(|b| mechanism.bodies[b.0].name.as_str());
+            let meaning = format!(
+                "position of the point of {two} from that of {one}, along the axis in {one}"
+            );
+            let name = format!("{}.travel", joint.name);
+            self.measured(plan, &name, (Coordinate::Travel(JointId(j)), meaning));
+        }
+    }
+
+    /// A coordinate with its rates, where the mechanism has it.
+    fn measured(&mut self, plan: &Plan, name: &str, (of, meaning): (Coordinate, String)) {
+        if plan.coordinate_function(&self.scene.mechanism, of).is_err() {
+            return;
+        }
+        let units = match of.is_angle() {
+            true => ["rad", "rad/s", "rad/s2"],
+            false => ["m", "m/s", "m/s2"],
+        };
+        let suffixes = ["", ".velocity", ".acceleration"];
+        for (order, (suffix, unit)) in suffixes.into_iter().zip(units).enumerate() {
+            let meaning = if order == 0 { meaning.as_str() } else { "" };
+            let quantity = Quantity::MeasuredInSpace(of, order);
+            self.add(format!("{name}{suffix}"), unit, quantity, meaning);
         }
     }
 
@@ -181,29 +216,25 @@ impl Columns<'_> {
         }
     }
 
-    fn loads(&mut self) {
-        let loads = self.scene.loads.iter().map(|load| &load.name);
-        let names = loads.chain(self.scene.drives.iter().map(|drive| &drive.name));
-        for (k, load) in names.enumerate() {
-            if let Some(one) = self.scene.loads.get(k).filter(|l| l.friction().is_some()) {
-                let (word, unit, meaning) = match one.kind {
-                    LoadKind::SlideForce(_) => (
-                        "force",
-                        "N",
-                        "force along the axis, of the first body on the second",
-                    ),
-                    _ => (
-                        "moment",
-                        "N m",
-                        "moment about the axis, of the first body on the second",
-                    ),
-                };
-                let name = format!("{load}.load_{word}");
+    fn loads(&mut self, plan: &Plan) {
+        let scene = self.scene;
+        let forces = LoadForce::of_all(scene, plan);
+        let loads = scene.loads.iter().map(|load| {
+            let meaning = "power of the load on all bodies";
+            (&load.name, described_load(load), meaning)
+        });
+        let drives = scene.drives.iter().map(|drive| {
+            let meaning = "power of the drive on all bodies, without what its rotor takes";
+            (&drive.name, described_drive(drive), meaning)
+        });
+        let all = loads.chain(drives).zip(forces).enumerate();
+        for (k, ((name, (unit, meaning), power), force)) in all {
+            if force.is_some() {
+                let kind = if unit == "N" { "force" } else { "moment" };
+                let name = format!("{name}.load_{kind}");
                 self.add(name, unit, Quantity::LoadForce(k), meaning);
             }
-            let meaning = "power of the load on all bodies";
-            let name = format!("{load}.power");
-            self.add(name, "W", Quantity::LoadPower(k), meaning);
+            self.add(format!("{name}.power"), "W", Quantity::LoadPower(k), power);
         }
     }
 
@@ -225,18 +256,5 @@ impl Columns<'_> {
         for (k, (name, unit, meaning)) in POWER_COLUMNS.into_iter().enumerate() {
             self.add(name, unit, Quantity::Power(k), meaning);
         }
-    }
-}
-
-/// Whether a column is in the tables of a scene that lists reactions.
-pub(crate) fn is_listed(quantity: Quantity, reactions: &JointReactions) -> bool {
-    match quantity {
-        Quantity::Time
-        | Quantity::ActuatorCoordinate(..)
-        | Quantity::ActuatorForce(_)
-        | Quantity::Reaction(_) => true,
-        Quantity::ForceMagnitude(joint) => reactions.lists_whole(joint)[0],
-        Quantity::MomentMagnitude(joint) => reactions.lists_whole(joint)[1],
-        _ => false,
     }
 }

@@ -1,10 +1,18 @@
 //! Evaluates one position of a trajectory in space after another.
 
+use super::load_forces::LoadForce;
 use super::reactions::JointReactions;
 use super::totals::Totals;
+use crate::explain::describe_coordinate;
 use crate::machines::first_uncovered;
-use crate::trajectory::compute::{Analysis, Quantity, RowEvaluator, StopCause, TrajectorySample};
-use dwell_geometry::space::{BodyMotion, Placement, Pose, Vec3};
+use crate::number_format::digits;
+use crate::trajectory::compute::{
+    Analysis, Quantity, RowEvaluator, StopCause, Trajectory, TrajectorySample,
+};
+use dwell_geometry::JointId;
+use dwell_geometry::space::{
+    BodyMotion, Coordinate, CoordinateFunction, Placement, Plan, Pose, Vec3,
+};
 use dwell_kinetostatics::space::{Model, Workspace};
 use dwell_kinetostatics::{InverseDynamics, MachineModel as _};
 use dwell_scene::SpaceScene;
@@ -17,13 +25,16 @@ pub(crate) struct SpaceEvaluator<'a> {
     model: &'a Model,
     reactions: &'a JointReactions,
     analysis: Analysis,
-    pose: Pose,
+    pub(super) pose: Pose,
     pub(super) placements: Vec<Placement>,
     motions: Vec<BodyMotion>,
     /// By body: its rotation as a vector, followed from one position to the next, rad.
-    rotations: Vec<Vec3>,
+    pub(super) rotations: Vec<Vec3>,
     workspace: Workspace<f64>,
-    results: InverseDynamics<f64>,
+    pub(super) results: InverseDynamics<f64>,
+    load_forces: Vec<Option<LoadForce>>,
+    /// The coordinates that have columns.
+    measured: Vec<(Coordinate, CoordinateFunction)>,
     totals: Totals,
 }
 
@@ -45,6 +56,8 @@ impl<'a> SpaceEvaluator<'a> {
             rotations: vec![Vec3::ZERO; bodies],
             workspace: model.workspace(),
             results: model.result_buffer(),
+            load_forces: LoadForce::of_all(scene, model.plan()),
+            measured: measured(scene, model.plan()),
             totals: Totals::new(scene),
         }
     }
@@ -52,6 +65,23 @@ impl<'a> SpaceEvaluator<'a> {
     /// The residual of the power balance, and the sum of its absolute terms, W.
     pub(super) fn power_terms(&self) -> [f64; 2] {
         [self.totals.power[3].abs(), self.totals.power_scale]
+    }
+
+    /// Where a sample is, in the names of the scene.
+    pub(super) fn position_of(
+        &self,
+        trajectory: &Trajectory<'_>,
+        sample: &TrajectorySample,
+    ) -> String {
+        let timed = trajectory.is_timed();
+        let time = timed.then(|| format!("t = {} s", digits(sample.t, 6)));
+        let actuators = self.scene.mechanism.actuators.iter().enumerate();
+        let coordinates = actuators.map(|(i, actuator)| {
+            let is_angle = self.model.is_angle(i);
+            describe_coordinate(&actuator.name, sample.q[i], is_angle)
+        });
+        let all: Vec<String> = time.into_iter().chain(coordinates).collect();
+        all.join(", ")
     }
 
     /// Actuator forces, reactions and what they come to.
@@ -81,13 +111,8 @@ impl RowEvaluator for SpaceEvaluator<'_> {
 
     fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
         let rest = vec![0.0; sample.q.len()];
-        let at = match self.analysis {
-            Analysis::Statics => [&sample.q, &rest, &rest],
-            Analysis::Kinematics | Analysis::Kinetostatics | Analysis::FreeMotion => {
-                [&sample.q, &sample.q_dot, &sample.q_ddot]
-            }
-        };
-        let (plan, [q, q_dot, q_ddot]) = (self.model.plan(), at.map(Vec::as_slice));
+        let [q, q_dot, q_ddot] = state_of(self.analysis, sample, &rest);
+        let plan = self.model.plan();
         plan.positions(q, &mut self.pose)?;
         plan.velocities(q_dot, &mut self.pose);
         plan.accelerations(q_ddot, &mut self.pose);
@@ -110,8 +135,16 @@ impl RowEvaluator for SpaceEvaluator<'_> {
         let component = |v: Vec3, axis: usize| [v.x, v.y, v.z][axis];
         match quantity {
             Quantity::Time => sample.t,
-            Quantity::ActuatorCoordinate(i, order) => {
-                [&sample.q, &sample.q_dot, &sample.q_ddot][order][i]
+            // Of a chart of a free motion in another coordinate, the actuator's own.
+            Quantity::ActuatorCoordinate(i, order) => match sample.actuator_coordinate {
+                Some(own) => own[order],
+                None => [&sample.q, &sample.q_dot, &sample.q_ddot][order][i],
+            },
+            Quantity::MeasuredInSpace(of, order) => {
+                let mut all = self.measured.iter();
+                let found = all.find(|(coordinate, _)| *coordinate == of);
+                let plan = self.model.plan();
+                found.map_or(f64::NAN, |(_, f)| plan.coordinate(&self.pose, *f)[order])
             }
             Quantity::ActuatorForce(i) => self.results.tau[i],
             Quantity::PointInSpace(body, at, k) => {
@@ -142,7 +175,11 @@ impl RowEvaluator for SpaceEvaluator<'_> {
             }
             Quantity::ShakingForce(k) => self.totals.shaking[k],
             Quantity::Power(k) => self.totals.power[k],
-            Quantity::LoadForce(k) => self.totals.magnitudes[k],
+            Quantity::LoadForce(k) => {
+                let magnitude = self.totals.magnitudes[k];
+                let force = self.load_forces[k];
+                force.map_or(f64::NAN, |f| f.at(self.model.plan(), &self.pose, magnitude))
+            }
             Quantity::LoadPower(k) => self.totals.load_powers[k],
             Quantity::Extra(k) => sample.extra_values[k],
             // The columns of a mechanism in space are none of these.
@@ -162,6 +199,32 @@ impl RowEvaluator for SpaceEvaluator<'_> {
     fn angular_velocity(&self, _: Quantity) -> f64 {
         0.0
     }
+}
+
+/// Coordinates, speeds and accelerations at which an analysis evaluates a sample: those of statics are at rest.
+pub(super) fn state_of<'s>(
+    analysis: Analysis,
+    sample: &'s TrajectorySample,
+    rest: &'s [f64],
+) -> [&'s [f64]; 3] {
+    match analysis {
+        Analysis::Statics => [&sample.q, rest, rest],
+        Analysis::Kinematics | Analysis::Kinetostatics | Analysis::FreeMotion => {
+            [&sample.q, &sample.q_dot, &sample.q_ddot]
+        }
+    }
+}
+
+/// The named coordinates and the travels of joints, as a plan evaluates them.
+fn measured(scene: &SpaceScene, plan: &Plan) -> Vec<(Coordinate, CoordinateFunction)> {
+    let joints = (0..scene.mechanism.joints.len()).map(JointId);
+    let named = scene.coordinates.iter().map(|named| named.coordinate);
+    let all = named.chain(joints.map(Coordinate::Travel));
+    let of = |coordinate| {
+        let function = plan.coordinate_function(&scene.mechanism, coordinate);
+        Some((coordinate, function.ok()?))
+    };
+    all.filter_map(of).collect()
 }
 
 /// A rotation as a vector with the revolutions that bring it nearest to another.

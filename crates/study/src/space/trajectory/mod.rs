@@ -4,15 +4,18 @@ mod columns;
 mod evaluator;
 #[cfg(feature = "output")]
 mod figures;
+mod load_forces;
 #[cfg(feature = "output")]
 mod output;
 mod page;
 mod path;
 mod reactions;
+mod requested;
+mod rounding;
 mod rows;
 mod totals;
 
-pub(super) use self::columns::{all_columns, is_listed};
+pub(super) use self::columns::all_columns;
 pub(super) use self::evaluator::SpaceEvaluator;
 #[cfg(feature = "output")]
 pub(super) use self::figures::figures;
@@ -22,5 +25,6 @@ pub use self::output::analyse_in_space;
 pub(super) use self::output::drawn_positions;
 pub(super) use self::page::space_page;
 pub(super) use self::reactions::JointReactions;
-pub(super) use self::rows::{add_rows, computed_rows, explain_stop, rows_along};
+pub(super) use self::requested::{extra_columns, reject_unknown_variables, requested};
+pub(super) use self::rows::{add_rows, computed_rows, rows_along};
 pub use self::rows::{compute_trajectory_in_space, trajectory_page_in_space};

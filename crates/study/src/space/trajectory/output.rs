@@ -40,8 +40,13 @@ pub fn analyse_in_space(
         .swept_actuator()
         .map(|k| &scene.mechanism.actuators[k]);
     let swept = actuator.map(|a| (a.name.as_str(), matches!(a.kind, ActuatorKind::Angle(_))));
-    let run = space_page(scene, size, &computed, (&reactions, evaluator.clone()));
-    let positions = drawn_positions(scene, &computed, evaluator, swept);
+    let run = space_page(
+        scene,
+        size,
+        &computed,
+        (&reactions, vec![evaluator.clone()]),
+    );
+    let positions = drawn_positions(scene, &computed, vec![evaluator], swept);
     let mut figures = vec![positions.figure()];
     figures.extend(super::figures::figures(scene, swept, &computed, span)?);
     let document = Document::of_file(&scene.file, size, &computed);
@@ -58,13 +63,14 @@ pub fn analyse_in_space(
 pub(crate) fn drawn_positions<'a>(
     scene: &'a SpaceScene,
     computed: &ComputedTrajectory<'_>,
-    mut evaluator: SpaceEvaluator<'_>,
+    mut evaluators: Vec<SpaceEvaluator<'_>>,
     swept: Option<(&str, bool)>,
 ) -> SpacePositions<'a> {
     let trajectory = &computed.trajectory;
     let last = trajectory.fraction_at(computed.results.len().saturating_sub(1));
     let mut place = |fraction: f64| {
         let sample = trajectory.sample_at(fraction);
+        let evaluator = evaluators.get_mut(sample.chart)?;
         evaluator
             .evaluate(&sample, trajectory.load_time(&sample))
             .ok()?;

@@ -15,7 +15,7 @@ pub(crate) fn space_page(
     scene: &SpaceScene,
     size: f64,
     computed: &ComputedTrajectory<'_>,
-    (reactions, mut evaluator): (&JointReactions, SpaceEvaluator<'_>),
+    (reactions, mut evaluators): (&JointReactions, Vec<SpaceEvaluator<'_>>),
 ) -> Page {
     let (trajectory, results) = (&computed.trajectory, &computed.results);
     let mut page = run_page(&scene.file, size, computed);
@@ -23,6 +23,7 @@ pub(crate) fn space_page(
     let mut place = |row: usize| {
         let sample = trajectory.sample_at(trajectory.fraction_at(row));
         let time = trajectory.load_time(&sample);
+        let evaluator = evaluators.get_mut(sample.chart)?;
         evaluator.evaluate(&sample, time).ok()?;
         Some(evaluator.placements.clone())
     };

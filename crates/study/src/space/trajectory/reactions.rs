@@ -18,6 +18,18 @@ const COMPONENTS: [Component; 6] = [
     Component::Moment(Axes::Ground, 2),
 ];
 
+/// All of them, of so many joints.
+fn components_of_all(joints: usize) -> Vec<Reaction> {
+    let whole = (0..joints).flat_map(|j| {
+        let reaction = move |component| Reaction {
+            joint: JointId(j),
+            component,
+        };
+        COMPONENTS.map(reaction)
+    });
+    whole.collect()
+}
+
 /// The reactions of the model of a trajectory, the requested ones first.
 #[derive(Debug, Clone)]
 pub(crate) struct JointReactions {
@@ -36,14 +48,7 @@ impl JointReactions {
     /// [`StudyError::Scene`] when the mechanism cannot be assembled.
     pub(crate) fn new(scene: &SpaceScene) -> Result<(Self, Model), StudyError> {
         let joints = &scene.mechanism.joints;
-        let whole = (0..joints.len()).flat_map(|j| {
-            let reaction = move |component| Reaction {
-                joint: JointId(j),
-                component,
-            };
-            COMPONENTS.map(reaction)
-        });
-        let whole: Vec<Reaction> = whole.collect();
+        let whole = components_of_all(joints.len());
         let model = compile(scene, &[&scene.reactions[..], &whole].concat())?;
         let [_, open] = sort_reactions(scene, &model)?;
         let (indeterminate, requested): (Vec<_>, Vec<_>) =
@@ -63,8 +68,18 @@ impl JointReactions {
             indeterminate,
             has_magnitude: has_magnitude.collect(),
         };
-        let model = compile(scene, &[&reactions.requested[..], &whole].concat())?;
-        Ok((reactions, with_loads(scene, model)?))
+        let model = reactions.model(scene)?;
+        Ok((reactions, model))
+    }
+
+    /// The model that computes them, with all loads.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] when the mechanism cannot be assembled.
+    pub(crate) fn model(&self, scene: &SpaceScene) -> Result<Model, StudyError> {
+        let whole = components_of_all(scene.mechanism.joints.len());
+        let model = compile(scene, &[&self.requested[..], &whole].concat())?;
+        with_loads(scene, model)
     }
 
     /// Whether the force and the moment of a joint have a magnitude that the loads determine.

@@ -1,16 +1,18 @@
 //! The rows of a trajectory in space, and its page.
 
-use super::columns::{all_columns, is_listed};
-use super::evaluator::SpaceEvaluator;
+use super::columns::all_columns;
+use super::evaluator::{SpaceEvaluator, state_of};
 use super::page::space_page;
 use super::path::followed_scene;
 use super::reactions::JointReactions;
+use super::requested::{reject_unknown_variables, requested};
+use super::rounding::RoundingInSpace;
 use crate::explain::{StudyError, TableArgument, scene_error};
 use crate::progress::{Progress, Step};
 use crate::space::explain::{explain_loads, explain_position};
 use crate::trajectory::compute::{
     Analysis, ComputedTrajectory, POSITIONS_PER_STEP, Quantity, RowEvaluator as _, RowStorage,
-    StopCause, Trajectory, TrajectoryResults,
+    StopCause, Trajectory, TrajectoryResults, TrajectorySample,
 };
 use dwell_geometry::space::Plan;
 use dwell_kinetostatics::KinetostaticsError;
@@ -50,6 +52,7 @@ pub(crate) fn computed_rows<'a, 'm>(
 where
     'a: 'm,
 {
+    reject_unknown_variables(scene, (reactions, model.plan()))?;
     let followed = followed_scene(scene, model.plan());
     let trajectory = Trajectory::new(&followed, analysis, points)?;
     trajectory.check_laws(&followed)?;
@@ -65,26 +68,33 @@ pub(crate) fn rows_along<'a, 'm>(
     progress: Progress<'_>,
 ) -> Result<(ComputedTrajectory<'a>, SpaceEvaluator<'m>), StudyError> {
     let analysis = trajectory.analysis;
-    let is_limited = scene.lists_reactions && analysis != Analysis::Kinematics;
-    let mut all = all_columns(scene, reactions, (analysis, trajectory.is_timed()));
+    let of_model = (reactions, model.plan());
+    let mut all = all_columns(scene, of_model, (analysis, trajectory.is_timed()));
     all.retain(|column| is_wanted(column.quantity));
-    let mut columns = all.clone();
-    columns.retain(|c| !is_limited || is_listed(c.quantity, reactions));
+    let (columns, is_limited) = requested(scene, reactions, (analysis, &all));
     let written = (0..columns.len()).collect();
     let mut results = TrajectoryResults::of_columns(all, columns, written, is_limited);
     results.keep_rows_in(RowStorage::Bounded, trajectory.points)?;
     let open = reactions.indeterminate.iter();
     results.indeterminate = open.map(|r| scene.reaction_name(*r)).collect();
-    let mut evaluator = SpaceEvaluator::new(scene, (model, reactions), analysis);
-    let early_stop = add_rows(&trajectory, &mut evaluator, &mut results, progress)
-        .map(|error| explain_stop(scene, model.plan(), error));
+    let mut evaluators = [SpaceEvaluator::new(scene, (model, reactions), analysis)];
+    let mut rounding = RoundingInSpace::new((model, reactions), (analysis, trajectory.points));
+    let stop = add_rows(
+        &trajectory,
+        (&mut evaluators, rounding.as_mut()),
+        &mut results,
+        progress,
+    );
+    results.rounding_error = rounding.map(|rounding| rounding.max_relative());
+    let early_stop = stop.map(|stop| stop.explain(scene, model.plan()));
     let early_stop = match early_stop {
         Some(error) if results.len() == 0 => return Err(error),
         early_stop => early_stop,
     };
     results.finish_rows()?;
     let size = model.plan().size();
-    results.find_extrema(size, &trajectory, &[evaluator.clone()], None)?;
+    results.find_extrema(size, &trajectory, &evaluators, None)?;
+    let [evaluator] = evaluators;
     let computed = ComputedTrajectory {
         table: results.table(),
         early_stop,
@@ -133,55 +143,85 @@ pub fn trajectory_page_in_space(
     let (reactions, model) = JointReactions::new(scene)?;
     let (computed, evaluator) = compute(scene, (&reactions, &model), (analysis, None), progress)?;
     let size = model.plan().size();
-    let page = space_page(scene, size, &computed, (&reactions, evaluator));
+    let page = space_page(scene, size, &computed, (&reactions, vec![evaluator]));
     Ok((page, computed.early_stop))
 }
 
-/// Evaluates one row after another; why it ends early, if it does.
+/// Where rows end early, and why.
+pub(crate) struct RowsEnd {
+    cause: StopCause,
+    /// Where the last row is, or the first that cannot be evaluated.
+    at: String,
+}
+
+/// Evaluates one row after another, each by the evaluator of its chart, and some for their rounding; where and why it ends early, if it does.
 pub(crate) fn add_rows(
     trajectory: &Trajectory<'_>,
-    evaluator: &mut SpaceEvaluator<'_>,
+    (evaluators, mut rounding): (&mut [SpaceEvaluator<'_>], Option<&mut RoundingInSpace<'_>>),
     results: &mut TrajectoryResults,
     progress: Progress<'_>,
-) -> Option<StopCause> {
+) -> Option<RowsEnd> {
+    let mut last: Option<TrajectorySample> = None;
     for k in 0..trajectory.points {
         let sample = trajectory.sample_at(trajectory.fraction_at(k));
+        let before = last.as_ref().map(|last| last.chart);
+        if let Some(before) = before.filter(|before| *before != sample.chart) {
+            let rotations = evaluators[before].rotations.clone();
+            evaluators[sample.chart].rotations = rotations;
+        }
+        let evaluator = &mut evaluators[sample.chart];
         if let Err(cause) = evaluator.evaluate(&sample, trajectory.load_time(&sample)) {
-            return Some(cause);
+            let at = match &last {
+                Some(last) => format!("soon after {}", evaluator.position_of(trajectory, last)),
+                None => {
+                    let position = evaluator.position_of(trajectory, &sample);
+                    format!("at the first position, {position}")
+                }
+            };
+            return Some(RowsEnd { cause, at });
         }
         results.add_row(evaluator, &sample, (Vec::new(), evaluator.power_terms()));
+        if let Some(rounding) = &mut rounding {
+            let rest = vec![0.0; sample.q.len()];
+            let at = state_of(trajectory.analysis, &sample, &rest);
+            let found = (&evaluator.pose, &evaluator.results);
+            rounding.add_position((k, trajectory.load_time(&sample)), at, found);
+        }
         if k.is_multiple_of(POSITIONS_PER_STEP) {
             progress(Step {
                 total: trajectory.progress_steps(),
                 done: "positions",
             });
         }
+        last = Some(sample);
     }
     None
 }
 
-/// The error where a trajectory cannot go on.
-pub(crate) fn explain_stop(scene: &SpaceScene, plan: &Plan, cause: StopCause) -> StudyError {
-    match cause {
-        StopCause::NoSolution(KinetostaticsError::Position(error)) => {
-            explain_position(scene, plan, &error)
-        }
-        StopCause::NoSolution(error) => explain_loads(scene, plan, &error),
-        StopCause::OffTable { load, value } => {
-            let magnitude = &scene.loads[load].magnitude;
-            let argument = TableArgument::of(magnitude, |c| scene.name_of(c), |c| c.is_angle());
-            match argument {
-                Some(argument) => argument.error(scene, (load, value), "at one of the positions"),
-                None => explain_loads(
-                    scene,
-                    plan,
-                    &KinetostaticsError::MagnitudeNotFinite { load },
-                ),
+impl RowsEnd {
+    /// The error, in the names of the scene.
+    pub(crate) fn explain(&self, scene: &SpaceScene, plan: &Plan) -> StudyError {
+        match self.cause {
+            StopCause::NoSolution(KinetostaticsError::Position(error)) => {
+                explain_position(scene, plan, &error)
             }
-        }
-        // Couplings stand in scenes of the plane alone.
-        StopCause::Discontinuity { .. } => {
-            scene_error::<String>(scene, "the trajectory cannot go on", "", [])
+            StopCause::NoSolution(error) => explain_loads(scene, plan, &error),
+            StopCause::OffTable { load, value } => {
+                let magnitude = &scene.loads[load].magnitude;
+                let argument = TableArgument::of(magnitude, |c| scene.name_of(c), |c| c.is_angle());
+                match argument {
+                    Some(argument) => argument.error(scene, (load, value), &self.at),
+                    None => explain_loads(
+                        scene,
+                        plan,
+                        &KinetostaticsError::MagnitudeNotFinite { load },
+                    ),
+                }
+            }
+            // Couplings stand in scenes of the plane alone.
+            StopCause::Discontinuity { .. } => {
+                scene_error::<String>(scene, "the trajectory cannot go on", "", [])
+            }
         }
     }
 }

@@ -104,7 +104,11 @@ fn paths(scene: &SpaceScene) -> Vec<DrawnPath> {
         let one = |(name, p): &(String, Vec3)| DrawnPath {
             at: anchor(BodyId(b), *p),
             name: format!("{body}.{name}"),
-            requested: true,
+            requested: scene.paths.is_empty()
+                || scene
+                    .paths
+                    .iter()
+                    .any(|path| path.body.0 == b && path.at == *p),
         };
         points.iter().map(one).collect()
     };

@@ -10,7 +10,7 @@ use dwell_report::{Pen, Shape};
 const LIGHTNESS: f64 = 0.6;
 const WIDTH: f64 = 2.0;
 
-/// The paths of the points that move, each once, in the colours of their bodies.
+/// The paths of the requested points, or else of all that move, each once, in the colours of their bodies.
 pub(super) fn paths(
     all: &[(Vec<Placement>, String)],
     drawing: &SpaceDrawing<'_>,
@@ -19,7 +19,12 @@ pub(super) fn paths(
     let mut known: Vec<Vec<Vec3>> = Vec::new();
     let mut shapes = Vec::new();
     let same = drawing.same();
-    for point in local_points(drawing.scene) {
+    let requested = drawing.scene.paths.iter().map(|path| (path.body, path.at));
+    let points = match drawing.scene.paths.is_empty() {
+        true => local_points(drawing.scene),
+        false => requested.collect(),
+    };
+    for point in points {
         let path: Vec<Vec3> = all
             .iter()
             .map(|(p, _)| placed(p, point.0, point.1))

@@ -12,7 +12,7 @@ use super::paths::paths;
 use super::points::points_of;
 use crate::output::figure;
 use crate::ranges::extent;
-use dwell_geometry::space::{Placement, Vec3};
+use dwell_geometry::space::{JointKind, Placement, Vec3};
 use dwell_report::{Animation, Axis, Drawing, Figure, Paint, Panel, Pen, Shape, TextPlacement};
 use dwell_scene::SpaceScene;
 
@@ -34,6 +34,35 @@ const CAPTION: &str = "Top view (x–y) above the front view (x–z), next to it
                        hatching is the ground, an arrow the driven joint, a quartered disc a centre of mass. Light lines are paths of points.";
 /// What is added where the scene has them.
 const SPRINGS: &str = " Zigzag lines are springs, dashed ones dampers.";
+
+/// The symbols of the kinds of joints that few scenes have, each of those that are there.
+fn rare_joints(scene: &SpaceScene) -> String {
+    let has = |of: fn(&JointKind) -> bool| scene.mechanism.joints.iter().any(|j| of(&j.kind));
+    let symbols = [
+        (
+            has(|kind| matches!(kind, JointKind::Helical { .. })),
+            " Threaded cylinders are screws.",
+        ),
+        (
+            has(|kind| matches!(kind, JointKind::Planar)),
+            " A disc on a plate is a planar joint.",
+        ),
+        (
+            has(|kind| matches!(kind, JointKind::Gear { .. })),
+            " A dot with a short line is where teeth meet, with their normal.",
+        ),
+        (
+            has(|kind| matches!(kind, JointKind::Distance { .. })),
+            " Grey lines are links without mass.",
+        ),
+        (
+            has(|kind| matches!(kind, JointKind::Weld)),
+            " A dot between two bodies is a weld.",
+        ),
+    ];
+    let named = symbols.into_iter().filter(|(is_there, _)| *is_there);
+    named.map(|(_, text)| text).collect()
+}
 
 /// A mechanism in positions that follow each other.
 pub(crate) struct SpacePositions<'a> {
@@ -76,7 +105,8 @@ impl SpacePositions<'_> {
             true => SPRINGS,
             false => "",
         };
-        let text = format!("Drawn at {}. {CAPTION}{springs}", self.drawn_at);
+        let rare = rare_joints(self.scene);
+        let text = format!("Drawn at {}. {CAPTION}{rare}{springs}", self.drawn_at);
         let (scene, title) = (self.scene, &self.scene.title);
         let figure = figure(
             &scene.file,

@@ -2,7 +2,7 @@
 
 use crate::trajectory::compute::{Analysis, Dyad};
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_geometry::space::Vec3;
+use dwell_geometry::space::{self, Vec3};
 use dwell_geometry::{BodyId, JointId, Reaction, Vec2};
 use dwell_scene::Scene;
 
@@ -19,6 +19,7 @@ pub(crate) enum Quantity {
     ActuatorCoordinate(usize, usize),
     ActuatorForce(usize),
     Measured(CoordinateFunction, usize),
+    MeasuredInSpace(space::Coordinate, usize),
     BodyAngle(BodyId, usize),
     /// dθ/dq of a body.
     VelocityRatio(BodyId),
@@ -97,6 +98,7 @@ impl Quantity {
             | Self::Power(_)
             | Self::LoadForce(_)
             | Self::LoadPower(_)
+            | Self::MeasuredInSpace(..)
             | Self::Extra(_) => Vec::new(),
         }
     }
@@ -150,6 +152,7 @@ impl Column {
             Quantity::Time => true,
             Quantity::ActuatorCoordinate(_, order)
             | Quantity::Measured(_, order)
+            | Quantity::MeasuredInSpace(_, order)
             | Quantity::BodyAngle(_, order) => order == 0 || moves,
             Quantity::PointCoordinate(_, _, k) => k < 2 || moves,
             Quantity::PointInSpace(_, _, k) | Quantity::RotationInSpace(_, k) => k < 3 || moves,

@@ -431,6 +431,7 @@ impl RowEvaluator for PositionEvaluator<'_> {
             Quantity::Extra(k) => sample.extra_values[k],
             // The columns of a mechanism in the plane are none of these.
             Quantity::PointInSpace(..)
+            | Quantity::MeasuredInSpace(..)
             | Quantity::RotationInSpace(..)
             | Quantity::MomentMagnitude(_) => f64::NAN,
         }

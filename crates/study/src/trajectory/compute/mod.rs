@@ -53,7 +53,7 @@ pub(crate) use row_evaluator::RowEvaluator;
 pub(crate) use second_rows::SecondRows;
 pub use sectioned_link::SectionedLink;
 pub(crate) use selection::{
-    check_variables, prune_model, reject_unknown_variables, requested_bodies,
+    check_variables, prune_model, reject_unknown_variables, requested_bodies, suggestion,
 };
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{

@@ -77,7 +77,7 @@ fn indeterminate_error(scene: &Scene, model: &Model, k: usize, name: &str) -> Op
 
 /// Names that may have been meant: columns and their prefixes; otherwise those with the same first word,
 /// or all first words.
-fn suggestion(name: &str, columns: &[Column]) -> String {
+pub(crate) fn suggestion(name: &str, columns: &[Column]) -> String {
     let mut names: Vec<&str> = Vec::new();
     for column in columns {
         let ends = column.name.match_indices('.').map(|(at, _)| at);

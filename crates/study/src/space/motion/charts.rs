@@ -1,0 +1,420 @@
+//! Other coordinates in which a motion in space goes on.
+//!
+//! Next to a limit position of its coordinate, where that turns back and its inertia tends to infinity, a motion of one degree of
+//! freedom continues in the coordinate of another joint: in a *chart*, the same scene driven there. It keeps loads, drives and
+//! all else, and the bodies where they are; the coordinate of the scene is a function of the chart's.
+
+use super::problem::SpaceMotionProblem;
+use crate::explain::StudyError;
+use dwell_dynamics::{DynamicsError, Machine, OdeState, Solution, Statistics};
+use dwell_geometry::JointId;
+use dwell_geometry::space::{
+    Actuator, ActuatorKind, Coordinate, CoordinateFunction, JointKind, Placement, Plan, Pose,
+};
+use dwell_kinetostatics::space::{LoadKind, Model};
+use dwell_kinetostatics::{MachineModel as _, Signal};
+use dwell_scene::{EventTrigger, SpaceScene};
+use std::borrow::Cow;
+use std::f64::consts::TAU;
+
+/// What an angle between two moving bodies counts against one from the ground: it may fold sooner.
+const RELATIVE_ANGLE_WEIGHT: f64 = 0.5;
+/// How far a chart may place a body, m by the size of the mechanism or rad, from where it was, and a coordinate from its value.
+const SAME: f64 = 1e-7;
+
+/// What a chart is to the scene's own coordinate.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct OfChart {
+    /// Behind the scene's own coordinate, 0.
+    pub(super) number: usize,
+    /// The scene's coordinate in the chart, and what it differs by, whole revolutions.
+    own: CoordinateFunction,
+    offset: f64,
+}
+
+/// A motion through one coordinate or more.
+#[derive(Default)]
+pub(super) struct Motion {
+    /// By part: its chart (0: the scene's own coordinate) and its solution.
+    pub(super) parts: Vec<(usize, Solution)>,
+    /// The charts from number 1 on.
+    pub(super) charts: Vec<SpaceMotionProblem<'static>>,
+}
+
+impl Motion {
+    /// A motion in the scene's own coordinate.
+    pub(super) fn of(solution: Solution) -> Self {
+        Self {
+            parts: vec![(0, solution)],
+            charts: Vec::new(),
+        }
+    }
+
+    /// The problem of each part, and its solution.
+    pub(super) fn parts<'p>(
+        &'p self,
+        own: &'p SpaceMotionProblem<'_>,
+    ) -> impl DoubleEndedIterator<Item = (&'p SpaceMotionProblem<'p>, &'p Solution)> + Clone {
+        let parts = self.parts.iter();
+        parts.map(move |(chart, solution)| (self.problem(own, *chart), solution))
+    }
+
+    /// The problem in a chart.
+    pub(super) fn problem<'p>(
+        &'p self,
+        own: &'p SpaceMotionProblem<'_>,
+        chart: usize,
+    ) -> &'p SpaceMotionProblem<'p> {
+        let chart = chart.checked_sub(1).and_then(|k| self.charts.get(k));
+        chart.unwrap_or(own)
+    }
+
+    pub(super) fn solutions(&self) -> impl Iterator<Item = &Solution> {
+        self.parts.iter().map(|(_, solution)| solution)
+    }
+
+    /// The last part.
+    pub(super) fn last(&self) -> Option<&Solution> {
+        self.parts.last().map(|(_, solution)| solution)
+    }
+
+    /// Goes on in a chart: its number, and the state there.
+    pub(super) fn enter(&mut self, next: NextChart) -> (usize, OdeState) {
+        match next {
+            NextChart::Known(number, state) => (number, state),
+            NextChart::New(chart, state) => {
+                self.charts.push(*chart);
+                (self.charts.len(), state)
+            }
+        }
+    }
+
+    /// Ends it with an error.
+    pub(super) fn end_with(&mut self, error: DynamicsError) {
+        if let Some((_, solution)) = self.parts.last_mut() {
+            solution.error = Some(error);
+            solution.sample_end();
+        }
+    }
+
+    /// The error that ended it early, if one did.
+    pub(super) fn error(&self) -> Option<&DynamicsError> {
+        self.last().and_then(|solution| solution.error.as_ref())
+    }
+
+    /// The same in the names of the scene.
+    pub(super) fn explained_error(&self, own: &SpaceMotionProblem<'_>) -> Option<StudyError> {
+        let (problem, solution) = self.parts(own).next_back()?;
+        Some(problem.explain(solution.error.as_ref()?))
+    }
+
+    /// When it ends, s.
+    pub(super) fn end(&self) -> f64 {
+        let step = self.last().and_then(|solution| solution.steps.last());
+        step.map_or(0.0, |step| step.t)
+    }
+
+    /// The work done.
+    pub(super) fn statistics(&self) -> Statistics {
+        let each = self.solutions().map(|solution| solution.statistics);
+        each.fold(Statistics::default(), Statistics::plus)
+    }
+
+    /// The times at which the coordinate changes, s, and the new ones' names.
+    pub(super) fn changes(
+        &self,
+        own: &SpaceMotionProblem<'_>,
+    ) -> impl Iterator<Item = (f64, [String; 2])> {
+        let name = |chart: usize| {
+            let scene = self.problem(own, chart).scene();
+            scene.mechanism.actuators[0].name.clone()
+        };
+        let pairs = self.parts.windows(2).filter_map(move |pair| {
+            let [(from, _), (to, solution)] = pair else {
+                return None;
+            };
+            let start = solution.steps.first().filter(|_| from != to)?;
+            Some((start.t, [name(*from), name(*to)]))
+        });
+        pairs.collect::<Vec<_>>().into_iter()
+    }
+}
+
+impl SpaceMotionProblem<'_> {
+    /// Whether the motion may change its coordinate: it has one, free, that an actuator of a joint drives, no contacts, whose modes
+    /// belong to it, and no events that count revolutions from its start.
+    pub(super) fn may_change_coordinate(&self) -> bool {
+        let scene = self.scene();
+        let [actuator] = &scene.mechanism.actuators[..] else {
+            return false;
+        };
+        let counts = |event: &dwell_scene::NamedEvent<_, _>| {
+            matches!(event.trigger, EventTrigger::Revolution(_))
+        };
+        !matches!(actuator.kind, ActuatorKind::Length(_))
+            && self.machine.free() == [0]
+            && !self.machine.has_contacts()
+            && !self.spec.events.iter().any(counts)
+    }
+
+    /// The coordinate of the scene with its rate and acceleration, at a state of a chart.
+    pub(super) fn own_coordinate(&self, chart: OfChart, at: [&[f64]; 3]) -> Option<[f64; 3]> {
+        let (plan, pose) = moved(self.machine.model().plan(), at)?;
+        let [value, rate, acceleration] = plan.coordinate(&pose, chart.own);
+        Some([value + chart.offset, rate, acceleration])
+    }
+
+    /// The chart in which a motion goes on from a state of this problem: one of those that there are, else a new one.
+    pub(super) fn next_chart(
+        &self,
+        main: &SpaceMotionProblem<'_>,
+        charts: &[SpaceMotionProblem<'static>],
+        from: &OdeState,
+    ) -> Option<NextChart> {
+        let (q, q_dot) = (from.y[0], from.y[1]);
+        let (plan, pose) = moved(self.machine.model().plan(), [&[q], &[q_dot], &[0.0]])?;
+        let bodies = 0..self.scene().mechanism.bodies.len();
+        let places: Vec<Placement> = bodies.map(|b| plan.placement(&pose, b)).collect();
+        let own = match self.chart {
+            Some(_) => self.own_value([q, q_dot])?,
+            None => q,
+        };
+        self.candidates(plan, &pose)
+            .into_iter()
+            .find_map(|Candidate { kind, motion }| {
+                let is_fit = |chart: &SpaceMotionProblem<'_>| {
+                    chart.is_same(self, motion, &places, from) && chart.goes_on(motion)
+                };
+                let known = charts.iter().position(|chart| {
+                    chart.drives(kind) && is_fit(chart) && chart.counts_from(own, motion)
+                });
+                if let Some(k) = known {
+                    let state = charts[k].state_from(&self.machine, motion, from);
+                    return Some(NextChart::Known(k + 1, state));
+                }
+                let chart = main.chart(kind, motion, &places, charts.len() + 1)?;
+                let chart = chart.counting_from(own, motion).filter(is_fit)?;
+                let state = chart.state_from(&self.machine, motion, from);
+                Some(NextChart::New(Box::new(chart), state))
+            })
+    }
+
+    /// Whether the coordinate is not itself next to a limit position.
+    fn goes_on(&self, [q, q_dot]: [f64; 2]) -> bool {
+        let at = OdeState {
+            t: 0.0,
+            y: vec![q, q_dot],
+        };
+        !self
+            .barriers(&at, true)
+            .iter()
+            .any(|barrier| barrier.is_beyond)
+    }
+
+    fn drives(&self, kind: ActuatorKind) -> bool {
+        self.scene().mechanism.actuators[0].kind == kind
+    }
+
+    /// The coordinates of other joints, the fastest first, lengths by the size of the mechanism.
+    fn candidates(&self, plan: &Plan, pose: &Pose) -> Vec<Candidate> {
+        let mechanism = &self.scene().mechanism;
+        let ground = mechanism.ground;
+        let mut all = Vec::new();
+        for (j, joint) in mechanism.joints.iter().enumerate() {
+            let id = JointId(j);
+            let kinds: &[ActuatorKind] = match joint.kind {
+                JointKind::Revolute | JointKind::Helical { .. } => &[ActuatorKind::Angle(id)],
+                JointKind::Prismatic => &[ActuatorKind::Travel(id)],
+                JointKind::Cylindrical => &[ActuatorKind::Angle(id), ActuatorKind::Travel(id)],
+                JointKind::Weld
+                | JointKind::Universal
+                | JointKind::Spherical
+                | JointKind::Planar
+                | JointKind::Distance { .. }
+                | JointKind::Gear { .. } => &[],
+            };
+            let weight = |kind: ActuatorKind| match kind {
+                ActuatorKind::Angle(_) if joint.bodies.iter().any(|b| b.0 == ground) => 1.0,
+                ActuatorKind::Angle(_) => RELATIVE_ANGLE_WEIGHT,
+                ActuatorKind::Travel(_) | ActuatorKind::Length(_) => 1.0 / plan.size(),
+            };
+            for &kind in kinds.iter().filter(|kind| !self.drives(**kind)) {
+                let function = plan.coordinate_function(mechanism, kind.coordinate(joint));
+                if let Ok(function) = function {
+                    let [value, rate, _] = plan.coordinate(pose, function);
+                    let motion = [value, rate];
+                    let speed = weight(kind) * rate.abs();
+                    all.push((speed, Candidate { kind, motion }));
+                }
+            }
+        }
+        all.sort_by(|(one, _), (other, _)| other.total_cmp(one));
+        all.into_iter().map(|(_, candidate)| candidate).collect()
+    }
+
+    /// The scene driven at another joint, with its bodies here; none where it cannot be driven there.
+    fn chart(
+        &self,
+        kind: ActuatorKind,
+        [q, q_dot]: [f64; 2],
+        places: &[Placement],
+        number: usize,
+    ) -> Option<SpaceMotionProblem<'static>> {
+        let mut scene: SpaceScene = self.scene().clone();
+        let own_joint = scene.mechanism.actuators[0].kind;
+        let joint = &scene.mechanism.joints[kind.joint().0];
+        let what = match kind {
+            ActuatorKind::Angle(_) => "angle",
+            ActuatorKind::Travel(_) | ActuatorKind::Length(_) => "travel",
+        };
+        let name = format!("{what} of {}", joint.name);
+        scene.mechanism.actuators = vec![Actuator { name, kind }];
+        scene.assembly.q = vec![q];
+        scene.assembly.placements = places.to_vec();
+        let spec = scene.motion.as_mut()?;
+        spec.initial_coordinates = vec![q];
+        spec.initial_velocities = vec![q_dot];
+        let reactions = Some(self.reactions.clone());
+        let mut chart = SpaceMotionProblem::compiled(Cow::Owned(scene), reactions).ok()?;
+        if let Some(tolerance) = self.tolerance {
+            chart = chart.with_tolerance(tolerance);
+        }
+        let own = own_joint.coordinate(&self.scene().mechanism.joints[own_joint.joint().0]);
+        let own = chart.event_model.coordinate_function(own).ok()?;
+        chart.chart = Some(OfChart {
+            number,
+            own,
+            offset: 0.0,
+        });
+        Some(chart)
+    }
+
+    /// Whether this chart goes on where another problem is: the bodies stand there, and the coordinates that anything depends on have
+    /// their values. The scene's own coordinate takes its whole revolutions from there.
+    fn is_same(
+        &self,
+        other: &SpaceMotionProblem<'_>,
+        [q, q_dot]: [f64; 2],
+        places: &[Placement],
+        from: &OdeState,
+    ) -> bool {
+        let here = moved(self.machine.model().plan(), [&[q], &[q_dot], &[0.0]]);
+        let (at, speed) = (from.y[0], from.y[1]);
+        let there = moved(other.machine.model().plan(), [&[at], &[speed], &[0.0]]);
+        let (Some((plan, pose)), Some((plan_there, pose_there))) = (here, there) else {
+            return false;
+        };
+        let size = plan.size();
+        let stands = |(b, place): (usize, &Placement)| {
+            let found = plan.placement(&pose, b);
+            let turned = place.rotation.inverse().after(&found.rotation).vector();
+            let off = (found.position - place.position).norm() / size + turned.norm();
+            off < SAME
+        };
+        let mechanism = &self.scene().mechanism;
+        let agrees = |of: &Coordinate| {
+            let value = |plan: &Plan, pose: &Pose| {
+                let function = plan.coordinate_function(mechanism, *of).ok()?;
+                Some(plan.coordinate(pose, function)[0])
+            };
+            let both = value(plan, &pose).zip(value(plan_there, &pose_there));
+            both.is_some_and(|(a, b)| (a - b).abs() < SAME * (1.0 + a.abs()))
+        };
+        places.iter().enumerate().all(stands) && self.used_coordinates().iter().all(agrees)
+    }
+
+    /// The coordinates whose values loads, drives, events and tables use: the scene's own among them.
+    fn used_coordinates(&self) -> Vec<Coordinate> {
+        let scene = self.scene();
+        let mut all: Vec<Coordinate> = scene.coordinates.iter().map(|c| c.coordinate).collect();
+        let signals = scene.loads.iter().map(|load| load.magnitude.signals());
+        let inputs = scene
+            .drives
+            .iter()
+            .map(|drive| drive.kind.input().signals());
+        let signals = signals.chain(inputs);
+        all.extend(signals.flat_map(|of| {
+            let values = of.iter().filter_map(|signal| match signal {
+                Signal::Value(coordinate) => Some(*coordinate),
+                Signal::Time | Signal::Velocity(_) => None,
+            });
+            values.collect::<Vec<_>>()
+        }));
+        all.extend(scene.loads.iter().filter_map(|load| match load.kind {
+            LoadKind::TorsionSpring { joint, .. } => Some(Coordinate::Angle(joint)),
+            _ => None,
+        }));
+        all.extend(self.spec.events.iter().filter_map(|e| match e.trigger {
+            EventTrigger::Reaches(of, _) | EventTrigger::Reversal(of) => Some(of),
+            EventTrigger::Revolution(of) => Some(of),
+            EventTrigger::Reaction(..) => None,
+        }));
+        all
+    }
+
+    /// A state of another coordinate's machine in this chart's: drives and works stay.
+    fn state_from(
+        &self,
+        machine: &Machine<Model>,
+        [q, q_dot]: [f64; 2],
+        from: &OdeState,
+    ) -> OdeState {
+        let mut y = self.machine.initial_state(&[q], &[q_dot]);
+        let (states, works) = (machine.drive_states(), machine.work_offset());
+        y[self.machine.drive_states()].copy_from_slice(&from.y[states]);
+        y[self.machine.work_offset()..].copy_from_slice(&from.y[works..]);
+        OdeState { t: from.t, y }
+    }
+
+    /// The scene's own coordinate at a coordinate and a speed of this chart.
+    fn own_value(&self, [q, q_dot]: [f64; 2]) -> Option<f64> {
+        let found = self.own_coordinate(self.chart?, [&[q], &[q_dot], &[0.0]]);
+        found.map(|[value, ..]| value)
+    }
+
+    /// Whether the scene's own coordinate has a value there.
+    fn counts_from(&self, value: f64, at: [f64; 2]) -> bool {
+        let found = self.own_value(at);
+        found.is_some_and(|found| (found - value).abs() < SAME * (1.0 + value.abs()))
+    }
+
+    /// The same with the scene's own coordinate at a value there, which an angle may differ from by whole revolutions.
+    fn counting_from(mut self, value: f64, at: [f64; 2]) -> Option<Self> {
+        let found = self.own_value(at)?;
+        let chart = self.chart.as_mut()?;
+        if let CoordinateFunction::Angle { .. } = chart.own {
+            chart.offset = TAU * ((value - found) / TAU).round();
+        }
+        self.counts_from(value, at).then_some(self)
+    }
+
+    /// The tolerance to which its machine crosses change points.
+    pub(super) fn with_tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = Some(tolerance);
+        self.machine = self.machine.with_change_points(tolerance);
+        let impacts = self.impact_machine.take();
+        self.impact_machine = impacts.map(|machine| machine.with_change_points(tolerance));
+        self
+    }
+}
+
+/// Where a motion goes on: the number of a chart, or a new one, with its state there.
+pub(super) enum NextChart {
+    Known(usize, OdeState),
+    New(Box<SpaceMotionProblem<'static>>, OdeState),
+}
+
+/// A coordinate of another joint, its value and its rate.
+struct Candidate {
+    kind: ActuatorKind,
+    motion: [f64; 2],
+}
+
+/// A plan, and its pose at coordinates, speeds and accelerations.
+fn moved<'p>(plan: &'p Plan, [q, q_dot, q_ddot]: [&[f64]; 3]) -> Option<(&'p Plan, Pose)> {
+    let mut pose = plan.pose();
+    plan.positions(q, &mut pose).ok()?;
+    plan.velocities(q_dot, &mut pose);
+    plan.accelerations(q_ddot, &mut pose);
+    Some((plan, pose))
+}

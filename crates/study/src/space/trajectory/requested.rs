@@ -1,0 +1,145 @@
+//! Which columns of an analysis a scene in space requests: as in the plane.
+
+use super::columns::all_columns;
+use super::reactions::JointReactions;
+use crate::explain::{StudyError, scene_error};
+use crate::machines::MachineScene as _;
+use crate::models::states_of_drives;
+use crate::trajectory::compute::{
+    Analysis, BALANCE, Column, KINETIC, POTENTIAL, Quantity, is_prefix_of, suggestion,
+};
+use dwell_dynamics::Machine;
+use dwell_geometry::space::{Coordinate, Plan};
+use dwell_kinetostatics::space::Model;
+use dwell_scene::{SceneLocation, SpaceScene};
+
+/// Of all columns of an analysis those that a scene requests, and whether these are a choice.
+pub(crate) fn requested(
+    scene: &SpaceScene,
+    reactions: &JointReactions,
+    (analysis, all): (Analysis, &[Column]),
+) -> (Vec<Column>, bool) {
+    let lists_reactions = scene.lists_reactions && analysis != Analysis::Kinematics;
+    let is_limited = scene.variables.is_some() || lists_reactions;
+    let is_wanted = |column: &&Column| {
+        let quantity = column.quantity;
+        let mut names = scene.variables.iter().flatten();
+        !is_limited
+            || matches!(
+                quantity,
+                Quantity::Time | Quantity::ActuatorCoordinate(_, 0)
+            )
+            || names.any(|name| column.matches(name))
+            || (scene.lists_reactions && is_of_listed_reaction(quantity, reactions))
+            || (scene.variables.is_none() && goes_with_reactions(scene, quantity))
+    };
+    (all.iter().filter(is_wanted).cloned().collect(), is_limited)
+}
+
+/// Whether it is a listed reaction, or the magnitude of a force or moment all of whose components are listed.
+fn is_of_listed_reaction(quantity: Quantity, reactions: &JointReactions) -> bool {
+    match quantity {
+        Quantity::Reaction(_) => true,
+        Quantity::ForceMagnitude(joint) => reactions.lists_whole(joint)[0],
+        Quantity::MomentMagnitude(joint) => reactions.lists_whole(joint)[1],
+        _ => false,
+    }
+}
+
+/// Whether a scene that lists reactions, and no variables, gets it as well.
+fn goes_with_reactions(scene: &SpaceScene, quantity: Quantity) -> bool {
+    match quantity {
+        Quantity::ActuatorCoordinate(..) | Quantity::ActuatorForce(_) | Quantity::Extra(_) => true,
+        Quantity::PointInSpace(body, at, _) => {
+            let mut paths = scene.paths.iter();
+            paths.any(|path| path.body == body && path.at == at)
+        }
+        _ => false,
+    }
+}
+
+/// Rejects requested names that select no column of any analysis; `further` are the columns of a free motion's integration.
+///
+/// # Errors
+/// [`StudyError::Scene`] at the first of them.
+fn check_variables(
+    scene: &SpaceScene,
+    (reactions, plan): (&JointReactions, &Plan),
+    further: Vec<Column>,
+) -> Result<(), StudyError> {
+    let Some(variables) = &scene.variables else {
+        return Ok(());
+    };
+    let mut columns = all_columns(scene, (reactions, plan), (Analysis::FreeMotion, true));
+    columns.extend(further);
+    for (k, name) in variables.iter().enumerate() {
+        if columns.iter().any(|column| column.matches(name)) {
+            continue;
+        }
+        let open = reactions.indeterminate.iter();
+        let mut open = open.map(|reaction| scene.reaction_name(*reaction));
+        let (message, help) = match open.any(|open| is_prefix_of(name, &open)) {
+            true => (
+                format!("`{name}` is statically indeterminate: redundant constraints share the load"),
+                "`dwell check` lists such reactions; replace a joint of the loop by one with more freedoms".to_owned(),
+            ),
+            false => (
+                format!("there is no column `{name}`"),
+                suggestion(name, &columns),
+            ),
+        };
+        let place = (SceneLocation::Variable(k), "no such column");
+        return Err(scene_error(scene, message, help, [place]));
+    }
+    Ok(())
+}
+
+/// The columns of what the integration of a motion yields, in their order.
+pub(crate) fn extra_columns(scene: &SpaceScene, machine: &Machine<Model>) -> Vec<Column> {
+    let mut all = vec![
+        (
+            KINETIC.to_owned(),
+            "J",
+            "kinetic energy of all bodies and rotors",
+        ),
+        (
+            POTENTIAL.to_owned(),
+            "J",
+            "potential energy of gravity, springs and constant forces",
+        ),
+    ];
+    let sources = machine.nonconservative_sources().iter();
+    all.extend(sources.map(|&source| {
+        let name = format!("{}.work", scene.name_of_source(source));
+        (name, "J", "work since t = 0")
+    }));
+    let balance =
+        "drift of kinetic + potential energy − work since t = 0: error of the integration";
+    all.push((BALANCE.to_owned(), "J", balance));
+    all.extend(states_of_drives(&scene.drives, Coordinate::is_angle));
+    let column = |(k, (name, unit, meaning)): (usize, (String, _, &str))| Column {
+        name,
+        former: None,
+        unit,
+        quantity: Quantity::Extra(k),
+        meaning: meaning.to_owned(),
+    };
+    all.into_iter().enumerate().map(column).collect()
+}
+
+/// Rejects requested columns that no analysis of a scene has.
+///
+/// # Errors
+/// [`StudyError::Scene`] at the first of them.
+pub(crate) fn reject_unknown_variables(
+    scene: &SpaceScene,
+    of: (&JointReactions, &Plan),
+) -> Result<(), StudyError> {
+    if scene.variables.is_none() {
+        return Ok(());
+    }
+    // Another analysis than `simulate` does not fail where the motion's machine cannot be built.
+    let machine = scene.motion.as_ref().and_then(|_| scene.machine(&[]).ok());
+    let further = machine.map_or_else(Vec::new, |machine| extra_columns(scene, &machine));
+    check_variables(scene, of, further)
+}
