@@ -5,7 +5,7 @@ use crate::error::PositionError;
 use crate::plan::{GuidedPoint, LoopClosure, Pose, RrrDyad};
 use crate::plane::Vec2;
 use crate::structure::tree::FrameVector;
-use dwell_numerics::{Scalar, map_array, uniform};
+use dwell_numerics::{Scalar, map_array};
 
 /// Below this determinant, relative to the lengths that make it, no digit of the result is significant.
 const SINGULAR: f64 = 1e-14;
@@ -60,6 +60,7 @@ pub(super) fn rrr_dyad_positions<T: Scalar>(
     // (2 × area)² by factors that keep their digits near a stretched or folded triangle.
     let rest = (sum_squared - square) * (square - difference_squared);
     let size = |lane| square.lane(lane) * square.lane(lane);
+    let size = (size, || square * square);
     let q = pose.first_coordinate();
     let missing = || {
         let distance = square.value().sqrt();
@@ -130,7 +131,7 @@ pub(super) fn guided_point_positions<T: Scalar>(
         // n·D = −n₀·w with n₀, w constant in the turning frame.
         let kappa = -constant_direction.dot(local);
         let square = known.dot(known);
-        let size = |l| square.lane(l);
+        let size = (|l| square.lane(l), || square);
         let missing = || kappa.value().abs() - square.value().sqrt();
         let half_chord = branch * checked_sqrt(square - kappa * kappa, size, group, q, missing)?;
         let direction = (known * kappa + known.perp() * half_chord) * (T::from_f64(1.0) / square);
@@ -149,7 +150,7 @@ pub(super) fn guided_point_positions<T: Scalar>(
         };
         let kappa = -normal.dot(known);
         let square = length * length;
-        let size = |l| square.lane(l);
+        let size = (|l| square.lane(l), || square);
         let missing = || kappa.value().abs() - length.value();
         let half_chord = branch * checked_sqrt(square - kappa * kappa, size, group, q, missing)?;
         let vector = normal * kappa - along * half_chord;
@@ -163,20 +164,25 @@ pub(super) fn guided_point_positions<T: Scalar>(
 }
 
 /// Square root of the rest of a squared length, or the error that says which length is missing, m. The rest is compared
-/// with `size` lane by lane.
+/// with `size`, which is given of one lane and of all at once.
 #[inline(always)]
 pub(crate) fn checked_sqrt<T: Scalar>(
     rest: T,
-    size: impl Fn(usize) -> f64,
+    size: (impl Fn(usize) -> f64, impl Fn() -> T),
     group: usize,
     q: f64,
     missing: impl Fn() -> f64,
 ) -> Result<T, PositionError> {
-    let tolerance = singular_tolerance::<T>();
-    if uniform::<T>(|lane| rest.lane(lane) > tolerance * tolerance * size(lane)) == Some(true) {
+    let tolerance = singular_tolerance::<T>() * singular_tolerance::<T>();
+    // A number alone is compared by its value: its derivatives decide nothing.
+    let is_clear = match T::LANES {
+        1 => rest.value() > tolerance * size.0(0),
+        _ => rest.exceeds(size.1() * T::from_f64(tolerance)),
+    };
+    if is_clear {
         return Ok(rest.sqrt());
     }
-    sqrt_error(rest.value(), size(0), group, q, missing)
+    sqrt_error(rest.value(), size.0(0), group, q, missing)
 }
 
 #[cold]
