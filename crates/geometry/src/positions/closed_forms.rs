@@ -60,13 +60,13 @@ pub(super) fn rrr_dyad_positions<T: Scalar>(
     // (2 × area)² by factors that keep their digits near a stretched or folded triangle.
     let rest = (sum_squared - square) * (square - difference_squared);
     let size = |lane| square.lane(lane) * square.lane(lane);
-    let size = (size, || square * square);
     let q = pose.first_coordinate();
     let missing = || {
         let distance = square.value().sqrt();
         (distance - dyad.sum_squared.sqrt()).max(dyad.difference_squared.sqrt() - distance)
     };
-    let double_area = checked_sqrt(rest, size, group, q, missing)? * T::from_f64(0.5 * dyad.branch);
+    let double_area = checked_sqrt(rest, size, || square * square, group, q, missing)?
+        * T::from_f64(0.5 * dyad.branch);
     let half = T::from_f64(0.5);
     let inverse = T::from_f64(1.0) / square;
     let across = known.perp() * double_area;
@@ -131,9 +131,10 @@ pub(super) fn guided_point_positions<T: Scalar>(
         // n·D = −n₀·w with n₀, w constant in the turning frame.
         let kappa = -constant_direction.dot(local);
         let square = known.dot(known);
-        let size = (|l| square.lane(l), || square);
+        let size = |l| square.lane(l);
         let missing = || kappa.value().abs() - square.value().sqrt();
-        let half_chord = branch * checked_sqrt(square - kappa * kappa, size, group, q, missing)?;
+        let half_chord =
+            branch * checked_sqrt(square - kappa * kappa, size, || square, group, q, missing)?;
         let direction = (known * kappa + known.perp() * half_chord) * (T::from_f64(1.0) / square);
         // axis·D = reach.
         pose.closure_travel[guided.closure] = half_chord + local.cross(constant_direction);
@@ -150,9 +151,10 @@ pub(super) fn guided_point_positions<T: Scalar>(
         };
         let kappa = -normal.dot(known);
         let square = length * length;
-        let size = (|l| square.lane(l), || square);
+        let size = |l| square.lane(l);
         let missing = || kappa.value().abs() - length.value();
-        let half_chord = branch * checked_sqrt(square - kappa * kappa, size, group, q, missing)?;
+        let half_chord =
+            branch * checked_sqrt(square - kappa * kappa, size, || square, group, q, missing)?;
         let vector = normal * kappa - along * half_chord;
         pose.closure_travel[guided.closure] = along.dot(known) - half_chord;
         pose.vector[guided.found_vector] = vector;
@@ -164,11 +166,12 @@ pub(super) fn guided_point_positions<T: Scalar>(
 }
 
 /// Square root of the rest of a squared length, or the error that says which length is missing, m. The rest is compared
-/// with `size`, which is given of one lane and of all at once.
+/// with `size` of one lane, or with `sizes` of all at once.
 #[inline(always)]
 pub(crate) fn checked_sqrt<T: Scalar>(
     rest: T,
-    size: (impl Fn(usize) -> f64, impl Fn() -> T),
+    size: impl Fn(usize) -> f64,
+    sizes: impl Fn() -> T,
     group: usize,
     q: f64,
     missing: impl Fn() -> f64,
@@ -176,13 +179,13 @@ pub(crate) fn checked_sqrt<T: Scalar>(
     let tolerance = singular_tolerance::<T>() * singular_tolerance::<T>();
     // A number alone is compared by its value: its derivatives decide nothing.
     let is_clear = match T::LANES {
-        1 => rest.value() > tolerance * size.0(0),
-        _ => rest.exceeds(size.1() * T::from_f64(tolerance)),
+        1 => rest.value() > tolerance * size(0),
+        _ => rest.exceeds(sizes() * T::from_f64(tolerance)),
     };
     if is_clear {
         return Ok(rest.sqrt());
     }
-    sqrt_error(rest.value(), size.0(0), group, q, missing)
+    sqrt_error(rest.value(), size(0), group, q, missing)
 }
 
 #[cold]

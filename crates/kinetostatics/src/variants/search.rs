@@ -222,8 +222,9 @@ impl TurnSearch {
             values.add(self.samples.values(curve));
         }
         // What is no number stays.
-        if !(self.samples.steepness <= self.steepness) {
-            self.steepness = self.samples.steepness;
+        let steepness = self.samples.steepness;
+        if steepness > self.steepness || steepness.is_nan() {
+            self.steepness = steepness;
         }
         let count = FIRST_POSITIONS << self.level;
         let step = TAU / count as f64;
@@ -287,21 +288,21 @@ impl TurnSearch {
         let words = (FIRST_POSITIONS << self.level) / 64;
         for (curve, of) in self.curves.iter().enumerate() {
             // By position, whether the value falls or rises to the next one.
-            let mut slopes = [[0_u64; LAST_POSITIONS / 64]; 2];
-            for word in 0..words {
+            let mut slopes = [[0_u64; 2]; LAST_POSITIONS / 64];
+            for (word, slopes) in slopes[..words].iter_mut().enumerate() {
                 for bit in (0..64).step_by(S::LANES) {
                     let here = S::load(&of.values()[64 * word + bit..]);
                     let next = S::load(&of.values()[64 * word + bit + 1..]);
-                    slopes[0][word] |= here.lanes_above(next) << bit;
-                    slopes[1][word] |= next.lanes_above(here) << bit;
+                    slopes[0] |= here.lanes_above(next) << bit;
+                    slopes[1] |= next.lanes_above(here) << bit;
                 }
             }
-            for (sign, slopes) in [1.0, -1.0].into_iter().zip(&slopes) {
+            for (kind, sign) in [1.0, -1.0].into_iter().enumerate() {
                 let mut at = [0; LAST_POSITIONS / 64];
-                let mut before = slopes[words - 1] >> 63;
-                for (at, &falls) in at[..words].iter_mut().zip(slopes) {
-                    *at = falls & !(falls << 1 | before);
-                    before = falls >> 63;
+                let mut before = slopes[words - 1][kind] >> 63;
+                for (at, slopes) in at[..words].iter_mut().zip(&slopes) {
+                    *at = slopes[kind] & !(slopes[kind] << 1 | before);
+                    before = slopes[kind] >> 63;
                 }
                 Candidate::find((curve, sign), of, &at[..words], &mut self.candidates);
             }
