@@ -243,15 +243,14 @@ impl Plan {
         if !margins.iter().all(|a| a.v + a.d * clearance > 0.0) {
             return None;
         }
-        let is_clear = |new: &Vec<Dual>| new.iter().all(|b| b.v - b.d * clearance > 0.0);
-        let found = if self.is_dyadic() {
+        let is_clear = |new: &Dual| new.v - new.d * clearance > 0.0;
+        if self.is_dyadic() {
             // Closed forms need no prediction.
-            self.closed_form_margins((from, q), buffers)?
-        } else {
-            buffers.reached = self.corrected_pose(from, q)?;
-            self.margins_by_duals(&buffers.reached, &mut buffers.with_slopes)?
-        };
-        Some(found).filter(is_clear)
+            return self.closed_form_margins((from, q), buffers, is_clear);
+        }
+        buffers.reached = self.corrected_pose(from, q)?;
+        let found = self.margins_by_duals(&buffers.reached, &mut buffers.with_slopes)?;
+        found.iter().all(is_clear).then_some(found)
     }
 
     /// The pose at `q` near another one, if every correction is small beside its prediction.

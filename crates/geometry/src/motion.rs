@@ -47,37 +47,49 @@ impl Plan {
     /// Velocities for the actuators' speeds `q_dot` (rad/s).
     #[inline(always)]
     pub fn velocities<T: Scalar>(&self, pose: &Pose<T>, q_dot: &[T], motion: &mut Motion<T>) {
+        self.actuated_velocities(q_dot, motion);
+        for (assur, &inverse) in self.groups.iter().zip(&pose.inverse_determinant) {
+            if !assur.pruned {
+                self.group_velocities((assur, inverse), pose, q_dot, motion);
+            }
+        }
+    }
+
+    /// The velocities that the actuators alone determine.
+    #[inline(always)]
+    pub(crate) fn actuated_velocities<T: Scalar>(&self, q_dot: &[T], motion: &mut Motion<T>) {
         propagate_actuated(&self.actuated_frames, q_dot, &mut motion.angular_velocity);
         self.set_actuated_slides(q_dot, &mut motion.slide_velocity);
-        for (assur, &inverse) in self.groups.iter().zip(&pose.inverse_determinant) {
-            if assur.pruned {
-                continue;
+    }
+
+    /// The velocities of a group, after those before it; `inverse` is one over the determinant of a closed form.
+    #[inline(always)]
+    pub(crate) fn group_velocities<T: Scalar>(
+        &self,
+        (assur, inverse): (&AssurGroup, T),
+        pose: &Pose<T>,
+        q_dot: &[T],
+        motion: &mut Motion<T>,
+    ) {
+        match &assur.kind {
+            GroupKind::RrrDyad(dyad) => {
+                let rate = vector_velocity(&dyad.known, pose, motion);
+                let [r1, r2] = dyad.vectors.map(|a| pose.vector[a]);
+                motion.angular_velocity[dyad.frames[0]] = -(rate.dot(r2) * inverse);
+                motion.angular_velocity[dyad.frames[1]] = rate.dot(r1) * inverse;
             }
-            match &assur.kind {
-                GroupKind::RrrDyad(dyad) => {
-                    let rate = vector_velocity(&dyad.known, pose, motion);
-                    let [r1, r2] = dyad.vectors.map(|a| pose.vector[a]);
-                    motion.angular_velocity[dyad.frames[0]] = -(rate.dot(r2) * inverse);
-                    motion.angular_velocity[dyad.frames[1]] = rate.dot(r1) * inverse;
-                }
-                GroupKind::GuidedPoint(guided) => {
-                    motion.angular_velocity[guided.frame] = T::from_f64(0.0);
-                    let rate = vector_velocity(&guided.vectors, pose, motion);
-                    let rate = normal_gap_velocity(
-                        rate,
-                        guided.axis,
-                        pose.closure_travel[guided.closure],
-                        pose,
-                        motion,
-                    );
-                    motion.angular_velocity[guided.frame] = -(rate * inverse);
-                }
-                GroupKind::Factored(factored_group) => {
-                    self.factored_velocities(assur, factored_group, pose, q_dot, motion);
-                }
+            GroupKind::GuidedPoint(guided) => {
+                motion.angular_velocity[guided.frame] = T::from_f64(0.0);
+                let rate = vector_velocity(&guided.vectors, pose, motion);
+                let travel = pose.closure_travel[guided.closure];
+                let rate = normal_gap_velocity(rate, guided.axis, travel, pose, motion);
+                motion.angular_velocity[guided.frame] = -(rate * inverse);
             }
-            propagate_actuated(&assur.actuated_frames, q_dot, &mut motion.angular_velocity);
+            GroupKind::Factored(factored_group) => {
+                self.factored_velocities(assur, factored_group, pose, q_dot, motion);
+            }
         }
+        propagate_actuated(&assur.actuated_frames, q_dot, &mut motion.angular_velocity);
     }
 
     /// Accelerations for the actuators' accelerations `q_ddot` (rad/s²), at the velocities that

@@ -5,6 +5,7 @@ mod construct;
 mod factored_group;
 
 use crate::error::PositionError;
+use crate::motion::Motion;
 use crate::plan::{ActuatedFrame, GroupKind, PlacementMethod, Plan, Pose, Step};
 use crate::plane::{Vec2, vec2};
 use crate::structure::groups::Unknown;
@@ -135,15 +136,35 @@ impl Plan {
         pose: &mut Pose<T>,
         initial_iterate: InitialIterate,
     ) -> Result<(), PositionError> {
-        for (coordinate, &value) in pose.q.iter_mut().zip(q) {
-            for q in (0..T::LANES).map(|lane| value.lane(lane)) {
-                if !q.is_finite() {
-                    return Err(PositionError::NotFinite { q });
-                }
-            }
-            *coordinate = value;
-        }
+        take_coordinates(q, pose)?;
         self.run_steps(&self.steps, pose, initial_iterate)
+    }
+
+    /// The positions at a coordinate of a plan of closed forms, and its velocities at unit velocity there, group by group: of a
+    /// large plan each group is read from memory once. `each` is called after each group, and ends all where it is false.
+    ///
+    /// # Errors
+    /// [`PositionError`] where a group cannot close.
+    pub(crate) fn unit_motion_by_groups(
+        &self,
+        q: f64,
+        pose: &mut Pose<f64>,
+        motion: &mut Motion<f64>,
+        mut each: impl FnMut(usize, &Pose<f64>, &Motion<f64>) -> bool,
+    ) -> Result<bool, PositionError> {
+        take_coordinates(&[q], pose)?;
+        self.actuated_velocities(&[1.0], motion);
+        for (g, assur) in self.groups.iter().enumerate() {
+            self.group_positions(g, pose)?;
+            let inverse = pose.inverse_determinant[g];
+            self.group_velocities((assur, inverse), pose, &[1.0], motion);
+            if !each(g, pose, motion) {
+                return Ok(false);
+            }
+        }
+        let rest = &self.steps[self.first_step(self.groups.len())..];
+        self.run_steps(rest, pose, InitialIterate::CurrentPose)?;
+        Ok(true)
     }
 
     /// The positions at the coordinates `q` of a group and all before it.
@@ -310,6 +331,23 @@ impl Plan {
             joint_origins.push(joint_origin);
         }
     }
+}
+
+/// Sets the actuators' coordinates.
+#[inline(always)]
+fn take_coordinates<T: Scalar>(q: &[T], pose: &mut Pose<T>) -> Result<(), PositionError> {
+    for (coordinate, &value) in pose.q.iter_mut().zip(q) {
+        // Of several lanes all at once; where that does not tell, each.
+        if T::LANES == 1 || !T::from_f64(f64::MAX).exceeds(value * value) {
+            for q in (0..T::LANES).map(|lane| value.lane(lane)) {
+                if !q.is_finite() {
+                    return Err(PositionError::NotFinite { q });
+                }
+            }
+        }
+        *coordinate = value;
+    }
+    Ok(())
 }
 
 /// Rotates a frame by its actuator's coordinate.

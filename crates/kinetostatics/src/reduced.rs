@@ -9,13 +9,13 @@
 //!
 //! (Jordi, Zayas and Cardona 2008, eq. 3, in the consistent form of docs/theory.md.)
 
-#[cfg(target_arch = "x86_64")]
-mod avx2;
 mod batch;
 mod lane_work;
+#[cfg(target_arch = "x86_64")]
+mod registers;
 
 pub use batch::Batch;
-pub(crate) use batch::{LANES, LaneScalar};
+pub(crate) use batch::{LANES, LaneScalar, MAX_LANES};
 pub(crate) use lane_work::{LaneWork, in_lanes};
 
 use crate::error::PositionResult;

@@ -3,7 +3,7 @@
 //! Every operation is done in each lane as it is done to a plain number, so each lane's results are those
 //! of the plain evaluation to the last bit. The compiler makes vector instructions of it.
 //!
-//! A decision must hold in all lanes alike: whoever decides by a value asks every lane ([`uniform`](crate::uniform)), and
+//! A decision must hold in all lanes alike: whoever decides by a value asks every lane ([`uniform`](crate::uniform), [`Scalar::exceeds`]), and
 //! where lanes disagree each value is to be evaluated alone.
 
 use crate::scalar::Scalar;

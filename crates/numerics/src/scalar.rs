@@ -36,6 +36,12 @@ pub trait Scalar:
     fn lane(self, _lane: usize) -> f64 {
         self.value()
     }
+    /// Whether every value exceeds the one in the same lane of another number: where lanes disagree, the values must be
+    /// evaluated one by one.
+    #[inline(always)]
+    fn exceeds(self, other: Self) -> bool {
+        (0..Self::LANES).all(|lane| self.lane(lane) > other.lane(lane))
+    }
     /// Square root.
     fn sqrt(self) -> Self;
     /// Sine and cosine together.
@@ -67,7 +73,7 @@ pub fn map_array<A: Copy, B: Copy, const N: usize>(of: [A; N], f: impl Fn(A) -> 
 }
 
 /// The result of a test of each lane; none where lanes disagree, so that the values must be evaluated one by one.
-/// Every decision in generic code is made by this.
+/// Every decision in generic code is made by this or by [`Scalar::exceeds`].
 #[inline(always)]
 pub fn uniform<T: Scalar>(test: impl Fn(usize) -> bool) -> Option<bool> {
     let first = test(0);

@@ -51,16 +51,33 @@ pub fn sin_cos<T: Scalar, const N: usize>(
 ) -> (T, T) {
     let plain = split(x);
     if plain.iter().all(|x| x.abs() <= MAX_REDUCED) {
-        return sin_cos_reduced(x, split, join);
+        return to_quadrants(sin_cos_reduced(x), split, join);
     }
-    let (sin, cos) = sin_cos_large(plain);
+    let (sin, cos) = sin_cos_by_lane(plain);
     (join(sin), join(cos))
 }
 
-/// Where one of them is large, or NaN.
+/// Lanes in registers, which are not to be taken apart for their sines.
+pub trait LanesInRegisters: Scalar {
+    /// Does to a sine, a cosine and a shifted k what `to_quadrants` does to them lane by lane.
+    fn to_quadrants(reduced: [Self; 3]) -> (Self, Self);
+    /// Sine and cosine lane by lane, by [`sin_cos_by_lane`].
+    fn sin_cos_by_lane(self) -> (Self, Self);
+}
+
+/// Sine and cosine of lanes in registers, with the bits of [`sin_cos`].
+#[inline(always)]
+pub fn sin_cos_in_registers<T: LanesInRegisters>(x: T) -> (T, T) {
+    if T::from_f64(MAX_REDUCED * MAX_REDUCED).exceeds(x * x) {
+        return T::to_quadrants(sin_cos_reduced(x));
+    }
+    x.sin_cos_by_lane()
+}
+
+/// Sines and cosines of angles of which one is large, or NaN.
 #[cold]
 #[inline(never)]
-fn sin_cos_large<const N: usize>(x: [f64; N]) -> ([f64; N], [f64; N]) {
+pub fn sin_cos_by_lane<const N: usize>(x: [f64; N]) -> ([f64; N], [f64; N]) {
     let both = x.map(|x| {
         if x.abs() <= MAX_REDUCED {
             Scalar::sin_cos(x)
@@ -71,12 +88,9 @@ fn sin_cos_large<const N: usize>(x: [f64; N]) -> ([f64; N], [f64; N]) {
     (both.map(|b| b.0), both.map(|b| b.1))
 }
 
+/// Sine and cosine of x − k π/2, and k in the last bits of a number.
 #[inline(always)]
-fn sin_cos_reduced<T: Scalar, const N: usize>(
-    x: T,
-    split: impl Fn(T) -> [f64; N],
-    join: impl Fn([f64; N]) -> T,
-) -> (T, T) {
+fn sin_cos_reduced<T: Scalar>(x: T) -> [T; 3] {
     let shifted = x * T::from_f64(FRAC_2_PI) + T::from_f64(ROUNDING_SHIFT);
     let k = shifted - T::from_f64(ROUNDING_SHIFT);
     let [one, two, three] = map_array(HALF_PI_PARTS, T::from_f64);
@@ -92,9 +106,17 @@ fn sin_cos_reduced<T: Scalar, const N: usize>(
     let cos = T::from_f64(1.0) - half;
     let lost = (T::from_f64(1.0) - cos) - half;
     let cos = cos + (lost + (square * square * polynomial(COS_COEFFICIENTS, square) - r * rest));
+    [sin, cos, shifted]
+}
 
-    // Odd quadrants exchange the two; their signs follow from the last two bits of k.
-    let [mut sin, mut cos, k] = [sin, cos, shifted].map(split);
+/// Odd quadrants exchange the two; their signs follow from the last two bits of k.
+#[inline(always)]
+fn to_quadrants<T: Scalar, const N: usize>(
+    reduced: [T; 3],
+    split: impl Fn(T) -> [f64; N],
+    join: impl Fn([f64; N]) -> T,
+) -> (T, T) {
+    let [mut sin, mut cos, k] = reduced.map(split);
     for ((sin, cos), k) in sin.iter_mut().zip(&mut cos).zip(k) {
         let k = k.to_bits();
         let both = [sin.to_bits(), cos.to_bits()];

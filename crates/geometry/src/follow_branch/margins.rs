@@ -1,6 +1,7 @@
 //! How far each group is from where its branch ends: the size of its determinant, with its derivative by the coordinate.
 
 use super::step_buffers::StepBuffers;
+use crate::motion::Motion;
 use crate::plan::{Plan, Pose};
 use crate::positions::InitialIterate;
 use dwell_numerics::Dual;
@@ -13,37 +14,40 @@ impl Plan {
         buffers: &mut StepBuffers,
     ) -> Option<Vec<Dual>> {
         if self.is_dyadic() {
-            self.closed_form_margins((at, at.q[0]), buffers)
+            self.closed_form_margins((at, at.q[0]), buffers, |_| true)
         } else {
             self.margins_by_duals(at, &mut buffers.with_slopes)
         }
     }
 
     /// The margins at a coordinate if every group is a closed form, with the pose there, whose revolutions are counted
-    /// from another one. The slopes follow from the motion at unit velocity, in a third of the operations of dual numbers.
+    /// from another one; none where one of them is not clear. The slopes follow from the motion at unit velocity, in a third of
+    /// the operations of dual numbers.
     pub(super) fn closed_form_margins(
         &self,
         (from, q): (&Pose<f64>, f64),
         StepBuffers {
             reached, motion, ..
         }: &mut StepBuffers,
+        is_clear: impl Fn(&Dual) -> bool,
     ) -> Option<Vec<Dual>> {
         if !self.is_explicit() {
             reached.start_from(from);
         }
-        self.positions_from(&[q], reached, InitialIterate::CurrentPose)
-            .ok()?;
-        self.velocities(reached, &[1.0], motion);
-        let margin = |group: usize| {
-            let [product, slope] = self.determinant_and_slope(group, reached, motion);
+        let mut margins = Vec::with_capacity(self.groups.len());
+        let each = |group: usize, pose: &Pose<f64>, motion: &Motion<f64>| {
+            let [product, slope] = self.determinant_and_slope(group, pose, motion);
             // The product of two vectors that are nearly parallel loses digits that the pose has.
-            let size = (1.0 / reached.inverse_determinant[group]).abs();
-            Dual {
+            let size = (1.0 / pose.inverse_determinant[group]).abs();
+            let margin = Dual {
                 v: size,
                 d: slope.copysign(slope * product),
-            }
+            };
+            margins.push(margin);
+            is_clear(&margin)
         };
-        Some((0..self.groups.len()).map(margin).collect())
+        let found = self.unit_motion_by_groups(q, reached, motion, each);
+        found.is_ok_and(|all| all).then_some(margins)
     }
 
     /// The margins at a pose, by dual numbers.

@@ -5,7 +5,7 @@ use crate::error::PositionError;
 use crate::plan::{GuidedPoint, LoopClosure, Pose, RrrDyad};
 use crate::plane::Vec2;
 use crate::structure::tree::FrameVector;
-use dwell_numerics::{Scalar, map_array, uniform};
+use dwell_numerics::{Scalar, map_array};
 
 /// Below this determinant, relative to the lengths that make it, no digit of the result is significant.
 const SINGULAR: f64 = 1e-14;
@@ -65,7 +65,8 @@ pub(super) fn rrr_dyad_positions<T: Scalar>(
         let distance = square.value().sqrt();
         (distance - dyad.sum_squared.sqrt()).max(dyad.difference_squared.sqrt() - distance)
     };
-    let double_area = checked_sqrt(rest, size, group, q, missing)? * T::from_f64(0.5 * dyad.branch);
+    let double_area = checked_sqrt(rest, size, || square * square, group, q, missing)?
+        * T::from_f64(0.5 * dyad.branch);
     let half = T::from_f64(0.5);
     let inverse = T::from_f64(1.0) / square;
     let across = known.perp() * double_area;
@@ -132,7 +133,8 @@ pub(super) fn guided_point_positions<T: Scalar>(
         let square = known.dot(known);
         let size = |l| square.lane(l);
         let missing = || kappa.value().abs() - square.value().sqrt();
-        let half_chord = branch * checked_sqrt(square - kappa * kappa, size, group, q, missing)?;
+        let half_chord =
+            branch * checked_sqrt(square - kappa * kappa, size, || square, group, q, missing)?;
         let direction = (known * kappa + known.perp() * half_chord) * (T::from_f64(1.0) / square);
         // axis·D = reach.
         pose.closure_travel[guided.closure] = half_chord + local.cross(constant_direction);
@@ -151,7 +153,8 @@ pub(super) fn guided_point_positions<T: Scalar>(
         let square = length * length;
         let size = |l| square.lane(l);
         let missing = || kappa.value().abs() - length.value();
-        let half_chord = branch * checked_sqrt(square - kappa * kappa, size, group, q, missing)?;
+        let half_chord =
+            branch * checked_sqrt(square - kappa * kappa, size, || square, group, q, missing)?;
         let vector = normal * kappa - along * half_chord;
         pose.closure_travel[guided.closure] = along.dot(known) - half_chord;
         pose.vector[guided.found_vector] = vector;
@@ -163,17 +166,23 @@ pub(super) fn guided_point_positions<T: Scalar>(
 }
 
 /// Square root of the rest of a squared length, or the error that says which length is missing, m. The rest is compared
-/// with `size` lane by lane.
+/// with `size` of one lane, or with `sizes` of all at once.
 #[inline(always)]
 pub(crate) fn checked_sqrt<T: Scalar>(
     rest: T,
     size: impl Fn(usize) -> f64,
+    sizes: impl Fn() -> T,
     group: usize,
     q: f64,
     missing: impl Fn() -> f64,
 ) -> Result<T, PositionError> {
-    let tolerance = singular_tolerance::<T>();
-    if uniform::<T>(|lane| rest.lane(lane) > tolerance * tolerance * size(lane)) == Some(true) {
+    let tolerance = singular_tolerance::<T>() * singular_tolerance::<T>();
+    // A number alone is compared by its value: its derivatives decide nothing.
+    let is_clear = match T::LANES {
+        1 => rest.value() > tolerance * size(0),
+        _ => rest.exceeds(sizes() * T::from_f64(tolerance)),
+    };
+    if is_clear {
         return Ok(rest.sqrt());
     }
     sqrt_error(rest.value(), size(0), group, q, missing)

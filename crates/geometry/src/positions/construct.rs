@@ -61,8 +61,10 @@ impl Plan {
                 let missing = || offset.value().abs() - square.value().sqrt();
                 let q = pose.first_coordinate();
                 let size = |l| square.lane(l).max(offset.lane(l) * offset.lane(l));
-                let half_chord =
-                    branch * checked_sqrt(square - offset * offset, size, group, q, missing)?;
+                // The sum of both is no smaller, and at most twice as large.
+                let sizes = || square + offset * offset;
+                let half_chord = branch
+                    * checked_sqrt(square - offset * offset, size, sizes, group, q, missing)?;
                 let travel = half_chord - from.dot(along);
                 pose.slide_travel[slide] = travel;
                 let reached = from + along * travel;
@@ -92,8 +94,9 @@ impl Plan {
                 let missing = || kappa.value().abs() - square.value().sqrt();
                 let q = pose.first_coordinate();
                 let size = |l| square.lane(l).max(kappa.lane(l) * kappa.lane(l));
+                let sizes = || square + kappa * kappa;
                 let half_chord =
-                    branch * checked_sqrt(square - kappa * kappa, size, group, q, missing)?;
+                    branch * checked_sqrt(square - kappa * kappa, size, sizes, group, q, missing)?;
                 pose.rotation[self.class_frame(class)] = if line_rotates {
                     rotation_between(normal, known * kappa + known.perp() * half_chord)
                 } else {
@@ -197,7 +200,8 @@ fn triangle<T: Scalar>(
     };
     let q = pose.first_coordinate();
     let size = |lane| square.lane(lane) * square.lane(lane);
-    let double_area = checked_sqrt(rest, size, group, q, missing)? * half * branch;
+    let double_area =
+        checked_sqrt(rest, size, || square * square, group, q, missing)? * half * branch;
     let across = known.perp() * double_area;
     let square_difference = -(gap * sum);
     let inverse = T::from_f64(1.0) / square;

@@ -7,8 +7,12 @@ use dwell_geometry::PositionError;
 use dwell_numerics::{Lanes, Scalar};
 use std::ops::Range;
 
-/// Poses side by side: two registers of any x86-64, one with AVX2.
+/// Poses side by side where there are no wider registers: two of any x86-64.
 pub(crate) const LANES: usize = 4;
+/// Most poses side by side.
+pub(crate) const MAX_LANES: usize = 16;
+/// From so many poses on the rest of a block is evaluated side by side too.
+const MIN_POSES: usize = 3;
 /// Smallest block of one thread: its working memory is small in comparison.
 const MIN_BLOCK: usize = 1024;
 /// Blocks for each thread, so that all end at about the same time.
@@ -77,21 +81,44 @@ impl<'a> BatchSlice<'a> {
     }
 }
 
-/// [`LANES`] plain numbers side by side.
+/// At most [`MAX_LANES`] plain numbers side by side.
 pub(crate) trait LaneScalar: Scalar {
-    fn from_array(numbers: [f64; LANES]) -> Self;
-    fn to_array(self) -> [f64; LANES];
+    /// The first of some numbers, at least as many as there are lanes.
+    fn load(numbers: &[f64]) -> Self;
+    /// Puts them into the first of some places, at least as many as there are lanes.
+    fn store(self, to: &mut [f64]);
+    /// The larger in each lane; where one is no number, either.
+    fn maximum(self, other: Self) -> Self;
+    /// By bit, whether the number in the lane exceeds that of another.
+    fn lanes_above(self, other: Self) -> u64;
 }
 
 impl LaneScalar for Lanes<LANES> {
     #[inline(always)]
-    fn from_array(numbers: [f64; LANES]) -> Self {
-        Self(numbers)
+    fn load(numbers: &[f64]) -> Self {
+        let mut loaded = [0.0; LANES];
+        loaded.copy_from_slice(&numbers[..LANES]);
+        Self(loaded)
     }
 
     #[inline(always)]
-    fn to_array(self) -> [f64; LANES] {
-        self.0
+    fn store(self, to: &mut [f64]) {
+        to[..LANES].copy_from_slice(&self.0);
+    }
+
+    #[inline(always)]
+    fn maximum(self, other: Self) -> Self {
+        let mut larger = self;
+        for (larger, other) in larger.0.iter_mut().zip(other.0) {
+            *larger = larger.max(other);
+        }
+        larger
+    }
+
+    #[inline(always)]
+    fn lanes_above(self, other: Self) -> u64 {
+        let above = |lane: usize| u64::from(self.0[lane] > other.0[lane]) << lane;
+        (0..LANES).map(above).sum()
     }
 }
 
@@ -173,7 +200,7 @@ impl Model {
         errors
     }
 
-    /// Four poses at a time; singly those that remain or whose computations diverge.
+    /// Several poses at a time; singly the last few, or those whose computations diverge.
     #[inline(always)]
     fn reduce_block<S: LaneScalar>(&self, mut slice: BatchSlice<'_>) -> BatchErrors {
         // For several poses at once, and for single ones where they diverge; few blocks need both.
@@ -186,11 +213,11 @@ impl Model {
         let mut errors = Vec::new();
         let mut at = 0;
         while at < slice.q.len() {
-            let together = in_lanes && {
+            let next = slice.q.len().min(at + S::LANES);
+            let together = in_lanes && next - at >= MIN_POSES && {
                 let workspace = lanes.get_or_insert_with(|| self.reduction_workspace());
-                self.reduce_lanes(&mut slice, at, workspace)
+                self.reduce_lanes(&mut slice, at..next, workspace)
             };
-            let next = slice.q.len().min(at + LANES);
             if !together {
                 let workspace = scalar.get_or_insert_with(|| self.reduction_workspace());
                 self.reduce_scalar(&mut slice, at..next, workspace, &mut errors);
@@ -200,28 +227,38 @@ impl Model {
         errors
     }
 
-    /// As many poses as there are lanes from the `at`th on; false if their computations diverge.
+    /// At most as many poses as there are lanes, the last of which stands for those that are missing; false if their
+    /// computations diverge.
     #[inline(always)]
     fn reduce_lanes<S: LaneScalar>(
         &self,
         slice: &mut BatchSlice<'_>,
-        at: usize,
+        indices: Range<usize>,
         workspace: &mut ReductionWorkspace<S>,
     ) -> bool {
-        let Some(&q) = slice.q[at..].first_chunk() else {
-            return false;
-        };
+        let count = indices.len();
+        let mut numbers = [0.0; MAX_LANES];
+        numbers[..count].copy_from_slice(&slice.q[indices.clone()]);
+        let last = numbers[count - 1];
+        numbers[count..].fill(last);
         let (model_workspace, out) = workspace;
-        if self.reduce(S::from_array(q), model_workspace, out).is_err() {
+        if self
+            .reduce(S::load(&numbers), model_workspace, out)
+            .is_err()
+        {
             return false;
         }
-        slice.m[at..at + LANES].copy_from_slice(&out.m.to_array());
-        slice.half_dm[at..at + LANES].copy_from_slice(&out.half_dm.to_array());
+        for (value, to) in [(out.m, &mut *slice.m), (out.half_dm, &mut *slice.half_dm)] {
+            value.store(&mut numbers);
+            to[indices.clone()].copy_from_slice(&numbers[..count]);
+        }
         let reactions = out.a.len();
         for (values, to) in [(&out.a, &mut *slice.a), (&out.b, &mut *slice.b)] {
+            let to = &mut to[indices.start * reactions..indices.end * reactions];
             for (k, value) in values.iter().enumerate() {
-                for (lane, value) in value.to_array().into_iter().enumerate() {
-                    to[(at + lane) * reactions + k] = value;
+                value.store(&mut numbers);
+                for (to, value) in to.chunks_exact_mut(reactions).zip(numbers) {
+                    to[k] = value;
                 }
             }
         }

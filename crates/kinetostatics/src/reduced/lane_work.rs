@@ -11,11 +11,11 @@ pub(crate) trait LaneWork {
     fn run<S: LaneScalar>(self) -> Self::Output;
 }
 
-/// Does the work on a model in registers of four numbers, where the processor has them and all groups of the model are
+/// Does the work on a model in the processor's widest registers, where it has any of more than two numbers and all groups of the model are
 /// inlined, or else with [`Lanes`].
 pub(crate) fn in_lanes<W: LaneWork>(model: &Model, work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
-    let work = match super::avx2::run(model, work) {
+    let work = match super::registers::run(model, work) {
         Ok(output) => return output,
         Err(work) => work,
     };

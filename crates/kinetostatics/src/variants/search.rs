@@ -3,8 +3,8 @@
 
 mod local;
 
-use crate::reduced::LANES;
-use local::{Interpolant, Peak};
+use crate::reduced::{LaneScalar, MAX_LANES};
+use local::{Candidate, Interpolant, Peak};
 use std::f64::consts::TAU;
 
 /// Positions of the first rule, and of the last: next to a change point where more were needed, a curve has no more than
@@ -51,46 +51,43 @@ pub struct Turn {
 /// Positions with the values of all curves: m, ½m′, the reactions of the free rotation, then the forces under loads.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Samples {
-    pub(super) q: Vec<f64>,
+    /// The positions; the last one stands for those that are missing to a whole number of lanes.
+    q: Vec<f64>,
+    count: usize,
     curves: Vec<Vec<f64>>,
-    clearance: Vec<f64>,
+    /// The largest square of a determinant's slope over that of the determinant, 1/rad².
+    pub(super) steepness: f64,
 }
 
 impl Samples {
-    /// The positions side by side from the `first` on; the last one stands for those beyond it.
+    /// The positions.
     #[inline(always)]
-    pub(super) fn lanes_at(&self, first: usize) -> [f64; LANES] {
-        let last = self.q.len() - 1;
-        std::array::from_fn(|lane| self.q[last.min(first + lane)])
+    pub(super) fn positions(&self) -> &[f64] {
+        &self.q
     }
 
-    /// Some values of a curve from the `first` position on; those beyond the last one are dropped.
+    /// The places of a curve's values from a position on.
     #[inline(always)]
-    pub(super) fn set(&mut self, curve: usize, first: usize, values: [f64; LANES]) {
-        fill(&mut self.curves[curve][first..], values);
+    pub(super) fn values_from(&mut self, curve: usize, position: usize) -> &mut [f64] {
+        &mut self.curves[curve][position..]
     }
 
-    /// The same of the determinants' squares over those of their slopes, rad².
-    #[inline(always)]
-    pub(super) fn set_clearance(&mut self, first: usize, values: [f64; LANES]) {
-        fill(&mut self.clearance[first..], values);
+    /// The values of a curve.
+    fn values(&self, curve: usize) -> &[f64] {
+        &self.curves[curve][..self.count]
     }
 
-    /// Room for the values at the positions.
-    fn resize(&mut self) {
-        let count = self.q.len();
-        for values in self.curves.iter_mut().chain([&mut self.clearance]) {
-            values.resize(count, f64::NAN);
+    /// Takes other positions: those in `q`.
+    fn take_positions(&mut self) {
+        self.count = self.q.len();
+        let last = self.q.last().copied().unwrap_or(0.0);
+        let padded = self.count.next_multiple_of(MAX_LANES);
+        self.q.resize(padded, last);
+        for values in &mut self.curves {
+            if values.len() < padded {
+                values.resize(padded, f64::NAN);
+            }
         }
-    }
-}
-
-#[inline(always)]
-fn fill(places: &mut [f64], values: [f64; LANES]) {
-    if let Some(places) = places.first_chunk_mut() {
-        *places = values;
-    } else {
-        places.copy_from_slice(&values[..places.len()]);
     }
 }
 
@@ -99,8 +96,40 @@ fn fill(places: &mut [f64], values: [f64; LANES]) {
 enum Stage {
     /// The positions of the first rule, or those between the positions of the rule before.
     Rule,
-    /// Three positions about each peak; the first position is the wanted one.
-    Triples,
+    /// The wanted position, then one or three about each peak.
+    Peaks,
+}
+
+/// What is the same in all variants of a rule.
+#[derive(Debug, Clone, Default)]
+struct RuleTable {
+    /// The positions that the rule before has not.
+    new: Vec<f64>,
+    /// (−1)^i, and its products with the cosine and the sine of position i.
+    alternating: [Vec<f64>; 3],
+}
+
+impl RuleTable {
+    fn new(level: usize) -> Self {
+        let count = FIRST_POSITIONS << level;
+        let step = TAU / count as f64;
+        let first = usize::from(level > 0);
+        let mut table = Self {
+            new: (first..count)
+                .step_by(1 + first)
+                .map(|i| step * i as f64)
+                .collect(),
+            ..Self::default()
+        };
+        for i in 0..count {
+            let sign = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
+            let (sin, cos) = (step * i as f64).sin_cos();
+            for (terms, term) in table.alternating.iter_mut().zip([1.0, cos, sin]) {
+                terms.push(sign * term);
+            }
+        }
+        table
+    }
 }
 
 /// The search over one turn, stage by stage.
@@ -108,11 +137,13 @@ enum Stage {
 pub(super) struct TurnSearch {
     pub(super) samples: Samples,
     stage: Stage,
-    rule: Samples,
-    interpolants: Vec<Interpolant>,
-    root_m: Vec<f64>,
-    /// By rule: the alternating signs, and their products with cosine and sine of the positions.
-    alternating: Vec<Vec<[f64; 3]>>,
+    /// How often the first rule was doubled.
+    level: usize,
+    tables: Vec<RuleTable>,
+    curves: Vec<Interpolant>,
+    /// The largest steepness of the samples so far.
+    steepness: f64,
+    candidates: Vec<Candidate>,
     peaks: Vec<Peak>,
     start: f64,
     turn: Turn,
@@ -127,17 +158,17 @@ impl TurnSearch {
 
     pub(super) fn new(reactions: usize, forces: usize) -> Self {
         let curves = Self::first_force(reactions) + forces;
-        let samples = Samples {
-            curves: vec![Vec::new(); curves],
-            ..Samples::default()
-        };
         Self {
-            rule: samples.clone(),
-            samples,
+            samples: Samples {
+                curves: vec![Vec::new(); curves],
+                ..Samples::default()
+            },
             stage: Stage::Rule,
-            interpolants: vec![Interpolant::default(); curves],
-            root_m: Vec::new(),
-            alternating: Vec::new(),
+            level: 0,
+            tables: Vec::new(),
+            curves: vec![Interpolant::default(); curves],
+            steepness: 0.0,
+            candidates: Vec::new(),
             peaks: Vec::new(),
             start: 0.0,
             turn: Turn {
@@ -152,8 +183,9 @@ impl TurnSearch {
     /// The next variant, whose m at a coordinate (rad) is wanted.
     pub(super) fn restart(&mut self, start: f64) {
         (self.start, self.stage, self.is_complete) = (start, Stage::Rule, false);
-        self.rule.q.clear();
-        self.ask_for((0..FIRST_POSITIONS).map(|i| TAU * i as f64 / FIRST_POSITIONS as f64));
+        (self.level, self.steepness) = (0, 0.0);
+        self.curves.iter_mut().for_each(Interpolant::clear);
+        self.ask_for_rule();
     }
 
     /// The results, if the search is complete.
@@ -161,120 +193,161 @@ impl TurnSearch {
         self.is_complete.then_some(&self.turn)
     }
 
-    fn ask_for(&mut self, positions: impl Iterator<Item = f64>) {
+    /// Asks for the positions of a rule that the one before has not.
+    fn ask_for_rule(&mut self) {
+        if self.tables.len() <= self.level {
+            self.tables.push(RuleTable::new(self.level));
+        }
         self.samples.q.clear();
-        self.samples.q.extend(positions);
-        self.samples.resize();
+        self.samples
+            .q
+            .extend_from_slice(&self.tables[self.level].new);
+        self.samples.take_positions();
     }
 
     /// Takes the values of the samples; false where the search has ended.
-    pub(super) fn advance(&mut self) -> bool {
+    // What is generic is inlined, and compiled for the registers in which the samples were evaluated.
+    #[inline(always)]
+    pub(super) fn advance<S: LaneScalar>(&mut self) -> bool {
         match self.stage {
-            Stage::Rule => self.take_rule(),
-            Stage::Triples => self.take_triples(),
+            Stage::Rule => self.take_rule::<S>(),
+            Stage::Peaks => self.take_peaks(),
         }
     }
 
     /// Adds the positions of a rule, and doubles it unless it resolves the curves.
-    fn take_rule(&mut self) -> bool {
-        self.merge_rule();
-        let count = self.rule.q.len();
-        let step = TAU / count as f64;
-        let bound = TANGENT_CLEARANCE * TANGENT_CLEARANCE * step * step;
-        let is_clear = self.rule.clearance.iter().all(|&square| square > bound);
-        let positive = self.rule.curves[0].iter().all(|&m| m > 0.0);
-        if !positive {
-            return false;
+    #[inline(always)]
+    fn take_rule<S: LaneScalar>(&mut self) -> bool {
+        for (curve, values) in self.curves.iter_mut().enumerate() {
+            values.add(self.samples.values(curve));
         }
-        if is_clear && self.is_resolved() {
-            self.find_peaks();
+        // What is no number stays.
+        let steepness = self.samples.steepness;
+        if steepness > self.steepness || steepness.is_nan() {
+            self.steepness = steepness;
+        }
+        let count = FIRST_POSITIONS << self.level;
+        let step = TAU / count as f64;
+        let is_clear = self.steepness * (TANGENT_CLEARANCE * step).powi(2) < 1.0;
+        let Some(is_resolved) = self.is_resolved::<S>() else {
+            return false;
+        };
+        if is_clear && is_resolved {
+            self.find_peaks::<S>();
+            self.ask_for_peaks();
             return true;
         }
         if count >= LAST_POSITIONS {
             return false;
         }
-        self.ask_for((0..count).map(|i| step * (i as f64 + 0.5)));
+        self.level += 1;
+        self.ask_for_rule();
         true
     }
 
-    /// Interleaves the samples with the rule so far.
-    fn merge_rule(&mut self) {
-        let is_first = self.rule.q.is_empty();
-        if is_first {
-            self.rule.clone_from(&self.samples);
-            return;
-        }
-        let interleave = |old: &mut Vec<f64>, new: &[f64]| {
-            let count = old.len();
-            old.resize(2 * count, 0.0);
-            for i in (0..count).rev() {
-                (old[2 * i], old[2 * i + 1]) = (old[i], new[i]);
+    /// Whether the last coefficients of √m and of all curves are small; none where m is not positive.
+    #[inline(always)]
+    fn is_resolved<S: LaneScalar>(&mut self) -> Option<bool> {
+        let table = &self.tables[self.level];
+        let count = FIRST_POSITIONS << self.level;
+        let (mut sum, mut last) = (S::from_f64(0.0), [S::from_f64(0.0); 3]);
+        let m = self.curves[0].values();
+        for first in (0..count).step_by(S::LANES) {
+            let m = S::load(&m[first..]);
+            if !m.exceeds(S::from_f64(0.0)) {
+                return None;
             }
-        };
-        interleave(&mut self.rule.q, &self.samples.q);
-        interleave(&mut self.rule.clearance, &self.samples.clearance);
-        let curves = self.rule.curves.iter_mut().zip(&self.samples.curves);
-        curves.for_each(|(old, new)| interleave(old, new));
-    }
-
-    /// Whether the last coefficients of √m and of all curves are small.
-    fn is_resolved(&mut self) -> bool {
-        self.root_m.clear();
-        let m = self.rule.curves[0].iter();
-        self.root_m.extend(m.map(|m| m.sqrt()));
-        let count = self.root_m.len();
-        self.turn.mean_root_m = self.root_m.iter().sum::<f64>() / count as f64;
+            let root = m.sqrt();
+            sum += root;
+            for (last, terms) in last.iter_mut().zip(&table.alternating) {
+                *last += root * S::load(&terms[first..]);
+            }
+        }
+        self.turn.mean_root_m = sum_of_lanes(sum) / count as f64;
         self.turn.positions = count;
-        let level = (count / FIRST_POSITIONS).ilog2() as usize;
-        while self.alternating.len() <= level {
-            self.alternating
-                .push(alternating(FIRST_POSITIONS << self.alternating.len()));
+        let mut resolved = last_coefficient(last, count) <= RESOLVED_MEAN * self.turn.mean_root_m;
+        for curve in &mut self.curves {
+            let (mut size, mut last) = (S::from_f64(0.0), [S::from_f64(0.0); 3]);
+            for first in (0..count).step_by(S::LANES) {
+                let value = S::load(&curve.values()[first..]);
+                size = size.maximum(value).maximum(-value);
+                for (last, terms) in last.iter_mut().zip(&table.alternating) {
+                    *last += value * S::load(&terms[first..]);
+                }
+            }
+            curve.size = largest_lane(size);
+            resolved &= last_coefficient(last, count) <= RESOLVED_CURVE * curve.size;
         }
-        let terms = &self.alternating[level];
-        if last_coefficients(&self.root_m, terms) > RESOLVED_MEAN * self.turn.mean_root_m {
-            return false;
-        }
-        for (of, values) in self.interpolants.iter_mut().zip(&self.rule.curves) {
-            of.set(values);
-        }
-        let mut curves = self.rule.curves.iter().zip(&self.interpolants);
-        curves.all(|(values, of)| last_coefficients(values, terms) <= RESOLVED_CURVE * of.size)
+        Some(resolved)
     }
 
-    /// Finds the peaks of all curves and asks for three positions about each.
-    fn find_peaks(&mut self) {
+    /// Finds the peaks of all curves.
+    #[inline(always)]
+    fn find_peaks<S: LaneScalar>(&mut self) {
+        self.candidates.clear();
+        let words = (FIRST_POSITIONS << self.level) / 64;
+        for (curve, of) in self.curves.iter().enumerate() {
+            // By position, whether the value falls or rises to the next one.
+            let mut slopes = [[0_u64; 2]; LAST_POSITIONS / 64];
+            for (word, slopes) in slopes[..words].iter_mut().enumerate() {
+                for bit in (0..64).step_by(S::LANES) {
+                    let here = S::load(&of.values()[64 * word + bit..]);
+                    let next = S::load(&of.values()[64 * word + bit + 1..]);
+                    slopes[0] |= here.lanes_above(next) << bit;
+                    slopes[1] |= next.lanes_above(here) << bit;
+                }
+            }
+            for (kind, sign) in [1.0, -1.0].into_iter().enumerate() {
+                let mut at = [0; LAST_POSITIONS / 64];
+                let mut before = slopes[words - 1][kind] >> 63;
+                for (at, slopes) in at[..words].iter_mut().zip(&slopes) {
+                    *at = slopes[kind] & !(slopes[kind] << 1 | before);
+                    before = slopes[kind] >> 63;
+                }
+                Candidate::find((curve, sign), of, &at[..words], &mut self.candidates);
+            }
+        }
         self.peaks.clear();
-        for (curve, of) in self.interpolants.iter().enumerate() {
-            Peak::find(curve, of, &mut self.peaks);
+        Peak::interpolate::<S>(&self.candidates, &self.curves, &mut self.peaks);
+        for curve in 0..self.curves.len() {
+            Peak::keep_highest(curve, curve > 1, &mut self.peaks);
         }
-        self.ask_for_triples();
     }
 
-    fn ask_for_triples(&mut self) {
-        self.stage = Stage::Triples;
-        let peaks = std::mem::take(&mut self.peaks);
-        let wanted = std::iter::once(self.start);
-        let open = peaks.iter().filter(|peak| !peak.is_found);
-        self.ask_for(wanted.chain(open.flat_map(Peak::triple)));
-        self.peaks = peaks;
+    fn ask_for_peaks(&mut self) {
+        self.stage = Stage::Peaks;
+        let q = &mut self.samples.q;
+        q.clear();
+        q.push(self.start);
+        for peak in self.peaks.iter().filter(|peak| !peak.is_found) {
+            match peak.curve {
+                0 => q.push(peak.q),
+                _ => q.extend(peak.triple()),
+            }
+        }
+        self.samples.take_positions();
     }
 
-    /// Moves each peak by its three values, and asks for three anew where it was not in their middle.
-    fn take_triples(&mut self) -> bool {
-        self.turn.m_at_start = self.samples.curves[0][0];
-        let mut recentred = false;
-        let open = self.peaks.iter_mut().filter(|peak| !peak.is_found);
-        for (k, peak) in open.enumerate() {
-            let three = |curve: usize| {
-                let at = 1 + 3 * k;
-                std::array::from_fn(|i| self.samples.curves[curve][at + i])
+    /// Moves each peak by its values, and asks for values anew where one is not yet found.
+    fn take_peaks(&mut self) -> bool {
+        let samples = &self.samples;
+        self.turn.m_at_start = samples.values(0)[0];
+        let mut is_open = false;
+        let mut at = 1;
+        for peak in self.peaks.iter_mut().filter(|peak| !peak.is_found) {
+            let values = &samples.values(peak.curve)[at..];
+            is_open |= if peak.curve == 0 {
+                at += 1;
+                // m′ is twice ½m′.
+                let slope = 2.0 * samples.values(1)[at - 1] * peak.step;
+                peak.take_slope(values[0], slope)
+            } else {
+                at += 3;
+                peak.take_triple([values[0], values[1], values[2]])
             };
-            // m′ is twice ½m′.
-            let slopes = (peak.curve == 0).then(|| three(1).map(|half| 2.0 * half));
-            recentred |= peak.take_triple(three(peak.curve), slopes);
         }
-        if recentred {
-            self.ask_for_triples();
+        if is_open {
+            self.ask_for_peaks();
             return true;
         }
         self.finish();
@@ -286,7 +359,7 @@ impl TurnSearch {
         if self.peaks.iter().any(|peak| peak.has_failed) {
             return;
         }
-        for (curve, values) in self.rule.curves.iter().enumerate() {
+        for (curve, values) in self.curves.iter().enumerate() {
             let mut ends = [Extremum::default(); 2];
             for (end, sign) in ends.iter_mut().zip([-1.0, 1.0]) {
                 let peaks = self
@@ -295,7 +368,8 @@ impl TurnSearch {
                     .filter(|p| (p.curve, p.sign) == (curve, sign));
                 let best = peaks.max_by(|a, b| (sign * a.value).total_cmp(&(sign * b.value)));
                 // A constant curve has no peak.
-                let (q, value) = best.map_or((0.0, values[0]), |peak| (peak.q, peak.value));
+                let constant = values.values()[0];
+                let (q, value) = best.map_or((0.0, constant), |peak| (peak.q, peak.value));
                 *end = Extremum {
                     q: q.rem_euclid(TAU),
                     value,
@@ -323,24 +397,29 @@ impl TurnSearch {
     }
 }
 
-/// (−1)^i, and its products with the cosine and the sine of position i.
-fn alternating(count: usize) -> Vec<[f64; 3]> {
-    let of_position = |i: usize| {
-        let sign = if i.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let (sin, cos) = (TAU * i as f64 / count as f64).sin_cos();
-        [sign, sign * cos, sign * sin]
-    };
-    (0..count).map(of_position).collect()
+/// Sum of all lanes.
+#[inline(always)]
+pub(super) fn sum_of_lanes<S: LaneScalar>(of: S) -> f64 {
+    let mut lanes = [0.0; MAX_LANES];
+    of.store(&mut lanes);
+    lanes[..S::LANES].iter().sum()
 }
 
-/// The largest of the last Fourier coefficients of equally spaced values: of orders N/2 and N/2 − 1.
-fn last_coefficients(values: &[f64], alternating: &[[f64; 3]]) -> f64 {
-    let mut sums = [0.0_f64; 3];
-    for (value, terms) in values.iter().zip(alternating) {
-        for (sum, term) in sums.iter_mut().zip(terms) {
-            *sum += term * value;
-        }
+/// The largest of all lanes, or zero.
+#[inline(always)]
+pub(super) fn largest_lane<S: LaneScalar>(of: S) -> f64 {
+    let mut lanes = [0.0; MAX_LANES];
+    of.store(&mut lanes);
+    lanes.into_iter().fold(0.0, f64::max)
+}
+
+/// The largest of the last Fourier coefficients, of orders N/2 and N/2 − 1, from the sums of values with alternating signs
+/// and with cosine and sine.
+#[inline(always)]
+fn last_coefficient<S: LaneScalar>(sums: [S; 3], count: usize) -> f64 {
+    let mut largest = 0.0_f64;
+    for sum in sums {
+        largest = largest.max(sum_of_lanes(sum).abs());
     }
-    let largest = sums.iter().fold(0.0_f64, |max, sum| max.max(sum.abs()));
-    2.0 * largest / values.len() as f64
+    2.0 * largest / count as f64
 }

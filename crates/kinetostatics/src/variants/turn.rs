@@ -1,6 +1,6 @@
 //! The turns of variants, several poses side by side.
 
-use super::search::{Samples, TurnSearch};
+use super::search::{Samples, TurnSearch, largest_lane, sum_of_lanes};
 use super::{LoadedModel, TurningVariant, VariantModel};
 use crate::model::{Model, Workspace};
 use crate::pass::InverseDynamics;
@@ -51,7 +51,7 @@ impl LaneWork for Turns<'_> {
                 let of_loads = loaded.as_mut();
                 unfinished = sampler.sample(&model, &mut search.samples)
                     && of_loads.is_none_or(|loaded| loaded.sample(&mut search.samples))
-                    && search.advance();
+                    && search.advance::<S>();
             }
             let turning = search.turn().filter(|_| fits);
             let loaded = loaded.as_ref().map(|loaded| &loaded.of.model);
@@ -103,8 +103,8 @@ impl LoadedVariant {
             return true;
         };
         let [velocity, rest] = [velocity, 0.0].map(|v| [Lanes([v; LANES])]);
-        for first in (0..samples.q.len()).step_by(LANES) {
-            let q = [Lanes(samples.lanes_at(first))];
+        for first in (0..samples.positions().len()).step_by(LANES) {
+            let q = [Lanes::load(&samples.positions()[first..])];
             let (workspace, forces) = (&mut self.workspace, &mut self.forces);
             let model = &self.of.model;
             if (model.kinetostatics(0.0, &q, &velocity, &rest, workspace, forces)).is_err() {
@@ -112,12 +112,11 @@ impl LoadedVariant {
             }
             let each = self.forces.tau.iter().chain(&self.forces.reactions);
             for (k, force) in each.enumerate() {
-                let force = force.to_array();
                 // A spring of no length has no direction.
-                if !force.iter().all(|force| force.is_finite()) {
+                if !force.0.iter().all(|force| force.is_finite()) {
                     return false;
                 }
-                samples.set(self.first_curve + k, first, force);
+                force.store(samples.values_from(self.first_curve + k, first));
             }
         }
         true
@@ -141,43 +140,40 @@ impl<S: LaneScalar> LaneSampler<S> {
     /// Evaluates what the samples ask for; false where there is no pose.
     #[inline(always)]
     fn sample(&mut self, model: &Model, samples: &mut Samples) -> bool {
-        for first in (0..samples.q.len()).step_by(LANES) {
-            let q = samples.lanes_at(first);
+        let zero = S::from_f64(0.0);
+        // What is no number is not clear either, and neither is what is not finite.
+        let (mut steepness, mut undefined) = (zero, zero);
+        for first in (0..samples.positions().len()).step_by(S::LANES) {
+            let q = S::load(&samples.positions()[first..]);
             let out = &mut self.coefficients;
-            let evaluated = model.reduce(S::from_array(q), &mut self.workspace, out);
-            if evaluated.is_err() {
+            if model.reduce(q, &mut self.workspace, out).is_err() {
                 return false;
             }
             let (m, half_dm) = (out.m, out.half_dm);
             let inverse = S::from_f64(1.0) / m;
-            samples.set(0, first, m.to_array());
-            samples.set(1, first, half_dm.to_array());
+            m.store(samples.values_from(0, first));
+            half_dm.store(samples.values_from(1, first));
             for (k, (&a, &b)) in out.a.iter().zip(&out.b).enumerate() {
                 // R = a q̈ + b q̇² with q̈ = −½m′ q̇²/m and q̇² = 2E/m, over 2E.
                 let free = (b - a * half_dm * inverse) * inverse;
-                samples.set(2 + k, first, free.to_array());
+                free.store(samples.values_from(2 + k, first));
             }
-            self.clearance(model, first, samples);
+            for group in 0..model.plan().group_count() {
+                let of_group = self.steepness(model, group);
+                steepness = steepness.maximum(of_group);
+                undefined += of_group * zero;
+            }
         }
+        samples.steepness = largest_lane(steepness) + sum_of_lanes(undefined);
         true
     }
 
-    /// The least square of a determinant over its slope, rad²: how far the tangents of the determinants are from zero.
+    /// The square of a determinant's slope over that of the determinant, 1/rad²: one over it is how far the tangent of the
+    /// determinant is from zero.
     #[inline(always)]
-    fn clearance(&self, model: &Model, first: usize, samples: &mut Samples) {
-        let plan = model.plan();
-        let mut least = [f64::INFINITY; LANES];
-        for group in 0..plan.group_count() {
-            let [value, slope] =
-                plan.determinant_and_slope(group, &self.workspace.pose, &self.workspace.motion);
-            let squares = (value * value / (slope * slope)).to_array();
-            for (least, square) in least.iter_mut().zip(squares) {
-                // What is no number is not clear either.
-                if square < *least || square.is_nan() {
-                    *least = square;
-                }
-            }
-        }
-        samples.set_clearance(first, least);
+    fn steepness(&self, model: &Model, group: usize) -> S {
+        let Workspace { pose, motion, .. } = &self.workspace;
+        let [value, slope] = model.plan().determinant_and_slope(group, pose, motion);
+        (slope * slope) / (value * value)
     }
 }
