@@ -9,7 +9,8 @@ use dwell_study::{
 };
 
 /// Two gears, of which the second is wound up by a torsion spring: over many revolutions, forwards and back beyond the start, its angle,
-/// the moment of the spring and the motion are those of the plane, with an implicit method, too. Largest difference seen 2e-9.
+/// the moment of the spring and the motion are those of the plane, with an implicit method, too. Largest differences seen: 2.7e-15 where
+/// the motion is prescribed, 2.4e-10 by DOP853, 8.4e-8 by BDF.
 #[test]
 fn geared_wheels_count_all_revolutions() {
     let text = |space: bool| {
@@ -79,14 +80,17 @@ fn geared_wheels_count_all_revolutions() {
     let done = analyse_trajectory(&plane, Analysis::Kinetostatics, None, &no_progress);
     let prescribed = written(&done.unwrap_or_else(|e| panic!("{e:?}")));
     let found = written(&analysed(&space, Analysis::Kinetostatics));
-    compare(&prescribed, &found, 1e-12);
+    compare(&prescribed, &found, 2e-13);
     let (phi, psi) = (column(&found, "phi"), column(&found, "psi"));
     assert!(
         phi.iter()
             .zip(&psi)
             .all(|(phi, psi)| (psi + 1.5 * phi).abs() < 1e-12)
     );
-    for method in [dwell_dynamics::Method::Dop853, dwell_dynamics::Method::Bdf] {
+    for (method, allowed) in [
+        (dwell_dynamics::Method::Dop853, 2e-8),
+        (dwell_dynamics::Method::Bdf, 2e-6),
+    ] {
         let solver = MotionSolver::Settings(SolverSettings {
             method,
             ..SolverSettings::default()
@@ -95,7 +99,7 @@ fn geared_wheels_count_all_revolutions() {
         let plane = written(&plane.unwrap_or_else(|e| panic!("{e:?}")));
         let found = simulated(&space, &solver, None);
         assert!(found.early_stop.is_none(), "{:?}", found.early_stop);
-        compare(&plane, &written(&found), 1e-7);
+        compare(&plane, &written(&found), allowed);
     }
     println!("geared wheels: {largest:.1e}");
 }

@@ -61,7 +61,7 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
     for (rows, file) in [&rows, &rows_again, &rows_wanted].into_iter().zip(files) {
         compare_rows(compared, &motion, rows, file)?;
     }
-    let other_rows = other_rows(&run, &rows)?;
+    let other_rows = other_rows(run, &rows)?;
     let events =
         [&first, &again, &wanted, &other_rows].map(|run| run.csv("-motion-events.csv").ok());
     for (other, its_events) in [(&rows_again, &events[1]), (&rows_wanted, &events[2])] {
@@ -159,7 +159,7 @@ fn compare_rows(
 
 /// The motion once more by another method, with rows at other times, which do not meet those of the first.
 fn other_rows(
-    run: &dyn Fn(&str, &[&str]) -> Result<Run, String>,
+    run: impl Fn(&str, &[&str]) -> Result<Run, String>,
     rows: &Rows,
 ) -> Result<Run, String> {
     let end = rows.time(rows.count.saturating_sub(1));
