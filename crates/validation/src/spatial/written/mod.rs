@@ -39,7 +39,7 @@ const OTHER_ROWS: f64 = 88.3;
 const EXTREMA_AGAIN: Texts<'_> = Texts {
     key: "written-motion-extrema-again",
     check: Check::WrittenTwice,
-    comparison: "extrema of `simulate` with those of the same motion by esdirk34 in other rows",
+    comparison: "extrema of `simulate` with those of the same motion by dop853 in other rows",
     scale: "the largest extremum of the unit",
     // The largest seen in a case is 8.6e-6, of a motion that strikes stops.
     tolerance: 1e-4,
@@ -137,11 +137,11 @@ fn free(
     found.extend(between_rows::stops(scene, [&rows, &others]));
     let duration = rows.time(rows.count.saturating_sub(1));
     let interval = format!("{:e}", duration / OTHER_ROWS);
-    let arguments = ["simulate", "--method", "esdirk34", "--rtol", "1e-9"];
+    let arguments = ["simulate", "--method", "dop853", "--rtol", "1e-9"];
     let arguments = [&arguments[..], &["--sample-interval", &interval]].concat();
     let name = format!("{}-other-rows", scene.name);
     let again = run(program, &name, text, &arguments)?.json("-simulate.json")?;
-    let same = same_extrema([&summary, &again], "simulate and simulate by esdirk34");
+    let same = same_extrema([&summary, &again], "simulate and simulate by dop853");
     found.extend(same.finding(EXTREMA_AGAIN, "simulate"));
     Ok(found)
 }

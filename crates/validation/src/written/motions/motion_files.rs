@@ -164,7 +164,7 @@ fn other_rows(
 ) -> Result<Run, String> {
     let end = rows.time(rows.count.saturating_sub(1));
     let interval = format!("{:e}", (end - rows.time(0)) / OTHER_ROWS);
-    let method = ["--method", "esdirk34", "--rtol", "1e-10"];
+    let method = ["--method", "esdirk34", "--rtol", "1e-9"];
     run(
         "other-rows",
         &[&method[..], &["--sample-interval", &interval]].concat(),
