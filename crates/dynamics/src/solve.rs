@@ -112,12 +112,9 @@ pub fn solve<M: MovingModel>(
     options: &Options,
     events: &[Event<M::CoordinateFunction>],
 ) -> Result<Solution> {
-    machine.check_start(&start.y)?;
-    let mut ode = MachineOde::until(machine, start.t, &start.y, Some(end))?;
-    let observed = ObservedMachine::new(machine, output_model);
-    let mut solution = solve_system(&mut ode, observed, start, Some(end), options, events)?;
-    solution.add_contact_events(ode.take_contact_events());
-    Ok(solution)
+    let tolerance = TouchTolerance::of_integration(options);
+    let recorder_state = RecorderState::new(start.t, events, tolerance);
+    record_machine((machine, output_model), recorder_state, start, end, options)
 }
 
 /// The same of a motion that began at t = 0 in another coordinate: its samples go on at multiples of their interval.
@@ -132,20 +129,24 @@ pub fn solve_further<M: MovingModel>(
     options: &Options,
     events: &[Event<M::CoordinateFunction>],
 ) -> Result<Solution> {
-    machine.check_start(&start.y)?;
-    let mut ode = MachineOde::until(machine, start.t, &start.y, Some(end))?;
-    let observed = ObservedMachine::new(machine, output_model);
     let tolerance = TouchTolerance::of_integration(options);
     let recorder_state = RecorderState::new(0.0, events, tolerance);
     let recorder_state = recorder_state.sampled_until(start.t, options);
-    let system = &mut ode;
-    let mut solution = record(
-        system,
-        (observed, recorder_state),
-        start,
-        Some(end),
-        options,
-    )?;
+    record_machine((machine, output_model), recorder_state, start, end, options)
+}
+
+/// Integrates the motion of a machine, and records it.
+fn record_machine<M: MovingModel>(
+    (machine, output_model): (&Machine<M>, &M),
+    recorder_state: RecorderState<'_, M::CoordinateFunction>,
+    start: &OdeState,
+    end: f64,
+    options: &Options,
+) -> Result<Solution> {
+    machine.check_start(&start.y)?;
+    let mut ode = MachineOde::until(machine, start.t, &start.y, Some(end))?;
+    let observed = (ObservedMachine::new(machine, output_model), recorder_state);
+    let mut solution = record(&mut ode, observed, start, Some(end), options)?;
     solution.add_contact_events(ode.take_contact_events());
     Ok(solution)
 }

@@ -6,7 +6,7 @@ use crate::explain::{StudyError, scene_error};
 use crate::machines::MachineScene as _;
 use crate::models::states_of_drives;
 use crate::trajectory::compute::{
-    Analysis, BALANCE, Column, KINETIC, POTENTIAL, Quantity, is_prefix_of, suggestion,
+    Analysis, Column, Quantity, columns_of_integration, is_prefix_of, suggestion,
 };
 use dwell_dynamics::Machine;
 use dwell_geometry::space::{Coordinate, Plan};
@@ -96,35 +96,9 @@ fn check_variables(
 
 /// The columns of what the integration of a motion yields, in their order.
 pub(crate) fn extra_columns(scene: &SpaceScene, machine: &Machine<Model>) -> Vec<Column> {
-    let mut all = vec![
-        (
-            KINETIC.to_owned(),
-            "J",
-            "kinetic energy of all bodies and rotors",
-        ),
-        (
-            POTENTIAL.to_owned(),
-            "J",
-            "potential energy of gravity, springs and constant forces",
-        ),
-    ];
     let sources = machine.nonconservative_sources().iter();
-    all.extend(sources.map(|&source| {
-        let name = format!("{}.work", scene.name_of_source(source));
-        (name, "J", "work since t = 0")
-    }));
-    let balance =
-        "drift of kinetic + potential energy − work since t = 0: error of the integration";
-    all.push((BALANCE.to_owned(), "J", balance));
-    all.extend(states_of_drives(&scene.drives, Coordinate::is_angle));
-    let column = |(k, (name, unit, meaning)): (usize, (String, _, &str))| Column {
-        name,
-        former: None,
-        unit,
-        quantity: Quantity::Extra(k),
-        meaning: meaning.to_owned(),
-    };
-    all.into_iter().enumerate().map(column).collect()
+    let works = sources.map(|&source| (scene.name_of_source(source), "work since t = 0"));
+    columns_of_integration(works, states_of_drives(&scene.drives, Coordinate::is_angle))
 }
 
 /// Rejects requested columns that no analysis of a scene has.

@@ -8,17 +8,8 @@ use dwell_scene::Scene;
 /// The columns of [`TrajectorySample::extra_values`](crate::trajectory::compute::TrajectorySample), in their order; the
 /// scene is that with the loads of its drives.
 pub(crate) fn extra_columns(loaded_scene: &Scene, machine: &Machine) -> Vec<Column> {
-    let kinetic = "kinetic energy of all bodies and rotors";
-    let potential = "potential energy of gravity, springs and constant forces";
-    let balance =
-        "drift of kinetic + potential energy − work since t = 0: error of the integration";
-    let mut all = vec![
-        (KINETIC.to_owned(), "J", kinetic),
-        (POTENTIAL.to_owned(), "J", potential),
-    ];
     let sources = machine.nonconservative_sources().iter();
-    all.extend(sources.map(|&source| {
-        let name = source_name(loaded_scene, source);
+    let works = sources.map(|&source| {
         let meaning = match source {
             NonconservativeSource::Drive(_) => {
                 "work since t = 0, before the rotor: what the rotor stores does not reach the bodies"
@@ -28,11 +19,30 @@ pub(crate) fn extra_columns(loaded_scene: &Scene, machine: &Machine) -> Vec<Colu
             | NonconservativeSource::Prescribed(_)
             | NonconservativeSource::Stop(_) => "work since t = 0",
         };
-        (format!("{name}.work"), "J", meaning)
-    }));
+        (source_name(loaded_scene, source), meaning)
+    });
+    let states = drive_states(loaded_scene).into_iter();
+    columns_of_integration(works, states.chain(motor_columns(loaded_scene)))
+}
+
+/// The columns of energies, of works by the names of what does them, of the balance, and of further values such as states of drives, each
+/// with its meaning.
+pub(crate) fn columns_of_integration<'a>(
+    works: impl IntoIterator<Item = (&'a str, &'static str)>,
+    further: impl IntoIterator<Item = (String, &'static str, &'static str)>,
+) -> Vec<Column> {
+    let kinetic = "kinetic energy of all bodies and rotors";
+    let potential = "potential energy of gravity, springs and constant forces";
+    let balance =
+        "drift of kinetic + potential energy − work since t = 0: error of the integration";
+    let mut all = vec![
+        (KINETIC.to_owned(), "J", kinetic),
+        (POTENTIAL.to_owned(), "J", potential),
+    ];
+    let works = works.into_iter();
+    all.extend(works.map(|(name, meaning)| (format!("{name}.work"), "J", meaning)));
     all.push((BALANCE.to_owned(), "J", balance));
-    all.extend(drive_states(loaded_scene));
-    all.extend(motor_columns(loaded_scene));
+    all.extend(further);
     let column = |(k, (name, unit, meaning)): (usize, (String, _, &str))| Column {
         name,
         former: None,
