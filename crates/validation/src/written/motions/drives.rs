@@ -46,6 +46,15 @@ pub(crate) struct Shaft {
     inertia: f64,
 }
 
+/// The circuit of a motor in a row: voltage and induced voltage, V; current, A; resistance, Ω; inductance, H.
+struct CircuitState {
+    voltage: f64,
+    induced: f64,
+    current: f64,
+    resistance: f64,
+    inductance: f64,
+}
+
 /// All drives of a scene; why they cannot be read, in words.
 pub(crate) fn drives(scene: &Table, reading: &Reading) -> Result<Vec<Drive>, String> {
     entries(scene, "drives")
@@ -153,22 +162,47 @@ impl Drive {
                 shaft: Shaft { gear_ratio: n, .. },
             } => Some(n * stall_torque * (1.0 - n * speed / no_load_speed)),
             DriveKind::Circuit {
-                voltage,
                 torque_constant: k,
-                resistance,
-                inductance,
                 shaft: Shaft { gear_ratio: n, .. },
-            } => {
-                let current = if *inductance > 0.0 {
-                    rows.get(row, &format!("{}.current", self.name))?
-                } else {
-                    (voltage.at(reading, motion, t)? - k * n * speed) / resistance
-                };
-                Some(n * k * current)
-            }
+                ..
+            } => Some(n * k * self.circuit(reading, rows, row, motion)?.current),
             // It has no rotor.
             DriveKind::SpeedController { .. } => self.written_force(rows, row),
         }
+    }
+
+    /// The circuit of a motor in a row; none of another drive. With inductance the current is the written one.
+    fn circuit(
+        &self,
+        reading: &Reading,
+        rows: &Rows,
+        row: usize,
+        motion: &Motion,
+    ) -> Option<CircuitState> {
+        let DriveKind::Circuit {
+            voltage,
+            torque_constant,
+            resistance,
+            inductance,
+            shaft,
+        } = &self.kind
+        else {
+            return None;
+        };
+        let voltage = voltage.at(reading, motion, rows.time(row))?;
+        let speed = motion.measure(self.measure).0[1];
+        let induced = torque_constant * shaft.gear_ratio * speed;
+        let current = match *inductance > 0.0 {
+            true => rows.get(row, &format!("{}.current", self.name))?,
+            false => (voltage - induced) / resistance,
+        };
+        Some(CircuitState {
+            voltage,
+            induced,
+            current,
+            resistance: *resistance,
+            inductance: *inductance,
+        })
     }
 
     /// The rate of the current by the circuit, A/s, where the current is a state.
@@ -179,20 +213,9 @@ impl Drive {
         row: usize,
         motion: &Motion,
     ) -> Option<f64> {
-        let DriveKind::Circuit {
-            voltage,
-            torque_constant: k,
-            resistance,
-            inductance,
-            shaft: Shaft { gear_ratio: n, .. },
-        } = &self.kind
-        else {
-            return None;
-        };
-        let current = rows.get(row, &format!("{}.current", self.name))?;
-        let speed = motion.measure(self.measure).0[1];
-        let voltage = voltage.at(reading, motion, rows.time(row))?;
-        (*inductance > 0.0).then(|| (voltage - resistance * current - k * n * speed) / inductance)
+        let of = self.circuit(reading, rows, row, motion)?;
+        let rest = of.voltage - of.resistance * of.current - of.induced;
+        (of.inductance > 0.0).then(|| rest / of.inductance)
     }
 
     /// Of a circuit: voltage times current, and what its resistance turns into heat, W.
@@ -203,23 +226,11 @@ impl Drive {
         row: usize,
         motion: &Motion,
     ) -> Option<[f64; 2]> {
-        let DriveKind::Circuit {
-            voltage,
-            torque_constant: k,
-            resistance,
-            inductance,
-            shaft: Shaft { gear_ratio: n, .. },
-        } = &self.kind
-        else {
-            return None;
-        };
-        let voltage = voltage.at(reading, motion, rows.time(row))?;
-        let speed = motion.measure(self.measure).0[1];
-        let current = match *inductance > 0.0 {
-            true => rows.get(row, &format!("{}.current", self.name))?,
-            false => (voltage - k * n * speed) / resistance,
-        };
-        Some([voltage * current, resistance * current * current])
+        let of = self.circuit(reading, rows, row, motion)?;
+        Some([
+            of.voltage * of.current,
+            of.resistance * of.current * of.current,
+        ])
     }
 
     /// The force as it is written: what remains of it beside what accelerates the rotor.
