@@ -7,6 +7,7 @@ use super::run::Run;
 #[cfg(feature = "output")]
 use crate::free_motion::compute::first_impulses;
 use crate::free_motion::compute::sliding_at;
+#[cfg(feature = "output")]
 use crate::machines::MachineScene as _;
 #[cfg(feature = "output")]
 use crate::number_format::coordinate_unit;
