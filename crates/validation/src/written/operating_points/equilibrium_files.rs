@@ -78,11 +78,16 @@ fn add_neutral(to: &mut Differences, start: &Start<'_>, summary: &Json, name: &s
         };
         let place = || format!("{name}, neutral direction {k}");
         to.add(largest - 1.0, 1.0, "", place);
-        for free in &start.free {
+        for (free, start_at) in start.free.iter().zip(start.values()) {
             let at = number(summary, &format!("{name}.{}", free.name));
             if let (Some(at), Some(from), Some(end)) = (at, part(free, ".from"), part(free, ".to"))
             {
                 to.add((from - at).max(at - end).max(0.0), free.size, "", place);
+                // The start is one of them: it is the nearest.
+                let is_start = name == "equilibrium" && (from..=end).contains(&start_at);
+                if is_start {
+                    to.add(at - start_at, free.size, "", place);
+                }
             }
         }
     }

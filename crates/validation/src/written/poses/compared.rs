@@ -49,7 +49,7 @@ const SPECS: [Spec; 86] = [
     ("written-sweep-motion", Check::WrittenTwice, "end, largest size, mean and root mean square of columns of motions in `sweep` with rows of `simulate` of the changed scene", 1e-14),
     ("written-sweep-sentences", Check::WrittenSentences, "numbers that `sweep` prints with its summary, to their digits", 1e-12),
     ("written-units", Check::WrittenUnits, "files of the scene with those of the scene in other units", 1e-11),
-    ("written-joint-forces", Check::WrittenTotals, "magnitudes, directions and components along bodies of pins' forces with their components along the ground", 1e-14),
+    ("written-joint-forces", Check::WrittenTotals, "magnitudes, directions and components along bodies of pins' forces with their components along the ground, and the powers of friction with its forces", 1e-14),
     ("written-motion-joint-forces", Check::WrittenTotals, "the same in rows of `simulate`", 1e-14),
     ("written-headings", Check::WrittenUnits, "units of the columns of `kinematics`, `statics`, `kinetostatics` and `reduce` with their names", 0.5),
     ("written-motion-headings", Check::WrittenUnits, "units of the columns of `simulate` with their names", 0.5),
