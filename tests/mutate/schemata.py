@@ -34,6 +34,8 @@ fn first(number: u32) -> bool {
         ACTIVE.store(if is_recording { RECORDING } else { chosen }, Relaxed);
         return on(number);
     }
+    // Another thread may have read the variables since `on` looked.
+    if ACTIVE.load(Relaxed) < RECORDING { return on(number); }
     let bit = 1_u64 << (number % 64);
     if REACHED[number as usize / 64].fetch_or(bit, Relaxed) & bit == 0 {
         let file = std::env::var_os("DWELL_MUTANT_REACHED").expect("a file");

@@ -19,6 +19,8 @@ const UNFINISHED: &str = "unfinished-";
 const LOCK: &str = "lock";
 /// Commands that write to one folder at the same time.
 const MAX_COMMANDS: usize = 10_000;
+/// How often the folder is made again where another command, which is done with it, removes it.
+const MAX_ATTEMPTS: usize = 100;
 /// Files that are stored at the same time.
 const MAX_STORED_AT_ONCE: usize = 16;
 
@@ -46,6 +48,18 @@ impl OutputFolder {
     /// # Errors
     /// [`ReportError::File`] with the path and the system's reason.
     pub fn open(root: &Path) -> Result<Self, ReportError> {
+        // Between making `.dwell` and a lock in it another command may remove it, because it is empty.
+        let is_removed = |error: &ReportError| matches!(error, ReportError::File { source, .. } if source.kind() == io::ErrorKind::NotFound);
+        for _ in 1..MAX_ATTEMPTS {
+            match Self::open_once(root) {
+                Err(error) if is_removed(&error) => {}
+                opened => return opened,
+            }
+        }
+        Self::open_once(root)
+    }
+
+    fn open_once(root: &Path) -> Result<Self, ReportError> {
         let mut folder = Self {
             root: root.to_owned(),
             owner: None,
@@ -188,11 +202,27 @@ fn store(path: &Path, content: &Content) -> io::Result<()> {
 fn locked(path: &Path) -> Result<Option<File>, ReportError> {
     let file = File::create(path).map_err(file_error(path))?;
     match file.try_lock() {
-        // One that was removed between its creation and its lock protects nothing.
-        Ok(()) => Ok(path.exists().then_some(file)),
+        // One that was removed between its creation and its lock protects nothing, and another command may have made the next.
+        Ok(()) => Ok(is_at(&file, path).then_some(file)),
         Err(TryLockError::WouldBlock) => Ok(None),
         // A file system without locks: commands there do not clear up after each other.
         Err(TryLockError::Error(_)) => Ok(Some(file)),
+    }
+}
+
+/// Whether an open file is the one that a path leads to now.
+fn is_at(file: &File, path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let place = |metadata: fs::Metadata| (metadata.dev(), metadata.ino());
+        let places = (file.metadata().map(place), fs::metadata(path).map(place));
+        matches!(places, (Ok(opened), Ok(found)) if opened == found)
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = file;
+        path.exists()
     }
 }
 
@@ -205,9 +235,10 @@ fn remove_abandoned(internal: &Path) {
         if !is_lock || !name.to_string_lossy().starts_with(UNFINISHED) {
             continue;
         }
-        // The lock is held while its files are removed.
+        // The lock is held while its files are removed. By now its command may be done and another one may have the name.
         if let Ok(lock) = File::open(&path)
             && lock.try_lock().is_ok()
+            && is_at(&lock, &path)
         {
             let _ = remove(&path);
         }
@@ -299,6 +330,40 @@ mod tests {
         );
         let expected = ["a.txt", "tables", "tables/deep", "tables/deep/m.csv"];
         assert_eq!(folder.contents(), expected.map(PathBuf::from));
+    }
+
+    /// As a cluster does whose workers are killed: commands begin and end in one folder while others clear up after the killed ones.
+    #[test]
+    fn commands_that_begin_and_end_together_keep_out_of_each_others_files() {
+        let folder = TestFolder::new();
+        thread::scope(|scope| {
+            for writer in 0..8 {
+                let root = &folder.0;
+                scope.spawn(move || {
+                    for round in 0..200 {
+                        let mut files = Files::new();
+                        let name = format!("{writer}.txt");
+                        files.add(&name, format!("{writer} {round}"));
+                        // What a killed command leaves: a lock that nobody holds.
+                        let _ = File::create(
+                            root.join(INTERNAL)
+                                .join(format!("{UNFINISHED}{}.{LOCK}", round % 4)),
+                        );
+                        write(&files, root).unwrap();
+                        let written = fs::read_to_string(root.join(&name)).unwrap();
+                        assert_eq!(written, format!("{writer} {round}"));
+                    }
+                });
+            }
+        });
+        let expected: Vec<PathBuf> = (0..8).map(|k| format!("{k}.txt").into()).collect();
+        assert!(
+            folder
+                .contents()
+                .iter()
+                .filter(|path| !path.starts_with(INTERNAL))
+                .eq(&expected)
+        );
     }
 
     #[test]

@@ -5,9 +5,11 @@ use super::super::claims::SpaceClaims;
 use crate::written::poses::difference::{Differences, Texts};
 use crate::written::poses::program::Program;
 use dwell_findings::{Check, Finding};
+use dwell_geometry::space::{Placement, Vec3};
 use dwell_kinetostatics::MachineModel as _;
 use dwell_scene::SpaceScene;
 use dwell_verify::space::DenseSpace;
+use serde_json::Value as Json;
 
 /// The findings of its sentences.
 // Long because each sentence of `check` is judged in its own way, into one finding.
@@ -86,6 +88,7 @@ pub(super) fn findings(
             }
         }
     }
+    let masses = masses(&summary, scene, case.start.1, claims.model().plan().size());
     let texts = Texts {
         key: "written-contents",
         check: Check::WrittenSentences,
@@ -94,5 +97,45 @@ pub(super) fn findings(
         tolerance: 0.0,
         tolerance_reason: "words",
     };
-    Ok(found.finding(texts, "check").into_iter().collect())
+    let of_masses = Texts {
+        key: "written-contents-masses",
+        check: Check::WrittenTotals,
+        comparison: "the whole mass and its centre with the sums over the bodies where they are assembled",
+        scale: "the whole mass, or the size of the mechanism",
+        // The largest seen in a case is 7.9e-16.
+        tolerance: 7e-14,
+        tolerance_reason: "a sum of rounded terms",
+    };
+    let found = [
+        found.finding(texts, "check"),
+        masses.finding(of_masses, "check"),
+    ];
+    Ok(found.into_iter().flatten().collect())
+}
+
+/// The mass of the moving bodies, and its first moments, about the origin, over it.
+fn masses(summary: &Json, scene: &SpaceScene, places: &[Placement], size: f64) -> Differences {
+    let mut found = Differences::default();
+    let moving = |body: &usize| *body != scene.mechanism.ground;
+    let all = (0..scene.masses.len()).filter(moving);
+    let total: f64 = all.clone().map(|body| scene.masses[body].mass).sum();
+    let mut add = |name: &str, value: f64, scale: f64, unit: &'static str| {
+        let written = summary["results"][name]["value"].as_f64();
+        if total > 0.0 {
+            let difference = written.unwrap_or(f64::NAN) - value;
+            found.add(difference, scale, unit, || name.to_owned());
+        }
+    };
+    add("mass", total, total, "kg");
+    for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+        let of = |v: Vec3| [v.x, v.y, v.z][axis];
+        let moments = all.clone().map(|body| {
+            let Placement { position, rotation } = &places[body];
+            let mass = &scene.masses[body];
+            mass.mass * (of(*position) + of(rotation.apply(mass.center)))
+        });
+        let moment: f64 = moments.sum();
+        add(&format!("mass.center.{name}"), moment / total, size, "m");
+    }
+    found
 }

@@ -36,6 +36,8 @@ const ACCURACY_WITH_STOPS: &str = "1e-6";
 
 /// Intervals between the rows of another run.
 const OTHER_ROWS: f64 = 88.3;
+/// The largest rounding error that a case may state of positions and forces, of the largest of a unit; 1e-13 is seen.
+const MAX_ROUNDING: f64 = 1e-11;
 const EXTREMA_AGAIN: Texts<'_> = Texts {
     key: "written-motion-extrema-again",
     check: Check::WrittenTwice,
@@ -58,6 +60,7 @@ pub(super) fn written_findings(
         let given = (&claims, scene);
         let mut found = forced(&program, given, &scenes)?;
         found.extend(free(&program, given, &scenes)?);
+        found.extend(without_forces(&program, scene, &scenes)?);
         found.extend(contents::findings(&program, given)?);
         Ok(found)
     });
@@ -94,6 +97,29 @@ fn forced(
     found.extend(sums::findings(claims, scene, &rows, "kinetostatics"));
     found.extend(between_rows::laws(scenes, scene, &rows));
     found.extend(twice(&run, "kinetostatics", "kinetostatics")?);
+    Ok(found)
+}
+
+/// `kinematics` along a prescribed motion, and `statics` of one coordinate.
+fn without_forces(
+    program: &Program,
+    scene: &SpaceScene,
+    scenes: &Scenes,
+) -> Result<Vec<Finding>, String> {
+    let name = format!("{}-forced", scene.name);
+    let arguments = ["kinematics", "--points", "25"];
+    let moved = run(program, &name, &scenes.forced, &arguments)?;
+    let mut found = twice(&moved, "kinematics", "kinematics")?;
+    if scene.mechanism.actuators.len() == 1 {
+        let name = format!("{}-at-rest", scene.name);
+        let held = run(
+            program,
+            &name,
+            &scenes.plain,
+            &["statics", "--points", "121"],
+        )?;
+        found.extend(twice(&held, "statics", "statics")?);
+    }
     Ok(found)
 }
 
@@ -157,8 +183,11 @@ fn twice(run: &Run, stem: &str, command: &str) -> Result<Vec<Finding>, String> {
         files,
         extrema,
         places,
-        printed,
+        mut printed,
     } = formats(run, stem, command, &[])?;
+    if command != "simulate" {
+        printed.merge(rounding(&run.printed));
+    }
     let of = |differences: Differences, end: &str, check, comparison, tolerance| {
         let texts = Texts {
             key: &format!("written-{stem}-{end}"),
@@ -199,11 +228,31 @@ fn twice(run: &Run, stem: &str, command: &str) -> Result<Vec<Finding>, String> {
             printed,
             "printed",
             Check::WrittenSentences,
-            "printed extrema with the summary",
+            "printed extrema with the summary, and a rounding error that leaves them known",
             1e-12,
         ),
     ];
     Ok(all.into_iter().flatten().collect())
+}
+
+/// The rounding error that a command states of its own values: at most [`MAX_ROUNDING`] of them, so that no extremum is unknown.
+fn rounding(printed: &str) -> Differences {
+    let mut found = Differences::default();
+    let line = printed
+        .lines()
+        .find_map(|line| line.trim().strip_prefix("estimated rounding error below "));
+    let stated = line.and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
+    match stated {
+        Some(stated) => found.add((stated - MAX_ROUNDING).max(0.0), 1.0, "", || {
+            format!("a stated rounding error of {stated:e}")
+        }),
+        // Nothing was held: all forces are zero.
+        None => {}
+    }
+    if let Some(line) = printed.lines().find(|line| line.contains("is not known")) {
+        found.fail(line.trim().to_owned());
+    }
+    found
 }
 
 /// A finding of a worst difference with its texts.

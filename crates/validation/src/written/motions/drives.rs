@@ -171,7 +171,7 @@ impl Drive {
         }
     }
 
-    /// The circuit of a motor in a row; none of another drive. With inductance the current is the written one.
+    /// The circuit of a motor in a row, of one that is given by its line at 1 V; none of another drive. With inductance the current is the written one.
     fn circuit(
         &self,
         reading: &Reading,
@@ -179,20 +179,31 @@ impl Drive {
         row: usize,
         motion: &Motion,
     ) -> Option<CircuitState> {
-        let DriveKind::Circuit {
-            voltage,
-            torque_constant,
-            resistance,
-            inductance,
-            shaft,
-        } = &self.kind
-        else {
-            return None;
+        let [voltage, constant, resistance, inductance] = match &self.kind {
+            DriveKind::Circuit {
+                voltage,
+                torque_constant,
+                resistance,
+                inductance,
+                ..
+            } => {
+                let voltage = voltage.at(reading, motion, rows.time(row))?;
+                [voltage, *torque_constant, *resistance, *inductance]
+            }
+            // As a circuit at 1 V.
+            DriveKind::Line {
+                stall_torque,
+                no_load_speed,
+                ..
+            } => {
+                let constant = 1.0 / no_load_speed;
+                [1.0, constant, constant / stall_torque, 0.0]
+            }
+            DriveKind::AppliedForce(_) | DriveKind::SpeedController { .. } => return None,
         };
-        let voltage = voltage.at(reading, motion, rows.time(row))?;
         let speed = motion.measure(self.measure).0[1];
-        let induced = torque_constant * shaft.gear_ratio * speed;
-        let current = match *inductance > 0.0 {
+        let induced = constant * self.gear_ratio() * speed;
+        let current = match inductance > 0.0 {
             true => rows.get(row, &format!("{}.current", self.name))?,
             false => (voltage - induced) / resistance,
         };
@@ -200,8 +211,8 @@ impl Drive {
             voltage,
             induced,
             current,
-            resistance: *resistance,
-            inductance: *inductance,
+            resistance,
+            inductance,
         })
     }
 
@@ -218,25 +229,37 @@ impl Drive {
         (of.inductance > 0.0).then(|| rest / of.inductance)
     }
 
-    /// Of a circuit: voltage times current, and what its resistance turns into heat, W.
-    pub(super) fn circuit_powers(
+    /// Of a motor: voltage, V; current, A; resistance, Ω.
+    pub(super) fn circuit_values(
         &self,
         reading: &Reading,
         rows: &Rows,
         row: usize,
         motion: &Motion,
-    ) -> Option<[f64; 2]> {
+    ) -> Option<[f64; 3]> {
         let of = self.circuit(reading, rows, row, motion)?;
-        Some([
-            of.voltage * of.current,
-            of.resistance * of.current * of.current,
-        ])
+        Some([of.voltage, of.current, of.resistance])
     }
 
     /// The force as it is written: what remains of it beside what accelerates the rotor.
     pub(super) fn written_force(&self, rows: &Rows, row: usize) -> Option<f64> {
         let of = |end: &str| rows.get(row, &format!("{}.load_{end}", self.name));
         of("moment").or_else(|| of("force"))
+    }
+
+    /// Whether it is a motor.
+    pub(super) fn is_motor(&self) -> bool {
+        matches!(
+            self.kind,
+            DriveKind::Line { .. } | DriveKind::Circuit { .. }
+        )
+    }
+
+    fn gear_ratio(&self) -> f64 {
+        match self.kind {
+            DriveKind::Line { shaft, .. } | DriveKind::Circuit { shaft, .. } => shaft.gear_ratio,
+            DriveKind::AppliedForce(_) | DriveKind::SpeedController { .. } => 1.0,
+        }
     }
 
     /// The rotor's inertia on the coordinate, kg m² or kg.

@@ -1,7 +1,6 @@
 //! What motors take and what they deliver: their columns of electrical power with voltage and current of the scene's text, and of efficiency
 //! with the power at the shaft.
 
-use super::drives::DriveKind;
 use super::row_forces::MotionReading;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::motion::Motion;
@@ -16,11 +15,11 @@ pub(super) struct Motors {
     pub(super) delivered: Differences,
 }
 
-/// The columns of all motors with a circuit.
+/// The columns of all motors; those of one that is given by its line are of a circuit at 1 V.
 pub(super) fn motors(motion: &MotionReading, rows: &Rows, file: &str) -> Motors {
     let mut found = Motors::default();
     for drive in &motion.drives {
-        if !matches!(drive.kind, DriveKind::Circuit { .. }) {
+        if !drive.is_motor() {
             continue;
         }
         let column = |end: &str| rows.columns.get(&format!("{}.{end}", drive.name));
@@ -39,11 +38,18 @@ pub(super) fn motors(motion: &MotionReading, rows: &Rows, file: &str) -> Motors 
                 continue;
             };
             let place = || format!("{file}, row {row}, `{}`", drive.name);
-            let Some([electrical, lost]) = drive.circuit_powers(&motion.reading, rows, row, &state)
+            let Some([voltage, current, resistance]) =
+                drive.circuit_values(&motion.reading, rows, row, &state)
             else {
                 continue;
             };
-            found.electrical.add(taken - electrical, scale, "W", place);
+            let lost = resistance * current * current;
+            let difference = taken - voltage * current;
+            found.electrical.add(difference, scale, "W", place);
+            if let Some(written) = rows.get(row, &format!("{}.current", drive.name)) {
+                let difference = (written - current) * voltage;
+                found.electrical.add(difference, scale, "W", place);
+            }
             let [_, speed, acceleration] = state.measure(drive.measure).0;
             let Some(net) = drive.written_force(rows, row) else {
                 continue;

@@ -27,16 +27,19 @@ pub(super) fn compare(
     let count = number(&summary, "equilibria").unwrap_or(0.0) as usize;
     let names: Vec<String> = (1..=count).map(|k| format!("equilibrium.{k}")).collect();
     let start_of = compared.of("written-rest-start");
-    names
-        .iter()
-        .for_each(|name| add_start(start_of, start, &summary, name));
+    for name in &names {
+        add_start(start_of, start, &summary, name);
+        add_neutral(start_of, start, &summary, name);
+    }
     add_searched(start_of, start, &summary);
     let words = compared.of("written-rest-words");
     add_words(words, &rest.printed, &summary, &names);
     if let Some(about) = about {
         let linear = about.json("-linearise.json")?;
         let name = "equilibrium".to_owned();
-        add_start(compared.of("written-rest-start"), start, &linear, &name);
+        let start_of = compared.of("written-rest-start");
+        add_start(start_of, start, &linear, &name);
+        add_neutral(start_of, start, &linear, &name);
         let words = compared.of("written-rest-words");
         add_words(words, &about.printed, &linear, std::slice::from_ref(&name));
         add_same(
@@ -58,6 +61,34 @@ fn add_start(to: &mut Differences, start: &Start<'_>, summary: &Json, name: &str
             to.add(written - (at - from), free.size.max(from.abs()), "", || {
                 format!("{name}, {} from the start", free.name)
             });
+        }
+    }
+}
+
+/// A direction in which an equilibrium goes on has 1 as its largest part, and the positions that are one all around it begin before it and end
+/// behind.
+fn add_neutral(to: &mut Differences, start: &Start<'_>, summary: &Json, name: &str) {
+    for k in 1..=start.free.len() {
+        let part = |free: &FreeCoordinate, of: &str| {
+            number(summary, &format!("{name}.neutral.{k}.{}{of}", free.name))
+        };
+        let parts = start.free.iter().filter_map(|free| part(free, ""));
+        let Some(largest) = parts.map(f64::abs).reduce(f64::max) else {
+            continue;
+        };
+        let place = || format!("{name}, neutral direction {k}");
+        to.add(largest - 1.0, 1.0, "", place);
+        for (free, start_at) in start.free.iter().zip(start.values()) {
+            let at = number(summary, &format!("{name}.{}", free.name));
+            if let (Some(at), Some(from), Some(end)) = (at, part(free, ".from"), part(free, ".to"))
+            {
+                to.add((from - at).max(at - end).max(0.0), free.size, "", place);
+                // The start is one of them: it is the nearest.
+                let is_start = name == "equilibrium" && (from..=end).contains(&start_at);
+                if is_start {
+                    to.add(at - start_at, free.size, "", place);
+                }
+            }
         }
     }
 }
@@ -233,6 +264,7 @@ fn static_force(
         }
     }
     if drives == 0 {
+        add_balanced(found, summary, free, [&places, &forces]);
         let count = number(summary, "equilibria").unwrap_or(0.0) as usize;
         let at = |k: usize| number(summary, &format!("equilibrium.{k}.{}", free.name));
         let known: Vec<f64> = (1..=count).filter_map(at).collect();
@@ -286,6 +318,32 @@ fn static_rows(
 fn extent(values: &[f64]) -> [f64; 2] {
     let ends = [f64::INFINITY, f64::NEG_INFINITY];
     values.iter().fold(ends, |[a, b], v| [a.min(*v), b.max(*v)])
+}
+
+/// Where every position is an equilibrium, no row has a force.
+fn add_balanced(
+    to: &mut Differences,
+    summary: &Json,
+    free: &FreeCoordinate,
+    [places, forces]: [&[f64]; 2],
+) {
+    let largest = forces.iter().fold(0.0_f64, |max, f| max.max(f.abs()));
+    let count = number(summary, "equilibria").unwrap_or(0.0) as usize;
+    for k in 1..=count {
+        let end = |end: &str| {
+            let key = format!("equilibrium.{k}.neutral.1.{}.{end}", free.name);
+            number(summary, &key)
+        };
+        let (Some(from), Some(end)) = (end("from"), end("to")) else {
+            continue;
+        };
+        let within = |q: &f64| (from..=end).contains(q);
+        for (q, force) in places.iter().zip(forces).filter(|(q, _)| within(q)) {
+            to.add(*force, largest, "", || {
+                format!("equilibrium {k} goes on to {q}")
+            });
+        }
+    }
 }
 
 /// Between two rows with forces of different sign is an equilibrium.

@@ -96,6 +96,15 @@ impl Rest<'_> {
     }
 
     fn compare_place(&self, compared: &mut Compared, row: usize) -> Result<(), String> {
+        for (free, from) in self.start.free.iter().zip(self.start.values()) {
+            let of = |column: &str| self.rows.get(row, column);
+            let column = format!("{}.deflection", free.name);
+            if let (Some(at), Some(written)) = (of(&free.name), of(&column)) {
+                let place = || format!("equilibrium {}, {column}", row + 1);
+                let found = compared.of("written-rest-start");
+                found.add(written - (at - from), free.size.max(from.abs()), "", place);
+            }
+        }
         let (start, changed, by) = self.place(row).ok_or("an equilibrium without a place")?;
         let text = start.text(changed, by)?;
         let name = format!("rest{row}");

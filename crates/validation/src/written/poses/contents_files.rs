@@ -108,7 +108,52 @@ fn add_single_request(
             "`check` with {name} alone requested lists `{said}`"
         ));
     }
+    add_single_path(to, program, single);
     Ok(())
+}
+
+/// With one reaction the path of one point is requested: of all points it alone has columns. Nothing where the rows are refused.
+fn add_single_path(to: &mut Differences, program: &Program, mut scene: toml::Table) {
+    let bodies = scene.get("bodies").and_then(toml::Value::as_table);
+    let points: Vec<(String, String)> = named_points(bodies);
+    let Some((body, point)) = points.iter().rfind(|(body, _)| body != "ground") else {
+        return;
+    };
+    let path = toml::Value::String(format!("{body}.{point}"));
+    if let Some(toml::Value::Table(requests)) = scene.get_mut("requests") {
+        requests.insert("paths".to_owned(), toml::Value::Array(vec![path]));
+    }
+    // `kinematics`, which has no reactions, gives everything.
+    let arguments = ["statics", "--points", "3"];
+    let run = |text: String| program.run("single-path", &text, &arguments).ok();
+    let run = text_of(&scene).ok().and_then(run);
+    let Some(Ok(rows)) = run.map(|run| run.csv("-statics.csv")) else {
+        return;
+    };
+    let has =
+        |(body, point): &(String, String)| rows.columns.contains_key(&format!("{body}.{point}.x"));
+    to.add(0.0, 1.0, "", String::new);
+    if !points.iter().any(|at| at.0 == *body && has(at)) {
+        to.fail(format!(
+            "`statics` has no column of the path of {body}.{point}"
+        ));
+    }
+    if let Some((other, at)) = points.iter().find(|at| at.0 != *body && has(at)) {
+        to.fail(format!(
+            "`statics` has columns of {other}.{at}, where only the path of {body}.{point} is requested"
+        ));
+    }
+}
+
+/// All points that are named, with their bodies.
+fn named_points(bodies: Option<&toml::Table>) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for (body, table) in bodies.into_iter().flatten() {
+        let points = table.get("points").and_then(toml::Value::as_table);
+        let names = points.into_iter().flat_map(toml::Table::keys);
+        found.extend(names.map(|point| (body.clone(), point.clone())));
+    }
+    found
 }
 
 /// A dyad with three pins has two assembly modes, which are listed below its group.
