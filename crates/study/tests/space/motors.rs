@@ -82,7 +82,7 @@ fn powers_and_efficiencies_follow_from_the_circuit() {
     let by_circuit = |k: usize| (voltage[k] - 0.2 * speed[k]) / 1.5;
     let currents: Vec<f64> = rows.clone().map(by_circuit).collect();
     let powers: Vec<f64> = rows.clone().map(|k| voltage[k] * currents[k]).collect();
-    let parts = rows.clone().map(|k| {
+    let parts = rows.map(|k| {
         let (delivered, lost) = (0.2 * currents[k] * speed[k], 1.5 * currents[k].powi(2));
         if delivered > 0.0 {
             delivered / (delivered + lost)
@@ -92,7 +92,7 @@ fn powers_and_efficiencies_follow_from_the_circuit() {
     });
     let parts: Vec<f64> = parts.collect();
     // It brakes at the end, where the voltage is below that of the rotor.
-    assert!(parts.iter().any(|p| *p > 0.5) && parts.iter().any(|p| *p == 0.0));
+    assert!(parts.iter().any(|p| *p > 0.5) && parts.contains(&0.0));
     for (what, found, expected) in [
         ("current", &current, &currents),
         ("power", &taken, &powers),

@@ -61,6 +61,10 @@ impl Difference {
     }
 }
 
+/// The reactions of the first or the second computation (0 or 1) at a sample.
+pub(crate) type ReactionsOf<'r> =
+    &'r dyn Fn(usize, &TrajectorySample) -> Result<Vec<f64>, DynamicsError>;
+
 /// What of two computations of one motion is compared.
 pub(crate) struct Compared<'s> {
     /// The samples of both.
@@ -78,10 +82,10 @@ pub(crate) struct Compared<'s> {
 }
 
 impl Compared<'_> {
-    /// The difference of the second computation from the first; `reactions` are those of the first or the second (0 or 1) at a sample.
+    /// The difference of the second computation from the first.
     pub(crate) fn difference(
         &self,
-        reactions: &dyn Fn(usize, &TrajectorySample) -> Result<Vec<f64>, DynamicsError>,
+        reactions: ReactionsOf<'_>,
     ) -> Result<Difference, DynamicsError> {
         let [first, second] = self.samples;
         let pairs = pair_by_time(first, second);
@@ -116,7 +120,7 @@ impl Compared<'_> {
 
     fn reaction_difference(
         &self,
-        reactions: &dyn Fn(usize, &TrajectorySample) -> Result<Vec<f64>, DynamicsError>,
+        reactions: ReactionsOf<'_>,
         pairs: &[(&TrajectorySample, &TrajectorySample)],
         kinetic: f64,
     ) -> Result<f64, DynamicsError> {
