@@ -35,11 +35,11 @@ impl OdeSystem for Bounded {
     }
 }
 
-fn integrated(of: &mut Bounded, start: OdeState, until: f64, method: Method) -> Termination {
+fn integrated(of: &mut Bounded, start: &OdeState, until: f64, method: Method) -> Termination {
     let options = Options::new(method, TOLERANCE);
     let mut go_on =
         |_: &OdeState, _: &OdeState, _: dwell_dynamics::DenseOutput<'_>| Ok(StepControl::Continue);
-    integrate(of, &start, Some(until), &options, &mut go_on).expect("a start")
+    integrate(of, start, Some(until), &options, &mut go_on).expect("a start")
 }
 
 /// All methods come to the end itself, within their tolerance, and stop there, wherever on the axis of time and of the coordinate it is and
@@ -69,7 +69,7 @@ fn motions_stop_at_the_end_of_what_can_be_evaluated() {
             };
             let root = (speed * speed + 2.0 * acceleration * distance).sqrt();
             let expected = 2.0 * distance / (speed + root);
-            let done = integrated(&mut of, start, t + 3.0 * expected, method);
+            let done = integrated(&mut of, &start, t + 3.0 * expected, method);
             let name = method.name();
             assert!(
                 matches!(done.error, Some(DynamicsError::NoInertia { q, .. }) if q > end),
@@ -107,7 +107,7 @@ fn motions_that_turn_back_in_front_of_it_go_on() {
                 y: vec![0.0, 1.0 - gap],
             };
             let until = 40.0;
-            let done = integrated(&mut of, start, until, method);
+            let done = integrated(&mut of, &start, until, method);
             let name = method.name();
             assert!(
                 done.error.is_none() && done.state.t == until,
