@@ -385,11 +385,8 @@ fn a_motion_ends_where_its_table_does() {
         "{:?}",
         ended.error
     );
-    assert!(
-        ended.state.y[0] > 1.9 && ended.state.y[0] <= 2.0,
-        "{:?}",
-        ended.state.y
-    );
+    // A table takes for its end what is within a rounding of its domain: 7.7e-11 of 2 here.
+    assert!((ended.state.y[0] - 2.0).abs() < 1e-9, "{:?}", ended.state.y);
 }
 
 /// What has no table says why.

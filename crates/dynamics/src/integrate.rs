@@ -6,6 +6,7 @@
 //! that fails stores its error in a cell and NaN in the derivative: the integrator then shortens
 //! its step or fails, and the caller gets the error of that evaluation.
 
+mod impasse;
 mod step_loop;
 
 use crate::contact_events::ContactMonitor;
@@ -19,6 +20,7 @@ use crate::sliding_system::SlidingSystem;
 use crate::switch_monitor::{Crossing, SwitchMonitor};
 use crate::time_pieces::TimePieces;
 use diffsol::{DiffsolError, NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverState, Tableau};
+use impasse::Impasse;
 use std::cell::{Cell, RefCell};
 use step_loop::{StepLoop, solver_error};
 
@@ -28,6 +30,8 @@ type Solver = NalgebraLU<f64>;
 
 /// Smallest step, s, at a rate of 1 per s or less; at a higher one, in proportion shorter.
 const MIN_STEP: f64 = 1e-17;
+/// The part of a step that could not be evaluated with which a method begins anew.
+const FAILURE_REDUCTION: f64 = 0.1;
 
 /// Integrates a system from `start` until `end` (s), or without an end until the observer stops it. The
 /// observer is called after every step. Where a function of time or of the state switches, one integration ends and
@@ -229,13 +233,49 @@ fn pass_event(
 }
 
 /// Integrates while nothing switches in time; `pieces` limits the steps, and a first step behind an event may be known.
-// Long because diffsol's problem is a type of closures, which has no name and borrows what is counted and kept here.
 fn integrate_smooth(
     system: &mut dyn OdeSystem,
     start: &OdeState,
     end: Option<f64>,
     options: &Options,
+    (mut pieces, mut first_step): (Option<&mut TimePieces<'_>>, Option<f64>),
+    observer: StepObserver<'_>,
+) -> Result<Termination> {
+    let weights = (0..system.size()).map(|i| options.atol * system.error_weight(i));
+    let mut impasse = Impasse::new(start.t, options.rtol, weights.collect());
+    let mut parts = Parts::new(start, options);
+    loop {
+        let (from, remaining) = (parts.from.clone(), parts.remaining);
+        let known = (pieces.as_deref_mut(), first_step);
+        let part = integrate_part(
+            system,
+            (&from, end),
+            &remaining,
+            known,
+            &mut impasse,
+            observer,
+        );
+        let is_ended = parts.add(part)?;
+        // A step whose end cannot be evaluated was taken, or one of an explicit method, which does not shorten it: a shorter one is tried.
+        let shorter = impasse.failed_step.take();
+        let shorter = shorter.filter(|_| is_ended && !impasse.is_reached());
+        let (Some(step), Some(whole)) = (shorter, &mut parts.whole) else {
+            break;
+        };
+        whole.error = None;
+        first_step = Some(FAILURE_REDUCTION * step);
+    }
+    parts.whole.ok_or(DynamicsError::DurationTooShort)
+}
+
+/// Integrates as far as one run of the method leads.
+// Long because diffsol's problem is a type of closures, which has no name and borrows what is counted and kept here.
+fn integrate_part(
+    system: &mut dyn OdeSystem,
+    (start, end): (&OdeState, Option<f64>),
+    options: &Options,
     (pieces, first_step): (Option<&mut TimePieces<'_>>, Option<f64>),
+    impasse: &mut Impasse,
     observer: StepObserver<'_>,
 ) -> Result<Termination> {
     let n = system.size();
@@ -245,9 +285,7 @@ fn integrate_smooth(
     // At rest the rates show how soon something happens: a motor's current rises within microseconds.
     let started = start.y.iter().chain(&rates);
     let max_rate = started.fold(1.0_f64, |max, y| max.max(y.abs()));
-    let atol: Vec<f64> = (0..n)
-        .map(|i| options.atol * system.error_weight(i))
-        .collect();
+    let atol = impasse.absolute().to_vec();
     let min_step = MIN_STEP / max_rate;
     if options.method == Method::Dop853 {
         let from = (start, &rates[..]);
@@ -307,6 +345,12 @@ fn integrate_smooth(
         options,
         failure: &failure,
         pieces,
+        impasse,
+        fault: &|at: &OdeState| {
+            let mut rates = vec![0.0; n];
+            evaluations.set(evaluations.get() + 1);
+            system.borrow_mut().rhs(at.t, &at.y, &mut rates).err()
+        },
     };
     // A method of one step goes on with the step before the event; that of many begins with the first order.
     let state_of = |tableau: Tableau<f64>| {

@@ -47,9 +47,20 @@ pub(crate) fn mark_occupied(frame: &PlotFrame, shape: &Shape, occupied: &mut Occ
                     .for_each(|p| occupied.block(&Rect::around(*p, half)));
             }
         }
-        Shape::GroundLine { from, to } | Shape::Arrow { from, to, .. } => {
+        Shape::GroundLine { from, to } => {
             for run in clipped([place(from), place(to)], &frame.plot) {
                 occupied.line(&run);
+                for stroke in hatching(&run) {
+                    occupied.line(&stroke);
+                }
+            }
+        }
+        Shape::Arrow { from, to, pen, .. } => {
+            for run in clipped([place(from), place(to)], &frame.plot) {
+                occupied.line(&run);
+            }
+            if let Some((from, to)) = place(from).zip(place(to)) {
+                occupied.block(&head_block(from, to, line(pen).width));
             }
         }
         Shape::Disc { at, radius_px, .. } => {
@@ -185,36 +196,65 @@ fn ground_pin(canvas: &mut Canvas<'_>, [x, y]: [f64; 2]) {
 /// A line hatched on its left in the page, where y grows downwards: on its right for the reader's coordinates.
 fn ground_line(canvas: &mut Canvas<'_>, points: &[[f64; 2]]) {
     canvas.line(points, LineStyle::solid(INK, SPINE_WIDTH + 0.6));
-    let (Some([ax, ay]), Some([bx, by])) = (points.first().copied(), points.last().copied()) else {
-        return;
-    };
-    let length = (bx - ax).hypot(by - ay);
-    if length < 1.0 {
-        return;
+    for stroke in hatching(points) {
+        canvas.line(&stroke, LineStyle::solid(INK, 0.7 * SPINE_WIDTH));
     }
-    let [tx, ty] = [(bx - ax) / length, (by - ay) / length];
+}
+
+/// Its strokes.
+fn hatching(points: &[[f64; 2]]) -> Vec<[[f64; 2]; 2]> {
+    let (Some(&from), Some(&to)) = (points.first(), points.last()) else {
+        return Vec::new();
+    };
+    let length = distance(from, to);
+    if length < 1.0 {
+        return Vec::new();
+    }
+    let [tx, ty] = unit(from, to);
     let [nx, ny] = [-ty, tx];
     let count = (length / HATCH_SPACING).floor().clamp(0.0, 500.0) as u32;
-    for i in 0..count {
+    let stroke = |i: u32| {
         let s = (f64::from(i) + 0.5) * length / f64::from(count);
-        let base = [ax + s * tx, ay + s * ty];
+        let base = [from[0] + s * tx, from[1] + s * ty];
         let tip = [
             base[0] + HATCH_LENGTH * (nx - 0.75 * tx),
             base[1] + HATCH_LENGTH * (ny - 0.75 * ty),
         ];
-        canvas.line(&[base, tip], LineStyle::solid(INK, 0.7 * SPINE_WIDTH));
-    }
+        [base, tip]
+    };
+    (0..count).map(stroke).collect()
+}
+
+fn distance(from: [f64; 2], to: [f64; 2]) -> f64 {
+    (to[0] - from[0]).hypot(to[1] - from[1])
+}
+
+/// The direction from one point to another.
+fn unit(from: [f64; 2], to: [f64; 2]) -> [f64; 2] {
+    let length = distance(from, to).max(f64::MIN_POSITIVE);
+    [0, 1].map(|k| (to[k] - from[k]) / length)
+}
+
+/// Length and half width of the head of an arrow of this width.
+fn head_of(from: [f64; 2], to: [f64; 2], width: f64) -> [f64; 2] {
+    let head = (HEAD[0] * width).max(14.0).min(0.6 * distance(from, to));
+    [head, head * HEAD[1] / HEAD[0]]
+}
+
+/// What it covers, about.
+fn head_block(from: [f64; 2], to: [f64; 2], width: f64) -> Rect {
+    let [head, half] = head_of(from, to, width);
+    let along = unit(from, to);
+    Rect::around([0, 1].map(|k| to[k] - 0.5 * head * along[k]), half)
 }
 
 fn arrow(canvas: &mut Canvas<'_>, from: [f64; 2], to: [f64; 2], pen: &Pen) {
     let line = line(pen);
-    let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-    if length < 1.0 {
+    if distance(from, to) < 1.0 {
         return;
     }
-    let head = (HEAD[0] * line.width).max(14.0).min(0.6 * length);
-    let half = head * HEAD[1] / HEAD[0];
-    let [tx, ty] = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
+    let [head, half] = head_of(from, to, line.width);
+    let [tx, ty] = unit(from, to);
     let neck = [to[0] - head * tx, to[1] - head * ty];
     let end = [neck[0] + 0.2 * head * tx, neck[1] + 0.2 * head * ty];
     canvas.line(&[from, end], line);
@@ -246,4 +286,47 @@ pub(crate) fn text_box([x, y]: [f64; 2], text: &str, placement: TextPlacement, g
         TextPlacement::BelowRight => [right - corner_shift, below - corner_shift],
     };
     Rect::sized(x0, y0, width, height)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axis::{Paint, Scale};
+    use crate::axis_range::AxisRange;
+
+    /// A plot of 200 by 100 pixels whose units are pixels.
+    fn occupied_by(shape: &Shape) -> Occupancy {
+        let plot = Rect::sized(0.0, 0.0, 200.0, 100.0);
+        let frame = PlotFrame {
+            plot,
+            x: AxisRange::new(Scale::Linear, 0.0, 200.0),
+            y: AxisRange::new(Scale::Linear, 0.0, 100.0),
+            y2: None,
+        };
+        let mut occupied = Occupancy::new(plot);
+        mark_occupied(&frame, shape, &mut occupied);
+        occupied
+    }
+
+    /// Words beside a guide or a bearing stand on none of the strokes, and those at the tip of an arrow not on its head.
+    #[test]
+    fn hatching_and_heads_of_arrows_take_room() {
+        let wall = occupied_by(&Shape::GroundLine {
+            from: [50.0, 50.0],
+            to: [150.0, 50.0],
+        });
+        // On the page y grows downwards.
+        assert!(wall.count(&Rect::sized(60.0, 56.0, 80.0, 3.0)) > 8);
+        assert_eq!(wall.count(&Rect::sized(60.0, 35.0, 80.0, 9.0)), 0);
+        let arrow = occupied_by(&Shape::Arrow {
+            from: [20.0, 50.0],
+            to: [120.0, 50.0],
+            pen: Pen::new(Paint::Ink, 4.0),
+            name: None,
+        });
+        for y in [43.0, 56.0] {
+            assert!(arrow.count(&Rect::sized(104.0, y, 12.0, 1.0)) > 0);
+            assert_eq!(arrow.count(&Rect::sized(30.0, y, 40.0, 1.0)), 0);
+        }
+    }
 }

@@ -5,7 +5,7 @@ use crate::keys;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::Unit;
 use crate::value::{NumberRule, SignRule, Value};
-use crate::wording::{list, shorten};
+use crate::wording::{list, short, shorten};
 use dwell_laws::{
     Interpolation, Law, LawError, Polynomial, Profile, Rise, Shape, Sinusoid, Spline,
 };
@@ -64,11 +64,6 @@ pub(crate) fn curve(
             .warn(format!("{message}; {help}"), "these points", value.span());
     }
     Some(curve)
-}
-
-/// A number to four digits.
-fn short(x: f64) -> f64 {
-    format!("{x:.3e}").parse().unwrap_or(x)
 }
 
 /// How far a spline may go beyond the range of its points without a warning, as a part of that range.

@@ -44,6 +44,11 @@ pub(crate) fn list<'n>(mut names: impl Iterator<Item = &'n str>) -> Option<Strin
     Some(text)
 }
 
+/// A number to four digits.
+pub(crate) fn short(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
+}
+
 /// A text of the file as a message quotes it: not longer than a line, no control characters.
 pub(crate) fn shorten(text: &str) -> String {
     let mut short: String = text

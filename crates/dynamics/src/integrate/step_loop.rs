@@ -1,5 +1,6 @@
 //! The steps of diffsol's methods, each checked.
 
+use super::impasse::Impasse;
 use crate::error::{DynamicsError, Result};
 use crate::ode::{OdeState, StepControl, StepObserver, Termination};
 use crate::options::{Options, Statistics};
@@ -36,6 +37,9 @@ pub(super) struct StepLoop<'g, 'f> {
     /// The error of the last evaluation that failed.
     pub(super) failure: &'g RefCell<Option<DynamicsError>>,
     pub(super) pieces: Option<&'g mut TimePieces<'f>>,
+    pub(super) impasse: &'g mut Impasse,
+    /// Why a state cannot be evaluated, if it cannot.
+    pub(super) fault: &'g dyn Fn(&OdeState) -> Option<DynamicsError>,
 }
 
 impl StepLoop<'_, '_> {
@@ -94,10 +98,24 @@ impl StepLoop<'_, '_> {
             now.y.copy_from_slice(state.y.inner().as_slice());
             if !(now.t.is_finite() && state.h.is_finite() && now.y.iter().all(|y| y.is_finite())) {
                 let kept = self.failure.borrow_mut().take();
+                self.impasse.step_failed(kept.is_some(), now.t - at.t);
                 return Err(kept.unwrap_or(DynamicsError::NotFinite { t: at.t }));
             }
-            // A trial point that step control recovered from is no failure.
-            self.failure.borrow_mut().take();
+            // A trial point that step control recovered from is no failure, unless no step leads on any more. An explicit method does not
+            // notice a state that cannot be evaluated, and Newton's method may end beside one that can.
+            let failed = self.failure.borrow_mut().take();
+            if let Some(error) = failed {
+                if let Some(fault) = (self.fault)(&now) {
+                    self.impasse.step_failed(true, now.t - at.t);
+                    return Err(fault);
+                }
+                self.impasse.step_shortened([at, &now]);
+                if self.impasse.is_reached() {
+                    return Err(error);
+                }
+            } else {
+                self.impasse.step_taken([at, &now]);
+            }
             // It cannot step to an end that is within its rounding of time: it is there.
             let rounding = INTEGRATOR_ROUNDING * (now.t.abs() + state.h.abs());
             let reached = state.t;

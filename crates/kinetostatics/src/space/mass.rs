@@ -1,6 +1,7 @@
 //! Mass and inertia of a body in space.
 
 use dwell_geometry::space::{BodyMotion, Frame, Placement, Rotation, Vec3, Wrench, vec3};
+use dwell_numerics::dense::Matrix;
 use dwell_numerics::{Scalar, map_array};
 
 /// Mass, centre of mass and moments of inertia of a body, in its frame.
@@ -29,7 +30,7 @@ impl Mass {
     }
 
     /// Whether it is a mass: not negative, with a tensor that is positive semidefinite but for rounding. That no moment exceeds the sum of the
-    /// two others is not asked: tensors of published mechanisms exceed it (Haug's spatial slider-crank).
+    /// two others is not asked, as equations of motion do not need it ([`Mass::excess_moment`]).
     pub fn is_valid(&self) -> bool {
         let [xx, yy, zz, xy, xz, yz] = self.inertia;
         let finite = self.mass.is_finite()
@@ -46,6 +47,33 @@ impl Mass {
                 .iter()
                 .all(|m| *m >= -slack * slack.max(xx + yy + zz))
             && determinant >= -slack * (xx + yy + zz).powi(2)
+    }
+
+    /// The principal moments of inertia about the centre of mass, kg m², the smallest first; not numbers where an element is none.
+    ///
+    /// ```
+    /// use dwell_kinetostatics::space::Mass;
+    ///
+    /// let cuboid = Mass { inertia: [2.0, 2.0, 3.0, 1.0, 0.0, 0.0], ..Mass::default() };
+    /// let moments = cuboid.principal_moments();
+    /// assert!(moments.iter().zip([1.0, 3.0, 3.0]).all(|(a, b)| (a - b).abs() < 1e-14));
+    /// ```
+    pub fn principal_moments(&self) -> [f64; 3] {
+        let rows = rows(self.inertia).map(|row| [row.x, row.y, row.z]);
+        let values = Matrix::from_fn(3, 3, |i, j| rows[i][j]).eigenvalues();
+        let mut moments = [f64::NAN; 3];
+        for (moment, [value, _]) in moments.iter_mut().zip(values.into_iter().flatten()) {
+            *moment = value;
+        }
+        moments.sort_by(f64::total_cmp);
+        moments
+    }
+
+    /// By how much the largest principal moment exceeds the sum of the others, kg m²: of no distribution of mass it does, as
+    /// I_1 + I_2 − I_3 = 2 ∫ x_3² dm. Not positive, but for rounding, of others.
+    pub fn excess_moment(&self) -> f64 {
+        let [one, two, largest] = self.principal_moments();
+        largest - one - two
     }
 
     /// Whether a body's inertia couples its rotation about a line with the motion: the centre is off it, or the inertia is not that of a body of revolution.

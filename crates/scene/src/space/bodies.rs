@@ -4,11 +4,15 @@ use super::values::{direction, point};
 use crate::dimensions::Dimensions;
 use crate::table_reader::{Entry, TableReader};
 use crate::value::Value;
+use crate::wording::short;
 use dwell_geometry::space::{Rotation, Vec3};
 use dwell_kinetostatics::space::Mass;
 
 /// Axes of inertia at right angles to within this, rad.
 const SQUARE: f64 = 1e-6;
+
+/// How much the largest principal moment may exceed the sum of the others, as a part of the sum of all: the rounding of decimals.
+const EXCESS: f64 = 1e-9;
 
 /// Space.
 #[derive(Debug)]
@@ -44,13 +48,34 @@ impl Dimensions for Space {
         if let Some(axes) = turned {
             found.inertia = found.turned(&axes).inertia;
         }
-        if let (Some(entry), false) = (fields.get("inertia"), found.is_valid()) {
-            let message = format!("no body has the inertia of {}", fields.what);
-            let help = "moments of inertia are not negative, and products of inertia not above what they allow";
-            (entry.value).reject::<()>(message, "not a tensor of inertia", help);
+        match fields.get("inertia") {
+            Some(entry) if !found.is_valid() => {
+                let message = format!("no body has the inertia of {}", fields.what);
+                let help = "moments of inertia are not negative, and products of inertia not above what they allow";
+                (entry.value).reject::<()>(message, "not a tensor of inertia", help);
+            }
+            Some(entry) => warn_of_excess(entry, &found, fields),
+            None => {}
         }
         found
     }
+}
+
+/// Warns of a tensor that no distribution of mass has. It is used as it is: published mechanisms have such, and the equations of motion
+/// do not mind.
+fn warn_of_excess(entry: &Entry<'_>, mass: &Mass, fields: &TableReader<'_>) {
+    let [one, two, three] = mass.principal_moments();
+    if mass.excess_moment() <= EXCESS * (one + two + three) {
+        return;
+    }
+    let [one, two, three] = [one, two, three].map(short);
+    let message = format!(
+        "no distribution of mass has the inertia of {}: its largest principal moment, {three} kg m², exceeds the sum of the others, {one} and \
+         {two} kg m²; it is used as it is. Are the moments about the centre of mass, and the products of inertia −∫ x y dm?",
+        fields.what
+    );
+    let label = "exceeds the triangle inequality";
+    fields.log().warn(message, label, entry.value.span());
 }
 
 /// Three moments or all six elements, kg m².

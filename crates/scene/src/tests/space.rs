@@ -323,3 +323,41 @@ fn every_example_of_a_key_in_space_is_read() {
     }
     assert!(read >= 40, "{read}");
 }
+
+/// A tensor that no distribution of mass has is read as it is, and warned of where it stands; that of a flat body, on the bound, is not,
+/// whatever its axes.
+#[test]
+fn tensors_that_no_body_has_are_warned_of() {
+    let was = "inertia = [20, 30, 40, 1, 2, 3]";
+    assert!(IN_SPACE.contains(was));
+    for (tensor, excess) in [
+        ("[20, 30, 50]", None),
+        (
+            "[20, 30, 50.01]",
+            Some("0.00005001 kg m², exceeds the sum of the others, 0.00002 and 0.00003 kg m²"),
+        ),
+        // The same turned by 45° about z.
+        ("[25, 25, 50, 5, 0, 0]", None),
+        (
+            "[25, 25, 50.01, 5, 0, 0]",
+            Some("0.00005001 kg m², exceeds the sum of the others, 0.00002 and 0.00003 kg m²"),
+        ),
+        ("[0, 0, 0]", None),
+    ] {
+        let text = IN_SPACE.replace(was, &format!("inertia = {tensor}"));
+        let scene = SpaceScene::parse("test.toml", &text).expect("a scene");
+        match (scene.warnings.as_slice(), excess) {
+            ([], None) => {}
+            ([warning], Some(numbers)) => {
+                let message = &warning.message;
+                assert!(
+                    message.contains("body `rod`") && message.contains(numbers),
+                    "{message}"
+                );
+                let label = &warning.labels[0];
+                assert_eq!(&text[label.offset()..label.offset() + label.len()], tensor);
+            }
+            (warnings, _) => panic!("{tensor}: {warnings:?}"),
+        }
+    }
+}

@@ -6,7 +6,7 @@ use super::trajectory::{JointReactions, reject_unknown_variables};
 use super::views::page_drawing;
 use crate::explain::{StudyError, explain_any_motion, scene_error};
 use crate::machines::{MachineScene, MotionStart};
-use crate::models::{end_stops, states_of_drives};
+use crate::models::{drive_states, end_stops};
 use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, MachineError, NonconservativeSource};
 use dwell_findings::Column;
 use dwell_kinetostatics::Drive;
@@ -67,7 +67,7 @@ impl MachineScene for SpaceScene {
     }
 
     fn drive_state_columns(&self) -> Vec<Column> {
-        let states = states_of_drives(&self.drives, Coordinate::is_angle).into_iter();
+        let states = drive_states(self).into_iter();
         states
             .map(|(name, unit, _)| Column::new(name, unit))
             .collect()

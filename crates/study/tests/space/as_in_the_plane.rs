@@ -77,7 +77,7 @@ const SLIDE: [&str; 2] = [
 ];
 
 /// The slider-crank with a driver, loads and a last section, in the plane and in space.
-fn both(driver: [&str; 2], loads: [&str; 2], rest: &str) -> (Scene, SpaceScene) {
+pub(super) fn both(driver: [&str; 2], loads: [&str; 2], rest: &str) -> (Scene, SpaceScene) {
     let text = |k: usize, bodies: &str| {
         format!(
             "{bodies}{}{}[loads]\n{}{}{rest}",

@@ -6,7 +6,9 @@
     reason = "tests"
 )]
 
+mod accuracy;
 mod as_in_the_plane;
+mod motors;
 mod pictures;
 mod revolutions;
 mod trajectories;

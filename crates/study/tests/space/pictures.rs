@@ -70,3 +70,31 @@ fn the_pictures_of_scenes_in_space_are_legible() {
     let count: usize = all.iter().map(|(_, count)| count).sum();
     assert!(count > 300, "{count} pictures");
 }
+
+/// The pictures of a sweep say where the swept coordinate is, which need not be the first.
+#[test]
+fn pictures_of_a_sweep_say_where_the_swept_coordinate_is() {
+    let scene = scene(
+        "governor",
+        "\n[coordinate-sweep]\npoints = 61\ns = [0.3, 0.7]\n",
+    );
+    let span = PictureSpan::default();
+    let done = analyse_in_space(&scene, Analysis::Kinematics, None, span, &no_progress);
+    let done = done.unwrap_or_else(|e| panic!("{e:?}"));
+    let words = |ending: &str| {
+        let mut pictures = done.outcome.pictures.iter();
+        let picture = pictures.find(|picture| picture.path.ends_with(ending));
+        let layouts = picture.expect("a picture").layouts().expect("a layout");
+        let labels = layouts.iter().flat_map(|layout| &layout.labels);
+        labels
+            .map(|label| label.text.clone())
+            .collect::<Vec<_>>()
+            .join("\n")
+    };
+    assert!(words("mechanism.png").contains("Drawn at s = 17.2°"));
+    let frames = words("mechanism.gif");
+    assert!(
+        frames.contains("s = 17.2°") && frames.contains("s = 40.1°"),
+        "{frames}"
+    );
+}

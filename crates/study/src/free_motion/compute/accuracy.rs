@@ -10,11 +10,11 @@
 
 use crate::explain::StudyError;
 use crate::free_motion::compute::refinement::{
-    COARSE_TOLERANCE, Candidate, FIRST_TOLERANCE_RATIO, MIN_TOLERANCE, Refinement, Run,
+    COARSE_TOLERANCE, Candidate, FIRST_TOLERANCE_RATIO, MIN_TOLERANCE, Refinement, Run, refine,
 };
+use crate::free_motion::compute::tried_motion::{ProblemOfScene, TriedMotion};
 use crate::free_motion::compute::{ComputedMotion, Difference, FreeMotionProblem, SegmentedMotion};
-use crate::ranges::extent;
-use dwell_dynamics::{DynamicsError, Method, Options, Statistics};
+use dwell_dynamics::{Method, Options, Statistics};
 use dwell_findings::Record;
 use dwell_scene::Scene;
 
@@ -29,9 +29,155 @@ const TABLE_BREAK_EVEN: f64 = 30_000.0;
 /// Maximum number of steps of a coarse run.
 const MAX_COARSE_STEPS: usize = 100_000;
 
+/// A motion to an accuracy, by the method that was found.
+pub(crate) struct FoundMotion<M> {
+    pub(crate) motion: M,
+    /// The finer run with which it was compared.
+    pub(crate) finer: M,
+    pub(crate) method: Method,
+    /// Of the run that is kept.
+    pub(crate) tolerance: f64,
+    pub(crate) method_text: String,
+    /// How it was found.
+    how: String,
+    /// The estimated error.
+    pub(crate) difference: Difference,
+}
+
+impl<M> FoundMotion<M> {
+    /// What is said of it, and the numbers in it.
+    pub(crate) fn remarks(&self, accuracy: f64) -> (String, Record) {
+        let (text, mut record) = self.difference.remarks(accuracy, &self.how);
+        record.add("tolerance", "", self.tolerance);
+        (text, record)
+    }
+}
+
+/// The motion to `accuracy`: rad (lengths: relative to the largest change), and relative to the largest kinetic energy and the largest
+/// reaction; by the cheapest method that reaches it, else by the one that comes nearest.
+pub(crate) fn find_motion<P: TriedMotion>(
+    problem: &P,
+    accuracy: f64,
+    duration: f64,
+    sample_interval: f64,
+) -> Result<FoundMotion<P::Motion>, StudyError> {
+    let coarse_run = |method: Method| {
+        let options = Options {
+            max_steps: MAX_COARSE_STEPS,
+            sample_interval: Some(sample_interval),
+            ..Options::new(method, COARSE_TOLERANCE)
+        };
+        problem.by_method(duration, &options)
+    };
+    let explicit = coarse_run(Method::Dop853)?;
+    let (methods, expected_evaluations, reason) =
+        rank_methods(problem, &explicit, || coarse_run(Method::Bdf), accuracy)?;
+    let mut candidates: Vec<Candidate> = methods.map(|method| (method, None)).to_vec();
+    if expected_evaluations > TABLE_BREAK_EVEN
+        && let Some(visited) = problem.range_for_table(&explicit)
+    {
+        candidates.insert(0, (methods[0], Some(visited)));
+    }
+    let is_comparable = candidates[0] == (Method::Dop853, None) && P::reached_end(&explicit);
+    let first = is_comparable.then_some((COARSE_TOLERANCE, explicit));
+    let solve = |(method, visited): Candidate, tolerance: f64| {
+        let options = Options {
+            sample_interval: Some(sample_interval),
+            ..Options::new(method, tolerance)
+        };
+        match visited {
+            Some(visited) => problem.on_table(visited, duration, &options),
+            None => problem.by_method(duration, &options).map(Some),
+        }
+    };
+    let best = best_of(problem, &candidates, accuracy, first, &solve)?;
+    let ((method, visited), found) = best.ok_or_else(|| problem.too_short())?;
+    let suffix = visited.map_or("", |_| " on a table");
+    let reason = match method == methods[0] {
+        true => reason,
+        false => format!("as {} does not reach the accuracy", methods[0].name()),
+    };
+    let tolerance = two_digits(found.tolerance);
+    let method_text = format!("{}{suffix}, tolerance {tolerance}", method.name());
+    Ok(FoundMotion {
+        how: format!("{method_text}, {reason}; {} runs", found.runs),
+        method,
+        method_text,
+        motion: found.motion,
+        finer: found.finer,
+        tolerance: found.tolerance,
+        difference: found.difference,
+    })
+}
+
+/// The first candidate that reaches the accuracy, or else the one that comes nearest to it.
+fn best_of<P: TriedMotion>(
+    problem: &P,
+    candidates: &[Candidate],
+    accuracy: f64,
+    mut last: Option<Run<P::Motion>>,
+    solve: &dyn Fn(Candidate, f64) -> Result<Option<P::Motion>, StudyError>,
+) -> Result<Best<P::Motion>, StudyError> {
+    let mut best: Best<P::Motion> = None;
+    for &candidate in candidates {
+        let by_candidate = |tolerance| solve(candidate, tolerance);
+        let refined = refine(problem, accuracy, candidate.0, last.take(), &by_candidate)?;
+        let Some(refinement) = refined else { continue };
+        let largest = refinement.difference.largest();
+        let is_better = |(_, best): &(_, Refinement<_>)| largest < best.difference.largest();
+        if best.as_ref().is_none_or(is_better) {
+            best = Some((candidate, refinement));
+        }
+        if largest <= accuracy {
+            break;
+        }
+    }
+    Ok(best)
+}
+
+/// The candidate that comes nearest, if any can be run.
+type Best<M> = Option<(Candidate, Refinement<M>)>;
+
+/// The methods to try, the cheaper first; the expected number of evaluations; and the reason.
+fn rank_methods<P: TriedMotion>(
+    problem: &P,
+    explicit: &P::Motion,
+    implicit: impl FnOnce() -> Result<P::Motion, StudyError>,
+    accuracy: f64,
+) -> Result<([Method; 2], f64, String), StudyError> {
+    let statistics = P::statistics(explicit);
+    let stiff_fraction = statistics.stiff_steps as f64 / (statistics.steps.max(1)) as f64;
+    // The cost of accuracy grows as the root of the method's order; the cost of stability does not grow.
+    let refinement_ratio = COARSE_TOLERANCE
+        / (FIRST_TOLERANCE_RATIO * accuracy).clamp(MIN_TOLERANCE, COARSE_TOLERANCE);
+    let by_explicit = statistics.evaluations as f64
+        * (stiff_fraction + (1.0 - stiff_fraction) * refinement_ratio.powf(1.0 / 8.0));
+    let smooth = [Method::Dop853, Method::Bdf];
+    let reached = P::reached_end(explicit);
+    let reason = |method| reason_for(method, stiff_fraction);
+    if reached && stiff_fraction <= MAX_STIFF_FRACTION {
+        return Ok((smooth, by_explicit, reason(Method::Dop853)));
+    }
+    let implicit = implicit()?;
+    let freedoms = problem.free_coordinates();
+    let by_implicit = equivalent_evaluations(&P::statistics(&implicit), freedoms)
+        * (BDF_ERROR_RATIO * refinement_ratio).powf(1.0 / 6.0);
+    Ok(if reached && by_explicit <= by_implicit {
+        (smooth, by_explicit, reason(Method::Dop853))
+    } else {
+        let methods = [Method::Bdf, Method::Dop853];
+        (methods, by_implicit, reason(Method::Bdf))
+    })
+}
+
+/// The work of BDF in evaluations: a column of a Jacobian is one in dual numbers, a step costs two more.
+fn equivalent_evaluations(statistics: &Statistics, freedoms: usize) -> f64 {
+    let columns = 4 * freedoms;
+    (statistics.evaluations + columns * statistics.jacobians + 2 * statistics.steps) as f64
+}
+
 impl FreeMotionProblem<'_> {
-    /// The motion to `accuracy`: rad (lengths: relative to the largest change), and relative to the largest kinetic
-    /// energy and the largest reaction.
+    /// The motion to an accuracy, by quadrature or else as [`find_motion`] says.
     pub(crate) fn to_accuracy(
         &self,
         scene: &Scene,
@@ -42,134 +188,27 @@ impl FreeMotionProblem<'_> {
         if let Some(found) = self.by_quadrature(accuracy, duration, sample_interval) {
             return Ok(found);
         }
-        let coarse_run = |method: Method| {
-            let options = Options {
-                max_steps: MAX_COARSE_STEPS,
-                sample_interval: Some(sample_interval),
-                ..Options::new(method, COARSE_TOLERANCE)
-            };
-            self.solve(scene, duration, &options)
+        let of_scene = ProblemOfScene {
+            problem: self,
+            scene,
         };
-        let explicit = coarse_run(Method::Dop853)?;
-        let (methods, expected_evaluations, reason) =
-            self.rank_methods(&explicit, || coarse_run(Method::Bdf), accuracy)?;
-        let mut candidates: Vec<Candidate> = methods.map(|method| (method, None)).to_vec();
-        if expected_evaluations > TABLE_BREAK_EVEN && self.stays_on_branch(&explicit) {
-            candidates.insert(0, (methods[0], Some(visited_range(&explicit))));
-        }
-        let is_comparable = candidates[0] == (Method::Dop853, None) && reached_end(&explicit);
-        let first = is_comparable.then_some((COARSE_TOLERANCE, explicit));
-        let solve = |(method, visited): Candidate, tolerance: f64| {
-            let options = Options {
-                sample_interval: Some(sample_interval),
-                ..Options::new(method, tolerance)
-            };
-            match visited {
-                Some(visited) => self.solve_on_table(visited, duration, &options),
-                None => self.solve(scene, duration, &options).map(Some),
-            }
-        };
-        let best = self.best_of(&candidates, accuracy, first, &solve)?;
-        let ((method, visited), found) =
-            best.ok_or_else(|| self.explain(&DynamicsError::DurationTooShort))?;
-        let suffix = visited.map_or("", |_| " on a table");
-        let reason = match method == methods[0] {
-            true => reason,
-            false => format!("as {} does not reach the accuracy", methods[0].name()),
-        };
-        let tolerance = two_digits(found.tolerance);
-        let method_text = format!("{}{suffix}, tolerance {tolerance}", method.name());
-        let how = format!("{method_text}, {reason}; {} runs", found.runs);
+        let found = find_motion(&of_scene, accuracy, duration, sample_interval)?;
+        let remarks = found.remarks(accuracy);
         let (motion, difference) = (found.motion, &found.difference);
-        let mut computed =
-            ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, difference);
-        computed.record.add("tolerance", "", found.tolerance);
+        let computed =
+            ComputedMotion::to_accuracy(motion, found.method_text, accuracy, remarks, difference);
         Ok(ComputedMotion {
             comparison: Some(found.finer),
             ..computed
         })
     }
-
-    /// The first candidate that reaches the accuracy, or else the one that comes nearest to it.
-    fn best_of(
-        &self,
-        candidates: &[Candidate],
-        accuracy: f64,
-        mut last: Option<Run>,
-        solve: &dyn Fn(Candidate, f64) -> Result<Option<SegmentedMotion>, StudyError>,
-    ) -> Result<Option<(Candidate, Refinement)>, StudyError> {
-        let mut best: Option<(Candidate, Refinement)> = None;
-        for &candidate in candidates {
-            let by_candidate = |tolerance| solve(candidate, tolerance);
-            let refined = self.refine(accuracy, candidate.0, last.take(), &by_candidate)?;
-            let Some(refinement) = refined else { continue };
-            let largest = refinement.difference.largest();
-            let is_better = |(_, best): &(_, Refinement)| largest < best.difference.largest();
-            if best.as_ref().is_none_or(is_better) {
-                best = Some((candidate, refinement));
-            }
-            if largest <= accuracy {
-                break;
-            }
-        }
-        Ok(best)
-    }
-
-    /// The methods to try, the cheaper first; the expected number of evaluations; and the reason.
-    fn rank_methods(
-        &self,
-        explicit: &SegmentedMotion,
-        implicit: impl FnOnce() -> Result<SegmentedMotion, StudyError>,
-        accuracy: f64,
-    ) -> Result<([Method; 2], f64, String), StudyError> {
-        let statistics = explicit.statistics;
-        let stiff_fraction = statistics.stiff_steps as f64 / (statistics.steps.max(1)) as f64;
-        // The cost of accuracy grows as the root of the method's order; the cost of stability does not grow.
-        let refinement_ratio = COARSE_TOLERANCE
-            / (FIRST_TOLERANCE_RATIO * accuracy).clamp(MIN_TOLERANCE, COARSE_TOLERANCE);
-        let by_explicit = statistics.evaluations as f64
-            * (stiff_fraction + (1.0 - stiff_fraction) * refinement_ratio.powf(1.0 / 8.0));
-        let smooth = [Method::Dop853, Method::Bdf];
-        let reached = reached_end(explicit);
-        let reason = |method| reason_for(method, stiff_fraction);
-        if reached && stiff_fraction <= MAX_STIFF_FRACTION {
-            return Ok((smooth, by_explicit, reason(Method::Dop853)));
-        }
-        let implicit = implicit()?;
-        let by_implicit = self.equivalent_evaluations(&implicit.statistics)
-            * (BDF_ERROR_RATIO * refinement_ratio).powf(1.0 / 6.0);
-        Ok(if reached && by_explicit <= by_implicit {
-            (smooth, by_explicit, reason(Method::Dop853))
-        } else {
-            let methods = [Method::Bdf, Method::Dop853];
-            (methods, by_implicit, reason(Method::Bdf))
-        })
-    }
-
-    /// The work of BDF in evaluations: a column of a Jacobian is one in dual numbers, a step costs two more.
-    fn equivalent_evaluations(&self, statistics: &Statistics) -> f64 {
-        let columns = 4 * self.machine.free().len();
-        (statistics.evaluations + columns * statistics.jacobians + 2 * statistics.steps) as f64
-    }
-
-    /// Whether a motion stays in its own coordinate and assembly mode, where a table applies.
-    fn stays_on_branch(&self, coarse: &SegmentedMotion) -> bool {
-        let is_single_segment = coarse.segments.len() == 1 && coarse.charts.len() <= 1;
-        is_single_segment && reached_end(coarse) && self.machine.free() == [0]
-    }
 }
 
-impl ComputedMotion {
-    /// A motion to a required accuracy, how it was computed, and its estimated error.
-    pub(super) fn to_accuracy(
-        motion: SegmentedMotion,
-        method_text: String,
-        accuracy: f64,
-        how: &str,
-        difference: &Difference,
-    ) -> Self {
-        let (coordinate, energy) = (difference.coordinate, difference.energy);
-        let (required, reactions) = (two_digits(accuracy), difference.reactions);
+impl Difference {
+    /// What is said of a motion with this error, how it was computed, and the numbers in it.
+    pub(super) fn remarks(&self, accuracy: f64, how: &str) -> (String, Record) {
+        let (coordinate, energy) = (self.coordinate, self.energy);
+        let (required, reactions) = (two_digits(accuracy), self.reactions);
         let remarks = format!(
             "  accuracy {required}: {how}\n  estimated errors over the whole motion: {coordinate:.1e} in the coordinates, \
              {energy:.1e} of the largest kinetic energy, {reactions:.1e} of the largest reaction\n"
@@ -179,6 +218,19 @@ impl ComputedMotion {
         record.add("error.coordinates", "", coordinate);
         record.add("error.kinetic_energy", "", energy);
         record.add("error.reactions", "", reactions);
+        (remarks, record)
+    }
+}
+
+impl ComputedMotion {
+    /// A motion to a required accuracy, what is said of it, and its estimated error.
+    pub(super) fn to_accuracy(
+        motion: SegmentedMotion,
+        method_text: String,
+        accuracy: f64,
+        (remarks, record): (String, Record),
+        difference: &Difference,
+    ) -> Self {
         Self {
             motion,
             method_text,
@@ -205,17 +257,6 @@ fn reason_for(method: Method, stiff_fraction: f64) -> String {
         (true, true) => stiff,
         (true, false) => "a coarse run of DOP853 does not reach the end".to_owned(),
     }
-}
-
-/// The interval of the coordinate that a motion of one degree of freedom visits.
-fn visited_range(motion: &SegmentedMotion) -> [f64; 2] {
-    let steps = motion.steps();
-    extent(steps.filter_map(|(_, point)| point.y.first().copied()))
-}
-
-/// Whether a motion reached its end.
-fn reached_end(motion: &SegmentedMotion) -> bool {
-    motion.failure.is_none()
 }
 
 /// A number with two significant digits.

@@ -4,6 +4,7 @@ use crate::estimate::{error_scale, relative};
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::trajectory::compute::{TrajectorySample, force_scales};
 use dwell_dynamics::DynamicsError;
+use dwell_kinetostatics::{KinematicState, MachineModel};
 
 /// Samples at which reactions are compared, along the whole motion.
 const COMPARED_SAMPLES: usize = 64;
@@ -60,15 +61,34 @@ impl Difference {
     }
 }
 
-impl FreeMotionProblem<'_> {
-    /// The difference of a second computation from a first.
+/// The reactions of the first or the second computation (0 or 1) at a sample.
+pub(crate) type ReactionsOf<'r> =
+    &'r dyn Fn(usize, &TrajectorySample) -> Result<Vec<f64>, DynamicsError>;
+
+/// What of two computations of one motion is compared.
+pub(crate) struct Compared<'s> {
+    /// The samples of both.
+    pub(crate) samples: [&'s [TrajectorySample]; 2],
+    /// When they end, s.
+    pub(crate) ends: [f64; 2],
+    /// By free coordinate: its actuator, and whether it is an angle.
+    pub(crate) free: Vec<(usize, bool)>,
+    /// Where the error of the energy balance is among the extra values of a sample.
+    pub(crate) balance_index: usize,
+    /// The size of the mechanism, m.
+    pub(crate) size: f64,
+    /// The units of the reactions.
+    pub(crate) units: Vec<&'static str>,
+}
+
+impl Compared<'_> {
+    /// The difference of the second computation from the first.
     pub(crate) fn difference(
         &self,
-        one: &SegmentedMotion,
-        two: &SegmentedMotion,
+        reactions: ReactionsOf<'_>,
     ) -> Result<Difference, DynamicsError> {
-        let (first, second) = (self.samples(one)?, self.samples(two)?);
-        let pairs = pair_by_time(&first, &second);
+        let [first, second] = self.samples;
+        let pairs = pair_by_time(first, second);
         let max_abs = |of: &dyn Fn(&TrajectorySample) -> f64| {
             let values = first.iter().map(|s| of(s).abs());
             values.fold(0.0, f64::max)
@@ -77,40 +97,38 @@ impl FreeMotionProblem<'_> {
             let differences = pairs.iter().map(|(a, b)| (of(a) - of(b)).abs());
             differences.fold(0.0, nan_max)
         };
-        let size = self.loaded_scene.mechanism.size();
         let mut coordinate = 0.0_f64;
-        for &i in self.machine.free() {
+        for &(i, is_angle) in &self.free {
             let value = |s: &TrajectorySample| s.coordinate(i);
             let start = first.first().map_or(0.0, value);
-            let scale = match self.output_model.plan().is_angle(i) {
+            let scale = match is_angle {
                 true => 1.0,
-                false => error_scale(max_abs(&|s| value(s) - start), size),
+                false => error_scale(max_abs(&|s| value(s) - start), self.size),
             };
             coordinate = nan_max(coordinate, relative(max_difference(&value), scale));
         }
-        let balance = |s: &TrajectorySample| self.energy_balance(s);
+        let balance = |s: &TrajectorySample| s.extra_values[self.balance_index];
         let [kinetic, potential] = [0, 1].map(|k| max_abs(&|s| s.extra_values[k]));
-        let [end_one, end_two] = [one, two].map(SegmentedMotion::end_time);
+        let [end_one, end_two] = self.ends;
         Ok(Difference {
             coordinate,
             energy: relative(max_difference(&balance), error_scale(kinetic, potential)),
-            reactions: self.reaction_difference([one, two], &pairs, kinetic)?,
+            reactions: self.reaction_difference(reactions, &pairs, kinetic)?,
             end: relative((end_one - end_two).abs(), end_one.max(end_two)),
         })
     }
 
     fn reaction_difference(
         &self,
-        [one, two]: [&SegmentedMotion; 2],
+        reactions: ReactionsOf<'_>,
         pairs: &[(&TrajectorySample, &TrajectorySample)],
         kinetic: f64,
     ) -> Result<f64, DynamicsError> {
-        let reactions = self.output_model.reactions();
-        let mut differences = vec![0.0_f64; reactions.len()];
+        let mut differences = vec![0.0_f64; self.units.len()];
         let mut sizes = differences.clone();
         let stride = pairs.len().div_ceil(COMPARED_SAMPLES).max(1);
         for (a, b) in pairs.iter().step_by(stride) {
-            let (first, second) = (self.reactions(one, a)?, self.reactions(two, b)?);
+            let (first, second) = (reactions(0, a)?, reactions(1, b)?);
             let cells = differences.iter_mut().zip(&mut sizes);
             for ((difference, size), (v, w)) in cells.zip(first.iter().zip(&second)) {
                 // Next to a change point a reaction may be undefined in both.
@@ -121,43 +139,66 @@ impl FreeMotionProblem<'_> {
             }
         }
         let of_unit = |unit: &str| {
-            let alike = sizes.iter().zip(reactions);
-            let alike = alike.filter(|(_, s)| s.component.unit() == unit);
+            let alike = sizes.iter().zip(&self.units).filter(|(_, u)| **u == unit);
             alike.fold(0.0, |scale: f64, (size, _)| scale.max(*size))
         };
         // Where all of a unit are zero but for rounding, their difference is that of two roundings.
         let [force, moment] = ["N", "N m"].map(of_unit);
-        let size = self.loaded_scene.mechanism.size();
-        let references = force_scales(size, [force, moment], kinetic);
+        let references = force_scales(self.size, [force, moment], kinetic);
         let force = error_scale(force, references[0]);
         let moment = error_scale(moment, references[1]);
-        let parts = differences.iter().zip(reactions).map(|(&difference, r)| {
-            let scale = match r.component.unit() {
-                "N" => force,
-                _ => moment,
-            };
-            relative(difference, scale)
-        });
+        let parts = differences
+            .iter()
+            .zip(&self.units)
+            .map(|(&difference, unit)| {
+                let scale = if *unit == "N" { force } else { moment };
+                relative(difference, scale)
+            });
         Ok(parts.fold(0.0, nan_max))
     }
+}
 
-    /// All reactions at a sample.
-    fn reactions(
+impl FreeMotionProblem<'_> {
+    /// The difference of a second computation from a first.
+    pub(crate) fn difference(
         &self,
-        motion: &SegmentedMotion,
-        sample: &TrajectorySample,
-    ) -> Result<Vec<f64>, DynamicsError> {
-        let chart = motion.charts.get(sample.chart);
-        let model = chart.map_or(&self.output_model, |chart| &chart.output_model);
-        let (mut workspace, mut results) = (model.workspace(), model.result_buffer());
-        let state = model.kinematic_state(&sample.q, &sample.q_dot, &mut workspace)?;
-        let mut state = state.apply_loads(sample.t)?;
-        for &(load, magnitude) in &sample.drive_magnitudes {
-            state.set_magnitude(load, magnitude);
-        }
-        state.evaluate(&sample.q_ddot, &mut results)?;
-        Ok(results.reactions)
+        one: &SegmentedMotion,
+        two: &SegmentedMotion,
+    ) -> Result<Difference, DynamicsError> {
+        let (first, second) = (self.samples(one)?, self.samples(two)?);
+        let plan = self.output_model.plan();
+        let free = self.machine.free().iter();
+        let reactions = self.output_model.reactions().iter();
+        let compared = Compared {
+            samples: [&first, &second],
+            ends: [one, two].map(SegmentedMotion::end_time),
+            free: free.map(|&i| (i, plan.is_angle(i))).collect(),
+            balance_index: self.balance_index(),
+            size: self.loaded_scene.mechanism.size(),
+            units: reactions.map(|r| r.component.unit()).collect(),
+        };
+        compared.difference(&|which, sample| {
+            let chart = [one, two][which].charts.get(sample.chart);
+            let model = chart.map_or(&self.output_model, |chart| &chart.output_model);
+            reactions_at(model, sample)
+        })
     }
+}
+
+/// All reactions of a model at a sample.
+pub(crate) fn reactions_at<M: MachineModel>(
+    model: &M,
+    sample: &TrajectorySample,
+) -> Result<Vec<f64>, DynamicsError> {
+    let (mut workspace, mut results) = (model.pass_workspace(), model.result_buffer());
+    let at = [&sample.q[..], &sample.q_dot[..]];
+    let state = KinematicState::new(model, at, &mut workspace)?;
+    let mut state = state.apply_loads(sample.t)?;
+    for &(load, magnitude) in &sample.drive_magnitudes {
+        state.set_magnitude(load, magnitude);
+    }
+    state.evaluate(&sample.q_ddot, &mut results)?;
+    Ok(results.reactions)
 }
 
 /// The samples at common times. Next to a change point one of them may lack samples.

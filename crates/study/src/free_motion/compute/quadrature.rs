@@ -73,7 +73,9 @@ impl FreeMotionProblem<'_> {
         let method_text = "quadrature".to_owned();
         let points = orbit.points;
         let how = format!("quadrature (conservative, periodic motion), {points} quadrature points");
-        let found = ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, &difference);
+        let remarks = difference.remarks(accuracy, &how);
+        let found =
+            ComputedMotion::to_accuracy(motion, method_text, accuracy, remarks, &difference);
         Some(ComputedMotion {
             comparison: Some(comparison),
             delay: Some(delay),

@@ -1,7 +1,7 @@
 //! A motion at finer and finer tolerances, until two runs agree.
 
 use crate::explain::StudyError;
-use crate::free_motion::compute::{Difference, FreeMotionProblem, SegmentedMotion};
+use crate::free_motion::compute::{Difference, FreeMotionProblem, SegmentedMotion, TriedMotion};
 use dwell_dynamics::{Method, ObservedMachine, Options, TabulatedMachine, solve_system};
 use dwell_kinetostatics::TableDomain;
 
@@ -36,15 +36,15 @@ const MAX_RUNS: usize = 6;
 pub(super) type Candidate = (Method, Option<[f64; 2]>);
 
 /// A motion at a tolerance.
-pub(super) type Run = (f64, SegmentedMotion);
+pub(super) type Run<M> = (f64, M);
 
 /// The result of a refinement.
-pub(super) struct Refinement {
+pub(super) struct Refinement<M> {
     /// The tolerance of the run that is kept.
     pub(super) tolerance: f64,
-    pub(super) motion: SegmentedMotion,
+    pub(super) motion: M,
     /// The finer run with which it was compared.
-    pub(super) finer: SegmentedMotion,
+    pub(super) finer: M,
     /// The estimated error of what is kept.
     pub(super) difference: Difference,
     pub(super) runs: usize,
@@ -83,70 +83,72 @@ impl FreeMotionProblem<'_> {
         let is_complete = solution.error.is_none();
         Ok(is_complete.then(|| SegmentedMotion::single_segment(solution)))
     }
+}
 
-    /// Repeats the motion at finer tolerances until two runs agree; keeps the one whose error their difference is: the
-    /// coarser. `None` if a run cannot be made.
-    pub(super) fn refine(
-        &self,
-        accuracy: f64,
-        method: Method,
-        last: Option<Run>,
-        solve: &dyn Fn(f64) -> Result<Option<SegmentedMotion>, StudyError>,
-    ) -> Result<Option<Refinement>, StudyError> {
-        let min_tolerance = match method.is_implicit() {
-            true => MIN_IMPLICIT_TOLERANCE,
-            false => MIN_TOLERANCE,
-        };
-        let Some((mut kept, mut factor)) = first_run(accuracy, min_tolerance, last, solve)? else {
+/// Repeats the motion at finer tolerances until two runs agree; keeps the one whose error their difference is: the
+/// coarser. `None` if a run cannot be made.
+pub(super) fn refine<P: TriedMotion>(
+    problem: &P,
+    accuracy: f64,
+    method: Method,
+    last: Option<Run<P::Motion>>,
+    solve: &dyn Fn(f64) -> Result<Option<P::Motion>, StudyError>,
+) -> Result<Option<Refinement<P::Motion>>, StudyError> {
+    let min_tolerance = match method.is_implicit() {
+        true => MIN_IMPLICIT_TOLERANCE,
+        false => MIN_TOLERANCE,
+    };
+    let Some((mut kept, mut factor)) = first_run::<P>(accuracy, min_tolerance, last, solve)? else {
+        return Ok(None);
+    };
+    let mut runs = 1;
+    loop {
+        let next = (kept.0 * factor).max(min_tolerance);
+        let Some(motion) = solve(next)? else {
             return Ok(None);
         };
-        let mut runs = 1;
-        loop {
-            let next = (kept.0 * factor).max(min_tolerance);
-            let Some(motion) = solve(next)? else {
-                return Ok(None);
-            };
-            let finer = (next, motion);
-            runs += 1;
-            let is_finest = next <= 1.01 * min_tolerance || runs >= MAX_RUNS;
-            let is_independent = step_growth(&kept, &finer) >= INDEPENDENT_STEPS;
-            if !is_independent && !is_finest {
-                factor *= EQUAL_STEPS_FACTOR;
-                continue;
-            }
-            let difference = self.difference(&kept.1, &finer.1);
-            let difference = difference.map_err(|e| self.explain(&e))?;
-            let least = if is_independent { 0.0 } else { next };
-            let difference = difference.scaled(SAFETY_FACTOR).with_minimum(least);
-            let largest = difference.largest();
-            if largest <= accuracy || is_finest {
-                let (tolerance, motion) = kept;
-                return Ok(Some(Refinement {
-                    tolerance,
-                    motion,
-                    finer: finer.1,
-                    difference,
-                    runs,
-                }));
-            }
-            let [min_factor, max_factor] = TOLERANCE_FACTORS;
-            factor = match largest.is_finite() {
-                true => TARGET_ERROR_RATIO * accuracy / largest,
-                false => max_factor,
-            };
-            factor = factor.clamp(min_factor, max_factor);
-            kept = finer;
+        let finer = (next, motion);
+        runs += 1;
+        let is_finest = next <= 1.01 * min_tolerance || runs >= MAX_RUNS;
+        let is_independent = step_growth::<P>(&kept, &finer) >= INDEPENDENT_STEPS;
+        if !is_independent && !is_finest {
+            factor *= EQUAL_STEPS_FACTOR;
+            continue;
         }
+        let difference = problem.difference_of([&kept.1, &finer.1])?;
+        let least = if is_independent { 0.0 } else { next };
+        let difference = difference.scaled(SAFETY_FACTOR).with_minimum(least);
+        let largest = difference.largest();
+        if largest <= accuracy || is_finest {
+            let (tolerance, motion) = kept;
+            return Ok(Some(Refinement {
+                tolerance,
+                motion,
+                finer: finer.1,
+                difference,
+                runs,
+            }));
+        }
+        let [min_factor, max_factor] = TOLERANCE_FACTORS;
+        factor = match largest.is_finite() {
+            true => TARGET_ERROR_RATIO * accuracy / largest,
+            false => max_factor,
+        };
+        factor = factor.clamp(min_factor, max_factor);
+        kept = finer;
     }
 }
 
 /// The first run of a refinement, and the factor to the tolerance of the next; `None` if it cannot be made.
-fn first_run(
+type FirstRun<M> = Option<(Run<M>, f64)>;
+
+/// Makes it.
+fn first_run<P: TriedMotion>(
     accuracy: f64,
     min_tolerance: f64,
-    coarse: Option<Run>,
-    solve: &dyn Fn(f64) -> Result<Option<SegmentedMotion>, StudyError>,
-) -> Result<Option<(Run, f64)>, StudyError> {
+    coarse: Option<Run<P::Motion>>,
+    solve: &dyn Fn(f64) -> Result<Option<P::Motion>, StudyError>,
+) -> Result<FirstRun<P::Motion>, StudyError> {
     let [_, max_factor] = TOLERANCE_FACTORS;
     let first = (FIRST_TOLERANCE_RATIO * accuracy).clamp(10.0 * min_tolerance, COARSE_TOLERANCE);
     let coarse = match coarse {
@@ -158,7 +160,7 @@ fn first_run(
         // From the coarse run it is known whether tolerances decide the steps.
         let is_limited = coarse.is_some_and(|coarse| {
             let decades = (coarse.0 / run.0).log10();
-            step_growth(&coarse, &run) < INDEPENDENT_STEPS.powf(decades)
+            step_growth::<P>(&coarse, &run) < INDEPENDENT_STEPS.powf(decades)
         });
         let further = if is_limited { EQUAL_STEPS_FACTOR } else { 1.0 };
         (run, further * max_factor)
@@ -166,7 +168,7 @@ fn first_run(
 }
 
 /// The number of steps of a run over that of a coarser one.
-fn step_growth(coarser: &Run, finer: &Run) -> f64 {
-    let [coarser, finer] = [coarser, finer].map(|(_, motion)| motion.statistics.steps as f64);
+fn step_growth<P: TriedMotion>(coarser: &Run<P::Motion>, finer: &Run<P::Motion>) -> f64 {
+    let [coarser, finer] = [coarser, finer].map(|(_, motion)| P::statistics(motion).steps as f64);
     finer / coarser.max(1.0)
 }

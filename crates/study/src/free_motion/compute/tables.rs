@@ -1,6 +1,7 @@
 //! The samples and the events of a motion as tables.
 
 use crate::free_motion::compute::contacts::{ContactOccurrence, first_impulses};
+use crate::free_motion::compute::motors::motor_values;
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::number_format::coordinate_unit;
 use crate::trajectory::compute::{FreeTrajectory, Trajectory, TrajectorySample, extra_columns};
@@ -152,11 +153,8 @@ impl FreeMotionProblem<'_> {
         extra_values.extend(works);
         extra_values.push(kinetic + potential - works.iter().sum::<f64>());
         extra_values.extend(&point.y[machine.drive_states()]);
-        if machine.drives() > 0 {
-            let mut rates = vec![0.0; machine.state_count()];
-            state.derivative(&mut rates);
-            extra_values.extend(self.motor_values(machine, &state, (&point.y, &rates)));
-        }
+        let motors = (machine, &self.loaded_scene.drives[..]);
+        extra_values.extend(motor_values(motors, &state, &point.y));
         let (drives, magnitudes) = (loads - machine.drives()..loads, state.magnitudes());
         let given = drives.chain(machine.contact_loads());
         let mut sample = TrajectorySample {

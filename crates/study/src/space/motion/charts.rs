@@ -34,7 +34,7 @@ pub(super) struct OfChart {
 
 /// A motion through one coordinate or more.
 #[derive(Default)]
-pub(super) struct Motion {
+pub(crate) struct Motion {
     /// By part: its chart (0: the scene's own coordinate) and its solution.
     pub(super) parts: Vec<(usize, Solution)>,
     /// The charts from number 1 on.

@@ -55,11 +55,11 @@ pub fn compute_free_motion_in_space(
     let problem = SpaceMotionProblem::new(scene)?.for_solver(solver);
     let SimulatedMotion { run, computed } = problem.simulate(solver, None, progress)?;
     let events = problem.recorded_events(&run).into_iter();
-    let errors = run.accuracy.and_then(|_| problem.errors(&run));
+    let estimated_error = run.accuracy.and_then(|_| problem.largest_error(&run));
     Ok(FreeMotionInSpace {
         computed,
         events: events.map(|event| (event.t, event.name)).collect(),
-        estimated_error: errors.map(|errors| errors.largest),
+        estimated_error,
     })
 }
 
@@ -149,7 +149,8 @@ impl SpaceMotionProblem<'_> {
             });
         let (motion, text) = (&run.motion, &run.method_text);
         let mut computed = self.rows((motion, text), samples, between, progress)?;
-        let second = run.second.as_ref().filter(|_| times.is_none());
+        let whole = |second: &&Motion| times.is_none() && second.error().is_none();
+        let second = run.second.as_ref().filter(whole);
         let second = second.and_then(|motion| {
             let samples = self.samples(motion).ok()?;
             self.rows((motion, text), samples, None, &no_progress).ok()

@@ -6,23 +6,22 @@ use super::problem::SpaceMotionProblem;
 use crate::estimate;
 use crate::explain::StudyError;
 use crate::free_motion::compute::{
-    DEFAULT_SAMPLES, MotionSolver, check_sample_interval, pair_by_time, two_digits,
+    Compared, DEFAULT_SAMPLES, Difference, MotionSolver, TriedMotion, check_sample_interval,
+    find_motion, pair_by_time, reactions_at,
 };
 use crate::models::SolverSettings;
 use crate::ranges::extent;
 use crate::trajectory::compute::TrajectorySample;
 use dwell_dynamics::{
-    DynamicsError, Method, ObservedMachine, OdeState, Options, Orbit, Solution, solve,
+    DynamicsError, Method, ObservedMachine, OdeState, Options, Orbit, Solution, Statistics, solve,
     solve_further, solve_orbit,
 };
+use dwell_findings::Record;
+use dwell_kinetostatics::space::{Component, Reaction};
 use rayon::join;
 
-/// Tolerances of an integration to an accuracy, as parts of it.
-const TOLERANCES: [f64; 5] = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5];
 /// How much earlier than a motion that failed its second run ends, as a part of it.
 const BEFORE_END: f64 = 1e-6;
-/// No tolerance is finer.
-const MIN_TOLERANCE: f64 = 1e-14;
 
 /// A computed motion.
 pub(crate) struct Run {
@@ -36,6 +35,8 @@ pub(crate) struct Run {
     pub(super) options: Options,
     /// The accuracy that was required.
     pub(super) accuracy: Option<f64>,
+    /// The error of a motion that was integrated to an accuracy, and what is said of that.
+    pub(super) found: Option<(Difference, (String, Record))>,
 }
 
 /// By free coordinate: its error, and whether that is no result; then the error of the energy as a part of the largest.
@@ -105,6 +106,7 @@ impl SpaceMotionProblem<'_> {
             method_text,
             options,
             accuracy: None,
+            found: None,
         })
     }
 
@@ -224,35 +226,34 @@ impl SpaceMotionProblem<'_> {
             ),
             options,
             accuracy: Some(accuracy),
+            found: None,
         })
     }
 
-    /// The motion by the loosest tolerance of DOP853 whose estimated error keeps an accuracy.
+    /// The motion by the cheapest method whose estimated error keeps an accuracy.
     fn to_accuracy(&self, accuracy: f64, duration: f64, interval: f64) -> Result<Run, StudyError> {
-        let mut best = None;
-        for part in TOLERANCES {
-            let tolerance = (part * accuracy).max(MIN_TOLERANCE);
-            let options = Options {
+        let found = find_motion(self, accuracy, duration, interval)?;
+        let remarks = found.remarks(accuracy);
+        Ok(Run {
+            options: Options {
                 sample_interval: Some(interval),
-                ..Options::new(Method::Dop853, tolerance)
-            };
-            let text = format!(
-                "{}, tolerance {}",
-                Method::Dop853.name(),
-                two_digits(tolerance)
-            );
-            let mut run = self.integrated(duration, options, text)?;
-            run.accuracy = Some(accuracy);
-            let keeps = self.errors(&run).is_some_and(|e| e.largest <= accuracy);
-            let failed = run.motion.error().is_some();
-            best = Some(run);
-            if keeps || failed || tolerance <= MIN_TOLERANCE {
-                break;
-            }
+                ..Options::new(found.method, found.tolerance)
+            },
+            motion: found.motion,
+            second: Some(found.finer),
+            orbit: None,
+            method_text: found.method_text,
+            accuracy: Some(accuracy),
+            found: Some((found.difference, remarks)),
+        })
+    }
+
+    /// The largest estimated error of a motion, in the sense of [`MotionSolver::Accuracy`]; none where it has no second run.
+    pub(super) fn largest_error(&self, run: &Run) -> Option<f64> {
+        match &run.found {
+            Some((difference, _)) => Some(difference.largest()),
+            None => self.errors(run).map(|errors| errors.largest),
         }
-        // There is one tolerance at least.
-        let options = Options::new(Method::Dop853, MIN_TOLERANCE);
-        best.map_or_else(|| self.integrated(duration, options, String::new()), Ok)
     }
 
     /// The errors of a motion from its second run; none where it has none.
@@ -298,5 +299,67 @@ impl SpaceMotionProblem<'_> {
             errors.largest = errors.largest.max(errors.energy);
         }
         Some(errors)
+    }
+}
+
+impl TriedMotion for SpaceMotionProblem<'_> {
+    type Motion = Motion;
+
+    fn by_method(&self, duration: f64, options: &Options) -> Result<Motion, StudyError> {
+        let motion = self.through_charts(options, duration);
+        motion.map_err(|error| self.explain(&error))
+    }
+
+    /// Machines in space have no table.
+    fn range_for_table(&self, _: &Motion) -> Option<[f64; 2]> {
+        None
+    }
+
+    fn on_table(&self, _: [f64; 2], _: f64, _: &Options) -> Result<Option<Motion>, StudyError> {
+        Ok(None)
+    }
+
+    /// Of the reactions, those that are requested and that the loads determine.
+    fn difference_of(&self, motions: [&Motion; 2]) -> Result<Difference, StudyError> {
+        let explain = |error: DynamicsError| self.explain(&error);
+        let [one, two] = motions.map(|motion| self.samples(motion));
+        let (one, two) = (one.map_err(explain)?, two.map_err(explain)?);
+        let free = self.machine.free().iter();
+        let unit = |reaction: &Reaction| match reaction.component {
+            Component::Force(..) => "N",
+            Component::Moment(..) => "N m",
+        };
+        let requested = &self.reactions.requested;
+        let compared = Compared {
+            samples: [&one, &two],
+            ends: motions.map(Motion::end),
+            free: free.map(|&i| (i, self.is_angle(i))).collect(),
+            balance_index: self.balance_index(),
+            size: self.output_model.plan().size(),
+            units: requested.iter().map(unit).collect(),
+        };
+        let difference = compared.difference(&|which, sample| {
+            let problem = motions[which].problem(self, sample.chart);
+            let mut all = reactions_at(&problem.output_model, sample)?;
+            all.truncate(requested.len());
+            Ok(all)
+        });
+        difference.map_err(explain)
+    }
+
+    fn statistics(motion: &Motion) -> Statistics {
+        motion.statistics()
+    }
+
+    fn reached_end(motion: &Motion) -> bool {
+        motion.error().is_none()
+    }
+
+    fn free_coordinates(&self) -> usize {
+        self.machine.free().len()
+    }
+
+    fn too_short(&self) -> StudyError {
+        self.explain(&DynamicsError::DurationTooShort)
     }
 }

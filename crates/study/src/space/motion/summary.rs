@@ -205,6 +205,10 @@ impl SpaceMotionProblem<'_> {
 
     /// The estimated errors.
     fn describe_errors(&self, run: &Run, record: &mut Record) -> String {
+        if let Some((_, (text, numbers))) = &run.found {
+            record.extend(numbers.clone());
+            return text.clone();
+        }
         let Some(errors) = self.errors(run) else {
             return "  no error estimate: a second run fails\n".to_owned();
         };
@@ -270,14 +274,13 @@ impl SpaceMotionProblem<'_> {
                 )));
             }
         }
-        let accuracy = run.accuracy?;
+        let (accuracy, error) = (run.accuracy?, self.largest_error(run)?);
         let message = format!(
-            "an accuracy of {accuracy:e} is not reached: the estimated error is {:.1e}",
-            errors.largest
+            "an accuracy of {accuracy:e} is not reached: the estimated error is {error:.1e}"
         );
         let help = "the results are written with the error above; require that accuracy, or a shorter motion";
         let place = (SceneLocation::Duration, "the error grows with the duration");
-        (errors.largest > accuracy).then(|| scene_error(self.scene(), message, help, [place]))
+        (error > accuracy).then(|| scene_error(self.scene(), message, help, [place]))
     }
 }
 

@@ -6,13 +6,12 @@ use super::problem::SpaceMotionProblem;
 use super::run::Run;
 #[cfg(feature = "output")]
 use crate::free_motion::compute::first_impulses;
-use crate::free_motion::compute::sliding_at;
+use crate::free_motion::compute::{motor_values, sliding_at};
 #[cfg(feature = "output")]
 use crate::machines::MachineScene as _;
 #[cfg(feature = "output")]
 use crate::number_format::coordinate_unit;
-use crate::space::trajectory::extra_columns;
-use crate::trajectory::compute::{Column, SamplePrecision, TrajectorySample};
+use crate::trajectory::compute::{Column, SamplePrecision, TrajectorySample, extra_columns};
 use dwell_dynamics::{
     DenseOutput, DynamicsError, MachineOde, MachineWorkspace, OdeState, Options, Sliding,
     StepControl, integrate,
@@ -145,6 +144,8 @@ impl SpaceMotionProblem<'_> {
         extra_values.extend(works);
         extra_values.push(kinetic + potential - works.iter().sum::<f64>());
         extra_values.extend(&point.y[machine.drive_states()]);
+        let motors = (machine, &self.scene().drives[..]);
+        extra_values.extend(motor_values(motors, &state, &point.y));
         let drives = || loads..loads + machine.drives();
         let magnitudes = state.magnitudes();
         let mut sample = TrajectorySample {

@@ -34,6 +34,7 @@ pub(crate) fn figures(
     figures.extend(of.reactions());
     figures.extend(of.charts.shaking_force());
     figures.extend(of.charts.power());
+    figures.extend(of.charts.drives(&scene.drives));
     Ok(figures)
 }
 

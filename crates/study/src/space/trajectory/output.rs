@@ -74,9 +74,10 @@ pub(crate) fn drawn_positions<'a>(
         evaluator
             .evaluate(&sample, trajectory.load_time(&sample))
             .ok()?;
+        let q = sample.q[trajectory.swept_actuator().unwrap_or(0)];
         let at = match swept {
-            Some((name, true)) => format!("{} = {:.1}°", symbol(name), sample.q[0].to_degrees()),
-            Some((name, false)) => format!("{} = {} m", symbol(name), digits(sample.q[0], 4)),
+            Some((name, true)) => format!("{} = {:.1}°", symbol(name), q.to_degrees()),
+            Some((name, false)) => format!("{} = {} m", symbol(name), digits(q, 4)),
             None => format!("time = {} s", digits(sample.t, 4)),
         };
         Some((evaluator.placements.clone(), at.replace('-', "−")))

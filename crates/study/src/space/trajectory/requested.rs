@@ -4,13 +4,10 @@ use super::columns::all_columns;
 use super::reactions::JointReactions;
 use crate::explain::{StudyError, scene_error};
 use crate::machines::MachineScene as _;
-use crate::models::states_of_drives;
 use crate::trajectory::compute::{
-    Analysis, Column, Quantity, columns_of_integration, is_prefix_of, suggestion,
+    Analysis, Column, Quantity, extra_columns, is_prefix_of, suggestion,
 };
-use dwell_dynamics::Machine;
-use dwell_geometry::space::{Coordinate, Plan};
-use dwell_kinetostatics::space::Model;
+use dwell_geometry::space::Plan;
 use dwell_scene::{SceneLocation, SpaceScene};
 
 /// Of all columns of an analysis those that a scene requests, and whether these are a choice.
@@ -92,13 +89,6 @@ fn check_variables(
         return Err(scene_error(scene, message, help, [place]));
     }
     Ok(())
-}
-
-/// The columns of what the integration of a motion yields, in their order.
-pub(crate) fn extra_columns(scene: &SpaceScene, machine: &Machine<Model>) -> Vec<Column> {
-    let sources = machine.nonconservative_sources().iter();
-    let works = sources.map(|&source| (scene.name_of_source(source), "work since t = 0"));
-    columns_of_integration(works, states_of_drives(&scene.drives, Coordinate::is_angle))
 }
 
 /// Rejects requested columns that no analysis of a scene has.

@@ -206,13 +206,14 @@ impl<'a> Views<'a> {
     fn axonometric_panel(&self, placements: &[Placement], with_words: bool) -> Drawing {
         let view = self.axonometric;
         let [[x0, x1], [y0, y1]] = self.ranges(view);
-        let y0 = y0 - 1.2 * AXES * self.width;
+        // Left of and below everything, centres of mass included, which may be beside the bodies.
+        let centers = self.positions.scene.masses.iter().zip(placements);
+        let centers = centers.filter(|(mass, _)| mass.mass > 0.0);
+        let centers = centers.map(|(mass, at)| at.position + at.rotation.apply(mass.center));
+        let [[left, _], [below, _]] = bounds(view, &centers.collect::<Vec<_>>());
+        let (x0, y0) = (x0.min(left), y0.min(below) - 1.2 * AXES * self.width);
         let mut shapes = self.legend();
-        let detail = Detail {
-            named: true,
-            with_words,
-        };
-        shapes.extend(self.shapes(view, placements, detail));
+        // Before the mechanism, so that its words make room for those of the axes.
         let corner = [x0 + AXES * self.width, y0];
         for (name, axis) in ["x", "y", "z"].into_iter().zip(Vec3::AXES) {
             let [u, v] = view.place(axis.scaled(AXES * self.width));
@@ -232,6 +233,11 @@ impl<'a> Views<'a> {
                 shapes.push(Shape::text(to, name, placement));
             }
         }
+        let detail = Detail {
+            named: true,
+            with_words,
+        };
+        shapes.extend(self.shapes(view, placements, detail));
         Drawing {
             title: "Axonometric view".to_owned(),
             x: Axis::default().with_range(x0, x1),

@@ -1,13 +1,16 @@
 //! The columns that only a free motion has: energies, works, and the states of its drives.
 
-use crate::models::{drive_states, motor_columns, source_name};
+use crate::machines::MachineScene;
+use crate::models::{drive_states, motor_columns};
 use crate::trajectory::compute::{BALANCE, Column, KINETIC, POTENTIAL, Quantity};
 use dwell_dynamics::{Machine, NonconservativeSource};
-use dwell_scene::Scene;
 
-/// The columns of [`TrajectorySample::extra_values`](crate::trajectory::compute::TrajectorySample), in their order; the
-/// scene is that with the loads of its drives.
-pub(crate) fn extra_columns(loaded_scene: &Scene, machine: &Machine) -> Vec<Column> {
+/// The columns of [`TrajectorySample::extra_values`](crate::trajectory::compute::TrajectorySample), in their order, of a scene in the plane
+/// or in space; in the plane it is that with the loads of its drives.
+pub(crate) fn extra_columns<S: MachineScene>(
+    scene: &S,
+    machine: &Machine<S::Model>,
+) -> Vec<Column> {
     let sources = machine.nonconservative_sources().iter();
     let works = sources.map(|&source| {
         let meaning = match source {
@@ -19,15 +22,15 @@ pub(crate) fn extra_columns(loaded_scene: &Scene, machine: &Machine) -> Vec<Colu
             | NonconservativeSource::Prescribed(_)
             | NonconservativeSource::Stop(_) => "work since t = 0",
         };
-        (source_name(loaded_scene, source), meaning)
+        (scene.name_of_source(source), meaning)
     });
-    let states = drive_states(loaded_scene).into_iter();
-    columns_of_integration(works, states.chain(motor_columns(loaded_scene)))
+    let states = drive_states(scene).into_iter();
+    columns_of_integration(works, states.chain(motor_columns(scene)))
 }
 
 /// The columns of energies, of works by the names of what does them, of the balance, and of further values such as states of drives, each
 /// with its meaning.
-pub(crate) fn columns_of_integration<'a>(
+fn columns_of_integration<'a>(
     works: impl IntoIterator<Item = (&'a str, &'static str)>,
     further: impl IntoIterator<Item = (String, &'static str, &'static str)>,
 ) -> Vec<Column> {

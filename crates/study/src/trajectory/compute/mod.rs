@@ -34,7 +34,7 @@ pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
 };
 pub(crate) use evaluator::{ForceEvaluator, PositionEvaluator};
-pub(crate) use extra_columns::{columns_of_integration, extra_columns};
+pub(crate) use extra_columns::extra_columns;
 pub(crate) use extrema::Extremum;
 pub(crate) use extrema::{BetweenRows, Extrema, ExtremaSearch, SamplePrecision, Sampler};
 pub(crate) use followed_scene::FollowedScene;

@@ -3,16 +3,20 @@
 use crate::output::{chart, coordinate_axis, symbol};
 use crate::trajectory::compute::{Analysis, BALANCE, Column, KINETIC, POTENTIAL, Quantity};
 use crate::trajectory::figures::{ChartContext, FigureContext, MAX_CURVES};
+use dwell_kinetostatics::Drive;
 use dwell_report::{Axis, Figure, Panel, Series};
 
+/// Coordinates that are drawn over time.
+const DRAWN: usize = 3;
+
 impl ChartContext<'_> {
-    /// Every coordinate and its speed over time.
+    /// The first coordinates and their speeds over time.
     pub(crate) fn coordinates(&self) -> Option<Figure> {
         if self.analysis != Analysis::FreeMotion {
             return None;
         }
         let mut panels: Vec<Panel> = Vec::new();
-        for i in 0..3 {
+        for i in 0..DRAWN {
             let column = |order| {
                 let quantity = Quantity::ActuatorCoordinate(i, order);
                 self.results.column_index(quantity)
@@ -29,7 +33,12 @@ impl ChartContext<'_> {
             }
         }
         let title = "Coordinates and their speeds";
-        (!panels.is_empty()).then(|| self.figure("coordinates", title, "Over time.", panels))
+        let next = Quantity::ActuatorCoordinate(DRAWN, 0);
+        let text = match self.results.column_index(next) {
+            None => "Over time.",
+            Some(_) => "The first three, over time.",
+        };
+        (!panels.is_empty()).then(|| self.figure("coordinates", title, text, panels))
     }
 
     /// Kinetic and potential energy, work of nonconservative loads, and the error of the balance.
@@ -62,12 +71,10 @@ impl ChartContext<'_> {
         let panels = charts.into_iter().map(Panel::from).collect();
         Some(self.figure("energies", "Energies", text, panels))
     }
-}
 
-impl FigureContext<'_> {
     /// Currents of motors, electrical and mechanical power of drives, and efficiencies.
-    pub(crate) fn drives(&self) -> Option<Figure> {
-        let is_drive = |name: &str| self.scene.drives.iter().any(|drive| drive.name == name);
+    pub(crate) fn drives<C>(&self, drives: &[Drive<C>]) -> Option<Figure> {
+        let is_drive = |name: &str| drives.iter().any(|drive| drive.name == name);
         let of_drives = |ending: &str| {
             let columns = self.columns_where(|c| c.name.strip_suffix(ending).is_some_and(is_drive));
             let mut curves = self.labelled(&columns, ending);
@@ -90,7 +97,9 @@ impl FigureContext<'_> {
                     over its sum with the loss in the resistance, 0 where a motor brakes.";
         (!panels.is_empty()).then(|| self.figure("drives", "Drives", text, panels))
     }
+}
 
+impl FigureContext<'_> {
     /// Speed over coordinate.
     pub(crate) fn phase_portraits(&self) -> Option<Figure> {
         if self.analysis != Analysis::FreeMotion {

@@ -63,7 +63,7 @@ pub(crate) fn trajectory_figures(
     figures.extend(reactions);
     figures.extend(context.shaking_force());
     figures.extend(context.power());
-    figures.extend(context.drives());
+    figures.extend(context.drives(&scene.drives));
     figures.extend(context.energies());
     figures.extend(context.phase_portraits());
     let links = context.results.sectioned_links.iter();
