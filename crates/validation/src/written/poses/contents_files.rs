@@ -115,11 +115,11 @@ fn add_single_request(
 /// With one reaction the path of one point is requested: of all points it alone has columns. Nothing where the rows are refused.
 fn add_single_path(to: &mut Differences, program: &Program, mut scene: toml::Table) {
     let bodies = scene.get("bodies").and_then(toml::Value::as_table);
-    let points: Vec<(String, String)> = named_points(bodies);
-    let Some((body, point)) = points.iter().rfind(|(body, _)| body != "ground") else {
+    let points = named_points(bodies);
+    let Some(asked) = points.iter().rfind(|at| at.body != "ground") else {
         return;
     };
-    let path = toml::Value::String(format!("{body}.{point}"));
+    let path = toml::Value::String(asked.name());
     if let Some(toml::Value::Table(requests)) = scene.get_mut("requests") {
         requests.insert("paths".to_owned(), toml::Value::Array(vec![path]));
     }
@@ -130,28 +130,50 @@ fn add_single_path(to: &mut Differences, program: &Program, mut scene: toml::Tab
     let Some(Ok(rows)) = run.map(|run| run.csv("-statics.csv")) else {
         return;
     };
-    let has =
-        |(body, point): &(String, String)| rows.columns.contains_key(&format!("{body}.{point}.x"));
+    let has = |at: &NamedPoint| rows.columns.contains_key(&format!("{}.x", at.name()));
+    // Another name of the same point stands for it.
+    let is_asked = |at: &NamedPoint| at.body == asked.body && at.place == asked.place;
     to.add(0.0, 1.0, "", String::new);
-    if !points.iter().any(|at| at.0 == *body && has(at)) {
-        to.fail(format!(
-            "`statics` has no column of the path of {body}.{point}"
-        ));
+    if !points.iter().any(|at| is_asked(at) && has(at)) {
+        let asked = asked.name();
+        to.fail(format!("`statics` has no column of the path of {asked}"));
     }
-    if let Some((other, at)) = points.iter().find(|at| at.0 != *body && has(at)) {
+    if let Some(other) = points.iter().find(|at| !is_asked(at) && has(at)) {
+        let [other, asked] = [other, asked].map(NamedPoint::name);
         to.fail(format!(
-            "`statics` has columns of {other}.{at}, where only the path of {body}.{point} is requested"
+            "`statics` has columns of {other}, where only the path of {asked} is requested"
         ));
     }
 }
 
-/// All points that are named, with their bodies.
-fn named_points(bodies: Option<&toml::Table>) -> Vec<(String, String)> {
+/// A point of a body by the scene's text.
+struct NamedPoint {
+    body: String,
+    point: String,
+    place: toml::Value,
+}
+
+impl NamedPoint {
+    fn name(&self) -> String {
+        format!("{}.{}", self.body, self.point)
+    }
+}
+
+/// All points that are named.
+fn named_points(bodies: Option<&toml::Table>) -> Vec<NamedPoint> {
     let mut found = Vec::new();
     for (body, table) in bodies.into_iter().flatten() {
         let points = table.get("points").and_then(toml::Value::as_table);
-        let names = points.into_iter().flat_map(toml::Table::keys);
-        found.extend(names.map(|point| (body.clone(), point.clone())));
+        found.extend(
+            points
+                .into_iter()
+                .flatten()
+                .map(|(point, place)| NamedPoint {
+                    body: body.clone(),
+                    point: point.clone(),
+                    place: place.clone(),
+                }),
+        );
     }
     found
 }
