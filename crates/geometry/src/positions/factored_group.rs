@@ -22,6 +22,8 @@ const NO_STEP: f64 = 1e-17;
 const CURVATURE: f64 = 10.0;
 /// Newton's method doubles the correct digits in each step: 30 steps are far more than it needs.
 const MAX_NEWTON_STEPS: usize = 30;
+/// Residual in roundings of the group's size, below which it is closed although corrections, next to a singular position, stay larger.
+const CLOSED: f64 = 64.0;
 /// Residual of a closed group with redundant equations, as a part of its size: the precision of lengths in a scene.
 const REDUNDANT_RESIDUAL: f64 = 1e-9;
 
@@ -225,8 +227,8 @@ impl Plan {
         factored_group: &FactoredGroup,
         pose: &mut Pose<T>,
     ) -> Result<FactorOutcome, PositionError> {
-        let mut residual = f64::INFINITY;
-        let mut once_more = true;
+        let (mut residual, mut once_more) = (f64::INFINITY, true);
+        let q = pose.first_coordinate();
         let converged = CONVERGED.max(0.05 * T::EPSILON.sqrt());
         for _ in 0..MAX_NEWTON_STEPS {
             self.rotate_group(group, pose);
@@ -234,7 +236,7 @@ impl Plan {
             let outcome = self.factor_jacobian(group, factored_group, pose)?;
             let largest = self.apply_newton_step(group, factored_group, pose);
             if !largest.is_finite() {
-                break;
+                return Err(PositionError::NotConverged { group, q, residual });
             }
             // The next step by the square of this one, over the distance to a singular Jacobian.
             let next = CURVATURE * largest * largest / outcome.pivot_ratio;
@@ -249,7 +251,11 @@ impl Plan {
                 return self.factor_jacobian(group, factored_group, pose);
             }
         }
-        let q = pose.first_coordinate();
+        if residual <= CLOSED * T::EPSILON * self.groups[group].size {
+            self.rotate_group(group, pose);
+            self.check_redundant(group, factored_group, pose)?;
+            return self.factor_jacobian(group, factored_group, pose);
+        }
         Err(PositionError::NotConverged { group, q, residual })
     }
 
@@ -291,10 +297,8 @@ impl Plan {
         self.rotate_group(group, pose);
         self.residual(group, pose);
         let outcome = self.factor_jacobian(group, factored_group, pose)?;
-        if !self
-            .apply_newton_step(group, factored_group, pose)
-            .is_finite()
-        {
+        let largest = self.apply_newton_step(group, factored_group, pose);
+        if !largest.is_finite() {
             let q = pose.first_coordinate();
             return Err(PositionError::NotFinite { q });
         }
@@ -415,14 +419,9 @@ impl Plan {
         pose: &mut Pose<T>,
     ) {
         let assur = &self.groups[group];
-        let Group {
-            unknowns,
-            loops,
-            couplings,
-            ..
-        } = &assur.group;
-        let n = unknowns.len();
-        let mut row = factored_group.lu_offset;
+        let of = &assur.group;
+        let (unknowns, loops, couplings) = (&of.unknowns, &of.loops, &of.couplings);
+        let (n, mut row) = (unknowns.len(), factored_group.lu_offset);
         let unit_of = |unknown: Unknown| match unknown {
             Unknown::ClassAngle(_) => T::from_f64(1.0),
             Unknown::SlideTravel(_) => T::from_f64(assur.scale),
