@@ -188,6 +188,7 @@ fn twice(run: &Run, stem: &str, command: &str) -> Result<Vec<Finding>, String> {
     if command != "simulate" {
         printed.merge(rounding(&run.printed));
     }
+    let [of_files, of_extrema, of_places] = tolerances(command);
     let of = |differences: Differences, end: &str, check, comparison, tolerance| {
         let texts = Texts {
             key: &format!("written-{stem}-{end}"),
@@ -205,24 +206,21 @@ fn twice(run: &Run, stem: &str, command: &str) -> Result<Vec<Finding>, String> {
             "twice",
             Check::WrittenTwice,
             "CSV with NPZ, and no row beyond an extremum",
-            // The largest seen in a case is 4.6e-11 N m, of a moment that is zero beside forces of 300 N.
-            4e-9,
+            of_files,
         ),
         of(
             extrema,
             "extrema",
             Check::WrittenTwice,
             "extrema of the summary with a polynomial through rows",
-            // The largest seen in a case is 1.7e-6.
-            1e-5,
+            of_extrema,
         ),
         of(
             places,
             "places",
             Check::WrittenTwice,
             "slopes of that polynomial at the places of extrema, over one row",
-            // The largest seen in a case is 2.7e-4.
-            1e-3,
+            of_places,
         ),
         of(
             printed,
@@ -233,6 +231,20 @@ fn twice(run: &Run, stem: &str, command: &str) -> Result<Vec<Finding>, String> {
         ),
     ];
     Ok(all.into_iter().flatten().collect())
+}
+
+/// The tolerances of files, extrema and their places.
+fn tolerances(command: &str) -> [f64; 3] {
+    match command {
+        // The largest seen in a case are 2.7e-15, 2.7e-15 and 6.1e-6.
+        "kinematics" => [2e-13, 2e-13, 5e-4],
+        // 8.9e-16, 8.9e-16 and 8.9e-14.
+        "statics" => [8e-14, 8e-14, 8e-12],
+        // 2.7e-15, 1.7e-6 and 2.7e-5.
+        "kinetostatics" => [2e-13, 1e-5, 1e-3],
+        // 4.6e-11 N m, of a moment that is zero beside forces of 300 N; the error of a polynomial; 2.7e-4.
+        _ => [4e-9, 1e-5, 1e-3],
+    }
 }
 
 /// The rounding error that a command states of its own values: at most [`MAX_ROUNDING`] of them, so that no extremum is unknown.
