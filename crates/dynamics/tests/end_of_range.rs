@@ -43,7 +43,8 @@ fn integrated(of: &mut Bounded, start: &OdeState, until: f64, method: Method) ->
 }
 
 /// All methods come to the end itself, within their tolerance, and stop there, wherever on the axis of time and of the coordinate it is and
-/// however fast they come: the closed form of q̈ = a. Seen: at most 1.1e-13 of the coordinate and 234 steps (2 000 000 before).
+/// however fast they come: the closed form of q̈ = a. Seen: at most 8.5e-16 of the coordinate short, 2.0e-11 after 1e4 s, 7.7e-11 late, and 250
+/// steps (2 000 000 before).
 #[test]
 fn motions_stop_at_the_end_of_what_can_be_evaluated() {
     let mut worst = (0.0_f64, 0);
@@ -81,9 +82,9 @@ fn motions_stop_at_the_end_of_what_can_be_evaluated() {
             let short = (end - done.state.y[0]) / end.abs().max(1.0);
             let late = (done.state.t - t - expected) * root / end.abs().max(1.0);
             // DOP853 ends where a tenth of a step is below the rounding of time.
-            let allowed = 1e-11 + 50.0 * f64::EPSILON * t * root / end.abs().max(1.0);
+            let allowed = 8e-14 + 50.0 * f64::EPSILON * t * root / end.abs().max(1.0);
             assert!(
-                (0.0..allowed).contains(&short) && late.abs() < 10.0 * TOLERANCE,
+                (0.0..allowed).contains(&short) && late.abs() < 7.0 * TOLERANCE,
                 "{name} from {from} by {distance}: {short:.1e} short, {late:.1e} late"
             );
             worst = (worst.0.max(short), worst.1.max(steps));
@@ -117,8 +118,13 @@ fn motions_that_turn_back_in_front_of_it_go_on() {
             );
             let off = done.state.y[0] - (1.0 - gap) * until.sin();
             println!("{name} {gap:e}: {off:.1e}, {} steps", done.statistics.steps);
-            // A method's error is tens to hundreds of times its tolerance.
-            assert!(off.abs() < 1e4 * TOLERANCE, "{name}: {off:.1e}");
+            // After 40 rad; a fifth of the bound and less is seen.
+            let allowed = match method {
+                Method::Bdf => 1e-6,
+                Method::Esdirk34 | Method::TrBdf2 => 2e-5,
+                Method::Tsit45 | Method::Dop853 => 3e-8,
+            };
+            assert!(off.abs() < allowed, "{name}: {off:.1e}");
         }
     }
 }
