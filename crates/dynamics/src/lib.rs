@@ -94,8 +94,8 @@ pub use error::DynamicsError;
 pub use flywheel::{Flywheel, size_flywheel};
 pub use integrate::integrate;
 pub use machine::{
-    CoordinateMode, Machine, MachineError, MachineState, MachineWorkspace, MovingModel,
-    NonconservativeSource, SlidingForces, SpaceFitWindow, loads_with_drives,
+    CoordinateMode, EvaluatedIn, Machine, MachineError, MachineState, MachineWorkspace,
+    MovingModel, NonconservativeSource, SlidingForces, SpaceFitWindow, loads_with_drives,
 };
 pub use machine_ode::MachineOde;
 pub use motion_class::{MotionClass, motion_class};

@@ -16,6 +16,7 @@
 
 mod contacts;
 mod drives;
+mod evaluated_in;
 mod impact;
 mod on_fit;
 mod on_fit_in_space;
@@ -35,6 +36,7 @@ use dwell_kinetostatics::{
 };
 use dwell_laws::{Features, Law};
 use dwell_numerics::{Scalar, lu};
+pub use evaluated_in::EvaluatedIn;
 pub use on_fit::MovingModel;
 pub use on_fit_in_space::SpaceFitWindow;
 pub use sliding::SlidingForces;
@@ -236,6 +238,19 @@ impl<M: MovingModel> Machine<M> {
     /// # Errors
     /// [`DynamicsError`] where there is no pose, no inertia, or friction jams.
     pub fn evaluate<'a, T: Scalar>(
+        &'a self,
+        t: f64,
+        y: &[T],
+        workspace: &'a mut MachineWorkspace<T, M>,
+    ) -> Result<MachineState<'a, T, M>>
+    where
+        M: EvaluatedIn<T>,
+    {
+        M::evaluate_machine(self, (t, y), workspace)
+    }
+
+    /// [`Self::evaluate`], compiled by [`EvaluatedIn`].
+    fn evaluate_in<'a, T: Scalar>(
         &'a self,
         t: f64,
         y: &[T],

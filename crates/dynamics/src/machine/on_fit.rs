@@ -1,15 +1,15 @@
 //! A machine within the window of a change-point fit, by eq. (1) of [`crate::change_point_fit`].
 
 use super::workspace::EquationWorkspace;
-use super::{Machine, MachineState};
+use super::{EvaluatedIn, Machine, MachineState};
 use crate::change_point_fit::{FitWindow, FitWorkspace, set_motion};
 use crate::error::{Result, positive_inertia};
 use dwell_geometry::{JointKind, Motion, Pose};
 use dwell_kinetostatics::{
     EvaluatedState, ForceState, InverseDynamics, MachineModel, Magnitude, Model, Workspace,
 };
-use dwell_numerics::Scalar;
 use dwell_numerics::polynomial_fit::{PolynomialFit, chebyshev_nodes};
+use dwell_numerics::{DoubleDouble, Dual, Scalar};
 use std::fmt::Debug;
 
 /// Nodes on each side of the window, and highest degree, of the fit of the reactions.
@@ -53,7 +53,9 @@ const REACTION_DEGREE: usize = 8;
 /// assert!((orbit.period / period - 1.0).abs() < 1e-9);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub trait MovingModel: MachineModel {
+pub trait MovingModel:
+    MachineModel + EvaluatedIn<f64> + EvaluatedIn<Dual> + EvaluatedIn<DoubleDouble> + EvaluatedIn<f32>
+{
     /// The part of the coordinate on which a fit takes the place of the model.
     type FitWindow: Debug + Clone + PartialEq + Send + Sync;
 

@@ -7,7 +7,7 @@
 //! with the inertia J of a flywheel along the coordinate. m and ½m′ come from the two unit runs, which take 2100 instructions for
 //! the single-dwell instead of 4700 for inverse dynamics and a column of the mass matrix.
 
-use super::{Machine, MachineWorkspace, MovingModel};
+use super::{EvaluatedIn, Machine, MachineWorkspace, MovingModel};
 use crate::error::Result;
 use dwell_numerics::Scalar;
 
@@ -18,6 +18,19 @@ impl<M: MovingModel> Machine<M> {
     /// # Errors
     /// [`DynamicsError::Position`](crate::DynamicsError::Position) where there is no pose.
     pub(crate) fn unloaded_derivative<T: Scalar>(
+        &self,
+        y: &[T],
+        workspace: &mut MachineWorkspace<T, M>,
+        out: &mut [T],
+    ) -> Result<bool>
+    where
+        M: EvaluatedIn<T>,
+    {
+        M::unloaded_derivative(self, y, workspace, out)
+    }
+
+    /// [`Self::unloaded_derivative`], compiled by [`EvaluatedIn`].
+    pub(super) fn unloaded_derivative_in<T: Scalar>(
         &self,
         y: &[T],
         workspace: &mut MachineWorkspace<T, M>,

@@ -1,6 +1,6 @@
 //! The working memory of a machine.
 
-use super::{Machine, MovingModel};
+use super::{EvaluatedIn, Machine, MovingModel};
 use crate::change_point_fit::FitWorkspace;
 use crate::contact::ContactWorkspace;
 use crate::drive::HeldDrive;
@@ -9,7 +9,15 @@ use dwell_numerics::Scalar;
 
 impl<M: MovingModel> Machine<M> {
     /// Working memory for one thread.
-    pub fn workspace<T: Scalar>(&self) -> MachineWorkspace<T, M> {
+    pub fn workspace<T: Scalar>(&self) -> MachineWorkspace<T, M>
+    where
+        M: EvaluatedIn<T>,
+    {
+        M::machine_workspace(self)
+    }
+
+    /// [`Self::workspace`], compiled by [`EvaluatedIn`].
+    pub(super) fn workspace_in<T: Scalar>(&self) -> MachineWorkspace<T, M> {
         let n = self.free.len();
         let zeros = |count| vec![T::from_f64(0.0); count];
         let (actuators, drives) = (self.modes.len(), self.drives.len());
