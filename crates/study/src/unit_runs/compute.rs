@@ -17,7 +17,9 @@ use crate::progress::Progress;
 use crate::reduce::compute::{
     ReducedCurves, ReducedScene, RoundingErrors, coefficient_units, flat, inertia_units,
 };
-use crate::trajectory::compute::{Analysis, Spacing, Trajectory, compute_along, default_limits};
+use crate::trajectory::compute::{
+    Analysis, RowStorage, Spacing, Trajectory, compute_along, default_limits,
+};
 use dwell_findings::{Column, Table};
 use dwell_kinetostatics::Coefficients;
 use dwell_laws::{Law, Polynomial};
@@ -165,7 +167,7 @@ impl UnitRunScene for Scene {
             points,
         );
         let along = (trajectory, None);
-        let computed = compute_along(&scene, &model, along, String::new(), progress)?;
+        let computed = compute_along(RowStorage::Whole, &scene, &model, along, progress)?;
         match computed.early_stop {
             Some(error) => Err(error),
             None => Ok(computed.table),

@@ -3,7 +3,7 @@
 use super::evaluator::SpaceEvaluator;
 use super::page::space_page;
 use super::reactions::JointReactions;
-use super::rows::compute;
+use super::rows::computed_rows;
 use crate::explain::StudyError;
 use crate::number_format::digits;
 use crate::output::symbol;
@@ -33,7 +33,8 @@ pub fn analyse_in_space(
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
     let (reactions, model) = JointReactions::new(scene)?;
-    let (computed, evaluator) = compute(scene, (&reactions, &model), (analysis, points), progress)?;
+    let (of_model, of) = ((&reactions, &model), (analysis, points));
+    let (computed, evaluator) = computed_rows(scene, of_model, of, &|_| true, progress)?;
     let size = model.plan().size();
     let actuator = computed
         .trajectory

@@ -56,7 +56,7 @@ pub(crate) struct EarlyStop<'a> {
     /// A position a little beyond it that cannot be reached.
     first_failed: TrajectorySample,
     /// Whether at least the first position can be reached.
-    pub(crate) has_begun: bool,
+    has_begun: bool,
 }
 
 impl<'a> EarlyStop<'a> {

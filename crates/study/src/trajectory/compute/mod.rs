@@ -48,7 +48,7 @@ pub(crate) use requested_columns::{RequestedColumns, is_requested};
 pub(crate) use results::compute_trajectory_in;
 pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
 pub(crate) use results::{MotionBetweenRows, compute_along};
-pub(crate) use rounding_error::RoundingError;
+pub(crate) use rounding_error::{BodyNumbers, LargestErrors, RoundingError};
 pub(crate) use row_evaluator::RowEvaluator;
 pub(crate) use second_rows::SecondRows;
 pub use sectioned_link::SectionedLink;
@@ -57,8 +57,8 @@ pub(crate) use selection::{
 };
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
-    BALANCE, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, Spacing, SweepLimits,
-    TrajectorySample, default_limits,
+    BALANCE, FreeTrajectory, KINETIC, POTENTIAL, Spacing, SweepLimits, TrajectorySample,
+    default_limits,
 };
 pub(crate) use unit_references::UnitReferences;
 pub(crate) use unit_scales::{UnitScales, force_scales};

@@ -2,6 +2,7 @@
 
 use crate::explain::{StudyError, scene_error};
 use crate::number_format::{count, digits};
+use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
     Analysis, CONTINUITY_HELP, Column, EarlyStop, FollowedScene, StopCause, jump_location,
     unreachable_error,
@@ -12,7 +13,7 @@ use dwell_scene::{CoordinateSweep, MAX_ANGLE, PrescribedMotion, Scene, SceneLoca
 use std::f64::consts::TAU;
 
 /// Positions per step of progress.
-pub(crate) const POSITIONS_PER_STEP: usize = 500;
+const POSITIONS_PER_STEP: usize = 500;
 /// Number of positions if neither the scene nor the caller gives one.
 const DEFAULT_POINTS: usize = 361;
 /// Fraction of a range left out at a limit position, where velocities grow without bound.
@@ -40,6 +41,16 @@ pub(crate) struct TrajectorySample {
 }
 
 impl TrajectorySample {
+    /// Coordinates, velocities and accelerations at which an analysis evaluates it: those of statics are at `rest`.
+    pub(crate) fn state<'s>(&'s self, analysis: Analysis, rest: &'s [f64]) -> [&'s [f64]; 3] {
+        match analysis {
+            Analysis::Statics => [&self.q, rest, rest],
+            Analysis::Kinematics | Analysis::Kinetostatics | Analysis::FreeMotion => {
+                [&self.q, &self.q_dot, &self.q_ddot]
+            }
+        }
+    }
+
     /// The coordinate of an actuator, whichever coordinate its chart uses.
     pub(crate) fn coordinate(&self, actuator: usize) -> f64 {
         let own = self.actuator_coordinate;
@@ -220,9 +231,14 @@ impl<'a> Trajectory<'a> {
         }
     }
 
-    /// The number of steps in which progress is reported.
-    pub(crate) fn progress_steps(&self) -> usize {
-        self.points.div_ceil(POSITIONS_PER_STEP)
+    /// Reports the progress at the `k`th position, if a step ends there.
+    pub(crate) fn report(&self, k: usize, progress: Progress<'_>) {
+        if k.is_multiple_of(POSITIONS_PER_STEP) {
+            progress(Step {
+                total: self.points.div_ceil(POSITIONS_PER_STEP),
+                done: "positions",
+            });
+        }
     }
 
     /// Where the scene defines it.
