@@ -78,11 +78,16 @@ pub trait MachineScene: NamedScene {
     /// Whether a coordinate is an angle; otherwise it is a length.
     fn is_angle(coordinate: CoordinateOf<Self>) -> bool;
 
-    /// Names and units of the states of the drives.
-    fn drive_state_columns(&self) -> Vec<Column>;
-
     /// The name of what does work on the machine.
-    fn name_of_source(&self, source: NonconservativeSource) -> &str;
+    fn name_of_source(&self, source: NonconservativeSource) -> &str {
+        match source {
+            NonconservativeSource::Load(load) => self.load_name(load).unwrap_or_default(),
+            NonconservativeSource::Loads => "loads",
+            NonconservativeSource::Drive(drive) => &self.drives()[drive].name,
+            NonconservativeSource::Stop(stop) => &self.stops()[stop].name,
+            NonconservativeSource::Prescribed(i) => self.actuator(i).unwrap_or_default().0,
+        }
+    }
 
     /// Rejects requested columns that no analysis has.
     ///

@@ -2,9 +2,7 @@
 
 use crate::machines::{CoordinateOf, MachineScene};
 use crate::number_format::coordinate_unit;
-use dwell_dynamics::NonconservativeSource;
 use dwell_kinetostatics::{Drive, DriveKind, Motor};
-use dwell_scene::Scene;
 
 /// Name, unit and meaning of each state of the drives.
 pub(crate) fn drive_states<S: MachineScene>(
@@ -52,15 +50,4 @@ pub(crate) fn motor_columns<S: MachineScene>(
         all.push((name("efficiency"), "", efficiency));
     }
     all
-}
-
-/// The name of what does work on a machine.
-pub(crate) fn source_name(scene: &Scene, source: NonconservativeSource) -> &str {
-    match source {
-        NonconservativeSource::Load(load) => &scene.loads[load].name,
-        NonconservativeSource::Loads => "loads",
-        NonconservativeSource::Drive(drive) => &scene.drives[drive].name,
-        NonconservativeSource::Stop(stop) => &scene.stops[stop].name,
-        NonconservativeSource::Prescribed(actuator) => &scene.mechanism.actuators[actuator].name,
-    }
 }

@@ -6,12 +6,11 @@ use super::trajectory::{JointReactions, reject_unknown_variables};
 use super::views::page_drawing;
 use crate::explain::{StudyError, explain_any_motion, scene_error};
 use crate::machines::{MachineScene, MotionStart};
-use crate::models::{drive_states, end_stops};
-use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, MachineError, NonconservativeSource};
+use crate::models::{coordinate_modes, end_stops};
+use dwell_dynamics::{DynamicsError, Machine, MachineError};
 use dwell_findings::Column;
 use dwell_kinetostatics::Drive;
 use dwell_kinetostatics::space::{Component, Coordinate, Model, Reaction};
-use dwell_laws::Law;
 use dwell_page::Drawing;
 use dwell_scene::{SceneLocation, SpaceScene};
 
@@ -24,11 +23,7 @@ impl MachineScene for SpaceScene {
     }
 
     fn machine(&self, reactions: &[Reaction]) -> Result<Machine<Model>, StudyError> {
-        let mode = |law: &Option<Law>| match law {
-            Some(law) => CoordinateMode::Prescribed(law.clone()),
-            None => CoordinateMode::Free,
-        };
-        let modes = self.motion_start().laws.iter().map(mode).collect();
+        let modes = coordinate_modes(&self.motion_start().laws);
         let machine = Machine::new(compile(self, reactions)?, &self.loads, modes, &self.drives);
         let machine = machine.and_then(|machine| machine.with_stops(&end_stops(&self.stops)));
         machine.map_err(|error| explain_machine(self, &error))
@@ -64,23 +59,6 @@ impl MachineScene for SpaceScene {
 
     fn is_angle(coordinate: Coordinate) -> bool {
         coordinate.is_angle()
-    }
-
-    fn drive_state_columns(&self) -> Vec<Column> {
-        let states = drive_states(self).into_iter();
-        states
-            .map(|(name, unit, _)| Column::new(name, unit))
-            .collect()
-    }
-
-    fn name_of_source(&self, source: NonconservativeSource) -> &str {
-        match source {
-            NonconservativeSource::Load(load) => &self.loads[load].name,
-            NonconservativeSource::Loads => "loads",
-            NonconservativeSource::Drive(drive) => &self.drives[drive].name,
-            NonconservativeSource::Prescribed(i) => &self.mechanism.actuators[i].name,
-            NonconservativeSource::Stop(stop) => &self.stops[stop].name,
-        }
     }
 
     fn reject_unknown_columns(&self) -> Result<(), StudyError> {

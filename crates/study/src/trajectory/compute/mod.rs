@@ -27,8 +27,8 @@ mod unit_references;
 mod unit_scales;
 
 pub use analysis::Analysis;
-pub(crate) use column::{Column, Quantity, is_prefix_of};
-pub(crate) use columns::{POWER_COLUMNS, all_columns};
+pub(crate) use column::{Column, ColumnList, Quantity, is_prefix_of, units};
+pub(crate) use columns::all_columns;
 pub(crate) use dyads::{Dyad, dyads};
 pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
