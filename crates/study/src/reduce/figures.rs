@@ -21,14 +21,19 @@ use dwell_report::{Axis, Figure, Panel, Series};
 const MAX_CURVES: usize = 6;
 
 /// What the figures share: the scene with its model, and the coordinates.
-struct RangeFigures<'a> {
-    prepared: &'a dyn ReducedScene,
-    q: &'a [f64],
+pub(crate) struct RangeFigures<'a> {
+    pub(crate) prepared: &'a dyn ReducedScene,
+    pub(crate) q: &'a [f64],
+    /// The method that computed them.
+    pub(crate) method: &'static str,
 }
+
+/// That of reduced models.
+const METHOD: &str = "reduced model by unit runs";
 
 impl RangeFigures<'_> {
     /// A curve over the range.
-    fn line(&self, name: &str, values: impl IntoIterator<Item = f64>) -> Series {
+    pub(crate) fn line(&self, name: &str, values: impl IntoIterator<Item = f64>) -> Series {
         let points = self.q.iter().zip(values);
         let x = |q: f64| match self.prepared.is_angle() {
             true => q.to_degrees(),
@@ -38,7 +43,7 @@ impl RangeFigures<'_> {
     }
 
     /// Curves over the range; next to a limit position they may leave the chart.
-    fn panel(&self, title: &str, label: &str, unit: &str, series: Vec<Series>) -> Panel {
+    pub(crate) fn panel(&self, title: &str, label: &str, unit: &str, series: Vec<Series>) -> Panel {
         let mut y = Axis::new(label, unit);
         y.range = inner_range(self.prepared.range(), &series);
         let label = self.prepared.coordinate_label();
@@ -46,7 +51,7 @@ impl RangeFigures<'_> {
         chart(title, x, y, series).into()
     }
 
-    fn figure(
+    pub(crate) fn figure(
         &self,
         name: impl Into<String>,
         title: impl Into<String>,
@@ -55,7 +60,7 @@ impl RangeFigures<'_> {
     ) -> Figure {
         let text = range_caption(self.prepared.has_limits(), text);
         let positions = count(self.q.len(), "position");
-        let provenance = format!("reduced model by unit runs, at {positions}");
+        let provenance = format!("{}, at {positions}", self.method);
         figure(self.prepared.file(), name, title, &text, panels, provenance)
     }
 }
@@ -66,8 +71,12 @@ pub fn reduced(
     curves: &ReducedCurves,
     is_rounding: &[bool],
 ) -> Figure {
-    let (q, at) = (&curves.q, &curves.coefficients);
-    let range = RangeFigures { prepared, q };
+    let (q, at, method) = (&curves.q, &curves.coefficients, METHOD);
+    let range = RangeFigures {
+        prepared,
+        q,
+        method,
+    };
     let [m_unit, half_dm_unit] = match prepared.is_angle() {
         true => ["kg m²", "kg m²/rad"],
         false => inertia_units(false),
@@ -123,8 +132,12 @@ fn coefficient_figure(
     of: &str,
     index: usize,
 ) -> Figure {
-    let q = &curves.q;
-    let range = RangeFigures { prepared, q };
+    let (q, method) = (&curves.q, METHOD);
+    let range = RangeFigures {
+        prepared,
+        q,
+        method,
+    };
     let reactions = prepared.reaction_units();
     let name = symbol(prepared.coordinate_name());
     let lines = |part: usize, of: fn(&Coefficients, usize) -> f64| -> Vec<Series> {
@@ -180,7 +193,12 @@ pub(crate) fn unit_loads(
     prepared: &dyn ReducedScene,
     q: &[f64],
 ) -> Figure {
-    let range = RangeFigures { prepared, q };
+    let method = METHOD;
+    let range = RangeFigures {
+        prepared,
+        q,
+        method,
+    };
     let mut panels = Vec::new();
     let unit_of = |l: usize| curves.unit(l);
     let mut unit_names: Vec<&str> = curves.working().map(unit_of).collect();
