@@ -28,8 +28,13 @@ pub(crate) struct RangeFigures<'a> {
     pub(crate) method: &'static str,
 }
 
-/// That of reduced models.
-const METHOD: &str = "reduced model by unit runs";
+fn of_reduced_model<'a>(prepared: &'a dyn ReducedScene, q: &'a [f64]) -> RangeFigures<'a> {
+    RangeFigures {
+        prepared,
+        q,
+        method: "reduced model by unit runs",
+    }
+}
 
 impl RangeFigures<'_> {
     /// A curve over the range.
@@ -71,12 +76,7 @@ pub fn reduced(
     curves: &ReducedCurves,
     is_rounding: &[bool],
 ) -> Figure {
-    let (q, at, method) = (&curves.q, &curves.coefficients, METHOD);
-    let range = RangeFigures {
-        prepared,
-        q,
-        method,
-    };
+    let (range, at) = (of_reduced_model(prepared, &curves.q), &curves.coefficients);
     let [m_unit, half_dm_unit] = match prepared.is_angle() {
         true => ["kg m²", "kg m²/rad"],
         false => inertia_units(false),
@@ -132,12 +132,7 @@ fn coefficient_figure(
     of: &str,
     index: usize,
 ) -> Figure {
-    let (q, method) = (&curves.q, METHOD);
-    let range = RangeFigures {
-        prepared,
-        q,
-        method,
-    };
+    let range = of_reduced_model(prepared, &curves.q);
     let reactions = prepared.reaction_units();
     let name = symbol(prepared.coordinate_name());
     let lines = |part: usize, of: fn(&Coefficients, usize) -> f64| -> Vec<Series> {
@@ -193,12 +188,7 @@ pub(crate) fn unit_loads(
     prepared: &dyn ReducedScene,
     q: &[f64],
 ) -> Figure {
-    let method = METHOD;
-    let range = RangeFigures {
-        prepared,
-        q,
-        method,
-    };
+    let range = of_reduced_model(prepared, q);
     let mut panels = Vec::new();
     let unit_of = |l: usize| curves.unit(l);
     let mut unit_names: Vec<&str> = curves.working().map(unit_of).collect();

@@ -6,7 +6,7 @@ use super::loads::link_of;
 use super::points::placed;
 use super::projection::Picture;
 use super::segments::{line_of, nearest_of_segment};
-use super::solids::{center_of_mass, circle, hull};
+use super::solids::{center_of_mass, circle, hull, named};
 use crate::symbols::spring_outline;
 use dwell_geometry::space::{JointKind, Placement, Vec3};
 use dwell_geometry::{BodyId, vec2};
@@ -149,11 +149,7 @@ impl<'a> Scenery<'a> {
                 let behind = 1.5 * step + 0.1 * self.drawing.unit;
                 self.picture.add(near - behind, vec![line([from, to], rim)]);
             }
-            let bar = line([from, to], Pen::new(color, width));
-            let bar = match name {
-                Some(name) => bar.named(name),
-                None => bar,
-            };
+            let bar = named(line([from, to], Pen::new(color, width)), name);
             self.picture.add(near, vec![bar]);
         }
     }
@@ -161,10 +157,8 @@ impl<'a> Scenery<'a> {
     /// A bar between two points; a plate through more, or the bars from their middle.
     fn body(&mut self, body: BodyId) {
         let mechanism = &self.drawing.scene.mechanism;
-        let (name, color) = (
-            mechanism.bodies[body.0].name.as_str(),
-            self.drawing.color(body),
-        );
+        let name = mechanism.bodies[body.0].name.as_str();
+        let color = self.drawing.color(body);
         let local = self.drawing.drawn_points(body.0);
         let points: Vec<Vec3> = local.iter().map(|p| self.at(body, *p)).collect();
         let bar = (color, BAR);
@@ -229,10 +223,7 @@ impl<'a> Scenery<'a> {
         let view = self.picture.view;
         let outline = circle(view.place(at), 0.9 * self.drawing.unit);
         let line = Shape::line(outline, Pen::new(self.drawing.color(body), 4.0));
-        let line = match self.name(body) {
-            Some(name) => line.named(name),
-            None => line,
-        };
+        let line = named(line, self.name(body));
         self.picture.add(view.nearness(at), vec![line]);
     }
 

@@ -1,6 +1,6 @@
 //! Evaluates one position of a trajectory after another.
 
-use crate::bodies::BodyPose;
+use crate::bodies::{BodyPose, body_poses};
 use crate::explain::{StudyError, explain_model};
 use crate::trajectory::compute::{
     Analysis, Column, Quantity, RowEvaluator, SpeedScale, StopCause, TrajectoryMonitor,
@@ -205,35 +205,31 @@ fn has_scale(quantity: Quantity) -> bool {
 
 /// Whether a quantity is computed from the motion of the bodies alone.
 fn is_kinematic(quantity: Quantity) -> bool {
-    use Quantity::{
-        ActuatorCoordinate, BodyAngle, Measured, PointCoordinate, Time, TransmissionAngle,
-        VelocityRatio,
-    };
+    use Quantity as Q;
     matches!(
         quantity,
-        Time | ActuatorCoordinate(..)
-            | Measured(..)
-            | BodyAngle(..)
-            | PointCoordinate(..)
-            | TransmissionAngle(_)
-            | VelocityRatio(_)
+        Q::Time
+            | Q::ActuatorCoordinate(..)
+            | Q::Measured(..)
+            | Q::BodyAngle(..)
+            | Q::PointCoordinate(..)
+            | Q::TransmissionAngle(_)
+            | Q::VelocityRatio(_)
     )
 }
 
 /// Whether a quantity is computed from the forces on all bodies, beyond actuator forces and reactions.
 fn needs_forces_on_bodies(quantity: Quantity) -> bool {
-    use Quantity::{
-        BodyFrameForce, ForceDirection, ForceMagnitude, LoadForce, LoadPower, Power, ShakingForce,
-    };
+    use Quantity as Q;
     matches!(
         quantity,
-        BodyFrameForce(..)
-            | ForceMagnitude(_)
-            | ForceDirection(_)
-            | ShakingForce(_)
-            | Power(_)
-            | LoadForce(_)
-            | LoadPower(_)
+        Q::BodyFrameForce(..)
+            | Q::ForceMagnitude(_)
+            | Q::ForceDirection(_)
+            | Q::ShakingForce(_)
+            | Q::Power(_)
+            | Q::LoadForce(_)
+            | Q::LoadPower(_)
     )
 }
 
@@ -319,13 +315,7 @@ impl<'a> PositionEvaluator<'a> {
     }
 
     pub(crate) fn body_poses(&self) -> Vec<BodyPose> {
-        let states = &self.forces.body_states;
-        let bodies = (0..self.scene.mechanism.bodies.len()).map(BodyId);
-        let body_pose = |b| {
-            let origin = states.point(b, Vec2::ZERO).position;
-            (origin, states.body(b).rotation)
-        };
-        bodies.map(body_pose).collect()
+        body_poses(&self.forces.body_states, &self.scene.mechanism)
     }
 }
 
