@@ -77,15 +77,12 @@ pub fn reduced(
     is_rounding: &[bool],
 ) -> Figure {
     let (range, at) = (of_reduced_model(prepared, &curves.q), &curves.coefficients);
-    let [m_unit, half_dm_unit] = match prepared.is_angle() {
-        true => ["kg m²", "kg m²/rad"],
-        false => inertia_units(false),
-    };
+    let [m_unit, half_dm_unit] = inertia_units(prepared.is_angle()).map(|u| u.replace('2', "²"));
     let inertia = vec![range.line("", at.iter().map(|c| c.m))];
-    let inertia = range.panel("m (generalised inertia)", "m", m_unit, inertia);
+    let inertia = range.panel("m (generalised inertia)", "m", &m_unit, inertia);
     let derivative = vec![range.line("", at.iter().map(|c| c.half_dm))];
     let title = "½m′ (half its derivative)";
-    let derivative = range.panel(title, "½m′", half_dm_unit, derivative);
+    let derivative = range.panel(title, "½m′", &half_dm_unit, derivative);
     let text = "m is the actuator force at unit acceleration and zero speed, ½m′ at unit speed and zero acceleration.";
     let title = "Reduced inertia and half its derivative";
     let panels = match is_rounding[1] {

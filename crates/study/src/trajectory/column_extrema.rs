@@ -78,15 +78,19 @@ impl ColumnExtrema {
     }
 }
 
-/// The names of those of some columns whose extrema are those of the rows, the first of them one by one.
-pub(crate) fn names_of_rows(results: &TrajectoryResults, columns: &[usize]) -> String {
-    let of_rows = columns.iter().filter(|&&k| results.extrema.of_rows[k]);
+/// The sentence about those columns in the tables whose extrema are those of the rows although others are looked for between them: the
+/// first of them one by one.
+pub(crate) fn searched_in_rows(results: &TrajectoryResults) -> Option<String> {
+    let of_rows = results.written.iter();
+    let of_rows = of_rows.filter(|&&k| results.extrema.of_rows[k]);
     let mut names = of_rows.map(|&k| results.columns[k].name.as_str());
     let first: Vec<&str> = names.by_ref().take(MAX_NAMED).collect();
-    match names.count() {
-        0 => first.join(", "),
-        others => format!("{} and {others} others", first.join(", ")),
-    }
+    let (first, others) = (first.join(", "), names.count());
+    let others = match others {
+        0 => String::new(),
+        others => format!(" and {others} others"),
+    };
+    (!first.is_empty()).then(|| format!("Of the rows only: {first}{others}."))
 }
 
 /// The extrema of some columns, grouped by unit, largest absolute value first.

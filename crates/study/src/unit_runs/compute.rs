@@ -85,8 +85,16 @@ pub enum UnitRun {
 }
 
 impl UnitRun {
-    /// The motion from the lower to the upper end of a range, rad or m, and how its positions are spaced.
-    pub(crate) fn motion(self, [from, to]: [f64; 2], points: usize) -> (PrescribedMotion, Spacing) {
+    /// The table that an analysis finds along the motion from the lower to the upper end of a range, rad or m.
+    ///
+    /// # Errors
+    /// [`StudyError`] where a position cannot be reached.
+    pub(crate) fn table(
+        self,
+        [from, to]: [f64; 2],
+        (period, points): (Option<f64>, usize),
+        analyse: impl FnOnce(Trajectory<'_>) -> Result<(Table, Option<StudyError>), StudyError>,
+    ) -> Result<Table, StudyError> {
         let (law, duration, spacing) = match self {
             Self::Speed => (
                 Polynomial::motion(from, 1.0, 0.0),
@@ -104,7 +112,12 @@ impl UnitRun {
             points,
             laws: vec![Law::Polynomial(law)],
         };
-        (motion, spacing)
+        let along = (&motion, spacing);
+        let along = Trajectory::prescribed(along, period, Analysis::Kinetostatics, points);
+        match analyse(along)? {
+            (_, Some(error)) => Err(error),
+            (table, None) => Ok(table),
+        }
     }
 }
 
@@ -159,19 +172,11 @@ impl UnitRunScene for Scene {
         let model = loaded_model(&scene)?;
         let plan = model.plan();
         let (limits, ..) = default_limits(&scene, plan);
-        let (motion, spacing) = run.motion(limits, points);
-        let trajectory = Trajectory::prescribed(
-            (&motion, spacing),
-            plan.range().period(),
-            Analysis::Kinetostatics,
-            points,
-        );
-        let along = (trajectory, None);
-        let computed = compute_along(RowStorage::Whole, &scene, &model, along, progress)?;
-        match computed.early_stop {
-            Some(error) => Err(error),
-            None => Ok(computed.table),
-        }
+        run.table(limits, (plan.range().period(), points), |trajectory| {
+            let along = (trajectory, None);
+            let computed = compute_along(RowStorage::Whole, &scene, &model, along, progress)?;
+            Ok((computed.table, computed.early_stop))
+        })
     }
 }
 

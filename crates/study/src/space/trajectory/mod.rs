@@ -8,7 +8,6 @@ mod load_forces;
 #[cfg(feature = "output")]
 mod output;
 mod page;
-mod path;
 mod reactions;
 mod requested;
 mod rounding;

@@ -3,16 +3,16 @@
 use super::columns::all_columns;
 use super::evaluator::SpaceEvaluator;
 use super::page::space_page;
-use super::path::followed_scene;
 use super::reactions::JointReactions;
 use super::requested::{reject_unknown_variables, requested};
 use super::rounding::RoundingInSpace;
-use crate::explain::{StudyError, TableArgument, scene_error};
+use crate::explain::{NamedScene as _, StudyError, TableArgument, scene_error};
 use crate::progress::Progress;
 use crate::space::explain::{explain_loads, explain_position};
+use crate::space::prepared::range_limits;
 use crate::trajectory::compute::{
-    Analysis, Column, ComputedTrajectory, MotionBetweenRows, Quantity, RowEvaluator as _,
-    RowStorage, StopCause, Trajectory, TrajectoryResults, TrajectorySample,
+    Analysis, Column, ComputedTrajectory, FollowedScene, MotionBetweenRows, Quantity,
+    RowEvaluator as _, RowStorage, StopCause, Trajectory, TrajectoryResults, TrajectorySample,
 };
 use dwell_geometry::space::Plan;
 use dwell_kinetostatics::KinetostaticsError;
@@ -38,6 +38,21 @@ where
     let trajectory = Trajectory::new(&followed, analysis, points)?;
     trajectory.check_laws(&followed)?;
     rows_along(scene, of_model, trajectory, is_wanted, progress)
+}
+
+/// What gives the coordinates that an analysis of a scene follows.
+fn followed_scene<'a>(scene: &'a SpaceScene, plan: &Plan) -> FollowedScene<'a> {
+    let actuators = 0..plan.actuators();
+    let is_only = actuators.len() == 1;
+    FollowedScene {
+        file: &scene.file,
+        prescribed: scene.prescribed.as_ref(),
+        sweep: scene.sweep.as_ref(),
+        coordinates: actuators.filter_map(|i| scene.actuator(i)).collect(),
+        start: scene.assembly.q.clone(),
+        period: plan.range().period(),
+        default_limits: is_only.then(|| range_limits(scene, plan)),
+    }
 }
 
 /// The rows along a trajectory.

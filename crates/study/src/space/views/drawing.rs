@@ -171,7 +171,7 @@ impl<'a> Scenery<'a> {
             }
             [a, b] => self.bar([a, b], bar, Some(name)),
             _ => {
-                if let Some([a, b]) = line_of(&points, self.drawing.same()) {
+                if let Some([a, b]) = line_of(&points, self.drawing.same) {
                     return self.bar([a, b], bar, Some(name));
                 }
                 if points.len() == 3 {

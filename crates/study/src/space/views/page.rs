@@ -153,7 +153,7 @@ impl SpaceParts<'_> {
         let middle = sum.scaled(1.0 / points.len().max(1) as f64);
         let line = match points.len() {
             0 | 1 => None,
-            _ => line_of(&points, self.drawing.same()),
+            _ => line_of(&points, self.drawing.same),
         };
         match (line, points.len()) {
             (Some(ends), _) => self.outline(OutlineLook::Bar, body, &ends, false),
