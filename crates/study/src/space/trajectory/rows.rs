@@ -6,7 +6,7 @@ use super::page::space_page;
 use super::reactions::JointReactions;
 use super::requested::{reject_unknown_variables, requested};
 use super::rounding::RoundingInSpace;
-use crate::explain::{NamedScene as _, StudyError, TableArgument, scene_error};
+use crate::explain::{NamedScene as _, StudyError, off_table_error, scene_error};
 use crate::progress::Progress;
 use crate::space::explain::{explain_loads, explain_position};
 use crate::space::prepared::range_limits;
@@ -14,7 +14,7 @@ use crate::trajectory::compute::{
     Analysis, Column, ComputedTrajectory, FollowedScene, MotionBetweenRows, Quantity,
     RowEvaluator as _, RowStorage, StopCause, Trajectory, TrajectoryResults, TrajectorySample,
 };
-use dwell_geometry::space::Plan;
+use dwell_geometry::space::{Coordinate, Plan};
 use dwell_kinetostatics::KinetostaticsError;
 use dwell_kinetostatics::space::Model;
 use dwell_page::Page;
@@ -207,15 +207,12 @@ impl RowsEnd {
             StopCause::NoSolution(error) => explain_loads(scene, plan, &error),
             StopCause::OffTable { load, value } => {
                 let magnitude = &scene.loads[load].magnitude;
-                let argument = TableArgument::of(magnitude, |c| scene.name_of(c), |c| c.is_angle());
-                match argument {
-                    Some(argument) => argument.error(scene, (load, value), &self.at),
-                    None => explain_loads(
-                        scene,
-                        plan,
-                        &KinetostaticsError::MagnitudeNotFinite { load },
-                    ),
-                }
+                let coordinates = (|c| scene.name_of(c), |c: Coordinate| c.is_angle());
+                off_table_error(scene, magnitude, coordinates, (load, value), &self.at)
+                    .unwrap_or_else(|| {
+                        let error = KinetostaticsError::MagnitudeNotFinite { load };
+                        explain_loads(scene, plan, &error)
+                    })
             }
             // Couplings stand in scenes of the plane alone.
             StopCause::Discontinuity { .. } => {
