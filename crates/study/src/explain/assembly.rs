@@ -235,10 +235,16 @@ fn explain_over_constrained(
 
 /// The error where exactly one actuator is needed and the scene has another number.
 pub(crate) fn not_one_actuator(scene: &Scene) -> StudyError {
-    let given = count(scene.mechanism.actuators.len(), "actuator");
+    let actuators = scene.mechanism.actuators.len();
+    wrong_actuators(scene, actuators, actuator_labels(scene, "drives it"))
+}
+
+/// The same of a scene in the plane or in space, with labels of its actuators.
+pub(crate) fn wrong_actuators(scene: &SceneFile, actuators: usize, labels: Labels) -> StudyError {
+    let given = count(actuators, "actuator");
     let message = format!("the scene has {given}: the reduced model needs exactly one");
     let help = "give exactly one actuator in [actuators]";
-    scene_error(scene, message, help, actuator_labels(scene, "drives it"))
+    scene_error(scene, message, help, labels)
 }
 
 /// Explains a machine that cannot be built.

@@ -12,6 +12,7 @@ pub use tables::{drawing_along, table_page, unit_group};
 use crate::number_format::count;
 use crate::trajectory::column_extrema::{ColumnExtrema, searched_in_rows, sorted_extrema};
 use crate::trajectory::compute::ComputedTrajectory;
+pub(crate) use arrows::force_arrow;
 use arrows::plane_arrows;
 use dwell_page::{DisplayUnit, Page, PageMessage, PageScene, Peak};
 use dwell_scene::{Scene, SceneError, SceneFile};

@@ -39,7 +39,6 @@ pub(crate) struct Document<'a> {
     unmodelled: Vec<String>,
     results: &'a TrajectoryResults,
     trajectory: &'a Trajectory<'a>,
-    selected: Vec<usize>,
     extrema: Vec<ColumnExtrema>,
     /// Name and unit of the abscissa: time, or the swept coordinate.
     abscissa: (&'a str, &'static str),
@@ -65,12 +64,12 @@ impl<'a> Document<'a> {
     ) -> Self {
         let (trajectory, results) = (&computed.trajectory, &computed.results);
         let columns = &results.columns;
-        let selected = results.written.clone();
         let abscissa = results.abscissa(trajectory);
         let (name, unit) = (&columns[abscissa].name, columns[abscissa].unit);
         // The abscissa itself is not a result, nor is the time.
         let is_result = |&k: &usize| k != abscissa && columns[k].quantity != Quantity::Time;
-        let listed: Vec<usize> = selected.iter().copied().filter(is_result).collect();
+        let listed = results.written.iter().copied().filter(is_result);
+        let listed: Vec<usize> = listed.collect();
         Self {
             scene,
             movement: Movement {
@@ -82,7 +81,6 @@ impl<'a> Document<'a> {
             unmodelled: Vec::new(),
             results,
             trajectory,
-            selected,
             extrema: sorted_extrema(results, &listed, abscissa, size),
             abscissa: (name, unit),
             at: format!("at {name} [{unit}]"),
@@ -411,7 +409,7 @@ impl<'a> Document<'a> {
         };
         blocks.push(Block::Table {
             header: ["column", "unit", "meaning"].map(str::to_owned).into(),
-            rows: self.selected.iter().map(row).collect(),
+            rows: self.results.written.iter().map(row).collect(),
         });
         let provenance = provenance_line(self.scene);
         let method = &self.trajectory.method_text;

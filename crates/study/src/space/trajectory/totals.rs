@@ -83,9 +83,7 @@ impl Totals {
             + actuators.map(f64::abs).sum::<f64>()
             + self.load_powers.iter().map(|p| p.abs()).sum::<f64>();
     }
-}
 
-impl Totals {
     /// Actuator forces and reactions under inertia and loads at time `t`, at coordinates, speeds and accelerations; `given` are the
     /// magnitudes of drives in a motion that was solved for.
     pub(super) fn evaluate_loads(
@@ -114,16 +112,7 @@ impl Totals {
         let loads = scene.loads.iter().zip(&self.magnitudes);
         loads.fold(Vec3::ZERO, |sum, (load, &magnitude)| match load.kind {
             LoadKind::Gravity(direction) => sum + direction.scaled(magnitude),
-            LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::Spring { .. }
-            | LoadKind::Damper { .. }
-            | LoadKind::JointTorque(_)
-            | LoadKind::TorsionSpring { .. }
-            | LoadKind::RotationalDamper(_)
-            | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_) => sum,
+            _ => sum,
         })
     }
 }

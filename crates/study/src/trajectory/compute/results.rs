@@ -276,6 +276,22 @@ pub(super) fn computed_columns(
         .collect()
 }
 
+/// What evaluates some columns along a trajectory, by chart; the trajectory ends where the whole mechanism, by its plan, does.
+pub(super) fn evaluators_of<'s>(
+    scene: &'s Scene,
+    (whole, model): (&'s Plan, &'s Model),
+    trajectory: &'s Trajectory<'_>,
+    columns: &[Column],
+) -> Result<Vec<PositionEvaluator<'s>>, StudyError> {
+    let charts = match trajectory.charts() {
+        [] => std::slice::from_ref(model),
+        charts => charts,
+    };
+    let of_chart =
+        |chart| PositionEvaluator::new(scene, whole, chart, trajectory.analysis, columns);
+    charts.iter().map(of_chart).collect()
+}
+
 /// A free motion between its rows: positions at other times (s), and a sampler at any time for each thread.
 pub(crate) struct MotionBetweenRows<'s> {
     pub(crate) further: Vec<(f64, TrajectorySample)>,
@@ -318,6 +334,12 @@ impl TrajectoryResults {
     /// The index of the column of a quantity.
     pub(crate) fn column_index(&self, quantity: Quantity) -> Option<usize> {
         self.columns.iter().position(|c| c.quantity == quantity)
+    }
+
+    /// The index of the column of a quantity, among those in the tables.
+    pub(crate) fn written_index(&self, quantity: Quantity) -> Option<usize> {
+        let mut written = self.written.iter();
+        written.position(|&k| self.columns[k].quantity == quantity)
     }
 
     /// The index of the column of the abscissa: time, or the swept coordinate.
@@ -433,16 +455,9 @@ pub(crate) fn compute_along<'a>(
     let model = &prune_model(scene, full_model);
     let columns = computed_columns(scene, model, &trajectory);
     trajectory.check_laws(&FollowedScene::in_plane(scene, plan))?;
-    let charts = match trajectory.charts() {
-        [] => std::slice::from_ref(model),
-        charts => charts,
-    };
     let mut results = TrajectoryResults::new(scene, model, columns, analysis);
     results.keep_rows_in(storage, trajectory.points)?;
-    let evaluators = charts
-        .iter()
-        .map(|chart| PositionEvaluator::new(scene, plan, chart, analysis, &results.columns));
-    let mut evaluators = evaluators.collect::<Result<Vec<_>, _>>()?;
+    let mut evaluators = evaluators_of(scene, (plan, model), &trajectory, &results.columns)?;
     let mut rounding_error = RoundingError::new(scene, model, (analysis, trajectory.points));
     let early_stop = trajectory.follow(plan, |k, sample| {
         let evaluator = &mut evaluators[sample.chart];

@@ -397,8 +397,15 @@ impl<'a> Trajectory<'a> {
     }
 }
 
-fn one_revolution(start: f64) -> SweepLimits {
+pub(crate) fn one_revolution(start: f64) -> SweepLimits {
     ([start, start + TAU], [false; 2], "one revolution")
+}
+
+/// The range between two ends, without a margin at those that are limit positions.
+pub(crate) fn shown_range([low, high]: [f64; 2], is_limit: [bool; 2]) -> SweepLimits {
+    let margin = LIMIT_MARGIN * (high - low);
+    let [below, above] = is_limit.map(|is_limit| if is_limit { margin } else { 0.0 });
+    ([low + below, high - above], is_limit, "the range")
 }
 
 /// The default sweep over the range of the only actuator.
@@ -411,19 +418,14 @@ pub(crate) fn default_limits(scene: &Scene, plan: &Plan) -> SweepLimits {
             let end = start + TAU * f64::from(revolutions);
             ([start, end], [false; 2], "the period")
         }
-        Range::Limited(from, to) => {
-            let margin = LIMIT_MARGIN * (to - from);
-            ([from + margin, to - margin], [true; 2], "the range")
-        }
+        Range::Limited(from, to) => shown_range([from, to], [true; 2]),
         Range::Stroke(from, to) => {
             // A limit that was not found is only where the search stopped.
             let found = plan.range_limits().map(|end| end.is_some());
             let half_stroke = if plan.is_angle(0) { TAU } else { half_stroke };
             let low = if found[0] { from } else { start - half_stroke };
             let high = if found[1] { to } else { start + half_stroke };
-            let margin = LIMIT_MARGIN * (high - low);
-            let [below, above] = found.map(|found| if found { margin } else { 0.0 });
-            ([low + below, high - above], found, "the range")
+            shown_range([low, high], found)
         }
         Range::Unbounded | Range::Unresolved(..) if plan.is_angle(0) => one_revolution(start),
         Range::Unbounded | Range::Unresolved(..) => (
