@@ -7,7 +7,6 @@ use crate::models::{machine_with_laws, requested_reactions, with_drive_loads};
 use crate::page::drawing_along;
 use crate::trajectory::compute::reject_unknown_variables;
 use dwell_dynamics::{DynamicsError, Machine};
-use dwell_findings::Column;
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::{Drive, Model};
 use dwell_page::Drawing;
@@ -31,10 +30,9 @@ impl MachineScene for Scene {
         Ok(requested_reactions(self, model.plan()))
     }
 
-    fn reaction_columns(&self, model: &Model) -> Vec<Column> {
-        let column =
-            |r: &Reaction| Column::new(self.mechanism.reaction_name(*r), r.component.unit());
-        model.reactions().iter().map(column).collect()
+    fn reaction_units(&self, model: &Model) -> Vec<(String, &'static str)> {
+        let named = |r: &Reaction| (self.mechanism.reaction_name(*r), r.component.unit());
+        model.reactions().iter().map(named).collect()
     }
 
     fn name_of_coordinate(&self, coordinate: dwell_geometry::Coordinate) -> String {

@@ -63,8 +63,14 @@ pub trait MachineScene: NamedScene {
     fn sorted_reactions(&self, model: &Self::Model)
     -> Result<[Vec<Self::Reaction>; 2], StudyError>;
 
-    /// Names and units of the reactions of a model.
-    fn reaction_columns(&self, model: &Self::Model) -> Vec<Column>;
+    /// Names and units (of a force or a moment) of the reactions of a model.
+    fn reaction_units(&self, model: &Self::Model) -> Vec<(String, &'static str)>;
+
+    /// The same as columns.
+    fn reaction_columns(&self, model: &Self::Model) -> Vec<Column> {
+        let all = self.reaction_units(model).into_iter();
+        all.map(|(name, unit)| Column::new(name, unit)).collect()
+    }
 
     /// The name of a coordinate; empty if it has none.
     fn name_of_coordinate(&self, coordinate: CoordinateOf<Self>) -> String;

@@ -8,7 +8,6 @@ use crate::explain::{StudyError, explain_any_motion, scene_error};
 use crate::machines::{MachineScene, MotionStart};
 use crate::models::{coordinate_modes, end_stops};
 use dwell_dynamics::{DynamicsError, Machine, MachineError};
-use dwell_findings::Column;
 use dwell_kinetostatics::Drive;
 use dwell_kinetostatics::space::{Component, Coordinate, Model, Reaction};
 use dwell_page::Drawing;
@@ -34,15 +33,15 @@ impl MachineScene for SpaceScene {
         sort_reactions(self, &compile(self, &self.reactions)?)
     }
 
-    fn reaction_columns(&self, model: &Model) -> Vec<Column> {
-        let column = |reaction: Reaction| {
+    fn reaction_units(&self, model: &Model) -> Vec<(String, &'static str)> {
+        let named = |reaction: Reaction| {
             let unit = match reaction.component {
                 Component::Force(..) => "N",
                 Component::Moment(..) => "N m",
             };
-            Column::new(self.reaction_name(reaction), unit)
+            (self.reaction_name(reaction), unit)
         };
-        model.reactions().map(column).collect()
+        model.reactions().map(named).collect()
     }
 
     fn name_of_coordinate(&self, coordinate: Coordinate) -> String {
@@ -89,19 +88,15 @@ impl MachineScene for SpaceScene {
 
 /// Explains a machine that cannot be built.
 pub(super) fn explain_machine(scene: &SpaceScene, error: &MachineError) -> StudyError {
-    match error {
-        MachineError::Load(load) => explain_load_error(scene, load),
-        MachineError::Drive(drive) => scene_error(
-            scene,
-            drive.to_string(),
-            "drive the coordinate of an actuator",
-            [(SceneLocation::Drive(drive.drive), "this drive")],
-        ),
-        MachineError::Stop(_) | MachineError::CoordinateModes => scene_error(
-            scene,
-            error.to_string(),
-            "",
-            [(SceneLocation::Motion, "this motion")],
-        ),
-    }
+    let (help, place) = match error {
+        MachineError::Load(load) => return explain_load_error(scene, load),
+        MachineError::Drive(drive) => {
+            let place = (SceneLocation::Drive(drive.drive), "this drive");
+            ("drive the coordinate of an actuator", place)
+        }
+        MachineError::Stop(_) | MachineError::CoordinateModes => {
+            ("", (SceneLocation::Motion, "this motion"))
+        }
+    };
+    scene_error(scene, error.to_string(), help, [place])
 }

@@ -4,6 +4,7 @@ use super::explain::{
     explain_load_error, explain_loads, explain_model, explain_position, with_loads,
 };
 use crate::explain::{StudyError, driven_labels, wrong_actuators};
+use crate::machines::MachineScene as _;
 #[cfg(feature = "output")]
 use crate::output::{indeterminate_note, symbol};
 use crate::ranges::equally_spaced;
@@ -13,7 +14,7 @@ use crate::reduce::compute::{
 use crate::trajectory::compute::{SweepLimits, one_revolution, shown_range};
 use dwell_geometry::space::{ActuatorKind, Placement, Plan};
 use dwell_geometry::{PositionError, Range};
-use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};
+use dwell_kinetostatics::space::{LoadKind, Model, Reaction};
 use dwell_kinetostatics::{
     Coefficients, ExactModel, KinetostaticsError, MachineModel as _, Magnitude, ReducedModel as _,
     TableDomain, TableError, TabulatedModel, reduction_rounding_errors,
@@ -193,14 +194,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
     }
 
     fn reaction_units(&self) -> Vec<(String, &'static str)> {
-        let named = |reaction: Reaction| {
-            let unit = match reaction.component {
-                Component::Force(..) => "N",
-                Component::Moment(..) => "N m",
-            };
-            (self.scene.reaction_name(reaction), unit)
-        };
-        self.model.model().reactions().map(named).collect()
+        self.scene.reaction_units(self.model.model())
     }
 
     fn lists_reactions(&self) -> bool {

@@ -94,7 +94,7 @@ pub(crate) fn computed_columns<'a>(
     let of = (&mut *evaluators, rounding.as_mut());
     let stop = add_rows(&trajectory, of, &mut results, progress);
     results.rounding_error = rounding.map(|rounding| rounding.max_relative());
-    let early_stop = stop.map(|stop| stop.explain(scene, plan));
+    let early_stop = stop.map(|(cause, at)| explain_end(scene, plan, cause, &at));
     let of = (plan.size(), &*evaluators);
     let early_stop = results.finish(&trajectory, early_stop, of, between)?;
     Ok(ComputedTrajectory {
@@ -151,20 +151,14 @@ pub fn trajectory_page_in_space(
     Ok((page, computed.early_stop))
 }
 
-/// Where rows end early, and why.
-struct RowsEnd {
-    cause: StopCause,
-    /// Where the last row is, or the first that cannot be evaluated.
-    at: String,
-}
-
-/// Evaluates one row after another, each by the evaluator of its chart, and some for their rounding; where and why it ends early, if it does.
+/// Evaluates one row after another, each by the evaluator of its chart, and some for their rounding. Why it ends early, if it does, and
+/// where the last row is, or the first that cannot be evaluated.
 fn add_rows(
     trajectory: &Trajectory<'_>,
     (evaluators, mut rounding): (&mut [SpaceEvaluator<'_>], Option<&mut RoundingInSpace<'_>>),
     results: &mut TrajectoryResults,
     progress: Progress<'_>,
-) -> Option<RowsEnd> {
+) -> Option<(StopCause, String)> {
     let mut last: Option<TrajectorySample> = None;
     for k in 0..trajectory.points {
         let sample = trajectory.sample_at(trajectory.fraction_at(k));
@@ -182,7 +176,7 @@ fn add_rows(
                     format!("at the first position, {position}")
                 }
             };
-            return Some(RowsEnd { cause, at });
+            return Some((cause, at));
         }
         results.add_row(evaluator, &sample, (Vec::new(), evaluator.power_terms()));
         if let Some(rounding) = &mut rounding {
@@ -197,27 +191,24 @@ fn add_rows(
     None
 }
 
-impl RowsEnd {
-    /// The error, in the names of the scene.
-    fn explain(&self, scene: &SpaceScene, plan: &Plan) -> StudyError {
-        match self.cause {
-            StopCause::NoSolution(KinetostaticsError::Position(error)) => {
-                explain_position(scene, plan, &error)
-            }
-            StopCause::NoSolution(error) => explain_loads(scene, plan, &error),
-            StopCause::OffTable { load, value } => {
-                let magnitude = &scene.loads[load].magnitude;
-                let coordinates = (|c| scene.name_of(c), |c: Coordinate| c.is_angle());
-                off_table_error(scene, magnitude, coordinates, (load, value), &self.at)
-                    .unwrap_or_else(|| {
-                        let error = KinetostaticsError::MagnitudeNotFinite { load };
-                        explain_loads(scene, plan, &error)
-                    })
-            }
-            // Couplings stand in scenes of the plane alone.
-            StopCause::Discontinuity { .. } => {
-                scene_error::<String>(scene, "the trajectory cannot go on", "", [])
-            }
+/// The error of rows that end early, in the names of the scene.
+fn explain_end(scene: &SpaceScene, plan: &Plan, cause: StopCause, at: &str) -> StudyError {
+    match cause {
+        StopCause::NoSolution(KinetostaticsError::Position(error)) => {
+            explain_position(scene, plan, &error)
+        }
+        StopCause::NoSolution(error) => explain_loads(scene, plan, &error),
+        StopCause::OffTable { load, value } => {
+            let magnitude = &scene.loads[load].magnitude;
+            let coordinates = (|c| scene.name_of(c), |c: Coordinate| c.is_angle());
+            off_table_error(scene, magnitude, coordinates, (load, value), at).unwrap_or_else(|| {
+                let error = KinetostaticsError::MagnitudeNotFinite { load };
+                explain_loads(scene, plan, &error)
+            })
+        }
+        // Couplings stand in scenes of the plane alone.
+        StopCause::Discontinuity { .. } => {
+            scene_error::<String>(scene, "the trajectory cannot go on", "", [])
         }
     }
 }

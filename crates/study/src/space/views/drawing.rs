@@ -7,6 +7,7 @@ use super::points::placed;
 use super::projection::Picture;
 use super::segments::{line_of, nearest_of_segment};
 use super::solids::{center_of_mass, circle, hull, named};
+use crate::output::body_color;
 use crate::symbols::spring_outline;
 use dwell_geometry::space::{JointKind, Placement, Vec3};
 use dwell_geometry::{BodyId, vec2};
@@ -41,15 +42,9 @@ impl SpaceDrawing<'_> {
         slides.any(|joint| joint.bodies[1 - self.guide_side(joint)] == body)
     }
 
-    /// Grey for the ground; six palette colours, then ink, then the colours again: as in the plane.
+    /// As in the plane.
     pub(super) fn color(&self, body: BodyId) -> Paint {
-        if self.is_ground(body) {
-            return Paint::Grey;
-        }
-        match (body.0 - usize::from(body.0 > self.scene.mechanism.ground)) % 7 {
-            6 => Paint::Ink,
-            k => Paint::Palette(k),
-        }
+        body_color(self.scene.mechanism.ground, body)
     }
 
     /// The mechanism seen from one side; without words where it moves.

@@ -20,6 +20,7 @@ use std::f64::consts::TAU;
 use std::io;
 
 /// What is evaluated at the positions of a trajectory.
+#[derive(Default)]
 pub struct TrajectoryResults {
     /// The columns of the analysis that the scene requests, and those that its pictures need.
     pub(crate) columns: Vec<Column>,
@@ -98,19 +99,7 @@ impl TrajectoryResults {
             is_limited,
             references: UnitReferences::new(all, &columns),
             columns,
-            rows: Vec::new(),
-            long_rows: None,
-            power_terms: Vec::new(),
-            body_poses: Vec::new(),
-            sectioned_links: Vec::new(),
-            power_residual: 0.0,
-            rounding_error: None,
-            indeterminate: Vec::new(),
-            modelled: Vec::new(),
-            is_rounding: Vec::new(),
-            noted_zeros: Vec::new(),
-            extrema: Extrema::default(),
-            errors: Vec::new(),
+            ..Self::default()
         }
     }
 
