@@ -140,7 +140,7 @@ impl<'a, S: MachineScene> SceneMachine<'a, S> {
             let name = format!("{}.velocity", self.coordinate_name(i));
             Column::new(name, format!("{}/s", unit(i)))
         };
-        let states = drive_states(self.scene).into_iter();
+        let states = drive_states(self.scene.drives(), S::is_angle).into_iter();
         let states = states.map(|(name, unit, _)| Column::new(name, unit));
         let coordinates = free.clone().map(coordinate).chain(free.map(speed));
         coordinates.chain(states).collect()

@@ -12,6 +12,7 @@ use crate::reduce::compute::{
     inertia_units, peak_between_rows, tabulate,
 };
 use dwell_findings::Record;
+use dwell_kinetostatics::Coefficients;
 use dwell_report::{Figure, Files, TableFormat};
 use dwell_scene::Scene;
 
@@ -110,16 +111,6 @@ impl<P: ReducedScene> Reduction<P> {
         let q = &self.curves.q;
         (q.len() > 1).then(|| [q[0], q[q.len() - 1]])
     }
-
-    /// The smallest and the largest m and ½m′.
-    fn extents(&self) -> [[f64; 2]; 2] {
-        let all = &self.curves.coefficients;
-        let half_dm = match self.errors.is_rounding[1] {
-            true => [0.0; 2],
-            false => extent(all.iter().map(|at| at.half_dm)),
-        };
-        [extent(all.iter().map(|at| at.m)), half_dm]
-    }
 }
 
 /// The numbers of the summary.
@@ -136,7 +127,11 @@ fn record<P: ReducedScene>(reduction: &Reduction<P>, peak: Option<Peak>) -> Reco
     }
     let [m_unit, half_dm_unit] = inertia_units(is_angle);
     let [m_error, half_dm_error, rest] = reduction.errors.max_errors;
-    let [m, half_dm] = reduction.extents();
+    let m = extent(curves.coefficients.iter().map(|c| c.m));
+    let half_dm = match reduction.errors.is_rounding[1] {
+        true => [0.0; 2],
+        false => extent(curves.coefficients.iter().map(|c| c.half_dm)),
+    };
     for (name, unit, ends, error) in [
         ("m", m_unit, m, m_error),
         ("half_dm", half_dm_unit, half_dm, half_dm_error),
@@ -163,7 +158,12 @@ pub(crate) fn summary<P: ReducedScene>(
     note: Option<&str>,
 ) -> String {
     let (prepared, curves) = (&reduction.prepared, &reduction.curves);
-    let [m, half_dm] = reduction.extents();
+    let extent_of = |pick: fn(&Coefficients) -> f64| extent(curves.coefficients.iter().map(pick));
+    let m = extent_of(|c| c.m);
+    let half_dm = match reduction.errors.is_rounding[1] {
+        true => [0.0; 2],
+        false => extent_of(|c| c.half_dm),
+    };
     // Errors are relative to the largest value.
     let texts = |values: [f64; 2], error: f64| {
         let largest = values[0].abs().max(values[1].abs());

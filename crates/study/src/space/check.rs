@@ -2,11 +2,11 @@
 
 use super::contents::describe_contents;
 use super::prepared::{compile, is_angle, sort_reactions};
-use super::trajectory::{JointReactions, reject_unknown_variables};
 use crate::check::{
     describe_parts, describe_redundant, describe_start, list, list_or, range_text, rounded,
 };
 use crate::explain::{StudyError, describe_coordinate};
+use crate::machines::MachineScene as _;
 use crate::number_format::{coordinate_unit, count};
 #[cfg(feature = "output")]
 use crate::output::Outcome;
@@ -43,10 +43,7 @@ fn description(scene: &SpaceScene, record: &mut Record) -> Result<String, StudyE
     let model = compile(scene, &scene.reactions)?;
     let sorted = sort_reactions(scene, &model)?;
     let plan = model.plan();
-    if scene.variables.is_some() {
-        let (reactions, _) = JointReactions::new(scene)?;
-        reject_unknown_variables(scene, (&reactions, plan))?;
-    }
+    scene.reject_unknown_columns()?;
     let parts = [mechanism.bodies.len() - 1, mechanism.joints.len()];
     let actuators = mechanism.actuators.iter().map(|a| a.name.as_str());
     let mut text = describe_parts(scene, "in space: ", parts, actuators, record);

@@ -19,6 +19,8 @@ const ROD: f64 = 3.5;
 
 impl<'a> Scenery<'a> {
     /// The symbol of a joint, with the ground's hatching.
+    //
+    // Long: a few lines for each kind of joint.
     pub(super) fn joint(&mut self, j: usize) {
         let joint = &self.drawing.scene.mechanism.joints[j];
         let unit = self.drawing.unit;

@@ -16,6 +16,7 @@ use crate::trajectory::figures::animated;
 use dwell_geometry::space::{JointKind, Placement, Vec3};
 use dwell_report::{Animation, Axis, Drawing, Figure, Paint, Panel, Pen, Shape, TextPlacement};
 use dwell_scene::SpaceScene;
+use std::collections::BTreeMap;
 
 /// The largest height of a panel, in its widths.
 const HEIGHT: f64 = 0.9;
@@ -34,31 +35,22 @@ const SPRINGS: &str = " Zigzag lines are springs, dashed ones dampers.";
 
 /// The symbols of the kinds of joints that few scenes have, each of those that are there.
 fn rare_joints(scene: &SpaceScene) -> String {
-    let has = |of: fn(&JointKind) -> bool| scene.mechanism.joints.iter().any(|j| of(&j.kind));
-    let symbols = [
-        (
-            has(|kind| matches!(kind, JointKind::Helical { .. })),
-            " Threaded cylinders are screws.",
-        ),
-        (
-            has(|kind| matches!(kind, JointKind::Planar)),
-            " A disc on a plate is a planar joint.",
-        ),
-        (
-            has(|kind| matches!(kind, JointKind::Gear { .. })),
-            " A dot with a short line is where teeth meet, with their normal.",
-        ),
-        (
-            has(|kind| matches!(kind, JointKind::Distance { .. })),
-            " Grey lines are links without mass.",
-        ),
-        (
-            has(|kind| matches!(kind, JointKind::Weld)),
-            " A dot between two bodies is a weld.",
-        ),
-    ];
-    let named = symbols.into_iter().filter(|(is_there, _)| *is_there);
-    named.map(|(_, text)| text).collect()
+    let symbols = scene.mechanism.joints.iter().filter_map(|joint| {
+        Some(match joint.kind {
+            JointKind::Helical { .. } => (0, "Threaded cylinders are screws."),
+            JointKind::Planar => (1, "A disc on a plate is a planar joint."),
+            JointKind::Gear { .. } => (
+                2,
+                "A dot with a short line is where teeth meet, with their normal.",
+            ),
+            JointKind::Distance { .. } => (3, "Grey lines are links without mass."),
+            JointKind::Weld => (4, "A dot between two bodies is a weld."),
+            _ => return None,
+        })
+    });
+    let symbols: BTreeMap<usize, &str> = symbols.collect();
+    let texts = symbols.into_values().map(|text| format!(" {text}"));
+    texts.collect()
 }
 
 /// A mechanism in positions that follow each other.

@@ -41,7 +41,7 @@ pub(crate) use followed_scene::FollowedScene;
 pub(crate) use long_rows::{LongRows, RowStorage, not_stored};
 pub(crate) use maximum::{Point, highest_between};
 pub(crate) use mechanical_advantage::SpeedScale;
-pub(crate) use monitor::TrajectoryMonitor;
+pub(crate) use monitor::CouplingMonitor;
 pub(crate) use peak_forces::{WantedForces, peak_analysis, peak_forces};
 pub(crate) use requested_columns::{RequestedColumns, is_requested};
 #[cfg(feature = "output")]
