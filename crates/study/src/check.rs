@@ -2,7 +2,7 @@
 
 use crate::branch_note::branch_note;
 use crate::contents::describe_contents;
-use crate::explain::{StudyError, describe_ends, describe_limit};
+use crate::explain::{NamedScene, StudyError, describe_ends, describe_limit};
 use crate::models::{loaded_model, requested_reaction_bodies};
 use crate::number_format::{coordinate_unit, count, digits, number};
 #[cfg(feature = "output")]
@@ -14,7 +14,7 @@ use dwell_geometry::mobility::mobility;
 use dwell_geometry::plan::GroupModes;
 use dwell_geometry::{BodyId, BranchHint, JointId, Mechanism, Plan, Range};
 use dwell_kinetostatics::{Load, Mesh, Model};
-use dwell_scene::Scene;
+use dwell_scene::{Scene, SceneFile};
 
 /// Describes a scene: degrees of freedom, groups, assembly modes, range, pruning and requests. It writes
 /// no file.
@@ -44,21 +44,13 @@ fn description(scene: &Scene, record: &mut Record) -> Result<String, StudyError>
     let model = loaded_model(scene)?;
     let notes = check_variables(scene, &model)?;
     let plan = model.plan();
-    let mut text = format!(
-        "{}\n  {}, {}, {}{}\n",
-        scene.title,
-        count(mechanism.bodies.len() - 1, "moving body"),
-        count(mechanism.joints.len(), "joint"),
-        count(plan.actuators(), "degree of freedom"),
-        driven_by(mechanism.actuators.iter().map(|a| a.name.as_str())),
-    );
-    record.add_count("moving_bodies", mechanism.bodies.len() - 1);
-    record.add_count("joints", mechanism.joints.len());
-    record.add_count("degrees_of_freedom", plan.actuators());
+    let parts = [mechanism.bodies.len() - 1, mechanism.joints.len()];
+    let actuators = mechanism.actuators.iter().map(|a| a.name.as_str());
+    let mut text = describe_parts(scene, "", parts, actuators, record);
     text += &describe_freedom(scene, plan, record);
     text += &describe_range(mechanism, plan, record);
     text += &describe_groups(mechanism, plan, record);
-    text += &(describe_branch(mechanism, plan, record) + &branch_note(scene, plan));
+    text += &(describe_branch(scene, plan, record) + &branch_note(scene, plan));
     text += &describe_contents(scene, plan, record);
     text += &describe_suspicious_units(scene);
     text += &describe_pruning(scene, &model);
@@ -70,16 +62,33 @@ fn description(scene: &Scene, record: &mut Record) -> Result<String, StudyError>
     Ok(text + &notes)
 }
 
-/// What drives the mechanism.
-pub(crate) fn driven_by<'a>(actuators: impl Iterator<Item = &'a str>) -> String {
-    match list(actuators).as_str() {
+/// The title, the numbers of moving bodies and of joints, and the degrees of freedom with what drives them.
+pub(crate) fn describe_parts<'a>(
+    scene: &SceneFile,
+    place: &str,
+    [bodies, joints]: [usize; 2],
+    actuators: impl ExactSizeIterator<Item = &'a str>,
+    record: &mut Record,
+) -> String {
+    let freedoms = actuators.len();
+    record.add_count("moving_bodies", bodies);
+    record.add_count("joints", joints);
+    record.add_count("degrees_of_freedom", freedoms);
+    let bodies = count(bodies, "moving body");
+    let joints = count(joints, "joint");
+    let freedom = count(freedoms, "degree of freedom");
+    let driven = match list(actuators).as_str() {
         "" => ": a structure, in which nothing moves".to_owned(),
         names => format!(", driven by {names}"),
-    }
+    };
+    format!(
+        "{}\n  {place}{bodies}, {joints}, {freedom}{driven}\n",
+        scene.title
+    )
 }
 
 /// Names separated by commas; `none` if there are none.
-fn list_or<'a>(names: impl IntoIterator<Item = &'a str>, none: &'a str) -> String {
+pub(crate) fn list_or<'a>(names: impl IntoIterator<Item = &'a str>, none: &'a str) -> String {
     match names.into_iter().collect::<Vec<_>>().as_slice() {
         [] => none.to_owned(),
         names => names.join(", "),
@@ -87,7 +96,7 @@ fn list_or<'a>(names: impl IntoIterator<Item = &'a str>, none: &'a str) -> Strin
 }
 
 /// Names separated by commas.
-fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+pub(crate) fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     list_or(names, "")
 }
 
@@ -113,21 +122,59 @@ fn describe_freedom(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
     }
     let mut text = String::new();
     if let Some(found) = mobility(mechanism, &scene.assembly.to_configuration()) {
-        let redundant = match found.redundant_count {
-            1 => "one constraint is redundant".to_owned(),
-            n => format!("{n} constraints are redundant"),
-        };
-        let (counted, by_rank) = (found.grubler_count(), found.degrees_of_freedom());
-        record.add("degrees_of_freedom.counted", "", counted as f64);
-        record.add_count("redundant_constraints", found.redundant_count);
-        text = format!(
-            "  {counted} degrees of freedom by counting (Grübler), {by_rank} by rank: {redundant}, consistently\n"
-        );
+        let counted = found.grubler_count() as f64;
+        let freedoms = found.degrees_of_freedom();
+        text = describe_redundant(counted, freedoms, found.redundant_count, record);
     }
     let names = names.join(", ");
     text + &format!(
         "  statically indeterminate, because redundant constraints share the load: {names}\n"
     )
+}
+
+/// The degrees of freedom by counting and by rank, which redundant constraints tell apart.
+pub(crate) fn describe_redundant(
+    counted: f64,
+    by_rank: usize,
+    redundant_count: usize,
+    record: &mut Record,
+) -> String {
+    let redundant = match redundant_count {
+        1 => "one constraint is redundant".to_owned(),
+        n => format!("{n} constraints are redundant"),
+    };
+    record.add("degrees_of_freedom.counted", "", counted);
+    record.add_count("redundant_constraints", redundant_count);
+    format!(
+        "  {counted} degrees of freedom by counting (Grübler), {by_rank} by rank: {redundant}, consistently\n"
+    )
+}
+
+/// The range of an actuator; `note` says what is known of its ends.
+pub(crate) fn range_text(
+    (name, is_angle): (&str, bool),
+    range: Range,
+    note: &str,
+    record: &mut Record,
+) -> String {
+    if let Some((from, to)) = range.limits() {
+        record.add("range.lower", coordinate_unit(is_angle), from);
+        record.add("range.upper", coordinate_unit(is_angle), to);
+    }
+    match range {
+        Range::Full => format!("  {name} rotates fully\n"),
+        Range::Revolutions(revolutions) => {
+            record.add("period.revolutions", "", f64::from(revolutions));
+            format!(
+                "  {name} rotates fully; the mechanism is periodic after {revolutions} revolutions\n"
+            )
+        }
+        Range::Unbounded => format!("  no limit of {name} was found\n"),
+        Range::Limited(from, to) | Range::Stroke(from, to) | Range::Unresolved(from, to) => {
+            let ends = describe_ends(from, to, is_angle);
+            format!("  {name} ranges from {ends}{note}\n")
+        }
+    }
 }
 
 /// The range of the actuator.
@@ -140,31 +187,18 @@ fn describe_range(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> St
                 .to_owned();
         }
     };
-    let name = &actuator.name;
-    let angle = plan.is_angle(0);
-    if let Some((from, to)) = plan.range().limits() {
-        record.add("range.lower", coordinate_unit(angle), from);
-        record.add("range.upper", coordinate_unit(angle), to);
-    }
+    let (name, is_angle) = (actuator.name.as_str(), plan.is_angle(0));
+    let note = match plan.range_limits() {
+        [Some(_), Some(_)] => "",
+        [Some(_), None] => "; no upper limit was found up to there",
+        [None, Some(_)] => "; no lower limit was found down to there",
+        [None, None] => "; no limit was found up to there",
+    };
     let text = match plan.range() {
-        Range::Full => "rotates fully".to_owned(),
-        Range::Revolutions(revolutions) => {
-            record.add("period.revolutions", "", f64::from(revolutions));
-            format!("rotates fully; the mechanism is periodic after {revolutions} revolutions")
+        Range::Unbounded if is_angle => {
+            format!("  {name} is unlimited; the mechanism is not periodic within 8 revolutions\n")
         }
-        Range::Unbounded if angle => {
-            "is unlimited; the mechanism is not periodic within 8 revolutions".to_owned()
-        }
-        Range::Unbounded => return format!("  no limit of {name} was found\n"),
-        Range::Limited(from, to) | Range::Stroke(from, to) | Range::Unresolved(from, to) => {
-            let note = match plan.range_limits() {
-                [Some(_), Some(_)] => "",
-                [Some(_), None] => "; no upper limit was found up to there",
-                [None, Some(_)] => "; no lower limit was found down to there",
-                [None, None] => "; no limit was found up to there",
-            };
-            format!("ranges from {}{note}", describe_ends(from, to, angle))
-        }
+        range => range_text((name, is_angle), range, note, record),
     };
     let limits = plan.range_limits().into_iter().flatten();
     let limits = limits.map(|limit| {
@@ -177,7 +211,7 @@ fn describe_range(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> St
             describe_limit(mechanism, plan, limit, 0.0)
         )
     });
-    format!("  {name} {text}\n{}", limits.collect::<String>())
+    text + &limits.collect::<String>()
 }
 
 fn describe_groups(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> String {
@@ -219,21 +253,16 @@ fn describe_mode(
     (mode_name, record): (&str, &mut Record),
 ) -> String {
     let (angles, values) = mode.split_at(found.bodies.len().min(mode.len()));
-    for (body, angle) in found.bodies.iter().zip(angles) {
+    let angles = found.bodies.iter().zip(angles).map(|(body, angle)| {
         let body = mechanism.body_name(*body);
         record.add(format!("{mode_name}.{body}"), "rad", *angle);
-    }
-    for (joint, value) in found.joints.iter().zip(values) {
-        let joint = &mechanism.joints[joint.0];
-        let unit = coordinate_unit(joint.kind.branch_hint() == Some(BranchHint::Direction));
-        record.add(format!("{mode_name}.{}", joint.name), unit, *value);
-    }
-    let angles = found.bodies.iter().zip(angles);
-    let angles = angles.map(|(b, a)| format!("{} = {:.4}", mechanism.body_name(*b), a + 0.0));
+        format!("{body} = {:.4}", angle + 0.0)
+    });
     let angles = angles.collect::<Vec<_>>().join(", ");
     let values = found.joints.iter().zip(values).map(|(joint, value)| {
         let joint = &mechanism.joints[joint.0];
         let unit = coordinate_unit(joint.kind.branch_hint() == Some(BranchHint::Direction));
+        record.add(format!("{mode_name}.{}", joint.name), unit, *value);
         format!("{} = {:.4} {unit}", joint.name, value + 0.0)
     });
     let angles = (!angles.is_empty()).then(|| format!("{angles} rad"));
@@ -241,23 +270,35 @@ fn describe_mode(
     all.join(", ")
 }
 
+/// The coordinates of the actuators at the start, such as `phi = 0.5 rad`.
+pub(crate) fn describe_start(
+    scene: &impl NamedScene,
+    start: &[f64],
+    record: &mut Record,
+) -> String {
+    let at = start.iter().enumerate().map(|(i, &q)| {
+        let (name, is_angle) = scene.actuator(i).unwrap_or_default();
+        let unit = coordinate_unit(is_angle);
+        record.add(format!("start.{name}"), unit, q);
+        format!("{name} = {} {unit}", number(q))
+    });
+    at.collect::<Vec<_>>().join(", ")
+}
+
+/// A number to so many parts of its unit. Rounded first, so that no zero keeps a minus sign.
+pub(crate) fn rounded(value: f64, parts: f64) -> f64 {
+    (value * parts).round() / parts + 0.0
+}
+
 /// The angles of all bodies at the start.
-fn describe_branch(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> String {
+fn describe_branch(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
+    let mechanism = &scene.mechanism;
     let mut pose = plan.pose();
     let start = plan.assembly_coordinates();
     if plan.positions(start, &mut pose).is_err() {
         return String::new();
     }
-    for (i, (actuator, &q)) in mechanism.actuators.iter().zip(start).enumerate() {
-        let unit = coordinate_unit(plan.is_angle(i));
-        record.add(format!("start.{}", actuator.name), unit, q);
-    }
-    let at = mechanism.actuators.iter().zip(start).enumerate();
-    let at = at.map(|(i, (a, &q))| {
-        let unit = coordinate_unit(plan.is_angle(i));
-        format!("{} = {} {unit}", a.name, number(q))
-    });
-    let mut text = match at.collect::<Vec<_>>().join(", ").as_str() {
+    let mut text = match describe_start(scene, start, record).as_str() {
         "" => "  body angles:\n".to_owned(),
         at => format!("  body angles at {at}:\n"),
     };
@@ -269,9 +310,7 @@ fn describe_branch(mechanism: &Mechanism, plan: &Plan, record: &mut Record) -> S
         let name = mechanism.body_name(body);
         let angle = plan.body_rotation(body, &pose).angle();
         record.add(format!("start.{name}.angle"), "rad", angle);
-        // Rounded first, so that no zero keeps a minus sign.
-        let [radians, degrees] = [(angle, 1e6), (angle.to_degrees(), 1e3)]
-            .map(|(value, parts)| (value * parts).round() / parts + 0.0);
+        let (radians, degrees) = (rounded(angle, 1e6), rounded(angle.to_degrees(), 1e3));
         text += &format!("    {name:<width$}  {radians:9.6} rad  {degrees:8.3}°\n");
     }
     text
@@ -380,6 +419,5 @@ fn describe_requests(scene: &Scene) -> String {
         others => format!(" ({others} others are not computed: not requested)"),
     };
     let names = list_or(names.iter().map(String::as_str), "none");
-    let text = format!("  reactions requested: {names}{others}\n");
-    text
+    format!("  reactions requested: {names}{others}\n")
 }

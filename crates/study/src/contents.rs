@@ -1,36 +1,37 @@
 //! What a scene has, for `dwell check`: its size and masses at the start, loads, drives, stops and motions.
 
 use crate::explain::NamedScene;
+use crate::machines::{CoordinateOf, MachineScene};
 use crate::number_format::{coordinate_unit, count, digits, force_unit, number};
+use crate::ranges::extent;
 use dwell_findings::Record;
-use dwell_geometry::{BodyId, Coordinate, Plan, Vec2, vec2};
-use dwell_kinetostatics::{Drive, DriveKind, LoadKind, Magnitude, Signal, VaryingInertia};
-use dwell_scene::{CoordinateSweep, FreeMotionSpec, MotionDuration, PrescribedMotion, Scene};
+use dwell_geometry::{BodyId, Plan, Vec2};
+use dwell_kinetostatics::{
+    DriveKind, LoadKind, MachineModel, Magnitude, ModelLoad, Signal, VaryingInertia,
+};
+use dwell_scene::{
+    CoordinateSweep, FreeMotionSpec, MotionDuration, PrescribedMotion, Scene, SceneFile,
+};
 
 /// Its size, masses, loads, drives, stops and motions as lines of text; the numbers go into the record.
 pub(crate) fn describe_contents(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
-    let coordinates = Coordinates {
-        name: &|coordinate: Coordinate| scene.name_of(coordinate),
-        is_angle: Coordinate::is_angle,
-    };
+    let frames = start_frames(scene, plan);
     let motions = ScheduledMotions {
         prescribed: scene.prescribed.as_ref(),
         sweep: scene.sweep.as_ref(),
         motion: scene.motion.as_ref(),
     };
-    describe_size(scene, plan, record)
-        + &describe_masses(scene, plan, record)
+    let described = |kind: &LoadKind| described(scene, kind);
+    let mut text = String::new();
+    if let Some(frames) = &frames {
+        let joints = scene.mechanism.joints.iter();
+        let points = joints.flat_map(|joint| joint.bodies.into_iter().zip(joint.points));
+        let points = points.map(|(body, point)| in_frame(frames[body.0], point));
+        text += &describe_size(scene, ["width", "height"], points, record);
+    }
+    text + &describe_masses(scene, frames.as_deref(), record)
         + &describe_varying_inertias(scene, record)
-        + &describe_loads(scene, record)
-        + &describe_drives(&scene.drives, &coordinates, record)
-        + &describe_stops(scene, record)
-        + &describe_motions(scene, &motions, record)
-}
-
-/// How coordinates are called, and whether they are angles.
-pub(crate) struct Coordinates<'a, C> {
-    pub(crate) name: &'a dyn Fn(C) -> String,
-    pub(crate) is_angle: fn(C) -> bool,
+        + &describe_actions(scene, (&scene.loads, &described), &motions, record)
 }
 
 /// The motions of a scene in the plane or in space.
@@ -48,43 +49,69 @@ fn start_frames(scene: &Scene, plan: &Plan) -> Option<Vec<[f64; 3]>> {
     Some(plan.body_frames(&scene.mechanism, &pose))
 }
 
-fn in_frame([x, y, angle]: [f64; 3], point: Vec2) -> Vec2 {
+fn in_frame([x, y, angle]: [f64; 3], point: Vec2) -> [f64; 2] {
     let (sin, cos) = angle.sin_cos();
-    vec2(
+    [
         x + cos * point.x - sin * point.y,
         y + sin * point.x + cos * point.y,
-    )
+    ]
 }
 
-/// Width and height of the rectangle around all points at which joints act, at the start.
-fn describe_size(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
-    let Some(frames) = start_frames(scene, plan) else {
-        return String::new();
-    };
-    let joints = scene.mechanism.joints.iter();
-    let points = joints.flat_map(|joint| joint.bodies.into_iter().zip(joint.points));
-    let points: Vec<Vec2> = points
-        .map(|(body, point)| in_frame(frames[body.0], point))
-        .collect();
-    let extent = |of: fn(&Vec2) -> f64| {
-        let [low, high] = crate::ranges::extent(points.iter().map(of));
+/// A value in the scene's unit of angles or lengths, with that unit.
+fn in_scene_unit(scene: &SceneFile, value: f64, is_angle: bool) -> String {
+    let (value, unit) = scene.to_scene_unit(value, is_angle);
+    format!("{} {unit}", number(value))
+}
+
+/// Lengths in the scene's unit, and that unit.
+fn lengths<const N: usize>(scene: &SceneFile, all: [f64; N]) -> ([String; N], &str) {
+    let in_unit = |length| number(scene.to_scene_unit(length, false).0);
+    (all.map(in_unit), scene.to_scene_unit(0.0, false).1)
+}
+
+/// The extents, by their names, of the rectangle or the box around all points at which joints act, at the start.
+pub(crate) fn describe_size<const N: usize>(
+    scene: &SceneFile,
+    names: [&str; N],
+    points: impl Iterator<Item = [f64; N]>,
+    record: &mut Record,
+) -> String {
+    let points: Vec<[f64; N]> = points.collect();
+    let sides: [f64; N] = std::array::from_fn(|k| {
+        let [low, high] = extent(points.iter().map(|point| point[k]));
         high - low
-    };
-    let [width, height] = [extent(|p| p.x), extent(|p| p.y)];
-    if !(width.is_finite() && height.is_finite()) {
+    });
+    if !sides.iter().all(|side| side.is_finite()) {
         return String::new();
     }
-    record.add("size.width", "m", width);
-    record.add("size.height", "m", height);
-    let [(width, unit), (height, _)] = [width, height].map(|s| scene.to_scene_unit(s, false));
-    let [width, height] = [width, height].map(number);
-    format!(
-        "  overall size at the start: {width} by {height} {unit}, around the points of all joints\n"
-    )
+    for (name, side) in names.into_iter().zip(sides) {
+        record.add(format!("size.{name}"), "m", side);
+    }
+    let (sides, unit) = lengths(scene, sides);
+    let sides = sides.join(" by ");
+    format!("  overall size at the start: {sides} {unit}, around the points of all joints\n")
+}
+
+/// The centre of mass at the start of a mechanism of this size, m.
+pub(crate) fn describe_center<const N: usize>(
+    scene: &SceneFile,
+    center: [f64; N],
+    size: f64,
+    record: &mut Record,
+) -> String {
+    // A coordinate that is but rounding beside the other has no digits.
+    let rounding = 1e-12 * size;
+    let center = center.map(|c| if c.abs() < rounding { 0.0 } else { c });
+    for (axis, part) in ["x", "y", "z"].into_iter().zip(center) {
+        record.add(format!("mass.center.{axis}"), "m", part);
+    }
+    let (center, unit) = lengths(scene, center);
+    let center = center.join(", ");
+    format!(", its centre at the start at ({center}) {unit}")
 }
 
 /// The whole mass and its centre at the start, and the mass of each body.
-fn describe_masses(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
+fn describe_masses(scene: &Scene, frames: Option<&[[f64; 3]]>, record: &mut Record) -> String {
     let ground = scene.mechanism.ground;
     let massive = scene.masses.iter().enumerate();
     let massive = massive.filter(|(b, m)| *b != ground && (m.mass != 0.0 || m.inertia != 0.0));
@@ -98,21 +125,14 @@ fn describe_masses(scene: &Scene, plan: &Plan, record: &mut Record) -> String {
         return "  no body has a mass\n".to_owned();
     }
     let mut text = format!("  moving mass {} kg", number(total));
-    if let Some(frames) = start_frames(scene, plan).filter(|_| total > 0.0) {
+    if let Some(frames) = frames.filter(|_| total > 0.0) {
         let moments = massive.iter().map(|(b, m)| {
             let center = in_frame(frames[*b], m.center);
-            [m.mass * center.x, m.mass * center.y]
+            center.map(|part| m.mass * part)
         });
         let sum = moments.fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
         let center = sum.map(|moment| moment / total);
-        // A coordinate that is but rounding beside the other has no digits.
-        let rounding = 1e-12 * scene.mechanism.size();
-        let center = center.map(|c| if c.abs() < rounding { 0.0 } else { c });
-        record.add("mass.center.x", "m", center[0]);
-        record.add("mass.center.y", "m", center[1]);
-        let [(x, unit), (y, _)] = center.map(|c| scene.to_scene_unit(c, false));
-        let [x, y] = [x, y].map(number);
-        text += &format!(", its centre at the start at ({x}, {y}) {unit}");
+        text += &describe_center(scene, center, scene.mechanism.size(), record);
     }
     text += ":\n";
     for (b, mass) in massive {
@@ -148,47 +168,54 @@ fn describe_varying_inertias(scene: &Scene, record: &mut Record) -> String {
     scene.varying_inertias.iter().map(one).collect()
 }
 
-/// What a load is.
-fn load_kind(scene: &Scene, kind: &LoadKind) -> String {
+/// What a load is, and the unit of its number.
+fn described(scene: &Scene, kind: &LoadKind) -> (String, &'static str) {
     let name = |body: BodyId| scene.mechanism.body_name(body);
-    let between = |[a, b]: [BodyId; 2]| format!("between {} and {}", name(a), name(b));
-    match kind {
-        LoadKind::Gravity { .. } => "gravity".to_owned(),
-        LoadKind::Force { body, .. } => format!("force on {}", name(*body)),
+    let between =
+        |what: &str, [a, b]: [BodyId; 2]| format!("{what} between {} and {}", name(a), name(b));
+    match *kind {
+        LoadKind::Gravity { .. } => ("gravity".to_owned(), "m/s²"),
+        LoadKind::Force { body, .. } => (format!("force on {}", name(body)), "N"),
         LoadKind::Torque { bodies: [a, b] } => {
-            format!("couple of {} on {}", name(*a), name(*b))
+            (format!("couple of {} on {}", name(a), name(b)), "N m")
         }
-        LoadKind::Spring { bodies, .. } => format!("spring {}", between(*bodies)),
-        LoadKind::TorsionSpring { bodies, .. } => format!("torsion spring {}", between(*bodies)),
-        LoadKind::Damper { bodies, .. } => format!("damper {}", between(*bodies)),
-        LoadKind::RotationalDamper { bodies } => format!("rotational damper {}", between(*bodies)),
-        LoadKind::PointToPointForce { bodies, .. } => format!("force {}", between(*bodies)),
-        LoadKind::SlideForce(_) => "force along a slide".to_owned(),
-        LoadKind::SlideDamper(_) => "damper along a slide".to_owned(),
-        LoadKind::SeparatingForce(_) => "separating force of teeth".to_owned(),
+        LoadKind::Spring { bodies, .. } => (between("spring", bodies), "N/m"),
+        LoadKind::TorsionSpring { bodies, .. } => (between("torsion spring", bodies), "N m/rad"),
+        LoadKind::Damper { bodies, .. } => (between("damper", bodies), "N s/m"),
+        LoadKind::RotationalDamper { bodies } => {
+            (between("rotational damper", bodies), "N m s/rad")
+        }
+        LoadKind::PointToPointForce { bodies, .. } => (between("force", bodies), "N"),
+        LoadKind::SlideForce(_) => ("force along a slide".to_owned(), "N"),
+        LoadKind::SlideDamper(_) => ("damper along a slide".to_owned(), "N s/m"),
+        LoadKind::SeparatingForce(_) => ("separating force of teeth".to_owned(), "N"),
     }
 }
 
-/// The unit of the number of a load.
-fn load_unit(kind: &LoadKind) -> &'static str {
-    match kind {
-        LoadKind::Gravity { .. } => "m/s²",
-        LoadKind::Force { .. }
-        | LoadKind::PointToPointForce { .. }
-        | LoadKind::SlideForce(_)
-        | LoadKind::SeparatingForce(_) => "N",
-        LoadKind::Torque { .. } => "N m",
-        LoadKind::Spring { .. } => "N/m",
-        LoadKind::TorsionSpring { .. } => "N m/rad",
-        LoadKind::Damper { .. } | LoadKind::SlideDamper(_) => "N s/m",
-        LoadKind::RotationalDamper { .. } => "N m s/rad",
-    }
+/// The loads of a scene in the plane or in space, what each of them is with the unit of its number, its drives, its stops and its
+/// motions.
+pub(crate) fn describe_actions<S: MachineScene, R>(
+    scene: &S,
+    loads: DescribedLoads<'_, S::Model>,
+    motions: &ScheduledMotions<'_, CoordinateOf<S>, R>,
+    record: &mut Record,
+) -> String {
+    describe_loads(scene, loads, record)
+        + &describe_drives(scene, record)
+        + &describe_stops(scene, record)
+        + &describe_motions(scene, motions, record)
 }
+
+/// The loads of a model, and what a kind of load is, with the unit of its number.
+type DescribedLoads<'a, M> = (
+    &'a [ModelLoad<M>],
+    &'a dyn Fn(&<M as MachineModel>::LoadKind) -> (String, &'static str),
+);
 
 /// A constant, or what a magnitude depends on.
-pub(crate) fn magnitude<C: Copy>(
-    name_of: &dyn Fn(C) -> String,
-    of: &Magnitude<C>,
+fn magnitude<S: MachineScene>(
+    scene: &S,
+    of: &Magnitude<CoordinateOf<S>>,
     (name, unit): (&str, &str),
     record: &mut Record,
 ) -> String {
@@ -200,8 +227,12 @@ pub(crate) fn magnitude<C: Copy>(
         Magnitude::Friction(_) => "dry friction".to_owned(),
         Magnitude::Separating(_) => "from the tooth force".to_owned(),
         other => {
-            let signals = other.signals().iter();
-            let mut names: Vec<String> = signals.map(|s| signal_name(name_of, s)).collect();
+            let name_of = |signal: &Signal<CoordinateOf<S>>| match *signal {
+                Signal::Time => "t".to_owned(),
+                Signal::Value(of) => scene.name_of_coordinate(of),
+                Signal::Velocity(of) => format!("{}.velocity", scene.name_of_coordinate(of)),
+            };
+            let mut names: Vec<String> = other.signals().iter().map(name_of).collect();
             names.dedup();
             match names.is_empty() {
                 true => format!("in {unit}"),
@@ -211,39 +242,29 @@ pub(crate) fn magnitude<C: Copy>(
     }
 }
 
-fn signal_name<C: Copy>(name_of: &dyn Fn(C) -> String, signal: &Signal<C>) -> String {
-    match signal {
-        Signal::Time => "t".to_owned(),
-        Signal::Value(coordinate) => name_of(*coordinate),
-        Signal::Velocity(coordinate) => format!("{}.velocity", name_of(*coordinate)),
-    }
-}
-
-fn describe_loads(scene: &Scene, record: &mut Record) -> String {
-    if scene.loads.is_empty() {
+fn describe_loads<S: MachineScene>(
+    scene: &S,
+    (loads, described): DescribedLoads<'_, S::Model>,
+    record: &mut Record,
+) -> String {
+    if loads.is_empty() {
         return "  no loads\n".to_owned();
     }
-    let lines = scene.loads.iter().map(|load| {
-        let (kind, unit) = (load_kind(scene, &load.kind), load_unit(&load.kind));
+    let lines = loads.iter().map(|load| {
+        let (kind, unit) = described(&load.kind);
         let name = format!("load.{}", load.name);
-        let name_of = |coordinate| scene.name_of(coordinate);
-        let magnitude = magnitude(&name_of, &load.magnitude, (&name, unit), record);
+        let magnitude = magnitude(scene, &load.magnitude, (&name, unit), record);
         format!("    {}: {kind}, {magnitude}\n", load.name)
     });
     "  loads:\n".to_owned() + &lines.collect::<String>()
 }
 
-/// The drives of a scene in the plane or in space.
-pub(crate) fn describe_drives<C: Copy>(
-    drives: &[Drive<C>],
-    coordinates: &Coordinates<'_, C>,
-    record: &mut Record,
-) -> String {
-    if drives.is_empty() {
+fn describe_drives<S: MachineScene>(scene: &S, record: &mut Record) -> String {
+    if scene.drives().is_empty() {
         return "  no drives\n".to_owned();
     }
-    let lines = drives.iter().map(|drive| {
-        let is_angle = (coordinates.is_angle)(drive.coordinate);
+    let lines = scene.drives().iter().map(|drive| {
+        let is_angle = S::is_angle(drive.coordinate);
         let speed_unit = format!("{}/s", coordinate_unit(is_angle));
         let (kind, unit) = match &drive.kind {
             DriveKind::AppliedForce(_) => ("applied force", force_unit(is_angle)),
@@ -251,28 +272,23 @@ pub(crate) fn describe_drives<C: Copy>(
             DriveKind::SpeedController(_) => ("speed controller", speed_unit.as_str()),
         };
         let name = format!("drive.{}", drive.name);
-        let input = magnitude(coordinates.name, drive.kind.input(), (&name, unit), record);
-        let on = (coordinates.name)(drive.coordinate);
+        let input = magnitude(scene, drive.kind.input(), (&name, unit), record);
+        let on = scene.name_of_coordinate(drive.coordinate);
         format!("    {}: {kind} on {on}, {input}\n", drive.name)
     });
     "  drives:\n".to_owned() + &lines.collect::<String>()
 }
 
-/// The end stops of a scene in the plane or in space.
-pub(crate) fn describe_stops(scene: &impl NamedScene, record: &mut Record) -> String {
+fn describe_stops(scene: &impl NamedScene, record: &mut Record) -> String {
     let lines = scene.stops().iter().map(|stop| {
         let (on, is_angle) = scene.actuator(stop.actuator.0).unwrap_or(("", true));
-        let limit = |words: &str, value: f64| {
-            let (value, unit) = scene.to_scene_unit(value, is_angle);
-            format!(" {words} {} {unit}", number(value))
-        };
-        let limits = [("from", stop.min), ("to", stop.max)];
-        let limits = limits.map(|(words, value)| value.map(|v| limit(words, v)));
-        let limits: String = limits.into_iter().flatten().collect();
+        let unit = coordinate_unit(is_angle);
         let of = |what: &str| format!("stop.{}.{what}", stop.name);
-        for (what, value) in [("min", stop.min), ("max", stop.max)] {
-            if let Some(value) = value {
-                record.add(of(what), coordinate_unit(is_angle), value);
+        let mut limits = String::new();
+        for (word, what, limit) in [("from", "min", stop.min), ("to", "max", stop.max)] {
+            if let Some(limit) = limit {
+                limits += &format!(" {word} {}", in_scene_unit(scene, limit, is_angle));
+                record.add(of(what), unit, limit);
             }
         }
         let force = force_unit(is_angle);
@@ -282,12 +298,10 @@ pub(crate) fn describe_stops(scene: &impl NamedScene, record: &mut Record) -> St
                 format!("coefficient of restitution {}", number(stop.restitution))
             }
             Some([stiffness, damping]) => {
-                let per = coordinate_unit(is_angle);
-                let units = [format!("{force}/{per}"), format!("{force} s/{per}")];
-                record.add(of("stiffness"), &units[0], stiffness);
-                record.add(of("damping"), &units[1], damping);
+                let [by_depth, by_rate] = [format!("{force}/{unit}"), format!("{force} s/{unit}")];
+                record.add(of("stiffness"), &by_depth, stiffness);
+                record.add(of("damping"), &by_rate, damping);
                 let [stiffness, damping] = [stiffness, damping].map(number);
-                let [by_depth, by_rate] = units;
                 format!("it yields with {stiffness} {by_depth} and {damping} {by_rate}")
             }
         };
@@ -296,17 +310,12 @@ pub(crate) fn describe_stops(scene: &impl NamedScene, record: &mut Record) -> St
     lines.collect()
 }
 
-/// The prescribed motion or sweep, and the free motion, of a scene in the plane or in space.
-pub(crate) fn describe_motions<C, R>(
+/// The prescribed motion or sweep, and the free motion.
+fn describe_motions<C, R>(
     scene: &impl NamedScene,
     motions: &ScheduledMotions<'_, C, R>,
     record: &mut Record,
 ) -> String {
-    let coordinate = |i: usize, value: f64| {
-        let is_angle = scene.actuator(i).is_none_or(|(_, is_angle)| is_angle);
-        let (value, unit) = scene.to_scene_unit(value, is_angle);
-        format!("{} {unit}", number(value))
-    };
     let mut text = String::new();
     if let Some(prescribed) = motions.prescribed {
         record.add("prescribed.duration", "s", prescribed.duration);
@@ -319,32 +328,7 @@ pub(crate) fn describe_motions<C, R>(
         text += &describe_sweep(scene, sweep, record);
     }
     if let Some(motion) = motions.motion {
-        record_motion(scene, motion, record);
-        let starts = (0..motion.laws.len()).map(|i| {
-            let name = scene.actuator(i).map_or("", |(name, _)| name);
-            let [q, speed] = [
-                coordinate(i, motion.initial_coordinates[i]),
-                coordinate(i, motion.initial_velocities[i]),
-            ];
-            match motion.laws[i] {
-                Some(_) => format!("{name} prescribed"),
-                None => format!("{name} from {q} at {speed}/s"),
-            }
-        });
-        let starts: Vec<String> = starts.collect();
-        let duration = match motion.duration {
-            MotionDuration::Seconds(seconds) => format!("{} s", number(seconds)),
-            MotionDuration::Periods(1.0) => "1 period".to_owned(),
-            MotionDuration::Periods(periods) => format!("{} periods", number(periods)),
-        };
-        let events = match motion.events.len() {
-            0 => String::new(),
-            events => format!(", {}", count(events, "event")),
-        };
-        text += &format!(
-            "  free motion: {}, for {duration}{events}\n",
-            starts.join(", ")
-        );
+        text += &describe_free_motion(scene, motion, record);
     }
     match text.is_empty() {
         true => "  no motion: add [prescribed], [coordinate-sweep] or [motion]\n".to_owned(),
@@ -356,10 +340,7 @@ pub(crate) fn describe_motions<C, R>(
 fn describe_sweep(scene: &impl NamedScene, sweep: &CoordinateSweep, record: &mut Record) -> String {
     let (name, is_angle) = scene.actuator(sweep.actuator.0).unwrap_or(("", true));
     let unit = coordinate_unit(is_angle);
-    let coordinate = |value: f64| {
-        let (value, unit) = scene.to_scene_unit(value, is_angle);
-        format!("{} {unit}", number(value))
-    };
+    let coordinate = |value: f64| in_scene_unit(scene, value, is_angle);
     let over = match sweep.range {
         Some([from, to]) => {
             record.add("coordinate_sweep.from", unit, from);
@@ -375,23 +356,41 @@ fn describe_sweep(scene: &impl NamedScene, sweep: &CoordinateSweep, record: &mut
     format!("  coordinate sweep: {name} {over}, {points}, at {speed}/s\n")
 }
 
-/// The numbers of a free motion.
-fn record_motion<C, R>(
+/// The free motion.
+fn describe_free_motion<C, R>(
     scene: &impl NamedScene,
     motion: &FreeMotionSpec<C, R>,
     record: &mut Record,
-) {
-    let free = (0..motion.laws.len()).filter(|i| motion.laws[*i].is_none());
-    for (i, (name, is_angle)) in free.filter_map(|i| Some((i, scene.actuator(i)?))) {
+) -> String {
+    let starts = motion.laws.iter().enumerate().map(|(i, law)| {
+        let (name, is_angle) = scene.actuator(i).unwrap_or(("", true));
+        if law.is_some() {
+            return format!("{name} prescribed");
+        }
         let unit = coordinate_unit(is_angle);
-        let name = format!("free_motion.{name}");
         let [q, speed] = [&motion.initial_coordinates, &motion.initial_velocities].map(|of| of[i]);
-        record.add(&name, unit, q);
-        record.add(format!("{name}.velocity"), &format!("{unit}/s"), speed);
-    }
-    match motion.duration {
-        MotionDuration::Seconds(seconds) => record.add("free_motion.duration", "s", seconds),
-        MotionDuration::Periods(periods) => record.add("free_motion.periods", "", periods),
-    }
+        record.add(format!("free_motion.{name}"), unit, q);
+        let of_speed = format!("free_motion.{name}.velocity");
+        record.add(of_speed, &format!("{unit}/s"), speed);
+        let [q, speed] = [q, speed].map(|value| in_scene_unit(scene, value, is_angle));
+        format!("{name} from {q} at {speed}/s")
+    });
+    let starts = starts.collect::<Vec<String>>().join(", ");
+    let duration = match motion.duration {
+        MotionDuration::Seconds(seconds) => {
+            record.add("free_motion.duration", "s", seconds);
+            format!("{} s", number(seconds))
+        }
+        MotionDuration::Periods(periods) => {
+            record.add("free_motion.periods", "", periods);
+            let noun = if periods == 1.0 { "period" } else { "periods" };
+            format!("{} {noun}", number(periods))
+        }
+    };
     record.add_count("free_motion.events", motion.events.len());
+    let events = match motion.events.len() {
+        0 => String::new(),
+        events => format!(", {}", count(events, "event")),
+    };
+    format!("  free motion: {starts}, for {duration}{events}\n")
 }

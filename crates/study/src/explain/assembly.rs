@@ -11,7 +11,7 @@ use dwell_geometry::{
     ActuatorId, AssemblyError, BodyId, BranchHint, JointId, Mechanism, StructureError,
 };
 use dwell_kinetostatics::ModelError;
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::{Scene, SceneFile, SceneLocation};
 
 /// A gap below this fraction of the mechanism's size may be rounding of the lengths.
 const MARGINAL_GAP: f64 = 1e-6;
@@ -101,16 +101,10 @@ fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
             joints,
             redundant_count,
             gap,
-        } => scene_error(
-            scene,
-            format!(
-                "the mechanism is overconstrained by {}, and the redundant constraints are inconsistent: closure \
-                 error {gap:.2e} m",
-                count(*redundant_count, "constraint")
-            ),
-            "redundant constraints must agree to the last digits: correct a length or a point, or remove a joint",
-            joint_labels(joints, "among the redundant constraints"),
-        ),
+        } => {
+            let help = "correct a length or a point, or remove a joint";
+            inconsistent(scene, joints, (*redundant_count, *gap), help)
+        }
         AssemblyError::SingularAssembly { bodies, joints } => {
             let what = "the start is a limit position or a change point: the actuator does not determine the motion of";
             let message = format!("{what} {}", body_names(mechanism, bodies));
@@ -123,15 +117,7 @@ fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
 fn explain_structure(scene: &Scene, error: &StructureError) -> StudyError {
     match error {
         StructureError::NotConnected { bodies } => {
-            let names = body_names(&scene.mechanism, bodies);
-            let message = format!("no chain of joints connects {names} with the ground");
-            let labels = body_labels(bodies, "not reached by any chain of joints");
-            scene_error(
-                scene,
-                message,
-                "add the missing joint, or remove the body",
-                labels,
-            )
+            not_connected(scene, &body_names(&scene.mechanism, bodies), bodies)
         }
         StructureError::UnderActuated {
             degrees_of_freedom,
@@ -141,7 +127,7 @@ fn explain_structure(scene: &Scene, error: &StructureError) -> StudyError {
         } => {
             let mut labels = body_labels(bodies, "nothing determines its motion");
             labels.extend(joint_labels(redundant_joints, "redundant"));
-            labels.extend(driven_labels(scene));
+            labels.extend(driven_labels(scene.mechanism.actuators.len()));
             let help = if redundant_joints.is_empty() {
                 "each degree of freedom needs an actuator: add one, or a joint that is missing"
             } else {
@@ -163,16 +149,39 @@ fn explain_structure(scene: &Scene, error: &StructureError) -> StudyError {
     }
 }
 
-fn freedom_text(degrees_of_freedom: usize, actuators: usize) -> String {
-    let freedom = count(degrees_of_freedom, "degree of freedom");
-    format!(
-        "the mechanism has {freedom} and {}",
-        count(actuators, "actuator")
-    )
+/// The error of bodies that are not connected.
+pub(crate) fn not_connected(scene: &SceneFile, names: &str, bodies: &[BodyId]) -> StudyError {
+    let message = format!("no chain of joints connects {names} with the ground");
+    let labels = body_labels(bodies, "not reached by any chain of joints");
+    let help = "add the missing joint, or remove the body";
+    scene_error(scene, message, help, labels)
 }
 
-fn driven_labels(scene: &Scene) -> Labels {
-    let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
+/// The error of redundant constraints that leave a gap, m.
+pub(crate) fn inconsistent(
+    scene: &SceneFile,
+    joints: &[JointId],
+    (redundant_count, gap): (usize, f64),
+    help: &str,
+) -> StudyError {
+    let redundant = count(redundant_count, "constraint");
+    let message = format!(
+        "the mechanism is overconstrained by {redundant}, and the redundant constraints are inconsistent: closure error {gap:.2e} m"
+    );
+    let help = format!("redundant constraints must agree to the last digits: {help}");
+    let labels = joint_labels(joints, "among the redundant constraints");
+    scene_error(scene, message, help, labels)
+}
+
+pub(crate) fn freedom_text(degrees_of_freedom: usize, actuators: usize) -> String {
+    let freedom = count(degrees_of_freedom, "degree of freedom");
+    let actuators = count(actuators, "actuator");
+    format!("the mechanism has {freedom} and {actuators}")
+}
+
+/// Labels of so many actuators.
+pub(crate) fn driven_labels(actuators: usize) -> Labels {
+    let actuators = (0..actuators).map(ActuatorId);
     labels(actuators.map(SceneLocation::Actuator), "drives it")
 }
 
@@ -200,7 +209,8 @@ fn explain_over_constrained(
         )
     } else if mechanism.actuators.len() > degrees_of_freedom {
         let is_other = |(at, _): &(SceneLocation, _)| !matches!(at, SceneLocation::Actuator(a) if actuators.contains(a));
-        places.extend(driven_labels(scene).into_iter().filter(is_other));
+        let driven = driven_labels(mechanism.actuators.len()).into_iter();
+        places.extend(driven.filter(is_other));
         (
             freedom_text(degrees_of_freedom, mechanism.actuators.len()),
             "each degree of freedom needs one actuator: remove an actuator or a joint",
@@ -225,10 +235,16 @@ fn explain_over_constrained(
 
 /// The error where exactly one actuator is needed and the scene has another number.
 pub(crate) fn not_one_actuator(scene: &Scene) -> StudyError {
-    let given = count(scene.mechanism.actuators.len(), "actuator");
+    let actuators = scene.mechanism.actuators.len();
+    wrong_actuators(scene, actuators, actuator_labels(scene, "drives it"))
+}
+
+/// The same of a scene in the plane or in space, with labels of its actuators.
+pub(crate) fn wrong_actuators(scene: &SceneFile, actuators: usize, labels: Labels) -> StudyError {
+    let given = count(actuators, "actuator");
     let message = format!("the scene has {given}: the reduced model needs exactly one");
     let help = "give exactly one actuator in [actuators]";
-    scene_error(scene, message, help, actuator_labels(scene, "drives it"))
+    scene_error(scene, message, help, labels)
 }
 
 /// Explains a machine that cannot be built.

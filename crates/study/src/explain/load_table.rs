@@ -24,61 +24,41 @@ pub(crate) fn covers(table: &Spline, x: f64) -> bool {
     (first - tolerance..=last + tolerance).contains(&x)
 }
 
-/// The argument of a load's table, as messages name it.
-pub(crate) struct TableArgument {
-    name: String,
-    unit: &'static str,
-    /// Of the table.
-    range: [f64; 2],
-}
-
-impl TableArgument {
-    /// That of a magnitude, by the names of coordinates and whether they are angles.
-    pub(crate) fn of<C: Copy>(
-        magnitude: &Magnitude<C>,
-        name_of: impl Fn(C) -> String,
-        is_angle: impl Fn(C) -> bool,
-    ) -> Option<Self> {
-        let (signal, table) = table_of(magnitude)?;
-        let (name, unit) = match signal {
-            Signal::Time => ("t".to_owned(), "s"),
-            Signal::Value(c) => (name_of(c), coordinate_unit(is_angle(c))),
-            Signal::Velocity(c) => {
-                let unit = if is_angle(c) { "rad/s" } else { "m/s" };
-                (format!("{}.velocity", name_of(c)), unit)
-            }
-        };
-        let range = table.range();
-        Some(Self { name, unit, range })
-    }
-
-    /// The error where the table of this load does not cover a value; `when` says where in the motion.
-    pub(crate) fn error(
-        &self,
-        scene: &impl NamedScene,
-        (load, value): (usize, f64),
-        when: &str,
-    ) -> StudyError {
-        let Self { name, unit, range } = self;
-        let is_angle = *unit == "rad";
-        let value_text = |value: f64| match is_angle {
-            true => format!("{} rad ({}°)", number(value), number(value.to_degrees())),
-            false => format!("{} {unit}", number(value)),
-        };
-        let [first, last] = range.map(value_text);
-        let table_range = format!("from {first} to {last}");
-        let help = match is_angle {
-            true => format!(
-                "extend the table to the angles of the motion, which are not reduced to one revolution; or write an \
-                 expression, in which `{name} - tau*floor({name}/tau)` is the angle within a revolution"
-            ),
-            false => "extend the table, or write an expression".to_owned(),
-        };
-        let (load_name, value) = (scene.load_name(load).unwrap_or(""), value_text(value));
-        let message = format!(
-            "the table of load `{load_name}` covers {name} {table_range}, but {name} is {value} {when}"
-        );
-        let place = (SceneLocation::Magnitude(load), table_range);
-        scene_error(scene, message, help, [place])
-    }
+/// The error where a load's table of this magnitude does not cover a value of its argument; `when` says where in the motion. Coordinates
+/// are known by their names and by whether they are angles.
+pub(crate) fn off_table_error<C: Copy>(
+    scene: &impl NamedScene,
+    magnitude: &Magnitude<C>,
+    (name_of, is_angle): (impl Fn(C) -> String, impl Fn(C) -> bool),
+    (load, value): (usize, f64),
+    when: &str,
+) -> Option<StudyError> {
+    let (signal, table) = table_of(magnitude)?;
+    let (name, unit) = match signal {
+        Signal::Time => ("t".to_owned(), "s"),
+        Signal::Value(c) => (name_of(c), coordinate_unit(is_angle(c))),
+        Signal::Velocity(c) => {
+            let unit = if is_angle(c) { "rad/s" } else { "m/s" };
+            (format!("{}.velocity", name_of(c)), unit)
+        }
+    };
+    let value_text = |value: f64| match unit {
+        "rad" => format!("{} rad ({}°)", number(value), number(value.to_degrees())),
+        unit => format!("{} {unit}", number(value)),
+    };
+    let [first, last] = table.range().map(value_text);
+    let table_range = format!("from {first} to {last}");
+    let help = match unit {
+        "rad" => format!(
+            "extend the table to the angles of the motion, which are not reduced to one revolution; or write an \
+             expression, in which `{name} - tau*floor({name}/tau)` is the angle within a revolution"
+        ),
+        _ => "extend the table, or write an expression".to_owned(),
+    };
+    let (load_name, value) = (scene.load_name(load).unwrap_or(""), value_text(value));
+    let message = format!(
+        "the table of load `{load_name}` covers {name} {table_range}, but {name} is {value} {when}"
+    );
+    let place = (SceneLocation::Magnitude(load), table_range);
+    Some(scene_error(scene, message, help, [place]))
 }

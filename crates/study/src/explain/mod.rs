@@ -10,7 +10,9 @@ mod named_scene;
 mod position;
 mod study_error;
 
-pub(crate) use assembly::not_one_actuator;
+pub(crate) use assembly::{
+    driven_labels, freedom_text, inconsistent, not_connected, not_one_actuator, wrong_actuators,
+};
 pub use assembly::{explain_machine, explain_model};
 pub(crate) use coupling::{couplings, non_finite_coupling, non_finite_coupling_error};
 pub use labels::scene_error;
@@ -18,7 +20,7 @@ pub(crate) use labels::{
     Labels, actuator_labels, body_labels, body_names, body_names_or_mechanism, joint_labels,
     joint_names, labels, missing_section_label, start_labels,
 };
-pub(crate) use load_table::{TableArgument, covers, table_of};
+pub(crate) use load_table::{covers, off_table_error, table_of};
 pub use motion::explain_motion;
 pub(crate) use motion::{StepLimits, explain_any_motion, explain_max_steps};
 pub use named_scene::NamedScene;

@@ -3,13 +3,10 @@
 use super::machine_scene::{MachineScene, MotionStart};
 use crate::branch_note::branch_note;
 use crate::explain::{StudyError, explain_motion};
-use crate::models::{
-    drive_states, machine_with_laws, requested_reactions, source_name, with_drive_loads,
-};
+use crate::models::{machine_with_laws, requested_reactions, with_drive_loads};
 use crate::page::drawing_along;
 use crate::trajectory::compute::reject_unknown_variables;
-use dwell_dynamics::{DynamicsError, Machine, NonconservativeSource};
-use dwell_findings::Column;
+use dwell_dynamics::{DynamicsError, Machine};
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::{Drive, Model};
 use dwell_page::Drawing;
@@ -33,10 +30,9 @@ impl MachineScene for Scene {
         Ok(requested_reactions(self, model.plan()))
     }
 
-    fn reaction_columns(&self, model: &Model) -> Vec<Column> {
-        let column =
-            |r: &Reaction| Column::new(self.mechanism.reaction_name(*r), r.component.unit());
-        model.reactions().iter().map(column).collect()
+    fn reaction_units(&self, model: &Model) -> Vec<(String, &'static str)> {
+        let named = |r: &Reaction| (self.mechanism.reaction_name(*r), r.component.unit());
+        model.reactions().iter().map(named).collect()
     }
 
     fn name_of_coordinate(&self, coordinate: dwell_geometry::Coordinate) -> String {
@@ -53,17 +49,6 @@ impl MachineScene for Scene {
 
     fn is_angle(coordinate: dwell_geometry::Coordinate) -> bool {
         coordinate.is_angle()
-    }
-
-    fn drive_state_columns(&self) -> Vec<Column> {
-        let states = drive_states(self).into_iter();
-        states
-            .map(|(name, unit, _)| Column::new(name, unit))
-            .collect()
-    }
-
-    fn name_of_source(&self, source: NonconservativeSource) -> &str {
-        source_name(self, source)
     }
 
     fn reject_unknown_columns(&self) -> Result<(), StudyError> {

@@ -2,7 +2,7 @@
 
 use super::machine_scene::MachineScene;
 use super::scene_machine::SceneMachine;
-use crate::explain::{StudyError, TableArgument, covers, table_of};
+use crate::explain::{StudyError, covers, off_table_error, table_of};
 use crate::ranges::equally_spaced;
 use dwell_kinetostatics::{MachineModel, Signal};
 
@@ -54,11 +54,9 @@ impl<S: MachineScene> SceneMachine<'_, S> {
             return Ok(());
         };
         let magnitude = &self.machine.model().loads()[load].magnitude;
-        let name_of = |coordinate| self.scene.name_of_coordinate(coordinate);
-        match TableArgument::of(magnitude, name_of, S::is_angle) {
-            Some(argument) => Err(argument.error(self.scene, (load, value), when)),
-            None => Ok(()),
-        }
+        let coordinates = (|c| self.scene.name_of_coordinate(c), S::is_angle);
+        let error = off_table_error(self.scene, magnitude, coordinates, (load, value), when);
+        error.map_or(Ok(()), Err)
     }
 
     /// The part of an interval of the only coordinate, around the start, at rest in which the tables of all loads are given.

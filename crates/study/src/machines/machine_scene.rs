@@ -63,8 +63,14 @@ pub trait MachineScene: NamedScene {
     fn sorted_reactions(&self, model: &Self::Model)
     -> Result<[Vec<Self::Reaction>; 2], StudyError>;
 
-    /// Names and units of the reactions of a model.
-    fn reaction_columns(&self, model: &Self::Model) -> Vec<Column>;
+    /// Names and units (of a force or a moment) of the reactions of a model.
+    fn reaction_units(&self, model: &Self::Model) -> Vec<(String, &'static str)>;
+
+    /// The same as columns.
+    fn reaction_columns(&self, model: &Self::Model) -> Vec<Column> {
+        let all = self.reaction_units(model).into_iter();
+        all.map(|(name, unit)| Column::new(name, unit)).collect()
+    }
 
     /// The name of a coordinate; empty if it has none.
     fn name_of_coordinate(&self, coordinate: CoordinateOf<Self>) -> String;
@@ -78,11 +84,16 @@ pub trait MachineScene: NamedScene {
     /// Whether a coordinate is an angle; otherwise it is a length.
     fn is_angle(coordinate: CoordinateOf<Self>) -> bool;
 
-    /// Names and units of the states of the drives.
-    fn drive_state_columns(&self) -> Vec<Column>;
-
     /// The name of what does work on the machine.
-    fn name_of_source(&self, source: NonconservativeSource) -> &str;
+    fn name_of_source(&self, source: NonconservativeSource) -> &str {
+        match source {
+            NonconservativeSource::Load(load) => self.load_name(load).unwrap_or_default(),
+            NonconservativeSource::Loads => "loads",
+            NonconservativeSource::Drive(drive) => &self.drives()[drive].name,
+            NonconservativeSource::Stop(stop) => &self.stops()[stop].name,
+            NonconservativeSource::Prescribed(i) => self.actuator(i).unwrap_or_default().0,
+        }
+    }
 
     /// Rejects requested columns that no analysis has.
     ///

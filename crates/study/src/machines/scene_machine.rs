@@ -2,6 +2,7 @@
 
 use super::machine_scene::{MachineScene, MotionStart};
 use crate::explain::{Labels, StudyError, labels, scene_error};
+use crate::models::drive_states;
 use crate::number_format::{coordinate_unit, digits_within};
 use dwell_dynamics::{DynamicsError, Machine};
 use dwell_findings::Column;
@@ -139,7 +140,8 @@ impl<'a, S: MachineScene> SceneMachine<'a, S> {
             let name = format!("{}.velocity", self.coordinate_name(i));
             Column::new(name, format!("{}/s", unit(i)))
         };
-        let states = self.scene.drive_state_columns();
+        let states = drive_states(self.scene.drives(), S::is_angle).into_iter();
+        let states = states.map(|(name, unit, _)| Column::new(name, unit));
         let coordinates = free.clone().map(coordinate).chain(free.map(speed));
         coordinates.chain(states).collect()
     }

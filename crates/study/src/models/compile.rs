@@ -113,6 +113,15 @@ pub(crate) fn end_stops(stops: &[NamedStop]) -> Vec<EndStop> {
     stops.iter().map(one).collect()
 }
 
+/// By actuator: prescribed where there is a law, else free.
+pub(crate) fn coordinate_modes(laws: &[Option<Law>]) -> Vec<CoordinateMode> {
+    let mode = |law: &Option<Law>| match law {
+        Some(law) => CoordinateMode::Prescribed(law.clone()),
+        None => CoordinateMode::Free,
+    };
+    laws.iter().map(mode).collect()
+}
+
 /// The machine of a scene, with some reactions and those that friction needs.
 pub fn build_machine(
     scene: &Scene,
@@ -128,11 +137,7 @@ pub fn machine_with_laws(
     laws: &[Option<Law>],
     reactions: &[Reaction],
 ) -> Result<Machine, StudyError> {
-    let mode = |law: &Option<Law>| match law {
-        Some(law) => CoordinateMode::Prescribed(law.clone()),
-        None => CoordinateMode::Free,
-    };
-    let modes = laws.iter().map(mode).collect();
+    let modes = coordinate_modes(laws);
     let model = compile_model(scene, reactions)?;
     let machine = Machine::new(model, &scene.loads, modes, &scene.drives);
     let machine = machine.and_then(|machine| machine.with_stops(&end_stops(&scene.stops)));

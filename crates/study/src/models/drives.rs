@@ -1,27 +1,25 @@
 //! Names of what a machine has besides its mechanism: states of drives, and sources of work.
 
-use crate::machines::{CoordinateOf, MachineScene};
 use crate::number_format::coordinate_unit;
-use dwell_dynamics::NonconservativeSource;
 use dwell_kinetostatics::{Drive, DriveKind, Motor};
-use dwell_scene::Scene;
 
 /// Name, unit and meaning of each state of the drives.
-pub(crate) fn drive_states<S: MachineScene>(
-    scene: &S,
+pub(crate) fn drive_states<C: Copy>(
+    drives: &[Drive<C>],
+    is_angle: impl Fn(C) -> bool,
 ) -> Vec<(String, &'static str, &'static str)> {
-    let state = |drive: &Drive<CoordinateOf<S>>| match &drive.kind {
+    let state = |drive: &Drive<C>| match &drive.kind {
         DriveKind::Motor(motor) if motor.inductance > 0.0 => {
             Some((format!("{}.current", drive.name), "A", ""))
         }
         DriveKind::SpeedController(controller) if controller.integral_gain > 0.0 => {
-            let unit = coordinate_unit(S::is_angle(drive.coordinate));
+            let unit = coordinate_unit(is_angle(drive.coordinate));
             let meaning = "integral of the controller error";
             Some((format!("{}.integral", drive.name), unit, meaning))
         }
         DriveKind::Motor(_) | DriveKind::SpeedController(_) | DriveKind::AppliedForce(_) => None,
     };
-    scene.drives().iter().filter_map(state).collect()
+    drives.iter().filter_map(state).collect()
 }
 
 /// The motor of a drive that is one; none of a motor whose current makes no torque.
@@ -34,11 +32,11 @@ pub(crate) fn motor_of<C: Copy>(drive: &Drive<C>) -> Option<&Motor<C>> {
 
 /// Name, unit and meaning of what motors have besides their states: the current of one without inductance, the
 /// electrical power and the efficiency.
-pub(crate) fn motor_columns<S: MachineScene>(
-    scene: &S,
+pub(crate) fn motor_columns<C: Copy>(
+    drives: &[Drive<C>],
 ) -> Vec<(String, &'static str, &'static str)> {
     let mut all = Vec::new();
-    for drive in scene.drives() {
+    for drive in drives {
         let Some(motor) = motor_of(drive) else {
             continue;
         };
@@ -52,15 +50,4 @@ pub(crate) fn motor_columns<S: MachineScene>(
         all.push((name("efficiency"), "", efficiency));
     }
     all
-}
-
-/// The name of what does work on a machine.
-pub(crate) fn source_name(scene: &Scene, source: NonconservativeSource) -> &str {
-    match source {
-        NonconservativeSource::Load(load) => &scene.loads[load].name,
-        NonconservativeSource::Loads => "loads",
-        NonconservativeSource::Drive(drive) => &scene.drives[drive].name,
-        NonconservativeSource::Stop(stop) => &scene.stops[stop].name,
-        NonconservativeSource::Prescribed(actuator) => &scene.mechanism.actuators[actuator].name,
-    }
 }

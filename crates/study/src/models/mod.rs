@@ -10,10 +10,10 @@ pub use compile::{
     reduced_model, with_drive_loads,
 };
 pub(crate) use compile::{
-    determinate_model, end_stops, exact_model, lists_reactions, loaded_determinate_model,
-    requested_reaction_bodies, requested_reactions, with_loads,
+    coordinate_modes, determinate_model, end_stops, exact_model, lists_reactions,
+    loaded_determinate_model, requested_reaction_bodies, requested_reactions, with_loads,
 };
-pub(crate) use drives::{drive_states, motor_columns, motor_of, source_name};
+pub(crate) use drives::{drive_states, motor_columns, motor_of};
 pub use prepared_scene::PreparedScene;
 pub(crate) use prepared_scene::initial_reduced_state;
 pub use solver_settings::{PRESETS, SolverSettings};

@@ -1,10 +1,10 @@
 //! A scene with the exact reduced model of what it requests.
 
 use crate::explain::StudyError;
+use crate::machines::MachineScene as _;
 use crate::models::{determinate_model, exact_model, requested_reaction_bodies};
 use crate::ranges::equally_spaced;
 use dwell_dynamics::ReducedState;
-use dwell_geometry::Reaction;
 use dwell_kinetostatics::{ExactModel, ReducedModel};
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
@@ -53,10 +53,7 @@ impl<'a> PreparedScene<'a> {
 
     /// Names and units (of a force or a moment) of the reactions of the model.
     pub fn reaction_units(&self) -> Vec<(String, &'static str)> {
-        let mechanism = &self.scene.mechanism;
-        let named = |&r: &Reaction| (mechanism.reaction_name(r), r.component.unit());
-        let reactions = self.model.model().reactions();
-        reactions.iter().map(named).collect()
+        self.scene.reaction_units(self.model.model())
     }
 
     /// The initial state of the free motion, if the scene has one.

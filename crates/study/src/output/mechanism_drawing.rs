@@ -1,6 +1,7 @@
 //! Drawing of a mechanism in one position: bodies as bars, plates and blocks, joints and springs.
 
 use crate::bodies::{BodyPose, point_position};
+use crate::page::paint;
 use crate::symbols::{
     BodyOutline, PitchCurve, RAIL_DISTANCE, SLOT_DISTANCE, TOOTH, TRACK_MARGIN, circle,
     common_joint_name, is_cylinder, outline_of, pitch_curve, rack_outline, reach, spring_outline,
@@ -91,15 +92,17 @@ impl<'a> MechanismDrawing<'a> {
         body.0 == self.scene.mechanism.ground
     }
 
-    /// Grey for the ground; six palette colours, then ink, then the colours again.
     fn color(&self, body: BodyId) -> Paint {
-        if self.is_ground(body) {
-            return Paint::Grey;
-        }
-        match (body.0 - usize::from(body.0 > self.scene.mechanism.ground)) % 7 {
-            6 => Paint::Ink,
-            k => Paint::Palette(k),
-        }
+        body_color(self.scene.mechanism.ground, body)
+    }
+}
+
+/// Grey for the ground; six palette colours, then ink, then the colours again.
+pub(crate) fn body_color(ground: usize, body: BodyId) -> Paint {
+    match paint(ground, body.0) {
+        None => Paint::Grey,
+        Some(6) => Paint::Ink,
+        Some(k) => Paint::Palette(k),
     }
 }
 

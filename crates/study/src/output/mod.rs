@@ -16,6 +16,7 @@ pub(crate) use captions::{
 pub use captions::{caption, chart, coordinate_label, figure, scene_caption, symbol};
 pub(crate) use distinct_names::DistinctNames;
 pub use mechanism_drawing::MechanismDrawing;
+pub(crate) use mechanism_drawing::body_color;
 pub use page_file::add_page;
 pub use pictures::{Picture, PictureFormat, Pictures};
 pub use provenance::provenance_line;

@@ -7,59 +7,56 @@ mod tests;
 use super::plane::{anchor, anchors, point};
 use crate::trajectory::compute::{Quantity, TrajectoryResults};
 use contacts::{coupling_arrow, rolling_arrows, tooth_arrows};
-use dwell_geometry::{BodyId, Component, Joint, JointId, JointKind, Vec2};
+use dwell_geometry::{BodyId, Component, Joint, JointId, JointKind, Reaction, Vec2};
 use dwell_kinetostatics::{Guide, LoadKind};
 use dwell_page::{Anchor, Direction, ForceArrow, ForcePart};
 use dwell_scene::Scene;
 
 /// The reactions and loads among the columns of the page. A reaction is drawn on the joint's second body.
 pub(super) fn plane_arrows(scene: &Scene, results: &TrajectoryResults) -> Vec<ForceArrow> {
-    let columns = WrittenColumns {
-        scene,
-        results,
-        reactions: scene.mechanism.reactions(),
-    };
+    let reactions = scene.mechanism.reactions();
     let joints = scene.mechanism.joints.iter().enumerate();
     let joints = joints.map(|(j, joint)| JointForces {
-        columns: &columns,
+        scene,
+        results,
+        reactions: &reactions,
         id: JointId(j),
         joint,
     });
     let mut arrows: Vec<ForceArrow> = joints.flat_map(|joint| joint.arrows()).collect();
     let loads = scene.loads.iter().enumerate();
     arrows.extend(loads.filter_map(|(k, load)| {
-        let column = columns.column(Quantity::LoadForce(k))?;
-        let (at, direction) = load_direction(scene, &load.kind, column)?;
-        Some(ForceArrow {
-            name: load.name.clone(),
-            group: "Loads".to_owned(),
-            title: results.columns[results.written[column]].meaning.clone(),
-            initially_visible: true,
-            at,
-            direction,
-        })
+        let column = results.written_index(Quantity::LoadForce(k))?;
+        let force = load_direction(scene, &load.kind, column)?;
+        let title = results.columns[results.written[column]].meaning.clone();
+        Some(force_arrow("Loads", &load.name, title, force))
     }));
     arrows
 }
 
-/// What the columns of a page show.
-struct WrittenColumns<'a> {
-    scene: &'a Scene,
-    results: &'a TrajectoryResults,
-    reactions: Vec<dwell_geometry::Reaction>,
-}
-
-impl WrittenColumns<'_> {
-    /// The column of a quantity, among those that are written.
-    fn column(&self, quantity: Quantity) -> Option<usize> {
-        let mut written = self.results.written.iter();
-        written.position(|&k| self.results.columns[k].quantity == quantity)
+/// An arrow that is shown at first, where it acts and where it points to.
+pub(crate) fn force_arrow(
+    group: &str,
+    name: &str,
+    title: String,
+    (at, direction): (Anchor, Direction),
+) -> ForceArrow {
+    ForceArrow {
+        name: name.to_owned(),
+        group: group.to_owned(),
+        title,
+        initially_visible: true,
+        at,
+        direction,
     }
 }
 
 /// The forces of a joint whose columns are there.
 struct JointForces<'a> {
-    columns: &'a WrittenColumns<'a>,
+    scene: &'a Scene,
+    results: &'a TrajectoryResults,
+    /// All of the mechanism.
+    reactions: &'a [Reaction],
     id: JointId,
     joint: &'a Joint,
 }
@@ -67,9 +64,9 @@ struct JointForces<'a> {
 impl JointForces<'_> {
     /// The column of a component of the reaction.
     fn component(&self, wanted: Component) -> Option<usize> {
-        let mut all = self.columns.reactions.iter();
+        let mut all = self.reactions.iter();
         let k = all.position(|r| r.joint == self.id && r.component == wanted)?;
-        self.columns.column(Quantity::Reaction(k))
+        self.results.written_index(Quantity::Reaction(k))
     }
 
     /// A component along a direction; none where there is no column of it.
@@ -119,19 +116,14 @@ impl JointForces<'_> {
     }
 
     fn on_second(&self, direction: Direction) -> ForceArrow {
-        let [from, on] = self.body_names();
-        ForceArrow {
-            name: self.joint.name.clone(),
-            group: "Reactions".to_owned(),
-            title: format!("{}: force of {from} on {on}", self.joint.name),
-            initially_visible: true,
-            at: anchor(self.joint.bodies[1], self.joint.points[1]),
-            direction,
-        }
+        let ([from, on], name) = (self.body_names(), &self.joint.name);
+        let title = format!("{name}: force of {from} on {on}");
+        let at = anchor(self.joint.bodies[1], self.joint.points[1]);
+        force_arrow("Reactions", name, title, (at, direction))
     }
 
     fn body_names(&self) -> [&str; 2] {
-        let mechanism = &self.columns.scene.mechanism;
+        let mechanism = &self.scene.mechanism;
         self.joint.bodies.map(|b| mechanism.body_name(b))
     }
 }

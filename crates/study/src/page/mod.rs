@@ -9,8 +9,10 @@ mod tables;
 pub(crate) use columns::{RowChoice, page_columns};
 pub use tables::{drawing_along, table_page, unit_group};
 
-use crate::trajectory::column_extrema::{ColumnExtrema, names_of_rows, sorted_extrema};
+use crate::number_format::count;
+use crate::trajectory::column_extrema::{ColumnExtrema, searched_in_rows, sorted_extrema};
 use crate::trajectory::compute::ComputedTrajectory;
+pub(crate) use arrows::force_arrow;
 use arrows::plane_arrows;
 use dwell_page::{DisplayUnit, Page, PageMessage, PageScene, Peak};
 use dwell_scene::{Scene, SceneError, SceneFile};
@@ -127,13 +129,10 @@ pub(crate) fn run_page(scene: &SceneFile, size: f64, computed: &ComputedTrajecto
     };
     let of_rows = "These are the largest values of the rows: the motion has too many steps to look between them.";
     let (reached, points) = (results.len(), trajectory.points);
-    let positions = match reached == points {
-        true => crate::number_format::count(points, "position"),
-        false => format!(
-            "{reached} of {}",
-            crate::number_format::count(points, "position")
-        ),
-    };
+    let mut positions = count(points, "position");
+    if reached != points {
+        positions = format!("{reached} of {positions}");
+    }
     Page {
         subtitle: format!("{positions} over {}", trajectory.description),
         method: trajectory.method_text.clone(),
@@ -143,9 +142,7 @@ pub(crate) fn run_page(scene: &SceneFile, size: f64, computed: &ComputedTrajecto
         peaks: extrema.into_iter().filter_map(peak).collect(),
         peaks_note: match results.extrema.are_between_rows() {
             false => Some(of_rows.to_owned()),
-            true => Some(names_of_rows(results, &results.written))
-                .filter(|names| !names.is_empty())
-                .map(|names| format!("Of the rows only: {names}.")),
+            true => searched_in_rows(results),
         },
         ..scene_page(scene, trajectory.analysis.command())
     }

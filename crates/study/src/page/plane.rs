@@ -292,15 +292,7 @@ impl DrawnParts<'_> {
             let (look, joined) = match load.kind {
                 LoadKind::Spring { bodies, points, .. } => (LinkLook::Spring, (bodies, points)),
                 LoadKind::Damper { bodies, points } => (LinkLook::Damper, (bodies, points)),
-                LoadKind::Gravity { .. }
-                | LoadKind::Force { .. }
-                | LoadKind::Torque { .. }
-                | LoadKind::TorsionSpring { .. }
-                | LoadKind::RotationalDamper { .. }
-                | LoadKind::PointToPointForce { .. }
-                | LoadKind::SlideForce(_)
-                | LoadKind::SlideDamper(_)
-                | LoadKind::SeparatingForce(_) => continue,
+                _ => continue,
             };
             self.link(look, joined, [None; 2], load.name.clone());
         }

@@ -2,11 +2,10 @@
 
 use super::columns::RowChoice;
 use super::plane::plane_drawing;
-use crate::bodies::BodyPose;
+use crate::bodies::{BodyPose, body_poses};
 use crate::models::loaded_model;
 use dwell_findings::Table;
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{BodyId, Vec2};
 use dwell_page::{Drawing, Page, PageColumn, Peak};
 use dwell_scene::Scene;
 
@@ -88,14 +87,7 @@ pub fn drawing_along(scene: &Scene, coordinate: &[f64]) -> Option<Drawing> {
         plan.positions(&[q], &mut pose).ok()?;
         plan.velocities(&pose, &rest, &mut motion);
         states.fill_velocities(plan, &pose, &motion);
-        let bodies = (0..scene.mechanism.bodies.len()).map(BodyId);
-        let pose_of = |b| {
-            (
-                states.point(b, Vec2::ZERO).position,
-                states.body(b).rotation,
-            )
-        };
-        poses.push(bodies.map(pose_of).collect());
+        poses.push(body_poses(&states, &scene.mechanism));
     }
     let modelled = plan.placed_bodies();
     let choice = RowChoice::all(poses.len());

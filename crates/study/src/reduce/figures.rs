@@ -21,14 +21,24 @@ use dwell_report::{Axis, Figure, Panel, Series};
 const MAX_CURVES: usize = 6;
 
 /// What the figures share: the scene with its model, and the coordinates.
-struct RangeFigures<'a> {
-    prepared: &'a dyn ReducedScene,
-    q: &'a [f64],
+pub(crate) struct RangeFigures<'a> {
+    pub(crate) prepared: &'a dyn ReducedScene,
+    pub(crate) q: &'a [f64],
+    /// The method that computed them.
+    pub(crate) method: &'static str,
+}
+
+fn of_reduced_model<'a>(prepared: &'a dyn ReducedScene, q: &'a [f64]) -> RangeFigures<'a> {
+    RangeFigures {
+        prepared,
+        q,
+        method: "reduced model by unit runs",
+    }
 }
 
 impl RangeFigures<'_> {
     /// A curve over the range.
-    fn line(&self, name: &str, values: impl IntoIterator<Item = f64>) -> Series {
+    pub(crate) fn line(&self, name: &str, values: impl IntoIterator<Item = f64>) -> Series {
         let points = self.q.iter().zip(values);
         let x = |q: f64| match self.prepared.is_angle() {
             true => q.to_degrees(),
@@ -38,7 +48,7 @@ impl RangeFigures<'_> {
     }
 
     /// Curves over the range; next to a limit position they may leave the chart.
-    fn panel(&self, title: &str, label: &str, unit: &str, series: Vec<Series>) -> Panel {
+    pub(crate) fn panel(&self, title: &str, label: &str, unit: &str, series: Vec<Series>) -> Panel {
         let mut y = Axis::new(label, unit);
         y.range = inner_range(self.prepared.range(), &series);
         let label = self.prepared.coordinate_label();
@@ -46,7 +56,7 @@ impl RangeFigures<'_> {
         chart(title, x, y, series).into()
     }
 
-    fn figure(
+    pub(crate) fn figure(
         &self,
         name: impl Into<String>,
         title: impl Into<String>,
@@ -55,7 +65,7 @@ impl RangeFigures<'_> {
     ) -> Figure {
         let text = range_caption(self.prepared.has_limits(), text);
         let positions = count(self.q.len(), "position");
-        let provenance = format!("reduced model by unit runs, at {positions}");
+        let provenance = format!("{}, at {positions}", self.method);
         figure(self.prepared.file(), name, title, &text, panels, provenance)
     }
 }
@@ -66,17 +76,13 @@ pub fn reduced(
     curves: &ReducedCurves,
     is_rounding: &[bool],
 ) -> Figure {
-    let (q, at) = (&curves.q, &curves.coefficients);
-    let range = RangeFigures { prepared, q };
-    let [m_unit, half_dm_unit] = match prepared.is_angle() {
-        true => ["kg m²", "kg m²/rad"],
-        false => inertia_units(false),
-    };
+    let (range, at) = (of_reduced_model(prepared, &curves.q), &curves.coefficients);
+    let [m_unit, half_dm_unit] = inertia_units(prepared.is_angle()).map(|u| u.replace('2', "²"));
     let inertia = vec![range.line("", at.iter().map(|c| c.m))];
-    let inertia = range.panel("m (generalised inertia)", "m", m_unit, inertia);
+    let inertia = range.panel("m (generalised inertia)", "m", &m_unit, inertia);
     let derivative = vec![range.line("", at.iter().map(|c| c.half_dm))];
     let title = "½m′ (half its derivative)";
-    let derivative = range.panel(title, "½m′", half_dm_unit, derivative);
+    let derivative = range.panel(title, "½m′", &half_dm_unit, derivative);
     let text = "m is the actuator force at unit acceleration and zero speed, ½m′ at unit speed and zero acceleration.";
     let title = "Reduced inertia and half its derivative";
     let panels = match is_rounding[1] {
@@ -123,8 +129,7 @@ fn coefficient_figure(
     of: &str,
     index: usize,
 ) -> Figure {
-    let q = &curves.q;
-    let range = RangeFigures { prepared, q };
+    let range = of_reduced_model(prepared, &curves.q);
     let reactions = prepared.reaction_units();
     let name = symbol(prepared.coordinate_name());
     let lines = |part: usize, of: fn(&Coefficients, usize) -> f64| -> Vec<Series> {
@@ -180,7 +185,7 @@ pub(crate) fn unit_loads(
     prepared: &dyn ReducedScene,
     q: &[f64],
 ) -> Figure {
-    let range = RangeFigures { prepared, q };
+    let range = of_reduced_model(prepared, q);
     let mut panels = Vec::new();
     let unit_of = |l: usize| curves.unit(l);
     let mut unit_names: Vec<&str> = curves.working().map(unit_of).collect();

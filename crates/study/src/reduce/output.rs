@@ -104,24 +104,31 @@ fn describe_rounding(errors: &RoundingErrors) -> String {
     )
 }
 
+impl<P: ReducedScene> Reduction<P> {
+    /// The first and the last coordinate; over a whole revolution nothing need be said of them.
+    fn ends(&self) -> Option<[f64; 2]> {
+        self.prepared.range().limits()?;
+        let q = &self.curves.q;
+        (q.len() > 1).then(|| [q[0], q[q.len() - 1]])
+    }
+}
+
 /// The numbers of the summary.
 fn record<P: ReducedScene>(reduction: &Reduction<P>, peak: Option<Peak>) -> Record {
     let curves = &reduction.curves;
     let mut record = Record::default();
     record.add_count("positions", curves.q.len());
-    if let (Some(_), [first, .., last]) = (reduction.prepared.range().limits(), &curves.q[..]) {
-        let (name, unit) = (
-            reduction.prepared.coordinate_name(),
-            coordinate_unit(reduction.prepared.is_angle()),
-        );
-        record.add(format!("{name}.min"), unit, *first);
-        record.add(format!("{name}.max"), unit, *last);
+    let (prepared, is_angle) = (&reduction.prepared, reduction.prepared.is_angle());
+    let unit = coordinate_unit(is_angle);
+    if let Some([first, last]) = reduction.ends() {
+        let name = prepared.coordinate_name();
+        record.add(format!("{name}.min"), unit, first);
+        record.add(format!("{name}.max"), unit, last);
     }
-    let is_rounding = reduction.errors.is_rounding[1];
-    let [m_unit, half_dm_unit] = inertia_units(reduction.prepared.is_angle());
+    let [m_unit, half_dm_unit] = inertia_units(is_angle);
     let [m_error, half_dm_error, rest] = reduction.errors.max_errors;
     let m = extent(curves.coefficients.iter().map(|c| c.m));
-    let half_dm = match is_rounding {
+    let half_dm = match reduction.errors.is_rounding[1] {
         true => [0.0; 2],
         false => extent(curves.coefficients.iter().map(|c| c.half_dm)),
     };
@@ -135,11 +142,6 @@ fn record<P: ReducedScene>(reduction: &Reduction<P>, peak: Option<Peak>) -> Reco
         }
     }
     if let Some(peak) = peak {
-        let unit = if reduction.prepared.is_angle() {
-            "rad"
-        } else {
-            "m"
-        };
         record.add_within("m.peak", m_unit, peak.m, peak.error);
         record.add("m.peak.coordinate", unit, peak.q);
     }
@@ -171,27 +173,17 @@ pub(crate) fn summary<P: ReducedScene>(
     let ([m_min, m_max], [h_min, h_max]) = (texts(m, m_error), texts(half_dm, half_dm_error));
     let (title, positions) = (&prepared.file().title, curves.q.len());
     let name = prepared.coordinate_name();
-    let [m_unit, half_dm_unit] = match prepared.is_angle() {
-        true => ["kg m²", "kg m²/rad"],
-        false => inertia_units(false),
-    };
-    // Over a whole revolution nothing need be said of it.
-    let range = match (prepared.range().limits(), &curves.q[..]) {
-        (Some(_), [first, .., last]) => {
-            let [first, last] = [first, last].map(|q| digits(*q, 6));
-            format!(
-                " from {first} to {last} {}",
-                coordinate_unit(prepared.is_angle())
-            )
-        }
-        _ => String::new(),
-    };
+    let [m_unit, half_dm_unit] = inertia_units(prepared.is_angle()).map(|u| u.replace('2', "²"));
+    let unit = coordinate_unit(prepared.is_angle());
+    let range = reduction.ends().map_or_else(String::new, |ends| {
+        let [first, last] = ends.map(|q| digits(q, 6));
+        format!(" from {first} to {last} {unit}")
+    });
     let mut summary = format!(
         "{title}: {positions} positions of {name}{range}, and there\n  m    from {m_min} to {m_max} {m_unit}\n  ½m′  from {h_min} to \
          {h_max} {half_dm_unit}\n"
     );
     if let Some(peak) = peak {
-        let unit = if prepared.is_angle() { "rad" } else { "m" };
         let (q, largest) = (digits(peak.q, 9), digits_within(peak.m, peak.error, 9));
         summary += &format!(
             "  between these positions m reaches {largest} {m_unit}, at {name} = {q} {unit}: more rows show it (--points)\n"

@@ -2,15 +2,17 @@
 
 use super::contents::describe_contents;
 use super::prepared::{compile, is_angle, sort_reactions};
-use super::trajectory::{JointReactions, reject_unknown_variables};
-use crate::check::driven_by;
-use crate::explain::{StudyError, describe_coordinate, describe_ends};
-use crate::number_format::{coordinate_unit, count, number};
+use crate::check::{
+    describe_parts, describe_redundant, describe_start, list, list_or, range_text, rounded,
+};
+use crate::explain::{StudyError, describe_coordinate};
+use crate::machines::MachineScene as _;
+use crate::number_format::{coordinate_unit, count};
 #[cfg(feature = "output")]
 use crate::output::Outcome;
 use dwell_findings::Record;
 use dwell_geometry::Range;
-use dwell_geometry::space::{Actuator, ActuatorKind, ChangePoint, Plan};
+use dwell_geometry::space::{ChangePoint, Plan};
 use dwell_kinetostatics::space::{Model, Reaction};
 use dwell_scene::SpaceScene;
 
@@ -41,22 +43,10 @@ fn description(scene: &SpaceScene, record: &mut Record) -> Result<String, StudyE
     let model = compile(scene, &scene.reactions)?;
     let sorted = sort_reactions(scene, &model)?;
     let plan = model.plan();
-    if scene.variables.is_some() {
-        let (reactions, _) = JointReactions::new(scene)?;
-        reject_unknown_variables(scene, (&reactions, plan))?;
-    }
-    let names = mechanism.actuators.iter().map(|a| a.name.as_str());
-    let mut text = format!(
-        "{}\n  in space: {}, {}, {}{}\n",
-        scene.title,
-        count(mechanism.bodies.len() - 1, "moving body"),
-        count(mechanism.joints.len(), "joint"),
-        count(plan.actuators(), "degree of freedom"),
-        driven_by(names),
-    );
-    record.add_count("moving_bodies", mechanism.bodies.len() - 1);
-    record.add_count("joints", mechanism.joints.len());
-    record.add_count("degrees_of_freedom", plan.actuators());
+    scene.reject_unknown_columns()?;
+    let parts = [mechanism.bodies.len() - 1, mechanism.joints.len()];
+    let actuators = mechanism.actuators.iter().map(|a| a.name.as_str());
+    let mut text = describe_parts(scene, "in space: ", parts, actuators, record);
     text += &describe_freedom(scene, plan, record);
     text += &describe_range(scene, plan, record);
     text += &describe_groups(scene, plan, record);
@@ -77,15 +67,7 @@ fn describe_freedom(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Str
     let counted = (by_rank + mobility.idle.len()) as f64 - mobility.redundant_count as f64;
     let mut text = String::new();
     if mobility.redundant_count > 0 {
-        let redundant = match mobility.redundant_count {
-            1 => "one constraint is redundant".to_owned(),
-            n => format!("{n} constraints are redundant"),
-        };
-        record.add("degrees_of_freedom.counted", "", counted);
-        record.add_count("redundant_constraints", mobility.redundant_count);
-        text += &format!(
-            "  {counted} degrees of freedom by counting (Grübler), {by_rank} by rank: {redundant}, consistently\n"
-        );
+        text += &describe_redundant(counted, by_rank, mobility.redundant_count, record);
     }
     for idle in &mobility.idle {
         let name = &scene.mechanism.bodies[idle.body.0].name;
@@ -109,39 +91,18 @@ fn describe_range(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Strin
                 .to_owned();
         }
     };
-    let (name, is_angle) = (&actuator.name, is_angle(scene));
-    let unit = coordinate_unit(is_angle);
-    if let Some((from, to)) = plan.range().limits() {
-        record.add("range.lower", unit, from);
-        record.add("range.upper", unit, to);
-    }
-    let text = match plan.range() {
-        Range::Full => format!("  {name} rotates fully\n"),
-        Range::Revolutions(revolutions) => {
-            record.add("period.revolutions", "", f64::from(revolutions));
-            format!(
-                "  {name} rotates fully; the mechanism is periodic after {revolutions} revolutions\n"
-            )
+    let range = plan.range();
+    let note = match (range, plan.range_ends()) {
+        (Range::Unresolved(..), [true, _]) => {
+            "; a limit position at the lower end; no upper limit was found up to there"
         }
-        Range::Unbounded => format!("  no limit of {name} was found\n"),
-        Range::Limited(from, to) | Range::Stroke(from, to) => {
-            let ends = describe_ends(from, to, is_angle);
-            format!("  {name} ranges from {ends}: limit positions at both ends\n")
+        (Range::Unresolved(..), [_, true]) => {
+            "; a limit position at the upper end; no lower limit was found down to there"
         }
-        Range::Unresolved(from, to) => {
-            let ends = describe_ends(from, to, is_angle);
-            let note = match plan.range_ends() {
-                [true, _] => {
-                    "a limit position at the lower end; no upper limit was found up to there"
-                }
-                [_, true] => {
-                    "a limit position at the upper end; no lower limit was found down to there"
-                }
-                _ => "how it goes on from there is not known",
-            };
-            format!("  {name} ranges from {ends}; {note}\n")
-        }
+        (Range::Unresolved(..), _) => "; how it goes on from there is not known",
+        _ => ": limit positions at both ends",
     };
+    let text = range_text((&actuator.name, is_angle(scene)), range, note, record);
     text + &describe_change_points(scene, plan, record)
 }
 
@@ -154,13 +115,10 @@ fn describe_change_points(scene: &SpaceScene, plan: &Plan, record: &mut Record) 
         record.add(key, coordinate_unit(is_angle), point.q);
         let joints = groups.get(point.group).into_iter();
         let joints = joints.flat_map(|group| &group.joints);
-        let joints: Vec<_> = joints
-            .map(|j| scene.mechanism.joints[j.0].name.as_str())
-            .collect();
+        let joints = list(joints.map(|j| scene.mechanism.joints[j.0].name.as_str()));
         let at = describe_coordinate(name, point.q, is_angle);
         format!(
-            "    change point of the group closed by {} at {at}, where another assembly mode meets this one\n",
-            joints.join(", ")
+            "    change point of the group closed by {joints} at {at}, where another assembly mode meets this one\n"
         )
     };
     plan.change_points().iter().enumerate().map(one).collect()
@@ -176,14 +134,11 @@ fn describe_groups(scene: &SpaceScene, plan: &Plan, record: &mut Record) -> Stri
     for (g, group) in groups.iter().enumerate() {
         let number = g + 1;
         let joints = group.joints.iter();
-        let joints: Vec<_> = joints
-            .map(|j| scene.mechanism.joints[j.0].name.as_str())
-            .collect();
+        let joints = list(joints.map(|j| scene.mechanism.joints[j.0].name.as_str()));
         record.add_count(format!("group.{number}.unknowns"), group.unknowns);
         record.add_count(format!("group.{number}.equations"), group.equations);
         text += &format!(
-            "    {number}. closed by {}: {} from {}, Newton's method\n",
-            joints.join(", "),
+            "    {number}. closed by {joints}: {} from {}, Newton's method\n",
             count(group.unknowns, "unknown"),
             count(group.equations, "equation"),
         );
@@ -199,16 +154,10 @@ fn describe_placements(scene: &SpaceScene, model: &Model, record: &mut Record) -
     if plan.positions(start, &mut pose).is_err() {
         return String::new();
     }
-    let unit = |a: &Actuator| coordinate_unit(matches!(a.kind, ActuatorKind::Angle(_)));
-    let at = mechanism.actuators.iter().zip(start);
-    let at = at.map(|(a, &q)| format!("{} = {} {}", a.name, number(q), unit(a)));
     let mut text = format!(
         "  at {}: origin of each body's frame in m, and its rotation as a vector in degrees\n",
-        at.collect::<Vec<_>>().join(", ")
+        describe_start(scene, start, record)
     );
-    for (actuator, &q) in mechanism.actuators.iter().zip(start) {
-        record.add(format!("start.{}", actuator.name), unit(actuator), q);
-    }
     let moving = (0..mechanism.bodies.len()).filter(|&b| b != mechanism.ground);
     let widths = mechanism.bodies.iter().map(|b| b.name.chars().count());
     let width = widths.max().unwrap_or(0);
@@ -224,10 +173,8 @@ fn describe_placements(scene: &SpaceScene, model: &Model, record: &mut Record) -
                 record.add(format!("start.{name}.{what}.{axis}"), unit, value);
             }
         }
-        // Rounded first, so that no zero keeps a minus sign.
-        let show = |value: f64, parts: f64| (value * parts).round() / parts + 0.0;
-        let [x, y, z] = [at.x, at.y, at.z].map(|v| show(v, 1e6));
-        let [a, b, c] = [turn.x, turn.y, turn.z].map(|v| show(v.to_degrees(), 1e3));
+        let [x, y, z] = [at.x, at.y, at.z].map(|v| rounded(v, 1e6));
+        let [a, b, c] = [turn.x, turn.y, turn.z].map(|v| rounded(v.to_degrees(), 1e3));
         text += &format!(
             "    {name:<width$}  ({x:9.6}, {y:9.6}, {z:9.6})  ({a:8.3}°, {b:8.3}°, {c:8.3}°)\n"
         );
@@ -243,11 +190,7 @@ fn describe_reactions(
 ) -> String {
     let names = |some: &[Reaction]| {
         let names: Vec<_> = some.iter().map(|&r| scene.reaction_name(r)).collect();
-        if names.is_empty() {
-            "none".to_owned()
-        } else {
-            names.join(", ")
-        }
+        list_or(names.iter().map(String::as_str), "none")
     };
     record.add_count("reactions.determined", determined.len());
     record.add_count("reactions.indeterminate", others.len());

@@ -1,9 +1,10 @@
 //! Explains why a scene in space cannot be assembled, or has no pose at a coordinate.
 
 use crate::explain::{
-    Labels, StudyError, body_labels, describe_ends, joint_labels, labels, scene_error,
+    Labels, NamedScene as _, StudyError, body_labels, describe_ends, driven_labels, freedom_text,
+    inconsistent, joint_labels, labels, missing_section_label, not_connected, scene_error,
 };
-use crate::number_format::{coordinate_unit, count, digits, number};
+use crate::number_format::{coordinate_unit, digits, number};
 use dwell_geometry::space::{JointKind, Plan};
 use dwell_geometry::{ActuatorId, AssemblyError, BodyId, JointId, PositionError, StructureError};
 use dwell_kinetostatics::space::{Model, ModelError};
@@ -50,12 +51,8 @@ pub(super) fn explain_model(scene: &SpaceScene, error: &ModelError) -> StudyErro
             );
             let help = "replace one ball by a universal joint, or give the body a centre of mass on that line and equal moments of \
                         inertia across it";
-            scene_error(
-                scene,
-                message,
-                help,
-                body_labels(&[*body], "turns about its own line"),
-            )
+            let labels = body_labels(&[*body], "turns about its own line");
+            scene_error(scene, message, help, labels)
         }
         ModelError::Masses | ModelError::Reaction(_) => {
             scene_error(scene, error.to_string(), "", [(SceneLocation::Whole, "")])
@@ -90,18 +87,8 @@ fn explain_assembly(scene: &SpaceScene, error: &AssemblyError) -> StudyError {
             redundant_count,
             gap,
         } => {
-            let message = format!(
-                "the mechanism is overconstrained by {}, and the redundant constraints are inconsistent: closure error {gap:.2e} m",
-                count(*redundant_count, "constraint")
-            );
-            let help = "redundant constraints must agree to the last digits: correct a length, a point or an axis, or replace a \
-                        joint by one with more freedoms";
-            scene_error(
-                scene,
-                message,
-                help,
-                joint_labels(joints, "among the redundant constraints"),
-            )
+            let help = "correct a length, a point or an axis, or replace a joint by one with more freedoms";
+            inconsistent(scene, joints, (*redundant_count, *gap), help)
         }
         AssemblyError::SingularAssembly { joints, .. } => {
             let message = "the start is a singular position: the actuator does not determine the motion there";
@@ -117,23 +104,10 @@ fn explain_assembly(scene: &SpaceScene, error: &AssemblyError) -> StudyError {
 
 /// One arm for each error, so longer than a screen.
 fn explain_structure(scene: &SpaceScene, error: &StructureError) -> StudyError {
-    let driven = |text: &str| {
-        let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
-        labels(actuators.map(SceneLocation::Actuator), text)
-    };
+    let driven = driven_labels(scene.mechanism.actuators.len());
     match error {
         StructureError::NotConnected { bodies } => {
-            let message = format!(
-                "no chain of joints connects {} with the ground",
-                names_of(scene, bodies)
-            );
-            let places = body_labels(bodies, "not reached by any chain of joints");
-            scene_error(
-                scene,
-                message,
-                "add the missing joint, or remove the body",
-                places,
-            )
+            not_connected(scene, &names_of(scene, bodies), bodies)
         }
         StructureError::UnderActuated {
             degrees_of_freedom,
@@ -141,20 +115,13 @@ fn explain_structure(scene: &SpaceScene, error: &StructureError) -> StudyError {
             bodies,
             ..
         } => {
-            let freedom = count(*degrees_of_freedom, "degree of freedom");
-            let message = format!(
-                "the mechanism has {freedom} and {}",
-                count(*actuators, "actuator")
-            );
+            let message = freedom_text(*degrees_of_freedom, *actuators);
             let help = "each degree of freedom needs an actuator: add one, or a joint that is missing, or replace a joint by one \
                         with fewer freedoms";
             let mut places = body_labels(bodies, "nothing determines its motion");
-            places.extend(driven("drives it"));
+            places.extend(driven);
             if places.is_empty() {
-                places.push((
-                    SceneLocation::Whole,
-                    "there are no [actuators] in this file".to_owned(),
-                ));
+                places = missing_section_label("actuators");
             }
             scene_error(scene, message, help, places)
         }
@@ -162,16 +129,9 @@ fn explain_structure(scene: &SpaceScene, error: &StructureError) -> StudyError {
             redundant_count, ..
         } => {
             let actuators = scene.mechanism.actuators.len();
-            let message = format!(
-                "the mechanism has {} and {}",
-                count(
-                    actuators.saturating_sub(*redundant_count),
-                    "degree of freedom"
-                ),
-                count(actuators, "actuator")
-            );
+            let message = freedom_text(actuators.saturating_sub(*redundant_count), actuators);
             let help = "each degree of freedom needs one actuator: remove an actuator, or replace a joint by one with more freedoms";
-            scene_error(scene, message, help, driven("drives it"))
+            scene_error(scene, message, help, driven)
         }
         StructureError::Gear { joint, reason } => {
             let name = &scene.mechanism.joints[joint.0].name;
@@ -179,18 +139,13 @@ fn explain_structure(scene: &SpaceScene, error: &StructureError) -> StudyError {
             let help = "both wheels need bearings whose axes keep their places in the carrier, the body of the pitch point; and \
                         the normal of the teeth must have an arm about each axis";
             let mut places = joint_labels(&[*joint], "this gear pair");
-            places.push((
-                SceneLocation::Axis(*joint),
-                "the normal of its teeth".to_owned(),
-            ));
+            let normal = "the normal of its teeth".to_owned();
+            places.push((SceneLocation::Axis(*joint), normal));
             scene_error(scene, message, help, places)
         }
-        StructureError::Malformed { reason } => scene_error(
-            scene,
-            (*reason).to_owned(),
-            "",
-            [(SceneLocation::Whole, "")],
-        ),
+        StructureError::Malformed { reason } => {
+            scene_error(scene, *reason, "", [(SceneLocation::Whole, "")])
+        }
     }
 }
 
@@ -203,11 +158,8 @@ pub(super) fn explain_position(
     const RANGE_ENDS: &str = "this is outside the range; `dwell check` shows the range";
     let is_angle = super::prepared::is_angle(scene);
     let name = scene.mechanism.actuators.first().map_or("", |a| &a.name);
-    let at = format!(
-        "`{name}` = {} {}",
-        number(error.coordinate()),
-        coordinate_unit(is_angle)
-    );
+    let (q, unit) = (number(error.coordinate()), coordinate_unit(is_angle));
+    let at = format!("`{name}` = {q} {unit}");
     let (message, help) = match *error {
         PositionError::OutOfRange { from, to, .. } => (
             format!(
@@ -239,11 +191,8 @@ pub(super) fn explain_position(
             RANGE_ENDS,
         ),
     };
-    let places = labels(
-        std::iter::once(SceneLocation::Actuator(ActuatorId(0))),
-        "its coordinate",
-    );
-    scene_error(scene, message, help, places)
+    let place = SceneLocation::Actuator(ActuatorId(0));
+    scene_error(scene, message, help, [(place, "its coordinate")])
 }
 
 /// The same model under the loads of the scene, the drives' last.
@@ -264,38 +213,26 @@ pub(super) fn explain_load_error(scene: &SpaceScene, error: &LoadError) -> Study
     if let Some(friction) = load.and_then(|load| load.friction()) {
         let joint = &scene.mechanism.joints[friction.joint.0].name;
         let message = format!("the friction of joint `{joint}` {}", error.what);
-        if scene.mechanism.joints[friction.joint.0].kind == JointKind::Cylindrical
+        let would_hold = scene.mechanism.joints[friction.joint.0].kind == JointKind::Cylindrical
             && friction.regularization_speed.is_none()
-            && scene.mechanism.actuators.len() != 1
-        {
-            let help = "add `regularization-speed`, in length units per second: then it is smooth and does not hold";
-            let place = (SceneLocation::Load(error.load), "this friction");
-            return scene_error(scene, message, help, [place]);
-        }
-        let help = "replace a joint of its loop by one with more freedoms, such as a spherical or a cylindrical joint; without \
-                    `bearing-distance` or `guide-length` no moment counts; `dwell check` shows which reactions are determined";
+            && scene.mechanism.actuators.len() != 1;
+        let help = match would_hold {
+            true => {
+                "add `regularization-speed`, in length units per second: then it is smooth and does not hold"
+            }
+            false => {
+                "replace a joint of its loop by one with more freedoms, such as a spherical or a cylindrical joint; without \
+                 `bearing-distance` or `guide-length` no moment counts; `dwell check` shows which reactions are determined"
+            }
+        };
         let place = (SceneLocation::Load(error.load), "this friction");
         return scene_error(scene, message, help, [place]);
     }
-    let message = format!(
-        "`{}` cannot act on the mechanism: {}",
-        name_of_load(scene, error.load),
-        error.what
-    );
+    let name = scene.load_name(error.load).unwrap_or_default();
+    let message = format!("`{name}` cannot act on the mechanism: {}", error.what);
     let help = "let it act at another joint, or leave it out";
-    scene_error(
-        scene,
-        message,
-        help,
-        [(SceneLocation::Load(error.load), "this one")],
-    )
-}
-
-/// The name of a load, or of a drive behind them.
-pub(super) fn name_of_load(scene: &SpaceScene, load: usize) -> &str {
-    let loads = scene.loads.iter().map(|load| load.name.as_str());
-    let mut names = loads.chain(scene.drives.iter().map(|drive| drive.name.as_str()));
-    names.nth(load).unwrap_or_default()
+    let place = (SceneLocation::Load(error.load), "this one");
+    scene_error(scene, message, help, [place])
 }
 
 /// Explains loads that cannot be evaluated at a state.
@@ -304,22 +241,18 @@ pub(super) fn explain_loads(
     plan: &Plan,
     error: &KinetostaticsError,
 ) -> StudyError {
+    let name = error.load().and_then(|load| scene.load_name(load));
+    let name = name.unwrap_or_default();
     let (message, help, at, label) = match *error {
         KinetostaticsError::Position(position) => return explain_position(scene, plan, &position),
         KinetostaticsError::NoDirection { load } => (
-            format!(
-                "`{}` has no direction: its two points coincide there",
-                name_of_load(scene, load)
-            ),
+            format!("`{name}` has no direction: its two points coincide there"),
             "keep its points apart, or give a spring the free length 0",
             SceneLocation::Load(load),
             "between these points",
         ),
         KinetostaticsError::MagnitudeNotFinite { load } => (
-            format!(
-                "the magnitude of `{}` is not a finite number there",
-                name_of_load(scene, load)
-            ),
+            format!("the magnitude of `{name}` is not a finite number there"),
             "extend its table, or change its expression where it has no value",
             SceneLocation::Magnitude(load),
             "no finite value",

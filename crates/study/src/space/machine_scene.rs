@@ -6,12 +6,10 @@ use super::trajectory::{JointReactions, reject_unknown_variables};
 use super::views::page_drawing;
 use crate::explain::{StudyError, explain_any_motion, scene_error};
 use crate::machines::{MachineScene, MotionStart};
-use crate::models::{drive_states, end_stops};
-use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, MachineError, NonconservativeSource};
-use dwell_findings::Column;
+use crate::models::{coordinate_modes, end_stops};
+use dwell_dynamics::{DynamicsError, Machine, MachineError};
 use dwell_kinetostatics::Drive;
 use dwell_kinetostatics::space::{Component, Coordinate, Model, Reaction};
-use dwell_laws::Law;
 use dwell_page::Drawing;
 use dwell_scene::{SceneLocation, SpaceScene};
 
@@ -24,11 +22,7 @@ impl MachineScene for SpaceScene {
     }
 
     fn machine(&self, reactions: &[Reaction]) -> Result<Machine<Model>, StudyError> {
-        let mode = |law: &Option<Law>| match law {
-            Some(law) => CoordinateMode::Prescribed(law.clone()),
-            None => CoordinateMode::Free,
-        };
-        let modes = self.motion_start().laws.iter().map(mode).collect();
+        let modes = coordinate_modes(&self.motion_start().laws);
         let machine = Machine::new(compile(self, reactions)?, &self.loads, modes, &self.drives);
         let machine = machine.and_then(|machine| machine.with_stops(&end_stops(&self.stops)));
         machine.map_err(|error| explain_machine(self, &error))
@@ -39,15 +33,15 @@ impl MachineScene for SpaceScene {
         sort_reactions(self, &compile(self, &self.reactions)?)
     }
 
-    fn reaction_columns(&self, model: &Model) -> Vec<Column> {
-        let column = |reaction: Reaction| {
+    fn reaction_units(&self, model: &Model) -> Vec<(String, &'static str)> {
+        let named = |reaction: Reaction| {
             let unit = match reaction.component {
                 Component::Force(..) => "N",
                 Component::Moment(..) => "N m",
             };
-            Column::new(self.reaction_name(reaction), unit)
+            (self.reaction_name(reaction), unit)
         };
-        model.reactions().map(column).collect()
+        model.reactions().map(named).collect()
     }
 
     fn name_of_coordinate(&self, coordinate: Coordinate) -> String {
@@ -64,23 +58,6 @@ impl MachineScene for SpaceScene {
 
     fn is_angle(coordinate: Coordinate) -> bool {
         coordinate.is_angle()
-    }
-
-    fn drive_state_columns(&self) -> Vec<Column> {
-        let states = drive_states(self).into_iter();
-        states
-            .map(|(name, unit, _)| Column::new(name, unit))
-            .collect()
-    }
-
-    fn name_of_source(&self, source: NonconservativeSource) -> &str {
-        match source {
-            NonconservativeSource::Load(load) => &self.loads[load].name,
-            NonconservativeSource::Loads => "loads",
-            NonconservativeSource::Drive(drive) => &self.drives[drive].name,
-            NonconservativeSource::Prescribed(i) => &self.mechanism.actuators[i].name,
-            NonconservativeSource::Stop(stop) => &self.stops[stop].name,
-        }
     }
 
     fn reject_unknown_columns(&self) -> Result<(), StudyError> {
@@ -111,19 +88,15 @@ impl MachineScene for SpaceScene {
 
 /// Explains a machine that cannot be built.
 pub(super) fn explain_machine(scene: &SpaceScene, error: &MachineError) -> StudyError {
-    match error {
-        MachineError::Load(load) => explain_load_error(scene, load),
-        MachineError::Drive(drive) => scene_error(
-            scene,
-            drive.to_string(),
-            "drive the coordinate of an actuator",
-            [(SceneLocation::Drive(drive.drive), "this drive")],
-        ),
-        MachineError::Stop(_) | MachineError::CoordinateModes => scene_error(
-            scene,
-            error.to_string(),
-            "",
-            [(SceneLocation::Motion, "this motion")],
-        ),
-    }
+    let (help, place) = match error {
+        MachineError::Load(load) => return explain_load_error(scene, load),
+        MachineError::Drive(drive) => {
+            let place = (SceneLocation::Drive(drive.drive), "this drive");
+            ("drive the coordinate of an actuator", place)
+        }
+        MachineError::Stop(_) | MachineError::CoordinateModes => {
+            ("", (SceneLocation::Motion, "this motion"))
+        }
+    };
+    scene_error(scene, error.to_string(), help, [place])
 }

@@ -4,10 +4,11 @@ use super::prepared::PreparedSpaceScene;
 use super::reduction::compute_reduction_in_space;
 use super::views::{SpacePositions, page_drawing};
 use crate::explain::StudyError;
-use crate::number_format::{count, digits};
+use crate::number_format::{coordinate_unit, count};
 use crate::output::{Outcome, Picture, symbol};
 use crate::reduce::compute::{ReducedScene as _, TableRequest};
 use crate::reduce::{add_table, reduction_outcome};
+use crate::trajectory::figures::describe_abscissa;
 use dwell_geometry::Range;
 use dwell_geometry::space::Placement;
 use dwell_report::Figure;
@@ -60,15 +61,8 @@ impl<'a> PreparedSpaceScene<'a> {
             _ => 1,
         };
         let q = self.positions(DRAWN_INTERVALS * turns);
-        let describe = |q: f64| match self.is_angle() {
-            true => format!(
-                "{} = {:.1}°",
-                symbol(self.coordinate_name()),
-                q.to_degrees()
-            ),
-            false => format!("{} = {} m", symbol(self.coordinate_name()), digits(q, 4)),
-        };
-        let describe = |q: f64| describe(q).replace('-', "−");
+        let name = symbol(self.coordinate_name());
+        let describe = |q: f64| describe_abscissa(&name, coordinate_unit(self.is_angle()), q);
         let names = q.iter().map(|&q| describe(q));
         let all: Vec<_> = self.placements(&q)?.into_iter().zip(names).collect();
         let start = self.scene.assembly.q[0];

@@ -3,27 +3,26 @@
 use super::explain::{
     explain_load_error, explain_loads, explain_model, explain_position, with_loads,
 };
-use crate::explain::{StudyError, scene_error};
-use crate::number_format::count;
+use crate::explain::{StudyError, driven_labels, wrong_actuators};
+use crate::machines::MachineScene as _;
 #[cfg(feature = "output")]
 use crate::output::{indeterminate_note, symbol};
 use crate::ranges::equally_spaced;
 use crate::reduce::compute::{
     InertiaAt, ReducedLoad, ReducedScene, TabulatedScene, UnitLoadCurves,
 };
+use crate::trajectory::compute::{SweepLimits, one_revolution, shown_range};
 use dwell_geometry::space::{ActuatorKind, Placement, Plan};
-use dwell_geometry::{ActuatorId, PositionError, Range};
-use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};
+use dwell_geometry::{PositionError, Range};
+use dwell_kinetostatics::space::{LoadKind, Model, Reaction};
 use dwell_kinetostatics::{
     Coefficients, ExactModel, KinetostaticsError, MachineModel as _, Magnitude, ReducedModel as _,
     TableDomain, TableError, TabulatedModel, reduction_rounding_errors,
 };
-use dwell_scene::{SceneFile, SceneLocation, SpaceScene};
+use dwell_scene::{SceneFile, SpaceScene};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Part of the range that is left out at each limit position, where everything grows.
-const LIMIT_MARGIN: f64 = 1e-3;
 /// Half a stroke without limits, in sizes of the mechanism.
 const DEFAULT_STROKE: f64 = 0.5;
 
@@ -51,12 +50,8 @@ impl<'a> PreparedSpaceScene<'a> {
             false => compile(scene, &determined)?,
         };
         let Some(model) = ExactModel::new(model) else {
-            let given = count(scene.mechanism.actuators.len(), "actuator");
-            let message = format!("the scene has {given}: the reduced model needs exactly one");
-            let help = "give exactly one actuator in [actuators]";
-            let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
-            let labels = actuators.map(|a| (SceneLocation::Actuator(a), "drives it"));
-            return Err(scene_error(scene, message, help, labels));
+            let actuators = scene.mechanism.actuators.len();
+            return Err(wrong_actuators(scene, actuators, driven_labels(actuators)));
         };
         Ok(Self {
             scene,
@@ -199,14 +194,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
     }
 
     fn reaction_units(&self) -> Vec<(String, &'static str)> {
-        let named = |reaction: Reaction| {
-            let unit = match reaction.component {
-                Component::Force(..) => "N",
-                Component::Moment(..) => "N m",
-            };
-            (self.scene.reaction_name(reaction), unit)
-        };
-        self.model.model().reactions().map(named).collect()
+        self.scene.reaction_units(self.model.model())
     }
 
     fn lists_reactions(&self) -> bool {
@@ -347,31 +335,23 @@ fn range_between_change_points(plan: &Plan, start: f64) -> Range {
 }
 
 /// The part of the range of the only actuator that is shown, whether its ends are next to limit positions, and what it is.
-pub(super) fn range_limits(scene: &SpaceScene, plan: &Plan) -> ([f64; 2], [bool; 2], &'static str) {
+pub(super) fn range_limits(scene: &SpaceScene, plan: &Plan) -> SweepLimits {
     let (start, is_angle) = (scene.assembly.q[0], is_angle(scene));
     let half_stroke = DEFAULT_STROKE * plan.size();
     match range_between_change_points(plan, start) {
-        Range::Limited(from, to) | Range::Stroke(from, to) => {
-            let margin = LIMIT_MARGIN * (to - from);
-            ([from + margin, to - margin], [true; 2], "the range")
-        }
-        Range::Full => ([0.0, TAU], [false; 2], "one revolution"),
+        Range::Limited(from, to) | Range::Stroke(from, to) => shown_range([from, to], [true; 2]),
+        Range::Full => one_revolution(0.0),
         Range::Revolutions(count) => ([0.0, TAU * f64::from(count)], [false; 2], "the period"),
         Range::Unresolved(from, to) => {
             // An end that was not found is only where the search stopped.
             let found = plan.range_ends();
             let half = if is_angle { TAU } else { half_stroke };
-            let low = if found[0] {
-                from
-            } else {
-                from.max(start - half)
-            };
-            let high = if found[1] { to } else { to.min(start + half) };
-            let margin = LIMIT_MARGIN * (high - low);
-            let [below, above] = found.map(|found| if found { margin } else { 0.0 });
-            ([low + below, high - above], found, "the range")
+            let [nearest, farthest] = [from.max(start - half), to.min(start + half)];
+            let low = if found[0] { from } else { nearest };
+            let high = if found[1] { to } else { farthest };
+            shown_range([low, high], found)
         }
-        Range::Unbounded if is_angle => ([start, start + TAU], [false; 2], "one revolution"),
+        Range::Unbounded if is_angle => one_revolution(start),
         Range::Unbounded => {
             let ends = [start - half_stroke, start + half_stroke];
             (ends, [false; 2], "a stroke")

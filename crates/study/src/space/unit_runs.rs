@@ -4,7 +4,6 @@ use super::prepared::{PreparedSpaceScene, range_limits};
 use super::trajectory::{JointReactions, rows_along};
 use crate::explain::StudyError;
 use crate::progress::Progress;
-use crate::trajectory::compute::{Analysis, Trajectory};
 use crate::unit_runs::compute::{UnitRun, UnitRunScene};
 use dwell_findings::Table;
 use dwell_scene::SpaceScene;
@@ -30,18 +29,11 @@ impl UnitRunScene for SpaceScene {
         scene.sweep = None;
         let (reactions, model) = JointReactions::new(&scene)?;
         let (limits, ..) = range_limits(&scene, model.plan());
-        let (motion, spacing) = run.motion(limits, points);
-        let trajectory = Trajectory::prescribed(
-            (&motion, spacing),
-            model.plan().range().period(),
-            Analysis::Kinetostatics,
-            points,
-        );
-        let along = (&reactions, &model);
-        let (computed, _) = rows_along(&scene, along, trajectory, &|_| true, progress)?;
-        match computed.early_stop {
-            Some(error) => Err(error),
-            None => Ok(computed.table),
-        }
+        let period = model.plan().range().period();
+        run.table(limits, (period, points), |trajectory| {
+            let of_model = (&reactions, &model);
+            let (computed, _) = rows_along(&scene, of_model, trajectory, &|_| true, progress)?;
+            Ok((computed.table, computed.early_stop))
+        })
     }
 }

@@ -130,11 +130,8 @@ pub(crate) fn drawn_size(scene: &Scene, positions: &[Vec<BodyPose>]) -> f64 {
     });
     let all: Vec<[f64; 2]> = all.collect();
     let sides = [0, 1].map(|i| extent(all.iter().map(|p| p[i])));
-    let sides = sides.map(|[low, high]| high - low);
-    sides
-        .into_iter()
-        .filter(|side| side.is_finite())
-        .fold(0.0, f64::max)
+    let sides = sides.into_iter().map(|[low, high]| high - low);
+    sides.filter(|side| side.is_finite()).fold(0.0, f64::max)
 }
 
 /// The corners of a circle.
@@ -173,11 +170,7 @@ pub(crate) fn axis_of(kind: JointKind) -> Option<Vec2> {
         JointKind::Slot { axis }
         | JointKind::Rack { axis, .. }
         | JointKind::Rolling { axis, .. } => Some(axis),
-        JointKind::Revolute
-        | JointKind::Weld { .. }
-        | JointKind::Gear { .. }
-        | JointKind::Distance { .. }
-        | JointKind::Coupling(_) => None,
+        _ => None,
     }
 }
 

@@ -78,15 +78,19 @@ impl ColumnExtrema {
     }
 }
 
-/// The names of those of some columns whose extrema are those of the rows, the first of them one by one.
-pub(crate) fn names_of_rows(results: &TrajectoryResults, columns: &[usize]) -> String {
-    let of_rows = columns.iter().filter(|&&k| results.extrema.of_rows[k]);
+/// The sentence about those columns in the tables whose extrema are those of the rows although others are looked for between them: the
+/// first of them one by one.
+pub(crate) fn searched_in_rows(results: &TrajectoryResults) -> Option<String> {
+    let of_rows = results.written.iter();
+    let of_rows = of_rows.filter(|&&k| results.extrema.of_rows[k]);
     let mut names = of_rows.map(|&k| results.columns[k].name.as_str());
     let first: Vec<&str> = names.by_ref().take(MAX_NAMED).collect();
-    match names.count() {
-        0 => first.join(", "),
-        others => format!("{} and {others} others", first.join(", ")),
-    }
+    let (first, others) = (first.join(", "), names.count());
+    let others = match others {
+        0 => String::new(),
+        others => format!(" and {others} others"),
+    };
+    (!first.is_empty()).then(|| format!("Of the rows only: {first}{others}."))
 }
 
 /// The extrema of some columns, grouped by unit, largest absolute value first.
@@ -102,11 +106,10 @@ pub(crate) fn sorted_extrema(
         let columns = results.columns.iter().zip(&results.extrema.of_columns);
         let alike =
             columns.filter(|(column, _)| column.unit == unit && matches!(unit, "N" | "N m"));
-        let sizes = alike.filter_map(|(_, ends)| Some(ends.as_ref()?.map(|end| end.value.abs())));
-        let sizes = sizes
-            .flatten()
-            .chain([results.references.largest_of(unit, size)]);
-        sizes.fold(0.0, f64::max)
+        let ends = alike.flat_map(|(_, ends)| ends.iter().flatten());
+        let sizes = ends.map(|end| end.value.abs());
+        let largest = results.references.largest_of(unit, size);
+        sizes.chain([largest]).fold(0.0, f64::max)
     };
     let mut largest: Vec<(&str, f64)> = Vec::new();
     for column in listed.iter().map(|&k| &results.columns[k]) {
@@ -119,16 +122,12 @@ pub(crate) fn sorted_extrema(
         results.rounding_error.unwrap_or(0.0) * of_unit.map_or(0.0, |(_, largest)| *largest)
     };
     let entry = |&k: &usize| {
-        let unit = results.columns[k].unit;
+        let (unit, error) = (results.columns[k].unit, results.errors.get(k).copied());
         Some(ColumnExtrema {
             name: results.columns[k].name.clone(),
             unit,
             ends: results.extrema.of_columns[k]?,
-            error: results
-                .errors
-                .get(k)
-                .copied()
-                .unwrap_or_else(|| rounding(unit)),
+            error: error.unwrap_or_else(|| rounding(unit)),
             of_rows: results.extrema.of_rows[k],
             span: to - from,
         })

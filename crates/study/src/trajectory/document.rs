@@ -3,7 +3,7 @@
 use crate::number_format::{count, number};
 use crate::output::{indeterminate_note, provenance_line};
 use crate::ranges::extent;
-use crate::trajectory::column_extrema::{ColumnExtrema, names_of_rows, sorted_extrema};
+use crate::trajectory::column_extrema::{ColumnExtrema, searched_in_rows, sorted_extrema};
 use crate::trajectory::compute::{
     Analysis, ComputedTrajectory, Extremum, Quantity, SectionedLink, Trajectory, TrajectoryResults,
 };
@@ -34,12 +34,11 @@ const LARGEST_OF_ROWS: &str =
 pub(crate) struct Document<'a> {
     scene: &'a SceneFile,
     /// What a designer asks first of a movement.
-    movement: Option<Movement<'a>>,
+    movement: Movement<'a>,
     /// The bodies that are not modelled.
     unmodelled: Vec<String>,
     results: &'a TrajectoryResults,
     trajectory: &'a Trajectory<'a>,
-    selected: Vec<usize>,
     extrema: Vec<ColumnExtrema>,
     /// Name and unit of the abscissa: time, or the swept coordinate.
     abscissa: (&'a str, &'static str),
@@ -51,18 +50,10 @@ pub(crate) struct Document<'a> {
 impl<'a> Document<'a> {
     /// Of a scene in the plane.
     pub(crate) fn new(scene: &'a Scene, computed: &'a ComputedTrajectory<'a>) -> Self {
-        let results = &computed.results;
-        let movement = Movement {
-            file: &scene.file,
-            scene: Some(scene),
-            results,
-            abscissa: results.abscissa(&computed.trajectory),
-        };
-        Self {
-            movement: Some(movement),
-            unmodelled: results.unmodelled_bodies(scene),
-            ..Self::of_file(&scene.file, scene.mechanism.size(), computed)
-        }
+        let mut document = Self::of_file(&scene.file, scene.mechanism.size(), computed);
+        document.movement.scene = Some(scene);
+        document.unmodelled = computed.results.unmodelled_bodies(scene);
+        document
     }
 
     /// Of any scene, with a mechanism of this size, m.
@@ -73,24 +64,23 @@ impl<'a> Document<'a> {
     ) -> Self {
         let (trajectory, results) = (&computed.trajectory, &computed.results);
         let columns = &results.columns;
-        let selected = results.written.clone();
         let abscissa = results.abscissa(trajectory);
         let (name, unit) = (&columns[abscissa].name, columns[abscissa].unit);
         // The abscissa itself is not a result, nor is the time.
         let is_result = |&k: &usize| k != abscissa && columns[k].quantity != Quantity::Time;
-        let listed: Vec<usize> = selected.iter().copied().filter(is_result).collect();
+        let listed = results.written.iter().copied().filter(is_result);
+        let listed: Vec<usize> = listed.collect();
         Self {
             scene,
-            movement: Some(Movement {
+            movement: Movement {
                 file: scene,
                 scene: None,
                 results,
                 abscissa,
-            }),
+            },
             unmodelled: Vec::new(),
             results,
             trajectory,
-            selected,
             extrema: sorted_extrema(results, &listed, abscissa, size),
             abscissa: (name, unit),
             at: format!("at {name} [{unit}]"),
@@ -190,8 +180,7 @@ impl<'a> Document<'a> {
     pub(crate) fn summary(&self, record: &mut Record) -> String {
         let mut text = format!("{}\n", self.first_line());
         if self.trajectory.analysis == Analysis::Kinematics {
-            let movement = self.movement.as_ref();
-            text += &movement.map_or_else(String::new, |movement| movement.describe(record));
+            text += &self.movement.describe(record);
         }
         text += &self.largest_values(record);
         let (abscissa, _) = self.abscissa;
@@ -395,14 +384,16 @@ impl<'a> Document<'a> {
         }));
         blocks.push(Block::Heading("Peaks".to_owned()));
         let where_found = match self.results.extrema.are_between_rows() {
-            true => "Smallest and largest values, also between the rows of the table.",
+            true => {
+                let in_rows = searched_in_rows(self.results);
+                let in_rows = in_rows.map_or_else(String::new, |text| format!(" {text}"));
+                format!("Smallest and largest values, also between the rows of the table.{in_rows}")
+            }
             false => {
-                "Smallest and largest values in the rows of the table: between them there may be larger ones."
+                "Smallest and largest values in the rows of the table: between them there may be larger ones.".to_owned()
             }
         };
-        blocks.push(Block::Text(
-            where_found.to_owned() + &self.searched_in_rows(),
-        ));
+        blocks.push(Block::Text(where_found));
         blocks.push(self.extrema_table());
         blocks.extend(self.internal_forces());
         blocks.push(Block::Heading("Columns".to_owned()));
@@ -418,24 +409,13 @@ impl<'a> Document<'a> {
         };
         blocks.push(Block::Table {
             header: ["column", "unit", "meaning"].map(str::to_owned).into(),
-            rows: self.selected.iter().map(row).collect(),
+            rows: self.results.written.iter().map(row).collect(),
         });
         let provenance = provenance_line(self.scene);
         let method = &self.trajectory.method_text;
         blocks.push(Block::Text(format!("{provenance} · {method}")));
         let title = self.title();
         Page { title, blocks }
-    }
-
-    /// The sentence about the columns whose extrema are those of the rows although others are looked for between them.
-    fn searched_in_rows(&self) -> String {
-        if !self.results.extrema.are_between_rows() {
-            return String::new();
-        }
-        match names_of_rows(self.results, &self.selected) {
-            names if names.is_empty() => String::new(),
-            names => format!(" Of the rows only: {names}."),
-        }
     }
 
     fn internal_forces(&self) -> Vec<Block> {

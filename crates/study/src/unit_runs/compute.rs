@@ -17,7 +17,9 @@ use crate::progress::Progress;
 use crate::reduce::compute::{
     ReducedCurves, ReducedScene, RoundingErrors, coefficient_units, flat, inertia_units,
 };
-use crate::trajectory::compute::{Analysis, Spacing, Trajectory, compute_along, default_limits};
+use crate::trajectory::compute::{
+    Analysis, RowStorage, Spacing, Trajectory, compute_along, default_limits,
+};
 use dwell_findings::{Column, Table};
 use dwell_kinetostatics::Coefficients;
 use dwell_laws::{Law, Polynomial};
@@ -83,8 +85,16 @@ pub enum UnitRun {
 }
 
 impl UnitRun {
-    /// The motion from the lower to the upper end of a range, rad or m, and how its positions are spaced.
-    pub(crate) fn motion(self, [from, to]: [f64; 2], points: usize) -> (PrescribedMotion, Spacing) {
+    /// The table that an analysis finds along the motion from the lower to the upper end of a range, rad or m.
+    ///
+    /// # Errors
+    /// [`StudyError`] where a position cannot be reached.
+    pub(crate) fn table(
+        self,
+        [from, to]: [f64; 2],
+        (period, points): (Option<f64>, usize),
+        analyse: impl FnOnce(Trajectory<'_>) -> Result<(Table, Option<StudyError>), StudyError>,
+    ) -> Result<Table, StudyError> {
         let (law, duration, spacing) = match self {
             Self::Speed => (
                 Polynomial::motion(from, 1.0, 0.0),
@@ -102,7 +112,12 @@ impl UnitRun {
             points,
             laws: vec![Law::Polynomial(law)],
         };
-        (motion, spacing)
+        let along = (&motion, spacing);
+        let along = Trajectory::prescribed(along, period, Analysis::Kinetostatics, points);
+        match analyse(along)? {
+            (_, Some(error)) => Err(error),
+            (table, None) => Ok(table),
+        }
     }
 }
 
@@ -157,19 +172,11 @@ impl UnitRunScene for Scene {
         let model = loaded_model(&scene)?;
         let plan = model.plan();
         let (limits, ..) = default_limits(&scene, plan);
-        let (motion, spacing) = run.motion(limits, points);
-        let trajectory = Trajectory::prescribed(
-            (&motion, spacing),
-            plan.range().period(),
-            Analysis::Kinetostatics,
-            points,
-        );
-        let along = (trajectory, None);
-        let computed = compute_along(&scene, &model, along, String::new(), progress)?;
-        match computed.early_stop {
-            Some(error) => Err(error),
-            None => Ok(computed.table),
-        }
+        run.table(limits, (plan.range().period(), points), |trajectory| {
+            let along = (trajectory, None);
+            let computed = compute_along(RowStorage::Whole, &scene, &model, along, progress)?;
+            Ok((computed.table, computed.early_stop))
+        })
     }
 }
 
@@ -202,15 +209,14 @@ fn combine(prepared: &impl ReducedScene, runs: &[Table; 2]) -> ReducedCurves {
     let inertia = of_force(&format!("{coordinate}.actuator_force"));
     let names = prepared.reaction_units();
     let reactions: Vec<_> = names.iter().map(|(name, _)| of_force(name)).collect();
-    let coefficients = inertia
-        .iter()
-        .enumerate()
-        .map(|(k, [m, half_dm])| Coefficients {
-            m: *m,
-            half_dm: *half_dm,
-            a: reactions.iter().map(|of| of[k][0]).collect(),
-            b: reactions.iter().map(|of| of[k][1]).collect(),
-        });
+    let part = |k: usize, part: usize| reactions.iter().map(|of| of[k][part]).collect();
+    let inertia = inertia.into_iter().enumerate();
+    let coefficients = inertia.map(|(k, [m, half_dm])| Coefficients {
+        m,
+        half_dm,
+        a: part(k, 0),
+        b: part(k, 1),
+    });
     ReducedCurves {
         q: values(&runs[0], &q),
         coefficients: coefficients.collect(),
@@ -251,24 +257,17 @@ impl<P: ReducedScene> UnitRuns<P> {
                 }
             }
         }
-        let compared = self
-            .symbols()
-            .into_iter()
-            .enumerate()
-            .map(|(k, (symbol, unit))| {
-                let scale = if is_rounding[k] {
-                    references[k]
-                } else {
-                    sizes[k]
-                };
-                ComparedCoefficient {
-                    symbol,
-                    unit,
-                    largest: sizes[k],
-                    relative_difference: relative(differences[k], scale),
-                    tolerance: (TOLERANCE + ROUNDINGS * rounding) * (lost[k] / scale).max(1.0),
-                }
-            });
+        let symbols = self.symbols().into_iter().enumerate();
+        let compared = symbols.map(|(k, (symbol, unit))| {
+            let scales = if is_rounding[k] { &references } else { &sizes };
+            ComparedCoefficient {
+                symbol,
+                unit,
+                largest: sizes[k],
+                relative_difference: relative(differences[k], scales[k]),
+                tolerance: (TOLERANCE + ROUNDINGS * rounding) * (lost[k] / scales[k]).max(1.0),
+            }
+        });
         compared.collect()
     }
 
@@ -278,35 +277,28 @@ impl<P: ReducedScene> UnitRuns<P> {
             let values = values(&self.runs[1], name);
             values.iter().fold(0.0_f64, |max, v| max.max(v.abs()))
         };
-        let moment = largest(&format!(
-            "{}.actuator_force",
-            self.prepared.coordinate_name()
-        ));
+        let coordinate = self.prepared.coordinate_name();
+        let moment = largest(&format!("{coordinate}.actuator_force"));
         let reactions = self.prepared.reaction_units();
         let forces = reactions.iter().map(|(name, _)| largest(name));
         let of_squares = reactions.iter().map(|_| 0.0);
-        [moment, 0.0]
-            .into_iter()
-            .chain(forces)
-            .chain(of_squares)
-            .collect()
+        let of_inertia = [moment, 0.0].into_iter();
+        of_inertia.chain(forces).chain(of_squares).collect()
     }
 
     /// The paper's symbols and the units of m₁, ½m₁q₁, every m_e1, every m_e2.
     fn symbols(&self) -> Vec<(String, &'static str)> {
         let is_angle = self.prepared.is_angle();
         let reactions = self.prepared.reaction_units();
-        let of_reactions = |symbol: &str, part: usize| -> Vec<(String, &'static str)> {
-            let of = reactions.iter().map(|(name, unit)| {
+        let [m, half_dm] = inertia_units(is_angle);
+        let mut symbols = vec![("m₁".to_owned(), m), ("½m₁q₁".to_owned(), half_dm)];
+        for (part, symbol) in ["m_e1", "m_e2"].into_iter().enumerate() {
+            symbols.extend(reactions.iter().map(|(name, unit)| {
                 let unit = coefficient_units(unit, is_angle)[part];
                 (format!("{symbol} of {name}"), unit)
-            });
-            of.collect()
-        };
-        let [m, half_dm] = inertia_units(is_angle);
-        let inertia = [("m₁".to_owned(), m), ("½m₁q₁".to_owned(), half_dm)];
-        let inertia = inertia.into_iter().chain(of_reactions("m_e1", 0));
-        inertia.chain(of_reactions("m_e2", 1)).collect()
+            }));
+        }
+        symbols
     }
 
     /// The table: coordinate, combined coefficients by the paper's symbols, and beside them the columns of `dwell reduce`.

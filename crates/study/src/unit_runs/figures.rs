@@ -1,11 +1,10 @@
 //! Figures of the two unit runs over the coordinate, and of their combination in the form of the paper's Figures 3a and 3b.
 
 use super::compute::{UnitRuns, values};
-use crate::number_format::count;
-use crate::output::{chart, coordinate_axis, figure, inner_range, range_caption};
 use crate::reduce::compute::{ReducedScene, coefficient_units, inertia_units};
+use crate::reduce::figures::RangeFigures;
 use dwell_kinetostatics::Coefficients;
-use dwell_report::{Axis, Figure, Panel, Series, Stroke};
+use dwell_report::{Figure, Panel, Series, Stroke};
 
 /// Maximum number of reactions in a figure.
 const MAX_REACTIONS: usize = 3;
@@ -20,28 +19,17 @@ impl<P: ReducedScene> UnitRuns<P> {
         figures
     }
 
-    /// Values over the coordinate, in degrees.
-    fn line(&self, name: &str, values: impl IntoIterator<Item = f64>) -> Series {
-        let points = self.combined.q.iter().zip(values);
-        let x = |q: f64| match self.prepared.is_angle() {
-            true => q.to_degrees(),
-            false => q,
-        };
-        Series::line(name, points.map(|(q, v)| [x(*q), v]).collect())
+    fn range(&self) -> RangeFigures<'_> {
+        RangeFigures {
+            prepared: &self.prepared,
+            q: &self.combined.q,
+            method: "two kinetostatic runs",
+        }
     }
 
     fn panel(&self, title: &str, label: &str, unit: &str, series: Vec<Series>) -> Panel {
-        let mut y = Axis::new(label, unit.replace('2', "²"));
-        y.range = inner_range(self.prepared.range(), &series);
-        let x = coordinate_axis(&self.prepared.coordinate_label(), self.prepared.is_angle());
-        chart(title, x, y, series).into()
-    }
-
-    fn figure(&self, name: &str, title: &str, text: &str, panels: Vec<Panel>) -> Figure {
-        let text = range_caption(self.prepared.has_limits(), text);
-        let positions = count(self.combined.q.len(), "position");
-        let provenance = format!("two kinetostatic runs, at {positions}");
-        figure(self.prepared.file(), name, title, &text, panels, provenance)
+        let unit = unit.replace('2', "²");
+        self.range().panel(title, label, &unit, series)
     }
 
     /// The actuator's moment and the first reactions of both runs.
@@ -49,8 +37,8 @@ impl<P: ReducedScene> UnitRuns<P> {
         let both = |name: &str| {
             let [one, two] = [0, 1].map(|run| values(&self.runs[run], name));
             [
-                self.line("run i", one),
-                self.line("run ii", two).stroke(Stroke::Dashed),
+                self.range().line("run i", one),
+                self.range().line("run ii", two).stroke(Stroke::Dashed),
             ]
         };
         let coordinate = self.prepared.coordinate_name();
@@ -65,13 +53,18 @@ impl<P: ReducedScene> UnitRuns<P> {
             panels.push(self.panel(name, label, unit, both(name).into()));
         }
         let text = "Run i: unit speed, no acceleration. Run ii: unit acceleration from rest at the beginning of the range.";
-        self.figure("runs", "Kinetostatic runs", text, panels)
+        self.range()
+            .figure("runs", "Kinetostatic runs", text, panels)
     }
 
     /// A coefficient of the combined runs as a line, of the reduced model as points.
     fn compared(&self, of: impl Fn(&Coefficients) -> f64) -> Vec<Series> {
-        let line = self.line("combined runs", self.combined.coefficients.iter().map(&of));
-        let mut marked = self.line("reduce", self.reduced.coefficients.iter().map(&of));
+        let line = self
+            .range()
+            .line("combined runs", self.combined.coefficients.iter().map(&of));
+        let mut marked = self
+            .range()
+            .line("reduce", self.reduced.coefficients.iter().map(&of));
         let stride = marked.points.len().div_ceil(MARKS).max(1);
         marked.points = marked.points.into_iter().step_by(stride).collect();
         vec![line, marked.stroke(Stroke::Points)]
@@ -87,7 +80,7 @@ impl<P: ReducedScene> UnitRuns<P> {
         ];
         let text = "From both runs: ½m₁q₁ = T/q̇² of run i, m₁ = (T − ½m₁q₁ q̇²)/q̈ of run ii.";
         let title = "Reduced parameters from the kinetostatic runs";
-        self.figure("runs-inertia", title, text, panels)
+        self.range().figure("runs-inertia", title, text, panels)
     }
 
     fn reaction_figure(&self) -> Option<Figure> {
@@ -103,7 +96,7 @@ impl<P: ReducedScene> UnitRuns<P> {
         }
         let text = "From both runs: m_e2 = F/q̇² of run i, m_e1 = (F − m_e2 q̇²)/q̈ of run ii; F is the force of the joint's first body on its second.";
         let title = "Reduced parameters of reactions from the kinetostatic runs";
-        let figure = self.figure("runs-reaction", title, text, panels);
+        let figure = self.range().figure("runs-reaction", title, text, panels);
         (!figure.panels.is_empty()).then_some(figure)
     }
 }

@@ -10,8 +10,8 @@ use crate::models::{SolverSettings, with_drive_loads};
 use crate::number_format::digits;
 use crate::progress::Progress;
 use crate::trajectory::compute::{
-    ComputedTrajectory, MotionBetweenRows, SamplePrecision, Sampler, SecondRows, Trajectory,
-    TrajectorySample, compute_along,
+    ComputedTrajectory, MotionBetweenRows, RowStorage, SamplePrecision, Sampler, SecondRows,
+    Trajectory, TrajectorySample, compute_along,
 };
 use dwell_dynamics::{DynamicsError, EventOccurrence, Options};
 use dwell_findings::{Record, Table};
@@ -308,7 +308,7 @@ impl FreeMotionProblem<'_> {
                 beside = Some((second, (text, record)));
             });
             let (scene, model) = (self.loaded_scene, &self.output_model);
-            compute_along(scene, model, followed, String::new(), progress)
+            compute_along(RowStorage::Whole, scene, model, followed, progress)
         });
         let mut computed = computed?;
         let (second, summary) = beside.unwrap_or_default();

@@ -1,6 +1,6 @@
 //! Arrows of forces that act at contacts: teeth at their pitch point, wheels on their track, and what follows a coupling.
 
-use super::{JointForces, along_body, pushing_apart};
+use super::{JointForces, along_body, force_arrow, pushing_apart};
 use crate::page::plane::{anchor, anchors, point};
 use crate::trajectory::compute::Quantity;
 use dwell_geometry::{Component, Coordinate, Vec2, vec2};
@@ -34,27 +34,15 @@ pub(super) fn tooth_arrows(of: &JointForces<'_>) -> Vec<ForceArrow> {
     let Some(separating) = separating else {
         return pair(of, &contact, vec![tooth], name, "tooth force");
     };
+    let tangential = with(&contact, vec![tooth.clone()]);
+    let apart = with(&contact, vec![separating.clone()]);
     let mut arrows = vec![
-        on_second(
-            of,
-            name,
-            "tangential force",
-            with(&contact, vec![tooth.clone()]),
-        ),
-        on_second(
-            of,
-            &format!("{name}.separating"),
-            "separating force",
-            with(&contact, vec![separating.clone()]),
-        ),
+        on_second(of, name, "tangential force", tangential),
+        on_second(of, &format!("{name}.separating"), "separating force", apart),
     ];
-    arrows.extend(pair(
-        of,
-        &contact,
-        vec![tooth, separating],
-        &format!("{name}.line-of-action"),
-        "force along the line of action",
-    ));
+    let (both, name) = (vec![tooth, separating], format!("{name}.line-of-action"));
+    let what = "force along the line of action";
+    arrows.extend(pair(of, &contact, both, &name, what));
     arrows
 }
 
@@ -82,7 +70,7 @@ pub(super) fn rolling_arrows(of: &JointForces<'_>, axis: Vec2, radius: f64) -> V
 /// The force of a coupling on what follows: along a travel at the slide's second point, or between the two points of a length. A
 /// coupled angle follows by a couple, which has no arrow.
 pub(super) fn coupling_arrow(of: &JointForces<'_>, coupling: usize) -> Option<ForceArrow> {
-    let mechanism = &of.columns.scene.mechanism;
+    let mechanism = &of.scene.mechanism;
     let column = of.component(Component::Force)?;
     let (bodies, points, direction) = match mechanism.couplings.get(coupling)?.dependent {
         Coordinate::Angle(_) => return None,
@@ -100,14 +88,9 @@ pub(super) fn coupling_arrow(of: &JointForces<'_>, coupling: usize) -> Option<Fo
     };
     let name = &of.joint.name;
     let on = mechanism.body_name(bodies[1]);
-    Some(ForceArrow {
-        name: name.clone(),
-        group: "Reactions".to_owned(),
-        title: format!("{name}: force of the coupling on {on}, along what it couples"),
-        initially_visible: true,
-        at: anchor(bodies[1], points[1]),
-        direction,
-    })
+    let title = format!("{name}: force of the coupling on {on}, along what it couples");
+    let force = (anchor(bodies[1], points[1]), direction);
+    Some(force_arrow("Reactions", name, title, force))
 }
 
 /// Where the pitch point is, and the axes of the tangential and of the separating force on the second body.
@@ -150,23 +133,30 @@ pub(super) fn axes_of(mesh: Mesh) -> (Direction, [Vec2; 2]) {
 
 /// The column of the separating force of a joint's teeth, where they have a pressure angle.
 fn separating_column(of: &JointForces<'_>) -> Option<usize> {
-    let mut loads = of.columns.scene.loads.iter();
+    let mut loads = of.scene.loads.iter();
     let k = loads.position(|load| match (&load.kind, &load.magnitude) {
         (LoadKind::SeparatingForce(_), Magnitude::Separating(teeth)) => teeth.joint == of.id,
         _ => false,
     })?;
-    of.columns.column(Quantity::LoadForce(k))
+    of.results.written_index(Quantity::LoadForce(k))
 }
 
 /// A force at a contact on the second body.
 fn on_second(of: &JointForces<'_>, name: &str, what: &str, direction: Direction) -> ForceArrow {
-    let [from, on] = of.body_names();
+    touching(of, name.to_owned(), what, (of.body_names(), direction))
+}
+
+/// A force at a contact of the first of two bodies on the second.
+fn touching(
+    of: &JointForces<'_>,
+    name: String,
+    what: &str,
+    ([from, on], direction): ([&str; 2], Direction),
+) -> ForceArrow {
+    let joint = &of.joint.name;
     ForceArrow {
-        name: name.to_owned(),
-        title: format!(
-            "{}: {what} of {from} on {on}, where they touch",
-            of.joint.name
-        ),
+        name,
+        title: format!("{joint}: {what} of {from} on {on}, where they touch"),
         ..of.on_second(direction)
     }
 }
@@ -185,16 +175,12 @@ fn pair(
         axis: part.axis.iter().map(|c| -c).collect(),
     };
     let back = with(contact, parts.iter().map(opposite).collect());
+    let back = touching(of, format!("{name} on {on}"), what, ([from, on], back));
     vec![
         on_second(of, name, what, with(contact, parts)),
         ForceArrow {
-            name: format!("{name} on {on}"),
-            title: format!(
-                "{}: {what} of {from} on {on}, where they touch",
-                of.joint.name
-            ),
             initially_visible: false,
-            ..of.on_second(back)
+            ..back
         },
     ]
 }

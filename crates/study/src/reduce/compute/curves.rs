@@ -128,23 +128,21 @@ impl ReducedCurves {
     /// Of m, of ½m′, of every a, of every b: whether it is zero everywhere but for rounding.
     pub fn rounding(&self, prepared: &dyn ReducedScene) -> Vec<bool> {
         let [sizes, references] = self.scales(prepared);
-        let both = sizes.iter().zip(&references);
-        both.map(|(&size, &reference)| is_rounding(size, reference))
-            .collect()
+        let both = sizes.into_iter().zip(references);
+        both.map(|(size, of)| is_rounding(size, of)).collect()
     }
 
     /// The table: coordinate, m, ½m′, then a and b of each requested reaction.
     pub fn table(&self, prepared: &dyn ReducedScene) -> Table {
+        let is_angle = prepared.is_angle();
+        let [m, half_dm] = inertia_units(is_angle);
         let mut columns = vec![
-            Column::new(
-                prepared.coordinate_name(),
-                coordinate_unit(prepared.is_angle()),
-            ),
-            Column::new("m", inertia_units(prepared.is_angle())[0]),
-            Column::new("half_dm", inertia_units(prepared.is_angle())[1]),
+            Column::new(prepared.coordinate_name(), coordinate_unit(is_angle)),
+            Column::new("m", m),
+            Column::new("half_dm", half_dm),
         ];
         for (name, unit) in prepared.reaction_units() {
-            let [a, b] = coefficient_units(unit, prepared.is_angle());
+            let [a, b] = coefficient_units(unit, is_angle);
             columns.push(Column::new(format!("{name}.a"), a));
             columns.push(Column::new(format!("{name}.b"), b));
         }

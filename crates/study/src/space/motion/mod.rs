@@ -18,14 +18,14 @@ use self::charts::Motion;
 pub(super) use self::problem::SpaceMotionProblem;
 pub(super) use self::run::Run;
 use super::trajectory::{
-    SpaceEvaluator, add_rows, all_columns, reject_unknown_variables, requested, space_page,
+    SpaceEvaluator, all_columns, computed_columns, reject_unknown_variables, space_page,
 };
 use crate::explain::StudyError;
 use crate::free_motion::compute::{MotionSolver, check_times};
 use crate::progress::{Progress, no_progress};
 use crate::trajectory::compute::{
-    Analysis, ComputedTrajectory, FreeTrajectory, MotionBetweenRows, Quantity, RowStorage, Sampler,
-    SecondRows, Trajectory, TrajectoryResults, TrajectorySample,
+    Analysis, ComputedTrajectory, FreeTrajectory, MotionBetweenRows, Quantity, Sampler, SecondRows,
+    Trajectory, TrajectorySample,
 };
 use dwell_dynamics::Orbit;
 use dwell_findings::RecordedEvent;
@@ -226,26 +226,7 @@ impl SpaceMotionProblem<'_> {
         let mut trajectory =
             Trajectory::of_free_motion(model.plan().range().period(), followed, end);
         method_text.clone_into(&mut trajectory.method_text);
-        let (columns, is_limited) = requested(scene, &self.reactions, (Analysis::FreeMotion, &all));
-        let written = (0..columns.len()).collect();
-        let mut results = TrajectoryResults::of_columns(all, columns, written, is_limited);
-        results.keep_rows_in(RowStorage::Bounded, trajectory.points)?;
-        let open = self.reactions.indeterminate.iter();
-        results.indeterminate = open.map(|r| scene.reaction_name(*r)).collect();
-        let stop = add_rows(&trajectory, (&mut evaluators, None), &mut results, progress);
-        let early_stop = stop.map(|stop| stop.explain(scene, model.plan()));
-        let early_stop = match early_stop {
-            Some(error) if results.len() == 0 => return Err(error),
-            early_stop => early_stop,
-        };
-        results.finish_rows()?;
-        results.find_extrema(model.plan().size(), &trajectory, &evaluators, between)?;
-        Ok(ComputedTrajectory {
-            table: results.table(),
-            early_stop,
-            notes: String::new(),
-            trajectory,
-            results,
-        })
+        let of = (&mut evaluators[..], None);
+        computed_columns(scene, of_model, (trajectory, all), of, between, progress)
     }
 }

@@ -2,32 +2,24 @@
 
 use super::load_forces::{LoadForce, described_drive, described_load};
 use super::reactions::JointReactions;
-use crate::number_format::force_unit;
-use crate::trajectory::compute::{Analysis, Column, POWER_COLUMNS, Quantity};
+use crate::trajectory::compute::{Analysis, Column, ColumnList, Quantity, units};
 use dwell_geometry::space::{ActuatorKind, Coordinate, Plan, Vec3};
 use dwell_geometry::{BodyId, JointId};
 use dwell_kinetostatics::space::{Axes, Component};
 use dwell_scene::SpaceScene;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
-const ROTATION: [(&str, &str, &str); 3] = [
+const ROTATION: [(&str, &str); 3] = [
     (
         "rotation",
-        "rad",
         "rotation of the body's frame from that of the ground, as a vector along its axis; followed from row to row",
     ),
-    (
-        "angular_velocity",
-        "rad/s",
-        "angular velocity, ground's axes",
-    ),
+    ("angular_velocity", "angular velocity, ground's axes"),
     (
         "angular_acceleration",
-        "rad/s2",
         "angular acceleration, ground's axes",
     ),
 ];
-const POINT: [(&str, &str); 3] = [("", "m"), ("v", "m/s"), ("a", "m/s2")];
 
 /// Every column of an analysis of a scene; with the time if `timed`.
 pub(crate) fn all_columns(
@@ -37,18 +29,15 @@ pub(crate) fn all_columns(
 ) -> Vec<Column> {
     let mut columns = Columns {
         scene,
-        list: Vec::new(),
+        list: ColumnList::new(timed),
     };
-    if timed {
-        columns.add("t", "s", Quantity::Time, "");
-    }
     columns.actuators();
     columns.coordinates(plan);
     columns.bodies();
     columns.reactions(reactions);
     columns.loads(plan);
     columns.totals();
-    let mut list = columns.list;
+    let mut list = columns.list.0;
     list.retain(|column| column.is_computed_by(analysis));
     list
 }
@@ -56,69 +45,34 @@ pub(crate) fn all_columns(
 /// Collects columns.
 struct Columns<'a> {
     scene: &'a SpaceScene,
-    list: Vec<Column>,
+    list: ColumnList,
 }
 
 impl Columns<'_> {
-    fn add(
-        &mut self,
-        name: impl Into<String>,
-        unit: &'static str,
-        quantity: Quantity,
-        meaning: impl Into<String>,
-    ) {
-        self.list.push(Column {
-            name: name.into(),
-            former: None,
-            unit,
-            quantity,
-            meaning: meaning.into(),
-        });
-    }
-
     fn actuators(&mut self) {
         let mechanism = &self.scene.mechanism;
         for (i, actuator) in mechanism.actuators.iter().enumerate() {
             let joint = &mechanism.joints[actuator.kind.joint().0];
             let [one, two] = joint.bodies.map(|b| mechanism.bodies[b.0].name.as_str());
-            let (units, is_angle, what) = match actuator.kind {
-                ActuatorKind::Angle(_) => (["rad", "rad/s", "rad/s2"], true, "angle"),
-                ActuatorKind::Travel(_) => (["m", "m/s", "m/s2"], false, "travel"),
-                ActuatorKind::Length(_) => (["m", "m/s", "m/s2"], false, "length"),
+            let (what, is_angle) = match actuator.kind {
+                ActuatorKind::Angle(_) => ("angle", true),
+                ActuatorKind::Travel(_) => ("travel", false),
+                ActuatorKind::Length(_) => ("length", false),
             };
-            let name = &actuator.name;
-            let suffixes = ["", ".velocity", ".acceleration"];
-            for (order, (suffix, unit)) in suffixes.into_iter().zip(units).enumerate() {
-                let meaning = match order {
-                    0 => format!("{what} of joint {}", joint.name),
-                    _ => String::new(),
-                };
-                let quantity = Quantity::ActuatorCoordinate(i, order);
-                self.add(format!("{name}{suffix}"), unit, quantity, meaning);
-            }
             let kind = if is_angle { "moment" } else { "force" };
-            let meaning = format!(
-                "{kind} of {one} on {two} about or along the axis of {}",
-                joint.name
-            );
-            let meaning = match is_angle {
-                true => meaning.replace("about or along", "about"),
-                false => meaning.replace("about or along", "along"),
-            };
-            let force = format!("{name}.actuator_force");
-            self.add(
-                force,
-                force_unit(is_angle),
-                Quantity::ActuatorForce(i),
-                meaning,
-            );
+            let place = if is_angle { "about" } else { "along" };
+            let joint = &joint.name;
+            let meaning = format!("{what} of joint {joint}");
+            let force = format!("{kind} of {one} on {two} {place} the axis of {joint}");
+            let of = (actuator.name.as_str(), is_angle);
+            self.list.add_actuator(i, of, [&meaning, &force]);
         }
     }
 
     /// The named coordinates, and the travels of joints that slide.
     fn coordinates(&mut self, plan: &Plan) {
         for named in &self.scene.coordinates {
-            self.measured(plan, &named.name, (named.coordinate, String::new()));
+            self.measured(plan, &named.name, named.coordinate, "");
         }
         let mechanism = &self.scene.mechanism;
         for (j, joint) in mechanism.joints.iter().enumerate() {
@@ -127,24 +81,16 @@ impl Columns<'_> {
                 "position of the point of {two} from that of {one}, along the axis in {one}"
             );
             let name = format!("{}.travel", joint.name);
-            self.measured(plan, &name, (Coordinate::Travel(JointId(j)), meaning));
+            self.measured(plan, &name, Coordinate::Travel(JointId(j)), &meaning);
         }
     }
 
     /// A coordinate with its rates, where the mechanism has it.
-    fn measured(&mut self, plan: &Plan, name: &str, (of, meaning): (Coordinate, String)) {
-        if plan.coordinate_function(&self.scene.mechanism, of).is_err() {
-            return;
-        }
-        let units = match of.is_angle() {
-            true => ["rad", "rad/s", "rad/s2"],
-            false => ["m", "m/s", "m/s2"],
-        };
-        let suffixes = ["", ".velocity", ".acceleration"];
-        for (order, (suffix, unit)) in suffixes.into_iter().zip(units).enumerate() {
-            let meaning = if order == 0 { meaning.as_str() } else { "" };
-            let quantity = Quantity::MeasuredInSpace(of, order);
-            self.add(format!("{name}{suffix}"), unit, quantity, meaning);
+    fn measured(&mut self, plan: &Plan, name: &str, of: Coordinate, meaning: &str) {
+        if plan.coordinate_function(&self.scene.mechanism, of).is_ok() {
+            let quantity = |order| Quantity::MeasuredInSpace(of, order);
+            self.list
+                .add_with_derivatives(name, of.is_angle(), quantity, meaning);
         }
     }
 
@@ -155,10 +101,11 @@ impl Columns<'_> {
                 continue;
             }
             let (id, name) = (BodyId(b), &body.name);
-            for (order, (word, unit, meaning)) in ROTATION.into_iter().enumerate() {
+            for (order, (word, meaning)) in ROTATION.into_iter().enumerate() {
                 for (k, axis) in AXES.into_iter().enumerate() {
                     let quantity = Quantity::RotationInSpace(id, 3 * order + k);
-                    self.add(format!("{name}.{word}.{axis}"), unit, quantity, meaning);
+                    let name = format!("{name}.{word}.{axis}");
+                    self.list.add(name, units(true)[order], quantity, meaning);
                 }
             }
             for (point, at) in &self.scene.points[b] {
@@ -168,10 +115,11 @@ impl Columns<'_> {
     }
 
     fn point(&mut self, name: &str, body: BodyId, at: Vec3) {
-        for (order, (letter, unit)) in POINT.into_iter().enumerate() {
+        for (order, letter) in ["", "v", "a"].into_iter().enumerate() {
             for (k, axis) in AXES.into_iter().enumerate() {
                 let quantity = Quantity::PointInSpace(body, at, 3 * order + k);
-                self.add(format!("{name}.{letter}{axis}"), unit, quantity, "");
+                let name = format!("{name}.{letter}{axis}");
+                self.list.add(name, units(false)[order], quantity, "");
             }
         }
     }
@@ -195,7 +143,7 @@ impl Columns<'_> {
             };
             let meaning = format!("{what} of {one} on {two}, {axes}{at}");
             let name = self.scene.reaction_name(*reaction);
-            self.add(name, unit, Quantity::Reaction(k), meaning);
+            self.list.add(name, unit, Quantity::Reaction(k), meaning);
         }
         for (j, joint) in mechanism.joints.iter().enumerate() {
             let [one, two] = joint.bodies.map(|b| mechanism.bodies[b.0].name.as_str());
@@ -204,14 +152,16 @@ impl Columns<'_> {
             if force {
                 let meaning = format!("magnitude of the force of {one} on {two}");
                 let name = format!("{}.magnitude", joint.name);
-                self.add(name, "N", Quantity::ForceMagnitude(id), meaning);
+                self.list
+                    .add(name, "N", Quantity::ForceMagnitude(id), meaning);
             }
             if moment {
                 let meaning = format!(
                     "magnitude of the moment of {one} on {two}, about the joint's point of {two}"
                 );
                 let name = format!("{}.moment-magnitude", joint.name);
-                self.add(name, "N m", Quantity::MomentMagnitude(id), meaning);
+                self.list
+                    .add(name, "N m", Quantity::MomentMagnitude(id), meaning);
             }
         }
     }
@@ -219,42 +169,28 @@ impl Columns<'_> {
     fn loads(&mut self, plan: &Plan) {
         let scene = self.scene;
         let forces = LoadForce::of_all(scene, plan);
-        let loads = scene.loads.iter().map(|load| {
-            let meaning = "power of the load on all bodies";
-            (&load.name, described_load(load), meaning)
-        });
-        let drives = scene.drives.iter().map(|drive| {
-            let meaning = "power of the drive on all bodies, without what its rotor takes";
-            (&drive.name, described_drive(drive), meaning)
-        });
+        let loads = scene.loads.iter();
+        let loads = loads.map(|load| (&load.name, described_load(load), false));
+        let drives = scene.drives.iter();
+        let drives = drives.map(|drive| (&drive.name, described_drive(drive), true));
         let all = loads.chain(drives).zip(forces).enumerate();
-        for (k, ((name, (unit, meaning), power), force)) in all {
-            if force.is_some() {
-                let kind = if unit == "N" { "force" } else { "moment" };
-                let name = format!("{name}.load_{kind}");
-                self.add(name, unit, Quantity::LoadForce(k), meaning);
-            }
-            self.add(format!("{name}.power"), "W", Quantity::LoadPower(k), power);
+        for (k, ((name, described, is_drive), force)) in all {
+            let described = force.map(|_| described);
+            self.list.add_load(k, name, described, is_drive);
         }
     }
 
     fn totals(&mut self) {
         let mechanism = &self.scene.mechanism;
         let ground = &mechanism.bodies[mechanism.ground].name;
-        let meaning = format!(
-            "shaking force: resultant of all joint, actuator and load forces on {ground}; moment about its origin"
-        );
-        for (k, name) in ["fx", "fy", "fz", "mx", "my", "mz"].into_iter().enumerate() {
-            let unit = if k < 3 { "N" } else { "N m" };
-            self.add(
-                format!("shaking.{name}"),
-                unit,
-                Quantity::ShakingForce(k),
-                &*meaning,
-            );
-        }
-        for (k, (name, unit, meaning)) in POWER_COLUMNS.into_iter().enumerate() {
-            self.add(name, unit, Quantity::Power(k), meaning);
-        }
+        let components = [
+            ("fx", "N"),
+            ("fy", "N"),
+            ("fz", "N"),
+            ("mx", "N m"),
+            ("my", "N m"),
+            ("mz", "N m"),
+        ];
+        self.list.add_totals(ground, &components);
     }
 }

@@ -111,7 +111,7 @@ impl RowEvaluator for SpaceEvaluator<'_> {
 
     fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
         let rest = vec![0.0; sample.q.len()];
-        let [q, q_dot, q_ddot] = state_of(self.analysis, sample, &rest);
+        let [q, q_dot, q_ddot] = sample.state(self.analysis, &rest);
         let plan = self.model.plan();
         plan.positions(q, &mut self.pose)?;
         plan.velocities(q_dot, &mut self.pose);
@@ -198,20 +198,6 @@ impl RowEvaluator for SpaceEvaluator<'_> {
 
     fn angular_velocity(&self, _: Quantity) -> f64 {
         0.0
-    }
-}
-
-/// Coordinates, speeds and accelerations at which an analysis evaluates a sample: those of statics are at rest.
-pub(super) fn state_of<'s>(
-    analysis: Analysis,
-    sample: &'s TrajectorySample,
-    rest: &'s [f64],
-) -> [&'s [f64]; 3] {
-    match analysis {
-        Analysis::Statics => [&sample.q, rest, rest],
-        Analysis::Kinematics | Analysis::Kinetostatics | Analysis::FreeMotion => {
-            [&sample.q, &sample.q_dot, &sample.q_ddot]
-        }
     }
 }
 

@@ -2,9 +2,9 @@
 
 use crate::explain::StudyError;
 use crate::trajectory::compute::{Column, ComputedTrajectory, Quantity};
-use crate::trajectory::figures::{ChartContext, MAX_CURVES, PictureSpan};
+use crate::trajectory::figures::{ChartContext, PictureSpan};
 use dwell_geometry::BodyId;
-use dwell_report::{Chart, Figure, Panel};
+use dwell_report::{Chart, Figure};
 use dwell_scene::SpaceScene;
 
 /// Largest distance of two columns that are one but for rounding, in units of the larger.
@@ -45,13 +45,19 @@ struct SpaceFigures<'a> {
 }
 
 impl SpaceFigures<'_> {
-    /// Three curves of a vector.
-    fn vector(&self, label: &str, of: impl Fn(&Column) -> Option<usize>) -> Option<Chart> {
-        let names = ["x", "y", "z"];
-        let columns = self.charts.columns_where(|c| of(c).is_some());
-        let curves: Vec<(String, usize)> =
-            names.map(str::to_owned).into_iter().zip(columns).collect();
-        self.charts.chart_of_some("", label, &curves)
+    /// A vector, its velocity and its acceleration, each with three curves, by the place of a column among these nine; none where it does
+    /// not move.
+    fn charts(&self, labels: [&str; 3], place: impl Fn(&Column) -> Option<usize>) -> Vec<Chart> {
+        let chart = |order: usize| {
+            let is_of_order = |c: &Column| place(c).is_some_and(|k| k / 3 == order);
+            let names = ["x", "y", "z"].map(str::to_owned).into_iter();
+            let columns = self.charts.columns_where(is_of_order);
+            let curves: Vec<(String, usize)> = names.zip(columns).collect();
+            self.charts.chart_of_some("", labels[order], &curves)
+        };
+        let rates: Vec<Chart> = (1..3).filter_map(chart).collect();
+        let vector = chart(0).filter(|_| !rates.is_empty());
+        vector.into_iter().chain(rates).collect()
     }
 
     /// Of each body that turns: its rotation, its angular velocity and its angular acceleration.
@@ -59,25 +65,17 @@ impl SpaceFigures<'_> {
         let bodies = 0..self.scene.mechanism.bodies.len();
         let one = |b: usize| {
             let labels = ["rotation", "angular velocity", "angular acceleration"];
-            let order_of = |column: &Column, order: usize| match column.quantity {
-                Quantity::RotationInSpace(body, k) if body == BodyId(b) && k / 3 == order => {
-                    Some(k)
-                }
+            let charts = self.charts(labels, |column| match column.quantity {
+                Quantity::RotationInSpace(body, k) if body == BodyId(b) => Some(k),
                 _ => None,
-            };
-            let chart = |order: usize| self.vector(labels[order], |c| order_of(c, order));
-            let charts: Vec<Chart> = (1..3).filter_map(chart).collect();
-            if charts.is_empty() {
-                return None;
-            }
-            let charts: Vec<Chart> = chart(0).into_iter().chain(charts).collect();
+            });
             let name = &self.scene.mechanism.bodies[b].name;
             let text = "Components in the ground's axes; the rotation is a vector along its axis whose length is the angle.";
-            let title = format!("Rotation of {name}");
-            Some(
-                self.charts
-                    .figure(format!("rotation-{name}"), title, text, vec![charts.into()]),
-            )
+            let (file, title) = (format!("rotation-{name}"), format!("Rotation of {name}"));
+            (!charts.is_empty()).then(|| {
+                let panels = vec![charts.into()];
+                self.charts.figure(file, title, text, panels)
+            })
         };
         bodies.filter_map(one).collect()
     }
@@ -88,36 +86,22 @@ impl SpaceFigures<'_> {
         let mut figures = Vec::new();
         for (b, points) in self.scene.points.iter().enumerate() {
             for (point, at) in points {
-                let columns = self.charts.columns_where(|c| {
-                    matches!(c.quantity, Quantity::PointInSpace(body, p, _) if body == BodyId(b) && p == *at)
-                });
-                let is_known = drawn.iter().any(|other| self.are_one(other, &columns));
-                let labels = ["position", "velocity", "acceleration"];
-                let chart = |order: usize| {
-                    self.vector(labels[order], |c| match c.quantity {
-                        Quantity::PointInSpace(body, p, k)
-                            if body == BodyId(b) && p == *at && k / 3 == order =>
-                        {
-                            Some(k)
-                        }
-                        _ => None,
-                    })
+                let place = |column: &Column| match column.quantity {
+                    Quantity::PointInSpace(body, p, k) if body == BodyId(b) && p == *at => Some(k),
+                    _ => None,
                 };
-                let charts: Vec<Chart> = (1..3).filter_map(chart).collect();
+                let columns = self.charts.columns_where(|c| place(c).is_some());
+                let is_known = drawn.iter().any(|other| self.are_one(other, &columns));
+                let charts = self.charts(["position", "velocity", "acceleration"], place);
                 if is_known || charts.is_empty() {
                     continue;
                 }
                 drawn.push(columns);
-                let charts: Vec<Chart> = chart(0).into_iter().chain(charts).collect();
                 let name = format!("{}.{point}", self.scene.mechanism.bodies[b].name);
                 let text = "Components in the ground's axes.";
-                let title = format!("Point {name}");
-                figures.push(self.charts.figure(
-                    format!("point-{name}"),
-                    title,
-                    text,
-                    vec![charts.into()],
-                ));
+                let (file, title) = (format!("point-{name}"), format!("Point {name}"));
+                let panels = vec![charts.into()];
+                figures.push(self.charts.figure(file, title, text, panels));
             }
         }
         figures
@@ -135,36 +119,14 @@ impl SpaceFigures<'_> {
 
     /// Magnitudes of the forces and moments of the joints.
     fn reactions(&self) -> Option<Figure> {
-        let of = |is_force: bool| {
-            let columns = self.charts.columns_where(|c| match c.quantity {
-                Quantity::ForceMagnitude(_) => is_force,
-                Quantity::MomentMagnitude(_) => !is_force,
-                _ => false,
-            });
-            let suffix = if is_force {
-                ".magnitude"
-            } else {
-                ".moment-magnitude"
-            };
-            let mut curves = self.charts.labelled(&columns, suffix);
-            curves.retain(|(_, k)| !self.charts.is_zero(*k));
-            curves
-        };
-        let kinds = [
-            ("Magnitudes of joint forces", "force", of(true)),
-            ("Magnitudes of joint moments", "moment", of(false)),
-        ];
-        let mut panels: Vec<Panel> = Vec::new();
-        for (title, label, curves) in &kinds {
-            let count = curves.len().div_ceil(MAX_CURVES).max(1);
-            for some in curves.chunks(curves.len().div_ceil(count).max(1)) {
-                panels.push(self.charts.chart(title, label, some).into());
-            }
-        }
+        let charts = &self.charts;
+        let forces = charts.columns_where(|c| matches!(c.quantity, Quantity::ForceMagnitude(_)));
+        let moments = charts.columns_where(|c| matches!(c.quantity, Quantity::MomentMagnitude(_)));
+        let forces = charts.labelled(&forces, ".magnitude");
+        let moments = charts.labelled(&moments, ".moment-magnitude");
+        let mut panels = charts.even_charts(("Magnitudes of joint forces", "force"), forces);
+        panels.extend(charts.even_charts(("Magnitudes of joint moments", "moment"), moments));
         let text = "The force of each joint's first body on its second, and the moment about the joint's point of the second.";
-        (!panels.is_empty()).then(|| {
-            self.charts
-                .figure("reactions", "Joint reactions", text, panels)
-        })
+        (!panels.is_empty()).then(|| charts.figure("reactions", "Joint reactions", text, panels))
     }
 }

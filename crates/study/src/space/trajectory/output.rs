@@ -3,17 +3,16 @@
 use super::evaluator::SpaceEvaluator;
 use super::page::space_page;
 use super::reactions::JointReactions;
-use super::rows::compute;
-use crate::explain::StudyError;
-use crate::number_format::digits;
+use super::rows::computed_rows;
+use crate::explain::{NamedScene as _, StudyError};
+use crate::number_format::coordinate_unit;
 use crate::output::symbol;
 use crate::progress::Progress;
 use crate::space::views::SpacePositions;
 use crate::trajectory::compute::{Analysis, ComputedTrajectory, RowEvaluator as _};
 use crate::trajectory::document::Document;
-use crate::trajectory::figures::PictureSpan;
+use crate::trajectory::figures::{PictureSpan, describe_abscissa};
 use crate::trajectory::output::{TrajectoryOutcome, outcome_of};
-use dwell_geometry::space::ActuatorKind;
 use dwell_scene::SpaceScene;
 
 /// Positions from which paths are drawn.
@@ -33,13 +32,11 @@ pub fn analyse_in_space(
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
     let (reactions, model) = JointReactions::new(scene)?;
-    let (computed, evaluator) = compute(scene, (&reactions, &model), (analysis, points), progress)?;
+    let (of_model, of) = ((&reactions, &model), (analysis, points));
+    let (computed, evaluator) = computed_rows(scene, of_model, of, &|_| true, progress)?;
     let size = model.plan().size();
-    let actuator = computed
-        .trajectory
-        .swept_actuator()
-        .map(|k| &scene.mechanism.actuators[k]);
-    let swept = actuator.map(|a| (a.name.as_str(), matches!(a.kind, ActuatorKind::Angle(_))));
+    let swept = computed.trajectory.swept_actuator();
+    let swept = swept.and_then(|k| scene.actuator(k));
     let run = space_page(
         scene,
         size,
@@ -76,11 +73,12 @@ pub(crate) fn drawn_positions<'a>(
             .ok()?;
         let q = sample.q[trajectory.swept_actuator().unwrap_or(0)];
         let at = match swept {
-            Some((name, true)) => format!("{} = {:.1}°", symbol(name), q.to_degrees()),
-            Some((name, false)) => format!("{} = {} m", symbol(name), digits(q, 4)),
-            None => format!("time = {} s", digits(sample.t, 4)),
+            Some((name, is_angle)) => {
+                describe_abscissa(&symbol(name), coordinate_unit(is_angle), q)
+            }
+            None => describe_abscissa("time", "s", sample.t),
         };
-        Some((evaluator.placements.clone(), at.replace('-', "−")))
+        Some((evaluator.placements.clone(), at))
     };
     let intervals = DRAWN_POSITIONS - 1;
     let all: Vec<_> = (0..=intervals)

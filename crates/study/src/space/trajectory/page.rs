@@ -2,7 +2,7 @@
 
 use super::evaluator::SpaceEvaluator;
 use super::reactions::JointReactions;
-use crate::page::{RowChoice, run_page};
+use crate::page::{RowChoice, force_arrow, run_page};
 use crate::space::views::{anchor, page_drawing};
 use crate::trajectory::compute::{ComputedTrajectory, Quantity, RowEvaluator as _};
 use dwell_geometry::JointId;
@@ -44,13 +44,11 @@ fn arrows(
     computed: &ComputedTrajectory<'_>,
     reactions: &JointReactions,
 ) -> Vec<ForceArrow> {
-    let results = &computed.results;
     let column = |joint: usize, axis: usize| {
         let wanted = Component::Force(Axes::Ground, axis);
         let mut all = reactions.requested.iter();
         let k = all.position(|r| r.joint == JointId(joint) && r.component == wanted)?;
-        let mut written = results.written.iter();
-        written.position(|&c| results.columns[c].quantity == Quantity::Reaction(k))
+        computed.results.written_index(Quantity::Reaction(k))
     };
     let joints = scene.mechanism.joints.iter().enumerate();
     let arrow = |(j, joint): (usize, &dwell_geometry::space::Joint)| {
@@ -59,14 +57,10 @@ fn arrows(
         let [one, two] = joint
             .bodies
             .map(|b| scene.mechanism.bodies[b.0].name.as_str());
-        Some(ForceArrow {
-            name: joint.name.clone(),
-            group: "Reactions".to_owned(),
-            title: format!("{}: force of {one} on {two}", joint.name),
-            initially_visible: true,
-            at: anchor(joint.side_body(1), joint.sides[1].point),
-            direction: Direction::Components { columns },
-        })
+        let title = format!("{}: force of {one} on {two}", joint.name);
+        let at = anchor(joint.side_body(1), joint.sides[1].point);
+        let force = (at, Direction::Components { columns });
+        Some(force_arrow("Reactions", &joint.name, title, force))
     };
     joints.filter_map(arrow).collect()
 }

@@ -55,55 +55,38 @@ fn goes_with_reactions(scene: &SpaceScene, quantity: Quantity) -> bool {
     }
 }
 
-/// Rejects requested names that select no column of any analysis; `further` are the columns of a free motion's integration.
-///
-/// # Errors
-/// [`StudyError::Scene`] at the first of them.
-fn check_variables(
-    scene: &SpaceScene,
-    (reactions, plan): (&JointReactions, &Plan),
-    further: Vec<Column>,
-) -> Result<(), StudyError> {
-    let Some(variables) = &scene.variables else {
-        return Ok(());
-    };
-    let mut columns = all_columns(scene, (reactions, plan), (Analysis::FreeMotion, true));
-    columns.extend(further);
-    for (k, name) in variables.iter().enumerate() {
-        if columns.iter().any(|column| column.matches(name)) {
-            continue;
-        }
-        let open = reactions.indeterminate.iter();
-        let mut open = open.map(|reaction| scene.reaction_name(*reaction));
-        let (message, help) = match open.any(|open| is_prefix_of(name, &open)) {
-            true => (
-                format!("`{name}` is statically indeterminate: redundant constraints share the load"),
-                "`dwell check` lists such reactions; replace a joint of the loop by one with more freedoms".to_owned(),
-            ),
-            false => (
-                format!("there is no column `{name}`"),
-                suggestion(name, &columns),
-            ),
-        };
-        let place = (SceneLocation::Variable(k), "no such column");
-        return Err(scene_error(scene, message, help, [place]));
-    }
-    Ok(())
-}
-
 /// Rejects requested columns that no analysis of a scene has.
 ///
 /// # Errors
 /// [`StudyError::Scene`] at the first of them.
 pub(crate) fn reject_unknown_variables(
     scene: &SpaceScene,
-    of: (&JointReactions, &Plan),
+    (reactions, plan): (&JointReactions, &Plan),
 ) -> Result<(), StudyError> {
-    if scene.variables.is_none() {
+    let Some(variables) = &scene.variables else {
         return Ok(());
-    }
+    };
     // Another analysis than `simulate` does not fail where the motion's machine cannot be built.
     let machine = scene.motion.as_ref().and_then(|_| scene.machine(&[]).ok());
-    let further = machine.map_or_else(Vec::new, |machine| extra_columns(scene, &machine));
-    check_variables(scene, of, further)
+    let mut columns = all_columns(scene, (reactions, plan), (Analysis::FreeMotion, true));
+    columns.extend(machine.map_or_else(Vec::new, |machine| extra_columns(scene, &machine)));
+    let is_known = |name: &str| columns.iter().any(|column| column.matches(name));
+    let mut names = variables.iter().enumerate();
+    let Some((k, name)) = names.find(|(_, name)| !is_known(name)) else {
+        return Ok(());
+    };
+    let open = reactions.indeterminate.iter();
+    let mut open = open.map(|reaction| scene.reaction_name(*reaction));
+    let (message, help) = match open.any(|open| is_prefix_of(name, &open)) {
+        true => (
+            format!("`{name}` is statically indeterminate: redundant constraints share the load"),
+            "`dwell check` lists such reactions; replace a joint of the loop by one with more freedoms".to_owned(),
+        ),
+        false => (
+            format!("there is no column `{name}`"),
+            suggestion(name, &columns),
+        ),
+    };
+    let place = (SceneLocation::Variable(k), "no such column");
+    Err(scene_error(scene, message, help, [place]))
 }

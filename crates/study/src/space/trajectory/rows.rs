@@ -1,50 +1,30 @@
 //! The rows of a trajectory in space, and its page.
 
 use super::columns::all_columns;
-use super::evaluator::{SpaceEvaluator, state_of};
+use super::evaluator::SpaceEvaluator;
 use super::page::space_page;
-use super::path::followed_scene;
 use super::reactions::JointReactions;
 use super::requested::{reject_unknown_variables, requested};
 use super::rounding::RoundingInSpace;
-use crate::explain::{StudyError, TableArgument, scene_error};
-use crate::progress::{Progress, Step};
+use crate::explain::{NamedScene as _, StudyError, off_table_error, scene_error};
+use crate::progress::Progress;
 use crate::space::explain::{explain_loads, explain_position};
+use crate::space::prepared::range_limits;
 use crate::trajectory::compute::{
-    Analysis, ComputedTrajectory, POSITIONS_PER_STEP, Quantity, RowEvaluator as _, RowStorage,
-    StopCause, Trajectory, TrajectoryResults, TrajectorySample,
+    Analysis, Column, ComputedTrajectory, FollowedScene, MotionBetweenRows, Quantity,
+    RowEvaluator as _, RowStorage, StopCause, Trajectory, TrajectoryResults, TrajectorySample,
 };
-use dwell_geometry::space::Plan;
+use dwell_geometry::space::{Coordinate, Plan};
 use dwell_kinetostatics::KinetostaticsError;
 use dwell_kinetostatics::space::Model;
 use dwell_page::Page;
 use dwell_scene::SpaceScene;
 
-/// The rows of a scene in space along its prescribed motion, its sweep, or the range of its only actuator, and what evaluates further
-/// positions.
-pub(super) fn compute<'a, 'm>(
-    scene: &'a SpaceScene,
-    (reactions, model): (&'m JointReactions, &'m Model),
-    (analysis, points): (Analysis, Option<usize>),
-    progress: Progress<'_>,
-) -> Result<(ComputedTrajectory<'a>, SpaceEvaluator<'m>), StudyError>
-where
-    'a: 'm,
-{
-    let all = |_: Quantity| true;
-    computed_rows(
-        scene,
-        (reactions, model),
-        (analysis, points),
-        &all,
-        progress,
-    )
-}
-
-/// The same with some columns alone, among which is the abscissa.
+/// Some columns of a scene in space along its prescribed motion, its sweep, or the range of its only actuator, among which is the
+/// abscissa; and what evaluates further positions.
 pub(crate) fn computed_rows<'a, 'm>(
     scene: &'a SpaceScene,
-    (reactions, model): (&'m JointReactions, &'m Model),
+    of_model: (&'m JointReactions, &'m Model),
     (analysis, points): (Analysis, Option<usize>),
     is_wanted: &dyn Fn(Quantity) -> bool,
     progress: Progress<'_>,
@@ -52,11 +32,27 @@ pub(crate) fn computed_rows<'a, 'm>(
 where
     'a: 'm,
 {
-    reject_unknown_variables(scene, (reactions, model.plan()))?;
-    let followed = followed_scene(scene, model.plan());
+    let plan = of_model.1.plan();
+    reject_unknown_variables(scene, (of_model.0, plan))?;
+    let followed = followed_scene(scene, plan);
     let trajectory = Trajectory::new(&followed, analysis, points)?;
     trajectory.check_laws(&followed)?;
-    rows_along(scene, (reactions, model), trajectory, is_wanted, progress)
+    rows_along(scene, of_model, trajectory, is_wanted, progress)
+}
+
+/// What gives the coordinates that an analysis of a scene follows.
+fn followed_scene<'a>(scene: &'a SpaceScene, plan: &Plan) -> FollowedScene<'a> {
+    let actuators = 0..plan.actuators();
+    let is_only = actuators.len() == 1;
+    FollowedScene {
+        file: &scene.file,
+        prescribed: scene.prescribed.as_ref(),
+        sweep: scene.sweep.as_ref(),
+        coordinates: actuators.filter_map(|i| scene.actuator(i)).collect(),
+        start: scene.assembly.q.clone(),
+        period: plan.range().period(),
+        default_limits: is_only.then(|| range_limits(scene, plan)),
+    }
 }
 
 /// The rows along a trajectory.
@@ -71,38 +67,43 @@ pub(crate) fn rows_along<'a, 'm>(
     let of_model = (reactions, model.plan());
     let mut all = all_columns(scene, of_model, (analysis, trajectory.is_timed()));
     all.retain(|column| is_wanted(column.quantity));
-    let (columns, is_limited) = requested(scene, reactions, (analysis, &all));
+    let mut evaluators = [SpaceEvaluator::new(scene, (model, reactions), analysis)];
+    let rounding = RoundingInSpace::new((model, reactions), (analysis, trajectory.points));
+    let of = (&mut evaluators[..], rounding);
+    let computed = computed_columns(scene, of_model, (trajectory, all), of, None, progress)?;
+    let [evaluator] = evaluators;
+    Ok((computed, evaluator))
+}
+
+/// The rows of those of all columns along a trajectory that a scene requests, each by the evaluator of its chart; some positions are
+/// evaluated again for their rounding.
+pub(crate) fn computed_columns<'a>(
+    scene: &SpaceScene,
+    (reactions, plan): (&JointReactions, &Plan),
+    (trajectory, all): (Trajectory<'a>, Vec<Column>),
+    (evaluators, mut rounding): (&mut [SpaceEvaluator<'_>], Option<RoundingInSpace<'_>>),
+    between: Option<MotionBetweenRows<'_>>,
+    progress: Progress<'_>,
+) -> Result<ComputedTrajectory<'a>, StudyError> {
+    let (columns, is_limited) = requested(scene, reactions, (trajectory.analysis, &all));
     let written = (0..columns.len()).collect();
     let mut results = TrajectoryResults::of_columns(all, columns, written, is_limited);
     results.keep_rows_in(RowStorage::Bounded, trajectory.points)?;
     let open = reactions.indeterminate.iter();
     results.indeterminate = open.map(|r| scene.reaction_name(*r)).collect();
-    let mut evaluators = [SpaceEvaluator::new(scene, (model, reactions), analysis)];
-    let mut rounding = RoundingInSpace::new((model, reactions), (analysis, trajectory.points));
-    let stop = add_rows(
-        &trajectory,
-        (&mut evaluators, rounding.as_mut()),
-        &mut results,
-        progress,
-    );
+    let of = (&mut *evaluators, rounding.as_mut());
+    let stop = add_rows(&trajectory, of, &mut results, progress);
     results.rounding_error = rounding.map(|rounding| rounding.max_relative());
-    let early_stop = stop.map(|stop| stop.explain(scene, model.plan()));
-    let early_stop = match early_stop {
-        Some(error) if results.len() == 0 => return Err(error),
-        early_stop => early_stop,
-    };
-    results.finish_rows()?;
-    let size = model.plan().size();
-    results.find_extrema(size, &trajectory, &evaluators, None)?;
-    let [evaluator] = evaluators;
-    let computed = ComputedTrajectory {
+    let early_stop = stop.map(|(cause, at)| explain_end(scene, plan, cause, &at));
+    let of = (plan.size(), &*evaluators);
+    let early_stop = results.finish(&trajectory, early_stop, of, between)?;
+    Ok(ComputedTrajectory {
         table: results.table(),
         early_stop,
         notes: String::new(),
         trajectory,
         results,
-    };
-    Ok((computed, evaluator))
+    })
 }
 
 /// An analysis of a scene in space along its prescribed motion, its sweep, or the range of its only actuator.
@@ -116,7 +117,8 @@ pub fn compute_trajectory_in_space<'a>(
     progress: Progress<'_>,
 ) -> Result<ComputedTrajectory<'a>, StudyError> {
     let (reactions, model) = JointReactions::new(scene)?;
-    let (computed, _) = compute(scene, (&reactions, &model), (analysis, None), progress)?;
+    let of_model = (&reactions, &model);
+    let (computed, _) = computed_rows(scene, of_model, (analysis, None), &|_| true, progress)?;
     Ok(computed)
 }
 
@@ -141,26 +143,22 @@ pub fn trajectory_page_in_space(
     progress: Progress<'_>,
 ) -> Result<(Page, Option<StudyError>), StudyError> {
     let (reactions, model) = JointReactions::new(scene)?;
-    let (computed, evaluator) = compute(scene, (&reactions, &model), (analysis, None), progress)?;
+    let of_model = (&reactions, &model);
+    let (computed, evaluator) =
+        computed_rows(scene, of_model, (analysis, None), &|_| true, progress)?;
     let size = model.plan().size();
     let page = space_page(scene, size, &computed, (&reactions, vec![evaluator]));
     Ok((page, computed.early_stop))
 }
 
-/// Where rows end early, and why.
-pub(crate) struct RowsEnd {
-    cause: StopCause,
-    /// Where the last row is, or the first that cannot be evaluated.
-    at: String,
-}
-
-/// Evaluates one row after another, each by the evaluator of its chart, and some for their rounding; where and why it ends early, if it does.
-pub(crate) fn add_rows(
+/// Evaluates one row after another, each by the evaluator of its chart, and some for their rounding. Why it ends early, if it does, and
+/// where the last row is, or the first that cannot be evaluated.
+fn add_rows(
     trajectory: &Trajectory<'_>,
     (evaluators, mut rounding): (&mut [SpaceEvaluator<'_>], Option<&mut RoundingInSpace<'_>>),
     results: &mut TrajectoryResults,
     progress: Progress<'_>,
-) -> Option<RowsEnd> {
+) -> Option<(StopCause, String)> {
     let mut last: Option<TrajectorySample> = None;
     for k in 0..trajectory.points {
         let sample = trajectory.sample_at(trajectory.fraction_at(k));
@@ -178,50 +176,39 @@ pub(crate) fn add_rows(
                     format!("at the first position, {position}")
                 }
             };
-            return Some(RowsEnd { cause, at });
+            return Some((cause, at));
         }
         results.add_row(evaluator, &sample, (Vec::new(), evaluator.power_terms()));
         if let Some(rounding) = &mut rounding {
             let rest = vec![0.0; sample.q.len()];
-            let at = state_of(trajectory.analysis, &sample, &rest);
+            let at = sample.state(trajectory.analysis, &rest);
             let found = (&evaluator.pose, &evaluator.results);
             rounding.add_position((k, trajectory.load_time(&sample)), at, found);
         }
-        if k.is_multiple_of(POSITIONS_PER_STEP) {
-            progress(Step {
-                total: trajectory.progress_steps(),
-                done: "positions",
-            });
-        }
+        trajectory.report(k, progress);
         last = Some(sample);
     }
     None
 }
 
-impl RowsEnd {
-    /// The error, in the names of the scene.
-    pub(crate) fn explain(&self, scene: &SpaceScene, plan: &Plan) -> StudyError {
-        match self.cause {
-            StopCause::NoSolution(KinetostaticsError::Position(error)) => {
-                explain_position(scene, plan, &error)
-            }
-            StopCause::NoSolution(error) => explain_loads(scene, plan, &error),
-            StopCause::OffTable { load, value } => {
-                let magnitude = &scene.loads[load].magnitude;
-                let argument = TableArgument::of(magnitude, |c| scene.name_of(c), |c| c.is_angle());
-                match argument {
-                    Some(argument) => argument.error(scene, (load, value), &self.at),
-                    None => explain_loads(
-                        scene,
-                        plan,
-                        &KinetostaticsError::MagnitudeNotFinite { load },
-                    ),
-                }
-            }
-            // Couplings stand in scenes of the plane alone.
-            StopCause::Discontinuity { .. } => {
-                scene_error::<String>(scene, "the trajectory cannot go on", "", [])
-            }
+/// The error of rows that end early, in the names of the scene.
+fn explain_end(scene: &SpaceScene, plan: &Plan, cause: StopCause, at: &str) -> StudyError {
+    match cause {
+        StopCause::NoSolution(KinetostaticsError::Position(error)) => {
+            explain_position(scene, plan, &error)
+        }
+        StopCause::NoSolution(error) => explain_loads(scene, plan, &error),
+        StopCause::OffTable { load, value } => {
+            let magnitude = &scene.loads[load].magnitude;
+            let coordinates = (|c| scene.name_of(c), |c: Coordinate| c.is_angle());
+            off_table_error(scene, magnitude, coordinates, (load, value), at).unwrap_or_else(|| {
+                let error = KinetostaticsError::MagnitudeNotFinite { load };
+                explain_loads(scene, plan, &error)
+            })
+        }
+        // Couplings stand in scenes of the plane alone.
+        StopCause::Discontinuity { .. } => {
+            scene_error::<String>(scene, "the trajectory cannot go on", "", [])
         }
     }
 }

@@ -16,7 +16,7 @@ use dwell_kinetostatics::space::{Direction, LoadKind, Model, Workspace};
 use dwell_scene::SpaceScene;
 
 /// Sums over all bodies and loads.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Totals {
     /// Force (N) and moment about the origin (N·m) on the ground.
     pub(super) shaking: [f64; 6],
@@ -31,12 +31,11 @@ pub(super) struct Totals {
 
 impl Totals {
     pub(super) fn new(scene: &SpaceScene) -> Self {
+        let loads = scene.loads.len() + scene.drives.len();
         Self {
-            shaking: [0.0; 6],
-            power: [0.0; 5],
-            power_scale: 0.0,
-            magnitudes: vec![0.0; scene.loads.len() + scene.drives.len()],
-            load_powers: vec![0.0; scene.loads.len() + scene.drives.len()],
+            magnitudes: vec![0.0; loads],
+            load_powers: vec![0.0; loads],
+            ..Self::default()
         }
     }
 
@@ -83,9 +82,7 @@ impl Totals {
             + actuators.map(f64::abs).sum::<f64>()
             + self.load_powers.iter().map(|p| p.abs()).sum::<f64>();
     }
-}
 
-impl Totals {
     /// Actuator forces and reactions under inertia and loads at time `t`, at coordinates, speeds and accelerations; `given` are the
     /// magnitudes of drives in a motion that was solved for.
     pub(super) fn evaluate_loads(
@@ -114,16 +111,7 @@ impl Totals {
         let loads = scene.loads.iter().zip(&self.magnitudes);
         loads.fold(Vec3::ZERO, |sum, (load, &magnitude)| match load.kind {
             LoadKind::Gravity(direction) => sum + direction.scaled(magnitude),
-            LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::PointToPointForce { .. }
-            | LoadKind::Spring { .. }
-            | LoadKind::Damper { .. }
-            | LoadKind::JointTorque(_)
-            | LoadKind::TorsionSpring { .. }
-            | LoadKind::RotationalDamper(_)
-            | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_) => sum,
+            _ => sum,
         })
     }
 }

@@ -25,7 +25,7 @@ pub(super) struct SpaceDrawing<'a> {
     /// Half the length of a hinge, m.
     pub(super) unit: f64,
     /// Length below which points are one, m.
-    same: f64,
+    pub(super) same: f64,
     /// By joint: how far its symbol is moved along its axis, m.
     shifts: Vec<f64>,
     /// By joint: from where to where its second point goes along its axis, m.
@@ -67,11 +67,6 @@ impl<'a> SpaceDrawing<'a> {
         drawing
     }
 
-    /// Length below which points are one, m.
-    pub(super) fn same(&self) -> f64 {
-        self.same
-    }
-
     /// The smallest distance of two joints on a body; infinite without two.
     fn nearest_joints(&self, body: usize) -> f64 {
         let joints = self.scene.mechanism.joints.iter();
@@ -91,11 +86,22 @@ impl<'a> SpaceDrawing<'a> {
 
     /// The joints of a body with their points in its frame.
     fn joint_points(&self, body: usize) -> impl Iterator<Item = (usize, Vec3)> + '_ {
+        self.sides(body).map(|(j, k)| (j, self.bar_end(j, k)))
+    }
+
+    /// The joints of a body, each with the number of its side on it.
+    fn sides(&self, body: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         let joints = self.scene.mechanism.joints.iter().enumerate();
         joints.flat_map(move |(j, joint)| {
             let sides = (0..2).filter(move |k| joint.side_body(*k).0 == body);
-            sides.map(move |k| (j, self.bar_end(j, k)))
+            sides.map(move |k| (j, k))
         })
+    }
+
+    /// The points of the joints of a body, in its frame.
+    fn points_of_joints(&self, body: usize) -> impl Iterator<Item = Vec3> + '_ {
+        let joints = &self.scene.mechanism.joints;
+        self.sides(body).map(|(j, k)| joints[j].sides[k].point)
     }
 
     /// Where the bar of a joint's `k`th body ends at the joint: at the fork of a universal joint, or where its symbol is.
@@ -113,12 +119,11 @@ impl<'a> SpaceDrawing<'a> {
     pub(super) fn stem(&self, joint: usize, k: usize) -> Vec3 {
         let of = &self.scene.mechanism.joints[joint];
         let (body, side) = (of.bodies[k].0, &of.sides[k]);
-        let others = self.scene.mechanism.joints.iter().flat_map(|other| {
-            let sides = (0..2).filter(|i| other.side_body(*i).0 == body);
-            sides.map(|i| other.sides[i].point)
-        });
         let named = self.scene.points[body].iter().map(|(_, p)| *p);
-        let away = others.chain(named).map(|p| p - side.point);
+        let away = self
+            .points_of_joints(body)
+            .chain(named)
+            .map(|p| p - side.point);
         let toward = away.fold(Vec3::ZERO, |sum, d| sum + d);
         let flat = toward - side.axis.scaled(side.axis.dot(toward));
         let is_long = flat.norm() > self.same;
@@ -154,11 +159,8 @@ impl<'a> SpaceDrawing<'a> {
                 let from = self.middle_of_joints(far, placements)
                     - placed(placements, joint.bodies[k], own.point);
                 let axis = placements[joint.bodies[k].0].rotation.apply(own.axis);
-                let sign = if axis.dot(from) > self.same {
-                    -1.0
-                } else {
-                    1.0
-                };
+                let is_ahead = axis.dot(from) > self.same;
+                let sign = if is_ahead { -1.0 } else { 1.0 };
                 shifts[i] = sign * SHIFT * self.unit;
             }
         }
@@ -191,12 +193,8 @@ impl<'a> SpaceDrawing<'a> {
 
     /// The middle of a body's joints in the axes of the ground.
     fn middle_of_joints(&self, body: BodyId, placements: &[Placement]) -> Vec3 {
-        let joints = self.scene.mechanism.joints.iter();
-        let points = joints.flat_map(|joint| {
-            let sides = (0..2).filter(|k| joint.side_body(*k) == body);
-            sides.map(|k| placed(placements, body, joint.sides[k].point))
-        });
-        let points: Vec<Vec3> = points.collect();
+        let points = self.points_of_joints(body.0);
+        let points: Vec<Vec3> = points.map(|p| placed(placements, body, p)).collect();
         let sum = points.iter().fold(Vec3::ZERO, |sum, p| sum + *p);
         sum.scaled(1.0 / points.len().max(1) as f64)
     }

@@ -6,7 +6,8 @@ use super::loads::link_of;
 use super::points::placed;
 use super::projection::Picture;
 use super::segments::{line_of, nearest_of_segment};
-use super::solids::{center_of_mass, circle, hull};
+use super::solids::{center_of_mass, circle, hull, named};
+use crate::output::body_color;
 use crate::symbols::spring_outline;
 use dwell_geometry::space::{JointKind, Placement, Vec3};
 use dwell_geometry::{BodyId, vec2};
@@ -41,15 +42,9 @@ impl SpaceDrawing<'_> {
         slides.any(|joint| joint.bodies[1 - self.guide_side(joint)] == body)
     }
 
-    /// Grey for the ground; six palette colours, then ink, then the colours again: as in the plane.
+    /// As in the plane.
     pub(super) fn color(&self, body: BodyId) -> Paint {
-        if self.is_ground(body) {
-            return Paint::Grey;
-        }
-        match (body.0 - usize::from(body.0 > self.scene.mechanism.ground)) % 7 {
-            6 => Paint::Ink,
-            k => Paint::Palette(k),
-        }
+        body_color(self.scene.mechanism.ground, body)
     }
 
     /// The mechanism seen from one side; without words where it moves.
@@ -149,11 +144,7 @@ impl<'a> Scenery<'a> {
                 let behind = 1.5 * step + 0.1 * self.drawing.unit;
                 self.picture.add(near - behind, vec![line([from, to], rim)]);
             }
-            let bar = line([from, to], Pen::new(color, width));
-            let bar = match name {
-                Some(name) => bar.named(name),
-                None => bar,
-            };
+            let bar = named(line([from, to], Pen::new(color, width)), name);
             self.picture.add(near, vec![bar]);
         }
     }
@@ -161,10 +152,8 @@ impl<'a> Scenery<'a> {
     /// A bar between two points; a plate through more, or the bars from their middle.
     fn body(&mut self, body: BodyId) {
         let mechanism = &self.drawing.scene.mechanism;
-        let (name, color) = (
-            mechanism.bodies[body.0].name.as_str(),
-            self.drawing.color(body),
-        );
+        let name = mechanism.bodies[body.0].name.as_str();
+        let color = self.drawing.color(body);
         let local = self.drawing.drawn_points(body.0);
         let points: Vec<Vec3> = local.iter().map(|p| self.at(body, *p)).collect();
         let bar = (color, BAR);
@@ -177,7 +166,7 @@ impl<'a> Scenery<'a> {
             }
             [a, b] => self.bar([a, b], bar, Some(name)),
             _ => {
-                if let Some([a, b]) = line_of(&points, self.drawing.same()) {
+                if let Some([a, b]) = line_of(&points, self.drawing.same) {
                     return self.bar([a, b], bar, Some(name));
                 }
                 if points.len() == 3 {
@@ -229,10 +218,7 @@ impl<'a> Scenery<'a> {
         let view = self.picture.view;
         let outline = circle(view.place(at), 0.9 * self.drawing.unit);
         let line = Shape::line(outline, Pen::new(self.drawing.color(body), 4.0));
-        let line = match self.name(body) {
-            Some(name) => line.named(name),
-            None => line,
-        };
+        let line = named(line, self.name(body));
         self.picture.add(view.nearness(at), vec![line]);
     }
 

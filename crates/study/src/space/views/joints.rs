@@ -23,13 +23,13 @@ impl<'a> Scenery<'a> {
     // Long: a few lines for each kind of joint.
     pub(super) fn joint(&mut self, j: usize) {
         let joint = &self.drawing.scene.mechanism.joints[j];
-        let (unit, view) = (self.drawing.unit, self.picture.view);
+        let unit = self.drawing.unit;
         let [one, two] = joint.bodies;
         let ends = [self.anchor(j, 0), self.anchor(j, 1)];
         let at = ends[1];
         let axes = self.axes(joint, 0);
-        let near = view.nearness(at) + BEFORE * unit;
-        let hinge = [HINGE_RADIUS * unit, unit];
+        let sleeve = [HINGE_RADIUS * unit, SLEEVE * unit];
+        let plain = |of: &Self| (of.drawing.color(two), None);
         match joint.kind {
             JointKind::Revolute => {
                 self.center_line(at, axes.axis);
@@ -40,12 +40,11 @@ impl<'a> Scenery<'a> {
                     two
                 };
                 let paint = (self.drawing.color(body), self.name(body));
-                self.picture
-                    .add(near, cylinder(&view, at, &axes, hinge, paint));
+                self.cylinder(at, &axes, [HINGE_RADIUS * unit, unit], paint);
                 self.ground_mark(joint, at, Some(axes.axis));
             }
             JointKind::Spherical => {
-                self.picture.add(near, ball(&view, at, BALL_RADIUS * unit));
+                self.ball(at, BALL_RADIUS);
                 self.ground_mark(joint, at, None);
             }
             JointKind::Cylindrical if joint.bodies.iter().any(|b| self.drawing.is_ground(*b)) => {
@@ -53,68 +52,66 @@ impl<'a> Scenery<'a> {
             }
             JointKind::Cylindrical => {
                 self.guide(j);
-                let sleeve = [HINGE_RADIUS * unit, SLEEVE * unit];
-                self.picture.add(
-                    near,
-                    cylinder(&view, at, &axes, sleeve, (self.drawing.color(two), None)),
-                );
+                self.cylinder(at, &axes, sleeve, plain(self));
             }
             JointKind::Helical { pitch } => {
                 self.guide(j);
-                let sleeve = [HINGE_RADIUS * unit, SLEEVE * unit];
-                let mut shapes =
-                    cylinder(&view, at, &axes, sleeve, (self.drawing.color(two), None));
-                shapes.push(thread(&view, at, &axes, sleeve, pitch >= 0.0));
-                self.picture.add(near, shapes);
+                self.cylinder(at, &axes, sleeve, plain(self));
+                let thread = thread(&self.picture.view, at, &axes, sleeve, pitch >= 0.0);
+                self.picture.add(self.before(at), vec![thread]);
             }
             JointKind::Prismatic => self.slide(j),
             JointKind::Universal => self.universal(j, at),
             JointKind::Planar => {
-                let foot = axes.axis.scaled(-0.3 * unit);
-                let plane = block(
-                    &view,
-                    at + foot,
-                    &axes,
-                    PLATE.map(|s| s * unit),
-                    self.drawing.color(one),
-                    None,
-                );
-                self.picture.add(near - unit, plane);
-                self.picture.add(
-                    near,
-                    cylinder(
-                        &view,
-                        at,
-                        &axes,
-                        [unit, 0.3 * unit],
-                        (self.drawing.color(two), None),
-                    ),
-                );
+                let foot = at + axes.axis.scaled(-0.3 * unit);
+                let size = PLATE.map(|s| s * unit);
+                let plate = self.drawing.color(one);
+                let plane = block(&self.picture.view, foot, &axes, size, plate, None);
+                self.picture.add(self.before(at) - unit, plane);
+                self.cylinder(at, &axes, [unit, 0.3 * unit], plain(self));
                 self.ground_mark(joint, at, Some(axes.normal));
             }
             JointKind::Distance { .. } => {
                 self.bar(ends, (Paint::Grey, ROD), None);
                 for (end, body) in ends.into_iter().zip(joint.bodies) {
-                    let near = view.nearness(end) + BEFORE * unit;
-                    self.picture
-                        .add(near, ball(&view, end, 0.75 * BALL_RADIUS * unit));
+                    self.ball(end, 0.75 * BALL_RADIUS);
                     if self.drawing.is_ground(body) {
                         self.hatching(end, None, -(self.middle(two) - end));
                     }
                 }
             }
             JointKind::Weld => {
-                self.picture.add(near, ball(&view, at, 0.4 * unit));
+                self.ball(at, 0.4);
                 self.ground_mark(joint, at, None);
             }
             // The normal of the teeth, through the pitch point.
             JointKind::Gear { .. } => {
-                let ends = [-0.9, 0.9].map(|s| view.place(at + axes.axis.scaled(s * unit)));
-                let normal = Shape::line(ends.to_vec(), Pen::new(Paint::Ink, 2.5));
-                self.picture.add(near, vec![normal]);
-                self.picture.add(near, ball(&view, at, 0.3 * unit));
+                let ends = [-0.9, 0.9].map(|s| at + axes.axis.scaled(s * unit));
+                let normal = self.segment(ends, Pen::new(Paint::Ink, 2.5));
+                self.picture.add(self.before(at), vec![normal]);
+                self.ball(at, 0.3);
             }
         }
+    }
+
+    /// How near the symbol of a joint at a point is drawn: before the bars that it connects.
+    fn before(&self, at: Vec3) -> f64 {
+        self.picture.view.nearness(at) + BEFORE * self.drawing.unit
+    }
+
+    fn cylinder(&mut self, at: Vec3, axes: &Axes, size: [f64; 2], paint: (Paint, Option<&str>)) {
+        let shapes = cylinder(&self.picture.view, at, axes, size, paint);
+        self.picture.add(self.before(at), shapes);
+    }
+
+    /// A ball, its radius in half lengths of a hinge.
+    fn ball(&mut self, at: Vec3, radius: f64) {
+        let shapes = ball(&self.picture.view, at, radius * self.drawing.unit);
+        self.picture.add(self.before(at), shapes);
+    }
+
+    fn segment(&self, ends: [Vec3; 2], pen: Pen) -> Shape {
+        Shape::line(ends.map(|end| self.picture.view.place(end)).to_vec(), pen)
     }
 
     /// The axes of a joint on one of its bodies, in those of the ground.
@@ -125,10 +122,9 @@ impl<'a> Scenery<'a> {
 
     /// The axis of a hinge beyond its ends.
     fn center_line(&mut self, at: Vec3, axis: Vec3) {
-        let view = self.picture.view;
-        let ends = [-2.1, 2.1].map(|s| view.place(at + axis.scaled(s * self.drawing.unit)));
-        let line = Shape::line(ends.to_vec(), Pen::new(Paint::Ink, 1.3).dashed());
-        self.picture.add(view.nearness(at), vec![line]);
+        let ends = [-2.1, 2.1].map(|s| at + axis.scaled(s * self.drawing.unit));
+        let line = self.segment(ends, Pen::new(Paint::Ink, 1.3).dashed());
+        self.picture.add(self.picture.view.nearness(at), vec![line]);
     }
 
     /// A block on its guide: a hatched line of the ground, or a rod of the other body.
@@ -139,10 +135,9 @@ impl<'a> Scenery<'a> {
         let block_body = joint.bodies[1 - on];
         let (at, axes) = (self.anchor(j, 1 - on), self.axes(joint, on));
         let size = BLOCK.map(|s| s * unit);
-        let near = view.nearness(at) + BEFORE * unit;
         let (color, name) = (self.drawing.color(block_body), self.name(block_body));
-        self.picture
-            .add(near, block(&view, at, &axes, size, color, name));
+        let block = block(&view, at, &axes, size, color, name);
+        self.picture.add(self.before(at), block);
         if !self.drawing.is_ground(joint.bodies[on]) {
             return self.guide(j);
         }
@@ -186,25 +181,15 @@ impl<'a> Scenery<'a> {
     /// A sleeve on the ground, through which a rod of the other body goes.
     fn grounded_sleeve(&mut self, j: usize) {
         let joint = &self.drawing.scene.mechanism.joints[j];
-        let (unit, view) = (self.drawing.unit, self.picture.view);
-        let on = self.drawing.guide_side(joint);
-        let (at, rod, axes) = (
-            self.anchor(j, on),
-            self.anchor(j, 1 - on),
-            self.axes(joint, on),
-        );
+        let (unit, on) = (self.drawing.unit, self.drawing.guide_side(joint));
+        let (at, rod) = (self.anchor(j, on), self.anchor(j, 1 - on));
+        let axes = self.axes(joint, on);
         let sleeve = [HINGE_RADIUS * unit, SLEEVE * unit];
-        let near = view.nearness(at) + BEFORE * unit;
-        self.picture.add(
-            near,
-            cylinder(&view, at, &axes, sleeve, (Paint::Grey, None)),
-        );
+        self.cylinder(at, &axes, sleeve, (Paint::Grey, None));
         self.ground_mark(joint, at, Some(axes.axis));
         let apart = axes.axis.dot(rod - at);
-        let ends = [
-            apart.min(0.0) - GUIDE_MARGIN * unit,
-            apart.max(0.0) + GUIDE_MARGIN * unit,
-        ];
+        let margin = GUIDE_MARGIN * unit;
+        let ends = [apart.min(0.0) - margin, apart.max(0.0) + margin];
         let body = joint.bodies[1 - on];
         let ends = ends.map(|s| at + axes.axis.scaled(s));
         self.bar(ends, (self.drawing.color(body), ROD), None);
@@ -260,50 +245,40 @@ impl<'a> Scenery<'a> {
     /// A Hooke joint: the cross, and the fork of each body.
     fn universal(&mut self, j: usize, at: Vec3) {
         let joint = &self.drawing.scene.mechanism.joints[j];
-        let (unit, view) = (self.drawing.unit, self.picture.view);
-        let arm = ARM * unit;
+        let arm = ARM * self.drawing.unit;
         for k in 0..2 {
             let (body, axis) = (joint.bodies[k], self.axes(joint, k).axis);
             let stem = self.turned(body, self.drawing.stem(j, k));
-            self.fork(
-                [at, axis.scaled(arm), stem.scaled(arm)],
-                self.drawing.color(body),
-            );
+            let color = self.drawing.color(body);
+            self.fork([at, axis.scaled(arm), stem.scaled(arm)], color);
             let ends = [-1.0, 1.0].map(|s| at + axis.scaled(s * arm));
             for half in ends {
-                let line = Shape::line(
-                    [at, half].map(|p| view.place(p)).to_vec(),
-                    Pen::new(Paint::Ink, 4.0),
-                );
-                let middle = (at + half).scaled(0.5);
-                self.picture
-                    .add(view.nearness(middle) + BEFORE * unit, vec![line]);
-                let near = view.nearness(half) + BEFORE * unit;
-                self.picture.add(near, ball(&view, half, 0.24 * unit));
+                self.line_before(at, half, Pen::new(Paint::Ink, 4.0));
+                self.ball(half, 0.24);
             }
             if self.drawing.is_ground(body) {
                 self.hatching(at + stem.scaled(arm), None, stem);
             }
         }
-        self.picture.add(
-            view.nearness(at) + BEFORE * unit,
-            ball(&view, at, 0.3 * unit),
-        );
+        self.ball(at, 0.3);
+    }
+
+    /// A line between two points, as near as its middle.
+    fn line_before(&mut self, from: Vec3, to: Vec3, pen: Pen) {
+        let line = self.segment([from, to], pen);
+        let near = self.before((from + to).scaled(0.5));
+        self.picture.add(near, vec![line]);
     }
 
     /// Half a ring from one end of the axis to the other.
     fn fork(&mut self, [at, axis, stem]: [Vec3; 3], color: Paint) {
         const STEPS: usize = 16;
-        let view = self.picture.view;
         let point = |k: usize| {
             let (sin, cos) = (PI * k as f64 / STEPS as f64).sin_cos();
             at + axis.scaled(cos) + stem.scaled(sin)
         };
         for k in 0..STEPS {
-            let [a, b] = [point(k), point(k + 1)];
-            let line = Shape::line([a, b].map(|p| view.place(p)).to_vec(), Pen::new(color, 4.5));
-            let near = view.nearness((a + b).scaled(0.5)) + BEFORE * self.drawing.unit;
-            self.picture.add(near, vec![line]);
+            self.line_before(point(k), point(k + 1), Pen::new(color, 4.5));
         }
     }
 
@@ -315,7 +290,13 @@ impl<'a> Scenery<'a> {
         let (at, axes) = (self.anchor(j, 1), self.axes(joint, 0));
         let pen = Pen::new(Paint::Ink, 2.5);
         let near = view.nearness(at) + 2.0 * BEFORE * unit;
-        match kind {
+        let arrow = |[from, to]: [[f64; 2]; 2]| Shape::Arrow {
+            from,
+            to,
+            pen,
+            name: None,
+        };
+        let shapes = match kind {
             ActuatorKind::Angle(_) => {
                 const STEPS: usize = 24;
                 let middle = at + axes.axis.scaled(1.7 * unit);
@@ -325,13 +306,8 @@ impl<'a> Scenery<'a> {
                     view.place(middle + rim.scaled(1.15 * unit))
                 };
                 let arc: Vec<[f64; 2]> = (0..STEPS).map(point).collect();
-                let arrow = Shape::Arrow {
-                    from: point(STEPS - 3),
-                    to: point(STEPS + 1),
-                    pen,
-                    name: None,
-                };
-                self.picture.add(near, vec![Shape::line(arc, pen), arrow]);
+                let head = arrow([STEPS - 3, STEPS + 1].map(point));
+                vec![Shape::line(arc, pen), head]
             }
             // Beside the rod, from one of its ends towards the other.
             ActuatorKind::Length(_) => {
@@ -341,26 +317,14 @@ impl<'a> Scenery<'a> {
                 let aside = [-dy, dx].map(|d| 1.2 * unit * d / long);
                 let point =
                     |s: f64| [0, 1].map(|k| ends[0][k] + s * (ends[1][k] - ends[0][k]) + aside[k]);
-                let arrow = Shape::Arrow {
-                    from: point(0.3),
-                    to: point(0.7),
-                    pen,
-                    name: None,
-                };
-                self.picture.add(near, vec![arrow]);
+                vec![arrow([0.3, 0.7].map(point))]
             }
             ActuatorKind::Travel(_) => {
                 let offset = axes.normal.scaled(1.5 * unit);
-                let [from, to] =
-                    [-1.6, 1.6].map(|s| view.place(at + offset + axes.axis.scaled(s * unit)));
-                let arrow = Shape::Arrow {
-                    from,
-                    to,
-                    pen,
-                    name: None,
-                };
-                self.picture.add(near, vec![arrow]);
+                let point = |s: f64| view.place(at + offset + axes.axis.scaled(s * unit));
+                vec![arrow([-1.6, 1.6].map(point))]
             }
-        }
+        };
+        self.picture.add(near, shapes);
     }
 }

@@ -22,3 +22,4 @@ mod solids;
 pub(crate) use self::page::{anchor, page_drawing};
 #[cfg(feature = "output")]
 pub(crate) use self::pictures::SpacePositions;
+pub(crate) use self::points::placed;

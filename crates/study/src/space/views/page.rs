@@ -28,15 +28,10 @@ pub(crate) fn page_drawing(
     let all = positions.iter().flat_map(|(p, _)| points_of(scene, p));
     let all: Vec<Vec3> = all.collect();
     let sides = [0, 1, 2].map(|k| extent(all.iter().map(|p| Vec3::AXES[k].dot(*p))));
-    let size = sides
-        .iter()
-        .map(|[low, high]| high - low)
-        .fold(0.0, f64::max);
-    let size = if size > 0.0 && size.is_finite() {
-        size
-    } else {
-        1.0
-    };
+    let sides = sides.iter().map(|[low, high]| high - low);
+    let size = sides.fold(0.0, f64::max);
+    let is_extended = size > 0.0 && size.is_finite();
+    let size = if is_extended { size } else { 1.0 };
     let mut parts = SpaceParts {
         drawing: SpaceDrawing::new(scene, &positions, size),
         parts: Vec::new(),
@@ -97,18 +92,14 @@ pub(crate) fn anchor(body: BodyId, p: Vec3) -> Anchor {
 
 /// All named points of moving bodies.
 fn paths(scene: &SpaceScene) -> Vec<DrawnPath> {
-    let bodies = scene.points.iter().enumerate();
+    let (bodies, all) = (scene.points.iter().enumerate(), scene.paths.is_empty());
     let moving = bodies.filter(|(b, _)| *b != scene.mechanism.ground);
     let path = |(b, points): (usize, &Vec<(String, Vec3)>)| -> Vec<DrawnPath> {
         let body = &scene.mechanism.bodies[b].name;
         let one = |(name, p): &(String, Vec3)| DrawnPath {
             at: anchor(BodyId(b), *p),
             name: format!("{body}.{name}"),
-            requested: scene.paths.is_empty()
-                || scene
-                    .paths
-                    .iter()
-                    .any(|path| path.body.0 == b && path.at == *p),
+            requested: all || scene.paths.iter().any(|of| of.body.0 == b && of.at == *p),
         };
         points.iter().map(one).collect()
     };
@@ -162,7 +153,7 @@ impl SpaceParts<'_> {
         let middle = sum.scaled(1.0 / points.len().max(1) as f64);
         let line = match points.len() {
             0 | 1 => None,
-            _ => line_of(&points, self.drawing.same()),
+            _ => line_of(&points, self.drawing.same),
         };
         match (line, points.len()) {
             (Some(ends), _) => self.outline(OutlineLook::Bar, body, &ends, false),
@@ -195,28 +186,21 @@ impl SpaceParts<'_> {
 
     /// The rod on which a joint slides: of the body with the guide, or of the moving body through a sleeve of the ground.
     fn guide(&mut self, j: usize, joint: &Joint) {
-        let slides = match joint.kind {
-            JointKind::Prismatic | JointKind::Cylindrical | JointKind::Helical { .. } => true,
-            JointKind::Weld
-            | JointKind::Revolute
-            | JointKind::Universal
-            | JointKind::Spherical
-            | JointKind::Planar
-            | JointKind::Distance { .. }
-            | JointKind::Gear { .. } => false,
-        };
+        let slides = matches!(
+            joint.kind,
+            JointKind::Prismatic | JointKind::Cylindrical | JointKind::Helical { .. }
+        );
         let [low, high] = self.drawing.travels[j];
         if !slides || low > high {
             return;
         }
         let on = self.drawing.guide_side(joint);
-        let is_sleeve = matches!(joint.kind, JointKind::Cylindrical)
-            && joint.bodies.iter().any(|b| self.drawing.is_ground(*b));
+        let is_sleeve = matches!(joint.kind, JointKind::Cylindrical) && self.is_grounded(joint);
         let side = if is_sleeve { 1 - on } else { on };
-        let [low, high] = if side == 0 {
-            [low, high]
+        let (low, high) = if side == 0 {
+            (low, high)
         } else {
-            [-high, -low]
+            (-high, -low)
         };
         let margin = GUIDE_MARGIN * self.drawing.unit;
         let (start, axis) = (self.drawing.anchor(j, side), joint.sides[side].axis);
@@ -239,19 +223,11 @@ impl SpaceParts<'_> {
         // A slide is where its block is, a sleeve on its side of the guide.
         let k = match joint.kind {
             JointKind::Prismatic => 1 - self.drawing.guide_side(joint),
-            JointKind::Cylindrical if joint.bodies.iter().any(|b| self.drawing.is_ground(*b)) => {
-                self.drawing.guide_side(joint)
-            }
+            JointKind::Cylindrical if self.is_grounded(joint) => self.drawing.guide_side(joint),
             JointKind::Cylindrical | JointKind::Helical { .. } => {
                 1 - self.drawing.guide_side(joint)
             }
-            JointKind::Revolute
-            | JointKind::Spherical
-            | JointKind::Universal
-            | JointKind::Planar
-            | JointKind::Weld
-            | JointKind::Gear { .. }
-            | JointKind::Distance { .. } => 1,
+            _ => 1,
         };
         let mark = self.mark(j, joint, (look, k), joint.name.clone());
         self.parts.push(Part::Mark(mark));
@@ -267,19 +243,15 @@ impl SpaceParts<'_> {
             // Of a rod each end has its own ball.
             on_ground: match joint.kind {
                 JointKind::Distance { .. } => self.drawing.is_ground(joint.bodies[k]),
-                JointKind::Weld
-                | JointKind::Revolute
-                | JointKind::Prismatic
-                | JointKind::Cylindrical
-                | JointKind::Helical { .. }
-                | JointKind::Universal
-                | JointKind::Spherical
-                | JointKind::Planar
-                | JointKind::Gear { .. } => joint.bodies.iter().any(|b| self.drawing.is_ground(*b)),
+                _ => self.is_grounded(joint),
             },
             label,
             title: format!("{} (joint of {one} and {two})", joint.name),
         }
+    }
+
+    fn is_grounded(&self, joint: &Joint) -> bool {
+        joint.bodies.iter().any(|b| self.drawing.is_ground(*b))
     }
 
     /// A massless rod with its balls.

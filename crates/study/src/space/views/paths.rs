@@ -18,7 +18,7 @@ pub(super) fn paths(
 ) -> Vec<Shape> {
     let mut known: Vec<Vec<Vec3>> = Vec::new();
     let mut shapes = Vec::new();
-    let same = drawing.same();
+    let same = drawing.same;
     let requested = drawing.scene.paths.iter().map(|path| (path.body, path.at));
     let points = match drawing.scene.paths.is_empty() {
         true => local_points(drawing.scene),

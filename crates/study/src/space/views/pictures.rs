@@ -12,9 +12,11 @@ use super::paths::paths;
 use super::points::points_of;
 use crate::output::figure;
 use crate::ranges::extent;
+use crate::trajectory::figures::animated;
 use dwell_geometry::space::{JointKind, Placement, Vec3};
 use dwell_report::{Animation, Axis, Drawing, Figure, Paint, Panel, Pen, Shape, TextPlacement};
 use dwell_scene::SpaceScene;
+use std::collections::BTreeMap;
 
 /// The largest height of a panel, in its widths.
 const HEIGHT: f64 = 0.9;
@@ -24,10 +26,6 @@ const ABOUT: f64 = 0.42;
 const SYMBOL_OF_REACH: f64 = 0.2;
 /// Length of the ground's axes in widths of the picture.
 const AXES: f64 = 0.1;
-/// Frames of the animation at most, the time of each, and its width.
-const MAX_FRAMES: usize = 60;
-const DELAY_MS: u32 = 60;
-const WIDTH_PX: u32 = 640;
 
 const CAPTION: &str = "Top view (x–y) above the front view (x–z), next to it the side view from the right (y–z), and an axonometric view, all \
                        to one scale. Cylinders are hinges, long ones sleeves on rods, blocks slides, balls spherical joints, forks with a cross universal joints; \
@@ -37,31 +35,22 @@ const SPRINGS: &str = " Zigzag lines are springs, dashed ones dampers.";
 
 /// The symbols of the kinds of joints that few scenes have, each of those that are there.
 fn rare_joints(scene: &SpaceScene) -> String {
-    let has = |of: fn(&JointKind) -> bool| scene.mechanism.joints.iter().any(|j| of(&j.kind));
-    let symbols = [
-        (
-            has(|kind| matches!(kind, JointKind::Helical { .. })),
-            " Threaded cylinders are screws.",
-        ),
-        (
-            has(|kind| matches!(kind, JointKind::Planar)),
-            " A disc on a plate is a planar joint.",
-        ),
-        (
-            has(|kind| matches!(kind, JointKind::Gear { .. })),
-            " A dot with a short line is where teeth meet, with their normal.",
-        ),
-        (
-            has(|kind| matches!(kind, JointKind::Distance { .. })),
-            " Grey lines are links without mass.",
-        ),
-        (
-            has(|kind| matches!(kind, JointKind::Weld)),
-            " A dot between two bodies is a weld.",
-        ),
-    ];
-    let named = symbols.into_iter().filter(|(is_there, _)| *is_there);
-    named.map(|(_, text)| text).collect()
+    let symbols = scene.mechanism.joints.iter().filter_map(|joint| {
+        Some(match joint.kind {
+            JointKind::Helical { .. } => (0, "Threaded cylinders are screws."),
+            JointKind::Planar => (1, "A disc on a plate is a planar joint."),
+            JointKind::Gear { .. } => (
+                2,
+                "A dot with a short line is where teeth meet, with their normal.",
+            ),
+            JointKind::Distance { .. } => (3, "Grey lines are links without mass."),
+            JointKind::Weld => (4, "A dot between two bodies is a weld."),
+            _ => return None,
+        })
+    });
+    let symbols: BTreeMap<usize, &str> = symbols.collect();
+    let texts = symbols.into_values().map(|text| format!(" {text}"));
+    texts.collect()
 }
 
 /// A mechanism in positions that follow each other.
@@ -125,24 +114,15 @@ impl SpacePositions<'_> {
     /// The axonometric view in motion.
     pub(crate) fn animation(&self) -> Animation {
         let views = Views::new(self);
-        let last = self.all.len().saturating_sub(1);
-        let count = MAX_FRAMES.min(self.all.len());
-        // Over a whole period the last position equals the first.
-        let steps = count.saturating_sub(usize::from(!self.is_closed()));
-        let frame = |i: usize| {
-            let (placements, at) = &self.all[(i * last) / steps.max(1)];
+        let frame = |k: usize| {
+            let (placements, at) = &self.all[k];
             Drawing {
                 title: at.clone(),
                 ..views.axonometric_panel(placements, false)
             }
         };
-        Animation {
-            name: "mechanism".to_owned(),
-            frames: (0..count).map(frame).collect(),
-            delay_ms: DELAY_MS,
-            width_px: WIDTH_PX,
-            provenance: self.provenance.clone(),
-        }
+        let is_closed = self.is_closed();
+        animated(self.all.len(), is_closed, frame, &self.provenance)
     }
 
     /// Whether the last position equals the first.
@@ -150,7 +130,8 @@ impl SpacePositions<'_> {
         let [(first, _), .., (last, _)] = &self.all[..] else {
             return false;
         };
-        let size = extent_size(first.iter().map(|p| p.position));
+        let size = first.iter().map(|p| p.position.norm());
+        let size = size.fold(0.0, f64::max);
         let same = |(a, b): (&Placement, &Placement)| {
             let turned = (0..3).map(|k| (a.rotation.columns[k] - b.rotation.columns[k]).norm());
             (a.position - b.position).norm() <= 1e-6 * size && turned.fold(0.0, f64::max) <= 1e-6
@@ -301,8 +282,4 @@ fn size_about_a_point(positions: &SpacePositions<'_>) -> f64 {
 /// The extent of some points in a view.
 fn bounds(view: View, points: &[Vec3]) -> [[f64; 2]; 2] {
     [0, 1].map(|k| extent(points.iter().map(|p| view.place(*p)[k])))
-}
-
-fn extent_size(points: impl Iterator<Item = Vec3>) -> f64 {
-    points.map(Vec3::norm).fold(0.0, f64::max)
 }

@@ -5,7 +5,7 @@ use dwell_geometry::space::{Placement, Vec3};
 use dwell_scene::SpaceScene;
 
 /// A point of a body in the axes of the ground.
-pub(super) fn placed(placements: &[Placement], body: BodyId, point: Vec3) -> Vec3 {
+pub(crate) fn placed(placements: &[Placement], body: BodyId, point: Vec3) -> Vec3 {
     let placement = &placements[body.0];
     placement.position + placement.rotation.apply(point)
 }

@@ -38,6 +38,14 @@ impl Axes {
     }
 }
 
+/// A shape with a name, if there is one.
+pub(super) fn named(shape: Shape, name: Option<&str>) -> Shape {
+    match name {
+        Some(name) => shape.named(name),
+        None => shape,
+    }
+}
+
 /// An opaque face with its edge; the name goes with the face.
 pub(super) fn face(
     points: Vec<[f64; 2]>,
@@ -46,11 +54,7 @@ pub(super) fn face(
     name: Option<&str>,
 ) -> [Shape; 2] {
     let inside = Pen::new(color, 1.0).lightness(lightness);
-    let area = Shape::area(points.clone(), inside, 1.0);
-    let area = match name {
-        Some(name) => area.named(name),
-        None => area,
-    };
+    let area = named(Shape::area(points.clone(), inside, 1.0), name);
     let line = Shape::Polyline {
         points,
         pen: Pen::new(edge, EDGE),
@@ -159,13 +163,8 @@ pub(super) fn block(
 /// A ball with its light.
 pub(super) fn ball(view: &View, at: Vec3, radius: f64) -> Vec<Shape> {
     let [x, y] = view.place(at);
-    let round = |offset: f64, radius: f64| -> Vec<[f64; 2]> {
-        let corner = |k: usize| {
-            let (sin, cos) = (TAU * k as f64 / CORNERS as f64).sin_cos();
-            [x - offset + radius * cos, y + offset + radius * sin]
-        };
-        (0..CORNERS).map(corner).collect()
-    };
+    let round =
+        |offset: f64, radius: f64| arc([x - offset, y + offset], radius, [0.0, 1.0], CORNERS);
     let mut shapes = face(round(0.0, radius), (Paint::Grey, 0.45), Paint::Ink, None).to_vec();
     let light = [(0.12, 0.72, 0.62), (0.22, 0.48, 0.8), (0.3, 0.22, 0.97)];
     shapes.extend(light.map(|(offset, size, lightness)| {
@@ -176,27 +175,26 @@ pub(super) fn ball(view: &View, at: Vec3, radius: f64) -> Vec<Shape> {
 }
 
 /// A circle in the picture, closed.
-pub(super) fn circle([x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
+pub(super) fn circle(center: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
+    arc(center, radius, [0.0, 1.0], CORNERS + 1)
+}
+
+/// The first corners of a part of a circle that begins at an angle, rad.
+fn arc([x, y]: [f64; 2], radius: f64, [from, part]: [f64; 2], corners: usize) -> Vec<[f64; 2]> {
     let corner = |k: usize| {
-        let (sin, cos) = (TAU * k as f64 / CORNERS as f64).sin_cos();
+        let (sin, cos) = (from + part * TAU * k as f64 / CORNERS as f64).sin_cos();
         [x + radius * cos, y + radius * sin]
     };
-    (0..=CORNERS).map(corner).collect()
+    (0..corners).map(corner).collect()
 }
 
 /// The mark of a centre of mass: a disc of four quarters.
-pub(super) fn center_of_mass([x, y]: [f64; 2], radius: f64) -> Vec<Shape> {
-    let arc = |from: f64, part: f64| {
-        let corner = move |k: usize| {
-            let (sin, cos) = (from + part * TAU * k as f64 / CORNERS as f64).sin_cos();
-            [x + radius * cos, y + radius * sin]
-        };
-        (0..=CORNERS).map(corner).collect::<Vec<_>>()
-    };
-    let mut shapes = face(arc(0.0, 1.0), (Paint::Ink, 1.0), Paint::Ink, None).to_vec();
+pub(super) fn center_of_mass(at: [f64; 2], radius: f64) -> Vec<Shape> {
+    let outline = circle(at, radius);
+    let mut shapes = face(outline, (Paint::Ink, 1.0), Paint::Ink, None).to_vec();
     shapes.extend([0.0, 0.5].map(|start| {
-        let mut quarter = arc(TAU * start, 0.25);
-        quarter.push([x, y]);
+        let mut quarter = arc(at, radius, [TAU * start, 0.25], CORNERS + 1);
+        quarter.push(at);
         Shape::area(quarter, Pen::new(Paint::Ink, 0.5), 1.0)
     }));
     shapes

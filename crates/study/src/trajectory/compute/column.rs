@@ -1,5 +1,6 @@
 //! A column of a trajectory table: its quantity, and which names ask for it.
 
+use crate::number_format::force_unit;
 use crate::trajectory::compute::{Analysis, Dyad};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::space::{self, Vec3};
@@ -175,3 +176,122 @@ impl Column {
         }
     }
 }
+
+/// The units of a coordinate, its velocity and its acceleration.
+pub(crate) fn units(is_angle: bool) -> [&'static str; 3] {
+    match is_angle {
+        true => ["rad", "rad/s", "rad/s2"],
+        false => ["m", "m/s", "m/s2"],
+    }
+}
+
+/// Collects columns.
+#[derive(Default)]
+pub(crate) struct ColumnList(pub(crate) Vec<Column>);
+
+impl ColumnList {
+    /// With the time if `timed`.
+    pub(crate) fn new(timed: bool) -> Self {
+        let mut list = Self::default();
+        if timed {
+            list.add("t", "s", Quantity::Time, "");
+        }
+        list
+    }
+
+    pub(crate) fn add(
+        &mut self,
+        name: impl Into<String>,
+        unit: &'static str,
+        quantity: Quantity,
+        meaning: impl Into<String>,
+    ) {
+        self.0.push(Column {
+            name: name.into(),
+            former: None,
+            unit,
+            quantity,
+            meaning: meaning.into(),
+        });
+    }
+
+    /// A coordinate with its velocity and its acceleration.
+    pub(crate) fn add_with_derivatives(
+        &mut self,
+        name: &str,
+        is_angle: bool,
+        quantity: impl Fn(usize) -> Quantity,
+        meaning: &str,
+    ) {
+        let suffixes = ["", ".velocity", ".acceleration"].into_iter();
+        for (order, (suffix, unit)) in suffixes.zip(units(is_angle)).enumerate() {
+            let meaning = if order == 0 { meaning } else { "" };
+            self.add(format!("{name}{suffix}"), unit, quantity(order), meaning);
+        }
+    }
+
+    /// An actuator's coordinate with its derivatives, and its force, each with its meaning.
+    pub(crate) fn add_actuator(
+        &mut self,
+        i: usize,
+        (name, is_angle): (&str, bool),
+        [meaning, force]: [&str; 2],
+    ) {
+        let coordinate = |order| Quantity::ActuatorCoordinate(i, order);
+        self.add_with_derivatives(name, is_angle, coordinate, meaning);
+        let (name, unit) = (format!("{name}.actuator_force"), force_unit(is_angle));
+        self.add(name, unit, Quantity::ActuatorForce(i), force);
+    }
+
+    /// The force of the `k`th load, by its unit and meaning, where it has one, and its power.
+    pub(crate) fn add_load(
+        &mut self,
+        k: usize,
+        name: &str,
+        force: Option<(&'static str, &str)>,
+        is_drive: bool,
+    ) {
+        if let Some((unit, meaning)) = force {
+            let kind = if unit == "N" { "force" } else { "moment" };
+            let name = format!("{name}.load_{kind}");
+            self.add(name, unit, Quantity::LoadForce(k), meaning);
+        }
+        let meaning = match is_drive {
+            true => "power of the drive on all bodies, without what its rotor takes",
+            false => "power of the load on all bodies",
+        };
+        self.add(
+            format!("{name}.power"),
+            "W",
+            Quantity::LoadPower(k),
+            meaning,
+        );
+    }
+
+    /// The components of the shaking force on the ground, forces first, and the power balance.
+    pub(crate) fn add_totals(&mut self, ground: &str, components: &[(&str, &'static str)]) {
+        let meaning = format!(
+            "shaking force: resultant of all joint, actuator and load forces on {ground}; moment about its origin"
+        );
+        for (k, (name, unit)) in components.iter().enumerate() {
+            let name = format!("shaking.{name}");
+            self.add(name, unit, Quantity::ShakingForce(k), &*meaning);
+        }
+        for (k, (name, unit, meaning)) in POWER_COLUMNS.into_iter().enumerate() {
+            self.add(name, unit, Quantity::Power(k), meaning);
+        }
+    }
+}
+
+/// Of the power balance, by the number of its [`Quantity`]: names, units and meanings.
+const POWER_COLUMNS: [(&str, &str, &str); 5] = [
+    ("power.actuators", "W", "power of the actuators"),
+    ("power.loads", "W", "power of the loads"),
+    ("power.kinetic", "W", "rate of the kinetic energy"),
+    (
+        "power.residual",
+        "W",
+        "actuators + loads − dE/dt: rounding error",
+    ),
+    ("energy.kinetic_bodies", "J", "kinetic energy of the bodies"),
+];

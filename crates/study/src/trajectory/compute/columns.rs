@@ -1,8 +1,7 @@
 //! The columns of a trajectory table, each with its unit and meaning.
 
 use crate::former_names::former_column;
-use crate::number_format::force_unit;
-use crate::trajectory::compute::{Column, Quantity, dyads};
+use crate::trajectory::compute::{Column, ColumnList, Quantity, dyads, units};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{
     ActuatorKind, BodyId, Component, Coordinate, JointId, JointKind, Plan, Reaction,
@@ -11,9 +10,6 @@ use dwell_kinetostatics::{Load, LoadKind, Model};
 use dwell_scene::Scene;
 use std::collections::HashSet;
 
-const ANGLE: [&str; 3] = ["rad", "rad/s", "rad/s2"];
-const LENGTH: [&str; 3] = ["m", "m/s", "m/s2"];
-const DERIVATIVE_SUFFIXES: [&str; 3] = ["", ".velocity", ".acceleration"];
 const BODY_ANGLE: [(&str, &str); 3] = [
     (
         "angle",
@@ -23,34 +19,13 @@ const BODY_ANGLE: [(&str, &str); 3] = [
     ("angular_acceleration", "angular acceleration"),
 ];
 
-/// Of the power balance, by the number of its [`Quantity`]: names, units and meanings.
-pub(crate) const POWER_COLUMNS: [(&str, &str, &str); 5] = [
-    ("power.actuators", "W", "power of the actuators"),
-    ("power.loads", "W", "power of the loads"),
-    ("power.kinetic", "W", "rate of the kinetic energy"),
-    (
-        "power.residual",
-        "W",
-        "actuators + loads − dE/dt: rounding error",
-    ),
-    ("energy.kinetic_bodies", "J", "kinetic energy of the bodies"),
-];
-
-/// The units of a coordinate, its velocity and its acceleration.
-fn units(is_angle: bool) -> [&'static str; 3] {
-    if is_angle { ANGLE } else { LENGTH }
-}
-
 /// Every column of a scene, whatever the analysis; with the time if `timed`.
 pub(crate) fn all_columns(scene: &Scene, model: &Model, timed: bool) -> Vec<Column> {
     let mut columns = Columns {
         scene,
         plan: model.plan(),
-        list: Vec::new(),
+        list: ColumnList::new(timed),
     };
-    if timed {
-        columns.add("t", "s", Quantity::Time, "");
-    }
     columns.actuators();
     columns.coordinates();
     columns.bodies();
@@ -59,52 +34,22 @@ pub(crate) fn all_columns(scene: &Scene, model: &Model, timed: bool) -> Vec<Colu
     columns.known_reactions();
     columns.loads();
     columns.totals();
-    let names: HashSet<String> = columns.list.iter().map(|c| c.name.clone()).collect();
-    for column in &mut columns.list {
+    let mut list = columns.list.0;
+    let names: HashSet<String> = list.iter().map(|c| c.name.clone()).collect();
+    for column in &mut list {
         column.former = former_column(&column.name).filter(|name| !names.contains(name));
     }
-    columns.list
+    list
 }
 
 /// Collects columns.
 struct Columns<'a> {
     scene: &'a Scene,
     plan: &'a Plan,
-    list: Vec<Column>,
+    list: ColumnList,
 }
 
 impl Columns<'_> {
-    fn add(
-        &mut self,
-        name: impl Into<String>,
-        unit: &'static str,
-        quantity: Quantity,
-        meaning: impl Into<String>,
-    ) {
-        self.list.push(Column {
-            name: name.into(),
-            former: None,
-            unit,
-            quantity,
-            meaning: meaning.into(),
-        });
-    }
-
-    /// A quantity with its velocity and its acceleration.
-    fn add_with_derivatives(
-        &mut self,
-        name: &str,
-        units: [&'static str; 3],
-        quantity: impl Fn(usize) -> Quantity,
-        meaning: &str,
-    ) {
-        for (order, suffix) in DERIVATIVE_SUFFIXES.into_iter().enumerate() {
-            let meaning = if order == 0 { meaning } else { "" };
-            let name = format!("{name}{suffix}");
-            self.add(name, units[order], quantity(order), meaning);
-        }
-    }
-
     fn actuators(&mut self) {
         let mechanism = &self.scene.mechanism;
         for (i, actuator) in mechanism.actuators.iter().enumerate() {
@@ -123,11 +68,8 @@ impl Columns<'_> {
                     "force between the points; positive pushes them apart".to_owned(),
                 ),
             };
-            let (name, is_angle) = (&actuator.name, self.plan.is_angle(i));
-            let coordinate = |order| Quantity::ActuatorCoordinate(i, order);
-            self.add_with_derivatives(name, units(is_angle), coordinate, &meaning);
-            let (name, unit) = (format!("{name}.actuator_force"), force_unit(is_angle));
-            self.add(name, unit, Quantity::ActuatorForce(i), force);
+            let of = (actuator.name.as_str(), self.plan.is_angle(i));
+            self.list.add_actuator(i, of, [&meaning, &force]);
         }
     }
 
@@ -149,7 +91,8 @@ impl Columns<'_> {
     fn measured(&mut self, name: &str, of: Coordinate, meaning: &str) {
         if let Some(measured) = CoordinateFunction::find(&self.scene.mechanism, of) {
             let quantity = |order| Quantity::Measured(measured, order);
-            self.add_with_derivatives(name, units(of.is_angle()), quantity, meaning);
+            self.list
+                .add_with_derivatives(name, of.is_angle(), quantity, meaning);
         }
     }
 
@@ -163,13 +106,19 @@ impl Columns<'_> {
             let (id, name) = (BodyId(b), &body.name);
             for (order, (word, meaning)) in BODY_ANGLE.into_iter().enumerate() {
                 let quantity = Quantity::BodyAngle(id, order);
-                self.add(format!("{name}.{word}"), ANGLE[order], quantity, meaning);
+                self.list.add(
+                    format!("{name}.{word}"),
+                    units(true)[order],
+                    quantity,
+                    meaning,
+                );
             }
             if self.plan.actuators() == 1 {
                 let meaning = format!("velocity ratio dθ/d{}", mechanism.actuators[0].name);
                 let unit = if self.plan.is_angle(0) { "" } else { "rad/m" };
                 let name = format!("{name}.velocity_ratio");
-                self.add(name, unit, Quantity::VelocityRatio(id), meaning);
+                self.list
+                    .add(name, unit, Quantity::VelocityRatio(id), meaning);
                 self.mechanical_advantages(id);
             }
             self.poles(id);
@@ -177,7 +126,7 @@ impl Columns<'_> {
                 for (k, part) in ["x", "y", "vx", "vy", "ax", "ay"].into_iter().enumerate() {
                     let quantity = Quantity::PointCoordinate(id, *at, k);
                     let name = format!("{name}.{point}.{part}");
-                    self.add(name, LENGTH[k / 2], quantity, "");
+                    self.list.add(name, units(false)[k / 2], quantity, "");
                 }
             }
         }
@@ -198,7 +147,7 @@ impl Columns<'_> {
         );
         let quantity = Quantity::MechanicalAdvantage(body, None);
         let of_body = format!("{name}.mechanical_advantage");
-        self.add(of_body, of_rotation, quantity, meaning);
+        self.list.add(of_body, of_rotation, quantity, meaning);
         for (point, at) in &scene.points[body.0] {
             let meaning = format!(
                 "mechanical advantage dq/ds: output force at {point} along its path per unit of {force}, statically \
@@ -206,7 +155,7 @@ impl Columns<'_> {
             );
             let quantity = Quantity::MechanicalAdvantage(body, Some(*at));
             let name = format!("{name}.{point}.mechanical_advantage");
-            self.add(name, of_travel, quantity, meaning);
+            self.list.add(name, of_travel, quantity, meaning);
         }
     }
 
@@ -225,7 +174,8 @@ impl Columns<'_> {
                     "point of {name} with zero {what}, in the ground frame; empty where {name} does not rotate"
                 );
                 let quantity = Quantity::Pole(body, order, axis);
-                self.add(format!("{name}.{pole}.{letter}"), "m", quantity, meaning);
+                self.list
+                    .add(format!("{name}.{pole}.{letter}"), "m", quantity, meaning);
             }
         }
     }
@@ -235,7 +185,7 @@ impl Columns<'_> {
         for (joint, dyad) in dyads(mechanism, self.plan) {
             let name = format!("{}.transmission_angle", mechanism.joints[joint.0].name);
             let quantity = Quantity::TransmissionAngle(dyad);
-            self.add(name, "rad", quantity, dyad.meaning());
+            self.list.add(name, "rad", quantity, dyad.meaning());
         }
     }
 
@@ -253,7 +203,7 @@ impl Columns<'_> {
                 let meaning = reaction_meaning(joint.kind, reaction.component, one, two);
                 let name = mechanism.reaction_name(reaction);
                 let unit = reaction.component.unit();
-                self.add(name, unit, Quantity::Reaction(k), meaning);
+                self.list.add(name, unit, Quantity::Reaction(k), meaning);
             }
             self.separating_force(id);
             if others.iter().any(|(_, r)| r.component != Component::Moment) {
@@ -267,7 +217,7 @@ impl Columns<'_> {
                             format!("force of {one} on {two} along the {letter} axis of {of}");
                         let quantity = Quantity::BodyFrameForce(id, body, axis);
                         let name = format!("{}.{letter}@{of}", joint.name);
-                        self.add(name, "N", quantity, meaning);
+                        self.list.add(name, "N", quantity, meaning);
                     }
                 }
             }
@@ -278,10 +228,12 @@ impl Columns<'_> {
                 let force = format!("of the force of {one} on {two}");
                 let name = format!("{}.magnitude", joint.name);
                 let meaning = format!("magnitude {force}");
-                self.add(name, "N", Quantity::ForceMagnitude(id), meaning);
+                self.list
+                    .add(name, "N", Quantity::ForceMagnitude(id), meaning);
                 let name = format!("{}.direction", joint.name);
                 let meaning = format!("direction {force}, from the ground's x axis");
-                self.add(name, "rad", Quantity::ForceDirection(id), meaning);
+                self.list
+                    .add(name, "rad", Quantity::ForceDirection(id), meaning);
             }
         }
     }
@@ -296,7 +248,8 @@ impl Columns<'_> {
                 let meaning = format!(
                     "reaction within the mechanism that {body} stands for, of its inertia and drive alone"
                 );
-                self.add(&reaction.name, unit, Quantity::KnownReaction(i, k), meaning);
+                self.list
+                    .add(&reaction.name, unit, Quantity::KnownReaction(i, k), meaning);
             }
         }
     }
@@ -308,7 +261,7 @@ impl Columns<'_> {
         if let Some(k) = loads.position(is_of_joint) {
             let meaning = "separating force: |tooth force| × tan(pressure angle), pushes the two bodies apart at the pitch point";
             let name = self.scene.loads[k].name.clone();
-            self.add(name, "N", Quantity::LoadForce(k), meaning);
+            self.list.add(name, "N", Quantity::LoadForce(k), meaning);
         }
     }
 
@@ -334,37 +287,16 @@ impl Columns<'_> {
                     "force along the slide, of the first body on the second",
                 )),
             };
-            if let Some((unit, meaning)) = description {
-                let kind = if unit == "N" { "force" } else { "moment" };
-                let name = format!("{}.load_{kind}", load.name);
-                self.add(name, unit, Quantity::LoadForce(k), meaning);
-            }
-            let meaning = match scene.drives.iter().any(|drive| drive.name == load.name) {
-                true => "power of the drive on all bodies, without what its rotor takes",
-                false => "power of the load on all bodies",
-            };
-            let name = format!("{}.power", load.name);
-            self.add(name, "W", Quantity::LoadPower(k), meaning);
+            let is_drive = scene.drives.iter().any(|drive| drive.name == load.name);
+            self.list.add_load(k, &load.name, description, is_drive);
         }
     }
 
     fn totals(&mut self) {
         let mechanism = &self.scene.mechanism;
         let ground = mechanism.body_name(BodyId(mechanism.ground));
-        let meaning = format!(
-            "shaking force: resultant of all joint, actuator and load forces on {ground}; moment about its origin"
-        );
-        let components = [
-            ("shaking.fx", "N"),
-            ("shaking.fy", "N"),
-            ("shaking.moment", "N m"),
-        ];
-        for (k, (name, unit)) in components.into_iter().enumerate() {
-            self.add(name, unit, Quantity::ShakingForce(k), &*meaning);
-        }
-        for (k, (name, unit, meaning)) in POWER_COLUMNS.into_iter().enumerate() {
-            self.add(name, unit, Quantity::Power(k), meaning);
-        }
+        let components = [("fx", "N"), ("fy", "N"), ("moment", "N m")];
+        self.list.add_totals(ground, &components);
     }
 }
 

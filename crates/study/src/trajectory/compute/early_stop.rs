@@ -1,13 +1,14 @@
 //! The early end of a trajectory: where, why, and its message.
 
 use crate::explain::{
-    StudyError, TableArgument, body_names_or_mechanism, describe_coordinate, describe_ends,
-    describe_limit, joint_labels, non_finite_coupling, non_finite_coupling_error, scene_error,
+    NamedScene as _, StudyError, body_names_or_mechanism, describe_coordinate, describe_ends,
+    describe_limit, joint_labels, non_finite_coupling, non_finite_coupling_error, off_table_error,
+    scene_error,
 };
 use crate::number_format::digits;
 use crate::trajectory::compute::{Trajectory, TrajectorySample};
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{BodyId, JointId, Plan, PositionError, RangeLimit};
+use dwell_geometry::{BodyId, Coordinate, JointId, Plan, PositionError, RangeLimit};
 use dwell_kinetostatics::{KinetostaticsError, LoadKind};
 use dwell_scene::{Scene, SceneLocation};
 use std::f64::consts::TAU;
@@ -56,7 +57,7 @@ pub(crate) struct EarlyStop<'a> {
     /// A position a little beyond it that cannot be reached.
     first_failed: TrajectorySample,
     /// Whether at least the first position can be reached.
-    pub(crate) has_begun: bool,
+    has_begun: bool,
 }
 
 impl<'a> EarlyStop<'a> {
@@ -106,18 +107,30 @@ impl<'a> EarlyStop<'a> {
                 self.explain_limit(scene, &position, &error)
             }
             StopCause::NoSolution(error) => explain_load(scene, error, &when),
-            StopCause::OffTable { load, value } => off_table_error(scene, load, value, &when),
+            StopCause::OffTable { load, value } => {
+                let magnitude = &scene.loads[load].magnitude;
+                let coordinates = (|c| scene.name_of(c), |c: Coordinate| c.is_angle());
+                off_table_error(scene, magnitude, coordinates, (load, value), &when).unwrap_or_else(
+                    || {
+                        explain_load(
+                            scene,
+                            KinetostaticsError::MagnitudeNotFinite { load },
+                            &when,
+                        )
+                    },
+                )
+            }
             StopCause::Discontinuity { joint, between } => {
                 let name = &scene.mechanism.joints[joint.0].name;
                 let x = jump_location(between[0], between[1]);
                 let message = format!(
                     "the function of coupling `{name}` is discontinuous {when}, at x = {x}"
                 );
-                let (place, jumps) = (
+                let jumps = (
                     SceneLocation::CouplingLaw(joint),
                     format!("jumps at x = {x}"),
                 );
-                scene_error(scene, message, CONTINUITY_HELP, [(place, jumps)])
+                scene_error(scene, message, CONTINUITY_HELP, [jumps])
             }
         }
     }
@@ -193,11 +206,8 @@ impl<'a> EarlyStop<'a> {
         };
         let limits = self.plan.range_limits().into_iter().flatten();
         let limit = limits.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-        let revolutions = if self.plan.is_angle(0) {
-            turns(&limit)
-        } else {
-            0.0
-        };
+        let is_angle = self.plan.is_angle(0);
+        let revolutions = if is_angle { turns(&limit) } else { 0.0 };
         Some((limit, revolutions))
     }
 
@@ -217,26 +227,17 @@ impl<'a> EarlyStop<'a> {
             true => "another assembly mode begins there",
             false => "the actuator cannot move on there",
         };
-        let has_group = limit.group < plan.group_methods().len();
-        let joints = if has_group {
-            plan.group_joints(limit.group)
-        } else {
-            Vec::new()
+        let joints = match limit.group < plan.group_methods().len() {
+            true => plan.group_joints(limit.group),
+            false => Vec::new(),
         };
         let mut labels = joint_labels(&joints, "cannot stay joined beyond");
-        let beyond = (
-            self.trajectory.location(scene),
-            "continues beyond it".to_owned(),
-        );
-        labels.push(beyond);
+        let beyond = self.trajectory.location(scene);
+        labels.push((beyond, "continues beyond it".to_owned()));
         let help =
             "the results end there; end the motion or the sweep before it, or change a length";
-        scene_error(
-            scene,
-            format!("the {name} is reached{when}: {why}"),
-            help,
-            labels,
-        )
+        let message = format!("the {name} is reached{when}: {why}");
+        scene_error(scene, message, help, labels)
     }
 
     /// The error where not even the first position can be reached.
@@ -282,7 +283,7 @@ impl<'a> EarlyStop<'a> {
 /// The error where a load or the equations of motion are undefined.
 fn explain_load(scene: &Scene, error: KinetostaticsError, when: &str) -> StudyError {
     let load = error.load().unwrap_or(0);
-    let name = load_name(scene, load);
+    let name = scene.load_name(load).unwrap_or_default();
     let (message, help, place) = match error {
         KinetostaticsError::NoDirection { .. } => (
             format!("load `{name}` has no direction {when}: its two points coincide"),
@@ -321,21 +322,6 @@ pub(crate) const CONTINUITY_HELP: &str = "the function must be continuous: make 
 pub(crate) fn jump_location(a: f64, b: f64) -> String {
     // Bisection is certain to these digits.
     digits(if a.abs() > b.abs() { a } else { b }, 9)
-}
-
-fn load_name(scene: &Scene, load: usize) -> &str {
-    scene.loads.get(load).map_or("", |l| l.name.as_str())
-}
-
-/// The error where a load's table does not cover a value of its argument.
-fn off_table_error(scene: &Scene, load: usize, value: f64, when: &str) -> StudyError {
-    let magnitude = scene.loads.get(load).map(|l| &l.magnitude);
-    let argument = magnitude
-        .and_then(|magnitude| TableArgument::of(magnitude, |c| scene.name_of(c), |c| c.is_angle()));
-    match argument {
-        Some(argument) => argument.error(scene, (load, value), when),
-        None => explain_load(scene, KinetostaticsError::MagnitudeNotFinite { load }, when),
-    }
 }
 
 /// The first group with a body whose angular velocity diverges at unit speed of the actuators.

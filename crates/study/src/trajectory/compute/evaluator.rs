@@ -1,9 +1,10 @@
 //! Evaluates one position of a trajectory after another.
 
-use crate::bodies::BodyPose;
-use crate::explain::{StudyError, explain_model};
+use crate::bodies::{BodyPose, body_poses};
+use crate::explain::{StudyError, explain_model, table_of};
+use crate::machines::first_uncovered;
 use crate::trajectory::compute::{
-    Analysis, Column, Quantity, RowEvaluator, SpeedScale, StopCause, TrajectoryMonitor,
+    Analysis, Column, CouplingMonitor, Quantity, RowEvaluator, SpeedScale, StopCause,
     TrajectorySample,
 };
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
@@ -29,7 +30,9 @@ pub(crate) struct ForceEvaluator<'a> {
     motion_buffer: Motion<f64>,
     /// The bodies at the velocities of the trajectory, whatever the analysis.
     body_states: BodyStates,
-    monitor: TrajectoryMonitor<'a>,
+    couplings: CouplingMonitor<'a>,
+    /// Whether the table of a load may be exceeded.
+    has_tables: bool,
 }
 
 impl<'a> ForceEvaluator<'a> {
@@ -44,7 +47,8 @@ impl<'a> ForceEvaluator<'a> {
             has_forces: true,
             motion_buffer: model.plan().motion(),
             body_states: BodyStates::new(model.plan()),
-            monitor: TrajectoryMonitor::new(scene),
+            couplings: CouplingMonitor::new(scene),
+            has_tables: (model.loads().iter()).any(|load| table_of(&load.magnitude).is_some()),
         }
     }
 
@@ -68,7 +72,7 @@ impl<'a> ForceEvaluator<'a> {
                     self.pose.clone_from(state.pose());
                 }
                 self.body_states.copy_from(state.bodies_at(q_ddot));
-                self.monitor.check_tables(t, &self.body_states)?;
+                check_tables((model, self.has_tables), t, &self.body_states)?;
                 return Ok(None);
             }
             Analysis::Kinetostatics | Analysis::FreeMotion => {
@@ -85,7 +89,7 @@ impl<'a> ForceEvaluator<'a> {
         if self.analysis != Analysis::Statics {
             self.body_states.copy_from(state.bodies());
         }
-        self.monitor.check_tables(t, state.bodies())?;
+        check_tables((model, self.has_tables), t, state.bodies())?;
         Ok(Some(state))
     }
 
@@ -98,7 +102,20 @@ impl<'a> ForceEvaluator<'a> {
             plan.accelerations(pose, &sample.q_ddot, &mut self.motion_buffer);
             self.body_states.fill(plan, pose, &self.motion_buffer);
         }
-        self.monitor.check_couplings(&self.body_states)
+        self.couplings.check(&self.body_states)
+    }
+}
+
+/// Fails at the first load of a model whose table, if any has one, does not cover the state of the bodies at time `t` (s).
+fn check_tables(
+    (model, has_tables): (&Model, bool),
+    t: f64,
+    states: &BodyStates,
+) -> Result<(), StopCause> {
+    let uncovered = has_tables.then(|| first_uncovered(model, t, |of| states.coordinate(of)));
+    match uncovered.flatten() {
+        Some((load, value)) => Err(StopCause::OffTable { load, value }),
+        None => Ok(()),
     }
 }
 
@@ -205,35 +222,31 @@ fn has_scale(quantity: Quantity) -> bool {
 
 /// Whether a quantity is computed from the motion of the bodies alone.
 fn is_kinematic(quantity: Quantity) -> bool {
-    use Quantity::{
-        ActuatorCoordinate, BodyAngle, Measured, PointCoordinate, Time, TransmissionAngle,
-        VelocityRatio,
-    };
+    use Quantity as Q;
     matches!(
         quantity,
-        Time | ActuatorCoordinate(..)
-            | Measured(..)
-            | BodyAngle(..)
-            | PointCoordinate(..)
-            | TransmissionAngle(_)
-            | VelocityRatio(_)
+        Q::Time
+            | Q::ActuatorCoordinate(..)
+            | Q::Measured(..)
+            | Q::BodyAngle(..)
+            | Q::PointCoordinate(..)
+            | Q::TransmissionAngle(_)
+            | Q::VelocityRatio(_)
     )
 }
 
 /// Whether a quantity is computed from the forces on all bodies, beyond actuator forces and reactions.
 fn needs_forces_on_bodies(quantity: Quantity) -> bool {
-    use Quantity::{
-        BodyFrameForce, ForceDirection, ForceMagnitude, LoadForce, LoadPower, Power, ShakingForce,
-    };
+    use Quantity as Q;
     matches!(
         quantity,
-        BodyFrameForce(..)
-            | ForceMagnitude(_)
-            | ForceDirection(_)
-            | ShakingForce(_)
-            | Power(_)
-            | LoadForce(_)
-            | LoadPower(_)
+        Q::BodyFrameForce(..)
+            | Q::ForceMagnitude(_)
+            | Q::ForceDirection(_)
+            | Q::ShakingForce(_)
+            | Q::Power(_)
+            | Q::LoadForce(_)
+            | Q::LoadPower(_)
     )
 }
 
@@ -319,13 +332,7 @@ impl<'a> PositionEvaluator<'a> {
     }
 
     pub(crate) fn body_poses(&self) -> Vec<BodyPose> {
-        let states = &self.forces.body_states;
-        let bodies = (0..self.scene.mechanism.bodies.len()).map(BodyId);
-        let body_pose = |b| {
-            let origin = states.point(b, Vec2::ZERO).position;
-            (origin, states.body(b).rotation)
-        };
-        bodies.map(body_pose).collect()
+        body_poses(&self.forces.body_states, &self.scene.mechanism)
     }
 }
 

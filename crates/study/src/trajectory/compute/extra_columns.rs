@@ -24,8 +24,8 @@ pub(crate) fn extra_columns<S: MachineScene>(
         };
         (scene.name_of_source(source), meaning)
     });
-    let states = drive_states(scene).into_iter();
-    columns_of_integration(works, states.chain(motor_columns(scene)))
+    let states = drive_states(scene.drives(), S::is_angle).into_iter();
+    columns_of_integration(works, states.chain(motor_columns(scene.drives())))
 }
 
 /// The columns of energies, of works by the names of what does them, of the balance, and of further values such as states of drives, each

@@ -1,6 +1,6 @@
 //! What gives the coordinates that an analysis follows, of a scene in the plane or in space.
 
-use crate::explain::{StudyError, labels, missing_section_label, scene_error};
+use crate::explain::{NamedScene as _, StudyError, labels, missing_section_label, scene_error};
 use crate::number_format::count;
 use crate::trajectory::compute::{Analysis, SweepLimits, default_limits};
 use dwell_geometry::{ActuatorId, Plan};
@@ -24,15 +24,13 @@ pub(crate) struct FollowedScene<'a> {
 impl<'a> FollowedScene<'a> {
     /// Of a scene in the plane.
     pub(crate) fn in_plane(scene: &'a Scene, plan: &Plan) -> Self {
-        let actuators = scene.mechanism.actuators.iter();
-        let is_only = plan.actuators() == 1;
+        let actuators = 0..plan.actuators();
+        let is_only = actuators.len() == 1;
         Self {
             file: &scene.file,
             prescribed: scene.prescribed.as_ref(),
             sweep: scene.sweep.as_ref(),
-            coordinates: actuators
-                .map(|a| (a.name.as_str(), a.coordinate().is_angle()))
-                .collect(),
+            coordinates: actuators.filter_map(|i| scene.actuator(i)).collect(),
             start: plan.assembly_coordinates().to_vec(),
             period: plan.range().period(),
             default_limits: is_only.then(|| default_limits(scene, plan)),

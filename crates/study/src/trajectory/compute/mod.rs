@@ -27,8 +27,8 @@ mod unit_references;
 mod unit_scales;
 
 pub use analysis::Analysis;
-pub(crate) use column::{Column, Quantity, is_prefix_of};
-pub(crate) use columns::{POWER_COLUMNS, all_columns};
+pub(crate) use column::{Column, ColumnList, Quantity, is_prefix_of, units};
+pub(crate) use columns::all_columns;
 pub(crate) use dyads::{Dyad, dyads};
 pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
@@ -41,14 +41,14 @@ pub(crate) use followed_scene::FollowedScene;
 pub(crate) use long_rows::{LongRows, RowStorage, not_stored};
 pub(crate) use maximum::{Point, highest_between};
 pub(crate) use mechanical_advantage::SpeedScale;
-pub(crate) use monitor::TrajectoryMonitor;
+pub(crate) use monitor::CouplingMonitor;
 pub(crate) use peak_forces::{WantedForces, peak_analysis, peak_forces};
 pub(crate) use requested_columns::{RequestedColumns, is_requested};
 #[cfg(feature = "output")]
 pub(crate) use results::compute_trajectory_in;
 pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
 pub(crate) use results::{MotionBetweenRows, compute_along};
-pub(crate) use rounding_error::RoundingError;
+pub(crate) use rounding_error::{BodyNumbers, LargestErrors, RoundingError};
 pub(crate) use row_evaluator::RowEvaluator;
 pub(crate) use second_rows::SecondRows;
 pub use sectioned_link::SectionedLink;
@@ -57,8 +57,8 @@ pub(crate) use selection::{
 };
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
-    BALANCE, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, Spacing, SweepLimits,
-    TrajectorySample, default_limits,
+    BALANCE, FreeTrajectory, KINETIC, POTENTIAL, Spacing, SweepLimits, TrajectorySample,
+    default_limits, one_revolution, shown_range,
 };
 pub(crate) use unit_references::UnitReferences;
 pub(crate) use unit_scales::{UnitScales, force_scales};

@@ -5,11 +5,11 @@ use crate::branch_note::branch_note;
 use crate::estimate::{error_scale, relative};
 use crate::explain::StudyError;
 use crate::models::loaded_model;
-use crate::progress::{Progress, Step};
+use crate::progress::Progress;
 use crate::trajectory::compute::{
     Analysis, BetweenRows, Column, Extrema, ExtremaSearch, FollowedScene, LongRows,
-    POSITIONS_PER_STEP, PositionEvaluator, Quantity, RequestedColumns, RoundingError, RowEvaluator,
-    RowStorage, Sampler, SectionedLink, Trajectory, TrajectorySample, UnitReferences, all_columns,
+    PositionEvaluator, Quantity, RequestedColumns, RoundingError, RowEvaluator, RowStorage,
+    Sampler, SectionedLink, Trajectory, TrajectorySample, UnitReferences, all_columns,
     check_variables, is_requested, not_stored, prune_model,
 };
 use dwell_findings::{self as findings, Table};
@@ -20,6 +20,7 @@ use std::f64::consts::TAU;
 use std::io;
 
 /// What is evaluated at the positions of a trajectory.
+#[derive(Default)]
 pub struct TrajectoryResults {
     /// The columns of the analysis that the scene requests, and those that its pictures need.
     pub(crate) columns: Vec<Column>,
@@ -98,19 +99,7 @@ impl TrajectoryResults {
             is_limited,
             references: UnitReferences::new(all, &columns),
             columns,
-            rows: Vec::new(),
-            long_rows: None,
-            power_terms: Vec::new(),
-            body_poses: Vec::new(),
-            sectioned_links: Vec::new(),
-            power_residual: 0.0,
-            rounding_error: None,
-            indeterminate: Vec::new(),
-            modelled: Vec::new(),
-            is_rounding: Vec::new(),
-            noted_zeros: Vec::new(),
-            extrema: Extrema::default(),
-            errors: Vec::new(),
+            ..Self::default()
         }
     }
 
@@ -141,7 +130,7 @@ impl TrajectoryResults {
     }
 
     /// Ends the rows: the last one is always in memory.
-    pub(crate) fn finish_rows(&mut self) -> Result<(), StudyError> {
+    fn finish_rows(&mut self) -> Result<(), StudyError> {
         if let Some(long) = &mut self.long_rows
             && let Some((row, poses)) = long.finish()?
         {
@@ -276,6 +265,22 @@ pub(super) fn computed_columns(
         .collect()
 }
 
+/// What evaluates some columns along a trajectory, by chart; the trajectory ends where the whole mechanism, by its plan, does.
+pub(super) fn evaluators_of<'s>(
+    scene: &'s Scene,
+    (whole, model): (&'s Plan, &'s Model),
+    trajectory: &'s Trajectory<'_>,
+    columns: &[Column],
+) -> Result<Vec<PositionEvaluator<'s>>, StudyError> {
+    let charts = match trajectory.charts() {
+        [] => std::slice::from_ref(model),
+        charts => charts,
+    };
+    let of_chart =
+        |chart| PositionEvaluator::new(scene, whole, chart, trajectory.analysis, columns);
+    charts.iter().map(of_chart).collect()
+}
+
 /// A free motion between its rows: positions at other times (s), and a sampler at any time for each thread.
 pub(crate) struct MotionBetweenRows<'s> {
     pub(crate) further: Vec<(f64, TrajectorySample)>,
@@ -295,9 +300,35 @@ impl TrajectoryResults {
         self.power_residual = residuals.fold(0.0, f64::max);
     }
 
+    /// Ends the rows of a trajectory that ended early, if it did, and finds what can be said of their columns by the evaluators of a
+    /// mechanism of this size, m.
+    ///
+    /// # Errors
+    /// [`StudyError`] where there is no row, or they cannot be stored.
+    pub(crate) fn finish(
+        &mut self,
+        trajectory: &Trajectory<'_>,
+        early_stop: Option<StudyError>,
+        (size, evaluators): (f64, &[impl RowEvaluator]),
+        between: Option<MotionBetweenRows<'_>>,
+    ) -> Result<Option<StudyError>, StudyError> {
+        match early_stop {
+            Some(error) if self.len() == 0 => return Err(error),
+            _ => self.finish_rows()?,
+        }
+        self.find_extrema(size, trajectory, evaluators, between)?;
+        Ok(early_stop)
+    }
+
     /// The index of the column of a quantity.
     pub(crate) fn column_index(&self, quantity: Quantity) -> Option<usize> {
         self.columns.iter().position(|c| c.quantity == quantity)
+    }
+
+    /// The index of the column of a quantity, among those in the tables.
+    pub(crate) fn written_index(&self, quantity: Quantity) -> Option<usize> {
+        let mut written = self.written.iter();
+        written.position(|&k| self.columns[k].quantity == quantity)
     }
 
     /// The index of the column of the abscissa: time, or the swept coordinate.
@@ -308,7 +339,7 @@ impl TrajectoryResults {
     }
 
     /// Finds the extrema of the columns in the tables that are not zero but for rounding, in a mechanism of this size (m).
-    pub(crate) fn find_extrema(
+    fn find_extrema(
         &mut self,
         size: f64,
         trajectory: &Trajectory<'_>,
@@ -391,37 +422,21 @@ pub(crate) fn compute_trajectory_in<'a>(
     let notes = check_variables(scene, &model)? + &branch_note(scene, model.plan());
     let followed = FollowedScene::in_plane(scene, model.plan());
     let trajectory = Trajectory::new(&followed, analysis, points)?;
-    compute_in(storage, scene, &model, (trajectory, None), notes, progress)
+    let along = (trajectory, None);
+    let computed = compute_along(storage, scene, &model, along, progress)?;
+    Ok(ComputedTrajectory { notes, ..computed })
 }
 
-/// Evaluates a scene along a trajectory; of a free motion also with what is known between its rows.
+/// Evaluates a scene along a trajectory, with the rows in memory or where they are bounded; of a free motion also with what is known
+/// between its rows.
 ///
 /// # Errors
 /// [`StudyError`] where not even the first position can be reached.
 pub(crate) fn compute_along<'a>(
-    scene: &Scene,
-    full_model: &Model,
-    followed: (Trajectory<'a>, Option<MotionBetweenRows<'_>>),
-    notes: String,
-    progress: Progress<'_>,
-) -> Result<ComputedTrajectory<'a>, StudyError> {
-    compute_in(
-        RowStorage::Whole,
-        scene,
-        full_model,
-        followed,
-        notes,
-        progress,
-    )
-}
-
-/// As [`compute_along`], with the rows in memory or where they are bounded.
-fn compute_in<'a>(
     storage: RowStorage,
     scene: &Scene,
     full_model: &Model,
     (trajectory, between): (Trajectory<'a>, Option<MotionBetweenRows<'_>>),
-    notes: String,
     progress: Progress<'_>,
 ) -> Result<ComputedTrajectory<'a>, StudyError> {
     // The trajectory ends where the whole mechanism does, however much of it is modelled.
@@ -429,16 +444,9 @@ fn compute_in<'a>(
     let model = &prune_model(scene, full_model);
     let columns = computed_columns(scene, model, &trajectory);
     trajectory.check_laws(&FollowedScene::in_plane(scene, plan))?;
-    let charts = match trajectory.charts() {
-        [] => std::slice::from_ref(model),
-        charts => charts,
-    };
     let mut results = TrajectoryResults::new(scene, model, columns, analysis);
     results.keep_rows_in(storage, trajectory.points)?;
-    let evaluators = charts
-        .iter()
-        .map(|chart| PositionEvaluator::new(scene, plan, chart, analysis, &results.columns));
-    let mut evaluators = evaluators.collect::<Result<Vec<_>, _>>()?;
+    let mut evaluators = evaluators_of(scene, (plan, model), &trajectory, &results.columns)?;
     let mut rounding_error = RoundingError::new(scene, model, (analysis, trajectory.points));
     let early_stop = trajectory.follow(plan, |k, sample| {
         let evaluator = &mut evaluators[sample.chart];
@@ -447,43 +455,21 @@ fn compute_in<'a>(
         results.add_position(k, evaluator, sample);
         if let Some(rounding_error) = &mut rounding_error {
             let rest = vec![0.0; sample.q.len()];
-            let at = evaluated_state(analysis, sample, &rest);
-            rounding_error.add_position(k, model, t, at, &evaluator.forces.results);
+            let at = sample.state(analysis, &rest);
+            rounding_error.add_position((k, t), at, &evaluator.forces.results);
         }
-        if k.is_multiple_of(POSITIONS_PER_STEP) {
-            progress(Step {
-                total: trajectory.progress_steps(),
-                done: "positions",
-            });
-        }
+        trajectory.report(k, progress);
         Ok(())
     });
-    let has_begun = early_stop.as_ref().is_none_or(|stop| stop.has_begun);
-    let mut early_stop = early_stop.map(|stop| stop.explain(scene));
-    if let Some(error) = early_stop.take_if(|_| !has_begun) {
-        return Err(error);
-    }
-    results.finish_rows()?;
-    let size = scene.mechanism.size();
-    results.find_extrema(size, &trajectory, &evaluators, between)?;
+    let early_stop = early_stop.map(|stop| stop.explain(scene));
     results.rounding_error = rounding_error.map(|error| error.max_relative());
+    let of = (scene.mechanism.size(), &evaluators[..]);
+    let early_stop = results.finish(&trajectory, early_stop, of, between)?;
     Ok(ComputedTrajectory {
         table: results.table(),
         early_stop,
+        notes: String::new(),
         trajectory,
         results,
-        notes,
     })
-}
-
-/// Coordinates, velocities and accelerations at which an analysis evaluates a position: those of statics are at rest.
-fn evaluated_state<'s>(
-    analysis: Analysis,
-    sample: &'s TrajectorySample,
-    rest: &'s [f64],
-) -> [&'s [f64]; 3] {
-    match analysis {
-        Analysis::Statics => [sample.q.as_slice(), rest, rest],
-        _ => [&sample.q, &sample.q_dot, &sample.q_ddot].map(Vec::as_slice),
-    }
 }

@@ -1,9 +1,9 @@
 //! The rows of a second computation of a motion, from which the errors of its columns are estimated.
 
 use crate::estimate;
-use crate::trajectory::compute::results::computed_columns;
+use crate::trajectory::compute::results::{computed_columns, evaluators_of};
 use crate::trajectory::compute::{
-    ComputedTrajectory, PositionEvaluator, RowEvaluator, Trajectory, TrajectoryResults, prune_model,
+    ComputedTrajectory, RowEvaluator, Trajectory, TrajectoryResults, prune_model,
 };
 use dwell_kinetostatics::Model;
 use dwell_scene::Scene;
@@ -24,19 +24,13 @@ impl SecondRows {
     ) -> Option<Self> {
         let (plan, analysis) = (full_model.plan(), trajectory.analysis);
         let model = &prune_model(scene, full_model);
-        let charts = match trajectory.charts() {
-            [] => std::slice::from_ref(model),
-            charts => charts,
-        };
         let columns = computed_columns(scene, model, trajectory);
         let mut results = TrajectoryResults::new(scene, model, columns, analysis);
-        let evaluators = charts.iter().map(|chart| {
-            let columns = &results.columns;
-            let mut evaluator = PositionEvaluator::new(scene, plan, chart, analysis, columns)?;
+        let columns = &results.columns;
+        let mut evaluators = evaluators_of(scene, (plan, model), trajectory, columns).ok()?;
+        for evaluator in &mut evaluators {
             evaluator.limit_to(columns.iter().map(|column| column.quantity));
-            Ok::<_, crate::explain::StudyError>(evaluator)
-        });
-        let mut evaluators = evaluators.collect::<Result<Vec<_>, _>>().ok()?;
+        }
         let mut rows = Vec::new();
         // Where it ends early the errors of the other rows are known.
         let _ = trajectory.follow(plan, |_, sample| {

@@ -2,6 +2,7 @@
 
 use crate::explain::{StudyError, scene_error};
 use crate::number_format::{count, digits};
+use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
     Analysis, CONTINUITY_HELP, Column, EarlyStop, FollowedScene, StopCause, jump_location,
     unreachable_error,
@@ -12,7 +13,7 @@ use dwell_scene::{CoordinateSweep, MAX_ANGLE, PrescribedMotion, Scene, SceneLoca
 use std::f64::consts::TAU;
 
 /// Positions per step of progress.
-pub(crate) const POSITIONS_PER_STEP: usize = 500;
+const POSITIONS_PER_STEP: usize = 500;
 /// Number of positions if neither the scene nor the caller gives one.
 const DEFAULT_POINTS: usize = 361;
 /// Fraction of a range left out at a limit position, where velocities grow without bound.
@@ -40,6 +41,16 @@ pub(crate) struct TrajectorySample {
 }
 
 impl TrajectorySample {
+    /// Coordinates, velocities and accelerations at which an analysis evaluates it: those of statics are at `rest`.
+    pub(crate) fn state<'s>(&'s self, analysis: Analysis, rest: &'s [f64]) -> [&'s [f64]; 3] {
+        match analysis {
+            Analysis::Statics => [&self.q, rest, rest],
+            Analysis::Kinematics | Analysis::Kinetostatics | Analysis::FreeMotion => {
+                [&self.q, &self.q_dot, &self.q_ddot]
+            }
+        }
+    }
+
     /// The coordinate of an actuator, whichever coordinate its chart uses.
     pub(crate) fn coordinate(&self, actuator: usize) -> f64 {
         let own = self.actuator_coordinate;
@@ -220,9 +231,14 @@ impl<'a> Trajectory<'a> {
         }
     }
 
-    /// The number of steps in which progress is reported.
-    pub(crate) fn progress_steps(&self) -> usize {
-        self.points.div_ceil(POSITIONS_PER_STEP)
+    /// Reports the progress at the `k`th position, if a step ends there.
+    pub(crate) fn report(&self, k: usize, progress: Progress<'_>) {
+        if k.is_multiple_of(POSITIONS_PER_STEP) {
+            progress(Step {
+                total: self.points.div_ceil(POSITIONS_PER_STEP),
+                done: "positions",
+            });
+        }
     }
 
     /// Where the scene defines it.
@@ -381,8 +397,15 @@ impl<'a> Trajectory<'a> {
     }
 }
 
-fn one_revolution(start: f64) -> SweepLimits {
+pub(crate) fn one_revolution(start: f64) -> SweepLimits {
     ([start, start + TAU], [false; 2], "one revolution")
+}
+
+/// The range between two ends, without a margin at those that are limit positions.
+pub(crate) fn shown_range([low, high]: [f64; 2], is_limit: [bool; 2]) -> SweepLimits {
+    let margin = LIMIT_MARGIN * (high - low);
+    let [below, above] = is_limit.map(|is_limit| if is_limit { margin } else { 0.0 });
+    ([low + below, high - above], is_limit, "the range")
 }
 
 /// The default sweep over the range of the only actuator.
@@ -395,19 +418,14 @@ pub(crate) fn default_limits(scene: &Scene, plan: &Plan) -> SweepLimits {
             let end = start + TAU * f64::from(revolutions);
             ([start, end], [false; 2], "the period")
         }
-        Range::Limited(from, to) => {
-            let margin = LIMIT_MARGIN * (to - from);
-            ([from + margin, to - margin], [true; 2], "the range")
-        }
+        Range::Limited(from, to) => shown_range([from, to], [true; 2]),
         Range::Stroke(from, to) => {
             // A limit that was not found is only where the search stopped.
             let found = plan.range_limits().map(|end| end.is_some());
             let half_stroke = if plan.is_angle(0) { TAU } else { half_stroke };
             let low = if found[0] { from } else { start - half_stroke };
             let high = if found[1] { to } else { start + half_stroke };
-            let margin = LIMIT_MARGIN * (high - low);
-            let [below, above] = found.map(|found| if found { margin } else { 0.0 });
-            ([low + below, high - above], found, "the range")
+            shown_range([low, high], found)
         }
         Range::Unbounded | Range::Unresolved(..) if plan.is_angle(0) => one_revolution(start),
         Range::Unbounded | Range::Unresolved(..) => (

@@ -7,6 +7,7 @@ use crate::trajectory::compute::{Column, Quantity, UnitScales};
 const CONSPICUOUS: f64 = 1e-11;
 
 /// The columns of an analysis with the largest magnitude that each has had so far.
+#[derive(Default)]
 pub(crate) struct UnitReferences {
     columns: Vec<Reference>,
 }

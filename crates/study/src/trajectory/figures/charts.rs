@@ -1,5 +1,6 @@
 //! Charts of the columns of a trajectory over its abscissa.
 
+use super::MAX_CURVES;
 use super::span::{DrawnRows, PictureSpan};
 use crate::explain::StudyError;
 use crate::number_format::digits;
@@ -14,6 +15,15 @@ use dwell_scene::SceneFile;
 /// Ratio of a curve's whole extent to that of its inner part above which it may leave its chart next to a
 /// limit position.
 const DIVERGENCE_RATIO: f64 = 3.0;
+
+/// A value of an abscissa in a unit of SI: `time = 0.25 s`, `φ = −12.5°`.
+pub(crate) fn describe_abscissa(label: &str, unit: &str, at: f64) -> String {
+    let text = match unit {
+        "rad" => format!("{label} = {:.1}°", at.to_degrees()),
+        unit => format!("{label} = {} {unit}", digits(at, 4)),
+    };
+    text.replace('-', "−")
+}
 
 /// What the charts of a trajectory share, in the plane or in space.
 pub(crate) struct ChartContext<'a> {
@@ -55,13 +65,11 @@ impl<'a> ChartContext<'a> {
         };
         // The span is in the scene's unit, and the axis in degrees or m.
         let swept = swept.map(|(_, is_angle)| is_angle);
-        let abscissae = results.rows.iter().map(|row| row[abscissa]);
-        let given: Vec<f64> = match swept {
-            None => abscissae.collect(),
-            Some(is_angle) => abscissae
-                .map(|q| scene.to_scene_unit(q, is_angle).0)
-                .collect(),
+        let in_unit = |row: &Vec<f64>| match swept {
+            None => row[abscissa],
+            Some(is_angle) => scene.to_scene_unit(row[abscissa], is_angle).0,
         };
+        let given: Vec<f64> = results.rows.iter().map(in_unit).collect();
         let unit = swept.map_or("s", |is_angle| scene.to_scene_unit(0.0, is_angle).1);
         let rows = DrawnRows::new(scene, span, &given, unit)?;
         let on_axis = |end: f64| match swept {
@@ -84,28 +92,20 @@ impl<'a> ChartContext<'a> {
         })
     }
 
-    /// The abscissa of the `k`th position that is drawn: `time = 0.25 s`, `φ = −12.5°`.
+    /// The abscissa of the `k`th position that is drawn.
     pub(crate) fn describe_position(&self, k: usize) -> String {
-        self.describe(self.abscissa_values.get(k).copied().unwrap_or(0.0))
+        let row = self.results.rows.get(k);
+        self.describe(row.map_or(0.0, |row| row[self.abscissa]))
     }
 
     /// The abscissa of the `row`th position, drawn or not.
     pub(crate) fn describe_row(&self, row: usize) -> String {
-        let at = self.results.value_at(row, self.abscissa);
-        self.describe(match self.x.scale {
-            Scale::Degrees => at.to_degrees(),
-            _ => at,
-        })
+        self.describe(self.results.value_at(row, self.abscissa))
     }
 
-    /// A drawn value of the abscissa: `time = 0.25 s`, `φ = −12.5°`.
-    pub(crate) fn describe(&self, at: f64) -> String {
-        let label = &self.x.label;
-        let text = match self.x.scale {
-            Scale::Degrees => format!("{label} = {at:.1}°"),
-            _ => format!("{label} = {} {}", digits(at, 4), self.x.unit),
-        };
-        text.replace('-', "−")
+    fn describe(&self, at: f64) -> String {
+        let unit = self.results.columns[self.abscissa].unit;
+        describe_abscissa(&self.x.label, unit, at)
     }
 
     /// A figure whose curves may grow without bound towards a limit position.
@@ -188,6 +188,20 @@ impl<'a> ChartContext<'a> {
     ) -> Option<Chart> {
         self.is_any_nonzero(curves)
             .then(|| self.chart(title, label, curves))
+    }
+
+    /// Charts of those of some columns that are more than rounding, evenly distributed, so that none has a single curve left over.
+    pub(crate) fn even_charts(
+        &self,
+        (title, label): (&str, &str),
+        mut curves: Vec<(String, usize)>,
+    ) -> Vec<Panel> {
+        curves.retain(|(_, k)| !self.is_zero(*k));
+        let count = curves.len().div_ceil(MAX_CURVES).max(1);
+        let charts = curves.chunks(curves.len().div_ceil(count).max(1));
+        charts
+            .map(|some| self.chart(title, label, some).into())
+            .collect()
     }
 
     /// The vertical range to show if curves grow without bound towards a limit position.

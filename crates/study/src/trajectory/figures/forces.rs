@@ -3,7 +3,7 @@
 use crate::models::lists_reactions;
 use crate::output::{add_note, chart, figure, reaction_figure_count};
 use crate::trajectory::compute::{Quantity, SectionedLink};
-use crate::trajectory::figures::{FigureContext, MAX_CURVES};
+use crate::trajectory::figures::FigureContext;
 use dwell_geometry::JointId;
 use dwell_kinetostatics::Section;
 use dwell_report::{Axis, Figure, Paint, Panel, Series, Stroke};
@@ -36,15 +36,7 @@ impl FigureContext<'_> {
             ("Joint forces of fixed direction", "force", single("N")),
             ("Couples", "couple", single("N m")),
         ] {
-            let curves: Vec<(String, usize)> = curves
-                .into_iter()
-                .filter(|(_, k)| !self.is_zero(*k))
-                .collect();
-            // Evenly distributed, so that no chart has a single curve left over.
-            let count = curves.len().div_ceil(MAX_CURVES).max(1);
-            for some in curves.chunks(curves.len().div_ceil(count).max(1)) {
-                panels.push(self.chart(title, label, some).into());
-            }
+            panels.extend(self.even_charts((title, label), curves));
         }
         // Three panels fill a page.
         let (shown, note) =

@@ -17,10 +17,7 @@ impl ChartContext<'_> {
         }
         let mut panels: Vec<Panel> = Vec::new();
         for i in 0..DRAWN {
-            let column = |order| {
-                let quantity = Quantity::ActuatorCoordinate(i, order);
-                self.results.column_index(quantity)
-            };
+            let column = |order| self.coordinate(i, order);
             let Some(any) = column(0).or_else(|| column(1)) else {
                 continue;
             };
@@ -33,12 +30,17 @@ impl ChartContext<'_> {
             }
         }
         let title = "Coordinates and their speeds";
-        let next = Quantity::ActuatorCoordinate(DRAWN, 0);
-        let text = match self.results.column_index(next) {
+        let text = match self.coordinate(DRAWN, 0) {
             None => "Over time.",
             Some(_) => "The first three, over time.",
         };
         (!panels.is_empty()).then(|| self.figure("coordinates", title, text, panels))
+    }
+
+    /// The column of an actuator's coordinate, or of a derivative.
+    fn coordinate(&self, actuator: usize, order: usize) -> Option<usize> {
+        let quantity = Quantity::ActuatorCoordinate(actuator, order);
+        self.results.column_index(quantity)
     }
 
     /// Kinetic and potential energy, work of nonconservative loads, and the error of the balance.
@@ -56,18 +58,16 @@ impl ChartContext<'_> {
         let works = works.chunks(MAX_CURVES);
         charts.extend(works.map(|some| self.chart("Work done", "work", some)));
         let balance = [("balance".to_owned(), balance)];
-        let has_error = self.is_any_nonzero(&balance);
-        if has_error {
-            charts.push(self.chart("Kinetic + potential − work", "change", &balance));
-        }
-        let text = match has_error {
-            true => {
+        let error = self.chart_of_some("Kinetic + potential − work", "change", &balance);
+        let text = match error {
+            Some(_) => {
                 "Work: that of nonconservative loads and drives. The last panel is the error of the integration."
             }
-            false => {
+            None => {
                 "Work: that of nonconservative loads and drives. Their balance is met to rounding."
             }
         };
+        charts.extend(error);
         let panels = charts.into_iter().map(Panel::from).collect();
         Some(self.figure("energies", "Energies", text, panels))
     }
@@ -107,11 +107,7 @@ impl FigureContext<'_> {
         }
         let actuators = self.scene.mechanism.actuators.iter().enumerate();
         let panel = |(i, actuator): (usize, &dwell_geometry::Actuator)| {
-            let column = |order| {
-                let quantity = Quantity::ActuatorCoordinate(i, order);
-                self.results.column_index(quantity)
-            };
-            let (q, speed) = (column(0)?, column(1)?);
+            let (q, speed) = (self.coordinate(i, 0)?, self.coordinate(i, 1)?);
             let name = symbol(&actuator.name);
             let angle = actuator.coordinate().is_angle();
             let at = |row: &Vec<f64>| {

@@ -6,11 +6,11 @@ mod free;
 mod motion;
 mod span;
 
-pub(crate) use charts::ChartContext;
+pub(crate) use charts::{ChartContext, describe_abscissa};
 pub use span::PictureSpan;
 
 use crate::bodies::{BodyPose, point_position};
-use crate::explain::StudyError;
+use crate::explain::{NamedScene as _, StudyError};
 use crate::output::{MechanismDrawing, figure};
 use crate::trajectory::compute::{ComputedTrajectory, Quantity, TrajectoryResults};
 use dwell_report::{Animation, Axis, Drawing, Figure, Paint, Pen, Shape};
@@ -84,26 +84,36 @@ pub(crate) fn animation(
     let drawing = MechanismDrawing::new(scene, &results.body_poses)
         .with_visible(&results.modelled)
         .with_paths(context.path_lines());
-    let last = last_drawn(computed);
-    let count = MAX_FRAMES.min(last + 1);
-    // Over a whole period the last position equals the first.
-    let is_closed = is_closed(&results.body_poses[..=last]);
-    let steps = count.saturating_sub(usize::from(!is_closed));
-    let frame = |i: usize| {
-        let k = (i * last) / steps.max(1);
+    let drawn = &results.body_poses[..=last_drawn(computed)];
+    let frame = |k: usize| {
         let mut shapes = Vec::new();
         drawing.draw(&results.body_poses[k], 0.0, &mut shapes);
         // Moving labels would distract.
         shapes.retain(|s| !matches!(s, Shape::Text { .. }));
         plane(context.describe_position(k), shapes)
     };
-    Ok(Animation {
+    let provenance = &context.method_text;
+    Ok(animated(drawn.len(), is_closed(drawn), frame, provenance))
+}
+
+/// The animation of a mechanism in so many positions, of which the last equals the first if `is_closed`: over a whole period.
+pub(crate) fn animated(
+    positions: usize,
+    is_closed: bool,
+    frame: impl Fn(usize) -> Drawing,
+    provenance: &str,
+) -> Animation {
+    let last = positions.saturating_sub(1);
+    let count = MAX_FRAMES.min(positions);
+    let steps = count.saturating_sub(usize::from(!is_closed));
+    let frames = (0..count).map(|i| frame((i * last) / steps.max(1)));
+    Animation {
         name: "mechanism".to_owned(),
-        frames: (0..count).map(frame).collect(),
+        frames: frames.collect(),
         delay_ms: DELAY_MS,
         width_px: WIDTH_PX,
-        provenance: context.method_text.clone(),
-    })
+        provenance: provenance.to_owned(),
+    }
 }
 
 /// The last position that is drawn: the end of the trajectory, or of the first period of the only actuator.
@@ -138,10 +148,8 @@ impl<'a> FigureContext<'a> {
         computed: &'a ComputedTrajectory<'_>,
         span: PictureSpan,
     ) -> Result<Self, StudyError> {
-        let swept = computed.trajectory.swept_actuator().map(|k| {
-            let actuator = &scene.mechanism.actuators[k];
-            (actuator.name.as_str(), actuator.coordinate().is_angle())
-        });
+        let swept = computed.trajectory.swept_actuator();
+        let swept = swept.and_then(|k| scene.actuator(k));
         let charts = ChartContext::new(&scene.file, swept, computed, span)?;
         Ok(Self { scene, charts })
     }
