@@ -215,10 +215,8 @@ pub fn compute_cycle<'a, S: MachineScene>(
     require_rotating(&prepared)?;
     prepared.require_autonomous("a steady cycle")?;
     let options = Options {
-        atol: settings.atol,
         max_steps: MAX_STEPS,
-        max_step: settings.max_step,
-        ..Options::new(settings.method, settings.rtol)
+        ..settings.options()
     };
     let found = find_cycle(&prepared, &options).and_then(|(steady, errors)| {
         let size = |target| size_for(&prepared, &steady, target, &options);

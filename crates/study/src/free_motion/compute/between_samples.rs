@@ -39,7 +39,7 @@ impl FreeMotionProblem<'_> {
     /// Whether a time (s) is in a step that begins or ends within the window of a change point's fit.
     pub(crate) fn is_in_fit_window(&self, motion: &SegmentedMotion, t: f64) -> bool {
         let is_fit = |(chart, step): (usize, &OdeState)| {
-            self.machine(motion, chart).is_in_fit_window(&step.y)
+            self.machine_in(motion, chart).is_in_fit_window(&step.y)
         };
         let before = motion.steps().filter(|(_, step)| step.t <= t).last();
         let after = motion.steps().find(|(_, step)| step.t >= t);
@@ -158,7 +158,7 @@ impl<'m> MotionSampler<'m> {
         Some(match self.machines.entry(place.chart) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => {
-                let machine: &Machine = self.problem.machine(self.motion, place.chart);
+                let machine: &Machine = self.problem.machine_in(self.motion, place.chart);
                 let before = &place.steps()[place.step];
                 // At rest the energies show nothing of the works that come: steps would follow their rounding.
                 let end = Some(self.motion.end_time());
@@ -175,7 +175,7 @@ impl<'m> MotionSampler<'m> {
         point: &OdeState,
     ) -> Option<TrajectorySample> {
         let (problem, motion) = (self.problem, self.motion);
-        let machine = problem.machine(motion, place.chart);
+        let machine = problem.machine_in(motion, place.chart);
         if machine.is_in_fit_window(&point.y) {
             return None;
         }

@@ -1,7 +1,9 @@
 //! A motion at finer and finer tolerances, until two runs agree.
 
 use crate::explain::StudyError;
-use crate::free_motion::compute::{Difference, FreeMotionProblem, SegmentedMotion, TriedMotion};
+use crate::free_motion::compute::{
+    Difference, FreeMotionProblem, MotionProblem as _, SegmentedMotion, TriedMotion,
+};
 use dwell_dynamics::{Method, ObservedMachine, Options, TabulatedMachine, solve_system};
 use dwell_kinetostatics::TableDomain;
 

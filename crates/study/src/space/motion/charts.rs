@@ -6,6 +6,7 @@
 
 use super::problem::SpaceMotionProblem;
 use crate::explain::StudyError;
+use crate::free_motion::compute::MotionProblem as _;
 use dwell_dynamics::{DynamicsError, Machine, OdeState, Solution, Statistics};
 use dwell_geometry::JointId;
 use dwell_geometry::space::{
