@@ -234,7 +234,7 @@ fn period_of(scene: &impl CalibratedScene) -> Result<f64, StudyError> {
 }
 
 /// A scene that can be calibrated.
-pub trait CalibratedScene: SweptScene + MachineScene {
+pub trait CalibratedScene: SweptScene {
     /// The equation of motion of its only coordinate, without losses, drives and prescribed motions.
     ///
     /// # Errors

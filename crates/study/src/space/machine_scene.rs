@@ -40,13 +40,7 @@ impl MachineScene for SpaceScene {
     }
 
     fn reaction_columns(&self, model: &Model) -> Vec<Column> {
-        let column = |reaction: Reaction| {
-            let unit = match reaction.component {
-                Component::Force(..) => "N",
-                Component::Moment(..) => "N m",
-            };
-            Column::new(self.reaction_name(reaction), unit)
-        };
+        let column = |r: Reaction| Column::new(self.reaction_name(r), reaction_unit(&r));
         model.reactions().map(column).collect()
     }
 
@@ -106,6 +100,14 @@ impl MachineScene for SpaceScene {
             DynamicsError::Load(load) => explain_loads(self, model.plan(), load),
             other => explain_any_motion(self, other),
         }
+    }
+}
+
+/// The unit of a reaction.
+pub(super) fn reaction_unit(reaction: &Reaction) -> &'static str {
+    match reaction.component {
+        Component::Force(..) => "N",
+        Component::Moment(..) => "N m",
     }
 }
 

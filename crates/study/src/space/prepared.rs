@@ -3,6 +3,7 @@
 use super::explain::{
     explain_load_error, explain_loads, explain_model, explain_position, with_loads,
 };
+use super::machine_scene::reaction_unit;
 use crate::explain::{StudyError, scene_error};
 use crate::number_format::count;
 #[cfg(feature = "output")]
@@ -13,7 +14,7 @@ use crate::reduce::compute::{
 };
 use dwell_geometry::space::{ActuatorKind, Placement, Plan};
 use dwell_geometry::{ActuatorId, PositionError, Range};
-use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};
+use dwell_kinetostatics::space::{LoadKind, Model, Reaction};
 use dwell_kinetostatics::{
     Coefficients, ExactModel, KinetostaticsError, MachineModel as _, Magnitude, ReducedModel as _,
     TableDomain, TableError, TabulatedModel, reduction_rounding_errors,
@@ -199,13 +200,7 @@ impl ReducedScene for PreparedSpaceScene<'_> {
     }
 
     fn reaction_units(&self) -> Vec<(String, &'static str)> {
-        let named = |reaction: Reaction| {
-            let unit = match reaction.component {
-                Component::Force(..) => "N",
-                Component::Moment(..) => "N m",
-            };
-            (self.scene.reaction_name(reaction), unit)
-        };
+        let named = |r: Reaction| (self.scene.reaction_name(r), reaction_unit(&r));
         self.model.model().reactions().map(named).collect()
     }
 

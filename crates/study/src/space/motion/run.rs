@@ -10,12 +10,12 @@ use crate::free_motion::compute::{
     pair_by_time, reactions_at,
 };
 use crate::ranges::extent;
+use crate::space::machine_scene::reaction_unit;
 use dwell_dynamics::{
     DynamicsError, Method, ObservedMachine, OdeState, Options, Orbit, Solution, Statistics, solve,
     solve_further, solve_orbit,
 };
 use dwell_findings::Record;
-use dwell_kinetostatics::space::{Component, Reaction};
 use rayon::join;
 
 /// How much earlier than a motion that failed its second run ends, as a part of it.
@@ -297,16 +297,12 @@ impl TriedMotion for SpaceMotionProblem<'_> {
         let explain = |error: DynamicsError| self.explain(&error);
         let [one, two] = motions.map(|motion| self.samples(motion));
         let (one, two) = (one.map_err(explain)?, two.map_err(explain)?);
-        let unit = |reaction: &Reaction| match reaction.component {
-            Component::Force(..) => "N",
-            Component::Moment(..) => "N m",
-        };
         let requested = &self.reactions.requested;
         let compared = Compared {
             samples: [&one, &two],
             ends: motions.map(Motion::end),
             size: self.output_model.plan().size(),
-            units: requested.iter().map(unit).collect(),
+            units: requested.iter().map(reaction_unit).collect(),
         };
         let difference = compared.difference(self, &|which, sample| {
             let problem = motions[which].problem(self, sample.chart);

@@ -10,7 +10,7 @@ pub(crate) type IndexedReaction = (usize, String, &'static str);
 
 /// Every quantity of a scene.
 #[derive(Debug, Default)]
-pub struct Available {
+pub(super) struct Available {
     pub(crate) quantities: Vec<SweepQuantity>,
     /// What is said of the scene's assembly.
     pub(crate) notes: String,

@@ -5,6 +5,7 @@ use crate::former_names;
 use crate::sweep::compute::SweptScene;
 use crate::sweep::compute::available::Available;
 use crate::sweep::compute::extremes::ExtremeValues;
+use crate::sweep::compute::scene_results::{available_quantities, compute_results};
 use crate::trajectory::compute::is_prefix_of;
 use std::collections::BTreeSet;
 
@@ -110,7 +111,7 @@ impl RequestedQuantities {
         let Available {
             mut quantities,
             notes: of_scene,
-        } = scene.available_quantities()?;
+        } = available_quantities(scene)?;
         for request in requests {
             if !quantities.iter().any(|q| q.matches(request)) {
                 let name = request.clone();
@@ -156,7 +157,7 @@ impl RequestedQuantities {
             failed: None,
         };
         let varied = scene.varied(values).map_err(StudyError::from);
-        let done = varied.and_then(|scene| scene.compute_results(self, &mut results));
+        let done = varied.and_then(|scene| compute_results(&scene, self, &mut results));
         let done = done.and_then(|()| results.failed.map_or(Ok(()), Err));
         result.message = done.err().map(|error| first_message(&error));
         result
