@@ -112,7 +112,7 @@ pub(super) fn reaction_unit(reaction: &Reaction) -> &'static str {
 }
 
 /// Explains a machine that cannot be built.
-pub(super) fn explain_machine(scene: &SpaceScene, error: &MachineError) -> StudyError {
+fn explain_machine(scene: &SpaceScene, error: &MachineError) -> StudyError {
     match error {
         MachineError::Load(load) => explain_load_error(scene, load),
         MachineError::Drive(drive) => scene_error(

@@ -1,20 +1,19 @@
 //! What scenes in space are swept for.
 
 use super::explain::explain_position;
-use super::machine_scene::{explain_machine, reaction_unit};
+use super::machine_scene::reaction_unit;
 use super::motion::SpaceMotionProblem;
 use super::prepared::{compile, range_limits};
 use super::trajectory::{JointReactions, computed_rows};
 use crate::explain::StudyError;
 use crate::free_motion::compute::MotionSolver;
-use crate::models::{SolverSettings, end_stops};
+use crate::models::SolverSettings;
 use crate::progress::no_progress;
 use crate::sweep::compute::{
     Design, ExtremeValues, IndexedReaction, RangeCurves, RequestedQuantities, ResultKind, Results,
     SweptScene, VariantFamily,
 };
 use crate::trajectory::compute::{Analysis, ComputedTrajectory, Quantity};
-use dwell_dynamics::{CoordinateMode, Machine};
 use dwell_kinetostatics::ExactModel;
 use dwell_kinetostatics::space::{Model, Reaction};
 use dwell_scene::{SceneError, SpaceScene};
@@ -50,13 +49,6 @@ impl SweptScene for SpaceScene {
         let solver = MotionSolver::Settings(SolverSettings::default());
         let problem = SpaceMotionProblem::new(self)?.for_solver(&solver);
         Ok(problem.simulate(&solver, None, &no_progress)?.computed)
-    }
-
-    fn free_machine(&self, _: &(JointReactions, Model)) -> Result<Machine<Model>, StudyError> {
-        let modes = vec![CoordinateMode::Free; self.mechanism.actuators.len()];
-        let machine = Machine::new(compile(self, &[])?, &self.loads, modes, &self.drives);
-        let machine = machine.and_then(|machine| machine.with_stops(&end_stops(&self.stops)));
-        machine.map_err(|error| explain_machine(self, &error))
     }
 
     fn inertia_extremes(&self, _: &(JointReactions, Model)) -> Result<ExtremeValues, StudyError> {

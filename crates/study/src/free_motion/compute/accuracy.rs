@@ -13,7 +13,7 @@ use crate::free_motion::compute::refinement::{
     COARSE_TOLERANCE, Candidate, FIRST_TOLERANCE_RATIO, MIN_TOLERANCE, Refinement, Run, refine,
 };
 use crate::free_motion::compute::tried_motion::TriedMotion;
-use crate::free_motion::compute::{ComputedMotion, Difference, FreeMotionProblem, SegmentedMotion};
+use crate::free_motion::compute::{ComputedMotion, Difference, FreeMotionProblem};
 use dwell_dynamics::{DynamicsError, Method, Options, Statistics};
 use dwell_findings::Record;
 
@@ -188,13 +188,15 @@ impl FreeMotionProblem<'_> {
             return Ok(found);
         }
         let found = find_motion(self, accuracy, duration, sample_interval)?;
-        let remarks = found.remarks(accuracy);
-        let (motion, difference) = (found.motion, &found.difference);
-        let computed =
-            ComputedMotion::to_accuracy(motion, found.method_text, accuracy, remarks, difference);
+        let (remarks, record) = found.remarks(accuracy);
         Ok(ComputedMotion {
+            method_text: found.method_text,
+            remarks,
+            record,
+            accuracy: Some([accuracy, found.difference.largest()]),
             comparison: Some(found.finer),
-            ..computed
+            motion: found.motion,
+            ..ComputedMotion::default()
         })
     }
 }
@@ -214,29 +216,6 @@ impl Difference {
         record.add("error.kinetic_energy", "", energy);
         record.add("error.reactions", "", reactions);
         (remarks, record)
-    }
-}
-
-impl ComputedMotion {
-    /// A motion to a required accuracy, what is said of it, and its estimated error.
-    pub(super) fn to_accuracy(
-        motion: SegmentedMotion,
-        method_text: String,
-        accuracy: f64,
-        (remarks, record): (String, Record),
-        difference: &Difference,
-    ) -> Self {
-        Self {
-            motion,
-            method_text,
-            remarks,
-            record,
-            accuracy: Some([accuracy, difference.largest()]),
-            inaccuracy: None,
-            comparison: None,
-            evaluated: [None, None],
-            delay: None,
-        }
     }
 }
 

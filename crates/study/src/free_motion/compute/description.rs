@@ -49,12 +49,8 @@ impl FreeMotionProblem<'_> {
         errors
     }
 
-    pub(super) fn summary(
-        &self,
-        computed: &ComputedMotion,
-        duration: f64,
-        record: &mut Record,
-    ) -> String {
+    pub(super) fn summary(&self, computed: &ComputedMotion, duration: f64) -> (String, Record) {
+        let mut record = Record::default();
         let (motion, method_text) = (&computed.motion, &computed.method_text);
         let end = motion.end_time();
         let of_all = match end < duration {
@@ -86,18 +82,17 @@ impl FreeMotionProblem<'_> {
             }
             let times = (&own[..], others.as_deref());
             let late = computed.delay.unwrap_or_default();
-            text += &event_line((name, event.terminal), times, late, record);
+            text += &event_line((name, event.terminal), times, late, &mut record);
         }
-        text += &NamedContacts::new(self).describe(&motion.segments, second, record);
+        text += &NamedContacts::new(self).describe(&motion.segments, second, &mut record);
         for change in &motion.chart_changes {
             text += &format!("  {change}\n");
         }
-        text += &cost_line(&motion.statistics, record);
-        text + &class_line(
-            self,
-            |points| Some(self.turning_point_errors(points)),
-            record,
-        ) + &self.describe_energy_balance(motion, duration, record)
+        text += &cost_line(&motion.statistics, &mut record);
+        let turning_point_errors = |points| Some(self.turning_point_errors(points));
+        text += &class_line(self, turning_point_errors, &mut record);
+        text += &self.describe_energy_balance(motion, duration, &mut record);
+        (text, record)
     }
 
     /// What the loads and the initial speed can do over a duration (s), J: the energies beside which others are rounding.

@@ -4,28 +4,13 @@ use crate::estimate::{self, is_rounding};
 use crate::explain::StudyError;
 use crate::free_motion::compute::difference::pair_by_time;
 use crate::free_motion::compute::{
-    FreeMotionProblem, LARGE_ERROR, MotionProblem as _, SegmentedMotion,
+    ComputedMotion, FreeMotionProblem, LARGE_ERROR, MotionProblem as _, SegmentedMotion,
 };
 use crate::number_format::digits;
 use crate::ranges::extent;
 use crate::trajectory::compute::TrajectorySample;
 use dwell_dynamics::Options;
 use dwell_findings::Record;
-
-/// What a second run says of a motion.
-#[derive(Default)]
-pub(crate) struct ErrorEstimate {
-    /// The line of the summary about the error.
-    pub(crate) text: String,
-    /// The numbers in it, each relative to what the line says.
-    pub(crate) record: Record,
-    /// Why the motion is no result: the error is large, or holds for a part of it only.
-    pub(crate) inaccuracy: Option<String>,
-    /// The second run.
-    pub(crate) second: Option<SegmentedMotion>,
-    /// The samples of the motion and of the second run, evaluated.
-    pub(crate) samples: [Option<Vec<TrajectorySample>>; 2],
-}
 
 /// A sample of each of two runs at the same time.
 type SamplePair<'a> = (&'a TrajectorySample, &'a TrajectorySample);
@@ -64,15 +49,16 @@ pub(crate) fn large_energy_error(error: f64) -> String {
 }
 
 impl FreeMotionProblem<'_> {
-    /// The estimated error of a motion by a second run, by [`estimate::comparison_options`], over its duration.
+    /// What a second run, by [`estimate::comparison_options`], says of a motion: its estimated error over its duration, and why it is
+    /// no result: the error is large, or holds for a part of it only.
     pub(crate) fn estimate_error(
         &self,
         motion: &SegmentedMotion,
         second: Option<SegmentedMotion>,
         options: &Options,
-    ) -> Result<ErrorEstimate, StudyError> {
+    ) -> Result<ComputedMotion, StudyError> {
         if motion.end_time() == 0.0 {
-            return Ok(ErrorEstimate::default());
+            return Ok(ComputedMotion::default());
         }
         let (samples, others) = rayon::join(
             || self.samples(motion),
@@ -90,11 +76,11 @@ impl FreeMotionProblem<'_> {
         let Some((last, _)) = pairs.last() else {
             let text = format!("  no error estimate: a second run, at {refinement}, fails\n");
             let inaccuracy = "its error cannot be estimated: a second run fails".to_owned();
-            return Ok(ErrorEstimate {
-                text,
+            return Ok(ComputedMotion {
+                remarks: text,
                 inaccuracy: Some(inaccuracy),
-                samples: [Some(samples), None],
-                ..ErrorEstimate::default()
+                evaluated: [Some(samples), None],
+                ..ComputedMotion::default()
             });
         };
         // An event may end one of the runs a sample earlier.
@@ -116,12 +102,13 @@ impl FreeMotionProblem<'_> {
         let ends = (!is_whole).then(|| {
             format!("its error is known until t = {until} s only, where a second run ends")
         });
-        Ok(ErrorEstimate {
-            text,
+        Ok(ComputedMotion {
+            remarks: text,
             record,
             inaccuracy: large.or(ends),
-            second,
-            samples: [Some(samples), others],
+            comparison: second,
+            evaluated: [Some(samples), others],
+            ..ComputedMotion::default()
         })
     }
 

@@ -68,16 +68,18 @@ impl FreeMotionProblem<'_> {
             tail *= TAIL_RATIO;
             orbit = finer;
         };
-        let method_text = "quadrature".to_owned();
         let points = orbit.points;
         let how = format!("quadrature (conservative, periodic motion), {points} quadrature points");
-        let remarks = difference.remarks(accuracy, &how);
-        let found =
-            ComputedMotion::to_accuracy(motion, method_text, accuracy, remarks, &difference);
+        let (remarks, record) = difference.remarks(accuracy, &how);
         Some(ComputedMotion {
+            motion,
+            method_text: "quadrature".to_owned(),
+            remarks,
+            record,
+            accuracy: Some([accuracy, difference.largest()]),
             comparison: Some(comparison),
             delay: Some(delay),
-            ..found
+            ..ComputedMotion::default()
         })
     }
 

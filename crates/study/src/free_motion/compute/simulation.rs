@@ -59,13 +59,8 @@ pub struct FreeMotion {
     pub record: Record,
 }
 
-/// What has been evaluated of a motion before its rows.
-struct KnownMotion<'s> {
-    /// The motion at its rows, and what is known between them.
-    followed: (Trajectory<'static>, Option<MotionBetweenRows<'s>>),
-    /// The samples of the second computation.
-    others: Option<Vec<TrajectorySample>>,
-}
+/// A motion at its rows, and what is known between them.
+type FollowedMotion<'s> = (Trajectory<'static>, Option<MotionBetweenRows<'s>>);
 
 /// The free motion of a scene.
 ///
@@ -111,11 +106,13 @@ pub(crate) fn compute_free_motion_at(
         further,
         sampler: &sampler,
     });
-    let known = KnownMotion {
-        followed: (trajectory, between),
-        others,
-    };
-    let rows = problem.rows_and_summary(&integrated, (known, times), duration, progress);
+    let second = || problem.second_rows(&integrated, others, times);
+    let rows = problem.rows_and_summary(
+        &integrated,
+        ((trajectory, between), second),
+        duration,
+        progress,
+    );
     let (mut computed, (mut summary, mut record)) = rows?;
     let shortfall = problem.shortfall(&integrated, solver);
     computed.early_stop = shortfall.or(computed.early_stop);
@@ -250,14 +247,10 @@ impl FreeMotionProblem<'_> {
         let unstable = is_unstable.then(|| STARTS_UNSTABLE.to_owned());
         Ok(ComputedMotion {
             method_text: settings.describe(),
-            remarks: hint + &estimate.text,
-            record: estimate.record,
-            accuracy: None,
+            remarks: hint + &estimate.remarks,
             inaccuracy: unstable.or(estimate.inaccuracy),
-            comparison: estimate.second,
-            evaluated: estimate.samples,
-            delay: None,
             motion,
+            ..estimate
         })
     }
 
@@ -265,19 +258,18 @@ impl FreeMotionProblem<'_> {
     fn rows_and_summary(
         &self,
         integrated: &ComputedMotion,
-        (known, times): (KnownMotion<'_>, Option<&[f64]>),
+        (followed, second_rows): (
+            FollowedMotion<'_>,
+            impl FnOnce() -> Option<SecondRows> + Send,
+        ),
         duration: f64,
         progress: Progress<'_>,
     ) -> Result<(ComputedTrajectory<'static>, (String, Record)), StudyError> {
         let mut beside = None;
-        let KnownMotion { followed, others } = known;
         let computed = rayon::in_place_scope(|scope| {
             // On another core: the rows of the second computation, and the summary.
             scope.spawn(|_| {
-                let second = self.second_rows(integrated, others, times);
-                let mut record = Record::default();
-                let text = self.summary(integrated, duration, &mut record);
-                beside = Some((second, (text, record)));
+                beside = Some((second_rows(), self.summary(integrated, duration)));
             });
             let (scene, model) = (self.loaded_scene, &self.output_model);
             compute_along(scene, model, followed, String::new(), progress)

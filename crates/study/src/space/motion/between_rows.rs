@@ -14,18 +14,10 @@ impl SpaceMotionProblem<'_> {
         if steps.sum::<usize>() > MAX_STEPS {
             return None;
         }
-        let mut all = Vec::new();
-        for (problem, solution) in run.motion.parts(self) {
-            let mut workspace = problem.machine.workspace();
-            let steps = solution.steps.iter();
-            let steps = steps.filter(|step| !problem.machine.is_in_fit_window(&step.y));
-            for step in steps {
-                let sliding = sliding_at(solution, step.t);
-                let sample = problem.sample(step, sliding, &mut workspace).ok()?;
-                all.push((step.t, sample));
-            }
-        }
-        Some(all)
+        let steps = self
+            .evaluated(&run.motion, |solution| &solution.steps)
+            .ok()?;
+        Some(steps.into_iter().map(|step| (step.t, step)).collect())
     }
 }
 

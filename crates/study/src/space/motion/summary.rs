@@ -46,15 +46,12 @@ impl SpaceMotionProblem<'_> {
 
     /// The error of the energy balance.
     fn describe_energy(&self, run: &Run, record: &mut Record) -> String {
-        let at_steps = self.energies(&self.steps_as_samples(run).unwrap_or_default());
+        let steps = self.steps_as_samples(run).unwrap_or_default();
+        let at_steps = self.energies(steps.iter().map(|(_, sample)| sample));
         let Ok(samples) = self.samples(&run.motion) else {
             return String::new();
         };
-        let samples: Vec<_> = samples
-            .into_iter()
-            .map(|sample| (sample.t, sample))
-            .collect();
-        let at_samples = self.energies(&samples);
+        let at_samples = self.energies(samples.iter());
         let both = || at_steps.iter().chain(&at_samples);
         let largest = |of: fn(&Energies) -> f64| both().map(|e| of(e).abs()).fold(0.0, f64::max);
         let (kinetic, potential) = (largest(|e| e.kinetic), largest(|e| e.potential));
@@ -71,15 +68,15 @@ impl SpaceMotionProblem<'_> {
     }
 
     /// The energies of states of the motion.
-    fn energies(&self, states: &[(f64, TrajectorySample)]) -> Vec<Energies> {
+    fn energies<'s>(&self, states: impl Iterator<Item = &'s TrajectorySample>) -> Vec<Energies> {
         let balance = self.balance_index();
-        let one = |(t, sample): &(f64, TrajectorySample)| Energies {
-            t: *t,
+        let one = |sample: &TrajectorySample| Energies {
+            t: sample.t,
             kinetic: sample.extra_values[0],
             potential: sample.extra_values[1],
             balance: sample.extra_values[balance],
         };
-        states.iter().map(one).collect()
+        states.map(one).collect()
     }
 
     /// The estimated errors.

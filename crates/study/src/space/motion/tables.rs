@@ -19,20 +19,29 @@ use dwell_kinetostatics::space::Model;
 impl SpaceMotionProblem<'_> {
     /// Every sample with its accelerations, drive magnitudes and energies.
     pub(super) fn samples(&self, motion: &Motion) -> Result<Vec<TrajectorySample>, DynamicsError> {
+        let all = self.evaluated(motion, |solution| &solution.samples)?;
+        let index = self.balance_index();
+        let initial = all.first().map_or(0.0, |s| s.extra_values[index]);
+        Ok(since_start(all, index, initial))
+    }
+
+    /// Some states of each part of a motion as samples.
+    pub(super) fn evaluated(
+        &self,
+        motion: &Motion,
+        picked: fn(&Solution) -> &[OdeState],
+    ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let mut all = Vec::new();
         for (problem, solution) in motion.parts(self) {
             let mut workspace = problem.machine.workspace();
-            let states = solution.samples.iter();
             // Within the window of a change point no reaction has a value.
-            let states = states.filter(|state| !problem.machine.is_in_fit_window(&state.y));
-            for state in states {
+            let states = picked(solution).iter();
+            for state in states.filter(|state| !problem.machine.is_in_fit_window(&state.y)) {
                 let sliding = sliding_at(solution, state.t);
                 all.push(problem.sample(state, sliding, &mut workspace)?);
             }
         }
-        let index = self.balance_index();
-        let initial = all.first().map_or(0.0, |s| s.extra_values[index]);
-        Ok(since_start(all, index, initial))
+        Ok(all)
     }
 
     /// The samples of a motion at wanted times (s, ascending) up to its end, and at its end.

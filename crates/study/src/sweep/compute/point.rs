@@ -184,7 +184,13 @@ pub struct Results<'a> {
 }
 
 impl Results<'_> {
-    pub(crate) fn set(&mut self, kind: ResultKind, computed: Result<Vec<f64>, StudyError>) {
+    /// Fills the cells of a kind of quantities with what is computed of each, or notes why there is nothing.
+    fn fill<T>(
+        &mut self,
+        kind: ResultKind,
+        computed: Result<T, StudyError>,
+        of: impl Fn(&T, &SweepQuantity) -> Option<f64>,
+    ) {
         match computed {
             Err(error) => {
                 self.failed.get_or_insert(error);
@@ -192,10 +198,14 @@ impl Results<'_> {
             Ok(values) => {
                 let cells = self.quantities.iter().zip(&mut *self.cells);
                 for (quantity, cell) in cells.filter(|(q, _)| q.kind == kind) {
-                    *cell = values.get(quantity.index).copied().unwrap_or(f64::NAN);
+                    *cell = of(&values, quantity).unwrap_or(f64::NAN);
                 }
             }
         }
+    }
+
+    pub(crate) fn set(&mut self, kind: ResultKind, computed: Result<Vec<f64>, StudyError>) {
+        self.fill(kind, computed, |values, of| values.get(of.index).copied());
     }
 
     /// Values by the names of their quantities: of a kind whose quantities are not the same in every variant.
@@ -204,16 +214,10 @@ impl Results<'_> {
         kind: ResultKind,
         computed: Result<Vec<(String, f64)>, StudyError>,
     ) {
-        match computed {
-            Err(error) => self.set(kind, Err(error)),
-            Ok(values) => {
-                let cells = self.quantities.iter().zip(&mut *self.cells);
-                for (quantity, cell) in cells.filter(|(q, _)| q.kind == kind) {
-                    let named = values.iter().find(|(name, _)| *name == quantity.name);
-                    *cell = named.map_or(f64::NAN, |(_, value)| *value);
-                }
-            }
-        }
+        self.fill(kind, computed, |values, of| {
+            let named = values.iter().find(|(name, _)| *name == of.name);
+            named.map(|(_, value)| *value)
+        });
     }
 
     /// Values with their places.
@@ -222,13 +226,12 @@ impl Results<'_> {
         [values, places]: [ResultKind; 2],
         computed: Result<ExtremeValues, StudyError>,
     ) {
-        match computed {
-            Err(error) => self.set(values, Err(error)),
-            Ok(points) => {
-                self.set(values, Ok(points.iter().map(|[_, value]| *value).collect()));
-                self.set(places, Ok(points.iter().map(|[place, _]| *place).collect()));
-            }
+        if let Ok(points) = &computed {
+            self.set(places, Ok(points.iter().map(|[place, _]| *place).collect()));
         }
+        let value_of_each =
+            |points: ExtremeValues| points.iter().map(|[_, value]| *value).collect();
+        self.set(values, computed.map(value_of_each));
     }
 }
 

@@ -49,11 +49,13 @@ pub trait SweptScene: MachineScene + Sync + Sized {
     /// [`StudyError`] where there is none.
     fn free_motion(&self) -> Result<ComputedTrajectory<'static>, StudyError>;
 
-    /// Its machine with all coordinates free.
+    /// Its machine, where all coordinates are free.
     ///
     /// # Errors
     /// [`StudyError`] where a load or a drive does not fit it.
-    fn free_machine(&self, compiled: &Self::Compiled) -> Result<Machine<Self::Model>, StudyError>;
+    fn free_machine(&self, _: &Self::Compiled) -> Result<Machine<Self::Model>, StudyError> {
+        self.machine(&[])
+    }
 
     /// The extremes of m and ½m′ over the range.
     ///
