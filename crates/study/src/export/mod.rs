@@ -22,6 +22,12 @@ use dwell_scene::{Scene, SceneFile, SceneLocation};
 use sampler::recorded;
 use std::fmt::Display;
 
+/// The mark of the only coordinate.
+const OVER_COORDINATE: (SceneLocation, &str) = (
+    SceneLocation::Actuator(ActuatorId(0)),
+    "over this coordinate",
+);
+
 /// What of a scene is exported, and how accurately.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExportRequest {
@@ -92,10 +98,7 @@ pub(crate) fn no_operations(scene: &SceneFile, reason: &str) -> StudyError {
         scene,
         format!("no exact export: {reason}"),
         "leave --exact out: cells have every function to 1e-12 if you ask for it with --accuracy",
-        [(
-            SceneLocation::Actuator(ActuatorId(0)),
-            "over this coordinate",
-        )],
+        [OVER_COORDINATE],
     )
 }
 
@@ -106,21 +109,15 @@ pub(crate) fn explain_fit<E: Display>(
     asked: &ExportRequest,
     error: &FitError<E>,
 ) -> StudyError {
-    let actuator = SceneLocation::Actuator(ActuatorId(0));
     let place = |function: &Function| match function {
         Function::Potential(load) | Function::W(load) | Function::C(load, _) => {
             (SceneLocation::Load(*load), "this load")
         }
         Function::Position(point, _) => (SceneLocation::Path(*point), "this point"),
-        Function::Inertia | Function::A(_) | Function::B(_) => (actuator, "over this coordinate"),
+        Function::Inertia | Function::A(_) | Function::B(_) => OVER_COORDINATE,
     };
     match error {
-        FitError::Sampler(error) => scene_error(
-            scene,
-            error.to_string(),
-            "",
-            [(actuator, "over this coordinate")],
-        ),
+        FitError::Sampler(error) => scene_error(scene, error.to_string(), "", [OVER_COORDINATE]),
         FitError::NotPeriodic { name, function } => scene_error(
             scene,
             format!("no export: {name} is not periodic over a revolution"),
@@ -145,7 +142,7 @@ pub(crate) fn explain_fit<E: Display>(
                 scene,
                 message,
                 "ask for less accuracy, or for a smaller part of the range with --from and --until, away from limit positions and change points",
-                [(actuator, "over this coordinate")],
+                [OVER_COORDINATE],
             )
         }
     }
