@@ -1,7 +1,6 @@
 //! A scene as plain data for export, and what of it cannot be exported.
 
 use super::OVER_COORDINATE;
-use super::sampler::SceneSampler;
 use crate::explain::{NamedScene, StudyError, explain_machine, not_one_actuator, scene_error};
 use crate::machines::{CoordinateOf, MachineScene};
 use crate::models::{build_machine, determinate_model, with_drive_loads};
@@ -49,11 +48,6 @@ impl<'a> ExportedScene<'a> {
             model,
             description,
         })
-    }
-
-    /// The exact functions.
-    pub(crate) fn sampler(&self) -> SceneSampler<'_> {
-        SceneSampler::new(self)
     }
 }
 
@@ -185,28 +179,26 @@ pub(crate) fn domain(
             [OVER_COORDINATE],
         ));
     }
-    Ok(match (range, range.period()) {
-        (_, Some(period)) => Domain {
+    if let Some(period) = range.period() {
+        return Ok(Domain {
             from: 0.0,
             to: period,
             revolutions: (period / TAU).round() as u32,
-        },
-        (Range::Unbounded, None) if is_angle => limited(0.0, TAU),
-        (range, None) => match range.limits() {
-            Some((from, to)) => {
-                let margin = END_MARGIN * (to - from);
-                limited(from + margin, to - margin)
-            }
-            None => {
-                return Err(scene_error(
-                    scene,
-                    "no export: the coordinate has no ends",
-                    "give the interval with --from and --until",
-                    [(SceneLocation::Actuator(ActuatorId(0)), "this coordinate")],
-                ));
-            }
-        },
-    })
+        });
+    }
+    match range.limits() {
+        Some((from, to)) => {
+            let margin = END_MARGIN * (to - from);
+            Ok(limited(from + margin, to - margin))
+        }
+        None if is_angle && range == Range::Unbounded => Ok(limited(0.0, TAU)),
+        None => Err(scene_error(
+            scene,
+            "no export: the coordinate has no ends",
+            "give the interval with --from and --until",
+            [(SceneLocation::Actuator(ActuatorId(0)), "this coordinate")],
+        )),
+    }
 }
 
 fn describe(scene: &Scene, loaded: &Scene, model: &Model, domain: Domain) -> MachineDescription {

@@ -19,7 +19,7 @@ use dwell_dynamics::DynamicsError;
 use dwell_export::{Export, FitError, Function, MachineDescription, RecordingError, Request};
 use dwell_geometry::ActuatorId;
 use dwell_scene::{Scene, SceneFile, SceneLocation};
-use sampler::recorded;
+use sampler::{SceneSampler, recorded};
 use std::fmt::Display;
 
 /// The mark of the only coordinate.
@@ -57,7 +57,7 @@ pub fn compute_export(scene: &Scene, asked: &ExportRequest) -> Result<Export, St
         RecordingError::Differs { .. } => no_operations(scene, SEARCHED),
     })?;
     let (machine, precision) = (exported.description.clone(), asked.request.precision);
-    let export = Export::exact(machine, precision, code, &mut exported.sampler());
+    let export = Export::exact(machine, precision, code, &mut SceneSampler::new(&exported));
     export.map_err(|error| explain_export(scene, &exported, asked, error))
 }
 
@@ -69,7 +69,7 @@ pub fn compute_export(scene: &Scene, asked: &ExportRequest) -> Result<Export, St
 pub fn compute_export_in_cells(scene: &Scene, asked: &ExportRequest) -> Result<Export, StudyError> {
     let exported = ExportedScene::new(scene, asked.interval)?;
     let machine = exported.description.clone();
-    let export = Export::new(machine, asked.request, &mut exported.sampler());
+    let export = Export::new(machine, asked.request, &mut SceneSampler::new(&exported));
     export.map_err(|error| explain_export(scene, &exported, asked, error))
 }
 

@@ -4,7 +4,7 @@ use super::explain::explain_position;
 use super::prepared::PreparedSpaceScene;
 use crate::explain::StudyError;
 #[cfg(feature = "output")]
-use crate::explain::scene_error;
+use crate::explain::{actuator_labels, scene_error};
 use crate::export::description::{
     LoadUnit, describe_loads, domain, machine_of, missing_parts, parts_of, reference_sizes,
     reject_friction, reject_stops,
@@ -22,13 +22,9 @@ use crate::reduce::compute::Reduction;
 use dwell_export::{
     Domain, Export, FitError, Function, FunctionSampler, MachineDescription, PartKind,
 };
-#[cfg(feature = "output")]
-use dwell_geometry::ActuatorId;
 use dwell_geometry::PositionError;
 use dwell_kinetostatics::space::{Load, LoadKind, Workspace};
 use dwell_kinetostatics::{Coefficients, InverseDynamics, ReducedModel as _};
-#[cfg(feature = "output")]
-use dwell_scene::SceneLocation;
 use dwell_scene::SpaceScene;
 
 /// Exports the reduced model of a machine in space.
@@ -45,8 +41,7 @@ pub fn export_in_space(
         let given = count(scene.mechanism.actuators.len(), "actuator");
         let message =
             format!("the scene has {given}: in space several degrees of freedom are not exported");
-        let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
-        let labels = actuators.map(|a| (SceneLocation::Actuator(a), "drives it"));
+        let labels = actuator_labels(scene, "drives it");
         let help = "give exactly one actuator in [actuators]; of mechanisms in the plane several degrees of freedom are exported as C";
         return Err(scene_error(scene, message, help, labels));
     }
