@@ -1,7 +1,7 @@
 //! The machine of a scene in space.
 
 use super::explain::{explain_load_error, explain_loads, explain_position};
-use super::prepared::{PreparedSpaceScene, compile, sort_reactions};
+use super::prepared::{PreparedSpaceScene, compile, reaction_unit, sort_reactions};
 use super::trajectory::{JointReactions, reject_unknown_variables};
 use super::views::page_drawing;
 use crate::explain::{StudyError, explain_any_motion, scene_error};
@@ -10,7 +10,7 @@ use crate::models::{drive_states, end_stops};
 use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, MachineError, NonconservativeSource};
 use dwell_findings::Column;
 use dwell_kinetostatics::Drive;
-use dwell_kinetostatics::space::{Component, Coordinate, Model, Reaction};
+use dwell_kinetostatics::space::{Coordinate, Model, Reaction};
 use dwell_laws::Law;
 use dwell_page::Drawing;
 use dwell_scene::{SceneLocation, SpaceScene};
@@ -100,14 +100,6 @@ impl MachineScene for SpaceScene {
             DynamicsError::Load(load) => explain_loads(self, model.plan(), load),
             other => explain_any_motion(self, other),
         }
-    }
-}
-
-/// The unit of a reaction.
-pub(super) fn reaction_unit(reaction: &Reaction) -> &'static str {
-    match reaction.component {
-        Component::Force(..) => "N",
-        Component::Moment(..) => "N m",
     }
 }
 

@@ -3,7 +3,6 @@
 use super::explain::{
     explain_load_error, explain_loads, explain_model, explain_position, with_loads,
 };
-use super::machine_scene::reaction_unit;
 use crate::explain::{StudyError, scene_error};
 use crate::number_format::count;
 #[cfg(feature = "output")]
@@ -14,7 +13,7 @@ use crate::reduce::compute::{
 };
 use dwell_geometry::space::{ActuatorKind, Placement, Plan};
 use dwell_geometry::{ActuatorId, PositionError, Range};
-use dwell_kinetostatics::space::{LoadKind, Model, Reaction};
+use dwell_kinetostatics::space::{Component, LoadKind, Model, Reaction};
 use dwell_kinetostatics::{
     Coefficients, ExactModel, KinetostaticsError, MachineModel as _, Magnitude, ReducedModel as _,
     TableDomain, TableError, TabulatedModel, reduction_rounding_errors,
@@ -142,6 +141,14 @@ pub(super) fn sort_reactions(
     let all = model.reactions().zip(determined);
     let (determined, others): (Vec<_>, Vec<_>) = all.partition(|(_, determined)| *determined);
     Ok([determined, others].map(|some| some.into_iter().map(|(reaction, _)| reaction).collect()))
+}
+
+/// The unit of a reaction.
+pub(super) fn reaction_unit(reaction: &Reaction) -> &'static str {
+    match reaction.component {
+        Component::Force(..) => "N",
+        Component::Moment(..) => "N m",
+    }
 }
 
 /// Units of w along an angle, and of c of a force and of a moment.

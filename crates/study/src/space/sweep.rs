@@ -1,9 +1,8 @@
 //! What scenes in space are swept for.
 
 use super::explain::explain_position;
-use super::machine_scene::reaction_unit;
 use super::motion::SpaceMotionProblem;
-use super::prepared::{compile, range_limits};
+use super::prepared::{compile, range_limits, reaction_unit};
 use super::trajectory::{JointReactions, computed_rows};
 use crate::explain::StudyError;
 use crate::free_motion::compute::MotionSolver;
@@ -151,15 +150,12 @@ fn peaks(
         )
     };
     let study = (analysis, None);
-    let (computed, _) = computed_rows(scene, (reactions, model), study, &is_wanted, &no_progress)?;
-    let ComputedTrajectory {
-        results,
-        early_stop: None,
-        ..
-    } = computed
-    else {
-        return Err(computed.early_stop.unwrap_or_else(|| ended_early(scene)));
-    };
+    let (mut computed, _) =
+        computed_rows(scene, (reactions, model), study, &is_wanted, &no_progress)?;
+    if let Some(error) = computed.early_stop.take() {
+        return Err(error);
+    }
+    let results = &computed.results;
     let columns = results.columns.iter().zip(&results.extrema.of_columns);
     let [mut of_reactions, mut of_actuators] = [const { Vec::new() }; 2];
     for (column, ends) in columns {
@@ -173,11 +169,6 @@ fn peaks(
         }
     }
     Ok([of_reactions, of_actuators])
-}
-
-fn ended_early(scene: &SpaceScene) -> StudyError {
-    let message = "the trajectory ends early".to_owned();
-    scene.error(message, None, &[]).into()
 }
 
 /// Curves over the range of the only actuator.

@@ -30,24 +30,18 @@ const MAX_COARSE_STEPS: usize = 100_000;
 
 /// A motion to an accuracy, by the method that was found.
 pub(crate) struct FoundMotion<M> {
-    pub(crate) motion: M,
-    /// The finer run with which it was compared.
-    pub(crate) finer: M,
+    pub(crate) found: Refinement<M>,
     pub(crate) method: Method,
-    /// Of the run that is kept.
-    pub(crate) tolerance: f64,
     pub(crate) method_text: String,
     /// How it was found.
     how: String,
-    /// The estimated error.
-    pub(crate) difference: Difference,
 }
 
 impl<M> FoundMotion<M> {
     /// What is said of it, and the numbers in it.
     pub(crate) fn remarks(&self, accuracy: f64) -> (String, Record) {
-        let (text, mut record) = self.difference.remarks(accuracy, &self.how);
-        record.add("tolerance", "", self.tolerance);
+        let (text, mut record) = self.found.difference.remarks(accuracy, &self.how);
+        record.add("tolerance", "", self.found.tolerance);
         (text, record)
     }
 }
@@ -101,12 +95,9 @@ pub(crate) fn find_motion<P: TriedMotion>(
     let method_text = format!("{}{suffix}, tolerance {tolerance}", method.name());
     Ok(FoundMotion {
         how: format!("{method_text}, {reason}; {} runs", found.runs),
+        found,
         method,
         method_text,
-        motion: found.motion,
-        finer: found.finer,
-        tolerance: found.tolerance,
-        difference: found.difference,
     })
 }
 
@@ -187,10 +178,11 @@ impl FreeMotionProblem<'_> {
         if let Some(found) = self.by_quadrature(accuracy, duration, sample_interval) {
             return Ok(found);
         }
-        let found = find_motion(self, accuracy, duration, sample_interval)?;
-        let (remarks, record) = found.remarks(accuracy);
+        let by_method = find_motion(self, accuracy, duration, sample_interval)?;
+        let (remarks, record) = by_method.remarks(accuracy);
+        let found = by_method.found;
         Ok(ComputedMotion {
-            method_text: found.method_text,
+            method_text: by_method.method_text,
             remarks,
             record,
             accuracy: Some([accuracy, found.difference.largest()]),

@@ -100,13 +100,8 @@ impl FreeMotionProblem<'_> {
         self.machine.largest_work(0.0, duration).max(max_potential)
     }
 
-    /// Whether a motion starts at rest in an unstable equilibrium, within rounding, and leaves it.
-    pub(crate) fn leaves_unstable_equilibrium(&self, motion: &SegmentedMotion) -> bool {
-        self.starts_unstable() && self.moves(motion)
-    }
-
     /// Whether it starts at rest in an unstable equilibrium, within rounding.
-    fn starts_unstable(&self) -> bool {
+    pub(super) fn starts_unstable(&self) -> bool {
         let start = self.initial_state();
         if self.machine.depends_on_time() || self.machine.free().is_empty() {
             return false;
@@ -129,7 +124,7 @@ impl FreeMotionProblem<'_> {
     }
 
     /// Whether a motion has more kinetic energy than rounding.
-    fn moves(&self, motion: &SegmentedMotion) -> bool {
+    pub(super) fn moves(&self, motion: &SegmentedMotion) -> bool {
         let scale = self.energy_scale(motion.end_time(), 0.0);
         let at_steps = self.energies(motion, motion.steps());
         let moves = |at: &Energies| at.kinetic > REST * scale.max(at.potential.abs());

@@ -4,15 +4,15 @@ use crate::estimate;
 use crate::explain::StudyError;
 use crate::free_motion::compute::between_samples::max_skipped;
 use crate::free_motion::compute::{
-    ComputedMotion, FreeMotionProblem, MotionProblem as _, SegmentedMotion, motion_to_simulate,
-    named_events, not_accurate, not_resolved, too_many_steps,
+    ComputedMotion, FreeMotionProblem, MotionProblem as _, motion_to_simulate, named_events,
+    not_accurate, not_resolved, too_many_steps,
 };
 use crate::models::{SolverSettings, with_drive_loads};
 use crate::number_format::digits;
 use crate::progress::Progress;
 use crate::trajectory::compute::{
-    ComputedTrajectory, MotionBetweenRows, SamplePrecision, Sampler, SecondRows, Trajectory,
-    TrajectorySample, compute_along,
+    ComputedTrajectory, MotionBetweenRows, Sampler, SecondRows, Trajectory, TrajectorySample,
+    compute_along,
 };
 use dwell_dynamics::{DynamicsError, Options};
 use dwell_findings::{Record, Table};
@@ -101,7 +101,10 @@ pub(crate) fn compute_free_motion_at(
         || problem.steps_as_samples(motion, max_skipped(solver)),
     );
     let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
-    let sampler = || problem.sampler_within_steps(motion);
+    let sampler = || -> Sampler<'_> {
+        let mut sampler = problem.sampler(motion);
+        Box::new(move |t, precision| sampler.sample_at(t, precision))
+    };
     let between = steps.map(|further| MotionBetweenRows {
         further,
         sampler: &sampler,
@@ -128,17 +131,6 @@ pub(crate) fn compute_free_motion_at(
         record,
         loaded_scene,
     })
-}
-
-impl FreeMotionProblem<'_> {
-    /// What finds the motion at any of its times.
-    fn sampler_within_steps<'m>(&'m self, motion: &'m SegmentedMotion) -> Sampler<'m> {
-        let mut sampler = self.sampler(motion);
-        Box::new(move |t, precision| match precision {
-            SamplePrecision::Interpolated => sampler.interpolated_at(t),
-            SamplePrecision::Exact => sampler.sample_at(t),
-        })
-    }
 }
 
 /// Refuses a sample interval beyond the duration (s), or of more than the highest number of samples.
@@ -243,8 +235,8 @@ impl FreeMotionProblem<'_> {
         );
         let mut estimate = estimate?;
         estimate.record.add("tolerance", "", settings.rtol);
-        let is_unstable = self.leaves_unstable_equilibrium(&motion);
-        let unstable = is_unstable.then(|| STARTS_UNSTABLE.to_owned());
+        let leaves_unstable = self.starts_unstable() && self.moves(&motion);
+        let unstable = leaves_unstable.then(|| STARTS_UNSTABLE.to_owned());
         Ok(ComputedMotion {
             method_text: settings.describe(),
             remarks: hint + &estimate.remarks,

@@ -1,17 +1,17 @@
 //! The samples and the events of a motion as tables.
 
 use crate::free_motion::compute::motors::motor_values;
-use crate::free_motion::compute::{
-    FreeMotionProblem, MotionProblem as _, SegmentedMotion, event_table,
+use crate::free_motion::compute::{FreeMotionProblem, MotionProblem, SegmentedMotion, event_table};
+use crate::trajectory::compute::{
+    FreeTrajectory, SamplePrecision, Trajectory, TrajectorySample, extra_columns,
 };
-use crate::trajectory::compute::{FreeTrajectory, Trajectory, TrajectorySample, extra_columns};
 use dwell_dynamics::{
     ContactEvent, DynamicsError, Machine, MachineWorkspace, MovingModel, OdeState, Sliding,
     Solution,
 };
 use dwell_findings::Table;
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_kinetostatics::Drive;
+use dwell_kinetostatics::{Drive, Model};
 
 impl FreeMotionProblem<'_> {
     /// A computed motion as a trajectory, with its samples, which may have been `evaluated` already, or else with wanted times
@@ -24,21 +24,15 @@ impl FreeMotionProblem<'_> {
         times: Option<&[f64]>,
     ) -> Result<Trajectory<'static>, DynamicsError> {
         let end = motion.end_time();
-        let charts = motion.charts.iter();
-        let motion = FreeTrajectory {
-            samples: match (times, evaluated) {
-                (None, Some(samples)) => samples,
-                (None, None) => self.samples(motion)?,
-                (Some(times), _) => self.samples_at(motion, times)?,
-            },
-            extra_columns: extra_columns(self.loaded_scene, &self.machine),
-            prescribed: self.spec.laws.iter().map(Option::is_some).collect(),
-            charts: charts.map(|c| c.output_model.clone()).collect(),
+        let samples = match (times, evaluated) {
+            (None, Some(samples)) => samples,
+            (None, None) => self.samples(motion)?,
+            (Some(times), _) => self.samples_at(motion, times)?,
         };
-        let mut trajectory =
-            Trajectory::of_free_motion(self.output_model.plan().range().period(), motion, end);
-        method_text.clone_into(&mut trajectory.method_text);
-        Ok(trajectory)
+        let charts = motion.charts.iter().map(|c| c.output_model.clone());
+        let period = self.output_model.plan().range().period();
+        let computed = (samples, charts.collect(), method_text);
+        Ok(free_trajectory(self, computed, (end, period)))
     }
 
     /// Every sample with its accelerations, drive magnitudes and energies. Within the window of a change
@@ -101,12 +95,11 @@ impl FreeMotionProblem<'_> {
         let wanted = start.map(|_| 0.0).into_iter().chain(reached).chain([end]);
         let index = self.balance_index();
         let mut sampler = self.sampler(motion);
-        let initial = sampler
-            .sample_at(0.0)
-            .map_or(0.0, |s| s.extra_values[index]);
+        let mut sample_at = |t: f64| sampler.sample_at(t, SamplePrecision::Exact);
+        let initial = sample_at(0.0).map_or(0.0, |s| s.extra_values[index]);
         let mut samples = Vec::new();
         for t in wanted {
-            let Some(mut sample) = sampler.sample_at(t) else {
+            let Some(mut sample) = sample_at(t) else {
                 if self.is_in_fit_window(motion, t) {
                     continue;
                 }
@@ -118,7 +111,7 @@ impl FreeMotionProblem<'_> {
         if let [only] = samples.as_slice() {
             // The end has no row within the window of a change point's fit.
             let start = Some(0.0).filter(|&start| start < only.t);
-            match start.and_then(|start| sampler.sample_at(start)) {
+            match start.and_then(&mut sample_at) {
                 Some(mut start) => {
                     start.extra_values[index] = 0.0;
                     samples.insert(0, start);
@@ -160,6 +153,24 @@ impl FreeMotionProblem<'_> {
             Some(coordinates.collect())
         })
     }
+}
+
+/// A motion that ended at a time (s) as a trajectory: its samples, the models of its charts in the plane, and its method. `period` is
+/// that of the only coordinate.
+pub(crate) fn free_trajectory(
+    problem: &impl MotionProblem,
+    (samples, charts, method_text): (Vec<TrajectorySample>, Vec<Model>, &str),
+    (end, period): (f64, Option<f64>),
+) -> Trajectory<'static> {
+    let motion = FreeTrajectory {
+        samples,
+        extra_columns: extra_columns(problem.scene(), problem.machine()),
+        prescribed: problem.spec().laws.iter().map(Option::is_some).collect(),
+        charts,
+    };
+    let mut trajectory = Trajectory::of_free_motion(period, motion, end);
+    method_text.clone_into(&mut trajectory.method_text);
+    trajectory
 }
 
 /// A state of a machine with its accelerations, drive magnitudes and energies, and with the balance of energies and works in place of

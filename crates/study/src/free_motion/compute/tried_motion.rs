@@ -3,7 +3,14 @@
 use crate::explain::StudyError;
 use crate::free_motion::compute::{Difference, FreeMotionProblem, MotionProblem, SegmentedMotion};
 use crate::ranges::extent;
-use dwell_dynamics::{Options, Statistics};
+use dwell_dynamics::{ObservedMachine, Options, Statistics, TabulatedMachine, solve_system};
+use dwell_kinetostatics::TableDomain;
+
+/// Accuracy of a table relative to the tolerance, and its finest value.
+const TABLE_TOLERANCE_RATIO: f64 = 0.1;
+const MIN_TABLE_TOLERANCE: f64 = 1e-13;
+/// Margin of a table of a limited range beyond the coarse run, relative to the range of that run.
+const TABLE_MARGIN: f64 = 0.05;
 
 /// A motion that can be integrated by any method to any tolerance.
 pub(crate) trait TriedMotion: MotionProblem {
@@ -61,7 +68,29 @@ impl TriedMotion for FreeMotionProblem<'_> {
         duration: f64,
         options: &Options,
     ) -> Result<Option<SegmentedMotion>, StudyError> {
-        self.solve_on_table(visited, duration, options)
+        let [low, high] = visited;
+        let margin = TABLE_MARGIN * (high - low);
+        let domain = match self.machine.model().plan().range().limits() {
+            None => TableDomain::Full,
+            Some((from, to)) => {
+                TableDomain::Between((low - margin).max(from), (high + margin).min(to))
+            }
+        };
+        let accuracy = (TABLE_TOLERANCE_RATIO * options.rtol).max(MIN_TABLE_TOLERANCE);
+        let Ok(table) = TabulatedMachine::new(&self.machine, accuracy, domain) else {
+            return Ok(None);
+        };
+        let start = self.initial_state();
+        let work = self.machine.largest_work(start.t, duration);
+        let ode = table.ode(start.t, &start.y, work);
+        let mut ode = ode.map_err(|e| self.explain(&e))?;
+        let outputs = ObservedMachine::new(&self.machine, &self.output_model);
+        let events = self.events();
+        let solution = solve_system(&mut ode, outputs, &start, Some(duration), options, &events);
+        let mut solution = solution.map_err(|e| self.explain(&e))?;
+        solution.add_contact_events(ode.take_contact_events());
+        let is_complete = solution.error.is_none();
+        Ok(is_complete.then(|| SegmentedMotion::single_segment(solution)))
     }
 
     fn difference_of(&self, [one, two]: [&SegmentedMotion; 2]) -> Result<Difference, StudyError> {

@@ -18,14 +18,16 @@ use self::charts::Motion;
 pub(super) use self::problem::SpaceMotionProblem;
 pub(super) use self::run::Run;
 use super::trajectory::{
-    SpaceEvaluator, add_rows, all_columns, reject_unknown_variables, requested, space_page,
+    SpaceEvaluator, all_columns, reject_unknown_variables, rows_of, space_page,
 };
 use crate::explain::StudyError;
-use crate::free_motion::compute::{MotionProblem as _, MotionSolver, check_times, named_events};
+use crate::free_motion::compute::{
+    MotionProblem as _, MotionSolver, check_times, free_trajectory, named_events,
+};
 use crate::progress::{Progress, no_progress};
 use crate::trajectory::compute::{
-    Analysis, ComputedTrajectory, FreeTrajectory, MotionBetweenRows, Quantity, RowStorage, Sampler,
-    SecondRows, Trajectory, TrajectoryResults, TrajectorySample, extra_columns,
+    Analysis, ComputedTrajectory, MotionBetweenRows, Quantity, Sampler, SecondRows,
+    TrajectorySample, extra_columns,
 };
 use dwell_dynamics::Orbit;
 use dwell_findings::RecordedEvent;
@@ -193,44 +195,19 @@ impl SpaceMotionProblem<'_> {
         between: Option<MotionBetweenRows<'_>>,
         progress: Progress<'_>,
     ) -> Result<ComputedTrajectory<'static>, StudyError> {
-        let mut evaluators = self.evaluators(motion);
         let (scene, model) = (self.scene(), &self.output_model);
         let end = samples.last().map_or(0.0, |sample| sample.t);
-        let followed = FreeTrajectory {
-            samples,
-            extra_columns: extra_columns(scene, &self.machine),
-            prescribed: self.spec.laws.iter().map(Option::is_some).collect(),
-            charts: Vec::new(),
-        };
+        let period = model.plan().range().period();
+        let computed = (samples, Vec::new(), method_text);
+        let trajectory = free_trajectory(self, computed, (end, period));
         let of_model = (&self.reactions, model.plan());
         let mut all = all_columns(scene, of_model, (Analysis::FreeMotion, true));
-        all.extend(followed.extra_columns.iter().cloned());
+        all.extend(extra_columns(scene, &self.machine));
         // No actuator drives a coordinate that is free.
         let is_free = |i: usize| self.spec.laws[i].is_none();
         all.retain(|c| !matches!(c.quantity, Quantity::ActuatorForce(i) if is_free(i)));
-        let mut trajectory =
-            Trajectory::of_free_motion(model.plan().range().period(), followed, end);
-        method_text.clone_into(&mut trajectory.method_text);
-        let (columns, is_limited) = requested(scene, &self.reactions, (Analysis::FreeMotion, &all));
-        let written = (0..columns.len()).collect();
-        let mut results = TrajectoryResults::of_columns(all, columns, written, is_limited);
-        results.keep_rows_in(RowStorage::Bounded, trajectory.points)?;
-        let open = self.reactions.indeterminate.iter();
-        results.indeterminate = open.map(|r| scene.reaction_name(*r)).collect();
-        let stop = add_rows(&trajectory, (&mut evaluators, None), &mut results, progress);
-        let early_stop = stop.map(|stop| stop.explain(scene, model.plan()));
-        let early_stop = match early_stop {
-            Some(error) if results.len() == 0 => return Err(error),
-            early_stop => early_stop,
-        };
-        results.finish_rows()?;
-        results.find_extrema(model.plan().size(), &trajectory, &evaluators, between)?;
-        Ok(ComputedTrajectory {
-            table: results.table(),
-            early_stop,
-            notes: String::new(),
-            trajectory,
-            results,
-        })
+        let of_model = (&self.reactions, model);
+        let evaluators = (&mut self.evaluators(motion)[..], between);
+        rows_of(scene, of_model, (trajectory, all), evaluators, progress)
     }
 }

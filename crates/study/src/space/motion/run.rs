@@ -10,7 +10,7 @@ use crate::free_motion::compute::{
     pair_by_time, reactions_at,
 };
 use crate::ranges::extent;
-use crate::space::machine_scene::reaction_unit;
+use crate::space::prepared::reaction_unit;
 use dwell_dynamics::{
     DynamicsError, Method, ObservedMachine, OdeState, Options, Orbit, Solution, Statistics, solve,
     solve_further, solve_orbit,
@@ -38,6 +38,7 @@ pub(crate) struct Run {
 }
 
 /// By free coordinate: its error, and whether that is no result; then the error of the energy as a part of the largest.
+#[derive(Default)]
 pub(super) struct Errors {
     pub(super) coordinates: Vec<f64>,
     pub(super) energy: f64,
@@ -219,17 +220,17 @@ impl SpaceMotionProblem<'_> {
 
     /// The motion by the cheapest method whose estimated error keeps an accuracy.
     fn to_accuracy(&self, accuracy: f64, duration: f64, interval: f64) -> Result<Run, StudyError> {
-        let found = find_motion(self, accuracy, duration, interval)?;
-        let remarks = found.remarks(accuracy);
+        let by_method = find_motion(self, accuracy, duration, interval)?;
+        let (remarks, found) = (by_method.remarks(accuracy), by_method.found);
         Ok(Run {
             options: Options {
                 sample_interval: Some(interval),
-                ..Options::new(found.method, found.tolerance)
+                ..Options::new(by_method.method, found.tolerance)
             },
             motion: found.motion,
             second: Some(found.finer),
             orbit: None,
-            method_text: found.method_text,
+            method_text: by_method.method_text,
             accuracy: Some(accuracy),
             found: Some((found.difference, remarks)),
         })
@@ -248,11 +249,7 @@ impl SpaceMotionProblem<'_> {
         let samples = self.samples(&run.motion).ok()?;
         let others = self.samples(run.second.as_ref()?).ok()?;
         let pairs = pair_by_time(&samples, &others);
-        let mut errors = Errors {
-            coordinates: Vec::new(),
-            energy: 0.0,
-            largest: 0.0,
-        };
+        let mut errors = Errors::default();
         for &i in self.machine.free() {
             let [from, to] = extent(pairs.iter().map(|(a, _)| a.coordinate(i)));
             let rounding =

@@ -25,6 +25,6 @@ pub use self::output::analyse_in_space;
 pub(super) use self::output::drawn_positions;
 pub(super) use self::page::space_page;
 pub(super) use self::reactions::JointReactions;
-pub(super) use self::requested::{reject_unknown_variables, requested};
-pub(super) use self::rows::{add_rows, computed_rows, rows_along};
+pub(super) use self::requested::reject_unknown_variables;
 pub use self::rows::{compute_trajectory_in_space, trajectory_page_in_space};
+pub(super) use self::rows::{computed_rows, rows_along, rows_of};

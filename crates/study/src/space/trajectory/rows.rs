@@ -11,8 +11,8 @@ use crate::explain::{StudyError, TableArgument, scene_error};
 use crate::progress::{Progress, Step};
 use crate::space::explain::{explain_loads, explain_position};
 use crate::trajectory::compute::{
-    Analysis, ComputedTrajectory, POSITIONS_PER_STEP, Quantity, RowEvaluator as _, RowStorage,
-    StopCause, Trajectory, TrajectoryResults, TrajectorySample,
+    Analysis, Column, ComputedTrajectory, MotionBetweenRows, POSITIONS_PER_STEP, Quantity,
+    RowEvaluator as _, RowStorage, StopCause, Trajectory, TrajectoryResults, TrajectorySample,
 };
 use dwell_geometry::space::Plan;
 use dwell_kinetostatics::KinetostaticsError;
@@ -71,17 +71,38 @@ pub(crate) fn rows_along<'a, 'm>(
     let of_model = (reactions, model.plan());
     let mut all = all_columns(scene, of_model, (analysis, trajectory.is_timed()));
     all.retain(|column| is_wanted(column.quantity));
+    let mut evaluators = [SpaceEvaluator::new(scene, (model, reactions), analysis)];
+    let of_evaluators = (&mut evaluators[..], None);
+    let computed = rows_of(
+        scene,
+        (reactions, model),
+        (trajectory, all),
+        of_evaluators,
+        progress,
+    )?;
+    let [evaluator] = evaluators;
+    Ok((computed, evaluator))
+}
+
+/// The rows of some columns along a trajectory, by the evaluators of its charts.
+pub(crate) fn rows_of<'a>(
+    scene: &SpaceScene,
+    (reactions, model): (&JointReactions, &Model),
+    (trajectory, all): (Trajectory<'a>, Vec<Column>),
+    (evaluators, between): (&mut [SpaceEvaluator<'_>], Option<MotionBetweenRows<'_>>),
+    progress: Progress<'_>,
+) -> Result<ComputedTrajectory<'a>, StudyError> {
+    let analysis = trajectory.analysis;
     let (columns, is_limited) = requested(scene, reactions, (analysis, &all));
     let written = (0..columns.len()).collect();
     let mut results = TrajectoryResults::of_columns(all, columns, written, is_limited);
     results.keep_rows_in(RowStorage::Bounded, trajectory.points)?;
     let open = reactions.indeterminate.iter();
     results.indeterminate = open.map(|r| scene.reaction_name(*r)).collect();
-    let mut evaluators = [SpaceEvaluator::new(scene, (model, reactions), analysis)];
     let mut rounding = RoundingInSpace::new((model, reactions), (analysis, trajectory.points));
     let stop = add_rows(
         &trajectory,
-        (&mut evaluators, rounding.as_mut()),
+        (evaluators, rounding.as_mut()),
         &mut results,
         progress,
     );
@@ -93,16 +114,14 @@ pub(crate) fn rows_along<'a, 'm>(
     };
     results.finish_rows()?;
     let size = model.plan().size();
-    results.find_extrema(size, &trajectory, &evaluators, None)?;
-    let [evaluator] = evaluators;
-    let computed = ComputedTrajectory {
+    results.find_extrema(size, &trajectory, evaluators, between)?;
+    Ok(ComputedTrajectory {
         table: results.table(),
         early_stop,
         notes: String::new(),
         trajectory,
         results,
-    };
-    Ok((computed, evaluator))
+    })
 }
 
 /// An analysis of a scene in space along its prescribed motion, its sweep, or the range of its only actuator.
@@ -155,7 +174,7 @@ pub(crate) struct RowsEnd {
 }
 
 /// Evaluates one row after another, each by the evaluator of its chart, and some for their rounding; where and why it ends early, if it does.
-pub(crate) fn add_rows(
+fn add_rows(
     trajectory: &Trajectory<'_>,
     (evaluators, mut rounding): (&mut [SpaceEvaluator<'_>], Option<&mut RoundingInSpace<'_>>),
     results: &mut TrajectoryResults,
