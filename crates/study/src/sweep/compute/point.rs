@@ -163,9 +163,9 @@ impl RequestedQuantities {
         result
     }
 
-    /// Whether a quantity of a kind is requested.
-    pub(crate) fn includes(&self, kind: ResultKind) -> bool {
-        self.quantities.iter().any(|q| q.kind == kind)
+    /// Whether a quantity of some kinds is requested.
+    pub(super) fn includes(&self, kinds: &[ResultKind]) -> bool {
+        self.quantities.iter().any(|q| kinds.contains(&q.kind))
     }
 
     /// The indices of the requested quantities of some kinds.

@@ -52,7 +52,7 @@ pub(super) fn compute_results<S: SweptScene>(
         Orbit as OrbitKind, Range, Reaction,
     };
     let compiled = scene.compiled()?;
-    let includes = |kinds: &[ResultKind]| kinds.iter().any(|kind| requested.includes(*kind));
+    let includes = |kinds: &[ResultKind]| requested.includes(kinds);
     if let Some((from, to)) = S::model_of(&compiled).range().limits() {
         results.set(Range, Ok(vec![from, to]));
     }
