@@ -6,7 +6,7 @@ use crate::mechanism::scene::Scene;
 use dwell_dynamics::{DynamicsError, Machine, MachineWorkspace};
 use dwell_numerics::{Dual, Scalar as _};
 use dwell_study::explain::explain_motion;
-use dwell_study::free_motion::compute::FreeMotionProblem;
+use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
 use std::sync::Arc;
 
 impl Mechanism {

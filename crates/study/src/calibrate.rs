@@ -38,22 +38,6 @@ pub struct CalibrationResult {
     pub period: f64,
 }
 
-#[cfg(feature = "output")]
-impl CalibrationResult {
-    /// The numbers that are printed.
-    fn record(&self) -> Record {
-        let mut record = Record::default();
-        record.add("required_period", "s", self.period);
-        record.add_within(&self.path, &self.unit, self.value, self.value_error);
-        record.add("error.value", &self.unit, self.value_error);
-        record.add("scene.value", &self.unit, self.current);
-        let (period, error) = (self.current_period, self.current_period_error);
-        record.add_within("scene.period", "s", period, error);
-        record.add("error.period", "s", error);
-        record
-    }
-}
-
 /// Largest factor between the value in the scene and a trial value, and the first factor.
 const MAX_FACTOR: f64 = 1e6;
 const FIRST_FACTOR: f64 = 1.0 + 1.0 / 64.0;
@@ -234,15 +218,17 @@ fn period_of(scene: &impl CalibratedScene) -> Result<f64, StudyError> {
 }
 
 /// A scene that can be calibrated.
-pub trait CalibratedScene: SweptScene + MachineScene {
+pub trait CalibratedScene: SweptScene {
     /// The equation of motion of its only coordinate, without losses, drives and prescribed motions.
     ///
     /// # Errors
     /// [`StudyError::Scene`] where it has drives or losses, or several coordinates.
     fn conservative_motion(&self) -> Result<ConservativeMotion<Self::Model>, StudyError>;
 
-    /// The path and the period, s, of its `[calibration]`.
-    fn calibration(&self) -> Option<(&str, f64)>;
+    /// The path and the period, s, of its `[calibration]`, where it can have one.
+    fn calibration(&self) -> Option<(&str, f64)> {
+        None
+    }
 }
 
 /// The equation of motion of a scene without losses, drives and prescribed motions.
@@ -301,10 +287,6 @@ impl CalibratedScene for SpaceScene {
         PreparedSpaceScene::new(self)?;
         Ok(ConservativeMotion::Loaded(Box::new(self.machine(&[])?)))
     }
-
-    fn calibration(&self) -> Option<(&str, f64)> {
-        None
-    }
 }
 
 fn refuse_drives(scene: &impl MachineScene) -> Result<(), StudyError> {
@@ -332,17 +314,10 @@ fn without_potential(scene: &impl MachineScene, load: usize) -> StudyError {
 }
 
 /// An error of the motion in the names of the scene.
-fn explained<S: CalibratedScene>(
-    scene: &S,
-    motion: &ConservativeMotion<S::Model>,
-    error: &DynamicsError,
-) -> StudyError {
-    match motion {
-        ConservativeMotion::Loaded(machine) => scene.explain(machine.model(), error),
-        ConservativeMotion::Unloaded(_) => match scene.machine(&[]) {
-            Ok(machine) => scene.explain(machine.model(), error),
-            Err(other) => other,
-        },
+fn explained(scene: &impl CalibratedScene, error: &DynamicsError) -> StudyError {
+    match scene.machine(&[]) {
+        Ok(machine) => scene.explain(machine.model(), error),
+        Err(other) => other,
     }
 }
 
@@ -354,7 +329,7 @@ fn period_with_error(scene: &impl CalibratedScene) -> Result<(f64, f64), StudyEr
         motion.orbit(ReducedState { q_dot, ..start })
     };
     let error = estimate::of_period(&orbit, perturbed);
-    let error = error.map_err(|e| explained(scene, &motion, &e))?;
+    let error = error.map_err(|e| explained(scene, &e))?;
     Ok((orbit.period, error))
 }
 
@@ -378,7 +353,7 @@ fn orbit_of<S: CalibratedScene>(scene: &S) -> Result<FoundOrbit<S::Model>, Study
     };
     let start = ReducedState { t: 0.0, q, q_dot };
     let orbit = motion.orbit(start);
-    let orbit = orbit.map_err(|e| explained(scene, &motion, &e))?;
+    let orbit = orbit.map_err(|e| explained(scene, &e))?;
     Ok((orbit, motion, start))
 }
 
@@ -408,12 +383,19 @@ pub fn calibrate<S: CalibratedScene>(
     };
     let result = find_value(scene, path, period)?;
     let (title, unit) = (&scene.title, &result.unit);
-    let [period, current] = [result.period, result.current].map(|v| digits(v, 12));
-    let value = digits_within(result.value, result.value_error, 12);
-    let current_period = digits_within(result.current_period, result.current_period_error, 13);
     let [value_error, period_error] = [result.value_error, result.current_period_error];
+    let mut record = Record::default();
+    record.add("required_period", "s", period);
+    record.add_within(path, unit, result.value, value_error);
+    record.add("error.value", unit, value_error);
+    record.add("scene.value", unit, result.current);
+    record.add_within("scene.period", "s", result.current_period, period_error);
+    record.add("error.period", "s", period_error);
+    let [period, current] = [result.period, result.current].map(|v| digits(v, 12));
+    let value = digits_within(result.value, value_error, 12);
+    let current_period = digits_within(result.current_period, period_error, 13);
     Ok(Outcome {
-        record: result.record(),
+        record,
         summary: format!(
             "{title}: {path} = {value} {unit} gives the period {period} s\n  the scene has {current} {unit}, which gives \
              {current_period} s\n  estimated errors: {value_error:.1e} {unit}, {period_error:.1e} s\n{note}"

@@ -40,9 +40,8 @@ pub fn comparison_options(options: &Options) -> Options {
 /// second run cannot show, in the quantity's unit.
 pub fn of_motion(first: &[f64], second: &[f64], rounding: f64) -> f64 {
     let recent = (first.len() - first.len() / 8).saturating_sub(1);
-    let pairs = first.iter().zip(second).skip(recent);
-    let differences = pairs.map(|(a, b)| (a - b).abs());
-    SAFETY_FACTOR * differences.fold(0.0, f64::max) + rounding
+    let second = second.get(recent..).unwrap_or_default();
+    over_motion(&first[recent..], second, rounding)
 }
 
 /// The largest error of a quantity over a motion, as [`of_motion`] finds it at the end.

@@ -82,29 +82,27 @@ fn run_up_error(
         return prepared.explain(error);
     };
     let is_limited = |longest: &f64| t >= 0.5 * longest * max_steps as f64;
-    if let Some(longest) = max_step.filter(is_limited) {
-        let [t, longest] = [t, longest].map(|t| digits(t, 2));
-        return prepared.error(
-            format!(
-                "after {}, at t = {t} s, the first revolutions are not complete: --max-step allows none above {longest} s",
-                count(max_steps, "step")
-            ),
-            "give a longer --max-step, or none",
-            prepared.initial_state_label("from here"),
-        );
-    }
-    prepared.error(
-        format!(
-            "the machine does not complete its revolutions: after {}, at t = {} s, it has not made {} from \
-             its initial state",
-            count(max_steps, "step"),
-            digits(t, 2),
-            count(RUN_UP_REVOLUTIONS as usize, "revolution")
-        ),
-        "increase the drive or the initial speed so that it passes the position of largest resistance; \
-         `dwell simulate` shows the motion",
-        prepared.initial_state_label("from here"),
-    )
+    let (steps, time) = (count(max_steps, "step"), digits(t, 2));
+    let (message, help) = match max_step.filter(is_limited) {
+        Some(longest) => {
+            let longest = digits(longest, 2);
+            let message = format!(
+                "after {steps}, at t = {time} s, the first revolutions are not complete: --max-step allows none above {longest} s"
+            );
+            (message, "give a longer --max-step, or none")
+        }
+        None => {
+            let revolutions = count(RUN_UP_REVOLUTIONS as usize, "revolution");
+            let message = format!(
+                "the machine does not complete its revolutions: after {steps}, at t = {time} s, it has not made {revolutions} from \
+                 its initial state"
+            );
+            let help = "increase the drive or the initial speed so that it passes the position of largest resistance; \
+                 `dwell simulate` shows the motion";
+            (message, help)
+        }
+    };
+    prepared.error(message, help, prepared.initial_state_label("from here"))
 }
 
 /// A column for the work of each load and drive.
@@ -215,10 +213,8 @@ pub fn compute_cycle<'a, S: MachineScene>(
     require_rotating(&prepared)?;
     prepared.require_autonomous("a steady cycle")?;
     let options = Options {
-        atol: settings.atol,
         max_steps: MAX_STEPS,
-        max_step: settings.max_step,
-        ..Options::new(settings.method, settings.rtol)
+        ..settings.options()
     };
     let found = find_cycle(&prepared, &options).and_then(|(steady, errors)| {
         let size = |target| size_for(&prepared, &steady, target, &options);

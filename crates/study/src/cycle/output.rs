@@ -9,7 +9,7 @@ use crate::explain::StudyError;
 use crate::machines::{MachineScene, SceneMachine};
 use crate::models::SolverSettings;
 use crate::number_format::{count, digits, digits_within};
-use crate::output::{Outcome, Picture, results_page};
+use crate::output::{Outcome, add_results_page};
 use crate::page::{scene_page, table_page, unit_group};
 use crate::trajectory::output::TrajectoryOutcome;
 use dwell_dynamics::Cycle;
@@ -62,125 +62,87 @@ pub fn cycle<S: MachineScene>(
     if let Some(samples) = &results.flywheel_samples {
         files.add_table(&name("-flywheel"), samples, &TableFormat::ALL)?;
     }
-    outcome.summary = summary(&results);
-    outcome.record = record(&results);
+    outcome.summary = summary(&results, &mut outcome.record);
     if let Some(flywheel) = &results.flywheel {
-        outcome.summary += &flywheel_text(&results.prepared, flywheel);
+        outcome.summary += &flywheel_text(&results.prepared, flywheel, &mut outcome.record);
     }
     let figure = figures::cycle(&results, settings);
-    let text = (outcome.summary.as_str(), &outcome.record);
-    let page = results_page(scene, "steady cycle", text, &[(&figure, name(".png"))]);
-    outcome.page = Some((name(".md"), page));
-    let picture = Picture::figure(scene, name(".png"), true, figure);
-    outcome.pictures.push(picture);
+    let page = ("steady cycle", &name("")[..]);
+    add_results_page(&mut outcome, scene, page, Some(figure));
     Ok(TrajectoryOutcome {
         outcome,
         early_stop: None,
     })
 }
 
-/// A speed in the scene's unit and in revolutions per minute, to the digits that its relative error leaves.
-fn speed_text(scene: &SceneFile, value: f64, relative_error: f64) -> String {
+/// A speed in the scene's unit and in revolutions per minute, to the digits that its relative error leaves; it is recorded.
+fn speed_text(
+    scene: &SceneFile,
+    (name, value): (&str, f64),
+    relative_error: f64,
+    record: &mut Record,
+) -> String {
+    record.add_within(name, "rad/s", value, relative_error * value.abs());
     let (in_unit, unit) = scene.to_scene_unit(value, true);
     let [in_unit, minute] = [in_unit, value * 30.0 / PI]
         .map(|value| digits_within(value, relative_error * value.abs(), 9));
     format!("{in_unit} {unit}/s ({minute} 1/min)")
 }
 
-pub(crate) fn summary(results: &CycleResults<'_, impl MachineScene>) -> String {
+/// What is said of the cycle; the numbers in it are recorded.
+fn summary(results: &CycleResults<'_, impl MachineScene>, record: &mut Record) -> String {
     let (prepared, cycle, errors) = (&results.prepared, &results.steady, &results.errors);
     let (coordinate, _) = prepared.first_free_coordinate();
-    let revolutions = count((cycle.cycle_angle / TAU).round() as usize, "revolution");
-    let (title, name) = (&prepared.scene.title, prepared.coordinate_name(coordinate));
-    let period = digits_within(cycle.period, errors.speed * cycle.period, 9);
-    let mean = speed_text(prepared.scene, cycle.mean_speed, errors.speed);
+    let revolutions = (cycle.cycle_angle / TAU).round() as usize;
+    let (scene, name) = (prepared.scene, prepared.coordinate_name(coordinate));
+    record.add_count("revolutions", revolutions);
+    record.add_within("period", "s", cycle.period, errors.speed * cycle.period);
     let mut text = format!(
-        "{title}: steady cycle of {name}, {revolutions} in {period} s\n  mean speed {mean}\n"
+        "{}: steady cycle of {name}, {} in {} s\n  mean speed {}\n",
+        scene.title,
+        count(revolutions, "revolution"),
+        digits_within(cycle.period, errors.speed * cycle.period, 9),
+        speed_text(
+            scene,
+            ("mean_speed", cycle.mean_speed),
+            errors.speed,
+            record
+        ),
     );
-    if errors.varies(cycle) {
-        let [slowest, fastest] = [cycle.slowest, cycle.fastest]
-            .map(|[_, speed]| speed_text(prepared.scene, speed, errors.speed));
-        let position =
-            |q: f64, error: f64| prepared.describe_coordinate_within(coordinate, q, error);
-        let slowest_at = position(cycle.slowest[0], errors.positions[0]);
-        let fastest_at = position(cycle.fastest[0], errors.positions[1]);
+    let ends = [("slowest", cycle.slowest), ("fastest", cycle.fastest)];
+    for ((name, [at, speed]), error) in ends.into_iter().zip(errors.positions) {
+        let key = format!("{name}_speed");
+        let speed = speed_text(scene, (&key, speed), errors.speed, record);
+        record.add_within(format!("{key}.at"), "rad", at, error);
+        if errors.varies(cycle) {
+            let position = prepared.describe_coordinate_within(coordinate, at, error);
+            text += &format!("  {name} {speed} at {position}\n");
+        }
+    }
+    let key = "coefficient_of_fluctuation";
+    record.add_within(key, "", cycle.fluctuation, errors.fluctuation);
+    text += &if errors.varies(cycle) {
         let fluctuation = digits_within(cycle.fluctuation, errors.fluctuation, 9);
-        text += &format!(
-            "  slowest {slowest} at {slowest_at}\n  fastest {fastest} at {fastest_at}\n  \
-             coefficient of fluctuation {fluctuation}\n"
-        );
+        format!("  coefficient of fluctuation {fluctuation}\n")
     } else {
         let error = digits(errors.fluctuation, 1);
-        text += &format!("  constant speed: the coefficient of fluctuation is below {error}\n");
-    }
-    text + &stability_text(cycle, errors)
-        + &work_text(prepared, cycle, errors)
+        format!("  constant speed: the coefficient of fluctuation is below {error}\n")
+    };
+    text + &stability_text(cycle, errors, record)
+        + &work_text(prepared, cycle, errors, record)
         + &prepared.branch_note()
 }
 
-/// The numbers of the summary.
-fn record(results: &CycleResults<'_, impl MachineScene>) -> Record {
-    let (prepared, cycle, errors) = (&results.prepared, &results.steady, &results.errors);
-    let mut record = Record::default();
-    let speed_of = |record: &mut Record, name: &str, speed: f64, error: f64| {
-        record.add_within(name, "rad/s", speed, error * speed.abs());
-    };
-    record.add_count("revolutions", (cycle.cycle_angle / TAU).round() as usize);
-    record.add_within("period", "s", cycle.period, errors.speed * cycle.period);
-    speed_of(&mut record, "mean_speed", cycle.mean_speed, errors.speed);
-    let ends = [("slowest", cycle.slowest), ("fastest", cycle.fastest)];
-    for ((name, [at, speed]), error) in ends.into_iter().zip(errors.positions) {
-        speed_of(&mut record, &format!("{name}_speed"), speed, errors.speed);
-        record.add_within(format!("{name}_speed.at"), "rad", at, error);
-    }
-    let fluctuation = ("coefficient_of_fluctuation", cycle.fluctuation);
-    record.add_within(fluctuation.0, "", fluctuation.1, errors.fluctuation);
-    let multipliers = cycle.floquet_multipliers.iter().zip(&errors.multipliers);
-    for (k, ([re, im], error)) in multipliers.enumerate() {
-        let name = |part: &str| format!("floquet_multiplier.{}.{part}", k + 1);
-        record.add_within(name("re"), "", *re, *error);
-        record.add_within(name("im"), "", *im, *error);
-    }
-    let sources = prepared.machine.nonconservative_sources().iter();
-    for (&source, &work) in sources.zip(&cycle.works) {
-        let name = prepared.scene.name_of_source(source);
-        record.add_within(format!("{name}.work"), "J", work, errors.work);
-    }
-    let sum: f64 = cycle.works.iter().sum();
-    let size: f64 = cycle.works.iter().map(|work| work.abs()).sum();
-    record.add("work_sum", "J", sum);
-    // A single source has undone in a cycle what it did.
-    if cycle.works.len() > 1 && size > errors.work {
-        record.add("work_sum.relative", "", (sum / size).abs());
-    }
-    record.add("error.speeds", "", errors.speed);
-    record.add("error.coefficient_of_fluctuation", "", errors.fluctuation);
-    record.add("error.works", "J", errors.work);
-    let multiplier = errors.multipliers.iter().copied().fold(0.0, f64::max);
-    record.add("error.floquet_multipliers", "", multiplier);
-    if let Some(sized) = &results.flywheel {
-        let (flywheel, errors) = (&sized.flywheel, &sized.errors);
-        record.add("flywheel.coefficient_of_fluctuation", "", sized.target);
-        let inertia = flywheel.inertia;
-        record.add_within("flywheel.inertia", "kg m2", inertia, sized.inertia_error);
-        let cycle = &flywheel.cycle;
-        for (name, speed) in [
-            ("flywheel.mean_speed", cycle.mean_speed),
-            ("flywheel.slowest_speed", cycle.slowest[1]),
-            ("flywheel.fastest_speed", cycle.fastest[1]),
-        ] {
-            speed_of(&mut record, name, speed, errors.speed);
-        }
-    }
-    record
-}
-
 /// The multipliers, and whether the cycle is stable.
-fn stability_text(cycle: &Cycle, errors: &CycleErrors) -> String {
-    let multipliers = cycle.floquet_multipliers.iter().zip(&errors.multipliers);
-    let multipliers: Vec<String> = multipliers
-        .map(|(&z, &error)| complex_text(z, error, 6))
-        .collect();
+fn stability_text(cycle: &Cycle, errors: &CycleErrors, record: &mut Record) -> String {
+    let mut multipliers = Vec::new();
+    let each = cycle.floquet_multipliers.iter().zip(&errors.multipliers);
+    for (k, (&[re, im], &error)) in each.enumerate() {
+        let name = |part: &str| format!("floquet_multiplier.{}.{part}", k + 1);
+        record.add_within(name("re"), "", re, error);
+        record.add_within(name("im"), "", im, error);
+        multipliers.push(complex_text([re, im], error, 6));
+    }
     let multipliers = multipliers.join(", ");
     let stability = match errors.stability(cycle) {
         CycleStability::Stable => "stable",
@@ -197,22 +159,31 @@ fn work_text(
     prepared: &SceneMachine<'_, impl MachineScene>,
     cycle: &Cycle,
     errors: &CycleErrors,
+    record: &mut Record,
 ) -> String {
     let mut text = String::new();
     let sources = prepared.machine.nonconservative_sources().iter();
     for (&source, &work) in sources.zip(&cycle.works) {
         let name = prepared.scene.name_of_source(source);
+        record.add_within(format!("{name}.work"), "J", work, errors.work);
         let work = digits_within(work, errors.work, 9);
         text += &format!("  work of {name} per cycle {work} J\n");
     }
     let sum: f64 = cycle.works.iter().sum();
     let size: f64 = cycle.works.iter().map(|work| work.abs()).sum();
+    record.add("work_sum", "J", sum);
+    // A single source has undone in a cycle what it did.
     if cycle.works.len() > 1 && size > errors.work {
         let relative = (sum / size).abs();
+        record.add("work_sum.relative", "", relative);
         text +=
             &format!("  sum of these works: {relative:.1e} of the sum of their absolute values\n");
     }
     let multiplier = errors.multipliers.iter().copied().fold(0.0, f64::max);
+    record.add("error.speeds", "", errors.speed);
+    record.add("error.coefficient_of_fluctuation", "", errors.fluctuation);
+    record.add("error.works", "J", errors.work);
+    record.add("error.floquet_multipliers", "", multiplier);
     text + &format!(
         "  estimated errors: {:.1e} of the speeds, {:.1e} in the coefficient of fluctuation, {:.1e} J in the works, \
          {multiplier:.1e} in the multipliers, from a second run at a tenth of the tolerance\n",
@@ -221,21 +192,29 @@ fn work_text(
 }
 
 /// The flywheel and its effect.
-pub(crate) fn flywheel_text(
+fn flywheel_text(
     prepared: &SceneMachine<'_, impl MachineScene>,
     sized: &SizedFlywheel,
+    record: &mut Record,
 ) -> String {
-    let (flywheel, errors) = (&sized.flywheel, &sized.errors);
+    let (flywheel, error) = (&sized.flywheel, sized.errors.speed);
+    record.add("flywheel.coefficient_of_fluctuation", "", sized.target);
+    let (inertia, inertia_error) = (flywheel.inertia, sized.inertia_error);
+    record.add_within("flywheel.inertia", "kg m2", inertia, inertia_error);
+    let cycle = &flywheel.cycle;
+    let [mean, slowest, fastest] = [
+        ("flywheel.mean_speed", cycle.mean_speed),
+        ("flywheel.slowest_speed", cycle.slowest[1]),
+        ("flywheel.fastest_speed", cycle.fastest[1]),
+    ]
+    .map(|speed| speed_text(prepared.scene, speed, error, record));
     let target = digits(sized.target, 6);
-    if flywheel.inertia == 0.0 {
+    if inertia == 0.0 {
         return format!("  no flywheel is needed for a coefficient of fluctuation of {target}\n");
     }
     let (coordinate, _) = prepared.first_free_coordinate();
     let name = prepared.coordinate_name(coordinate);
-    let inertia = digits_within(flywheel.inertia, sized.inertia_error, 9);
-    let cycle = &flywheel.cycle;
-    let [mean, slowest, fastest] = [cycle.mean_speed, cycle.slowest[1], cycle.fastest[1]]
-        .map(|speed| speed_text(prepared.scene, speed, errors.speed));
+    let inertia = digits_within(inertia, inertia_error, 9);
     format!(
         "  for a coefficient of fluctuation of {target}: flywheel of {inertia} kg m² on {name}\n  with it: mean speed \
          {mean}, from {slowest} to {fastest}\n"

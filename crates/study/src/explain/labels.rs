@@ -1,6 +1,6 @@
 //! Errors with their places in the scene file, and names of bodies and joints.
 
-use crate::explain::StudyError;
+use crate::explain::{NamedScene, StudyError};
 use dwell_geometry::{ActuatorId, BodyId, JointId, Mechanism};
 use dwell_scene::{Scene, SceneFile, SceneLocation};
 
@@ -39,9 +39,10 @@ pub(crate) fn joint_labels(joints: &[JointId], text: &str) -> Labels {
 }
 
 /// Labels of all actuators; of the whole file if there are none.
-pub(crate) fn actuator_labels(scene: &Scene, text: &str) -> Labels {
-    let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
-    match labels(actuators.map(SceneLocation::Actuator), text) {
+pub(crate) fn actuator_labels(scene: &impl NamedScene, text: &str) -> Labels {
+    let actuators = (0..).take_while(|k| scene.actuator(*k).is_some());
+    let places = actuators.map(|k| SceneLocation::Actuator(ActuatorId(k)));
+    match labels(places, text) {
         none if none.is_empty() => missing_section_label("actuators"),
         labels => labels,
     }

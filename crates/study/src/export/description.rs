@@ -1,8 +1,9 @@
 //! A scene as plain data for export, and what of it cannot be exported.
 
-use super::sampler::SceneSampler;
+use super::OVER_COORDINATE;
 use crate::explain::{NamedScene, StudyError, explain_machine, not_one_actuator, scene_error};
-use crate::models::{build_machine, determinate_model, initial_reduced_state, with_drive_loads};
+use crate::machines::{CoordinateOf, MachineScene};
+use crate::models::{build_machine, determinate_model, with_drive_loads};
 use dwell_dynamics::{TabulatedMachine, TabulationError};
 use dwell_export::{
     Domain, LoadDescription, LoadEffect, MachineDescription, Motor, ReferenceSizes,
@@ -11,7 +12,7 @@ use dwell_geometry::{ActuatorId, Range};
 use dwell_kinetostatics::{
     Coefficients, DriveKind, Load, LoadKind, Magnitude, Model, Signal, TableDomain,
 };
-use dwell_scene::{Scene, SceneFile, SceneLocation};
+use dwell_scene::{FreeMotionSpec, Scene, SceneFile, SceneLocation};
 use std::f64::consts::TAU;
 
 /// Part of a limited range that is left out at each end, where everything grows.
@@ -47,11 +48,6 @@ impl<'a> ExportedScene<'a> {
             model,
             description,
         })
-    }
-
-    /// The exact functions.
-    pub(crate) fn sampler(&self) -> SceneSampler<'_> {
-        SceneSampler::new(self)
     }
 }
 
@@ -141,10 +137,7 @@ fn reject_change_points(scene: &Scene, domain: Domain) -> Result<(), StudyError>
             scene,
             "no export: the machine crosses change points, beyond which another branch follows",
             "give an interval between two change points with --from and --until, or change a length",
-            [(
-                SceneLocation::Actuator(ActuatorId(0)),
-                "over this coordinate",
-            )],
+            [OVER_COORDINATE],
         )),
         _ => Ok(()),
     }
@@ -183,190 +176,204 @@ pub(crate) fn domain(
             scene,
             message,
             "give --from and --until within the range, in the scene's unit",
-            [(
-                SceneLocation::Actuator(ActuatorId(0)),
-                "over this coordinate",
-            )],
+            [OVER_COORDINATE],
         ));
     }
-    Ok(match (range, range.period()) {
-        (_, Some(period)) => Domain {
+    if let Some(period) = range.period() {
+        return Ok(Domain {
             from: 0.0,
             to: period,
             revolutions: (period / TAU).round() as u32,
-        },
-        (Range::Unbounded, None) if is_angle => limited(0.0, TAU),
-        (range, None) => match range.limits() {
-            Some((from, to)) => {
-                let margin = END_MARGIN * (to - from);
-                limited(from + margin, to - margin)
-            }
-            None => {
-                return Err(scene_error(
-                    scene,
-                    "no export: the coordinate has no ends",
-                    "give the interval with --from and --until",
-                    [(SceneLocation::Actuator(ActuatorId(0)), "this coordinate")],
-                ));
-            }
-        },
-    })
+        });
+    }
+    match range.limits() {
+        Some((from, to)) => {
+            let margin = END_MARGIN * (to - from);
+            Ok(limited(from + margin, to - margin))
+        }
+        None if is_angle && range == Range::Unbounded => Ok(limited(0.0, TAU)),
+        None => Err(scene_error(
+            scene,
+            "no export: the coordinate has no ends",
+            "give the interval with --from and --until",
+            [(SceneLocation::Actuator(ActuatorId(0)), "this coordinate")],
+        )),
+    }
 }
 
 fn describe(scene: &Scene, loaded: &Scene, model: &Model, domain: Domain) -> MachineDescription {
-    let is_angle = model.plan().is_angle(0);
-    let mechanism = &scene.mechanism;
-    let reactions = model.reactions().iter();
-    let reactions = reactions.map(|&r| (mechanism.reaction_name(r), r.component.unit()));
     let mut left_out = left_out(scene, model);
-    let loads = describe_loads(scene, loaded, &mut left_out);
-    let points = scene.requests.paths.iter();
-    let points = points.map(|p| format!("{}.{}", mechanism.body_name(p.body), p.name));
+    let units = load_units(loaded);
+    let loads = describe_loads(
+        (scene, &units),
+        &scene.loads,
+        Load::is_conservative,
+        &mut left_out,
+    );
+    let mut workspace = model.workspace::<f64>();
+    let mut found: Coefficients = model.coefficient_buffer();
+    // A position that cannot be reached is reported when it is sampled.
+    let inertias = parts_of(domain).into_iter().filter_map(|q| {
+        model.reduce(q, &mut workspace, &mut found).ok()?;
+        Some(found.m)
+    });
+    let mass = scene.masses.iter().map(|mass| mass.mass).sum();
+    let sizes = reference_sizes(inertias, (mass, scene.mechanism.size()), &units);
+    MachineDescription {
+        points: point_names(scene),
+        reactions: named_reactions(scene, model),
+        loads,
+        left_out,
+        ..machine_of(scene, domain, sizes)
+    }
+}
+
+/// A machine over an interval, without reactions, loads and points.
+pub(crate) fn machine_of(
+    scene: &impl MachineScene,
+    domain: Domain,
+    sizes: ReferenceSizes,
+) -> MachineDescription {
+    let (coordinate, is_angle) = scene.actuator(0).unwrap_or_default();
+    let start = scene.motion_start();
+    let [q, q_dot] =
+        [start.coordinates, start.velocities].map(|of| of.first().copied().unwrap_or(0.0));
+    let q = match domain.revolutions {
+        0 => q.clamp(domain.from, domain.to),
+        _ => q.rem_euclid(domain.to),
+    };
     MachineDescription {
         name: scene.name.clone(),
         title: scene.title.clone(),
         scene_hash: scene.hash(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
-        coordinate: mechanism.actuators[0].name.clone(),
+        coordinate: coordinate.to_owned(),
         is_angle,
         domain,
-        initial: initial(scene, domain),
-        points: points.collect(),
-        sizes: reference_sizes(scene, loaded, model, domain),
-        reactions: reactions.collect(),
-        loads,
-        left_out,
+        initial: [q, q_dot],
+        loads: Vec::new(),
+        reactions: Vec::new(),
+        points: Vec::new(),
+        sizes,
+        left_out: Vec::new(),
     }
 }
 
-/// The loads, and the drives behind them.
-pub(super) fn describe_loads(
-    scene: &Scene,
-    loaded: &Scene,
+/// Names and units of the reactions of a model.
+pub(super) fn named_reactions(scene: &Scene, model: &Model) -> Vec<(String, &'static str)> {
+    let reactions = model.reactions().iter();
+    let named = reactions.map(|&r| (scene.mechanism.reaction_name(r), r.component.unit()));
+    named.collect()
+}
+
+/// The names of the points whose positions are exported.
+pub(super) fn point_names(scene: &Scene) -> Vec<String> {
+    let points = scene.requests.paths.iter();
+    let named = points.map(|p| format!("{}.{}", scene.mechanism.body_name(p.body), p.name));
+    named.collect()
+}
+
+/// The loads, and the drives behind them, by the units of all of them.
+pub(crate) fn describe_loads<S: MachineScene, K>(
+    (scene, units): (&S, &[LoadUnit]),
+    loads: &[Load<K, CoordinateOf<S>>],
+    is_conservative: fn(&Load<K, CoordinateOf<S>>) -> bool,
     left_out: &mut Vec<String>,
 ) -> Vec<LoadDescription> {
-    let drives = scene.drives.iter().map(|drive| &drive.kind);
-    let kinds = std::iter::repeat_n(None, scene.loads.len()).chain(drives.map(Some));
-    let loads = loaded.loads.iter().zip(kinds).map(|(load, drive)| {
-        let (effect, unit) = match drive {
-            Some(drive) => {
-                let is_couple = matches!(load.kind, LoadKind::Torque { .. });
-                let force = if is_couple { "N m" } else { "N" };
-                drive_effect((&load.name, force), drive, left_out)
-            }
-            None => {
-                left_out.extend(varying_input("the load", &load.name, &load.magnitude));
-                load_effect(load)
-            }
-        };
-        LoadDescription {
+    let mut all = Vec::new();
+    for (load, &(unit, is_damper)) in loads.iter().zip(units) {
+        left_out.extend(varying_input("the load", &load.name, &load.magnitude));
+        all.push(LoadDescription {
             name: load.name.clone(),
-            effect,
+            effect: magnitude_effect(&load.magnitude, is_damper, is_conservative(load)),
             unit,
-        }
-    });
-    loads.collect()
+        });
+    }
+    for (drive, &(force, _)) in scene.drives().iter().zip(&units[loads.len()..]) {
+        let (effect, unit) = drive_effect((&drive.name, force), &drive.kind, left_out);
+        let name = drive.name.clone();
+        all.push(LoadDescription { name, effect, unit });
+    }
+    all
 }
 
 /// Sentences about what is not exported.
 pub(super) fn left_out(scene: &Scene, model: &Model) -> Vec<String> {
-    let mut all = Vec::new();
     let known = model.reactions();
-    let missing = scene
-        .requests
-        .reactions
-        .iter()
-        .filter(|r| !known.contains(r));
-    let missing: Vec<_> = missing.map(|&r| scene.mechanism.reaction_name(r)).collect();
-    if !missing.is_empty() {
+    let requested = scene.requests.reactions.iter();
+    let missing = requested.filter(|r| !known.contains(r));
+    let missing = missing.map(|&r| scene.mechanism.reaction_name(r)).collect();
+    missing_parts(missing, scene.motion.as_ref())
+}
+
+/// The same of reactions, and of the events of a motion.
+pub(crate) fn missing_parts<C, R>(
+    reactions: Vec<String>,
+    motion: Option<&FreeMotionSpec<C, R>>,
+) -> Vec<String> {
+    let mut all = Vec::new();
+    if !reactions.is_empty() {
         all.push(format!(
             "the statically indeterminate reactions {}",
-            missing.join(", ")
+            reactions.join(", ")
         ));
     }
-    let spec = scene.motion.as_ref();
-    if spec.is_some_and(|spec| !spec.events.is_empty()) {
+    if motion.is_some_and(|spec| !spec.events.is_empty()) {
         all.push("the events of [motion]".to_owned());
     }
     all
 }
 
-/// q and q̇ at the start, within the interval.
-fn initial(scene: &Scene, domain: Domain) -> [f64; 2] {
-    let assembly = scene.assembly.coordinates.first().copied().unwrap_or(0.0);
-    let [q, q_dot] = match initial_reduced_state(scene) {
-        Some(state) => [state.q, state.q_dot],
-        None => [assembly, 0.0],
-    };
-    let q = match domain.revolutions {
-        0 => q.clamp(domain.from, domain.to),
-        _ => q.rem_euclid(domain.to),
-    };
-    [q, q_dot]
+/// Positions at which the size of the inertia is looked for.
+pub(crate) fn parts_of(domain: Domain) -> [f64; 5] {
+    [0.1, 0.3, 0.5, 0.7, 0.9].map(|part| domain.from + part * domain.length())
 }
 
-/// What m, the forces and lengths come to.
-fn reference_sizes(scene: &Scene, loaded: &Scene, model: &Model, domain: Domain) -> ReferenceSizes {
-    let length = scene.mechanism.size();
-    let mut workspace = model.workspace::<f64>();
-    let mut found: Coefficients = model.coefficient_buffer();
-    let mut inertia = 0.0_f64;
-    for part in [0.1, 0.3, 0.5, 0.7, 0.9] {
-        let q = domain.from + part * domain.length();
-        // A position that cannot be reached is reported when it is sampled.
-        if model.reduce(q, &mut workspace, &mut found).is_ok() {
-            inertia = inertia.max(found.m.abs());
-        }
-    }
-    let mass: f64 = scene.masses.iter().map(|mass| mass.mass).sum();
-    let force = |load: &Load| match load.kind {
-        LoadKind::Gravity { .. } => mass,
-        LoadKind::Force { .. }
-        | LoadKind::PointToPointForce { .. }
-        | LoadKind::SlideForce(_)
-        | LoadKind::Damper { .. }
-        | LoadKind::SlideDamper(_)
-        | LoadKind::SeparatingForce(_) => 1.0,
-        LoadKind::Torque { .. }
-        | LoadKind::TorsionSpring { .. }
-        | LoadKind::RotationalDamper { .. } => 1.0 / length,
-        LoadKind::Spring { .. } => length,
-    };
+/// What m, the forces and lengths come to, from inertias, the mass (kg) and the size (m) of a mechanism, and the units of loads.
+pub(crate) fn reference_sizes(
+    inertias: impl Iterator<Item = f64>,
+    (mass, length): (f64, f64),
+    units: &[LoadUnit],
+) -> ReferenceSizes {
     let positive = |value: f64| {
         let usable = value.is_finite() && value > 0.0;
         if usable { value } else { 1.0 }
     };
+    let force = |(unit, _): &LoadUnit| match *unit {
+        "m/s2" => mass,
+        "N m" | "N m/rad" | "N m s/rad" => 1.0 / length,
+        "N/m" => length,
+        _ => 1.0,
+    };
     ReferenceSizes {
-        inertia: positive(inertia),
+        inertia: positive(inertias.fold(0.0_f64, |max, m| max.max(m.abs()))),
         length: positive(length),
-        unit_loads: loaded.loads.iter().map(|l| positive(force(l))).collect(),
+        unit_loads: units.iter().map(|unit| positive(force(unit))).collect(),
     }
 }
 
-/// How a load acts, and the unit of its magnitude.
-fn load_effect(load: &Load) -> (LoadEffect, &'static str) {
-    let unit = match load.kind {
-        LoadKind::Gravity { .. } => "m/s2",
+/// The unit of a load's magnitude, and whether it resists with a speed.
+pub(crate) type LoadUnit = (&'static str, bool);
+
+/// Those of the loads of a scene, drives among them.
+pub(super) fn load_units(loaded: &Scene) -> Vec<LoadUnit> {
+    let unit = |load: &Load| match load.kind {
+        LoadKind::Gravity { .. } => ("m/s2", false),
         LoadKind::Force { .. }
         | LoadKind::PointToPointForce { .. }
         | LoadKind::SlideForce(_)
-        | LoadKind::SeparatingForce(_) => "N",
-        LoadKind::Torque { .. } => "N m",
-        LoadKind::Spring { .. } => "N/m",
-        LoadKind::TorsionSpring { .. } => "N m/rad",
-        LoadKind::Damper { .. } | LoadKind::SlideDamper(_) => "N s/m",
-        LoadKind::RotationalDamper { .. } => "N m s/rad",
+        | LoadKind::SeparatingForce(_) => ("N", false),
+        LoadKind::Torque { .. } => ("N m", false),
+        LoadKind::Spring { .. } => ("N/m", false),
+        LoadKind::TorsionSpring { .. } => ("N m/rad", false),
+        LoadKind::Damper { .. } | LoadKind::SlideDamper(_) => ("N s/m", true),
+        LoadKind::RotationalDamper { .. } => ("N m s/rad", true),
     };
-    let is_damper = matches!(
-        load.kind,
-        LoadKind::Damper { .. } | LoadKind::SlideDamper(_) | LoadKind::RotationalDamper { .. }
-    );
-    let effect = magnitude_effect(&load.magnitude, is_damper, load.is_conservative());
-    (effect, unit)
+    loaded.loads.iter().map(unit).collect()
 }
 
 /// How a magnitude acts: as a parameter if it is a constant, else as an input.
-pub(crate) fn magnitude_effect<C>(
+fn magnitude_effect<C>(
     magnitude: &Magnitude<C>,
     is_damper: bool,
     is_conservative: bool,
@@ -386,13 +393,13 @@ pub(crate) fn magnitude_effect<C>(
 }
 
 /// What an export leaves out of a magnitude that is no constant.
-pub(crate) fn varying_input<C>(kind: &str, name: &str, magnitude: &Magnitude<C>) -> Option<String> {
+fn varying_input<C>(kind: &str, name: &str, magnitude: &Magnitude<C>) -> Option<String> {
     let constant = matches!(magnitude, Magnitude::Constant(_));
     (!constant).then(|| format!("how {kind} {name} varies: its magnitude is an input"))
 }
 
 /// How a drive acts on a coordinate with this unit of force, and the unit of its input.
-pub(crate) fn drive_effect<C>(
+fn drive_effect<C>(
     (name, force): (&str, &'static str),
     drive: &DriveKind<C>,
     left_out: &mut Vec<String>,

@@ -23,23 +23,21 @@ pub fn fmu_archive(
     version: FmiVersion,
 ) -> Result<(Vec<u8>, String), StudyError> {
     let files = fmu_files(export, version, scene.source.inner());
-    let (library, sentence) = match platform(version) {
-        None => (
-            None,
-            "sources only: this platform has no library".to_owned(),
-        ),
-        Some(folder) => match compile(&files) {
-            Some((compiler, bytes)) => {
-                let path = format!("binaries/{folder}/{}.so", files.identifier);
-                let sentence = format!("sources, and a library for {folder} by {compiler}");
-                (Some((path, bytes)), sentence)
-            }
-            None => (
-                None,
-                "sources only: no C compiler was found here; an importer compiles them".to_owned(),
-            ),
-        },
+    let folder = platform(version);
+    let compiled = folder.and_then(|folder| Some((folder, compile(&files)?)));
+    let sentence = match (&compiled, folder) {
+        (Some((folder, (compiler, _))), _) => {
+            format!("sources, and a library for {folder} by {compiler}")
+        }
+        (None, Some(_)) => {
+            "sources only: no C compiler was found here; an importer compiles them".to_owned()
+        }
+        (None, None) => "sources only: this platform has no library".to_owned(),
     };
+    let library = compiled.map(|(folder, (_, bytes))| {
+        let path = format!("binaries/{folder}/{}.so", files.identifier);
+        (path, bytes)
+    });
     let texts = files.texts.iter();
     let texts = texts.map(|(path, text)| (path.as_str(), text.as_bytes()));
     let library = library

@@ -19,8 +19,14 @@ use dwell_dynamics::DynamicsError;
 use dwell_export::{Export, FitError, Function, MachineDescription, RecordingError, Request};
 use dwell_geometry::ActuatorId;
 use dwell_scene::{Scene, SceneFile, SceneLocation};
-use sampler::recorded;
+use sampler::{SceneSampler, recorded};
 use std::fmt::Display;
+
+/// The mark of the only coordinate.
+const OVER_COORDINATE: (SceneLocation, &str) = (
+    SceneLocation::Actuator(ActuatorId(0)),
+    "over this coordinate",
+);
 
 /// What of a scene is exported, and how accurately.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,7 +57,7 @@ pub fn compute_export(scene: &Scene, asked: &ExportRequest) -> Result<Export, St
         RecordingError::Differs { .. } => no_operations(scene, SEARCHED),
     })?;
     let (machine, precision) = (exported.description.clone(), asked.request.precision);
-    let export = Export::exact(machine, precision, code, &mut exported.sampler());
+    let export = Export::exact(machine, precision, code, &mut SceneSampler::new(&exported));
     export.map_err(|error| explain_export(scene, &exported, asked, error))
 }
 
@@ -63,7 +69,7 @@ pub fn compute_export(scene: &Scene, asked: &ExportRequest) -> Result<Export, St
 pub fn compute_export_in_cells(scene: &Scene, asked: &ExportRequest) -> Result<Export, StudyError> {
     let exported = ExportedScene::new(scene, asked.interval)?;
     let machine = exported.description.clone();
-    let export = Export::new(machine, asked.request, &mut exported.sampler());
+    let export = Export::new(machine, asked.request, &mut SceneSampler::new(&exported));
     export.map_err(|error| explain_export(scene, &exported, asked, error))
 }
 
@@ -92,10 +98,7 @@ pub(crate) fn no_operations(scene: &SceneFile, reason: &str) -> StudyError {
         scene,
         format!("no exact export: {reason}"),
         "leave --exact out: cells have every function to 1e-12 if you ask for it with --accuracy",
-        [(
-            SceneLocation::Actuator(ActuatorId(0)),
-            "over this coordinate",
-        )],
+        [OVER_COORDINATE],
     )
 }
 
@@ -106,21 +109,15 @@ pub(crate) fn explain_fit<E: Display>(
     asked: &ExportRequest,
     error: &FitError<E>,
 ) -> StudyError {
-    let actuator = SceneLocation::Actuator(ActuatorId(0));
     let place = |function: &Function| match function {
         Function::Potential(load) | Function::W(load) | Function::C(load, _) => {
             (SceneLocation::Load(*load), "this load")
         }
         Function::Position(point, _) => (SceneLocation::Path(*point), "this point"),
-        Function::Inertia | Function::A(_) | Function::B(_) => (actuator, "over this coordinate"),
+        Function::Inertia | Function::A(_) | Function::B(_) => OVER_COORDINATE,
     };
     match error {
-        FitError::Sampler(error) => scene_error(
-            scene,
-            error.to_string(),
-            "",
-            [(actuator, "over this coordinate")],
-        ),
+        FitError::Sampler(error) => scene_error(scene, error.to_string(), "", [OVER_COORDINATE]),
         FitError::NotPeriodic { name, function } => scene_error(
             scene,
             format!("no export: {name} is not periodic over a revolution"),
@@ -145,7 +142,7 @@ pub(crate) fn explain_fit<E: Display>(
                 scene,
                 message,
                 "ask for less accuracy, or for a smaller part of the range with --from and --until, away from limit positions and change points",
-                [(actuator, "over this coordinate")],
+                [OVER_COORDINATE],
             )
         }
     }

@@ -4,7 +4,7 @@ use crate::explain::{StudyError, actuator_labels, scene_error};
 use crate::export::{
     ExportRequest, compute_export, compute_export_of_several_freedoms, fmu_archive,
 };
-use crate::number_format::count;
+use crate::number_format::{coordinate_unit, count};
 use crate::output::Outcome;
 use crate::reduce::compute::compute_reduction;
 use dwell_export::{
@@ -100,10 +100,8 @@ fn export_several_freedoms(
     {
         record.add_count(format!("operations.{name}"), count);
     }
-    for (path, text) in c_files_of_several_freedoms(&export) {
-        outcome.summary += &format!("  written: {path}\n");
-        outcome.files.add(path, text.into_bytes());
-    }
+    let files = of_texts(c_files_of_several_freedoms(&export));
+    add_files(&mut outcome, files);
     Ok(outcome)
 }
 
@@ -122,43 +120,41 @@ pub(crate) fn export_machine(
         ExportTarget::C | ExportTarget::Rust | ExportTarget::Fmu(_) | ExportTarget::Matlab => {}
     }
     let export = fitted()?;
-    let mut outcome = Outcome {
-        summary: summary(scene, &export),
-        record: record(&export),
-        ..Outcome::default()
-    };
-    let mut add = |path: String, bytes: Vec<u8>| {
-        outcome.summary += &format!("  written: {path}\n");
-        outcome.files.add(path, bytes);
-    };
-    match target {
-        ExportTarget::C => {
-            for (path, text) in c_files(&export) {
-                add(path, text.into_bytes());
-            }
-        }
-        ExportTarget::Rust => {
-            for (path, text) in rust_files(&export).into_iter().flatten() {
-                add(path, text.into_bytes());
-            }
-        }
-        // Their rows are written already.
-        ExportTarget::Rows(_) | ExportTarget::Json => {}
-        ExportTarget::Matlab => {
-            for (path, bytes) in matlab_files(&export).into_iter().flatten() {
-                add(path, bytes);
-            }
-        }
+    let mut outcome = Outcome::default();
+    outcome.summary = summary(scene, &export, &mut outcome.record);
+    let mut about_library = String::new();
+    let files: Vec<(String, Vec<u8>)> = match target {
+        ExportTarget::C => of_texts(c_files(&export)),
+        ExportTarget::Rust => of_texts(rust_files(&export).into_iter().flatten()),
+        ExportTarget::Matlab => matlab_files(&export).into_iter().flatten().collect(),
         ExportTarget::Fmu(version) => {
             let (bytes, sentence) = fmu_archive(scene, &export, version)?;
-            add(
-                format!("{}.fmu", Identifiers::new(&export.machine).prefix),
-                bytes,
-            );
-            outcome.summary += &format!("  {sentence}\n");
+            about_library = format!("  {sentence}\n");
+            let prefix = Identifiers::new(&export.machine).prefix;
+            vec![(format!("{prefix}.fmu"), bytes)]
         }
-    }
+        // Their rows are written already.
+        ExportTarget::Rows(_) | ExportTarget::Json => Vec::new(),
+    };
+    add_files(&mut outcome, files);
+    outcome.summary += &about_library;
     Ok(outcome)
+}
+
+/// The bytes of texts.
+fn of_texts(files: impl IntoIterator<Item = (String, String)>) -> Vec<(String, Vec<u8>)> {
+    let files = files.into_iter();
+    files
+        .map(|(path, text)| (path, text.into_bytes()))
+        .collect()
+}
+
+/// Adds files, with a line about each.
+fn add_files(outcome: &mut Outcome, files: Vec<(String, Vec<u8>)>) {
+    for (path, bytes) in files {
+        outcome.summary += &format!("  written: {path}\n");
+        outcome.files.add(path, bytes);
+    }
 }
 
 /// Rejects options that a target does not have.
@@ -213,41 +209,28 @@ fn rows(
     Ok(outcome)
 }
 
-fn summary(scene: &SceneFile, export: &Export) -> String {
+/// What is said of an export; the numbers in it are recorded.
+fn summary(scene: &SceneFile, export: &Export, record: &mut Record) -> String {
     let (machine, measured) = (&export.machine, &export.measured);
+    let (title, coordinate) = (&scene.title, &machine.coordinate);
     let numbers = match export.request.precision {
         Precision::Double => "double",
         Precision::Float => "single",
     };
-    let counts = PartKind::ALL.map(|kind| cells(export, kind));
-    let names = ["of motion", "of reactions", "of positions"];
-    let cells = counts.into_iter().zip(names).filter(|(n, _)| *n > 0);
-    let cells: Vec<String> = cells
-        .map(|(n, of)| format!("{} {of}", count(n, "cell")))
-        .collect();
+    let worth = worth(export, record);
     let [motion, all, step] = measured.operations;
-    let (title, coordinate, error) = (&scene.title, &machine.coordinate, measured.errors.max());
-    let worth = match export.code {
-        Some(_) => {
-            let [of_motion, of_all] = export.functions();
-            format!(
-                "the model's own operations; largest error {error:.1e} of the largest value of each function\n  square roots, sines, cosines and angles: {of_motion} of the terms of motion, {of_all} with reactions"
-            )
-        }
-        None => format!(
-            "{}, {} bytes of constants; largest error {error:.1e} of the largest value of each function (asked: {:e})",
-            cells.join(", "),
-            export.constant_bytes(),
-            export.request.accuracy,
-        ),
-    };
     let mut text = format!(
         "{title}: reduced model in {numbers} precision over {coordinate}\n  {worth}\n  operations, at most: {motion} of the terms of motion, {all} with reactions, {step} of a step\n"
     );
     if let Some([q, q_dot]) = measured.step_error {
-        let unit = if machine.is_angle { "rad" } else { "m" };
+        let unit = coordinate_unit(machine.is_angle);
+        record.add("step_error.q", unit, q);
+        record.add("step_error.q_dot", &format!("{unit}/s"), q_dot);
         text +=
             &format!("  after 1 s of steps of 1 ms: {q:.1e} {unit} and {q_dot:.1e} {unit}/s off\n");
+    }
+    for (name, operations) in [("motion", motion), ("reactions", all), ("step", step)] {
+        record.add_count(format!("operations.{name}"), operations as usize);
     }
     for sentence in &machine.left_out {
         text += &format!("  left out: {sentence}\n");
@@ -255,41 +238,43 @@ fn summary(scene: &SceneFile, export: &Export) -> String {
     text
 }
 
-fn record(export: &Export) -> Record {
-    let measured = &export.measured;
-    let mut record = Record::default();
+/// The errors of an export, and what it consists of.
+fn worth(export: &Export, record: &mut Record) -> String {
+    let errors = &export.measured.errors;
     // Of an exact export, nothing was asked for.
     if export.code.is_none() {
         record.add("accuracy", "", export.request.accuracy);
     }
-    record.add("error", "", measured.errors.max());
-    record.add("error.m", "", measured.errors.m);
-    record.add("error.half_dm", "", measured.errors.half_dm);
-    record.add("error.reactions", "", measured.errors.reactions);
+    let error = errors.max();
+    record.add("error", "", error);
+    record.add("error.m", "", errors.m);
+    record.add("error.half_dm", "", errors.half_dm);
+    record.add("error.reactions", "", errors.reactions);
     record.add_count("constants.bytes", export.constant_bytes());
-    for (kind, name) in PartKind::ALL
-        .into_iter()
-        .zip(["motion", "reactions", "positions"])
-    {
-        record.add_count(format!("cells.{name}"), cells(export, kind));
+    let mut cells = Vec::new();
+    let names = ["motion", "reactions", "positions"];
+    for (kind, name) in PartKind::ALL.into_iter().zip(names) {
+        let part = &export.parts[kind as usize];
+        // None where all its functions are constants.
+        let number = match part.index.is_empty() {
+            true => 0,
+            false => part.cell_count(),
+        };
+        record.add_count(format!("cells.{name}"), number);
+        if number > 0 {
+            cells.push(format!("{} of {name}", count(number, "cell")));
+        }
     }
-    if let Some([q, q_dot]) = measured.step_error {
-        let unit = if export.machine.is_angle { "rad" } else { "m" };
-        record.add("step_error.q", unit, q);
-        record.add("step_error.q_dot", &format!("{unit}/s"), q_dot);
+    if export.code.is_some() {
+        let [of_motion, of_all] = export.functions();
+        return format!(
+            "the model's own operations; largest error {error:.1e} of the largest value of each function\n  square roots, sines, cosines and angles: {of_motion} of the terms of motion, {of_all} with reactions"
+        );
     }
-    let [motion, all, step] = measured.operations;
-    for (name, operations) in [("motion", motion), ("reactions", all), ("step", step)] {
-        record.add_count(format!("operations.{name}"), operations as usize);
-    }
-    record
-}
-
-/// Cells of a part; none where all its functions are constants.
-fn cells(export: &Export, kind: PartKind) -> usize {
-    let part = &export.parts[kind as usize];
-    match part.index.is_empty() {
-        true => 0,
-        false => part.cell_count(),
-    }
+    format!(
+        "{}, {} bytes of constants; largest error {error:.1e} of the largest value of each function (asked: {:e})",
+        cells.join(", "),
+        export.constant_bytes(),
+        export.request.accuracy,
+    )
 }

@@ -1,15 +1,18 @@
 //! The equations of motion of a scene with several degrees of freedom, as the model's own operations.
 
-use super::description::{describe_loads, left_out, with_unit_loads};
+use super::description::{
+    describe_loads, left_out, load_units, named_reactions, point_names, with_unit_loads,
+};
 use super::{ExportRequest, SEARCHED};
 use crate::explain::{StudyError, actuator_labels, explain_motion, scene_error};
+use crate::machines::MachineScene as _;
 use dwell_dynamics::DynamicsError;
 use dwell_export::{
     FreeCoordinate, Precision, RecordedNumber, RecordingError, SeveralFreedomsDescription,
     SeveralFreedomsExport, StraightLine, record_at,
 };
 use dwell_geometry::ActuatorId;
-use dwell_kinetostatics::{InverseDynamics, Model};
+use dwell_kinetostatics::{InverseDynamics, Load, Model};
 use dwell_numerics::Scalar;
 use dwell_scene::{Scene, SceneLocation};
 
@@ -95,33 +98,20 @@ fn without_operations(scene: &Scene, reason: &str) -> StudyError {
 }
 
 fn describe(scene: &Scene, loaded: &Scene, model: &Model) -> SeveralFreedomsDescription {
-    let mechanism = &scene.mechanism;
-    let reactions = model.reactions().iter();
-    let reactions = reactions.map(|&r| (mechanism.reaction_name(r), r.component.unit()));
-    let points = scene.requests.paths.iter();
-    let points = points.map(|p| format!("{}.{}", mechanism.body_name(p.body), p.name));
     let mut left_out = left_out(scene, model);
-    let loads = describe_loads(scene, loaded, &mut left_out);
-    let spec = scene.motion.as_ref();
-    let coordinates = mechanism.actuators.iter().enumerate().map(|(k, actuator)| {
-        let at = |of: &[f64]| of.get(k).copied();
-        let assembly = at(&scene.assembly.coordinates).unwrap_or(0.0);
-        if spec.is_some_and(|spec| spec.laws[k].is_some()) {
-            left_out.push(format!(
-                "the law of {}: it is a free coordinate here",
-                actuator.name
-            ));
+    let units = (scene, &load_units(loaded)[..]);
+    let loads = describe_loads(units, &scene.loads, Load::is_conservative, &mut left_out);
+    let start = scene.motion_start();
+    let coordinates = scene.mechanism.actuators.iter().enumerate();
+    let coordinates = coordinates.map(|(k, actuator)| {
+        if start.laws[k].is_some() {
+            let name = &actuator.name;
+            left_out.push(format!("the law of {name}: it is a free coordinate here"));
         }
         FreeCoordinate {
             name: actuator.name.clone(),
             is_angle: model.plan().is_angle(k),
-            initial: match spec {
-                Some(spec) => [
-                    at(&spec.initial_coordinates).unwrap_or(assembly),
-                    at(&spec.initial_velocities).unwrap_or(0.0),
-                ],
-                None => [assembly, 0.0],
-            },
+            initial: [start.coordinates[k], start.velocities[k]],
         }
     });
     SeveralFreedomsDescription {
@@ -131,8 +121,8 @@ fn describe(scene: &Scene, loaded: &Scene, model: &Model) -> SeveralFreedomsDesc
         scene_hash: scene.hash(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         loads,
-        reactions: reactions.collect(),
-        points: points.collect(),
+        reactions: named_reactions(scene, model),
+        points: point_names(scene),
         left_out,
     }
 }

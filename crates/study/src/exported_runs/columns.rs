@@ -66,18 +66,13 @@ impl ColumnNames {
             Some(Value::String(name)) => Ok(Some(name.clone())),
             Some(_) => Err(wrong(format!("`{key}` is no text"))),
         };
-        let mut reactions = Vec::new();
-        for (name, column) in table
-            .get("reactions")
-            .and_then(Value::as_table)
-            .into_iter()
-            .flatten()
-        {
-            let column = column
-                .as_str()
-                .ok_or_else(|| wrong(format!("`reactions.{name}` is no text")))?;
-            reactions.push((name.clone(), column.to_owned()));
-        }
+        let reactions = table.get("reactions").and_then(Value::as_table);
+        let reactions = reactions.into_iter().flatten().map(|(name, column)| {
+            let column = column.as_str();
+            let column = column.ok_or_else(|| wrong(format!("`reactions.{name}` is no text")))?;
+            Ok((name.clone(), column.to_owned()))
+        });
+        let reactions = reactions.collect::<Result<_, SceneError>>()?;
         Ok(Self {
             coordinate: of("coordinate")?,
             speed: of("speed")?,
@@ -102,10 +97,9 @@ impl ColumnNames {
             Some(given) => find(table, given).map(Some),
             None => Ok(table.column(&format!("{name}{rest}")).cloned()),
         };
-        let force = match &self.force {
-            Some(force) => find(table, force)?,
-            None => find(table, &format!("{name}.actuator_force"))?,
-        };
+        let force = self.force.clone();
+        let force = force.unwrap_or_else(|| format!("{name}.actuator_force"));
+        let force = find(table, &force)?;
         let speed = optional(&self.speed, ".velocity")?;
         let acceleration = optional(&self.acceleration, ".acceleration")?;
         let unit = q.unit.clone().or_else(|| self.unit.clone());

@@ -1,10 +1,10 @@
 //! The reduced parameters of exported runs: the positions of the files, and what is between them.
 
 use super::combine::ExportedRuns;
+use super::sample_errors::all_of;
 use super::sampled_model::SampledModel;
 use crate::output::{chart, coordinate_axis};
 use crate::reduce::compute::{coefficient_units, inertia_units};
-use dwell_kinetostatics::Coefficients;
 use dwell_report::{Axis, Figure, Panel, Series, Stroke};
 
 /// Reactions that are drawn, points between the positions, and about how many positions are marked.
@@ -12,67 +12,33 @@ const MAX_REACTIONS: usize = 2;
 const POINTS: usize = 720;
 const MARKS: usize = 36;
 
-/// A coefficient: title, symbol, unit, number among all, and its value at a position.
-struct Drawn<'a> {
-    title: String,
-    symbol: &'a str,
-    unit: &'a str,
-    index: usize,
-    of: Box<dyn Fn(&Coefficients) -> f64>,
-}
+/// A coefficient: title, symbol, unit, and number among all.
+type Drawn = (String, &'static str, &'static str, usize);
 
 /// m, ½m′, and a and b of the first reactions over the coordinate.
 pub(super) fn figure(runs: &ExportedRuns, model: &SampledModel, caption: String) -> Figure {
     let [m, half_dm] = inertia_units(runs.is_angle);
-    let mut drawn = vec![
-        Drawn {
-            title: "m (generalised inertia)".to_owned(),
-            symbol: "m",
-            unit: m,
-            index: 0,
-            of: Box::new(|at| at.m),
-        },
-        Drawn {
-            title: "½m′ (half its derivative)".to_owned(),
-            symbol: "½m′",
-            unit: half_dm,
-            index: 1,
-            of: Box::new(|at| at.half_dm),
-        },
+    let mut drawn: Vec<Drawn> = vec![
+        ("m (generalised inertia)".to_owned(), "m", m, 0),
+        ("½m′ (half its derivative)".to_owned(), "½m′", half_dm, 1),
     ];
     let count = runs.reactions.len();
     for (r, (name, unit)) in runs.reactions.iter().take(MAX_REACTIONS).enumerate() {
-        let unit = unit.as_deref().unwrap_or("N");
-        let [a, b] = coefficient_units(unit, runs.is_angle);
-        drawn.push(Drawn {
-            title: format!("a of {name}"),
-            symbol: "a",
-            unit: a,
-            index: 2 + r,
-            of: Box::new(move |at| at.a[r]),
-        });
-        drawn.push(Drawn {
-            title: format!("b of {name}"),
-            symbol: "b",
-            unit: b,
-            index: 2 + count + r,
-            of: Box::new(move |at| at.b[r]),
-        });
+        let [a, b] = coefficient_units(unit.as_deref().unwrap_or("N"), runs.is_angle);
+        drawn.push((format!("a of {name}"), "a", a, 2 + r));
+        drawn.push((format!("b of {name}"), "b", b, 2 + count + r));
     }
     Figure {
         name: "reduced".to_owned(),
         title: "Reduced parameters from two exported runs".to_owned(),
         caption,
         columns: 1,
-        panels: drawn
-            .into_iter()
-            .map(|of| panel(runs, model, &of))
-            .collect(),
+        panels: drawn.into_iter().map(|of| panel(runs, model, of)).collect(),
         provenance: format!("Dwell {}", env!("CARGO_PKG_VERSION")),
     }
 }
 
-fn panel(runs: &ExportedRuns, model: &SampledModel, drawn: &Drawn<'_>) -> Panel {
+fn panel(runs: &ExportedRuns, model: &SampledModel, (title, symbol, unit, index): Drawn) -> Panel {
     let x = |q: f64| if runs.is_angle { q.to_degrees() } else { q };
     let (first, last) = (runs.q[0], runs.q[runs.q.len() - 1]);
     let end = if runs.is_whole_revolution {
@@ -82,14 +48,14 @@ fn panel(runs: &ExportedRuns, model: &SampledModel, drawn: &Drawn<'_>) -> Panel 
     };
     let between = (0..=POINTS).filter_map(|k| {
         let q = first + (end - first) * k as f64 / POINTS as f64;
-        Some([x(q), *model.values(q).ok()?.get(drawn.index)?])
+        Some([x(q), *model.values(q).ok()?.get(index)?])
     });
     let line = Series::line("between the positions", between.collect());
     let stride = runs.q.len().div_ceil(MARKS).max(1);
     let marked = runs.q.iter().zip(&runs.coefficients).step_by(stride);
-    let marked = marked.map(|(q, at)| [x(*q), (drawn.of)(at)]).collect();
+    let marked = marked.map(|(q, at)| [x(*q), all_of(at)[index]]).collect();
     let marked = Series::line("positions of the runs", marked).stroke(Stroke::Points);
-    let y = Axis::new(drawn.symbol, drawn.unit.replace('2', "²"));
+    let y = Axis::new(symbol, unit.replace('2', "²"));
     let axis = coordinate_axis(&runs.coordinate, runs.is_angle);
-    chart(drawn.title.clone(), axis, y, vec![line, marked]).into()
+    chart(title, axis, y, vec![line, marked]).into()
 }

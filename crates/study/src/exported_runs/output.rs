@@ -6,6 +6,7 @@ use super::figures;
 use super::sample_errors::SampleErrors;
 use super::sampled_model::{SampleInterpolation, SampledModel};
 use super::text_table::ExportedTable;
+use super::timed_run::wrong;
 use super::written_scene::scene_text;
 use crate::explain::StudyError;
 use crate::number_format::{coordinate_unit, count, digits_within};
@@ -13,13 +14,11 @@ use crate::output::{Outcome, Picture};
 use crate::page::table_page;
 use crate::ranges::extent;
 use crate::reduce::column_group;
-use crate::reduce::compute::{coefficient_units, inertia_units};
+use crate::reduce::compute::{coefficient_table, inertia_units};
 use dwell_dynamics::{Orbit, ReducedState};
-use dwell_findings::{Column, Record, Table};
-use dwell_kinetostatics::Coefficients;
+use dwell_findings::{Record, Table};
 use dwell_page::Page;
 use dwell_report::{Block, Document, Files, TableFormat};
-use dwell_scene::SceneError;
 
 /// Part of the reduced model that may be left open by all errors together, before the result is none.
 const USELESS: f64 = 0.05;
@@ -40,10 +39,9 @@ pub fn reduce_runs(
     let runs = combine_runs(tables, names)?;
     let interpolation = interpolation.unwrap_or_else(|| SampleInterpolation::best_for(&runs));
     if interpolation == SampleInterpolation::Trigonometric && !runs.is_whole_revolution {
-        return Err(refused(
-            "the positions are no whole revolution at equal distances, so there is no trigonometric series".to_owned(),
-            "use --interpolation cubic, or export 361 positions from 0° to 360°",
-        ));
+        let message = "the positions are no whole revolution at equal distances, so there is no trigonometric series";
+        let help = "use --interpolation cubic, or export 361 positions from 0° to 360°";
+        return Err(wrong(message.to_owned(), help).into());
     }
     let model = SampledModel::new(&runs, interpolation, 1);
     let errors = SampleErrors::of(&runs, interpolation);
@@ -55,7 +53,7 @@ pub fn reduce_runs(
             errors.interpolation[0],
             interpolation.name()
         );
-        return Err(refused(message, "export more positions, or more digits"));
+        return Err(wrong(message, "export more positions, or more digits").into());
     }
     let mut record = Record::default();
     let mut summary = summary(&runs, &model, (interpolation, &errors), tables, &mut record);
@@ -104,32 +102,12 @@ fn rows_page(name: &str, [one, two]: [&ExportedTable; 2], reduced: &Table) -> Pa
     table_page(base, reduced, column_group)
 }
 
-fn refused(message: String, help: &str) -> StudyError {
-    SceneError::without_labels(message, Some(help.to_owned())).into()
-}
-
 /// Coordinate, m, ½m′, a and b of each reaction at the positions of the runs, as `dwell reduce` of a scene writes them.
 fn table(runs: &ExportedRuns) -> Table {
-    let [m, half_dm] = inertia_units(runs.is_angle);
-    let mut columns = vec![
-        Column::new(&runs.coordinate, coordinate_unit(runs.is_angle)),
-        Column::new("m", m),
-        Column::new("half_dm", half_dm),
-    ];
-    for (name, unit) in &runs.reactions {
-        let [a, b] = coefficient_units(unit.as_deref().unwrap_or("N"), runs.is_angle);
-        columns.push(Column::new(format!("{name}.a"), a));
-        columns.push(Column::new(format!("{name}.b"), b));
-    }
-    let row = |(q, at): (&f64, &Coefficients)| {
-        let mut row = vec![*q, at.m, at.half_dm];
-        row.extend(at.a.iter().zip(&at.b).flat_map(|(a, b)| [*a, *b]));
-        row
-    };
-    Table {
-        columns,
-        rows: runs.q.iter().zip(&runs.coefficients).map(row).collect(),
-    }
+    let reactions = runs.reactions.iter();
+    let reactions = reactions.map(|(name, unit)| (&name[..], unit.as_deref().unwrap_or("N")));
+    let coordinate = (&runs.coordinate[..], runs.is_angle);
+    coefficient_table(coordinate, reactions, (&runs.q, &runs.coefficients))
 }
 
 fn summary(

@@ -40,12 +40,12 @@ impl SampleErrors {
             SampleInterpolation::Linear | SampleInterpolation::Cubic => 1.0,
         };
         let rounding = printed_errors(runs);
-        let resampling = flat(&runs.resampling);
+        let resampling = all_of(&runs.resampling);
         let width = rounding.len();
         let (mut largest, mut differences) = (vec![0.0_f64; width], vec![0.0_f64; width]);
         let last = runs.q.len() - 1 + usize::from(runs.is_whole_revolution);
         for (k, (q, at)) in runs.q.iter().zip(&runs.coefficients).enumerate() {
-            let row = flat(at);
+            let row = all_of(at);
             let between = (k % 2 == 1 && k < last)
                 .then(|| coarse.values(*q).ok())
                 .flatten();
@@ -78,7 +78,7 @@ impl SampleErrors {
 }
 
 /// m, ½m′, every a, every b.
-fn flat(c: &Coefficients) -> Vec<f64> {
+pub(super) fn all_of(c: &Coefficients) -> Vec<f64> {
     let rest = c.a.iter().chain(&c.b).copied();
     [c.m, c.half_dm].into_iter().chain(rest).collect()
 }
@@ -86,10 +86,10 @@ fn flat(c: &Coefficients) -> Vec<f64> {
 /// What the printed digits leave open in each coefficient: of forces and motions, and of positions, where a digit is a change
 /// of the value.
 fn printed_errors(runs: &ExportedRuns) -> Vec<f64> {
-    let mut rounding = flat(&runs.rounding);
+    let mut rounding = all_of(&runs.rounding);
     let rows = runs.coefficients.windows(2).zip(runs.q.windows(2));
     for (coefficients, q) in rows {
-        let (one, other) = (flat(&coefficients[0]), flat(&coefficients[1]));
+        let (one, other) = (all_of(&coefficients[0]), all_of(&coefficients[1]));
         let per_position = runs.position_rounding / (q[1] - q[0]);
         for (rounding, (one, other)) in rounding.iter_mut().zip(one.into_iter().zip(other)) {
             *rounding = rounding.max(((other - one) * per_position).abs());

@@ -88,18 +88,15 @@ impl SampledModel {
     pub fn values(&self, q: f64) -> Result<Vec<f64>, PositionError> {
         let q = self.within(q)?;
         let curves = self.curves.iter();
-        Ok(curves.map(|curve| self.eval(curve, q)[0]).collect())
+        Ok(curves
+            .map(|curve| self.positions.eval(curve, q)[0])
+            .collect())
     }
 
     fn within(&self, q: f64) -> Result<f64, PositionError> {
         let [from, to] = self.positions.ends();
         let within = self.positions.within(q);
         within.ok_or(PositionError::OutOfRange { q, from, to })
-    }
-
-    /// Value, first and second derivative.
-    fn eval(&self, curve: &SampledCurve, q: f64) -> [f64; 3] {
-        self.positions.eval(curve, q)
     }
 
     /// The largest coefficients of the last eighth of the series of each function, summed: what the series leaves out is of
@@ -133,11 +130,11 @@ impl ReducedModel for SampledModel {
 
     fn inertia_derivatives(&self, q: f64, (): &mut ()) -> Result<Inertia, PositionError> {
         let q = self.within(q)?;
-        let [m, slope, bend] = self.eval(&self.curves[0], q);
+        let [m, slope, bend] = self.positions.eval(&self.curves[0], q);
         Ok(match &self.curves[0] {
             // Straight lines of m have steps for a slope: ½m′ is a line of its own.
             SampledCurve::Linear(_) => {
-                let [half_dm, half_ddm, _] = self.eval(&self.curves[1], q);
+                let [half_dm, half_ddm, _] = self.positions.eval(&self.curves[1], q);
                 Inertia {
                     m,
                     half_dm,
@@ -160,8 +157,12 @@ impl ReducedModel for SampledModel {
     ) -> Result<(), PositionError> {
         let Inertia { m, half_dm, .. } = self.inertia_derivatives(q, &mut ())?;
         let q = self.within(q)?;
-        let of =
-            |curves: &[SampledCurve]| curves.iter().map(|curve| self.eval(curve, q)[0]).collect();
+        let of = |curves: &[SampledCurve]| {
+            curves
+                .iter()
+                .map(|curve| self.positions.eval(curve, q)[0])
+                .collect()
+        };
         (out.m, out.half_dm) = (m, half_dm);
         out.a = of(&self.curves[2..2 + self.reactions]);
         out.b = of(&self.curves[2 + self.reactions..]);

@@ -13,6 +13,7 @@ pub(super) const SAME_POSITION: f64 = 1e-9;
 const SPEED_TOLERANCE: f64 = 0.05;
 
 /// A run with the speeds and accelerations that its file has or that the procedure means.
+#[derive(Clone)]
 pub(super) struct TimedRun {
     pub(super) run: Run,
     /// rad/s or m/s.
@@ -33,16 +34,15 @@ pub(super) fn with_speeds(
     notes: &mut Vec<String>,
 ) -> Result<TimedRun, SceneError> {
     let q = &run.q.values;
-    if q.len() < 2 || q.windows(2).any(|pair| pair[1] <= pair[0]) {
-        let at = q
-            .windows(2)
-            .position(|pair| pair[1] <= pair[0])
-            .map_or(0, |k| k + 2);
-        let message = match at {
-            0 => format!("`{}` has one row", run.file),
-            at => format!(
-                "the coordinate `{}` in `{}` does not grow in row {at}",
-                run.name, run.file
+    let stays = q.windows(2).position(|pair| pair[1] <= pair[0]);
+    if q.len() < 2 || stays.is_some() {
+        let message = match stays {
+            None => format!("`{}` has one row", run.file),
+            Some(k) => format!(
+                "the coordinate `{}` in `{}` does not grow in row {}",
+                run.name,
+                run.file,
+                k + 2
             ),
         };
         return Err(wrong(
@@ -140,14 +140,9 @@ impl TimedRun {
                 .zip(known)
                 .all(|(a, b)| (a - b).abs() <= SAME_POSITION * range);
         if same {
-            let mut run = self.run.clone();
-            run.q.values.truncate(q.len());
-            return Self {
-                run,
-                speed: self.speed.clone(),
-                acceleration: self.acceleration.clone(),
-                motion_resampling: [0.0; 2],
-            };
+            let mut same = self.clone();
+            same.run.q.values.truncate(q.len());
+            return same;
         }
         let values = |of: &[f64]| resampled(known, of, q);
         let column = |column: &ExportedColumn| {

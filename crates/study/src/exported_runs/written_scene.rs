@@ -21,14 +21,10 @@ pub(super) fn scene_text(
     }
     let mut text = mechanism_text(name, runs, [&one.file, &two.file]);
     _ = writeln!(text, "interpolation = \"{}\"", interpolation.name());
-    let column = |of: &dyn Fn(usize) -> f64| -> Vec<f64> { (0..runs.q.len()).map(of).collect() };
-    add_list(&mut text, "angle", &runs.q);
-    add_list(&mut text, "inertia", &column(&|k| runs.coefficients[k].m));
-    add_list(
-        &mut text,
-        "half-slope",
-        &column(&|k| runs.coefficients[k].half_dm),
-    );
+    let at = || runs.coefficients.iter();
+    add_list(&mut text, "angle", runs.q.iter().copied());
+    add_list(&mut text, "inertia", at().map(|c| c.m));
+    add_list(&mut text, "half-slope", at().map(|c| c.half_dm));
     for (r, (reaction, unit)) in runs.reactions.iter().enumerate() {
         let table = "bodies.driven.varying-inertia.reactions";
         let unit = unit.as_deref().unwrap_or("N");
@@ -38,8 +34,8 @@ pub(super) fn scene_text(
             quoted(reaction),
             quoted(unit)
         );
-        add_list(&mut text, "a", &column(&|k| runs.coefficients[k].a[r]));
-        add_list(&mut text, "b", &column(&|k| runs.coefficients[k].b[r]));
+        add_list(&mut text, "a", at().map(|c| c.a[r]));
+        add_list(&mut text, "b", at().map(|c| c.b[r]));
     }
     Some(text)
 }
@@ -72,11 +68,11 @@ fn mechanism_text(name: &str, runs: &ExportedRuns, files: [&str; 2]) -> String {
 }
 
 /// A list of numbers with all their digits.
-fn add_list(text: &mut String, key: &str, values: &[f64]) {
+fn add_list(text: &mut String, key: &str, values: impl Iterator<Item = f64>) {
     _ = writeln!(text, "{key} = [");
-    for line in values.chunks(NUMBERS_IN_A_LINE) {
-        let numbers: Vec<String> = line.iter().map(|value| format!("{value:?}")).collect();
-        _ = writeln!(text, "  {},", numbers.join(", "));
+    let numbers: Vec<String> = values.map(|value| format!("{value:?}")).collect();
+    for line in numbers.chunks(NUMBERS_IN_A_LINE) {
+        _ = writeln!(text, "  {},", line.join(", "));
     }
     text.push_str("]\n");
 }

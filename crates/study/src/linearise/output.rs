@@ -1,8 +1,6 @@
 //! Writes a linearised motion: matrices, document and summary.
 
-use crate::equilibria::output::{
-    describe_eigenvalues, describe_equilibrium, largest, record_eigenvalues, record_equilibrium,
-};
+use crate::equilibria::output::{describe_eigenvalues, describe_equilibrium};
 use crate::explain::StudyError;
 use crate::linearise::compute::{
     LinearisedMotion, OperatingPoint, StateSpaceNames, compute_linearisation,
@@ -24,8 +22,7 @@ pub fn linearise<S: MachineScene>(scene: &S, point: OperatingPoint) -> Result<Ou
     outcome.files.add(name("npz"), npz(&arrays(&motion))?);
     outcome.files.add(name("csv"), csv(&motion));
     outcome.files.add(name("md"), document(&motion));
-    outcome.summary = summary(&motion);
-    outcome.record = record(&motion);
+    (outcome.summary, outcome.record) = summary(&motion);
     Ok(outcome)
 }
 
@@ -69,30 +66,15 @@ fn row_name(matrix: &str, column: &Column) -> String {
     }
 }
 
-/// The numbers of the summary, and the state.
-fn record(motion: &LinearisedMotion<'_, impl MachineScene>) -> Record {
-    let mut record = Record::default();
-    match &motion.equilibrium {
-        Some(found) => record_equilibrium(&motion.prepared, found, "equilibrium", &mut record),
-        None => {
-            let (values, errors) = (&motion.eigenvalues, &motion.eigenvalue_errors);
-            record_eigenvalues(values, errors, "initial", &mut record);
-        }
-    }
-    for (column, value) in motion.names.states.iter().zip(&motion.state) {
-        record.add(format!("state.{}", column.name), &column.unit, *value);
-    }
-    record
-}
-
-/// The printed summary.
-fn summary(motion: &LinearisedMotion<'_, impl MachineScene>) -> String {
+/// The printed summary, and the numbers in it and the state.
+fn summary(motion: &LinearisedMotion<'_, impl MachineScene>) -> (String, Record) {
     let (scene, names) = (motion.prepared.scene, &motion.names);
+    let mut record = Record::default();
     let mut summary = format!("{}: linearised about ", scene.title);
     match &motion.equilibrium {
-        Some(equilibrium) => {
+        Some(found) => {
             summary += "its equilibrium\n";
-            summary += &describe_equilibrium(&motion.prepared, equilibrium);
+            summary += &describe_equilibrium(&motion.prepared, found, "equilibrium", &mut record);
         }
         None => {
             summary += "the initial state\n";
@@ -100,18 +82,21 @@ fn summary(motion: &LinearisedMotion<'_, impl MachineScene>) -> String {
                 true => "  an equilibrium: the state derivative is zero there within rounding\n",
                 false => "  not an equilibrium: the state derivative is not zero there\n",
             };
-            let errors = &motion.eigenvalue_errors;
-            summary += &describe_eigenvalues(&motion.eigenvalues, errors);
-            let error = largest(errors);
-            summary += &format!("    estimated error: {error:.1e} 1/s in the eigenvalues\n");
+            let eigenvalues = (&motion.eigenvalues[..], &motion.eigenvalue_errors[..]);
+            let (lines, error) = describe_eigenvalues(eigenvalues, "initial", &mut record);
+            summary += &format!("{lines}    estimated error: {error}");
         }
+    }
+    for (column, value) in names.states.iter().zip(&motion.state) {
+        record.add(format!("state.{}", column.name), &column.unit, *value);
     }
     for (what, columns) in signals(names) {
         summary += &format!("  {what}s: {}\n", column_list(columns));
     }
     let omitted = motion.omitted.iter();
     summary += &motion.prepared.branch_note();
-    summary + &indeterminate_note(omitted.map(|&r| scene.name_of_reaction(r)))
+    summary += &indeterminate_note(omitted.map(|&r| scene.name_of_reaction(r)));
+    (summary, record)
 }
 
 fn arrays(motion: &LinearisedMotion<'_, impl MachineScene>) -> Vec<(&'static str, Array)> {

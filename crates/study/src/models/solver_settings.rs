@@ -1,6 +1,6 @@
 //! Integrator, tolerances and sampling of a motion.
 
-use dwell_dynamics::Method;
+use dwell_dynamics::{Method, Options};
 
 /// Integrator, tolerances and sampling of a motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,6 +30,15 @@ impl Default for SolverSettings {
 }
 
 impl SolverSettings {
+    /// The same for the integrator, without samples.
+    pub(crate) fn options(&self) -> Options {
+        Options {
+            atol: self.atol,
+            max_step: self.max_step,
+            ..Options::new(self.method, self.rtol)
+        }
+    }
+
     /// Integrator and tolerance, as figure captions give them.
     pub fn describe(&self) -> String {
         let [rtol, atol] = [self.rtol, self.atol].map(|v| format!("{v:e}"));

@@ -80,11 +80,6 @@ pub(crate) fn range_caption(has_limits: [bool; 2], text: &str) -> String {
 }
 
 /// The caption of a figure: the scene's title and the text. The provenance is added when it is drawn.
-pub fn caption(prepared: &PreparedScene<'_>, text: &str) -> String {
-    scene_caption(prepared.scene, text)
-}
-
-/// The same from a scene.
 pub fn scene_caption(scene: &SceneFile, text: &str) -> String {
     format!("{}. {text}", scene.title.trim_end_matches('.'))
 }

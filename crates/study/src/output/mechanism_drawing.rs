@@ -27,10 +27,6 @@ pub struct MechanismDrawing<'a> {
     paths: Vec<Shape>,
 }
 
-fn vector([x, y]: [f64; 2]) -> Vec2 {
-    vec2(x, y)
-}
-
 fn array(at: Vec2) -> [f64; 2] {
     [at.x, at.y]
 }
@@ -116,7 +112,8 @@ struct DrawnPosition<'a> {
 
 impl DrawnPosition<'_> {
     fn point(&self, body: BodyId, at: Vec2) -> Vec2 {
-        vector(point_position(self.body_poses, body.0, at))
+        let [x, y] = point_position(self.body_poses, body.0, at);
+        vec2(x, y)
     }
 
     fn points(&self, bodies: [BodyId; 2], points: [Vec2; 2]) -> [Vec2; 2] {

@@ -13,14 +13,14 @@ pub(crate) use captions::{
     add_note, coordinate_axis, indeterminate_note, inner_range, range_caption,
     reaction_figure_count, separating_note,
 };
-pub use captions::{caption, chart, coordinate_label, figure, scene_caption, symbol};
+pub use captions::{chart, coordinate_label, figure, scene_caption, symbol};
 pub(crate) use distinct_names::DistinctNames;
 pub use mechanism_drawing::MechanismDrawing;
 pub(crate) use mechanism_drawing::body_color;
 pub use page_file::add_page;
 pub use pictures::{Picture, PictureFormat, Pictures};
 pub use provenance::provenance_line;
-pub(crate) use results_page::results_page;
+pub(crate) use results_page::add_results_page;
 pub use summary_file::{CommandResult, add_summary};
 
 use dwell_findings::{Finding, Record};

@@ -144,19 +144,11 @@ impl Outcome {
     /// # Errors
     /// [`StudyError::Report`] where one cannot be drawn.
     pub fn draw(
-        self,
+        mut self,
         (wanted, format): (Pictures, PictureFormat),
         progress: Progress<'_>,
     ) -> Result<Self, StudyError> {
-        let Self {
-            mut summary,
-            mut record,
-            mut files,
-            findings,
-            pictures,
-            page,
-            run,
-        } = self;
+        let (pictures, page) = (std::mem::take(&mut self.pictures), self.page.take());
         let all = pictures.len();
         let (drawn, left): (Vec<Picture>, Vec<Picture>) =
             pictures.into_iter().partition(|picture| match wanted {
@@ -174,29 +166,25 @@ impl Outcome {
         });
         let picture_files = picture_files.collect::<Result<Vec<_>, ReportError>>()?;
         for (path, bytes) in picture_files.into_iter().flatten() {
-            files.add(path, bytes);
+            self.files.add(path, bytes);
         }
-        let run = run.or_else(|| page.as_ref().map(|(_, page)| tables_page(page)));
+        self.run = self
+            .run
+            .or_else(|| page.as_ref().map(|(_, page)| tables_page(page)));
         if let Some((path, page)) = page {
-            files.add(path, with_drawn_pictures(page, &left, format).markdown());
+            self.files
+                .add(path, with_drawn_pictures(page, &left, format).markdown());
         }
         if wanted == Pictures::Main && !left.is_empty() {
-            summary += &format!(
+            self.summary += &format!(
                 "  {} of {} drawn; --pictures all draws the others\n",
                 drawn.len(),
                 count(all, "picture")
             );
-            record.add_count("pictures", all);
-            record.add_count("pictures_drawn", drawn.len());
+            self.record.add_count("pictures", all);
+            self.record.add_count("pictures_drawn", drawn.len());
         }
-        Ok(Self {
-            summary,
-            record,
-            files,
-            findings,
-            run,
-            ..Self::default()
-        })
+        Ok(self)
     }
 }
 

@@ -1,9 +1,9 @@
 //! The page of an analysis whose results are single numbers: what is printed, its pictures, and every number with its
 //! unit and its error.
 
-use super::provenance_line;
+use super::{Outcome, Picture, provenance_line};
 use crate::number_format::{digits, digits_within};
-use dwell_findings::{Record, RecordedNumber};
+use dwell_findings::RecordedNumber;
 use dwell_report::{Block, Document, Figure};
 use dwell_scene::SceneFile;
 
@@ -13,14 +13,16 @@ const DIGITS: usize = 9;
 /// The header of the table of numbers.
 pub(super) const RESULTS_HEADER: [&str; 4] = ["quantity", "value", "unit", "estimated error"];
 
-/// The page of an analysis, from its summary (whose first line is the heading of the results), its numbers, and its
-/// figures with their files.
-pub(crate) fn results_page(
+/// Adds the page of an analysis to its outcome, from its summary (whose first line is the heading of the results), its numbers and its
+/// figure, where it has one. The names of both files begin with a `stem`.
+pub(crate) fn add_results_page(
+    outcome: &mut Outcome,
     scene: &SceneFile,
-    analysis: &str,
-    (summary, record): (&str, &Record),
-    figures: &[(&Figure, String)],
-) -> Document {
+    (analysis, stem): (&str, &str),
+    figure: Option<Figure>,
+) {
+    let (summary, record) = (&outcome.summary, &outcome.record);
+    let png = format!("{stem}.png");
     let mut lines = summary.lines();
     let first = lines.next().unwrap_or_default();
     let mut blocks = vec![Block::Text(format!("{}.", plain(first)))];
@@ -29,8 +31,8 @@ pub(crate) fn results_page(
     if !list.is_empty() {
         blocks.push(Block::Text(list.join("\n")));
     }
-    blocks.extend(figures.iter().map(|(figure, file)| Block::Figure {
-        file: file.clone(),
+    blocks.extend(figure.iter().map(|figure| Block::Figure {
+        file: png.clone(),
         alt: figure.title.clone(),
         caption: String::new(),
     }));
@@ -39,13 +41,13 @@ pub(crate) fn results_page(
         header: RESULTS_HEADER.map(str::to_owned).into(),
         rows: record.numbers.iter().map(row).collect(),
     });
-    let mut methods: Vec<&str> = figures.iter().map(|(f, _)| f.provenance.as_str()).collect();
-    methods.dedup();
-    let line = std::iter::once(provenance_line(scene));
-    let line = line.chain(methods.into_iter().map(str::to_owned));
-    blocks.push(Block::Text(line.collect::<Vec<_>>().join(" · ")));
+    let method = figure.iter().map(|figure| figure.provenance.clone());
+    let line: Vec<String> = [provenance_line(scene)].into_iter().chain(method).collect();
+    blocks.push(Block::Text(line.join(" · ")));
     let title = format!("{}: {analysis}", scene.title);
-    Document { title, blocks }
+    outcome.page = Some((format!("{stem}.md"), Document { title, blocks }));
+    let picture = figure.map(|figure| Picture::figure(scene, png, true, figure));
+    outcome.pictures.extend(picture);
 }
 
 /// A printed line as it stands in Markdown: names of a scene may hold what would mark a part of it.

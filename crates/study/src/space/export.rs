@@ -4,9 +4,10 @@ use super::explain::explain_position;
 use super::prepared::PreparedSpaceScene;
 use crate::explain::StudyError;
 #[cfg(feature = "output")]
-use crate::explain::scene_error;
+use crate::explain::{actuator_labels, scene_error};
 use crate::export::description::{
-    domain, drive_effect, magnitude_effect, reject_friction, reject_stops, varying_input,
+    LoadUnit, describe_loads, domain, machine_of, missing_parts, parts_of, reference_sizes,
+    reject_friction, reject_stops,
 };
 #[cfg(feature = "output")]
 use crate::export::output::{ExportTarget, export_machine};
@@ -19,16 +20,11 @@ use crate::reduce::compute::ReducedScene as _;
 #[cfg(feature = "output")]
 use crate::reduce::compute::Reduction;
 use dwell_export::{
-    Domain, Export, FitError, Function, FunctionSampler, LoadDescription, MachineDescription,
-    PartKind, ReferenceSizes,
+    Domain, Export, FitError, Function, FunctionSampler, MachineDescription, PartKind,
 };
-#[cfg(feature = "output")]
-use dwell_geometry::ActuatorId;
 use dwell_geometry::PositionError;
-use dwell_kinetostatics::space::{LoadKind, Workspace};
+use dwell_kinetostatics::space::{Load, LoadKind, Workspace};
 use dwell_kinetostatics::{Coefficients, InverseDynamics, ReducedModel as _};
-#[cfg(feature = "output")]
-use dwell_scene::SceneLocation;
 use dwell_scene::SpaceScene;
 
 /// Exports the reduced model of a machine in space.
@@ -45,8 +41,7 @@ pub fn export_in_space(
         let given = count(scene.mechanism.actuators.len(), "actuator");
         let message =
             format!("the scene has {given}: in space several degrees of freedom are not exported");
-        let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
-        let labels = actuators.map(|a| (SceneLocation::Actuator(a), "drives it"));
+        let labels = actuator_labels(scene, "drives it");
         let help = "give exactly one actuator in [actuators]; of mechanisms in the plane several degrees of freedom are exported as C";
         return Err(scene_error(scene, message, help, labels));
     }
@@ -95,7 +90,7 @@ fn load_kinds(scene: &SpaceScene) -> Vec<LoadKind> {
 }
 
 /// The unit of a load's magnitude, and whether it resists with a speed.
-fn load_unit(kind: &LoadKind) -> (&'static str, bool) {
+fn load_unit(kind: &LoadKind) -> LoadUnit {
     match kind {
         LoadKind::Gravity(_) => ("m/s2", false),
         LoadKind::Torque { .. } | LoadKind::JointTorque(_) => ("N m", false),
@@ -111,104 +106,29 @@ fn load_unit(kind: &LoadKind) -> (&'static str, bool) {
 
 fn describe(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> MachineDescription {
     let scene = prepared.scene;
+    let units: Vec<LoadUnit> = load_kinds(scene).iter().map(load_unit).collect();
+    let is_conservative = |load: &Load| load.kind.is_conservative();
     let mut left_out = Vec::new();
-    let loads = scene.loads.iter().map(|load| {
-        let (unit, is_damper) = load_unit(&load.kind);
-        left_out.extend(varying_input("the load", &load.name, &load.magnitude));
-        LoadDescription {
-            name: load.name.clone(),
-            effect: magnitude_effect(&load.magnitude, is_damper, load.kind.is_conservative()),
-            unit,
-        }
-    });
-    let mut loads: Vec<LoadDescription> = loads.collect();
-    for drive in &scene.drives {
-        let (force, _) = load_unit(&LoadKind::along(drive.coordinate));
-        let (effect, unit) = drive_effect((&drive.name, force), &drive.kind, &mut left_out);
-        let name = drive.name.clone();
-        loads.push(LoadDescription { name, effect, unit });
-    }
-    let names: Vec<String> = prepared
-        .indeterminate
-        .iter()
+    let loads = describe_loads(
+        (scene, &units),
+        &scene.loads,
+        is_conservative,
+        &mut left_out,
+    );
+    let open = prepared.indeterminate.iter();
+    let open = open
         .map(|&reaction| scene.reaction_name(reaction))
         .collect();
-    if !names.is_empty() {
-        left_out.push(format!(
-            "the statically indeterminate reactions {}",
-            names.join(", ")
-        ));
-    }
-    let spec = scene.motion.as_ref();
-    if spec.is_some_and(|spec| !spec.events.is_empty()) {
-        left_out.push("the events of [motion]".to_owned());
-    }
-    let [start, q_dot] = initial(scene);
-    let q = match domain.revolutions {
-        0 => start.clamp(domain.from, domain.to),
-        _ => start.rem_euclid(domain.to),
-    };
+    left_out.extend(missing_parts(open, scene.motion.as_ref()));
+    // A position that cannot be reached is reported when it is sampled.
+    let found = prepared.coefficients(&parts_of(domain)).unwrap_or_default();
+    let mass = scene.masses.iter().map(|mass| mass.mass).sum();
+    let sizes = reference_sizes(found.iter().map(|at| at.m), (mass, prepared.size()), &units);
     MachineDescription {
-        name: scene.name.clone(),
-        title: scene.title.clone(),
-        scene_hash: scene.hash(),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        coordinate: prepared.coordinate_name().to_owned(),
-        is_angle: prepared.is_angle(),
-        domain,
-        initial: [q, q_dot],
         loads,
         reactions: prepared.reaction_units(),
-        points: Vec::new(),
-        sizes: sizes(prepared, domain),
         left_out,
-    }
-}
-
-/// q and q̇ at the start.
-fn initial(scene: &SpaceScene) -> [f64; 2] {
-    let first = |of: &[f64]| of.first().copied();
-    let assembly = first(&scene.assembly.q).unwrap_or(0.0);
-    match &scene.motion {
-        Some(spec) => [
-            first(&spec.initial_coordinates).unwrap_or(assembly),
-            first(&spec.initial_velocities).unwrap_or(0.0),
-        ],
-        None => [assembly, 0.0],
-    }
-}
-
-/// What m, the forces and lengths come to.
-fn sizes(prepared: &PreparedSpaceScene<'_>, domain: Domain) -> ReferenceSizes {
-    let (scene, length) = (prepared.scene, prepared.size());
-    let parts = [0.1, 0.3, 0.5, 0.7, 0.9];
-    let positions = parts.map(|part| domain.from + part * domain.length());
-    // A position that cannot be reached is reported when it is sampled.
-    let found = prepared.coefficients(&positions).unwrap_or_default();
-    let inertia = found.iter().fold(0.0_f64, |max, at| max.max(at.m.abs()));
-    let mass: f64 = scene.masses.iter().map(|mass| mass.mass).sum();
-    let positive = |value: f64| {
-        let usable = value.is_finite() && value > 0.0;
-        if usable { value } else { 1.0 }
-    };
-    let kinds = load_kinds(scene);
-    let unit_loads = kinds.iter().map(|kind| match kind {
-        LoadKind::Gravity(_) => positive(mass),
-        LoadKind::Torque { .. }
-        | LoadKind::JointTorque(_)
-        | LoadKind::TorsionSpring { .. }
-        | LoadKind::RotationalDamper(_) => positive(1.0 / length),
-        LoadKind::Force { .. }
-        | LoadKind::PointToPointForce { .. }
-        | LoadKind::SlideForce(_)
-        | LoadKind::Damper { .. }
-        | LoadKind::SlideDamper(_) => 1.0,
-        LoadKind::Spring { .. } => positive(length),
-    });
-    ReferenceSizes {
-        inertia: positive(inertia),
-        length: positive(length),
-        unit_loads: unit_loads.collect(),
+        ..machine_of(scene, domain, sizes)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The machine of a scene in space.
 
 use super::explain::{explain_load_error, explain_loads, explain_position};
-use super::prepared::{PreparedSpaceScene, compile, sort_reactions};
+use super::prepared::{PreparedSpaceScene, compile, reaction_unit, sort_reactions};
 use super::trajectory::{JointReactions, reject_unknown_variables};
 use super::views::page_drawing;
 use crate::explain::{StudyError, explain_any_motion, scene_error};
@@ -9,7 +9,7 @@ use crate::machines::{MachineScene, MotionStart};
 use crate::models::{coordinate_modes, end_stops};
 use dwell_dynamics::{DynamicsError, Machine, MachineError};
 use dwell_kinetostatics::Drive;
-use dwell_kinetostatics::space::{Component, Coordinate, Model, Reaction};
+use dwell_kinetostatics::space::{Coordinate, Model, Reaction};
 use dwell_page::Drawing;
 use dwell_scene::{SceneLocation, SpaceScene};
 
@@ -34,13 +34,7 @@ impl MachineScene for SpaceScene {
     }
 
     fn reaction_units(&self, model: &Model) -> Vec<(String, &'static str)> {
-        let named = |reaction: Reaction| {
-            let unit = match reaction.component {
-                Component::Force(..) => "N",
-                Component::Moment(..) => "N m",
-            };
-            (self.reaction_name(reaction), unit)
-        };
+        let named = |r: Reaction| (self.reaction_name(r), reaction_unit(&r));
         model.reactions().map(named).collect()
     }
 
@@ -87,7 +81,7 @@ impl MachineScene for SpaceScene {
 }
 
 /// Explains a machine that cannot be built.
-pub(super) fn explain_machine(scene: &SpaceScene, error: &MachineError) -> StudyError {
+fn explain_machine(scene: &SpaceScene, error: &MachineError) -> StudyError {
     let (help, place) = match error {
         MachineError::Load(load) => return explain_load_error(scene, load),
         MachineError::Drive(drive) => {

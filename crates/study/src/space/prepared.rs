@@ -138,6 +138,14 @@ pub(super) fn sort_reactions(
     Ok([determined, others].map(|some| some.into_iter().map(|(reaction, _)| reaction).collect()))
 }
 
+/// The unit of a reaction.
+pub(super) fn reaction_unit(reaction: &Reaction) -> &'static str {
+    match reaction.component {
+        Component::Force(..) => "N",
+        Component::Moment(..) => "N m",
+    }
+}
+
 /// Units of w along an angle, and of c of a force and of a moment.
 fn load_units(kind: LoadKind) -> [&'static str; 3] {
     match kind {

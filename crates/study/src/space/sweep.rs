@@ -2,85 +2,110 @@
 
 use super::explain::explain_position;
 use super::motion::SpaceMotionProblem;
-use super::prepared::{compile, range_limits};
+use super::prepared::{compile, range_limits, reaction_unit};
 use super::trajectory::{JointReactions, computed_rows};
 use crate::explain::StudyError;
 use crate::free_motion::compute::MotionSolver;
-use crate::machines::MachineScene;
-use crate::models::{SolverSettings, end_stops};
-use crate::number_format::coordinate_unit;
+use crate::models::SolverSettings;
 use crate::progress::no_progress;
 use crate::sweep::compute::{
-    Available, Design, IndexedReaction, NamedUnit, RangeCurves, RequestedQuantities, ResultKind,
-    Results, STATISTICS, SweptScene, VariantFamily, cycle_quantities, cycle_values, statistics,
+    Design, ExtremeValues, IndexedReaction, RangeCurves, RequestedQuantities, ResultKind, Results,
+    SweptScene, VariantFamily,
 };
 use crate::trajectory::compute::{Analysis, ComputedTrajectory, Quantity};
-use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Orbit, ReducedState};
-use dwell_geometry::space::ActuatorKind;
 use dwell_kinetostatics::ExactModel;
-use dwell_kinetostatics::space::{Component, Model, Reaction};
+use dwell_kinetostatics::space::{Model, Reaction};
 use dwell_scene::{SceneError, SpaceScene};
 
 impl SweptScene for SpaceScene {
-    fn available_quantities(&self) -> Result<Available, StudyError> {
-        let (reactions, _) = JointReactions::new(self)?;
-        let mut all = Available::default();
-        let has_peaks = peak_analysis(self).is_some();
-        if let [actuator] = &self.mechanism.actuators[..] {
-            let is_angle = matches!(actuator.kind, ActuatorKind::Angle(_));
-            all.add_inertia(is_angle);
-            if is_conservative(self) {
-                let of_motion = match has_peaks {
-                    true => Vec::new(),
-                    false => indexed(self, &reactions),
-                };
-                all.add_orbit(is_angle, of_motion);
-            }
-        }
-        if has_peaks {
-            let actuators = self.mechanism.actuators.iter();
-            let actuators =
-                actuators.map(|a| (a.name.as_str(), matches!(a.kind, ActuatorKind::Angle(_))));
-            all.add_peaks(actuators, indexed(self, &reactions));
-        }
-        all.add_all(ResultKind::Motion, motion_quantities(self, &reactions));
-        all.add_all(ResultKind::Cycle, cycle_quantities(self));
-        Ok(all)
+    type Compiled = (JointReactions, Model);
+
+    fn compiled(&self) -> Result<(JointReactions, Model), StudyError> {
+        JointReactions::new(self)
     }
 
-    fn compute_results(
+    fn model_of((_, model): &(JointReactions, Model)) -> &Model {
+        model
+    }
+
+    /// By their index.
+    fn swept_reactions(&self, (reactions, _): &(JointReactions, Model)) -> Vec<IndexedReaction> {
+        let all = reactions.requested.iter().enumerate();
+        let named = all.map(|(k, r)| (k, self.reaction_name(*r), reaction_unit(r)));
+        named.collect()
+    }
+
+    /// As in the plane.
+    fn analysis_of_peaks(&self) -> Option<Analysis> {
+        if self.prescribed.is_some() || self.sweep.is_some() {
+            return Some(Analysis::Kinetostatics);
+        }
+        let is_single = self.mechanism.actuators.len() == 1;
+        (is_single && !self.loads.is_empty()).then_some(Analysis::Statics)
+    }
+
+    fn free_motion(&self) -> Result<ComputedTrajectory<'static>, StudyError> {
+        let solver = MotionSolver::Settings(SolverSettings::default());
+        let problem = SpaceMotionProblem::new(self)?.for_solver(&solver);
+        Ok(problem.simulate(&solver, None, &no_progress)?.computed)
+    }
+
+    fn inertia_extremes(&self, _: &(JointReactions, Model)) -> Result<ExtremeValues, StudyError> {
+        Ok(range_curves(self, compile(self, &[])?, RangeCurves::of_inertia)?.extremes())
+    }
+
+    /// A variant may leave open what the scene as it is determines: its point says so.
+    fn reject_open(
         &self,
+        (reactions, _): &(JointReactions, Model),
+        requested: &RequestedQuantities,
+    ) -> Result<(), StudyError> {
+        let mut open = reactions.indeterminate.iter();
+        let open = open.find(|r| is_requested(requested, &self.reaction_name(**r)));
+        match open {
+            None => Ok(()),
+            Some(&reaction) => {
+                let name = self.reaction_name(reaction);
+                let message = format!("redundant constraints leave the reaction `{name}` open");
+                Err(self.error(message, None, &[]).into())
+            }
+        }
+    }
+
+    fn compute_free_reactions(
+        &self,
+        (reactions, _): &(JointReactions, Model),
+        energy: f64,
         requested: &RequestedQuantities,
         results: &mut Results<'_>,
-    ) -> Result<(), StudyError> {
-        let (reactions, model) = JointReactions::new(self)?;
-        let includes = |kind: ResultKind| requested.includes(kind);
-        if let Some((from, to)) = model.plan().range().limits() {
-            results.set(ResultKind::Range, Ok(vec![from, to]));
-        }
-        if includes(ResultKind::Motion) {
-            results.set_named(ResultKind::Motion, motion_values(self, &reactions));
-        }
-        if includes(ResultKind::Cycle) {
-            results.set(ResultKind::Cycle, cycle_values(self));
-        }
-        if includes(ResultKind::Inertia) || includes(ResultKind::InertiaPlace) {
-            let curves = range_curves(self, compile(self, &[])?, RangeCurves::of_inertia);
-            let extremes = curves.map(|curves| curves.extremes());
-            results.set_points([ResultKind::Inertia, ResultKind::InertiaPlace], extremes);
-        }
-        reject_open(self, &reactions, requested)?;
-        compute_orbit(self, &reactions, requested, results);
-        if (includes(ResultKind::Reaction) || includes(ResultKind::ActuatorForce))
-            && let Some(analysis) = peak_analysis(self)
-        {
-            match peaks(self, (&reactions, &model), analysis) {
-                Ok([of_reactions, of_actuators]) => {
-                    results.set_named(ResultKind::Reaction, Ok(of_reactions));
-                    results.set_named(ResultKind::ActuatorForce, Ok(of_actuators));
-                }
-                Err(error) => results.set(ResultKind::Reaction, Err(error)),
+    ) {
+        let all = reactions.requested.iter();
+        let named = all.map(|reaction| (*reaction, self.reaction_name(*reaction)));
+        let named: Vec<_> = named
+            .filter(|(_, name)| is_requested(requested, name))
+            .collect();
+        match largest_in_motion(self, &named, energy) {
+            Ok([values, places]) => {
+                results.set_named(ResultKind::FreeReaction, Ok(values));
+                results.set_named(ResultKind::FreeReactionPlace, Ok(places));
             }
+            Err(error) => results.set(ResultKind::FreeReaction, Err(error)),
+        }
+    }
+
+    fn compute_peaks(
+        &self,
+        (reactions, model): (JointReactions, Model),
+        analysis: Analysis,
+        _: &RequestedQuantities,
+        results: &mut Results<'_>,
+    ) -> Result<(), StudyError> {
+        match peaks(self, (&reactions, &model), analysis) {
+            Ok([of_reactions, of_actuators]) => {
+                results.set_named(ResultKind::Reaction, Ok(of_reactions));
+                results.set_named(ResultKind::ActuatorForce, Ok(of_actuators));
+            }
+            Err(error) => results.set(ResultKind::Reaction, Err(error)),
         }
         Ok(())
     }
@@ -95,46 +120,6 @@ impl SweptScene for SpaceScene {
     fn family(&self, _: &Design, _: &RequestedQuantities) -> Option<VariantFamily> {
         // Each variant is compiled: only mechanisms in the plane have their structure apart from their numbers.
         None
-    }
-}
-
-/// The requested reactions that are determined, by their index.
-fn indexed(scene: &SpaceScene, reactions: &JointReactions) -> Vec<IndexedReaction> {
-    let all = reactions.requested.iter().enumerate();
-    let named = all.map(|(k, reaction)| {
-        let unit = match reaction.component {
-            Component::Force(..) => "N",
-            Component::Moment(..) => "N m",
-        };
-        (k, scene.reaction_name(*reaction), unit)
-    });
-    named.collect()
-}
-
-/// The analysis for peak forces, as in the plane: along the scene's motion or sweep, or statics over its range.
-fn peak_analysis(scene: &SpaceScene) -> Option<Analysis> {
-    if scene.prescribed.is_some() || scene.sweep.is_some() {
-        return Some(Analysis::Kinetostatics);
-    }
-    let is_single = scene.mechanism.actuators.len() == 1;
-    (is_single && !scene.loads.is_empty()).then_some(Analysis::Statics)
-}
-
-/// A variant may leave open what the scene as it is determines: its point says so.
-fn reject_open(
-    scene: &SpaceScene,
-    reactions: &JointReactions,
-    requested: &RequestedQuantities,
-) -> Result<(), StudyError> {
-    let mut open = reactions.indeterminate.iter();
-    let open = open.find(|r| is_requested(requested, &scene.reaction_name(**r)));
-    match open {
-        None => Ok(()),
-        Some(&reaction) => {
-            let name = scene.reaction_name(reaction);
-            let message = format!("redundant constraints leave the reaction `{name}` open");
-            Err(scene.error(message, None, &[]).into())
-        }
     }
 }
 
@@ -165,15 +150,12 @@ fn peaks(
         )
     };
     let study = (analysis, None);
-    let (computed, _) = computed_rows(scene, (reactions, model), study, &is_wanted, &no_progress)?;
-    let ComputedTrajectory {
-        results,
-        early_stop: None,
-        ..
-    } = computed
-    else {
-        return Err(computed.early_stop.unwrap_or_else(|| ended_early(scene)));
-    };
+    let (mut computed, _) =
+        computed_rows(scene, (reactions, model), study, &is_wanted, &no_progress)?;
+    if let Some(error) = computed.early_stop.take() {
+        return Err(error);
+    }
+    let results = &computed.results;
     let columns = results.columns.iter().zip(&results.extrema.of_columns);
     let [mut of_reactions, mut of_actuators] = [const { Vec::new() }; 2];
     for (column, ends) in columns {
@@ -187,11 +169,6 @@ fn peaks(
         }
     }
     Ok([of_reactions, of_actuators])
-}
-
-fn ended_early(scene: &SpaceScene) -> StudyError {
-    let message = "the trajectory ends early".to_owned();
-    scene.error(message, None, &[]).into()
 }
 
 /// Curves over the range of the only actuator.
@@ -212,76 +189,6 @@ fn range_curves(
     of(exact, limits).map_err(|e| explain_position(scene, &plan, &e))
 }
 
-/// The motion of the only coordinate, from its start; none where a law prescribes it, or something drives it.
-fn start_of_free_motion(scene: &SpaceScene) -> Option<ReducedState> {
-    let spec = scene.motion.as_ref()?;
-    let is_free = spec.laws.iter().all(Option::is_none) && scene.drives.is_empty();
-    let [(&q, &q_dot)] = spec
-        .initial_coordinates
-        .iter()
-        .zip(&spec.initial_velocities)
-        .collect::<Vec<_>>()[..]
-    else {
-        return None;
-    };
-    is_free.then_some(ReducedState { t: 0.0, q, q_dot })
-}
-
-fn free_machine(scene: &SpaceScene) -> Result<Machine<Model>, StudyError> {
-    let modes = vec![CoordinateMode::Free; scene.mechanism.actuators.len()];
-    let machine = Machine::new(compile(scene, &[])?, &scene.loads, modes, &scene.drives);
-    let machine = machine.and_then(|machine| machine.with_stops(&end_stops(&scene.stops)));
-    machine.map_err(|error| super::machine_scene::explain_machine(scene, &error))
-}
-
-/// Whether the scene has a conservative free motion of one coordinate.
-fn is_conservative(scene: &SpaceScene) -> bool {
-    let Some(start) = start_of_free_motion(scene) else {
-        return false;
-    };
-    free_machine(scene).is_ok_and(|machine| {
-        let orbit = Orbit::loaded(&machine, start);
-        !matches!(orbit, Err(DynamicsError::NotConservative { .. }))
-    })
-}
-
-/// The results of the conservative free motion.
-fn compute_orbit(
-    scene: &SpaceScene,
-    reactions: &JointReactions,
-    requested: &RequestedQuantities,
-    results: &mut Results<'_>,
-) {
-    let named: Vec<(Reaction, String)> = reactions
-        .requested
-        .iter()
-        .map(|r| (*r, scene.reaction_name(*r)))
-        .filter(|(_, name)| is_requested(requested, name))
-        .collect();
-    let of_motion = requested.includes(ResultKind::FreeReaction)
-        || requested.includes(ResultKind::FreeReactionPlace);
-    let Some(start) =
-        start_of_free_motion(scene).filter(|_| requested.includes(ResultKind::Orbit) || of_motion)
-    else {
-        return;
-    };
-    let orbit = free_machine(scene).and_then(|machine| {
-        let orbit = Orbit::loaded(&machine, start);
-        orbit.map_err(|error| MachineScene::explain(scene, machine.model(), &error))
-    });
-    if of_motion && let Ok(orbit) = &orbit {
-        match largest_in_motion(scene, &named, orbit.energy) {
-            Ok([values, places]) => {
-                results.set_named(ResultKind::FreeReaction, Ok(values));
-                results.set_named(ResultKind::FreeReactionPlace, Ok(places));
-            }
-            Err(error) => results.set(ResultKind::FreeReaction, Err(error)),
-        }
-    }
-    let values = orbit.map(|orbit| vec![orbit.period, orbit.energy]);
-    results.set(ResultKind::Orbit, values);
-}
-
 /// The largest magnitudes of reactions in the free rotation of an energy, J, and their places.
 fn largest_in_motion(
     scene: &SpaceScene,
@@ -300,46 +207,4 @@ fn largest_in_motion(
     });
     let (values, places) = both.unzip();
     Ok([values, places])
-}
-
-/// The columns of a free motion whose results can be swept: coordinates with their speeds, and requested reactions.
-fn motion_columns(scene: &SpaceScene, reactions: &JointReactions) -> Vec<NamedUnit> {
-    let mut all: Vec<NamedUnit> = Vec::new();
-    for actuator in &scene.mechanism.actuators {
-        let unit = coordinate_unit(matches!(actuator.kind, ActuatorKind::Angle(_)));
-        all.push((actuator.name.clone(), unit.to_owned()));
-        all.push((format!("{}.velocity", actuator.name), format!("{unit}/s")));
-    }
-    let reactions = indexed(scene, reactions).into_iter();
-    all.extend(reactions.map(|(_, name, unit)| (name, unit.to_owned())));
-    all
-}
-
-/// The results of a free motion, in their order.
-fn motion_quantities(scene: &SpaceScene, reactions: &JointReactions) -> Vec<NamedUnit> {
-    if scene.motion.is_none() {
-        return Vec::new();
-    }
-    let mut all = vec![("motion.end".to_owned(), "s".to_owned())];
-    for (column, unit) in motion_columns(scene, reactions) {
-        all.extend(STATISTICS.map(|of| (format!("motion.{column}.{of}"), unit.clone())));
-    }
-    all
-}
-
-/// The values of [`motion_quantities`], with their names.
-fn motion_values(
-    scene: &SpaceScene,
-    reactions: &JointReactions,
-) -> Result<Vec<(String, f64)>, StudyError> {
-    let solver = MotionSolver::Settings(SolverSettings::default());
-    let problem = SpaceMotionProblem::new(scene)?.for_solver(&solver);
-    let mut computed = problem.simulate(&solver, None, &no_progress)?.computed;
-    if let Some(error) = computed.early_stop.take() {
-        return Err(error);
-    }
-    let columns = motion_columns(scene, reactions);
-    let values = statistics(&computed, columns.iter().map(|(name, _)| name))?;
-    let names = motion_quantities(scene, reactions).into_iter();
-    Ok(names.map(|(name, _)| name).zip(values).collect())
 }

@@ -56,9 +56,10 @@ pub(crate) fn report_sweep(
         statistics: statistics.collect::<Result<_, StudyError>>()?,
         failed: stored.failed()?,
     };
+    let mut record = report.counts();
     let mut outcome = Outcome {
-        summary: report.summary(),
-        record: report.record(),
+        summary: report.summary(&mut record),
+        record,
         ..Outcome::default()
     };
     let (scene, sweep) = (prepared.scene, prepared.sweep);
@@ -137,8 +138,8 @@ fn csv(prepared: &PreparedSweep<'_, impl SweptScene>, rows: &[Row]) -> Result<St
 }
 
 impl<S: SweptScene> SweepReport<'_, S> {
-    /// The printed summary.
-    fn summary(&self) -> String {
+    /// The printed summary; the numbers in it about the results are recorded.
+    fn summary(&self, record: &mut Record) -> String {
         let (prepared, counts) = (self.prepared, self.counts);
         let design = &prepared.design;
         let points = count_u64(design.points, "point");
@@ -170,17 +171,17 @@ impl<S: SweptScene> SweepReport<'_, S> {
         if quantities.iter().any(SweepQuantity::is_extremum) {
             text += "  smallest and largest values of a motion or a range are searched between its positions, too\n";
         }
-        for (heading, statistics) in prepared.results.iter().zip(&self.statistics) {
+        let results = prepared.results.iter().zip(quantities);
+        for (result, statistics) in results.zip(&self.statistics) {
             if let Some(statistics) = statistics {
-                text += &spread_text(heading, &statistics.spread, design.is_random());
-                text += &self.best_text(statistics);
+                text += &self.result_text(result, statistics, record);
             }
         }
         text + &self.failures() + &prepared.requested.notes
     }
 
-    /// The numbers of the summary.
-    fn record(&self) -> Record {
+    /// What is counted of the points.
+    fn counts(&self) -> Record {
         let (design, counts) = (&self.prepared.design, self.counts);
         let mut record = Record::default();
         let file = self.path.file_name().unwrap_or_default();
@@ -203,17 +204,16 @@ impl<S: SweptScene> SweepReport<'_, S> {
             record.add("samples", "", design.samples as f64);
             record.add("seed", "", design.seed as f64);
         }
-        let quantities = &self.prepared.requested.quantities;
-        for (quantity, statistics) in quantities.iter().zip(&self.statistics) {
-            if let Some(statistics) = statistics {
-                self.record_of(&mut record, quantity, statistics);
-            }
-        }
         record
     }
 
-    /// The numbers of the summary about a result.
-    fn record_of(&self, record: &mut Record, quantity: &SweepQuantity, statistics: &Statistics) {
+    /// The lines about a result, whose numbers are recorded: its distribution, and where it is smallest and largest.
+    fn result_text(
+        &self,
+        (heading, quantity): (&String, &SweepQuantity),
+        statistics: &Statistics,
+        record: &mut Record,
+    ) -> String {
         let (design, spread) = (&self.prepared.design, &statistics.spread);
         let mut add = |what: &str, value| {
             let name = format!("{}.{what}", quantity.name);
@@ -223,36 +223,42 @@ impl<S: SweptScene> SweepReport<'_, S> {
         add("largest", spread.max);
         add("rms", spread.rms);
         add("mean", spread.mean);
-        if let Some(deviation) = spread.deviation.filter(|_| design.is_random()) {
-            add("mean.standard_error", spread.sampling_errors(deviation)[0]);
-            add("standard_deviation", deviation);
-            add("quantile_2.5", spread.quantiles[0]);
-            add("quantile_97.5", spread.quantiles[1]);
-        }
-        let ends = statistics.ends.into_iter().flatten();
-        for (end, index) in ["smallest", "largest"].into_iter().zip(ends) {
-            for (axis, value) in design.axes.iter().zip(design.values(index)) {
-                let name = format!("{}.{end}.{}", quantity.name, axis.path);
-                record.add(name, &axis.unit, value);
+        let [min, max] = [spread.min, spread.max].map(number);
+        let mut text = format!("  {heading}: from {min} to {max}, mean ");
+        text += &match spread.deviation.filter(|_| design.is_random()) {
+            None => {
+                let [mean, rms] = [spread.mean, spread.rms].map(number);
+                format!("{mean}, RMS {rms}\n")
             }
-        }
-    }
-
-    /// The line about where a result is smallest and largest.
-    fn best_text(&self, statistics: &Statistics) -> String {
-        let Some(ends) = statistics.ends else {
-            return String::new();
+            Some(deviation) => {
+                let [mean_error, deviation_error] = spread.sampling_errors(deviation);
+                add("mean.standard_error", mean_error);
+                add("standard_deviation", deviation);
+                add("quantile_2.5", spread.quantiles[0]);
+                add("quantile_97.5", spread.quantiles[1]);
+                let [low, high] = spread.quantiles.map(number);
+                let mean = digits_within(spread.mean, mean_error, 9);
+                let deviation = digits_within(deviation, deviation_error, 4);
+                let error = digits(mean_error, 2);
+                format!(
+                    "{mean} (standard error {error}), standard deviation {deviation}, 95 % between {low} and {high}\n"
+                )
+            }
         };
-        let design = &self.prepared.design;
-        let [smallest, largest] = ends.map(|index| {
+        let Some([smallest, largest]) = statistics.ends else {
+            return text;
+        };
+        let places = [("smallest", smallest), ("largest", largest)].map(|(end, index)| {
             let inputs = design.axes.iter().zip(design.values(index));
             let inputs = inputs.map(|(axis, value)| {
+                let name = format!("{}.{end}.{}", quantity.name, axis.path);
+                record.add(name, &axis.unit, value);
                 let value = format!("{} = {} {}", axis.path, number(value), axis.unit);
                 value.trim_end().to_owned()
             });
-            inputs.collect::<Vec<_>>().join(", ")
+            format!("{end} at {}", inputs.collect::<Vec<_>>().join(", "))
         });
-        format!("    smallest at {smallest}; largest at {largest}\n")
+        text + &format!("    {}\n", places.join("; "))
     }
 
     /// The number of failed points, and the first messages.
@@ -272,28 +278,6 @@ impl<S: SweptScene> SweepReport<'_, S> {
             text += &format!("    and {} more\n", count - first.len());
         }
         text
-    }
-}
-
-/// The line about a result.
-fn spread_text(heading: &str, spread: &Spread, random: bool) -> String {
-    let [min, max] = [spread.min, spread.max].map(number);
-    let text = format!("  {heading}: from {min} to {max}");
-    match spread.deviation.filter(|_| random) {
-        None => {
-            let [mean, rms] = [spread.mean, spread.rms].map(number);
-            format!("{text}, mean {mean}, RMS {rms}\n")
-        }
-        Some(deviation) => {
-            let [low, high] = spread.quantiles.map(number);
-            let [mean_error, deviation_error] = spread.sampling_errors(deviation);
-            let mean = digits_within(spread.mean, mean_error, 9);
-            let deviation = digits_within(deviation, deviation_error, 4);
-            let error = digits(mean_error, 2);
-            format!(
-                "{text}, mean {mean} (standard error {error}), standard deviation {deviation}, 95 % between {low} and {high}\n"
-            )
-        }
     }
 }
 

@@ -52,9 +52,8 @@ impl<'a> PartFolder<'a> {
         path: &Path,
         study: &StudyIdentity,
         headings: [&[String]; 2],
-        design: (&'a Design, u64, Option<Shard>),
+        (design, length, shard): (&'a Design, u64, Option<Shard>),
     ) -> Result<Self, SweepError> {
-        let (design, length, shard) = design;
         let failed = |reason: String| StoreFault::Reason(reason).with_path(path);
         fs::create_dir_all(path)
             .map_err(|e| failed(format!("the folder cannot be created: {e}")))?;
@@ -171,11 +170,8 @@ impl<'a> PartFolder<'a> {
     pub(crate) fn check_inputs(&self) -> Result<(), SweepError> {
         const OTHER_POINTS: PartFault = PartFault::Damaged("it holds other points");
         let checked = self.of_parts(|file, part| {
-            if !file
-                .indices()?
-                .into_iter()
-                .eq(part.start as i64..part.end as i64)
-            {
+            let expected = part.start as i64..part.end as i64;
+            if !file.indices()?.into_iter().eq(expected) {
                 return Err(OTHER_POINTS);
             }
             let inputs: Vec<Vec<f64>> = part.clone().map(|k| self.design.values(k)).collect();
@@ -202,17 +198,8 @@ impl StoredResults for PartFolder<'_> {
     }
 
     fn failed(&self) -> Result<FailedPoints, SweepError> {
-        let of_parts = self.of_parts(|file, part| {
-            let messages = part.clone().zip(file.messages()?);
-            let mut failed = FailedPoints::default();
-            for (index, message) in messages.filter_map(|(k, message)| Some((k, message?))) {
-                failed.count += 1;
-                if failed.first.len() < MAX_LISTED {
-                    failed.first.push((index, message));
-                }
-            }
-            Ok(failed)
-        });
+        let of_parts =
+            self.of_parts(|file, part| Ok(FailedPoints::of(part.clone().zip(file.messages()?))));
         let mut all = FailedPoints::default();
         for part in of_parts? {
             all.count += part.count;

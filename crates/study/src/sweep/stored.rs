@@ -56,6 +56,20 @@ pub(crate) struct FailedPoints {
 /// Maximum number of messages in a summary.
 pub(crate) const MAX_LISTED: usize = 3;
 
+impl FailedPoints {
+    /// Of points and their messages, where they have one.
+    pub(crate) fn of(points: impl Iterator<Item = (u64, Option<String>)>) -> Self {
+        let mut failed = Self::default();
+        for (index, message) in points.filter_map(|(k, message)| Some((k, message?))) {
+            failed.count += 1;
+            if failed.first.len() < MAX_LISTED {
+                failed.first.push((index, message));
+            }
+        }
+        failed
+    }
+}
+
 /// The stored points of a sweep.
 pub(crate) trait StoredResults {
     fn points(&self) -> &StoredPoints;
@@ -92,20 +106,14 @@ impl StoredResults for LoadedRows {
     }
 
     fn values(&self, result: usize) -> Result<Vec<f64>, SweepError> {
-        Ok(self
-            .rows
-            .iter()
-            .map(|row| row.result.values[result])
-            .collect())
+        let rows = self.rows.iter();
+        Ok(rows.map(|row| row.result.values[result]).collect())
     }
 
     fn failed(&self) -> Result<FailedPoints, SweepError> {
-        let failed = |row: &Row| Some((row.index, row.result.message.clone()?));
-        let failed = || self.rows.iter().filter_map(failed);
-        Ok(FailedPoints {
-            count: failed().count(),
-            first: failed().take(MAX_LISTED).collect(),
-        })
+        let messages = self.rows.iter();
+        let messages = messages.map(|row| (row.index, row.result.message.clone()));
+        Ok(FailedPoints::of(messages))
     }
 
     fn rows(&self) -> Result<Vec<Row>, SweepError> {

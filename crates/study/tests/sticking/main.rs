@@ -15,7 +15,7 @@ use dwell_dynamics::{
     ContactEvent, ContactMode, DynamicsError, Machine, Method, OdeState, Options, StopChange,
 };
 use dwell_scene::Scene;
-use dwell_study::free_motion::compute::FreeMotionProblem;
+use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
 use dwell_study::models::with_drive_loads;
 
 /// A motion: its steps, the changes of its contacts, and the evaluations it took.
@@ -50,7 +50,7 @@ fn integrate(text: &str, method: Method, rtol: f64) -> (Run, Option<DynamicsErro
     let duration = problem.duration().unwrap_or_else(|e| panic!("{e}"));
     let options = Options::new(method, rtol);
     let motion = problem
-        .solve(&scene, duration, &options)
+        .solve(duration, &options)
         .unwrap_or_else(|e| panic!("{e}"));
     let solutions = || motion.segments.iter().map(|(_, solution)| solution);
     let run = Run {

@@ -10,7 +10,7 @@ use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{InverseDynamics, Model, Workspace};
 use dwell_scene::{MotionDuration, Scene};
 use dwell_study::StudyError;
-use dwell_study::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
+use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _, SegmentedMotion};
 use dwell_study::models::with_drive_loads;
 use dwell_verify::{Inertias, MotionSample, MultibodyError, MultibodySystem, check_motion};
 use std::f64::consts::TAU;
@@ -79,7 +79,7 @@ fn solve_motion(
         max_step,
         ..Options::new(METHOD, TOLERANCE)
     };
-    let motion_segments = free.solve(scene, duration, &options)?;
+    let motion_segments = free.solve(duration, &options)?;
     let run = collect_steps(scene, &free, &motion_segments);
     let mut run = run.map_err(|e| free.explain(&e))?;
     let occurrences = motion_segments.occurrences();

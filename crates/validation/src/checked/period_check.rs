@@ -8,7 +8,7 @@ use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::{Load, Magnitude};
 use dwell_scene::{EventTrigger, FreeMotionSpec, MotionDuration, NamedEvent, Scene};
 use dwell_study::StudyError;
-use dwell_study::free_motion::compute::FreeMotionProblem;
+use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
 use dwell_study::models::with_drive_loads;
 use std::f64::consts::TAU;
 
@@ -91,7 +91,7 @@ fn check_period(scene: &Scene) -> Result<PeriodFindings, StudyError> {
     let mut errors = Vec::new();
     for tolerance in TOLERANCES {
         let options = Options::new(Method::Tsit45, tolerance);
-        let motion = problem.solve(scene, problem.duration()?, &options)?;
+        let motion = problem.solve(problem.duration()?, &options)?;
         let times: Vec<f64> = motion.occurrences().map(|(_, o)| o.state.t).collect();
         let start_time = from.map_or(Some(0.0), |k: usize| times.get(k).copied());
         let (Some(start_time), Some(end_time)) = (start_time, times.get(to)) else {

@@ -14,7 +14,7 @@ use dwell_kinetostatics::space::{Axes, Component, Model as SpaceModel};
 use dwell_kinetostatics::table::TableModel;
 use dwell_scene::{FreeMotionSpec, MotionDuration, Scene, SpaceScene};
 use dwell_study::explain::NamedScene as _;
-use dwell_study::free_motion::compute::FreeMotionProblem;
+use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
 use dwell_study::machines::MachineScene;
 use dwell_study::models::with_drive_loads;
 use dwell_study::number_format::digits;
@@ -172,7 +172,7 @@ impl StudiedScene for Scene {
         };
         let with_drives = with_drive_loads(self)?;
         let problem = FreeMotionProblem::new(self, &with_drives, motion)?;
-        let run = problem.solve(self, end, options)?;
+        let run = problem.solve(end, options)?;
         let has_one_chart = run.segments.len() == 1;
         let mut segments = run.segments.into_iter();
         Ok(PreliminaryRun {

@@ -12,11 +12,10 @@ use crate::explain::StudyError;
 use crate::free_motion::compute::refinement::{
     COARSE_TOLERANCE, Candidate, FIRST_TOLERANCE_RATIO, MIN_TOLERANCE, Refinement, Run, refine,
 };
-use crate::free_motion::compute::tried_motion::{ProblemOfScene, TriedMotion};
-use crate::free_motion::compute::{ComputedMotion, Difference, FreeMotionProblem, SegmentedMotion};
-use dwell_dynamics::{Method, Options, Statistics};
+use crate::free_motion::compute::tried_motion::TriedMotion;
+use crate::free_motion::compute::{ComputedMotion, Difference, FreeMotionProblem};
+use dwell_dynamics::{DynamicsError, Method, Options, Statistics};
 use dwell_findings::Record;
-use dwell_scene::Scene;
 
 /// Error of BDF relative to DOP853 at the same tolerance: 2 to 240 in ten revolutions of m = 2 + cos q, growing
 /// with finer tolerances.
@@ -31,24 +30,18 @@ const MAX_COARSE_STEPS: usize = 100_000;
 
 /// A motion to an accuracy, by the method that was found.
 pub(crate) struct FoundMotion<M> {
-    pub(crate) motion: M,
-    /// The finer run with which it was compared.
-    pub(crate) finer: M,
+    pub(crate) found: Refinement<M>,
     pub(crate) method: Method,
-    /// Of the run that is kept.
-    pub(crate) tolerance: f64,
     pub(crate) method_text: String,
     /// How it was found.
     how: String,
-    /// The estimated error.
-    pub(crate) difference: Difference,
 }
 
 impl<M> FoundMotion<M> {
     /// What is said of it, and the numbers in it.
     pub(crate) fn remarks(&self, accuracy: f64) -> (String, Record) {
-        let (text, mut record) = self.difference.remarks(accuracy, &self.how);
-        record.add("tolerance", "", self.tolerance);
+        let (text, mut record) = self.found.difference.remarks(accuracy, &self.how);
+        record.add("tolerance", "", self.found.tolerance);
         (text, record)
     }
 }
@@ -91,7 +84,8 @@ pub(crate) fn find_motion<P: TriedMotion>(
         }
     };
     let best = best_of(problem, &candidates, accuracy, first, &solve)?;
-    let ((method, visited), found) = best.ok_or_else(|| problem.too_short())?;
+    let ((method, visited), found) =
+        best.ok_or_else(|| problem.explain(&DynamicsError::DurationTooShort))?;
     let suffix = visited.map_or("", |_| " on a table");
     let reason = match method == methods[0] {
         true => reason,
@@ -101,12 +95,9 @@ pub(crate) fn find_motion<P: TriedMotion>(
     let method_text = format!("{}{suffix}, tolerance {tolerance}", method.name());
     Ok(FoundMotion {
         how: format!("{method_text}, {reason}; {} runs", found.runs),
+        found,
         method,
         method_text,
-        motion: found.motion,
-        finer: found.finer,
-        tolerance: found.tolerance,
-        difference: found.difference,
     })
 }
 
@@ -159,7 +150,7 @@ fn rank_methods<P: TriedMotion>(
         return Ok((smooth, by_explicit, reason(Method::Dop853)));
     }
     let implicit = implicit()?;
-    let freedoms = problem.free_coordinates();
+    let freedoms = problem.machine().free().len();
     let by_implicit = equivalent_evaluations(&P::statistics(&implicit), freedoms)
         * (BDF_ERROR_RATIO * refinement_ratio).powf(1.0 / 6.0);
     Ok(if reached && by_explicit <= by_implicit {
@@ -180,7 +171,6 @@ impl FreeMotionProblem<'_> {
     /// The motion to an accuracy, by quadrature or else as [`find_motion`] says.
     pub(crate) fn to_accuracy(
         &self,
-        scene: &Scene,
         accuracy: f64,
         duration: f64,
         sample_interval: f64,
@@ -188,18 +178,17 @@ impl FreeMotionProblem<'_> {
         if let Some(found) = self.by_quadrature(accuracy, duration, sample_interval) {
             return Ok(found);
         }
-        let of_scene = ProblemOfScene {
-            problem: self,
-            scene,
-        };
-        let found = find_motion(&of_scene, accuracy, duration, sample_interval)?;
-        let remarks = found.remarks(accuracy);
-        let (motion, difference) = (found.motion, &found.difference);
-        let computed =
-            ComputedMotion::to_accuracy(motion, found.method_text, accuracy, remarks, difference);
+        let by_method = find_motion(self, accuracy, duration, sample_interval)?;
+        let (remarks, record) = by_method.remarks(accuracy);
+        let found = by_method.found;
         Ok(ComputedMotion {
+            method_text: by_method.method_text,
+            remarks,
+            record,
+            accuracy: Some([accuracy, found.difference.largest()]),
             comparison: Some(found.finer),
-            ..computed
+            motion: found.motion,
+            ..ComputedMotion::default()
         })
     }
 }
@@ -219,29 +208,6 @@ impl Difference {
         record.add("error.kinetic_energy", "", energy);
         record.add("error.reactions", "", reactions);
         (remarks, record)
-    }
-}
-
-impl ComputedMotion {
-    /// A motion to a required accuracy, what is said of it, and its estimated error.
-    pub(super) fn to_accuracy(
-        motion: SegmentedMotion,
-        method_text: String,
-        accuracy: f64,
-        (remarks, record): (String, Record),
-        difference: &Difference,
-    ) -> Self {
-        Self {
-            motion,
-            method_text,
-            remarks,
-            record,
-            accuracy: Some([accuracy, difference.largest()]),
-            inaccuracy: None,
-            comparison: None,
-            evaluated: [None, None],
-            delay: None,
-        }
     }
 }
 
@@ -268,7 +234,9 @@ pub(crate) fn two_digits(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::free_motion::compute::MotionProblem as _;
     use crate::models::with_drive_loads;
+    use dwell_scene::Scene;
 
     fn text(case: &str) -> String {
         let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
@@ -292,7 +260,7 @@ mod tests {
                     sample_interval: Some(sample_interval),
                     ..Options::new(Method::Tsit45, tolerance)
                 };
-                problem.solve(&scene, duration, &options).unwrap()
+                problem.solve(duration, &options).unwrap()
             };
             let reference = by(1e-13);
             // A tenth of the tolerance has a tenth of the error, here with as much again to spare.
@@ -304,7 +272,7 @@ mod tests {
             for exponent in 2..13 {
                 let accuracy = 10_f64.powi(-exponent);
                 let found = problem
-                    .to_accuracy(&scene, accuracy, duration, sample_interval)
+                    .to_accuracy(accuracy, duration, sample_interval)
                     .unwrap();
                 let difference = problem
                     .difference(&reference, &found.motion)
@@ -335,13 +303,13 @@ mod tests {
             FreeMotionProblem::new(&scene, &loaded_scene, scene.motion.as_ref().unwrap()).unwrap();
         let sample_interval = duration / 200.0;
         let found = problem
-            .to_accuracy(&scene, accuracy, duration, sample_interval)
+            .to_accuracy(accuracy, duration, sample_interval)
             .unwrap();
         let options = Options {
             sample_interval: Some(sample_interval),
             ..Options::new(reference.0, reference.1)
         };
-        let reference = problem.solve(&scene, duration, &options).unwrap();
+        let reference = problem.solve(duration, &options).unwrap();
         let difference = problem
             .difference(&reference, &found.motion)
             .unwrap()

@@ -5,7 +5,7 @@ use crate::free_motion::compute::within_steps::{MAX_STEPS, StatesWithinSteps, ex
 use crate::free_motion::compute::{
     FreeMotionProblem, MotionSolver, PlaceInMotion, SegmentedMotion,
 };
-use crate::trajectory::compute::TrajectorySample;
+use crate::trajectory::compute::{SamplePrecision, TrajectorySample};
 use dwell_dynamics::{Machine, MachineOde, MachineWorkspace, Method, OdeState};
 use dwell_geometry::body_states::CoordinateFunction;
 use std::collections::BTreeMap;
@@ -39,7 +39,7 @@ impl FreeMotionProblem<'_> {
     /// Whether a time (s) is in a step that begins or ends within the window of a change point's fit.
     pub(crate) fn is_in_fit_window(&self, motion: &SegmentedMotion, t: f64) -> bool {
         let is_fit = |(chart, step): (usize, &OdeState)| {
-            self.machine(motion, chart).is_in_fit_window(&step.y)
+            self.machine_in(motion, chart).is_in_fit_window(&step.y)
         };
         let before = motion.steps().filter(|(_, step)| step.t <= t).last();
         let after = motion.steps().find(|(_, step)| step.t >= t);
@@ -113,41 +113,37 @@ pub(crate) struct MotionSampler<'m> {
 }
 
 impl<'m> MotionSampler<'m> {
-    /// The motion at a time (s): from its orbit, or from the step before, which is integrated once more up to there.
-    /// None where that is not possible.
-    pub(crate) fn sample_at(&mut self, t: f64) -> Option<TrajectorySample> {
+    /// The motion at a time (s): from its orbit, or from the step before, which is integrated once more up to there; or by interpolation
+    /// within the step, at a fraction of the cost where many times are in one step. None where that is not possible.
+    pub(crate) fn sample_at(
+        &mut self,
+        t: f64,
+        precision: SamplePrecision,
+    ) -> Option<TrajectorySample> {
         let place = self.motion.place_of(t)?;
-        let key = (place.segment, place.step);
-        let resolved = self.within_steps.resolved(&key, t);
-        if let Some(point) = resolved.filter(|_| self.motion.orbit.is_none()) {
-            return self.sample_of(&place, &point);
-        }
-        let before = self.within_steps.before(&key, t);
-        let before = before.unwrap_or_else(|| place.steps()[place.step].clone());
-        let point = match (before.t == t, &self.motion.orbit) {
-            (true, _) => before,
-            (false, Some(orbit)) => OdeState::from(orbit.state_at(t)),
-            (false, None) => exact_state(&mut self.machine_of(&place)?.0, &before, t)?,
+        let (key, steps) = ((place.segment, place.step), place.steps());
+        let (begin, next) = (&steps[place.step], steps.get(place.step + 1));
+        let point = match (precision, next, &self.motion.orbit) {
+            (SamplePrecision::Interpolated, Some(next), None) if begin.t < t => {
+                let mut states = std::mem::take(&mut self.within_steps);
+                let ode = &mut self.machine_of(&place)?.0;
+                let point = states.interpolated(ode, key, [begin, next], t);
+                self.within_steps = states;
+                point?
+            }
+            (_, _, orbit) => {
+                let resolved = self.within_steps.resolved(&key, t);
+                let before = self.within_steps.before(&key, t);
+                let before = before.unwrap_or_else(|| begin.clone());
+                match (resolved, orbit) {
+                    (Some(resolved), None) => resolved,
+                    _ if before.t == t => before,
+                    (_, Some(orbit)) => OdeState::from(orbit.state_at(t)),
+                    (None, None) => exact_state(&mut self.machine_of(&place)?.0, &before, t)?,
+                }
+            }
         };
         self.sample_of(&place, &point)
-    }
-
-    /// The same but for the error of interpolation, at a fraction of the cost where many times are in one step.
-    pub(crate) fn interpolated_at(&mut self, t: f64) -> Option<TrajectorySample> {
-        let place = self.motion.place_of(t)?;
-        let (before, after) = (
-            &place.steps()[place.step],
-            place.steps().get(place.step + 1),
-        );
-        let Some(after) = after.filter(|_| before.t < t && self.motion.orbit.is_none()) else {
-            return self.sample_at(t);
-        };
-        let key = (place.segment, place.step);
-        let mut states = std::mem::take(&mut self.within_steps);
-        let ode = &mut self.machine_of(&place)?.0;
-        let point = states.interpolated(ode, key, [before, after], t);
-        self.within_steps = states;
-        self.sample_of(&place, &point?)
     }
 
     /// The equation of motion and the working memory at a place.
@@ -158,7 +154,7 @@ impl<'m> MotionSampler<'m> {
         Some(match self.machines.entry(place.chart) {
             Entry::Occupied(known) => known.into_mut(),
             Entry::Vacant(new) => {
-                let machine: &Machine = self.problem.machine(self.motion, place.chart);
+                let machine: &Machine = self.problem.machine_in(self.motion, place.chart);
                 let before = &place.steps()[place.step];
                 // At rest the energies show nothing of the works that come: steps would follow their rounding.
                 let end = Some(self.motion.end_time());
@@ -175,7 +171,7 @@ impl<'m> MotionSampler<'m> {
         point: &OdeState,
     ) -> Option<TrajectorySample> {
         let (problem, motion) = (self.problem, self.motion);
-        let machine = problem.machine(motion, place.chart);
+        let machine = problem.machine_in(motion, place.chart);
         if machine.is_in_fit_window(&point.y) {
             return None;
         }

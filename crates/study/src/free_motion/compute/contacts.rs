@@ -1,13 +1,12 @@
 //! Where surfaces with dry friction come to rest and let go, and where coordinates meet their end stops: lines of the
 //! summary, and events beside those of the scene.
 
-use crate::estimate;
-use crate::explain::NamedScene;
-use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
-use crate::number_format::{digits, digits_within, how_often};
-use dwell_dynamics::{
-    ContactEvent, ContactMode, Machine, MovingModel, OdeState, Solution, StopChange,
-};
+use crate::explain::NamedScene as _;
+use crate::free_motion::compute::MotionProblem;
+use crate::free_motion::compute::events::NumberedEvent;
+use crate::free_motion::compute::summary_lines::first_time;
+use crate::number_format::how_often;
+use dwell_dynamics::{ContactEvent, ContactMode, OdeState, Solution, StopChange};
 use dwell_findings::Record;
 
 /// What a friction does from an event on.
@@ -16,18 +15,6 @@ const OF_FRICTION: [&str; 2] = ["sticks", "breaks away"];
 const OF_SWITCH: [&str; 2] = ["holds at its switch", "leaves its switch"];
 /// What a coordinate does at its end stop.
 const OF_STOP: [&str; 4] = ["is struck", "is rested on", "is left", "is touched"];
-
-/// A change of a contact, as an event.
-pub(crate) struct ContactOccurrence {
-    /// Its number, behind those of the scene's events.
-    pub(crate) number: usize,
-    /// The chart of its segment.
-    pub(crate) chart: usize,
-    /// Its time and the state behind it.
-    pub(crate) state: OdeState,
-    /// Of an impact: by free coordinate, the change of its speed.
-    pub(crate) speed_changes: Vec<f64>,
-}
 
 /// The contacts of a machine in the plane or in space, whose events are numbered behind those of the scene.
 pub(crate) struct NamedContacts {
@@ -41,12 +28,8 @@ pub(crate) struct NamedContacts {
 }
 
 impl NamedContacts {
-    /// Those of a machine of a scene with so many events.
-    pub(crate) fn new<M: MovingModel>(
-        scene: &impl NamedScene,
-        machine: &Machine<M>,
-        before: usize,
-    ) -> Self {
+    pub(crate) fn new(problem: &impl MotionProblem) -> Self {
+        let (scene, machine) = (problem.scene(), problem.machine());
         let name = |load: usize| scene.load_name(load).unwrap_or_default();
         let joint = |load: usize| {
             let name = name(load);
@@ -63,7 +46,7 @@ impl NamedContacts {
             switches: switching
                 .map(|load| (load, name(load).to_owned()))
                 .collect(),
-            before,
+            before: problem.spec().events.len(),
         }
     }
 
@@ -119,9 +102,9 @@ impl NamedContacts {
         }
     }
 
-    /// The changes of all contacts in a solution of a chart, in order of time.
-    pub(crate) fn occurrences(&self, chart: usize, solution: &Solution) -> Vec<ContactOccurrence> {
-        let one = |event: &ContactEvent| {
+    /// The changes of all contacts in a motion, by part its chart and its solution.
+    pub(crate) fn changes(&self, parts: &[(usize, Solution)]) -> Vec<NumberedEvent> {
+        let one = |(chart, event): (usize, &ContactEvent)| {
             let kind = self.kind_of(event)?;
             let speed_changes = match event {
                 ContactEvent::Stop {
@@ -130,7 +113,7 @@ impl NamedContacts {
                 } => changes.clone(),
                 _ => Vec::new(),
             };
-            Some(ContactOccurrence {
+            Some(NumberedEvent {
                 number: self.before + kind + 1,
                 chart,
                 state: OdeState {
@@ -140,46 +123,38 @@ impl NamedContacts {
                 speed_changes,
             })
         };
-        solution.contact_events.iter().filter_map(one).collect()
+        let all = parts.iter().flat_map(|(chart, solution)| {
+            let events = solution.contact_events.iter();
+            events.map(move |event| (*chart, event))
+        });
+        all.filter_map(one).collect()
     }
 
     /// Lines of the summary: how often each contact changes in a motion, and when first, with what a second run says.
     pub(crate) fn describe(
         &self,
-        own: &[ContactOccurrence],
-        second: Option<&[ContactOccurrence]>,
+        own: &[(usize, Solution)],
+        second: Option<&[(usize, Solution)]>,
         record: &mut Record,
     ) -> String {
+        let own = self.changes(own);
+        let second = second.map(|parts| self.changes(parts));
         let mut text = String::new();
         for (k, name) in self.names().iter().enumerate() {
             let number = self.before + k + 1;
-            let times = |all: &[ContactOccurrence]| -> Vec<f64> {
+            let times = |all: &Vec<NumberedEvent>| -> Vec<f64> {
                 let of_kind = all.iter().filter(|o| o.number == number);
                 of_kind.map(|o| o.state.t).collect()
             };
-            let own = times(own);
+            let own = times(&own);
             let Some(&first) = own.first() else { continue };
             let count = own.len();
             record.add_count(format!("event.{name}.number"), number);
             record.add_count(format!("event.{name}.count"), count);
-            let first_name = format!("event.{name}.first");
-            text += &format!(
-                "  {name} (event {number}): {}, first at t = ",
-                how_often(count)
-            );
-            let others = second.map(times);
-            text += &match others.as_ref().and_then(|others| others.first()) {
-                Some(other) => {
-                    let error = estimate::of_number(first, *other);
-                    record.add_within(first_name, "s", first, error);
-                    let first = digits_within(first, error, 13);
-                    format!("{first} s (estimated error {error:.1e} s)")
-                }
-                None => {
-                    record.add(first_name, "s", first);
-                    format!("{} s", digits(first, 6))
-                }
-            };
+            let others = second.as_ref().map(times);
+            let other = others.as_ref().and_then(|others| others.first());
+            let at = first_time(name, first, other.copied(), 0.0, record);
+            text += &format!("  {name} (event {number}): {}{at}", how_often(count));
             if let Some(others) = others.filter(|others| others.len() != count) {
                 let other = others.len();
                 record.add_count(format!("event.{name}.count_in_second_run"), other);
@@ -189,50 +164,5 @@ impl NamedContacts {
             text += "\n";
         }
         text
-    }
-}
-
-/// The impulses of the first so many reactions of a machine's model, at an impact that changes the free speeds; zero where none is.
-pub(crate) fn first_impulses<M: MovingModel>(
-    machine: &Machine<M>,
-    at: &OdeState,
-    (changes, count): (&[f64], usize),
-) -> Vec<f64> {
-    let mut workspace = machine.workspace();
-    match machine.evaluate(at.t, &at.y, &mut workspace) {
-        Ok(state) => state.impulses(changes).reactions[..count].to_vec(),
-        Err(_) => vec![f64::NAN; count],
-    }
-}
-
-impl FreeMotionProblem<'_> {
-    /// Its contacts.
-    fn contacts(&self) -> NamedContacts {
-        NamedContacts::new(self.loaded_scene, &self.machine, self.spec.events.len())
-    }
-
-    /// The name of an event of contacts, by its number.
-    pub(super) fn contact_event_name(&self, number: usize) -> String {
-        self.contacts().name(number)
-    }
-
-    /// The changes of all contacts, in order of time.
-    pub(super) fn contact_occurrences(&self, motion: &SegmentedMotion) -> Vec<ContactOccurrence> {
-        let contacts = self.contacts();
-        let segments = motion.segments.iter();
-        let all = segments.flat_map(|(chart, solution)| contacts.occurrences(*chart, solution));
-        all.collect()
-    }
-
-    /// Lines of the summary: how often each contact changes, and when first.
-    pub(super) fn describe_contacts(
-        &self,
-        computed: &ComputedMotion,
-        record: &mut Record,
-    ) -> String {
-        let own = self.contact_occurrences(&computed.motion);
-        let second = computed.comparison.as_ref();
-        let second = second.map(|motion| self.contact_occurrences(motion));
-        self.contacts().describe(&own, second.as_deref(), record)
     }
 }

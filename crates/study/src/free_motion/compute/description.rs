@@ -1,13 +1,15 @@
 //! The summary of a motion.
 
-use crate::estimate::{self, is_rounding};
-use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
+use crate::estimate;
+use crate::free_motion::compute::{
+    ComputedMotion, Energies, FreeMotionProblem, MotionProblem as _, NamedContacts,
+    SegmentedMotion, balance_line, class_line, cost_line, event_line, times_of,
+};
 use crate::models::SolverSettings;
-use crate::number_format::{coordinate_unit, digits, digits_within, how_often};
+use crate::number_format::digits;
 use dwell_dynamics::{
-    DynamicsError, EventOccurrence, MachineWorkspace, Method, MotionClass, OdeState, Options,
-    Orbit, ReducedState, Statistics, eigenvalues_about, is_equilibrium, linearise, motion_class,
-    solve,
+    DynamicsError, MachineWorkspace, Method, MotionClass, OdeState, Options, ReducedState,
+    Statistics, eigenvalues_about, is_equilibrium, linearise, motion_class, solve,
 };
 use dwell_findings::Record;
 
@@ -19,107 +21,10 @@ const REST: f64 = 1e-26;
 /// Another method is suggested if it takes this many times fewer evaluations.
 const HINT_COST_RATIO: f64 = 4.0;
 
-/// The energies of a motion at a time (s), and what the balance of energies and works keeps constant, J.
-pub(crate) struct Energies {
-    pub(crate) t: f64,
-    pub(crate) kinetic: f64,
-    pub(crate) potential: f64,
-    pub(crate) balance: f64,
-}
-
-/// By how much a quantity may be higher between points than at the highest of them: the height of the parabola through it and
-/// its neighbours.
-pub(crate) fn height_between(points: &[Energies], value: impl Fn(&Energies) -> f64) -> f64 {
-    let highest =
-        (0..points.len()).max_by(|&a, &b| value(&points[a]).total_cmp(&value(&points[b])));
-    let around = highest.and_then(|k| points.get(k.checked_sub(1)?..k + 2));
-    let Some([before, at, after]) = around else {
-        return 0.0;
-    };
-    let slope = |a: &Energies, b: &Energies| (value(b) - value(a)) / (b.t - a.t);
-    let (rising, falling) = (slope(before, at), slope(at, after));
-    let bend = (rising - falling) / (0.5 * (after.t - before.t));
-    let share = (at.t - before.t) / (after.t - before.t);
-    let there = rising * (1.0 - share) + falling * share;
-    match bend > 0.0 && bend.is_finite() {
-        true => 0.5 * there * there / bend,
-        false => 0.0,
-    }
-}
-
 impl FreeMotionProblem<'_> {
-    /// The motion class of a conservative motion of one degree of freedom, from its energy.
-    fn describe_motion_class(&self, record: &mut Record) -> String {
-        let is_prescribed = self.spec.laws.iter().any(Option::is_some);
-        if is_prescribed || self.machine.free().len() != 1 || !self.loaded_scene.drives.is_empty() {
-            return String::new();
-        }
-        let name = &self.loaded_scene.mechanism.actuators[0].name;
-        let unit = coordinate_unit(self.output_model.plan().is_angle(0));
-        let start = self.initial_reduced_state();
-        let period = |record: &mut Record| match Orbit::loaded(&self.machine, start) {
-            Ok(orbit) => {
-                let period = self.period_text(&orbit, start, record);
-                format!("; period {period} by quadrature")
-            }
-            Err(_) => String::new(),
-        };
-        let class = match motion_class(&self.machine, start) {
-            Ok(MotionClass::Rotation {
-                kinetic_at_maximum, ..
-            }) => {
-                let kinetic = digits(kinetic_at_maximum, 6);
-                record.add(
-                    "kinetic_energy_at_potential_maximum",
-                    "J",
-                    kinetic_at_maximum,
-                );
-                let period = period(record);
-                format!("rotation; kinetic energy at the potential maximum {kinetic} J{period}")
-            }
-            Ok(MotionClass::Libration { turning_points }) => {
-                let errors = self.turning_point_errors(start, turning_points);
-                let [a, b] = [0, 1].map(|k| digits_within(turning_points[k], errors[k], 10));
-                for (k, end) in ["lower", "upper"].into_iter().enumerate() {
-                    let end = format!("turning_point.{end}");
-                    record.add_within(end, unit, turning_points[k], errors[k]);
-                }
-                format!(
-                    "libration between {name} = {a} and {b} {unit}{}",
-                    period(record)
-                )
-            }
-            Ok(MotionClass::Asymptotic { to }) => {
-                record.add("asymptotic_to", unit, to);
-                let to = digits(to, 10);
-                format!("asymptotic to {name} = {to} {unit} (separatrix)")
-            }
-            _ => return String::new(),
-        };
-        format!("  by energy: {class}\n")
-    }
-
-    /// A period (s) with its error.
-    fn period_text(&self, orbit: &Orbit, start: ReducedState, record: &mut Record) -> String {
-        let perturbed = |factor: f64| {
-            let q_dot = start.q_dot * factor;
-            Orbit::loaded(&self.machine, ReducedState { q_dot, ..start })
-        };
-        match estimate::of_period(orbit, perturbed) {
-            Ok(error) => {
-                record.add_within("period", "s", orbit.period, error);
-                let period = digits_within(orbit.period, error, 13);
-                format!("{period} s (estimated error {error:.1e} s)")
-            }
-            Err(_) => {
-                record.add("period", "s", orbit.period);
-                format!("{} s (its error is not known)", digits(orbit.period, 3))
-            }
-        }
-    }
-
     /// The errors of turning points (rad or m), from their change under the rounding of the start.
-    fn turning_point_errors(&self, start: ReducedState, turning_points: [f64; 2]) -> [f64; 2] {
+    fn turning_point_errors(&self, turning_points: [f64; 2]) -> [f64; 2] {
+        let start = self.initial_reduced_state();
         let mut errors = turning_points.map(|q| 4.0 * f64::EPSILON * q.abs().max(start.q.abs()));
         for side in [-1.0, 1.0] {
             let rounding = 2.0 * side * f64::EPSILON;
@@ -144,12 +49,8 @@ impl FreeMotionProblem<'_> {
         errors
     }
 
-    pub(super) fn summary(
-        &self,
-        computed: &ComputedMotion,
-        duration: f64,
-        record: &mut Record,
-    ) -> String {
+    pub(super) fn summary(&self, computed: &ComputedMotion, duration: f64) -> (String, Record) {
+        let mut record = Record::default();
         let (motion, method_text) = (&computed.motion, &computed.method_text);
         let end = motion.end_time();
         let of_all = match end < duration {
@@ -169,36 +70,29 @@ impl FreeMotionProblem<'_> {
         };
         let end = digits(end, 7);
         let mut text = format!("  {end}{of_all} s{error} by {method_text}\n");
+        let second = computed.comparison.as_ref();
+        let second = second.map(|motion| &motion.segments[..]);
         for (i, event) in self.spec.events.iter().enumerate() {
-            let happened = event_text(computed, (i, &event.name), record);
-            let stopped = match motion.occurrences().any(|(_, o)| o.event == i) {
-                true if event.terminal => "; the motion ends there",
-                _ => "",
-            };
-            text += &format!("  {}: {happened}{stopped}\n", event.name);
+            let name = &event.name;
+            let own = times_of(&motion.segments, i);
+            let others = second.map(|parts| times_of(parts, i));
+            record.add_count(format!("event.{name}.count"), own.len());
+            if let Some(others) = others.as_ref().filter(|others| others.len() != own.len()) {
+                record.add_count(format!("event.{name}.count_in_second_run"), others.len());
+            }
+            let times = (&own[..], others.as_deref());
+            let late = computed.delay.unwrap_or_default();
+            text += &event_line((name, event.terminal), times, late, &mut record);
         }
-        text += &self.describe_contacts(computed, record);
+        text += &NamedContacts::new(self).describe(&motion.segments, second, &mut record);
         for change in &motion.chart_changes {
             text += &format!("  {change}\n");
         }
-        let cost = motion.statistics;
-        for (name, count) in [
-            ("steps", cost.steps),
-            ("rejected_steps", cost.rejected_steps),
-            ("evaluations", cost.evaluations),
-            ("jacobians", cost.jacobians),
-            ("factorisations", cost.factorisations),
-        ] {
-            record.add_count(name, count);
-        }
-        text += &format!("  {} steps, {} rejected, ", cost.steps, cost.rejected_steps);
-        text += &format!(
-            "{} evaluations, {} Jacobians, ",
-            cost.evaluations, cost.jacobians
-        );
-        text += &format!("{} factorisations\n", cost.factorisations);
-        text + &self.describe_motion_class(record)
-            + &self.describe_energy_balance(motion, duration, record)
+        text += &cost_line(&motion.statistics, &mut record);
+        let turning_point_errors = |points| Some(self.turning_point_errors(points));
+        text += &class_line(self, turning_point_errors, &mut record);
+        text += &self.describe_energy_balance(motion, duration, &mut record);
+        (text, record)
     }
 
     /// What the loads and the initial speed can do over a duration (s), J: the energies beside which others are rounding.
@@ -206,13 +100,8 @@ impl FreeMotionProblem<'_> {
         self.machine.largest_work(0.0, duration).max(max_potential)
     }
 
-    /// Whether a motion starts at rest in an unstable equilibrium, within rounding, and leaves it.
-    pub(crate) fn leaves_unstable_equilibrium(&self, motion: &SegmentedMotion) -> bool {
-        self.starts_unstable() && self.moves(motion)
-    }
-
     /// Whether it starts at rest in an unstable equilibrium, within rounding.
-    fn starts_unstable(&self) -> bool {
+    pub(super) fn starts_unstable(&self) -> bool {
         let start = self.initial_state();
         if self.machine.depends_on_time() || self.machine.free().is_empty() {
             return false;
@@ -235,7 +124,7 @@ impl FreeMotionProblem<'_> {
     }
 
     /// Whether a motion has more kinetic energy than rounding.
-    fn moves(&self, motion: &SegmentedMotion) -> bool {
+    pub(super) fn moves(&self, motion: &SegmentedMotion) -> bool {
         let scale = self.energy_scale(motion.end_time(), 0.0);
         let at_steps = self.energies(motion, motion.steps());
         let moves = |at: &Energies| at.kinetic > REST * scale.max(at.potential.abs());
@@ -250,7 +139,7 @@ impl FreeMotionProblem<'_> {
     ) -> Vec<Energies> {
         let mut workspaces: Vec<Option<MachineWorkspace>> = Vec::new();
         let at = |(chart, point): (usize, &OdeState)| {
-            let machine = self.machine(motion, chart);
+            let machine = self.machine_in(motion, chart);
             workspaces.resize_with(workspaces.len().max(chart + 1), || None);
             let workspace = workspaces[chart].get_or_insert_with(|| machine.workspace());
             let [kinetic, potential] = machine.energy(point.t, &point.y, workspace).ok()?;
@@ -292,22 +181,8 @@ impl FreeMotionProblem<'_> {
             }
             return text;
         }
-        let (kind, largest) = match is_rounding(max_kinetic, max_potential) {
-            true => ("potential", max_potential),
-            false => ("kinetic", max_kinetic),
-        };
-        let relative_loss = max_difference / largest;
-        record.add("energy_balance_error", "", relative_loss);
-        let value = |at: &Energies| match kind {
-            "kinetic" => at.kinetic,
-            _ => at.potential.abs(),
-        };
-        let error = max_difference.max(height_between(&at_samples, value));
-        record.add_within(format!("largest_{kind}_energy"), "J", largest, error);
-        let energy = digits_within(largest, error, 6);
-        let mut text = format!(
-            "  energy balance closes to {relative_loss:.1e} of the largest {kind} energy, {energy} J\n"
-        );
+        let largest = [max_kinetic, max_potential];
+        let (relative_loss, mut text) = balance_line(largest, max_difference, &at_samples, record);
         // By quadrature it is part of the estimated error.
         if relative_loss > MAX_ENERGY_LOSS && motion.orbit.is_none() {
             text += "  this is large: a finer tolerance is needed\n";
@@ -340,10 +215,9 @@ impl FreeMotionProblem<'_> {
             return String::new();
         };
         let options = Options {
-            atol: settings.atol,
-            max_step: settings.max_step,
+            method: other,
             max_steps: motion.statistics.steps.max(100),
-            ..Options::new(other, settings.rtol)
+            ..settings.options()
         };
         let end = until(costliest + 1);
         let repeated = solve(&self.machine, &self.output_model, start, end, &options, &[]);
@@ -366,47 +240,5 @@ impl FreeMotionProblem<'_> {
         format!(
             "  hint: --method {name} takes about {ratio:.0} times fewer evaluations from t = {from} to {to} s\n"
         )
-    }
-}
-
-/// How often an event happens in a motion and when first, with the error of that time.
-fn event_text(
-    computed: &ComputedMotion,
-    (event, name): (usize, &str),
-    record: &mut Record,
-) -> String {
-    let times = |motion: &SegmentedMotion| -> Vec<f64> {
-        let all = motion.occurrences().map(|(_, o): (_, &EventOccurrence)| o);
-        let of_event = all.filter(|o| o.event == event);
-        of_event.map(|o| o.state.t).collect()
-    };
-    let own = times(&computed.motion);
-    let others = computed.comparison.as_ref().map(times);
-    record.add_count(format!("event.{name}.count"), own.len());
-    let mut text = how_often(own.len());
-    if let Some(others) = others.as_ref().filter(|others| others.len() != own.len()) {
-        text += &format!(
-            " ({} in a second run: within its error it is not certain)",
-            how_often(others.len())
-        );
-        record.add_count(format!("event.{name}.count_in_second_run"), others.len());
-    }
-    let Some(&first) = own.first() else {
-        return text;
-    };
-    let delay = computed.delay.unwrap_or_default();
-    let other = others.as_ref().and_then(|others| others.first());
-    let error = other.map(|other| estimate::of_number(first, *other) + delay * first);
-    let first_name = format!("event.{name}.first");
-    text + &match error {
-        Some(error) => {
-            record.add_within(first_name, "s", first, error);
-            let first = digits_within(first, error, 13);
-            format!(", first at t = {first} s (estimated error {error:.1e} s)")
-        }
-        None => {
-            record.add(first_name, "s", first);
-            format!(", first at t = {} s", digits(first, 6))
-        }
     }
 }

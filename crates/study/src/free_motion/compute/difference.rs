@@ -1,7 +1,7 @@
 //! The difference of two computations of one motion.
 
 use crate::estimate::{error_scale, relative};
-use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
+use crate::free_motion::compute::{FreeMotionProblem, MotionProblem, SegmentedMotion};
 use crate::trajectory::compute::{TrajectorySample, force_scales};
 use dwell_dynamics::DynamicsError;
 use dwell_kinetostatics::{KinematicState, MachineModel};
@@ -71,10 +71,6 @@ pub(crate) struct Compared<'s> {
     pub(crate) samples: [&'s [TrajectorySample]; 2],
     /// When they end, s.
     pub(crate) ends: [f64; 2],
-    /// By free coordinate: its actuator, and whether it is an angle.
-    pub(crate) free: Vec<(usize, bool)>,
-    /// Where the error of the energy balance is among the extra values of a sample.
-    pub(crate) balance_index: usize,
     /// The size of the mechanism, m.
     pub(crate) size: f64,
     /// The units of the reactions.
@@ -85,6 +81,7 @@ impl Compared<'_> {
     /// The difference of the second computation from the first.
     pub(crate) fn difference(
         &self,
+        problem: &impl MotionProblem,
         reactions: ReactionsOf<'_>,
     ) -> Result<Difference, DynamicsError> {
         let [first, second] = self.samples;
@@ -98,16 +95,17 @@ impl Compared<'_> {
             differences.fold(0.0, nan_max)
         };
         let mut coordinate = 0.0_f64;
-        for &(i, is_angle) in &self.free {
+        for &i in problem.machine().free() {
             let value = |s: &TrajectorySample| s.coordinate(i);
             let start = first.first().map_or(0.0, value);
-            let scale = match is_angle {
+            let scale = match problem.is_angle(i) {
                 true => 1.0,
                 false => error_scale(max_abs(&|s| value(s) - start), self.size),
             };
             coordinate = nan_max(coordinate, relative(max_difference(&value), scale));
         }
-        let balance = |s: &TrajectorySample| s.extra_values[self.balance_index];
+        let balance_index = problem.balance_index();
+        let balance = |s: &TrajectorySample| s.extra_values[balance_index];
         let [kinetic, potential] = [0, 1].map(|k| max_abs(&|s| s.extra_values[k]));
         let [end_one, end_two] = self.ends;
         Ok(Difference {
@@ -166,18 +164,14 @@ impl FreeMotionProblem<'_> {
         two: &SegmentedMotion,
     ) -> Result<Difference, DynamicsError> {
         let (first, second) = (self.samples(one)?, self.samples(two)?);
-        let plan = self.output_model.plan();
-        let free = self.machine.free().iter();
         let reactions = self.output_model.reactions().iter();
         let compared = Compared {
             samples: [&first, &second],
             ends: [one, two].map(SegmentedMotion::end_time),
-            free: free.map(|&i| (i, plan.is_angle(i))).collect(),
-            balance_index: self.balance_index(),
             size: self.loaded_scene.mechanism.size(),
             units: reactions.map(|r| r.component.unit()).collect(),
         };
-        compared.difference(&|which, sample| {
+        compared.difference(self, &|which, sample| {
             let chart = [one, two][which].charts.get(sample.chart);
             let model = chart.map_or(&self.output_model, |chart| &chart.output_model);
             reactions_at(model, sample)

@@ -3,45 +3,62 @@
 use crate::estimate::{self, is_rounding};
 use crate::explain::StudyError;
 use crate::free_motion::compute::difference::pair_by_time;
-use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
-use crate::number_format::{coordinate_unit, digits};
+use crate::free_motion::compute::{
+    ComputedMotion, FreeMotionProblem, LARGE_ERROR, MotionProblem as _, SegmentedMotion,
+};
+use crate::number_format::digits;
 use crate::ranges::extent;
 use crate::trajectory::compute::TrajectorySample;
 use dwell_dynamics::Options;
 use dwell_findings::Record;
 
-/// An error of this part of a coordinate's change, or of the largest kinetic energy, is no result: its second digit
-/// is wrong.
-const LARGE_ERROR: f64 = 0.01;
-
-/// What a second run says of a motion.
-#[derive(Default)]
-pub(crate) struct ErrorEstimate {
-    /// The line of the summary about the error.
-    pub(crate) text: String,
-    /// The numbers in it, each relative to what the line says.
-    pub(crate) record: Record,
-    /// Why the motion is no result: the error is large, or holds for a part of it only.
-    pub(crate) inaccuracy: Option<String>,
-    /// The second run.
-    pub(crate) second: Option<SegmentedMotion>,
-    /// The samples of the motion and of the second run, evaluated.
-    pub(crate) samples: [Option<Vec<TrajectorySample>>; 2],
-}
-
 /// A sample of each of two runs at the same time.
 type SamplePair<'a> = (&'a TrajectorySample, &'a TrajectorySample);
 
+/// The largest error of a quantity over a motion, by the samples of two runs; `rounding` is what the second cannot show.
+pub(crate) fn error_of(
+    pairs: &[SamplePair<'_>],
+    of: impl Fn(&TrajectorySample) -> f64,
+    rounding: f64,
+) -> f64 {
+    let values = pairs.iter().map(|(a, b)| (of(a), of(b)));
+    let (one, two): (Vec<f64>, Vec<f64>) = values.unzip();
+    estimate::over_motion(&one, &two, rounding)
+}
+
+/// Why a motion is no result whose coordinate has this error and changes by this, where it is not. What hardly moves may have an
+/// error as large as its tolerance.
+pub(crate) fn large_error(
+    (name, unit): (&str, &str),
+    error: f64,
+    change: f64,
+    atol: f64,
+) -> Option<String> {
+    let is_large = error > LARGE_ERROR * change + 100.0 * atol;
+    is_large.then(|| {
+        let change = digits(change, 3);
+        format!(
+            "the estimated error of {name} is {error:.1e} {unit}, and it moves by {change} {unit}"
+        )
+    })
+}
+
+/// The same of an energy with this error.
+pub(crate) fn large_energy_error(error: f64) -> String {
+    format!("the estimated error of the energy is {error:.1e} of the largest kinetic energy")
+}
+
 impl FreeMotionProblem<'_> {
-    /// The estimated error of a motion by a second run, by [`estimate::comparison_options`], over its duration.
+    /// What a second run, by [`estimate::comparison_options`], says of a motion: its estimated error over its duration, and why it is
+    /// no result: the error is large, or holds for a part of it only.
     pub(crate) fn estimate_error(
         &self,
         motion: &SegmentedMotion,
         second: Option<SegmentedMotion>,
         options: &Options,
-    ) -> Result<ErrorEstimate, StudyError> {
+    ) -> Result<ComputedMotion, StudyError> {
         if motion.end_time() == 0.0 {
-            return Ok(ErrorEstimate::default());
+            return Ok(ComputedMotion::default());
         }
         let (samples, others) = rayon::join(
             || self.samples(motion),
@@ -59,11 +76,11 @@ impl FreeMotionProblem<'_> {
         let Some((last, _)) = pairs.last() else {
             let text = format!("  no error estimate: a second run, at {refinement}, fails\n");
             let inaccuracy = "its error cannot be estimated: a second run fails".to_owned();
-            return Ok(ErrorEstimate {
-                text,
+            return Ok(ComputedMotion {
+                remarks: text,
                 inaccuracy: Some(inaccuracy),
-                samples: [Some(samples), None],
-                ..ErrorEstimate::default()
+                evaluated: [Some(samples), None],
+                ..ComputedMotion::default()
             });
         };
         // An event may end one of the runs a sample earlier.
@@ -85,12 +102,13 @@ impl FreeMotionProblem<'_> {
         let ends = (!is_whole).then(|| {
             format!("its error is known until t = {until} s only, where a second run ends")
         });
-        Ok(ErrorEstimate {
-            text,
+        Ok(ComputedMotion {
+            remarks: text,
             record,
             inaccuracy: large.or(ends),
-            second,
-            samples: [Some(samples), others],
+            comparison: second,
+            evaluated: [Some(samples), others],
+            ..ComputedMotion::default()
         })
     }
 
@@ -102,38 +120,24 @@ impl FreeMotionProblem<'_> {
         atol: f64,
         record: &mut Record,
     ) -> (String, Option<String>) {
-        let error_of = |of: &dyn Fn(&TrajectorySample) -> f64, rounding: f64| {
-            let values = pairs.iter().map(|(a, b)| (of(a), of(b)));
-            let (one, two): (Vec<f64>, Vec<f64>) = values.unzip();
-            estimate::over_motion(&one, &two, rounding)
-        };
         let (mut text, mut large) = (String::new(), None);
         for &i in self.machine.free() {
             let [from, to] = extent(pairs.iter().map(|(a, _)| a.coordinate(i)));
             let unknown = self.initial_speed_error(i) * (to - from);
             let rounding = 4.0 * f64::EPSILON * from.abs().max(to.abs()) + unknown;
-            let error = error_of(&|s| s.coordinate(i), rounding);
-            let unit = coordinate_unit(self.output_model.plan().is_angle(i));
-            let name = &self.loaded_scene.mechanism.actuators[i].name;
+            let error = error_of(pairs, |s| s.coordinate(i), rounding);
+            let (name, unit) = self.named_coordinate(i);
             text += &format!(" {error:.1e} {unit} in {name},");
             record.add(format!("error.{name}"), unit, error);
-            // What hardly moves may have an error as large as its tolerance.
-            if error > LARGE_ERROR * (to - from) + 100.0 * atol {
-                let change = digits(to - from, 3);
-                large.get_or_insert_with(|| {
-                    format!("the estimated error of {name} is {error:.1e} {unit}, and it moves by {change} {unit}")
-                });
-            }
+            large = large.or_else(|| large_error((name, unit), error, to - from, atol));
         }
         if !is_rounding(max_kinetic, max_potential) {
             let rounding = 4.0 * f64::EPSILON * max_kinetic;
-            let error = error_of(&|s| self.energy_balance(s), rounding) / max_kinetic;
+            let error = error_of(pairs, |s| self.energy_balance(s), rounding) / max_kinetic;
             text += &format!(" {error:.1e} of the largest kinetic energy,");
             record.add("error.kinetic_energy", "", error);
             if error > LARGE_ERROR && max_kinetic > f64::MIN_POSITIVE {
-                large.get_or_insert_with(|| {
-                    format!("the estimated error of the energy is {error:.1e} of the largest kinetic energy")
-                });
+                large.get_or_insert_with(|| large_energy_error(error));
             }
             // Two runs that lose their energy alike do not show it: that the balance is zero is known without the second.
             let balances = pairs.iter().map(|(s, _)| self.energy_balance(s).abs());

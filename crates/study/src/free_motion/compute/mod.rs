@@ -6,32 +6,40 @@ mod contacts;
 mod description;
 mod difference;
 mod error_estimate;
+mod events;
+mod motion_problem;
 mod motors;
 mod period;
 mod problem;
 mod quadrature;
 mod refinement;
 mod segmented_motion;
+mod shortfall;
 mod simulation;
+mod summary_lines;
 mod tables;
 mod tried_motion;
 mod within_steps;
 
 pub(crate) use accuracy::find_motion;
 pub(crate) use contacts::NamedContacts;
-#[cfg(feature = "output")]
-pub(crate) use contacts::first_impulses;
-pub(crate) use description::{Energies, height_between};
 pub(crate) use difference::{Compared, Difference, pair_by_time, reactions_at};
-pub(crate) use motors::motor_values;
+pub(crate) use error_estimate::{error_of, large_energy_error, large_error};
+pub(crate) use events::{event_table, named_events};
+pub use motion_problem::MotionProblem;
+pub(crate) use motion_problem::{compiled_event, motion_to_simulate};
 pub use period::compute_period;
 pub use problem::FreeMotionProblem;
 pub use segmented_motion::SegmentedMotion;
 pub(crate) use segmented_motion::{ComputedMotion, PlaceInMotion};
+pub(crate) use shortfall::{LARGE_ERROR, not_accurate, not_resolved, too_many_steps};
+pub(crate) use simulation::check_times;
 #[cfg(feature = "output")]
 pub(crate) use simulation::compute_free_motion_at;
-pub(crate) use simulation::{DEFAULT_SAMPLES, check_sample_interval, check_times};
 pub use simulation::{FreeMotion, MotionSolver, compute_free_motion};
-pub(crate) use tables::sliding_at;
+pub(crate) use summary_lines::{
+    Energies, balance_line, class_line, cost_line, event_line, first_changes, times_of,
+};
+pub(crate) use tables::{free_trajectory, sample_of, since_start, sliding_at};
 pub(crate) use tried_motion::TriedMotion;
 pub(crate) use within_steps::{MAX_STEPS, StatesWithinSteps, exact_state};

@@ -1,7 +1,7 @@
 //! The period of a conservative free motion.
 
 use crate::explain::{StudyError, missing_section_label, scene_error};
-use crate::free_motion::compute::FreeMotionProblem;
+use crate::free_motion::compute::{FreeMotionProblem, MotionProblem as _};
 use dwell_dynamics::Orbit;
 use dwell_scene::Scene;
 
@@ -27,6 +27,5 @@ pub fn compute_period(scene: &Scene) -> Result<Orbit, StudyError> {
         ));
     };
     let problem = FreeMotionProblem::new(scene, scene, spec)?;
-    let start = problem.initial_reduced_state();
-    Orbit::loaded(&problem.machine, start).map_err(|e| problem.explain(&e))
+    problem.orbit(1.0).map_err(|e| problem.explain(&e))
 }

@@ -2,9 +2,9 @@
 
 use crate::branch_note::branch_note;
 use crate::explain::{
-    StudyError, explain_machine, explain_model, explain_motion, explain_position_in, scene_error,
+    StudyError, explain_machine, explain_model, explain_motion, explain_position_in,
 };
-use crate::free_motion::compute::SegmentedMotion;
+use crate::free_motion::compute::{MotionProblem, SegmentedMotion, compiled_event, first_changes};
 use crate::models::{build_machine, loaded_model};
 use crate::number_format::digits;
 use crate::trajectory::compute::check_variables;
@@ -12,22 +12,17 @@ use dwell_dynamics::atlas::{
     Atlas, AtlasError, ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory,
     MachineDescription,
 };
-use dwell_dynamics::{
-    DynamicsError, Event, EventKind, Machine, OdeState, Options, Orbit, ReducedState, Solution,
-    solve,
-};
+use dwell_dynamics::{DynamicsError, Event, Machine, OdeState, Options, Solution, solve};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Coordinate, Reaction};
 use dwell_kinetostatics::Model;
-use dwell_scene::{EventTrigger, FreeMotionSpec, MotionDuration, NamedEvent, Scene, SceneLocation};
-use std::num::NonZeroUsize;
-
-/// Maximum number of chart changes that a summary lists.
-pub(crate) const MAX_LISTED: usize = 6;
+use dwell_scene::{FreeMotionSpec, Scene};
 
 /// The initial value problem of a scene's free motion.
 pub struct FreeMotionProblem<'a> {
-    /// The scene with the loads of its drives added.
+    /// The scene.
+    pub(crate) scene: &'a Scene,
+    /// The same with the loads of its drives added.
     pub(crate) loaded_scene: &'a Scene,
     pub(crate) spec: &'a FreeMotionSpec,
     /// The model with all loads and reactions, for outputs.
@@ -46,7 +41,7 @@ impl<'a> FreeMotionProblem<'a> {
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism or its machine cannot be built.
     pub fn new(
-        scene: &Scene,
+        scene: &'a Scene,
         loaded_scene: &'a Scene,
         spec: &'a FreeMotionSpec,
     ) -> Result<Self, StudyError> {
@@ -59,17 +54,13 @@ impl<'a> FreeMotionProblem<'a> {
             (!scene.stops.is_empty()).then(|| build_machine(scene, spec, reactions));
         Ok(Self {
             impact_machine: impact_machine.transpose()?,
+            scene,
             loaded_scene,
             spec,
             output_model,
             notes,
             machine,
         })
-    }
-
-    /// An error of its motion in the names of the scene.
-    pub fn explain(&self, error: &DynamicsError) -> StudyError {
-        explain_motion(self.loaded_scene, self.output_model.plan(), error)
     }
 
     /// The error that ended a motion, in the coordinate in which it was followed last.
@@ -114,12 +105,8 @@ impl<'a> FreeMotionProblem<'a> {
     }
 
     /// Integrates the motion: with one degree of freedom across charts, else in its own coordinates.
-    pub fn solve(
-        &self,
-        scene: &Scene,
-        duration: f64,
-        options: &Options,
-    ) -> Result<SegmentedMotion, StudyError> {
+    pub fn solve(&self, duration: f64, options: &Options) -> Result<SegmentedMotion, StudyError> {
+        let scene = self.scene;
         let (start, events) = (self.initial_state(), self.events());
         // An end stop is one of the mechanism's own coordinate, in which the motion stays.
         let has_stops = !scene.stops.is_empty();
@@ -181,12 +168,7 @@ impl<'a> FreeMotionProblem<'a> {
             };
             format!("t = {} s: {what}", digits(change.t, 6))
         };
-        let listed = continued.changes.iter().take(MAX_LISTED);
-        let mut descriptions: Vec<String> = listed.map(describe).collect();
-        if continued.changes.len() > MAX_LISTED {
-            let more = continued.changes.len() - MAX_LISTED;
-            descriptions.push(format!("and {more} more changes"));
-        }
+        let mut descriptions = first_changes(continued.changes.iter().map(describe).collect());
         for fit in atlas.change_point_fits() {
             let names = fit.indeterminate.iter();
             let names = names.map(|&r| self.loaded_scene.mechanism.reaction_name(r));
@@ -209,65 +191,48 @@ impl<'a> FreeMotionProblem<'a> {
     }
 
     /// The machine of a chart.
-    pub(crate) fn machine<'m>(&'m self, motion: &'m SegmentedMotion, chart: usize) -> &'m Machine {
+    pub(crate) fn machine_in<'m>(
+        &'m self,
+        motion: &'m SegmentedMotion,
+        chart: usize,
+    ) -> &'m Machine {
         let chart = motion.charts.get(chart);
         chart.map_or(&self.machine, |c| &c.machine)
-    }
-
-    /// The initial state of its machine.
-    pub fn initial_state(&self) -> OdeState {
-        let spec = self.spec;
-        let (q, q_dot) = (&spec.initial_coordinates, &spec.initial_velocities);
-        let y = self.machine.initial_state(q, q_dot);
-        OdeState { t: 0.0, y }
-    }
-
-    /// The duration of the motion, s.
-    pub fn duration(&self) -> Result<f64, StudyError> {
-        let periods = match self.spec.duration {
-            MotionDuration::Seconds(duration) => return Ok(duration),
-            MotionDuration::Periods(periods) => periods,
-        };
-        match Orbit::loaded(&self.machine, self.initial_reduced_state()) {
-            Ok(orbit) => Ok(periods * orbit.period),
-            Err(DynamicsError::NotConservative { .. }) => Err(scene_error(
-                self.loaded_scene,
-                "the motion is not conservative, so its period is not known in advance",
-                "give a `duration` in s",
-                [(SceneLocation::Duration, "a period is needed")],
-            )),
-            Err(e) => Err(self.explain(&e)),
-        }
-    }
-
-    /// The initial state of the first free coordinate.
-    pub fn initial_reduced_state(&self) -> ReducedState {
-        let first = self.machine.free().first().copied().unwrap_or(0);
-        ReducedState {
-            t: 0.0,
-            q: self.spec.initial_coordinates[first],
-            q_dot: self.spec.initial_velocities[first],
-        }
     }
 
     /// The scene's events, in their order.
     pub(crate) fn events(&self) -> Vec<Event> {
         let mechanism = &self.loaded_scene.mechanism;
-        let find = |c: Coordinate| CoordinateFunction::find(mechanism, c);
+        let coordinate = |c: Coordinate| CoordinateFunction::find(mechanism, c).ok_or(());
         let reactions = self.output_model.reactions();
-        let reaction_index = |r: Reaction| reactions.iter().position(|&other| other == r);
-        let event = |named: &NamedEvent| {
-            let kind = match named.trigger {
-                EventTrigger::Reaches(c, value) => EventKind::Reaches(find(c)?, value),
-                EventTrigger::Reversal(c) => EventKind::Reversal(find(c)?),
-                EventTrigger::Revolution(c) => EventKind::Revolution(find(c)?),
-                EventTrigger::Reaction(r, value) => EventKind::Reaction(reaction_index(r)?, value),
-            };
-            Some(Event {
-                kind,
-                terminal: named.terminal.then_some(NonZeroUsize::MIN),
-            })
-        };
-        self.spec.events.iter().filter_map(event).collect()
+        let reaction = |r: Reaction| reactions.iter().position(|&other| other == r).ok_or(());
+        let events = self.spec.events.iter();
+        let events = events.map(|named| compiled_event(named, coordinate, reaction));
+        events.filter_map(Result::ok).collect()
+    }
+}
+
+impl MotionProblem for FreeMotionProblem<'_> {
+    type Scene = Scene;
+
+    fn scene(&self) -> &Scene {
+        self.loaded_scene
+    }
+
+    fn spec(&self) -> &FreeMotionSpec {
+        self.spec
+    }
+
+    fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    fn impact_machine(&self) -> Option<(&Machine, usize)> {
+        let requested = self.loaded_scene.requests.reactions.len();
+        Some((self.impact_machine.as_ref()?, requested))
+    }
+
+    fn explain(&self, error: &DynamicsError) -> StudyError {
+        explain_motion(self.loaded_scene, self.output_model.plan(), error)
     }
 }

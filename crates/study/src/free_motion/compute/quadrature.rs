@@ -6,7 +6,9 @@
 
 use crate::estimate;
 use crate::free_motion::compute::refinement::MIN_TOLERANCE;
-use crate::free_motion::compute::{ComputedMotion, Difference, FreeMotionProblem, SegmentedMotion};
+use crate::free_motion::compute::{
+    ComputedMotion, Difference, FreeMotionProblem, MotionProblem as _, SegmentedMotion,
+};
 use dwell_dynamics::{
     DynamicsError, Method, ObservedMachine, OdeState, Options, Orbit, OrbitSequence, ReducedState,
     Solution, solve_orbit,
@@ -34,15 +36,11 @@ impl FreeMotionProblem<'_> {
         }
         let start = self.initial_reduced_state();
         let mut sequence = OrbitSequence::loaded(&self.machine, start).ok()?;
-        let exact = Orbit::loaded(&self.machine, start).ok()?;
+        let exact = self.orbit(1.0).ok()?;
         if exact.passes_close_branches(&self.machine) {
             return None;
         }
-        let perturbed = |factor: f64| {
-            let q_dot = start.q_dot * factor;
-            Orbit::loaded(&self.machine, ReducedState { q_dot, ..start })
-        };
-        let delay = estimate::of_period(&exact, perturbed).ok()? / exact.period;
+        let delay = estimate::of_period(&exact, |factor| self.orbit(factor)).ok()? / exact.period;
         let along = |orbit: Orbit| self.along(orbit, accuracy, duration, sample_interval);
         let mut tail = accuracy;
         let mut orbit = sequence.next_orbit(tail).ok()?;
@@ -70,16 +68,18 @@ impl FreeMotionProblem<'_> {
             tail *= TAIL_RATIO;
             orbit = finer;
         };
-        let method_text = "quadrature".to_owned();
         let points = orbit.points;
         let how = format!("quadrature (conservative, periodic motion), {points} quadrature points");
-        let remarks = difference.remarks(accuracy, &how);
-        let found =
-            ComputedMotion::to_accuracy(motion, method_text, accuracy, remarks, &difference);
+        let (remarks, record) = difference.remarks(accuracy, &how);
         Some(ComputedMotion {
+            motion,
+            method_text: "quadrature".to_owned(),
+            remarks,
+            record,
+            accuracy: Some([accuracy, difference.largest()]),
             comparison: Some(comparison),
             delay: Some(delay),
-            ..found
+            ..ComputedMotion::default()
         })
     }
 

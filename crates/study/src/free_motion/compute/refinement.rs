@@ -1,9 +1,8 @@
 //! A motion at finer and finer tolerances, until two runs agree.
 
 use crate::explain::StudyError;
-use crate::free_motion::compute::{Difference, FreeMotionProblem, SegmentedMotion, TriedMotion};
-use dwell_dynamics::{Method, ObservedMachine, Options, TabulatedMachine, solve_system};
-use dwell_kinetostatics::TableDomain;
+use crate::free_motion::compute::{Difference, TriedMotion};
+use dwell_dynamics::Method;
 
 /// Tolerance of the coarse run.
 pub(super) const COARSE_TOLERANCE: f64 = 1e-4;
@@ -19,11 +18,6 @@ const TOLERANCE_FACTORS: [f64; 2] = [1e-4, 0.1];
 /// The error of the kept run, over its difference from the finer one, is above 5 only where both err alike to a fifth: of
 /// 1218 errors of random machines of two seeds in none (the largest is 4.3); above 2.5 in three of 583.
 const SAFETY_FACTOR: f64 = 5.0;
-/// Accuracy of a table relative to the tolerance, and its finest value.
-const TABLE_TOLERANCE_RATIO: f64 = 0.1;
-const MIN_TABLE_TOLERANCE: f64 = 1e-13;
-/// Margin of a table of a limited range beyond the coarse run, relative to the range of that run.
-const TABLE_MARGIN: f64 = 0.05;
 /// How many times as many steps a run at a tenth of the tolerance must take for the difference to be an error of all parts
 /// of the motion: where switches and narrow features decide the steps, two runs err alike.
 const INDEPENDENT_STEPS: f64 = 1.2;
@@ -39,50 +33,15 @@ pub(super) type Candidate = (Method, Option<[f64; 2]>);
 pub(super) type Run<M> = (f64, M);
 
 /// The result of a refinement.
-pub(super) struct Refinement<M> {
+pub(crate) struct Refinement<M> {
     /// The tolerance of the run that is kept.
-    pub(super) tolerance: f64,
-    pub(super) motion: M,
+    pub(crate) tolerance: f64,
+    pub(crate) motion: M,
     /// The finer run with which it was compared.
-    pub(super) finer: M,
+    pub(crate) finer: M,
     /// The estimated error of what is kept.
-    pub(super) difference: Difference,
-    pub(super) runs: usize,
-}
-
-impl FreeMotionProblem<'_> {
-    /// The motion on a table whose accuracy follows the tolerance, so that the difference of two runs contains both
-    /// errors. `None` if there is no such table, or the motion leaves it.
-    pub(super) fn solve_on_table(
-        &self,
-        visited: [f64; 2],
-        duration: f64,
-        options: &Options,
-    ) -> Result<Option<SegmentedMotion>, StudyError> {
-        let [low, high] = visited;
-        let margin = TABLE_MARGIN * (high - low);
-        let domain = match self.machine.model().plan().range().limits() {
-            None => TableDomain::Full,
-            Some((from, to)) => {
-                TableDomain::Between((low - margin).max(from), (high + margin).min(to))
-            }
-        };
-        let accuracy = (TABLE_TOLERANCE_RATIO * options.rtol).max(MIN_TABLE_TOLERANCE);
-        let Ok(table) = TabulatedMachine::new(&self.machine, accuracy, domain) else {
-            return Ok(None);
-        };
-        let start = self.initial_state();
-        let work = self.machine.largest_work(start.t, duration);
-        let ode = table.ode(start.t, &start.y, work);
-        let mut ode = ode.map_err(|e| self.explain(&e))?;
-        let outputs = ObservedMachine::new(&self.machine, &self.output_model);
-        let events = self.events();
-        let solution = solve_system(&mut ode, outputs, &start, Some(duration), options, &events);
-        let mut solution = solution.map_err(|e| self.explain(&e))?;
-        solution.add_contact_events(ode.take_contact_events());
-        let is_complete = solution.error.is_none();
-        Ok(is_complete.then(|| SegmentedMotion::single_segment(solution)))
-    }
+    pub(crate) difference: Difference,
+    pub(crate) runs: usize,
 }
 
 /// Repeats the motion at finer tolerances until two runs agree; keeps the one whose error their difference is: the

@@ -6,6 +6,7 @@ use dwell_dynamics::{DynamicsError, EventOccurrence, OdeState, Orbit, Solution, 
 use dwell_findings::Record;
 
 /// A computed motion and its description.
+#[derive(Default)]
 pub(crate) struct ComputedMotion {
     pub(crate) motion: SegmentedMotion,
     /// The method, for captions and the summary.
@@ -27,6 +28,7 @@ pub(crate) struct ComputedMotion {
 }
 
 /// A free motion as a sequence of segments, each in one chart.
+#[derive(Default)]
 pub struct SegmentedMotion {
     /// Empty if the mechanism's own coordinate is used throughout.
     pub charts: Vec<Chart>,
@@ -48,13 +50,10 @@ impl SegmentedMotion {
     pub(crate) fn single_segment(mut solution: Solution) -> Self {
         solution.sample_end();
         Self {
-            charts: Vec::new(),
-            actuator_coordinates: CoordinateHistory::default(),
-            orbit: None,
-            chart_changes: Vec::new(),
             failure: solution.error.clone(),
             statistics: solution.statistics,
             segments: vec![(0, solution)],
+            ..Self::default()
         }
     }
 

@@ -1,24 +1,25 @@
 //! Simulates a free motion: integration, samples, energies and forces.
 
 use crate::estimate;
-use crate::explain::{
-    StepLimits, StudyError, explain_max_steps, missing_section_label, scene_error,
-};
+use crate::explain::StudyError;
 use crate::free_motion::compute::between_samples::max_skipped;
-use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
+use crate::free_motion::compute::{
+    ComputedMotion, FreeMotionProblem, MotionProblem as _, motion_to_simulate, named_events,
+    not_accurate, not_resolved, too_many_steps,
+};
 use crate::models::{SolverSettings, with_drive_loads};
 use crate::number_format::digits;
 use crate::progress::Progress;
 use crate::trajectory::compute::{
-    ComputedTrajectory, MotionBetweenRows, RowStorage, SamplePrecision, Sampler, SecondRows,
-    Trajectory, TrajectorySample, compute_along,
+    ComputedTrajectory, MotionBetweenRows, RowStorage, Sampler, SecondRows, Trajectory,
+    TrajectorySample, compute_along,
 };
-use dwell_dynamics::{DynamicsError, EventOccurrence, Options};
+use dwell_dynamics::{DynamicsError, Options};
 use dwell_findings::{Record, Table};
-use dwell_scene::{Scene, SceneError, SceneLocation};
+use dwell_scene::{Scene, SceneError};
 
 /// Number of samples if no sample interval is given.
-pub(crate) const DEFAULT_SAMPLES: f64 = 1000.0;
+const DEFAULT_SAMPLES: f64 = 1000.0;
 /// Why a motion is no result that starts in an unstable equilibrium.
 const STARTS_UNSTABLE: &str =
     "it starts in an unstable equilibrium, and rounding alone decides when and where it leaves it";
@@ -58,13 +59,8 @@ pub struct FreeMotion {
     pub record: Record,
 }
 
-/// What has been evaluated of a motion before its rows.
-struct KnownMotion<'s> {
-    /// The motion at its rows, and what is known between them.
-    followed: (Trajectory<'static>, Option<MotionBetweenRows<'s>>),
-    /// The samples of the second computation.
-    others: Option<Vec<TrajectorySample>>,
-}
+/// A motion at its rows, and what is known between them.
+type FollowedMotion<'s> = (Trajectory<'static>, Option<MotionBetweenRows<'s>>);
 
 /// The free motion of a scene.
 ///
@@ -86,19 +82,12 @@ pub(crate) fn compute_free_motion_at(
     times: Option<&[f64]>,
     progress: Progress<'_>,
 ) -> Result<FreeMotion, StudyError> {
-    let Some(spec) = &scene.motion else {
-        return Err(scene_error(
-            scene,
-            "the scene has no [motion] to simulate",
-            "add [motion] with `initial-velocity`, and `periods` or `duration`",
-            missing_section_label("motion"),
-        ));
-    };
+    let spec = motion_to_simulate(scene, scene.motion.as_ref())?;
     let loaded_scene = with_drive_loads(scene)?;
     let problem = FreeMotionProblem::new(scene, &loaded_scene, spec)?;
     let duration = problem.duration()?;
     times.map_or(Ok(()), |times| check_times(times, duration))?;
-    let mut integrated = problem.integrate(scene, solver, duration)?;
+    let mut integrated = problem.integrate(solver, duration)?;
     let [evaluated, others] = std::mem::take(&mut integrated.evaluated);
     let motion = &integrated.motion;
     // Where branches are too close at the start, the scene is a valid one.
@@ -112,25 +101,30 @@ pub(crate) fn compute_free_motion_at(
         || problem.steps_as_samples(motion, max_skipped(solver)),
     );
     let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
-    let sampler = || problem.sampler_within_steps(motion);
+    let sampler = || -> Sampler<'_> {
+        let mut sampler = problem.sampler(motion);
+        Box::new(move |t, precision| sampler.sample_at(t, precision))
+    };
     let between = steps.map(|further| MotionBetweenRows {
         further,
         sampler: &sampler,
     });
-    let known = KnownMotion {
-        followed: (trajectory, between),
-        others,
-    };
-    let rows = problem.rows_and_summary(&integrated, (known, times), duration, progress);
+    let second = || problem.second_rows(&integrated, others, times);
+    let rows = problem.rows_and_summary(
+        &integrated,
+        ((trajectory, between), second),
+        duration,
+        progress,
+    );
     let (mut computed, (mut summary, mut record)) = rows?;
-    let shortfall = problem.shortfall(scene, &integrated, solver);
+    let shortfall = problem.shortfall(&integrated, solver);
     computed.early_stop = shortfall.or(computed.early_stop);
     record.extend(integrated.record.clone());
     summary += &problem.notes;
     summary += &integrated.remarks;
     Ok(FreeMotion {
         computed,
-        events: problem.named_events(motion),
+        events: named_events(&problem, &motion.segments),
         event_table: problem.event_table(motion),
         estimated_error: integrated.accuracy.map(|[_, error]| error),
         summary,
@@ -139,32 +133,8 @@ pub(crate) fn compute_free_motion_at(
     })
 }
 
-impl FreeMotionProblem<'_> {
-    /// What finds the motion at any of its times.
-    fn sampler_within_steps<'m>(&'m self, motion: &'m SegmentedMotion) -> Sampler<'m> {
-        let mut sampler = self.sampler(motion);
-        Box::new(move |t, precision| match precision {
-            SamplePrecision::Interpolated => sampler.interpolated_at(t),
-            SamplePrecision::Exact => sampler.sample_at(t),
-        })
-    }
-
-    /// The events of the scene and of contacts, each with its time (s) and its name, in order of time.
-    fn named_events(&self, motion: &SegmentedMotion) -> Vec<(f64, String)> {
-        let event = |(_, o): (usize, &EventOccurrence)| {
-            let name = self.spec.events.get(o.event).map(|e| e.name.clone());
-            (o.state.t, name.unwrap_or_default())
-        };
-        let contacts = self.contact_occurrences(motion).into_iter();
-        let contacts = contacts.map(|o| (o.state.t, self.contact_event_name(o.number)));
-        let mut events: Vec<_> = motion.occurrences().map(event).chain(contacts).collect();
-        events.sort_by(|(one, _), (other, _)| one.total_cmp(other));
-        events
-    }
-}
-
 /// Refuses a sample interval beyond the duration (s), or of more than the highest number of samples.
-pub(crate) fn check_sample_interval(interval: f64, duration: f64) -> Result<f64, StudyError> {
+fn check_sample_interval(interval: f64, duration: f64) -> Result<f64, StudyError> {
     // What is printed with six digits can be given.
     const PRINTED: f64 = 1e-6;
     let shortest = duration / MAX_SAMPLES;
@@ -211,18 +181,21 @@ pub(crate) fn check_times(times: &[f64], duration: f64) -> Result<(), StudyError
     Err(SceneError::without_labels(message, Some(help)).into())
 }
 
-impl StepLimits {
-    /// What limits the steps of an integration.
-    pub(crate) fn of(solver: &MotionSolver) -> Self {
-        match solver {
-            MotionSolver::Settings(settings) => Self {
-                max_step: settings.max_step,
-                tolerance: "--rtol",
-            },
-            MotionSolver::Accuracy { .. } => Self {
-                max_step: None,
-                tolerance: "--accuracy",
-            },
+impl MotionSolver {
+    /// The interval of samples over a duration, s.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where it is longer than that, or there would be too many samples.
+    pub(crate) fn sample_interval(&self, duration: f64) -> Result<f64, StudyError> {
+        let (Self::Settings(SolverSettings {
+            sample_interval, ..
+        })
+        | Self::Accuracy {
+            sample_interval, ..
+        }) = self;
+        match *sample_interval {
+            Some(interval) => check_sample_interval(interval, duration),
+            None => Ok(duration / DEFAULT_SAMPLES),
         }
     }
 }
@@ -230,43 +203,31 @@ impl StepLimits {
 impl FreeMotionProblem<'_> {
     fn integrate(
         &self,
-        scene: &Scene,
         solver: &MotionSolver,
         duration: f64,
     ) -> Result<ComputedMotion, StudyError> {
-        let (MotionSolver::Settings(SolverSettings {
-            sample_interval, ..
-        })
-        | MotionSolver::Accuracy {
-            sample_interval, ..
-        }) = solver;
-        let interval = match *sample_interval {
-            Some(interval) => check_sample_interval(interval, duration)?,
-            None => duration / DEFAULT_SAMPLES,
-        };
+        let interval = solver.sample_interval(duration)?;
         let settings = match solver {
             MotionSolver::Settings(settings) => settings,
             MotionSolver::Accuracy { accuracy, .. } => {
-                return self.to_accuracy(scene, *accuracy, duration, interval);
+                return self.to_accuracy(*accuracy, duration, interval);
             }
         };
         let options = Options {
-            atol: settings.atol,
-            max_step: settings.max_step,
             sample_interval: Some(interval),
-            ..Options::new(settings.method, settings.rtol)
+            ..settings.options()
         };
         let finer = estimate::comparison_options(&options);
         // The second run is the same unless the first one fails.
         let (motion, second) = rayon::join(
-            || self.solve(scene, duration, &options),
-            || self.solve(scene, duration, &finer).ok(),
+            || self.solve(duration, &options),
+            || self.solve(duration, &finer).ok(),
         );
         let motion = motion?;
         let second = match &motion.failure {
             None => second,
             Some(_) if motion.end_time() == 0.0 => None,
-            Some(_) => self.solve(scene, motion.end_time(), &finer).ok(),
+            Some(_) => self.solve(motion.end_time(), &finer).ok(),
         };
         let (estimate, hint) = rayon::join(
             || self.estimate_error(&motion, second, &options),
@@ -274,18 +235,14 @@ impl FreeMotionProblem<'_> {
         );
         let mut estimate = estimate?;
         estimate.record.add("tolerance", "", settings.rtol);
-        let is_unstable = self.leaves_unstable_equilibrium(&motion);
-        let unstable = is_unstable.then(|| STARTS_UNSTABLE.to_owned());
+        let leaves_unstable = self.starts_unstable() && self.moves(&motion);
+        let unstable = leaves_unstable.then(|| STARTS_UNSTABLE.to_owned());
         Ok(ComputedMotion {
             method_text: settings.describe(),
-            remarks: hint + &estimate.text,
-            record: estimate.record,
-            accuracy: None,
+            remarks: hint + &estimate.remarks,
             inaccuracy: unstable.or(estimate.inaccuracy),
-            comparison: estimate.second,
-            evaluated: estimate.samples,
-            delay: None,
             motion,
+            ..estimate
         })
     }
 
@@ -293,19 +250,18 @@ impl FreeMotionProblem<'_> {
     fn rows_and_summary(
         &self,
         integrated: &ComputedMotion,
-        (known, times): (KnownMotion<'_>, Option<&[f64]>),
+        (followed, second_rows): (
+            FollowedMotion<'_>,
+            impl FnOnce() -> Option<SecondRows> + Send,
+        ),
         duration: f64,
         progress: Progress<'_>,
     ) -> Result<(ComputedTrajectory<'static>, (String, Record)), StudyError> {
         let mut beside = None;
-        let KnownMotion { followed, others } = known;
         let computed = rayon::in_place_scope(|scope| {
             // On another core: the rows of the second computation, and the summary.
             scope.spawn(|_| {
-                let second = self.second_rows(integrated, others, times);
-                let mut record = Record::default();
-                let text = self.summary(integrated, duration, &mut record);
-                beside = Some((second, (text, record)));
+                beside = Some((second_rows(), self.summary(integrated, duration)));
             });
             let (scene, model) = (self.loaded_scene, &self.output_model);
             compute_along(RowStorage::Whole, scene, model, followed, progress)
@@ -329,31 +285,13 @@ impl FreeMotionProblem<'_> {
     }
 
     /// Why a motion is not what was required: it ended early, or is less accurate.
-    fn shortfall(
-        &self,
-        scene: &Scene,
-        integrated: &ComputedMotion,
-        solver: &MotionSolver,
-    ) -> Option<StudyError> {
-        if let Some(DynamicsError::MaxStepsReached { t, max_steps }) = integrated.motion.failure {
-            let limits = StepLimits::of(solver);
-            return Some(explain_max_steps(self.loaded_scene, t, max_steps, &limits));
-        }
-        if let Some(error) = &integrated.motion.failure {
-            return Some(self.explain_end(&integrated.motion, error));
-        }
-        if let Some(inaccuracy) = &integrated.inaccuracy {
-            let message = format!("the motion is not resolved: {inaccuracy}");
-            let help = "use a smaller --rtol, or --accuracy; what is chaotic is known for a shorter time only";
-            let place = (SceneLocation::Duration, "over this time");
-            return Some(scene_error(scene, message, help, [place]));
-        }
-        let [requested, error] = integrated.accuracy?;
-        let message = format!(
-            "an accuracy of {requested:e} is not reached: the estimated error is {error:.1e}"
-        );
-        let help = "the results are written with the error above; require that accuracy, or a shorter motion";
-        let place = (SceneLocation::Duration, "the error grows with the duration");
-        (error > requested).then(|| scene_error(scene, message, help, [place]))
+    fn shortfall(&self, integrated: &ComputedMotion, solver: &MotionSolver) -> Option<StudyError> {
+        let (scene, failure) = (self.loaded_scene, integrated.motion.failure.as_ref());
+        let ended = || Some(self.explain_end(&integrated.motion, failure?));
+        let inaccuracy = || Some(not_resolved(scene, integrated.inaccuracy.as_ref()?));
+        too_many_steps(scene, failure, solver)
+            .or_else(ended)
+            .or_else(inaccuracy)
+            .or_else(|| not_accurate(scene, integrated.accuracy?))
     }
 }

@@ -1,16 +1,17 @@
 //! The samples and the events of a motion as tables.
 
-use crate::free_motion::compute::contacts::{ContactOccurrence, first_impulses};
 use crate::free_motion::compute::motors::motor_values;
-use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
-use crate::number_format::coordinate_unit;
-use crate::trajectory::compute::{FreeTrajectory, Trajectory, TrajectorySample, extra_columns};
+use crate::free_motion::compute::{FreeMotionProblem, MotionProblem, SegmentedMotion, event_table};
+use crate::trajectory::compute::{
+    FreeTrajectory, SamplePrecision, Trajectory, TrajectorySample, extra_columns,
+};
 use dwell_dynamics::{
-    ContactEvent, DynamicsError, EventOccurrence, Machine, MachineWorkspace, OdeState, Sliding,
+    ContactEvent, DynamicsError, Machine, MachineWorkspace, MovingModel, OdeState, Sliding,
     Solution,
 };
-use dwell_findings::{Column, Table};
+use dwell_findings::Table;
 use dwell_geometry::body_states::CoordinateFunction;
+use dwell_kinetostatics::{Drive, Model};
 
 impl FreeMotionProblem<'_> {
     /// A computed motion as a trajectory, with its samples, which may have been `evaluated` already, or else with wanted times
@@ -23,21 +24,15 @@ impl FreeMotionProblem<'_> {
         times: Option<&[f64]>,
     ) -> Result<Trajectory<'static>, DynamicsError> {
         let end = motion.end_time();
-        let charts = motion.charts.iter();
-        let motion = FreeTrajectory {
-            samples: match (times, evaluated) {
-                (None, Some(samples)) => samples,
-                (None, None) => self.samples(motion)?,
-                (Some(times), _) => self.samples_at(motion, times)?,
-            },
-            extra_columns: extra_columns(self.loaded_scene, &self.machine),
-            prescribed: self.spec.laws.iter().map(Option::is_some).collect(),
-            charts: charts.map(|c| c.output_model.clone()).collect(),
+        let samples = match (times, evaluated) {
+            (None, Some(samples)) => samples,
+            (None, None) => self.samples(motion)?,
+            (Some(times), _) => self.samples_at(motion, times)?,
         };
-        let mut trajectory =
-            Trajectory::of_free_motion(self.output_model.plan().range().period(), motion, end);
-        method_text.clone_into(&mut trajectory.method_text);
-        Ok(trajectory)
+        let charts = motion.charts.iter().map(|c| c.output_model.clone());
+        let period = self.output_model.plan().range().period();
+        let computed = (samples, charts.collect(), method_text);
+        Ok(free_trajectory(self, computed, (end, period)))
     }
 
     /// Every sample with its accelerations, drive magnitudes and energies. Within the window of a change
@@ -53,17 +48,9 @@ impl FreeMotionProblem<'_> {
             &mut |_, _| true,
             coordinates,
         )?;
-        let mut samples: Vec<_> = evaluated.into_iter().map(|(_, sample)| sample).collect();
-        let mut initial_balance: Option<f64> = None;
-        for sample in &mut samples {
-            let balance = &mut sample.extra_values[self.balance_index()];
-            *balance -= *initial_balance.get_or_insert(*balance);
-        }
-        if let [only] = samples.as_slice() {
-            // A trajectory needs two samples, even if the motion ends at its start.
-            samples.push(only.clone());
-        }
-        Ok(samples)
+        let samples: Vec<_> = evaluated.into_iter().map(|(_, sample)| sample).collect();
+        let initial = samples.first().map_or(0.0, |s| self.energy_balance(s));
+        Ok(since_start(samples, self.balance_index(), initial))
     }
 
     /// Those of a motion's picked states that are kept, each with its time, s, evaluated: without those within the window of a
@@ -77,7 +64,7 @@ impl FreeMotionProblem<'_> {
     ) -> Result<Vec<(f64, TrajectorySample)>, DynamicsError> {
         let mut all = Vec::new();
         for (segment, (chart, solution)) in motion.segments.iter().enumerate() {
-            let machine = self.machine(motion, *chart);
+            let machine = self.machine_in(motion, *chart);
             let mut workspace = machine.workspace();
             let points = picked(solution);
             for (k, point) in points.iter().enumerate() {
@@ -108,12 +95,11 @@ impl FreeMotionProblem<'_> {
         let wanted = start.map(|_| 0.0).into_iter().chain(reached).chain([end]);
         let index = self.balance_index();
         let mut sampler = self.sampler(motion);
-        let initial = sampler
-            .sample_at(0.0)
-            .map_or(0.0, |s| s.extra_values[index]);
+        let mut sample_at = |t: f64| sampler.sample_at(t, SamplePrecision::Exact);
+        let initial = sample_at(0.0).map_or(0.0, |s| s.extra_values[index]);
         let mut samples = Vec::new();
         for t in wanted {
-            let Some(mut sample) = sampler.sample_at(t) else {
+            let Some(mut sample) = sample_at(t) else {
                 if self.is_in_fit_window(motion, t) {
                     continue;
                 }
@@ -125,7 +111,7 @@ impl FreeMotionProblem<'_> {
         if let [only] = samples.as_slice() {
             // The end has no row within the window of a change point's fit.
             let start = Some(0.0).filter(|&start| start < only.t);
-            match start.and_then(|start| sampler.sample_at(start)) {
+            match start.and_then(&mut sample_at) {
                 Some(mut start) => {
                     start.extra_values[index] = 0.0;
                     samples.insert(0, start);
@@ -136,52 +122,16 @@ impl FreeMotionProblem<'_> {
         Ok(samples)
     }
 
-    /// A state of a machine with its accelerations, drive magnitudes and energies; without the actuator's coordinate,
-    /// and with the balance of energies and works in place of its error.
+    /// A state of the machine of a chart as a sample, without the actuator's coordinate.
     pub(crate) fn sample(
         &self,
         (chart, machine, workspace): (usize, &Machine, &mut MachineWorkspace),
         point: &OdeState,
         sliding: Option<&Sliding>,
     ) -> Result<TrajectorySample, DynamicsError> {
-        let loads = self.loaded_scene.loads.len();
-        let first_work = machine.work_offset();
-        let state = machine.evaluate(point.t, &point.y, workspace)?;
-        let [kinetic, potential] = state.energy();
-        let works = &point.y[first_work..];
-        let mut extra_values = vec![kinetic, potential];
-        extra_values.extend(works);
-        extra_values.push(kinetic + potential - works.iter().sum::<f64>());
-        extra_values.extend(&point.y[machine.drive_states()]);
-        let motors = (machine, &self.loaded_scene.drives[..]);
-        extra_values.extend(motor_values(motors, &state, &point.y));
-        let (drives, magnitudes) = (loads - machine.drives()..loads, state.magnitudes());
-        let given = drives.chain(machine.contact_loads());
-        let mut sample = TrajectorySample {
-            t: point.t,
-            q: state.q().to_vec(),
-            q_dot: state.q_dot().to_vec(),
-            q_ddot: state.q_ddot().to_vec(),
-            chart,
-            actuator_coordinate: None,
-            drive_magnitudes: given.map(|load| (load, magnitudes[load])).collect(),
-            extra_values,
-        };
-        if let Some(sliding) = sliding {
-            let forces = machine.sliding_forces(sliding, point, workspace)?;
-            let drives = loads - machine.drives()..loads;
-            let given = drives
-                .chain(machine.contact_loads())
-                .chain(machine.switching_loads());
-            sample.drive_magnitudes = given.map(|load| (load, forces.magnitudes[load])).collect();
-            sample.q_ddot = forces.q_ddot;
-        }
-        Ok(sample)
-    }
-
-    /// Where the error of the energy balance is among [`TrajectorySample::extra_values`].
-    pub(crate) fn balance_index(&self) -> usize {
-        2 + self.machine.nonconservative_sources().len()
+        let machine = (machine, &self.loaded_scene.drives[..]);
+        let sample = sample_of(machine, point, sliding.map(|of| (of, 0)), workspace)?;
+        Ok(TrajectorySample { chart, ..sample })
     }
 
     /// The error of the energy balance at a sample, J.
@@ -189,59 +139,94 @@ impl FreeMotionProblem<'_> {
         sample.extra_values[self.balance_index()]
     }
 
-    /// The time of each event, of the scene and of contacts, and the actuator coordinates and speeds then.
+    /// The events of a motion as a table.
     pub(crate) fn event_table(&self, motion: &SegmentedMotion) -> Table {
-        let mut columns = vec![Column::new("t", "s"), Column::new("event", "")];
         let mechanism = &self.loaded_scene.mechanism;
-        for actuator in &mechanism.actuators {
-            let name = &actuator.name;
-            let unit = coordinate_unit(actuator.coordinate().is_angle());
-            columns.push(Column::new(name, unit));
-            columns.push(Column::new(format!("{name}.velocity"), format!("{unit}/s")));
-        }
-        let impulses = self
-            .impact_machine
-            .as_ref()
-            .map_or(&[][..], |_| &self.loaded_scene.requests.reactions[..]);
-        columns.extend(impulses.iter().map(|reaction| {
-            let name = mechanism.reaction_name(*reaction);
-            let unit = reaction.component.unit();
-            Column::new(format!("{name}.impulse"), format!("{unit} s"))
-        }));
-        let row = |(chart, number, at): (usize, usize, &OdeState), changes: &[f64]| {
-            let machine = self.machine(motion, chart);
-            let mut workspace = machine.workspace();
-            let mut row = vec![at.t, number as f64];
-            if let Ok(state) = machine.evaluate(at.t, &at.y, &mut workspace) {
-                for actuator in &mechanism.actuators {
-                    let measured = CoordinateFunction::find(mechanism, actuator.coordinate());
-                    let values = measured.map(|measured| state.coordinate(measured));
-                    row.extend(values.unwrap_or([f64::NAN; 2]));
-                }
-            }
-            row.resize(columns.len() - impulses.len(), f64::NAN);
-            row.extend(self.reaction_impulses(at, changes));
-            row.resize(columns.len(), f64::NAN);
-            row
-        };
-        let event =
-            |(chart, o): (usize, &EventOccurrence)| row((chart, o.event + 1, &o.state), &[]);
-        let mut rows: Vec<Vec<f64>> = motion.occurrences().map(event).collect();
-        let contacts = self.contact_occurrences(motion);
-        let contact = |o: &ContactOccurrence| row((o.chart, o.number, &o.state), &o.speed_changes);
-        rows.extend(contacts.iter().map(contact));
-        rows.sort_by(|one, other| one[0].total_cmp(&other[0]));
-        Table { columns, rows }
+        event_table(self, &motion.segments, |event| {
+            let machine = self.machine_in(motion, event.chart);
+            let (at, mut workspace) = (&event.state, machine.workspace());
+            let state = machine.evaluate(at.t, &at.y, &mut workspace).ok()?;
+            let coordinates = mechanism.actuators.iter().flat_map(|actuator| {
+                let measured = CoordinateFunction::find(mechanism, actuator.coordinate());
+                measured.map_or([f64::NAN; 2], |measured| state.coordinate(measured))
+            });
+            Some(coordinates.collect())
+        })
     }
+}
 
-    /// The impulses of the requested reactions at an impact that changes the free speeds; zero where none is.
-    fn reaction_impulses(&self, at: &OdeState, changes: &[f64]) -> Vec<f64> {
-        let Some(machine) = &self.impact_machine else {
-            return Vec::new();
-        };
-        let count = self.loaded_scene.requests.reactions.len();
-        first_impulses(machine, at, (changes, count))
+/// A motion that ended at a time (s) as a trajectory: its samples, the models of its charts in the plane, and its method. `period` is
+/// that of the only coordinate.
+pub(crate) fn free_trajectory(
+    problem: &impl MotionProblem,
+    (samples, charts, method_text): (Vec<TrajectorySample>, Vec<Model>, &str),
+    (end, period): (f64, Option<f64>),
+) -> Trajectory<'static> {
+    let motion = FreeTrajectory {
+        samples,
+        extra_columns: extra_columns(problem.scene(), problem.machine()),
+        prescribed: problem.spec().laws.iter().map(Option::is_some).collect(),
+        charts,
+    };
+    let mut trajectory = Trajectory::of_free_motion(period, motion, end);
+    method_text.clone_into(&mut trajectory.method_text);
+    trajectory
+}
+
+/// A state of a machine with its accelerations, drive magnitudes and energies, and with the balance of energies and works in place of
+/// its error. Where it slides along a switch, the magnitudes of switching loads from a number on are given as well.
+pub(crate) fn sample_of<M: MovingModel>(
+    (machine, drives): (&Machine<M>, &[Drive<M::Coordinate>]),
+    point: &OdeState,
+    sliding: Option<(&Sliding, usize)>,
+    workspace: &mut MachineWorkspace<f64, M>,
+) -> Result<TrajectorySample, DynamicsError> {
+    let state = machine.evaluate(point.t, &point.y, workspace)?;
+    let [kinetic, potential] = state.energy();
+    let works = &point.y[machine.work_offset()..];
+    let mut extra_values = vec![kinetic, potential];
+    extra_values.extend(works);
+    extra_values.push(kinetic + potential - works.iter().sum::<f64>());
+    extra_values.extend(&point.y[machine.drive_states()]);
+    extra_values.extend(motor_values((machine, drives), &state, &point.y));
+    // Drives are the last loads.
+    let loads = machine.model().loads().len();
+    let given = (loads - machine.drives()..loads).chain(machine.contact_loads());
+    let mut given: Vec<usize> = given.collect();
+    let [q, q_dot, mut q_ddot] = [state.q(), state.q_dot(), state.q_ddot()].map(<[f64]>::to_vec);
+    let mut magnitudes = state.magnitudes().to_vec();
+    if let Some((sliding, first)) = sliding {
+        let forces = machine.sliding_forces(sliding, point, workspace)?;
+        let switching = machine.switching_loads().into_iter();
+        given.extend(switching.filter(|load| *load >= first));
+        (q_ddot, magnitudes) = (forces.q_ddot, forces.magnitudes);
     }
+    let given = given.into_iter().map(|load| (load, magnitudes[load]));
+    Ok(TrajectorySample {
+        t: point.t,
+        q,
+        q_dot,
+        q_ddot,
+        drive_magnitudes: given.collect(),
+        extra_values,
+        ..TrajectorySample::default()
+    })
+}
+
+/// Samples whose balance of energies and works is that since the start, where it was `initial`, J.
+pub(crate) fn since_start(
+    mut samples: Vec<TrajectorySample>,
+    balance_index: usize,
+    initial: f64,
+) -> Vec<TrajectorySample> {
+    for sample in &mut samples {
+        sample.extra_values[balance_index] -= initial;
+    }
+    if let [only] = samples.as_slice() {
+        // A trajectory needs two samples, even if the motion ends at its start.
+        samples.push(only.clone());
+    }
+    samples
 }
 
 /// The switch along which a motion slides at a time, s.

@@ -1,13 +1,19 @@
 //! The initial value problem of a motion, in the plane or in space, as the search for a method to an accuracy knows it.
 
 use crate::explain::StudyError;
-use crate::free_motion::compute::{Difference, FreeMotionProblem, SegmentedMotion};
+use crate::free_motion::compute::{Difference, FreeMotionProblem, MotionProblem, SegmentedMotion};
 use crate::ranges::extent;
-use dwell_dynamics::{DynamicsError, Options, Statistics};
-use dwell_scene::Scene;
+use dwell_dynamics::{ObservedMachine, Options, Statistics, TabulatedMachine, solve_system};
+use dwell_kinetostatics::TableDomain;
+
+/// Accuracy of a table relative to the tolerance, and its finest value.
+const TABLE_TOLERANCE_RATIO: f64 = 0.1;
+const MIN_TABLE_TOLERANCE: f64 = 1e-13;
+/// Margin of a table of a limited range beyond the coarse run, relative to the range of that run.
+const TABLE_MARGIN: f64 = 0.05;
 
 /// A motion that can be integrated by any method to any tolerance.
-pub(crate) trait TriedMotion {
+pub(crate) trait TriedMotion: MotionProblem {
     /// A computed motion.
     type Motion;
 
@@ -15,16 +21,20 @@ pub(crate) trait TriedMotion {
     fn by_method(&self, duration: f64, options: &Options) -> Result<Self::Motion, StudyError>;
 
     /// The interval of the only coordinate that a coarse run visits, where a table of the machine may serve.
-    fn range_for_table(&self, coarse: &Self::Motion) -> Option<[f64; 2]>;
+    fn range_for_table(&self, _coarse: &Self::Motion) -> Option<[f64; 2]> {
+        None
+    }
 
     /// The motion on a table of this interval whose accuracy follows the tolerance. `None` if there is no such table, or the motion
     /// leaves it.
     fn on_table(
         &self,
-        visited: [f64; 2],
-        duration: f64,
-        options: &Options,
-    ) -> Result<Option<Self::Motion>, StudyError>;
+        _visited: [f64; 2],
+        _duration: f64,
+        _options: &Options,
+    ) -> Result<Option<Self::Motion>, StudyError> {
+        Ok(None)
+    }
 
     /// The difference of the second motion from the first.
     fn difference_of(&self, motions: [&Self::Motion; 2]) -> Result<Difference, StudyError>;
@@ -34,25 +44,13 @@ pub(crate) trait TriedMotion {
 
     /// Whether nothing ended a motion early.
     fn reached_end(motion: &Self::Motion) -> bool;
-
-    /// The number of free coordinates.
-    fn free_coordinates(&self) -> usize;
-
-    /// Why no method computes anything.
-    fn too_short(&self) -> StudyError;
 }
 
-/// The problem of a scene in the plane.
-pub(super) struct ProblemOfScene<'p> {
-    pub(super) problem: &'p FreeMotionProblem<'p>,
-    pub(super) scene: &'p Scene,
-}
-
-impl TriedMotion for ProblemOfScene<'_> {
+impl TriedMotion for FreeMotionProblem<'_> {
     type Motion = SegmentedMotion;
 
     fn by_method(&self, duration: f64, options: &Options) -> Result<SegmentedMotion, StudyError> {
-        self.problem.solve(self.scene, duration, options)
+        self.solve(duration, options)
     }
 
     /// Where the motion stays in its own coordinate and assembly mode.
@@ -61,7 +59,7 @@ impl TriedMotion for ProblemOfScene<'_> {
         let stays = is_single_segment && Self::reached_end(coarse);
         let coordinates = coarse.steps();
         let coordinates = coordinates.filter_map(|(_, point)| point.y.first().copied());
-        (stays && self.problem.machine.free() == [0]).then(|| extent(coordinates))
+        (stays && self.machine.free() == [0]).then(|| extent(coordinates))
     }
 
     fn on_table(
@@ -70,12 +68,34 @@ impl TriedMotion for ProblemOfScene<'_> {
         duration: f64,
         options: &Options,
     ) -> Result<Option<SegmentedMotion>, StudyError> {
-        self.problem.solve_on_table(visited, duration, options)
+        let [low, high] = visited;
+        let margin = TABLE_MARGIN * (high - low);
+        let domain = match self.machine.model().plan().range().limits() {
+            None => TableDomain::Full,
+            Some((from, to)) => {
+                TableDomain::Between((low - margin).max(from), (high + margin).min(to))
+            }
+        };
+        let accuracy = (TABLE_TOLERANCE_RATIO * options.rtol).max(MIN_TABLE_TOLERANCE);
+        let Ok(table) = TabulatedMachine::new(&self.machine, accuracy, domain) else {
+            return Ok(None);
+        };
+        let start = self.initial_state();
+        let work = self.machine.largest_work(start.t, duration);
+        let ode = table.ode(start.t, &start.y, work);
+        let mut ode = ode.map_err(|e| self.explain(&e))?;
+        let outputs = ObservedMachine::new(&self.machine, &self.output_model);
+        let events = self.events();
+        let solution = solve_system(&mut ode, outputs, &start, Some(duration), options, &events);
+        let mut solution = solution.map_err(|e| self.explain(&e))?;
+        solution.add_contact_events(ode.take_contact_events());
+        let is_complete = solution.error.is_none();
+        Ok(is_complete.then(|| SegmentedMotion::single_segment(solution)))
     }
 
     fn difference_of(&self, [one, two]: [&SegmentedMotion; 2]) -> Result<Difference, StudyError> {
-        let difference = self.problem.difference(one, two);
-        difference.map_err(|error| self.problem.explain(&error))
+        let difference = self.difference(one, two);
+        difference.map_err(|error| self.explain(&error))
     }
 
     fn statistics(motion: &SegmentedMotion) -> Statistics {
@@ -84,13 +104,5 @@ impl TriedMotion for ProblemOfScene<'_> {
 
     fn reached_end(motion: &SegmentedMotion) -> bool {
         motion.failure.is_none()
-    }
-
-    fn free_coordinates(&self) -> usize {
-        self.problem.machine.free().len()
-    }
-
-    fn too_short(&self) -> StudyError {
-        self.problem.explain(&DynamicsError::DurationTooShort)
     }
 }

@@ -134,30 +134,39 @@ impl ReducedCurves {
 
     /// The table: coordinate, m, ½m′, then a and b of each requested reaction.
     pub fn table(&self, prepared: &dyn ReducedScene) -> Table {
-        let is_angle = prepared.is_angle();
-        let [m, half_dm] = inertia_units(is_angle);
-        let mut columns = vec![
-            Column::new(prepared.coordinate_name(), coordinate_unit(is_angle)),
-            Column::new("m", m),
-            Column::new("half_dm", half_dm),
-        ];
-        for (name, unit) in prepared.reaction_units() {
-            let [a, b] = coefficient_units(unit, is_angle);
-            columns.push(Column::new(format!("{name}.a"), a));
-            columns.push(Column::new(format!("{name}.b"), b));
-        }
-        let row = |(q, at): (&f64, &Coefficients)| {
-            let mut row = vec![*q, at.m, at.half_dm];
-            for (a, b) in at.a.iter().zip(&at.b) {
-                row.extend([*a, *b]);
-            }
-            row
-        };
-        Table {
-            columns,
-            rows: self.q.iter().zip(&self.coefficients).map(row).collect(),
-        }
+        let coordinate = (prepared.coordinate_name(), prepared.is_angle());
+        let reactions = prepared.reaction_units();
+        let reactions = reactions.iter().map(|(name, unit)| (&name[..], *unit));
+        coefficient_table(coordinate, reactions, (&self.q, &self.coefficients))
     }
+}
+
+/// The table of coefficients at positions: coordinate, m, ½m′, then a and b of each reaction by its name and unit.
+pub(crate) fn coefficient_table<'r>(
+    (coordinate, is_angle): (&str, bool),
+    reactions: impl Iterator<Item = (&'r str, &'r str)>,
+    (q, coefficients): (&[f64], &[Coefficients]),
+) -> Table {
+    let [m, half_dm] = inertia_units(is_angle);
+    let mut columns = vec![
+        Column::new(coordinate, coordinate_unit(is_angle)),
+        Column::new("m", m),
+        Column::new("half_dm", half_dm),
+    ];
+    for (name, unit) in reactions {
+        let [a, b] = coefficient_units(unit, is_angle);
+        columns.push(Column::new(format!("{name}.a"), a));
+        columns.push(Column::new(format!("{name}.b"), b));
+    }
+    let row = |(q, at): (&f64, &Coefficients)| {
+        let mut row = vec![*q, at.m, at.half_dm];
+        for (a, b) in at.a.iter().zip(&at.b) {
+            row.extend([*a, *b]);
+        }
+        row
+    };
+    let rows = q.iter().zip(coefficients).map(row).collect();
+    Table { columns, rows }
 }
 
 /// Units of m and of ½m′ of an angle or a length.

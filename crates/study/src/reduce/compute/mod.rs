@@ -9,7 +9,7 @@ mod unit_load_curves;
 
 pub(crate) use curves::flat;
 pub use curves::{ReducedCurves, Reduction, RoundingErrors, compute_reduction};
-pub(crate) use curves::{coefficient_units, inertia_units};
+pub(crate) use curves::{coefficient_table, coefficient_units, inertia_units};
 pub(crate) use peak::{Peak, fast_turns, peak_between_rows};
 pub use reduced_scene::{InertiaAt, ReducedScene, TabulatedScene};
 pub use table::{TableRequest, Tabulation, tabulate};

@@ -14,18 +14,10 @@ impl SpaceMotionProblem<'_> {
         if steps.sum::<usize>() > MAX_STEPS {
             return None;
         }
-        let mut all = Vec::new();
-        for (problem, solution) in run.motion.parts(self) {
-            let mut workspace = problem.machine.workspace();
-            let steps = solution.steps.iter();
-            let steps = steps.filter(|step| !problem.machine.is_in_fit_window(&step.y));
-            for step in steps {
-                let sliding = sliding_at(solution, step.t);
-                let sample = problem.sample(step, sliding, &mut workspace).ok()?;
-                all.push((step.t, sample));
-            }
-        }
-        Some(all)
+        let steps = self
+            .evaluated(&run.motion, |solution| &solution.steps)
+            .ok()?;
+        Some(steps.into_iter().map(|step| (step.t, step)).collect())
     }
 }
 
@@ -61,7 +53,10 @@ impl<'m> MotionSampler<'m> {
         t: f64,
         precision: SamplePrecision,
     ) -> Option<TrajectorySample> {
-        let started = |part: &&mut PartSampler<'_>| part.start().is_some_and(|start| start <= t);
+        let started = |part: &&mut PartSampler<'_>| {
+            let start = part.solution.steps.first();
+            start.is_some_and(|start| start.t <= t)
+        };
         let part = self.parts.iter_mut().rev().find(started)?;
         part.sample_at(t, precision, self.run)
     }
@@ -83,46 +78,38 @@ impl<'m> PartSampler<'m> {
         }
     }
 
-    fn start(&self) -> Option<f64> {
-        self.solution.steps.first().map(|step| step.t)
-    }
-
     fn sample_at(
         &mut self,
         t: f64,
         precision: SamplePrecision,
         run: &Run,
     ) -> Option<TrajectorySample> {
-        let steps = &self.solution.steps;
+        let solution = self.solution;
+        let steps = &solution.steps;
         let step = steps.partition_point(|step| step.t <= t).checked_sub(1)?;
+        let begin = &steps[step];
         let point = match &run.orbit {
-            _ if steps[step].t == t => steps[step].clone(),
+            _ if begin.t == t => begin.clone(),
             Some((orbit, _)) => OdeState::from(orbit.state_at(t)),
-            None => self.state_within(step, t, precision)?,
+            None => {
+                let (ode, next) = (self.ode.as_mut()?, steps.get(step + 1)?);
+                let states = &mut self.within_steps;
+                match precision {
+                    SamplePrecision::Interpolated => {
+                        states.interpolated(ode, step, [begin, next], t)?
+                    }
+                    SamplePrecision::Exact => {
+                        let before = states.before(&step, t);
+                        exact_state(ode, &before.unwrap_or_else(|| begin.clone()), t)?
+                    }
+                }
+            }
         };
         if self.problem.machine.is_in_fit_window(&point.y) {
             return None;
         }
-        let sliding = sliding_at(self.solution, t);
+        let sliding = sliding_at(solution, t);
         let sample = self.problem.sample(&point, sliding, &mut self.workspace);
         sample.ok()
-    }
-
-    /// The state at a time (s) within a step.
-    fn state_within(
-        &mut self,
-        step: usize,
-        t: f64,
-        precision: SamplePrecision,
-    ) -> Option<OdeState> {
-        let (ode, steps) = (self.ode.as_mut()?, &self.solution.steps);
-        let ends = [&steps[step], steps.get(step + 1)?];
-        match precision {
-            SamplePrecision::Interpolated => self.within_steps.interpolated(ode, step, ends, t),
-            SamplePrecision::Exact => {
-                let before = self.within_steps.before(&step, t);
-                exact_state(ode, &before.unwrap_or_else(|| ends[0].clone()), t)
-            }
-        }
     }
 }

@@ -2,6 +2,7 @@
 
 use super::problem::SpaceMotionProblem;
 use super::run::Run;
+use crate::free_motion::compute::{MotionProblem as _, first_changes};
 use crate::number_format::digits;
 use dwell_dynamics::{DynamicsError, Event, EventKind, OdeState, Solution, SpaceFitWindow};
 use dwell_geometry::PositionError;
@@ -9,8 +10,6 @@ use dwell_kinetostatics::MachineModel as _;
 use dwell_kinetostatics::space::CoordinateFunction;
 use std::num::NonZeroUsize;
 
-/// Passages that a summary lists.
-const MAX_LISTED: usize = 6;
 /// How near to a limit position a motion changes its coordinate, as a part of the range, of an angle of more than 1 rad of that: there
 /// the coordinate moves by a fifth of what it does elsewhere.
 const NEAR_LIMIT: f64 = 0.02;
@@ -18,6 +17,12 @@ const NEAR_LIMIT: f64 = 0.02;
 const AT_LIMIT: f64 = 1e-4;
 /// How far in front of a change point that it cannot cross a motion ends, in half windows: at their edge nothing is evaluated any more.
 const IN_FRONT: f64 = 1.02;
+
+/// Lines of the first of some changes.
+fn first_change_lines(all: Vec<String>) -> String {
+    let lines = first_changes(all).into_iter();
+    lines.map(|line| format!("  {line}\n")).collect()
+}
 
 /// How many change points of a window are at or below a coordinate.
 fn count_below(window: &SpaceFitWindow, q: f64) -> f64 {
@@ -42,18 +47,11 @@ impl SpaceMotionProblem<'_> {
 
     /// Lines of the summary: where the motion changes its coordinate, and where it passes change points, and how.
     pub(super) fn describe_changes(&self, run: &Run) -> String {
-        let changes: Vec<_> = run.motion.changes(self).collect();
-        let listed = changes.iter().take(MAX_LISTED);
-        let listed = listed.map(|(t, [from, to])| {
-            let t = digits(*t, 6);
-            format!(
-                "  t = {t} s: coordinate changed from {from} (next to its dead point) to {to}\n"
-            )
+        let changes = run.motion.changes(self).map(|(t, [from, to])| {
+            let t = digits(t, 6);
+            format!("t = {t} s: coordinate changed from {from} (next to its dead point) to {to}")
         });
-        let mut text: String = listed.collect();
-        if let more @ 1.. = changes.len().saturating_sub(MAX_LISTED) {
-            text += &format!("  and {more} more changes\n");
-        }
+        let text = first_change_lines(changes.collect());
         let parts = run.motion.parts(self);
         let passed = parts.map(|(problem, solution)| problem.describe_change_points(solution));
         text + &passed.collect::<String>()
@@ -71,12 +69,9 @@ impl SpaceMotionProblem<'_> {
                     .filter_map(move |window| passage(window, pair))
             })
             .collect();
-        let listed = passages.iter().take(MAX_LISTED);
-        let listed = listed.map(|t| format!("  t = {} s: change point crossed\n", digits(*t, 6)));
-        let mut text: String = listed.collect();
-        if let more @ 1.. = passages.len().saturating_sub(MAX_LISTED) {
-            text += &format!("  and {more} more changes\n");
-        }
+        let passages = passages.iter().map(|t| digits(*t, 6));
+        let passages = passages.map(|t| format!("t = {t} s: change point crossed"));
+        let mut text = first_change_lines(passages.collect());
         // Those that the motion came to.
         let is_met = |window: &&SpaceFitWindow| {
             let crossed = steps.windows(2).any(|pair| passage(window, pair).is_some());

@@ -6,6 +6,7 @@
 
 use super::problem::SpaceMotionProblem;
 use crate::explain::StudyError;
+use crate::free_motion::compute::MotionProblem as _;
 use dwell_dynamics::{DynamicsError, Machine, OdeState, Solution, Statistics};
 use dwell_geometry::JointId;
 use dwell_geometry::space::{
@@ -181,7 +182,7 @@ impl SpaceMotionProblem<'_> {
         };
         self.candidates(plan, &pose)
             .into_iter()
-            .find_map(|Candidate { kind, motion }| {
+            .find_map(|(kind, motion)| {
                 let is_fit = |chart: &SpaceMotionProblem<'_>| {
                     chart.is_same(self, motion, &places, from) && chart.goes_on(motion)
                 };
@@ -244,7 +245,7 @@ impl SpaceMotionProblem<'_> {
                     let [value, rate, _] = plan.coordinate(pose, function);
                     let motion = [value, rate];
                     let speed = weight(kind) * rate.abs();
-                    all.push((speed, Candidate { kind, motion }));
+                    all.push((speed, (kind, motion)));
                 }
             }
         }
@@ -328,17 +329,11 @@ impl SpaceMotionProblem<'_> {
         let scene = self.scene();
         let mut all: Vec<Coordinate> = scene.coordinates.iter().map(|c| c.coordinate).collect();
         let signals = scene.loads.iter().map(|load| load.magnitude.signals());
-        let inputs = scene
-            .drives
-            .iter()
-            .map(|drive| drive.kind.input().signals());
-        let signals = signals.chain(inputs);
-        all.extend(signals.flat_map(|of| {
-            let values = of.iter().filter_map(|signal| match signal {
-                Signal::Value(coordinate) => Some(*coordinate),
-                Signal::Time | Signal::Velocity(_) => None,
-            });
-            values.collect::<Vec<_>>()
+        let inputs = scene.drives.iter();
+        let signals = signals.chain(inputs.map(|drive| drive.kind.input().signals()));
+        all.extend(signals.flatten().filter_map(|signal| match signal {
+            Signal::Value(coordinate) => Some(*coordinate),
+            Signal::Time | Signal::Velocity(_) => None,
         }));
         all.extend(scene.loads.iter().filter_map(|load| match load.kind {
             LoadKind::TorsionSpring { joint, .. } => Some(Coordinate::Angle(joint)),
@@ -405,10 +400,7 @@ pub(super) enum NextChart {
 }
 
 /// A coordinate of another joint, its value and its rate.
-struct Candidate {
-    kind: ActuatorKind,
-    motion: [f64; 2],
-}
+type Candidate = (ActuatorKind, [f64; 2]);
 
 /// A plan, and its pose at coordinates, speeds and accelerations.
 fn moved<'p>(plan: &'p Plan, [q, q_dot, q_ddot]: [&[f64]; 3]) -> Option<(&'p Plan, Pose)> {

@@ -21,11 +21,13 @@ use super::trajectory::{
     SpaceEvaluator, all_columns, computed_columns, reject_unknown_variables, space_page,
 };
 use crate::explain::StudyError;
-use crate::free_motion::compute::{MotionSolver, check_times};
+use crate::free_motion::compute::{
+    MotionProblem as _, MotionSolver, check_times, free_trajectory, named_events,
+};
 use crate::progress::{Progress, no_progress};
 use crate::trajectory::compute::{
-    Analysis, ComputedTrajectory, FreeTrajectory, MotionBetweenRows, Quantity, Sampler, SecondRows,
-    Trajectory, TrajectorySample,
+    Analysis, ComputedTrajectory, MotionBetweenRows, Quantity, Sampler, SecondRows,
+    TrajectorySample, extra_columns,
 };
 use dwell_dynamics::Orbit;
 use dwell_findings::RecordedEvent;
@@ -54,11 +56,10 @@ pub fn compute_free_motion_in_space(
 ) -> Result<FreeMotionInSpace, StudyError> {
     let problem = SpaceMotionProblem::new(scene)?.for_solver(solver);
     let SimulatedMotion { run, computed } = problem.simulate(solver, None, progress)?;
-    let events = problem.recorded_events(&run).into_iter();
     let estimated_error = run.accuracy.and_then(|_| problem.largest_error(&run));
     Ok(FreeMotionInSpace {
         computed,
-        events: events.map(|event| (event.t, event.name)).collect(),
+        events: named_events(&problem, &run.motion.parts),
         estimated_error,
     })
 }
@@ -182,22 +183,8 @@ impl SpaceMotionProblem<'_> {
 
     /// The events that happened, with their times.
     fn recorded_events(&self, run: &Run) -> Vec<RecordedEvent> {
-        let event = |occurrence: &dwell_dynamics::EventOccurrence| RecordedEvent {
-            name: self.spec.events[occurrence.event].name.clone(),
-            t: occurrence.state.t,
-        };
-        let contacts = self.contacts();
-        let mut all = Vec::new();
-        for solution in run.motion.solutions() {
-            let changes = contacts.occurrences(0, solution).into_iter();
-            let changes = changes.map(|change| RecordedEvent {
-                name: contacts.name(change.number),
-                t: change.state.t,
-            });
-            all.extend(solution.event_occurrences.iter().map(event).chain(changes));
-        }
-        all.sort_by(|one, other| one.t.total_cmp(&other.t));
-        all
+        let events = named_events(self, &run.motion.parts).into_iter();
+        events.map(|(t, name)| RecordedEvent { name, t }).collect()
     }
 
     /// The rows of a motion.
@@ -208,24 +195,18 @@ impl SpaceMotionProblem<'_> {
         between: Option<MotionBetweenRows<'_>>,
         progress: Progress<'_>,
     ) -> Result<ComputedTrajectory<'static>, StudyError> {
-        let mut evaluators = self.evaluators(motion);
         let (scene, model) = (self.scene(), &self.output_model);
         let end = samples.last().map_or(0.0, |sample| sample.t);
-        let followed = FreeTrajectory {
-            samples,
-            extra_columns: self.extra_columns(),
-            prescribed: self.spec.laws.iter().map(Option::is_some).collect(),
-            charts: Vec::new(),
-        };
+        let period = model.plan().range().period();
+        let computed = (samples, Vec::new(), method_text);
+        let trajectory = free_trajectory(self, computed, (end, period));
         let of_model = (&self.reactions, model.plan());
         let mut all = all_columns(scene, of_model, (Analysis::FreeMotion, true));
-        all.extend(followed.extra_columns.iter().cloned());
+        all.extend(extra_columns(scene, &self.machine));
         // No actuator drives a coordinate that is free.
         let is_free = |i: usize| self.spec.laws[i].is_none();
         all.retain(|c| !matches!(c.quantity, Quantity::ActuatorForce(i) if is_free(i)));
-        let mut trajectory =
-            Trajectory::of_free_motion(model.plan().range().period(), followed, end);
-        method_text.clone_into(&mut trajectory.method_text);
+        let mut evaluators = self.evaluators(motion);
         let of = (&mut evaluators[..], None);
         computed_columns(scene, of_model, (trajectory, all), of, between, progress)
     }

@@ -2,7 +2,7 @@
 
 use super::{SimulatedMotion, SpaceMotionProblem};
 use crate::explain::StudyError;
-use crate::free_motion::compute::MotionSolver;
+use crate::free_motion::compute::{MotionProblem as _, MotionSolver};
 use crate::progress::Progress;
 use crate::space::trajectory::{drawn_positions, figures};
 use crate::trajectory::document::Document;

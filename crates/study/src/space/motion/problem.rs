@@ -1,18 +1,19 @@
 //! The initial value problem of a free motion of a scene in space.
 
 use super::charts::OfChart;
-use crate::explain::{StudyError, missing_section_label, scene_error};
-use crate::free_motion::compute::{MotionSolver, NamedContacts};
+use crate::explain::{StudyError, scene_error};
+use crate::free_motion::compute::{
+    MotionProblem, MotionSolver, compiled_event, motion_to_simulate,
+};
 use crate::machines::MachineScene;
 use crate::space::explain::{explain_position, with_loads};
 use crate::space::prepared::compile;
 use crate::space::trajectory::JointReactions;
-use dwell_dynamics::{DynamicsError, Event, EventKind, Machine, OdeState, Orbit, ReducedState};
+use dwell_dynamics::{DynamicsError, Event, Machine};
 use dwell_kinetostatics::MachineModel as _;
 use dwell_kinetostatics::space::{Coordinate, CoordinateFunction, Model, Reaction};
-use dwell_scene::{EventTrigger, FreeMotionSpec, MotionDuration, SceneLocation, SpaceScene};
+use dwell_scene::{EventTrigger, FreeMotionSpec, NamedEvent, SceneLocation, SpaceScene};
 use std::borrow::Cow;
-use std::num::NonZeroUsize;
 
 /// The tolerance of the fits across change points where an accuracy is required, as a part of it.
 const TOLERANCE_OF_ACCURACY: f64 = 1e-2;
@@ -54,14 +55,7 @@ impl<'a> SpaceMotionProblem<'a> {
         scene: Cow<'a, SpaceScene>,
         sorted: Option<JointReactions>,
     ) -> Result<Self, StudyError> {
-        let Some(spec) = scene.motion.clone() else {
-            return Err(scene_error(
-                &scene,
-                "the scene has no [motion] to simulate",
-                "add [motion] with `initial-velocity`, and `periods` or `duration`",
-                missing_section_label("motion"),
-            ));
-        };
+        let spec = motion_to_simulate(&scene, scene.motion.as_ref())?.clone();
         let (reactions, output_model) = match sorted {
             None => JointReactions::new(&scene)?,
             Some(reactions) => {
@@ -106,11 +100,6 @@ impl<'a> SpaceMotionProblem<'a> {
         self.with_tolerance(tolerance)
     }
 
-    /// Its scene.
-    pub(super) fn scene(&self) -> &SpaceScene {
-        &self.scene
-    }
-
     /// Refuses an event of a reaction that redundant constraints leave open.
     fn require_determined(&self, reactions: &[Reaction]) -> Result<(), StudyError> {
         let mut workspace = self.event_model.workspace();
@@ -144,96 +133,47 @@ impl<'a> SpaceMotionProblem<'a> {
         &self,
         reactions: &[Reaction],
     ) -> Result<Vec<Event<CoordinateFunction>>, StudyError> {
-        let one = |(k, named): (usize, &dwell_scene::NamedEvent<Coordinate, Reaction>)| {
-            let find = |coordinate: Coordinate| {
+        let one = |(k, named): (usize, &NamedEvent<Coordinate, Reaction>)| {
+            let coordinate = |coordinate: Coordinate| {
                 let found = self.event_model.coordinate_function(coordinate);
                 found.map_err(|what| {
                     let message = format!("event `{}` cannot be located: {what}", named.name);
                     let help = "watch the coordinate of an actuator";
-                    scene_error(
-                        self.scene(),
-                        message,
-                        help,
-                        [(SceneLocation::Event(k), "here")],
-                    )
+                    let place = (SceneLocation::Event(k), "here");
+                    scene_error(self.scene(), message, help, [place])
                 })
             };
-            let kind = match named.trigger {
-                EventTrigger::Reaches(c, value) => EventKind::Reaches(find(c)?, value),
-                EventTrigger::Reversal(c) => EventKind::Reversal(find(c)?),
-                EventTrigger::Revolution(c) => EventKind::Revolution(find(c)?),
-                EventTrigger::Reaction(r, value) => {
-                    let index = reactions.iter().position(|&other| other == r);
-                    EventKind::Reaction(index.unwrap_or(0), value)
-                }
+            let reaction = |reaction: Reaction| {
+                let index = reactions.iter().position(|&other| other == reaction);
+                Ok(index.unwrap_or(0))
             };
-            Ok(Event {
-                kind,
-                terminal: named.terminal.then_some(NonZeroUsize::MIN),
-            })
+            compiled_event(named, coordinate, reaction)
         };
         self.spec.events.iter().enumerate().map(one).collect()
     }
+}
 
-    /// The contacts of its machine, whose events are numbered behind those of the scene.
-    pub(super) fn contacts(&self) -> NamedContacts {
-        NamedContacts::new(self.scene(), &self.machine, self.spec.events.len())
+impl MotionProblem for SpaceMotionProblem<'_> {
+    type Scene = SpaceScene;
+
+    fn scene(&self) -> &SpaceScene {
+        &self.scene
     }
 
-    /// The initial state of its machine.
-    pub(super) fn initial_state(&self) -> OdeState {
-        let (q, q_dot) = (
-            &self.spec.initial_coordinates,
-            &self.spec.initial_velocities,
-        );
-        OdeState {
-            t: 0.0,
-            y: self.machine.initial_state(q, q_dot),
-        }
+    fn spec(&self) -> &Spec {
+        &self.spec
     }
 
-    /// The initial state of the first free coordinate.
-    pub(super) fn initial_reduced_state(&self) -> ReducedState {
-        let first = self.machine.free().first().copied().unwrap_or(0);
-        ReducedState {
-            t: 0.0,
-            q: self.spec.initial_coordinates[first],
-            q_dot: self.spec.initial_velocities[first],
-        }
+    fn machine(&self) -> &Machine<Model> {
+        &self.machine
     }
 
-    /// The orbit of a conservative motion of one coordinate.
-    pub(super) fn orbit(&self, speed_factor: f64) -> Result<Orbit, DynamicsError> {
-        let start = self.initial_reduced_state();
-        let q_dot = start.q_dot * speed_factor;
-        Orbit::loaded(&self.machine, ReducedState { q_dot, ..start })
+    fn impact_machine(&self) -> Option<(&Machine<Model>, usize)> {
+        let requested = self.reactions.requested.len();
+        Some((self.impact_machine.as_ref()?, requested))
     }
 
-    /// The duration of the motion, s.
-    pub(super) fn duration(&self) -> Result<f64, StudyError> {
-        let periods = match self.spec.duration {
-            MotionDuration::Seconds(duration) => return Ok(duration),
-            MotionDuration::Periods(periods) => periods,
-        };
-        match self.orbit(1.0) {
-            Ok(orbit) => Ok(periods * orbit.period),
-            Err(DynamicsError::NotConservative { .. }) => Err(scene_error(
-                self.scene(),
-                "the motion is not conservative, so its period is not known in advance",
-                "give a `duration` in s",
-                [(SceneLocation::Duration, "a period is needed")],
-            )),
-            Err(error) => Err(self.explain(&error)),
-        }
-    }
-
-    /// An error of its motion in the names of the scene.
-    pub(super) fn explain(&self, error: &DynamicsError) -> StudyError {
+    fn explain(&self, error: &DynamicsError) -> StudyError {
         MachineScene::explain(self.scene(), &self.output_model, error)
-    }
-
-    /// Whether a coordinate is an angle.
-    pub(super) fn is_angle(&self, actuator: usize) -> bool {
-        self.output_model.is_angle(actuator)
     }
 }

@@ -6,18 +6,16 @@ use super::problem::SpaceMotionProblem;
 use crate::estimate;
 use crate::explain::StudyError;
 use crate::free_motion::compute::{
-    Compared, DEFAULT_SAMPLES, Difference, MotionSolver, TriedMotion, check_sample_interval,
-    find_motion, pair_by_time, reactions_at,
+    Compared, Difference, MotionProblem as _, MotionSolver, TriedMotion, error_of, find_motion,
+    pair_by_time, reactions_at,
 };
-use crate::models::SolverSettings;
 use crate::ranges::extent;
-use crate::trajectory::compute::TrajectorySample;
+use crate::space::prepared::reaction_unit;
 use dwell_dynamics::{
     DynamicsError, Method, ObservedMachine, OdeState, Options, Orbit, Solution, Statistics, solve,
     solve_further, solve_orbit,
 };
 use dwell_findings::Record;
-use dwell_kinetostatics::space::{Component, Reaction};
 use rayon::join;
 
 /// How much earlier than a motion that failed its second run ends, as a part of it.
@@ -40,6 +38,7 @@ pub(crate) struct Run {
 }
 
 /// By free coordinate: its error, and whether that is no result; then the error of the energy as a part of the largest.
+#[derive(Default)]
 pub(super) struct Errors {
     pub(super) coordinates: Vec<f64>,
     pub(super) energy: f64,
@@ -50,23 +49,12 @@ pub(super) struct Errors {
 impl SpaceMotionProblem<'_> {
     /// The motion by a solver over a duration, s.
     pub(super) fn run(&self, solver: &MotionSolver, duration: f64) -> Result<Run, StudyError> {
-        let (MotionSolver::Settings(SolverSettings {
-            sample_interval, ..
-        })
-        | MotionSolver::Accuracy {
-            sample_interval, ..
-        }) = solver;
-        let interval = match *sample_interval {
-            Some(interval) => check_sample_interval(interval, duration)?,
-            None => duration / DEFAULT_SAMPLES,
-        };
+        let interval = solver.sample_interval(duration)?;
         match solver {
             MotionSolver::Settings(settings) => {
                 let options = Options {
-                    atol: settings.atol,
-                    max_step: settings.max_step,
                     sample_interval: Some(interval),
-                    ..Options::new(settings.method, settings.rtol)
+                    ..settings.options()
                 };
                 self.integrated(duration, options, settings.describe())
             }
@@ -232,17 +220,17 @@ impl SpaceMotionProblem<'_> {
 
     /// The motion by the cheapest method whose estimated error keeps an accuracy.
     fn to_accuracy(&self, accuracy: f64, duration: f64, interval: f64) -> Result<Run, StudyError> {
-        let found = find_motion(self, accuracy, duration, interval)?;
-        let remarks = found.remarks(accuracy);
+        let by_method = find_motion(self, accuracy, duration, interval)?;
+        let (remarks, found) = (by_method.remarks(accuracy), by_method.found);
         Ok(Run {
             options: Options {
                 sample_interval: Some(interval),
-                ..Options::new(found.method, found.tolerance)
+                ..Options::new(by_method.method, found.tolerance)
             },
             motion: found.motion,
             second: Some(found.finer),
             orbit: None,
-            method_text: found.method_text,
+            method_text: by_method.method_text,
             accuracy: Some(accuracy),
             found: Some((found.difference, remarks)),
         })
@@ -261,21 +249,12 @@ impl SpaceMotionProblem<'_> {
         let samples = self.samples(&run.motion).ok()?;
         let others = self.samples(run.second.as_ref()?).ok()?;
         let pairs = pair_by_time(&samples, &others);
-        let over = |of: &dyn Fn(&TrajectorySample) -> f64, rounding: f64| {
-            let values = pairs.iter().map(|(a, b)| (of(a), of(b)));
-            let (one, two): (Vec<f64>, Vec<f64>) = values.unzip();
-            estimate::over_motion(&one, &two, rounding)
-        };
-        let mut errors = Errors {
-            coordinates: Vec::new(),
-            energy: 0.0,
-            largest: 0.0,
-        };
+        let mut errors = Errors::default();
         for &i in self.machine.free() {
             let [from, to] = extent(pairs.iter().map(|(a, _)| a.coordinate(i)));
             let rounding =
                 4.0 * f64::EPSILON * from.abs().max(to.abs()) + f64::EPSILON * (to - from);
-            let error = over(&|s| s.coordinate(i), rounding);
+            let error = error_of(&pairs, |s| s.coordinate(i), rounding);
             let relative = match self.is_angle(i) {
                 true => error,
                 false => error / (to - from).max(f64::MIN_POSITIVE),
@@ -289,7 +268,7 @@ impl SpaceMotionProblem<'_> {
             .fold(0.0, f64::max);
         if kinetic > 0.0 {
             let balance = self.balance_index();
-            let drift = over(&|s| s.extra_values[balance], 0.0).max(
+            let drift = error_of(&pairs, |s| s.extra_values[balance], 0.0).max(
                 samples
                     .iter()
                     .map(|s| s.extra_values[balance].abs())
@@ -310,35 +289,19 @@ impl TriedMotion for SpaceMotionProblem<'_> {
         motion.map_err(|error| self.explain(&error))
     }
 
-    /// Machines in space have no table.
-    fn range_for_table(&self, _: &Motion) -> Option<[f64; 2]> {
-        None
-    }
-
-    fn on_table(&self, _: [f64; 2], _: f64, _: &Options) -> Result<Option<Motion>, StudyError> {
-        Ok(None)
-    }
-
     /// Of the reactions, those that are requested and that the loads determine.
     fn difference_of(&self, motions: [&Motion; 2]) -> Result<Difference, StudyError> {
         let explain = |error: DynamicsError| self.explain(&error);
         let [one, two] = motions.map(|motion| self.samples(motion));
         let (one, two) = (one.map_err(explain)?, two.map_err(explain)?);
-        let free = self.machine.free().iter();
-        let unit = |reaction: &Reaction| match reaction.component {
-            Component::Force(..) => "N",
-            Component::Moment(..) => "N m",
-        };
         let requested = &self.reactions.requested;
         let compared = Compared {
             samples: [&one, &two],
             ends: motions.map(Motion::end),
-            free: free.map(|&i| (i, self.is_angle(i))).collect(),
-            balance_index: self.balance_index(),
             size: self.output_model.plan().size(),
-            units: requested.iter().map(unit).collect(),
+            units: requested.iter().map(reaction_unit).collect(),
         };
-        let difference = compared.difference(&|which, sample| {
+        let difference = compared.difference(self, &|which, sample| {
             let problem = motions[which].problem(self, sample.chart);
             let mut all = reactions_at(&problem.output_model, sample)?;
             all.truncate(requested.len());
@@ -353,13 +316,5 @@ impl TriedMotion for SpaceMotionProblem<'_> {
 
     fn reached_end(motion: &Motion) -> bool {
         motion.error().is_none()
-    }
-
-    fn free_coordinates(&self) -> usize {
-        self.machine.free().len()
-    }
-
-    fn too_short(&self) -> StudyError {
-        self.explain(&DynamicsError::DurationTooShort)
     }
 }

@@ -5,39 +5,41 @@ use super::charts::Motion;
 use super::problem::SpaceMotionProblem;
 use super::run::Run;
 #[cfg(feature = "output")]
-use crate::free_motion::compute::first_impulses;
-use crate::free_motion::compute::{motor_values, sliding_at};
-#[cfg(feature = "output")]
-use crate::machines::MachineScene as _;
-#[cfg(feature = "output")]
-use crate::number_format::coordinate_unit;
-use crate::trajectory::compute::{Column, SamplePrecision, TrajectorySample, extra_columns};
+use crate::free_motion::compute::event_table;
+use crate::free_motion::compute::{MotionProblem as _, sample_of, since_start, sliding_at};
+use crate::trajectory::compute::{SamplePrecision, TrajectorySample};
 use dwell_dynamics::{
-    DenseOutput, DynamicsError, MachineOde, MachineWorkspace, OdeState, Options, Sliding,
+    DenseOutput, DynamicsError, MachineOde, MachineWorkspace, OdeState, Options, Sliding, Solution,
     StepControl, integrate,
 };
 #[cfg(feature = "output")]
-use dwell_findings::{Column as TableColumn, Table};
+use dwell_findings::Table;
 use dwell_kinetostatics::space::Model;
 
 impl SpaceMotionProblem<'_> {
     /// Every sample with its accelerations, drive magnitudes and energies.
     pub(super) fn samples(&self, motion: &Motion) -> Result<Vec<TrajectorySample>, DynamicsError> {
+        let all = self.evaluated(motion, |solution| &solution.samples)?;
+        let index = self.balance_index();
+        let initial = all.first().map_or(0.0, |s| s.extra_values[index]);
+        Ok(since_start(all, index, initial))
+    }
+
+    /// Some states of each part of a motion as samples.
+    pub(super) fn evaluated(
+        &self,
+        motion: &Motion,
+        picked: fn(&Solution) -> &[OdeState],
+    ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let mut all = Vec::new();
         for (problem, solution) in motion.parts(self) {
             let mut workspace = problem.machine.workspace();
-            let states = solution.samples.iter();
             // Within the window of a change point no reaction has a value.
-            let states = states.filter(|state| !problem.machine.is_in_fit_window(&state.y));
-            for state in states {
+            let states = picked(solution).iter();
+            for state in states.filter(|state| !problem.machine.is_in_fit_window(&state.y)) {
                 let sliding = sliding_at(solution, state.t);
                 all.push(problem.sample(state, sliding, &mut workspace)?);
             }
-        }
-        self.count_balance_from_start(&mut all);
-        if let [only] = all.as_slice() {
-            // A trajectory needs two samples, even if the motion ends at its start.
-            all.push(only.clone());
         }
         Ok(all)
     }
@@ -49,18 +51,27 @@ impl SpaceMotionProblem<'_> {
         times: &[f64],
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let end = run.motion.end();
-        let [(_, solution)] = &run.motion.parts[..] else {
-            return self.samples_within_steps(run, times, end);
+        let wanted = times.iter().copied().filter(|&t| t < end).chain([end]);
+        let mut workspace = self.machine.workspace();
+        let samples = match &run.motion.parts[..] {
+            [(_, solution)] if !self.machine.has_contacts() => {
+                self.samples_from_start((run, solution), wanted.collect(), &mut workspace)?
+            }
+            _ => self.samples_within_steps(run, wanted)?,
         };
-        if self.machine.has_contacts() {
-            return self.samples_within_steps(run, times, end);
-        }
-        let wanted: Vec<f64> = times
-            .iter()
-            .copied()
-            .filter(|&t| t < end)
-            .chain([end])
-            .collect();
+        let initial = self.sample(&self.initial_state(), None, &mut workspace)?;
+        let index = self.balance_index();
+        Ok(since_start(samples, index, initial.extra_values[index]))
+    }
+
+    /// Those of a motion without change of its coordinate or of contacts: integrated from one to the next.
+    fn samples_from_start(
+        &self,
+        (run, solution): (&Run, &Solution),
+        wanted: Vec<f64>,
+        workspace: &mut MachineWorkspace<f64, Model>,
+    ) -> Result<Vec<TrajectorySample>, DynamicsError> {
+        let end = run.motion.end();
         let mut states = Vec::with_capacity(wanted.len());
         let mut state = self.initial_state();
         let options = Options {
@@ -84,47 +95,26 @@ impl SpaceMotionProblem<'_> {
             }
             states.push(state.clone());
         }
-        let mut workspace = self.machine.workspace();
         states.retain(|state| !self.machine.is_in_fit_window(&state.y));
         let all = states.iter().map(|state| {
             let sliding = sliding_at(solution, state.t);
-            self.sample(state, sliding, &mut workspace)
+            self.sample(state, sliding, workspace)
         });
-        let mut all = all.collect::<Result<Vec<_>, _>>()?;
-        let initial = self.sample(&self.initial_state(), None, &mut workspace)?;
-        let index = self.balance_index();
-        for sample in &mut all {
-            sample.extra_values[index] -= initial.extra_values[index];
-        }
-        if let [only] = all.as_slice() {
-            all.push(only.clone());
-        }
-        Ok(all)
+        all.collect()
     }
 
-    /// The same of a motion with surfaces that come to rest, end stops or several coordinates: from the step before each time.
+    /// Those of a motion with surfaces that come to rest, end stops or several coordinates: from the step before each time.
     fn samples_within_steps(
         &self,
         run: &Run,
-        times: &[f64],
-        end: f64,
+        wanted: impl Iterator<Item = f64>,
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let mut sampler = MotionSampler::new(self, run);
-        let wanted = times.iter().copied().filter(|&t| t < end).chain([end]);
         let sample = |t: f64| match sampler.sample_at(t, SamplePrecision::Exact) {
             None if self.crosses_at(run, t) => None,
             found => Some(found.ok_or(DynamicsError::StepTooSmall { t })),
         };
-        let mut all = wanted.filter_map(sample).collect::<Result<Vec<_>, _>>()?;
-        let initial = self.sample(&self.initial_state(), None, &mut self.machine.workspace())?;
-        let index = self.balance_index();
-        for sample in &mut all {
-            sample.extra_values[index] -= initial.extra_values[index];
-        }
-        if let [only] = all.as_slice() {
-            all.push(only.clone());
-        }
-        Ok(all)
+        wanted.filter_map(sample).collect()
     }
 
     /// A state of the machine with its accelerations, drive magnitudes and energies; with the balance of energies and works in
@@ -135,39 +125,10 @@ impl SpaceMotionProblem<'_> {
         sliding: Option<&Sliding>,
         workspace: &mut MachineWorkspace<f64, Model>,
     ) -> Result<TrajectorySample, DynamicsError> {
-        let machine = &self.machine;
-        let loads = self.scene().loads.len();
-        let state = machine.evaluate(point.t, &point.y, workspace)?;
-        let [kinetic, potential] = state.energy();
-        let works = point.y.get(machine.work_offset()..).unwrap_or_default();
-        let mut extra_values = vec![kinetic, potential];
-        extra_values.extend(works);
-        extra_values.push(kinetic + potential - works.iter().sum::<f64>());
-        extra_values.extend(&point.y[machine.drive_states()]);
-        let motors = (machine, &self.scene().drives[..]);
-        extra_values.extend(motor_values(motors, &state, &point.y));
-        let drives = || loads..loads + machine.drives();
-        let magnitudes = state.magnitudes();
-        let mut sample = TrajectorySample {
-            t: point.t,
-            q: state.q().to_vec(),
-            q_dot: state.q_dot().to_vec(),
-            q_ddot: state.q_ddot().to_vec(),
-            drive_magnitudes: drives()
-                .chain(machine.contact_loads())
-                .map(|load| (load, magnitudes[load]))
-                .collect(),
-            extra_values,
-            ..TrajectorySample::default()
-        };
-        if let Some(sliding) = sliding {
-            let forces = machine.sliding_forces(sliding, point, workspace)?;
-            let given = machine.switching_loads().into_iter();
-            let given = given.filter(|load| *load >= loads);
-            let given = drives().chain(machine.contact_loads()).chain(given);
-            sample.drive_magnitudes = given.map(|load| (load, forces.magnitudes[load])).collect();
-            sample.q_ddot = forces.q_ddot;
-        }
+        let scene = self.scene();
+        let machine = (&self.machine, &scene.drives[..]);
+        let sliding = sliding.map(|of| (of, scene.loads.len()));
+        let mut sample = sample_of(machine, point, sliding, workspace)?;
         if let Some(chart) = self.chart {
             sample.chart = chart.number;
             let at = [&sample.q[..], &sample.q_dot, &sample.q_ddot];
@@ -176,77 +137,20 @@ impl SpaceMotionProblem<'_> {
         Ok(sample)
     }
 
-    /// Makes the balance of energies and works that since the start.
-    fn count_balance_from_start(&self, samples: &mut [TrajectorySample]) {
-        let index = self.balance_index();
-        let initial = samples.first().map_or(0.0, |s| s.extra_values[index]);
-        for sample in samples {
-            sample.extra_values[index] -= initial;
-        }
-    }
-
-    /// Where the error of the energy balance is among the extra values of a sample.
-    pub(super) fn balance_index(&self) -> usize {
-        2 + self.machine.nonconservative_sources().len()
-    }
-
-    /// The columns of the extra values, in their order.
-    pub(super) fn extra_columns(&self) -> Vec<Column> {
-        extra_columns(self.scene(), &self.machine)
-    }
-
-    /// The time of each event, the actuator coordinates and speeds then, and where there are end stops the impulses of the
-    /// requested reactions.
+    /// The events of a motion as a table.
     #[cfg(feature = "output")]
     pub(super) fn event_table(&self, motion: &Motion) -> Table {
-        let mut columns = vec![TableColumn::new("t", "s"), TableColumn::new("event", "")];
-        for (i, actuator) in self.scene().mechanism.actuators.iter().enumerate() {
-            let (name, unit) = (&actuator.name, coordinate_unit(self.is_angle(i)));
-            columns.push(TableColumn::new(name, unit));
-            columns.push(TableColumn::new(
-                format!("{name}.velocity"),
-                format!("{unit}/s"),
-            ));
-        }
-        let impulses = match &self.impact_machine {
-            Some(machine) => self.scene().reaction_columns(machine.model()),
-            None => Vec::new(),
-        };
-        // Behind the requested ones are those that friction needs.
-        let impulses = &impulses[..impulses.len().min(self.reactions.requested.len())];
-        columns.extend(impulses.iter().map(|reaction| {
-            let (name, unit) = (&reaction.name, &reaction.unit);
-            TableColumn::new(format!("{name}.impulse"), format!("{unit} s"))
-        }));
-        let mut events = Vec::new();
-        for (chart, solution) in &motion.parts {
-            let own = solution.event_occurrences.iter();
-            let own = own.map(|o| (o.event + 1, (*chart, o.state.clone()), Vec::new()));
-            let contacts = self.contacts().occurrences(*chart, solution).into_iter();
-            let contacts = contacts.map(|o| (o.number, (o.chart, o.state), o.speed_changes));
-            events.extend(own.chain(contacts));
-        }
-        events.sort_by(|(_, (_, one), _), (_, (_, other), _)| one.t.total_cmp(&other.t));
-        let rows = events.iter().map(|(number, (chart, at), changes)| {
-            let mut row = vec![at.t, *number as f64];
-            let problem = motion.problem(self, *chart);
+        event_table(self, &motion.parts, |event| {
+            let problem = motion.problem(self, event.chart);
             let mut workspace = problem.machine.workspace();
-            if let Ok(sample) = problem.sample(at, None, &mut workspace) {
-                match sample.actuator_coordinate {
-                    Some([q, speed, _]) => row.extend([q, speed]),
-                    None => {
-                        let both = sample.q.iter().zip(&sample.q_dot);
-                        row.extend(both.flat_map(|(q, speed)| [*q, *speed]));
-                    }
+            let sample = problem.sample(&event.state, None, &mut workspace).ok()?;
+            Some(match sample.actuator_coordinate {
+                Some([q, speed, _]) => vec![q, speed],
+                None => {
+                    let both = sample.q.iter().zip(&sample.q_dot);
+                    both.flat_map(|(q, speed)| [*q, *speed]).collect()
                 }
-            }
-            row.resize(columns.len() - impulses.len(), f64::NAN);
-            if let Some(machine) = &self.impact_machine {
-                row.extend(first_impulses(machine, at, (changes, impulses.len())));
-            }
-            row
-        });
-        let rows = rows.collect();
-        Table { columns, rows }
+            })
+        })
     }
 }

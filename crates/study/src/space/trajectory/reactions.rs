@@ -32,7 +32,7 @@ fn components_of_all(joints: usize) -> Vec<Reaction> {
 
 /// The reactions of the model of a trajectory, the requested ones first.
 #[derive(Debug, Clone)]
-pub(crate) struct JointReactions {
+pub struct JointReactions {
     /// The requested ones that the loads determine.
     pub(crate) requested: Vec<Reaction>,
     /// The requested ones that redundant constraints leave open.

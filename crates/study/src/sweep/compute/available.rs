@@ -2,6 +2,7 @@
 
 use crate::former_names;
 use crate::number_format::{coordinate_unit, force_unit};
+use crate::reduce::compute::inertia_units;
 use crate::sweep::compute::motions::NamedUnit;
 use crate::sweep::compute::point::{ResultKind, SweepQuantity};
 
@@ -10,7 +11,7 @@ pub(crate) type IndexedReaction = (usize, String, &'static str);
 
 /// Every quantity of a scene.
 #[derive(Debug, Default)]
-pub struct Available {
+pub(super) struct Available {
     pub(crate) quantities: Vec<SweepQuantity>,
     /// What is said of the scene's assembly.
     pub(crate) notes: String,
@@ -29,10 +30,7 @@ impl Available {
 
     /// Smallest and largest m and ½m′ with their places, and the ends of the range.
     pub(crate) fn add_inertia(&mut self, is_angle: bool) {
-        let [m, half_dm] = match is_angle {
-            true => ["kg m2", "kg m2/rad"],
-            false => ["kg", "kg/m"],
-        };
+        let [m, half_dm] = inertia_units(is_angle);
         let place_unit = coordinate_unit(is_angle);
         for (k, (name, unit)) in [("m", m), ("half_dm", half_dm)].into_iter().enumerate() {
             for (index, end) in [(2 * k, "min"), (2 * k + 1, "max")] {

@@ -1,6 +1,7 @@
 //! An axis of a sweep: one number of the scene over a grid, a list, or at random.
 
 use crate::explain::SweepError;
+use crate::ranges::extent;
 use crate::sweep::compute::{normal, uniform};
 use dwell_scene::SceneFile;
 
@@ -79,13 +80,7 @@ impl Axis {
             VariationKind::Grid { from, to, .. } | VariationKind::Uniform { from, to } => {
                 [*from, *to]
             }
-            VariationKind::Listed(values) => {
-                let min = values.iter().copied().fold(f64::INFINITY, f64::min);
-                [
-                    min,
-                    values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-                ]
-            }
+            VariationKind::Listed(values) => extent(values.iter().copied()),
             VariationKind::Normal { mean, deviation } => [mean - deviation, mean + deviation],
         }
     }

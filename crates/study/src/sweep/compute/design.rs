@@ -66,6 +66,12 @@ impl Design {
         self.axes.iter().any(Axis::is_random)
     }
 
+    /// Values of the axes with their paths.
+    pub(crate) fn assigned(&self, values: &[f64]) -> Vec<(&str, f64)> {
+        let paths = self.axes.iter().map(|axis| axis.path.as_str());
+        paths.zip(values.iter().copied()).collect()
+    }
+
     /// The values of point `k`, by axis, in the scene's units.
     pub(crate) fn values(&self, k: u64) -> Vec<f64> {
         let sample = k % self.samples;

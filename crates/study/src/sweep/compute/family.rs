@@ -120,9 +120,7 @@ fn place(axis: &Axis, nominal: f64, (number, attempt): (usize, usize), displacem
 
 /// A variant as a scene is read.
 fn scene_at(scene: &Scene, design: &Design, values: &[f64]) -> Option<Scene> {
-    let paths = design.axes.iter().map(|axis| axis.path.as_str());
-    let values: Vec<(&str, f64)> = paths.zip(values.iter().copied()).collect();
-    scene.with_values(&values).ok()
+    scene.with_values(&design.assigned(values)).ok()
 }
 
 /// Whether two variants differ in numbers of the mechanism, of the masses and of the start alone, and besides in their loads
@@ -189,10 +187,7 @@ impl VariantFamily {
         let reactions = requested.indices(&free_kinds);
         let model = VariantModel::new(compile_model(&typical, &wanted(&reactions)).ok()?)?;
         let (mut model, mut forces) = (model, None);
-        if [ResultKind::Reaction, ResultKind::ActuatorForce]
-            .into_iter()
-            .any(|kind| requested.includes(kind))
-        {
+        if requested.includes(&[ResultKind::Reaction, ResultKind::ActuatorForce]) {
             let of_family = FamilyForces::new(&typical, requested)?;
             model = of_family.add_to(&model, &wanted(&of_family.reactions))?;
             forces = Some(of_family);

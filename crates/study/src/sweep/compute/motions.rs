@@ -2,76 +2,69 @@
 
 use crate::cycle::compute::{CycleResults, CycleSearch, compute_cycle};
 use crate::explain::StudyError;
-use crate::free_motion::compute::{MotionSolver, compute_free_motion};
 use crate::machines::MachineScene;
 use crate::models::SolverSettings;
 use crate::number_format::{coordinate_unit, force_unit};
-use crate::progress::no_progress;
+use crate::sweep::compute::SweptScene;
 use crate::trajectory::compute::ComputedTrajectory;
-use dwell_kinetostatics::Model;
-use dwell_scene::{Scene, SceneError};
+use dwell_scene::SceneError;
 
 /// A result by its name and unit.
 pub(crate) type NamedUnit = (String, String);
 
 /// What is computed of a column of a motion.
-pub(crate) const STATISTICS: [&str; 4] = ["end", "max_abs", "mean", "rms"];
+const STATISTICS: [&str; 4] = ["end", "max_abs", "mean", "rms"];
 
-/// The columns of a free motion whose results can be swept: coordinates with their speeds, requested reactions, forces and
-/// powers of drives.
-fn motion_columns(scene: &Scene, model: &Model) -> Vec<NamedUnit> {
+/// The columns of a free motion whose results can be swept.
+fn motion_columns<S: SweptScene>(scene: &S, compiled: &S::Compiled) -> Vec<NamedUnit> {
     let mut all: Vec<NamedUnit> = Vec::new();
-    let mechanism = &scene.mechanism;
-    for actuator in &mechanism.actuators {
-        let unit = coordinate_unit(actuator.coordinate().is_angle());
-        all.push((actuator.name.clone(), unit.to_owned()));
-        all.push((format!("{}.velocity", actuator.name), format!("{unit}/s")));
+    for (name, is_angle) in (0..).map_while(|k| scene.actuator(k)) {
+        let unit = coordinate_unit(is_angle);
+        all.push((name.to_owned(), unit.to_owned()));
+        all.push((format!("{name}.velocity"), format!("{unit}/s")));
     }
-    for (k, reaction) in model.reactions().iter().enumerate() {
-        if model.plan().is_determinate(k) && scene.requests.reactions.contains(reaction) {
-            let unit = reaction.component.unit().to_owned();
-            all.push((mechanism.reaction_name(*reaction), unit));
-        }
-    }
-    for drive in &scene.drives {
-        let is_angle = drive.coordinate.is_angle();
-        let kind = if is_angle { "moment" } else { "force" };
-        let force = format!("{}.load_{kind}", drive.name);
-        all.push((force, force_unit(is_angle).to_owned()));
-        all.push((format!("{}.power", drive.name), "W".to_owned()));
-    }
+    let reactions = scene.swept_reactions(compiled).into_iter();
+    all.extend(reactions.map(|(_, name, unit)| (name, unit.to_owned())));
+    all.extend(scene.further_motion_columns());
     all
 }
 
 /// The results of a free motion, in their order.
-pub(crate) fn motion_quantities(scene: &Scene, model: &Model) -> Vec<NamedUnit> {
-    if scene.motion.is_none() {
+pub(crate) fn motion_quantities<S: SweptScene>(
+    scene: &S,
+    compiled: &S::Compiled,
+) -> Vec<NamedUnit> {
+    if !scene.has_motion() {
         return Vec::new();
     }
     let mut all = vec![("motion.end".to_owned(), "s".to_owned())];
-    for (column, unit) in motion_columns(scene, model) {
+    for (column, unit) in motion_columns(scene, compiled) {
         let of_column = STATISTICS.map(|of| (format!("motion.{column}.{of}"), unit.clone()));
         all.extend(of_column);
     }
     all
 }
 
-/// The values of [`motion_quantities`].
+/// The values of [`motion_quantities`], with their names.
 ///
 /// # Errors
 /// [`StudyError`] where there is no motion, or it ends early.
-pub(crate) fn motion_values(scene: &Scene, model: &Model) -> Result<Vec<f64>, StudyError> {
-    let solver = MotionSolver::Settings(SolverSettings::default());
-    let mut motion = compute_free_motion(scene, &solver, &no_progress)?;
-    if let Some(error) = motion.computed.early_stop.take() {
+pub(crate) fn motion_values<S: SweptScene>(
+    scene: &S,
+    compiled: &S::Compiled,
+) -> Result<Vec<(String, f64)>, StudyError> {
+    let mut motion = scene.free_motion()?;
+    if let Some(error) = motion.early_stop.take() {
         return Err(error);
     }
-    let columns = motion_columns(scene, model);
-    statistics(&motion.computed, columns.iter().map(|(name, _)| name))
+    let columns = motion_columns(scene, compiled);
+    let values = statistics(&motion, columns.iter().map(|(name, _)| name))?;
+    let names = motion_quantities(scene, compiled).into_iter();
+    Ok(names.map(|(name, _)| name).zip(values).collect())
 }
 
 /// The end of a motion, s, and of each of some columns the [`STATISTICS`].
-pub(crate) fn statistics<'n>(
+fn statistics<'n>(
     motion: &ComputedTrajectory<'_>,
     names: impl Iterator<Item = &'n String>,
 ) -> Result<Vec<f64>, StudyError> {

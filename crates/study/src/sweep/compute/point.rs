@@ -5,6 +5,7 @@ use crate::former_names;
 use crate::sweep::compute::SweptScene;
 use crate::sweep::compute::available::Available;
 use crate::sweep::compute::extremes::ExtremeValues;
+use crate::sweep::compute::scene_results::{available_quantities, compute_results};
 use crate::trajectory::compute::is_prefix_of;
 use std::collections::BTreeSet;
 
@@ -110,7 +111,7 @@ impl RequestedQuantities {
         let Available {
             mut quantities,
             notes: of_scene,
-        } = scene.available_quantities()?;
+        } = available_quantities(scene)?;
         for request in requests {
             if !quantities.iter().any(|q| q.matches(request)) {
                 let name = request.clone();
@@ -156,15 +157,15 @@ impl RequestedQuantities {
             failed: None,
         };
         let varied = scene.varied(values).map_err(StudyError::from);
-        let done = varied.and_then(|scene| scene.compute_results(self, &mut results));
+        let done = varied.and_then(|scene| compute_results(&scene, self, &mut results));
         let done = done.and_then(|()| results.failed.map_or(Ok(()), Err));
         result.message = done.err().map(|error| first_message(&error));
         result
     }
 
-    /// Whether a quantity of a kind is requested.
-    pub(crate) fn includes(&self, kind: ResultKind) -> bool {
-        self.quantities.iter().any(|q| q.kind == kind)
+    /// Whether a quantity of some kinds is requested.
+    pub(super) fn includes(&self, kinds: &[ResultKind]) -> bool {
+        self.quantities.iter().any(|q| kinds.contains(&q.kind))
     }
 
     /// The indices of the requested quantities of some kinds.
@@ -183,7 +184,13 @@ pub struct Results<'a> {
 }
 
 impl Results<'_> {
-    pub(crate) fn set(&mut self, kind: ResultKind, computed: Result<Vec<f64>, StudyError>) {
+    /// Fills the cells of a kind of quantities with what is computed of each, or notes why there is nothing.
+    fn fill<T>(
+        &mut self,
+        kind: ResultKind,
+        computed: Result<T, StudyError>,
+        of: impl Fn(&T, &SweepQuantity) -> Option<f64>,
+    ) {
         match computed {
             Err(error) => {
                 self.failed.get_or_insert(error);
@@ -191,10 +198,14 @@ impl Results<'_> {
             Ok(values) => {
                 let cells = self.quantities.iter().zip(&mut *self.cells);
                 for (quantity, cell) in cells.filter(|(q, _)| q.kind == kind) {
-                    *cell = values.get(quantity.index).copied().unwrap_or(f64::NAN);
+                    *cell = of(&values, quantity).unwrap_or(f64::NAN);
                 }
             }
         }
+    }
+
+    pub(crate) fn set(&mut self, kind: ResultKind, computed: Result<Vec<f64>, StudyError>) {
+        self.fill(kind, computed, |values, of| values.get(of.index).copied());
     }
 
     /// Values by the names of their quantities: of a kind whose quantities are not the same in every variant.
@@ -203,16 +214,10 @@ impl Results<'_> {
         kind: ResultKind,
         computed: Result<Vec<(String, f64)>, StudyError>,
     ) {
-        match computed {
-            Err(error) => self.set(kind, Err(error)),
-            Ok(values) => {
-                let cells = self.quantities.iter().zip(&mut *self.cells);
-                for (quantity, cell) in cells.filter(|(q, _)| q.kind == kind) {
-                    let named = values.iter().find(|(name, _)| *name == quantity.name);
-                    *cell = named.map_or(f64::NAN, |(_, value)| *value);
-                }
-            }
-        }
+        self.fill(kind, computed, |values, of| {
+            let named = values.iter().find(|(name, _)| *name == of.name);
+            named.map(|(_, value)| *value)
+        });
     }
 
     /// Values with their places.
@@ -221,13 +226,12 @@ impl Results<'_> {
         [values, places]: [ResultKind; 2],
         computed: Result<ExtremeValues, StudyError>,
     ) {
-        match computed {
-            Err(error) => self.set(values, Err(error)),
-            Ok(points) => {
-                self.set(values, Ok(points.iter().map(|[_, value]| *value).collect()));
-                self.set(places, Ok(points.iter().map(|[place, _]| *place).collect()));
-            }
+        if let Ok(points) = &computed {
+            self.set(places, Ok(points.iter().map(|[place, _]| *place).collect()));
         }
+        let value_of_each =
+            |points: ExtremeValues| points.iter().map(|[_, value]| *value).collect();
+        self.set(values, computed.map(value_of_each));
     }
 }
 

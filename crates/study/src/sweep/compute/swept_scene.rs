@@ -1,25 +1,93 @@
 //! A scene whose numbers are varied, for sweeps that know it by what it computes.
 
-use crate::explain::{NamedScene, StudyError};
-use crate::sweep::compute::available::Available;
+use crate::explain::StudyError;
+use crate::machines::MachineScene;
+use crate::sweep::compute::available::IndexedReaction;
+use crate::sweep::compute::extremes::ExtremeValues;
 use crate::sweep::compute::point::Results;
-use crate::sweep::compute::{Design, RequestedQuantities, VariantFamily};
+use crate::sweep::compute::{Design, NamedUnit, RequestedQuantities, VariantFamily};
+use crate::trajectory::compute::{Analysis, ComputedTrajectory};
+use dwell_dynamics::Machine;
 use dwell_scene::SceneError;
 
 /// A scene in the plane or in space whose numbers are varied.
-pub trait SweptScene: NamedScene + Sync + Sized {
-    /// Every quantity that its sections allow.
+pub trait SweptScene: MachineScene + Sync + Sized {
+    /// What all results are computed with.
+    type Compiled;
+
+    /// Compiles it, with the reactions that may be requested.
     ///
     /// # Errors
     /// [`StudyError`] where it cannot be assembled.
-    fn available_quantities(&self) -> Result<Available, StudyError>;
+    fn compiled(&self) -> Result<Self::Compiled, StudyError>;
 
-    /// Computes the requested quantities.
+    /// The model among that.
+    fn model_of(compiled: &Self::Compiled) -> &Self::Model;
+
+    /// What is said of its assembly.
     ///
     /// # Errors
-    /// [`StudyError`] where nothing can be computed; what fails by itself is recorded in the results.
-    fn compute_results(
+    /// [`StudyError`] where it requests what there is not.
+    fn notes(&self, _: &Self::Compiled) -> Result<String, StudyError> {
+        Ok(String::new())
+    }
+
+    /// The requested reactions that are results.
+    fn swept_reactions(&self, compiled: &Self::Compiled) -> Vec<IndexedReaction>;
+
+    /// The analysis for peak forces: along its motion or sweep, or statics over its range.
+    fn analysis_of_peaks(&self) -> Option<Analysis>;
+
+    /// Columns of a free motion whose results can be swept, beside coordinates, their speeds, and reactions.
+    fn further_motion_columns(&self) -> Vec<NamedUnit> {
+        Vec::new()
+    }
+
+    /// Its free motion.
+    ///
+    /// # Errors
+    /// [`StudyError`] where there is none.
+    fn free_motion(&self) -> Result<ComputedTrajectory<'static>, StudyError>;
+
+    /// Its machine, where all coordinates are free.
+    ///
+    /// # Errors
+    /// [`StudyError`] where a load or a drive does not fit it.
+    fn free_machine(&self, _: &Self::Compiled) -> Result<Machine<Self::Model>, StudyError> {
+        self.machine(&[])
+    }
+
+    /// The extremes of m and ½m′ over the range.
+    ///
+    /// # Errors
+    /// [`StudyError`] where a position cannot be reached, or there are several actuators.
+    fn inertia_extremes(&self, compiled: &Self::Compiled) -> Result<ExtremeValues, StudyError>;
+
+    /// Refuses a variant that leaves open a requested reaction.
+    ///
+    /// # Errors
+    /// [`StudyError`] that names the reaction.
+    fn reject_open(&self, _: &Self::Compiled, _: &RequestedQuantities) -> Result<(), StudyError> {
+        Ok(())
+    }
+
+    /// Computes the requested reactions in the free rotation of an energy, J.
+    fn compute_free_reactions(
         &self,
+        compiled: &Self::Compiled,
+        energy: f64,
+        requested: &RequestedQuantities,
+        results: &mut Results<'_>,
+    );
+
+    /// Computes the requested peak forces.
+    ///
+    /// # Errors
+    /// [`StudyError`] where loads do not fit it; what fails later is recorded in the results.
+    fn compute_peaks(
+        &self,
+        compiled: Self::Compiled,
+        analysis: Analysis,
         requested: &RequestedQuantities,
         results: &mut Results<'_>,
     ) -> Result<(), StudyError>;

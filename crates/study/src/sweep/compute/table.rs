@@ -97,38 +97,26 @@ impl RequestedQuantities {
         indices: &[u64],
         done: &mut dyn FnMut(Row),
     ) {
-        let compile = |inputs: &[f64]| {
-            let paths = design.axes.iter().map(|axis| axis.path.as_str());
-            let values: Vec<(&str, f64)> = paths.zip(inputs.iter().copied()).collect();
-            self.evaluate(scene, &values)
-        };
-        let mut inputs: Vec<Vec<f64>> = indices.iter().map(|&k| design.values(k)).collect();
-        let mut finish = |k: usize, inputs: Vec<f64>, values: Option<Vec<f64>>| {
+        let inputs: Vec<Vec<f64>> = indices.iter().map(|&k| design.values(k)).collect();
+        let mut known: Vec<Option<Vec<f64>>> = Vec::with_capacity(indices.len());
+        if let Some(family) = family {
+            let mut keep = |_: usize, found| known.push(found);
+            family.evaluate(&inputs, &self.quantities, &mut keep);
+        }
+        let known = known.into_iter().chain(std::iter::repeat(None));
+        for ((&index, inputs), values) in indices.iter().zip(inputs).zip(known) {
             let result = match values {
                 Some(values) => PointResult {
                     values,
                     message: None,
                 },
-                None => compile(&inputs),
+                None => self.evaluate(scene, &design.assigned(&inputs)),
             };
             done(Row {
-                index: indices[k],
+                index,
                 inputs,
                 result,
             });
-        };
-        let Some(family) = family else {
-            for (k, inputs) in inputs.into_iter().enumerate() {
-                finish(k, inputs, None);
-            }
-            return;
-        };
-        let mut values: Vec<Option<Vec<f64>>> = Vec::with_capacity(indices.len());
-        family.evaluate(&inputs, &self.quantities, &mut |_, found| {
-            values.push(found);
-        });
-        for (k, (inputs, values)) in inputs.drain(..).zip(values).enumerate() {
-            finish(k, inputs, values);
         }
     }
 }

@@ -156,7 +156,6 @@ pub(crate) struct PartFile {
 }
 
 const OTHER_TYPE: PartFault = PartFault::Damaged("a column has another type");
-const OTHER_NUMBERS: PartFault = PartFault::Damaged("the checksum of a column differs");
 
 impl PartFile {
     pub(crate) fn indices(&self) -> Result<Vec<i64>, PartFault> {
@@ -164,10 +163,8 @@ impl PartFile {
             return Err(OTHER_TYPE);
         };
         let indices: Vec<i64> = self.cells(column)?.into_iter().flatten().collect();
-        match of_indices(&indices) == self.checksums[0] {
-            true => Ok(indices),
-            false => Err(OTHER_NUMBERS),
-        }
+        self.check(0, &of_indices(&indices))?;
+        Ok(indices)
     }
 
     pub(crate) fn input(&self, input: usize) -> Result<Vec<f64>, PartFault> {
@@ -184,10 +181,8 @@ impl PartFile {
             return Err(OTHER_TYPE);
         };
         let cells = self.cells(reader)?;
-        match of_numbers(&cells) == self.checksums[column] {
-            true => Ok(cells.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect()),
-            false => Err(OTHER_NUMBERS),
-        }
+        self.check(column, &of_numbers(&cells))?;
+        Ok(cells.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect())
     }
 
     pub(crate) fn messages(&self) -> Result<Vec<Option<String>>, PartFault> {
@@ -198,9 +193,14 @@ impl PartFile {
         let cells = self.cells(reader)?.into_iter();
         let text = |bytes: ByteArray| String::from_utf8_lossy(bytes.data()).into_owned();
         let messages: Vec<Option<String>> = cells.map(|cell| cell.map(text)).collect();
-        match of_messages(messages.iter().map(Option::as_deref)) == self.checksums[column] {
-            true => Ok(messages),
-            false => Err(OTHER_NUMBERS),
+        self.check(column, &of_messages(messages.iter().map(Option::as_deref)))?;
+        Ok(messages)
+    }
+
+    fn check(&self, column: usize, checksum: &str) -> Result<(), PartFault> {
+        match self.checksums[column] == checksum {
+            true => Ok(()),
+            false => Err(PartFault::Damaged("the checksum of a column differs")),
         }
     }
 
@@ -246,36 +246,32 @@ fn write_column<T: DataType>(
 }
 
 fn of_indices(indices: &[i64]) -> String {
-    let mut digest = Sha256::new();
-    for index in indices {
-        digest.update(index.to_le_bytes());
-    }
-    hexadecimal(&digest.finalize())
+    checksum(indices.iter().map(|index| index.to_le_bytes()))
 }
 
 fn of_numbers(cells: &[Option<f64>]) -> String {
-    let mut digest = Sha256::new();
-    for cell in cells {
-        digest.update(cell.unwrap_or(f64::NAN).to_bits().to_le_bytes());
-    }
-    hexadecimal(&digest.finalize())
+    let numbers = cells.iter().map(|cell| cell.unwrap_or(f64::NAN));
+    checksum(numbers.map(|number| number.to_bits().to_le_bytes()))
 }
 
 fn of_messages<'a>(messages: impl Iterator<Item = Option<&'a str>>) -> String {
-    let mut digest = Sha256::new();
-    for message in messages {
-        digest.update(message.map_or(u64::MAX, |m| m.len() as u64).to_le_bytes());
-        digest.update(message.unwrap_or_default());
-    }
-    hexadecimal(&digest.finalize())
+    checksum(messages.map(|message| {
+        let length = message.map_or(u64::MAX, |m| m.len() as u64);
+        [
+            &length.to_le_bytes()[..],
+            message.unwrap_or_default().as_bytes(),
+        ]
+        .concat()
+    }))
 }
 
-/// The first 8 bytes of a hash.
-fn hexadecimal(hash: &[u8]) -> String {
-    hash.iter()
-        .take(8)
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+/// The first 8 bytes of the hash of a column.
+fn checksum(cells: impl Iterator<Item = impl AsRef<[u8]>>) -> String {
+    let mut digest = Sha256::new();
+    cells.for_each(|cell| digest.update(cell));
+    let hash = digest.finalize();
+    let bytes = hash.iter().take(8);
+    bytes.map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Why a part cannot be read.
