@@ -98,7 +98,7 @@ pub(super) fn laws(scenes: &Scenes, scene: &SpaceScene, rows: &Rows) -> Option<F
 pub(super) fn motion(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
     let mut found = Differences::default();
     let Some(times) = rows.columns.get("t") else {
-        found.fail("the file has no time".to_owned());
+        found.fail("the file has no time");
         return found.finding(SPEEDS, "motion");
     };
     let actuators = &scene.mechanism.actuators;
@@ -184,13 +184,9 @@ pub(super) fn default_rows(all: &Rows, others: &Rows) -> Option<Finding> {
     // A motion that ends early has fewer, and one that strikes a stop has those of its impacts besides.
     if others.count == ROWS + 1 {
         let count = all.count as f64;
-        found.add(count - 1001.0, 1001.0, "", || {
-            "the number of rows".to_owned()
-        });
+        found.add(count - 1001.0, 1001.0, "", || "the number of rows");
     }
-    let end = |rows: &Rows| rows.time(rows.count.saturating_sub(1));
-    found.add(end(all) - end(others), end(others), "s", || {
-        "the end".to_owned()
-    });
+    let end = |rows: &Rows| rows.end();
+    found.add(end(all) - end(others), end(others), "s", || "the end");
     found.finding(DEFAULT_ROWS, "simulate")
 }

@@ -17,7 +17,7 @@ pub(super) fn findings(
     program: &Program,
     (claims, scene): (&SpaceClaims<'_>, &SpaceScene),
 ) -> Result<Vec<Finding>, String> {
-    let run = super::run(program, &scene.name, scene.source.inner(), &["check"])?;
+    let run = program.run(&scene.name, scene.source.inner(), &["check"])?;
     let case = claims.case();
     let zero = vec![0.0; scene.mechanism.actuators.len()];
     let dense = DenseSpace::new(
@@ -30,10 +30,8 @@ pub(super) fn findings(
     let dense = dense.map_err(|e| e.to_string())?;
     let mut found = Differences::default();
     let mut says = |what: String| {
-        found.add(0.0, 1.0, "", String::new);
-        if !run.printed.contains(&what) {
-            found.fail(format!("`check` does not say `{what}`"));
-        }
+        let is_said = run.printed.contains(&what);
+        found.require(is_said, || format!("`check` does not say `{what}`"));
     };
     let count = |n: usize, one: &str, many: &str| match n {
         1 => format!("1 {one}"),
@@ -56,11 +54,11 @@ pub(super) fn findings(
         for (joint, determined) in scene.mechanism.joints.iter().zip(&dense.determined) {
             for (end, is) in ends.into_iter().zip(determined) {
                 let name = format!("{}.{end}", joint.name);
-                found.add(0.0, 1.0, "", String::new);
                 // A component that the joint does not transmit is zero, and not a reaction.
-                if said.contains(&name.as_str()) && !is {
-                    found.fail(format!("`check` says that {name} is determined"));
-                }
+                let is_right = *is || !said.contains(&name.as_str());
+                found.require(is_right, || {
+                    format!("`check` says that {name} is determined")
+                });
             }
         }
     }

@@ -57,13 +57,10 @@ pub(super) fn findings(
     let prepared = PreparedSpaceScene::new(scene)?;
     let mut samples = Samples::new(&prepared)?;
     let read = || -> Result<(Rows, Differences), String> {
-        let program =
-            Program::new(program, &format!("{}-reduced", scene.name)).map_err(|e| e.to_string())?;
-        let run = program.run(&scene.name, text, &["reduce", "--points", POINTS]);
-        let run = run.map_err(|e| e.to_string())?;
+        let program = Program::new(program, &format!("{}-reduced", scene.name));
+        let run = program.run(&scene.name, text, &["reduce", "--points", POINTS])?;
         let rows = run.csv("-reduced.csv")?;
-        let contents = program.run(&scene.name, text, &["check"]);
-        let contents = contents.map_err(|e| e.to_string())?;
+        let contents = program.run(&scene.name, text, &["check"])?;
         let summary = contents.json("-check.json")?;
         let coordinate = &scene.mechanism.actuators[0].name;
         let range = range_differences((&summary, &contents.printed), &rows, coordinate);

@@ -4,7 +4,7 @@
 use super::row_forces::MotionReading;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::motion::Motion;
-use crate::written::poses::rows::Rows;
+use crate::written::poses::rows::{Rows, largest};
 
 /// Differences of the columns of motors.
 #[derive(Debug, Default)]
@@ -30,9 +30,7 @@ pub(super) fn motors(motion: &MotionReading, rows: &Rows, file: &str) -> Motors 
                 .fail(format!("{file}: no electrical power of `{}`", drive.name));
             continue;
         };
-        let scale = taken
-            .iter()
-            .fold(0.0_f64, |max, power| max.max(power.abs()));
+        let scale = largest(taken);
         for (row, (taken, efficiency)) in taken.iter().zip(efficiency).enumerate() {
             let Some(state) = Motion::new(&motion.reading, rows, row) else {
                 continue;

@@ -7,7 +7,8 @@ use crate::written::poses::equilibrium::{
 };
 use crate::written::poses::motion::Motion;
 use crate::written::poses::reading::Reading;
-use crate::written::poses::rows::Rows;
+use crate::written::poses::rows::{self, Rows};
+use crate::written::poses::scene_text::table_of;
 use crate::written::poses::wrenches::along;
 
 /// The scene of a motion, read once more.
@@ -37,9 +38,7 @@ pub(crate) struct ComparedRows {
 impl MotionReading {
     /// Reads a scene; why it cannot, in words.
     pub(crate) fn new(text: &str) -> Result<Self, String> {
-        let scene = text
-            .parse()
-            .map_err(|e| format!("the scene is no TOML: {e}"))?;
+        let scene = table_of(text)?;
         let reading = Reading::new(text)?;
         let drives = drives(&scene, &reading)?;
         Ok(Self { reading, drives })
@@ -158,7 +157,7 @@ impl MotionReading {
 fn add_compared(to: &mut Differences, compared: &[(usize, &String, Option<f64>, f64)], file: &str) {
     let largest = |name: &str| {
         let same = compared.iter().filter(|(_, of, ..)| *of == name);
-        same.fold(0.0_f64, |max, (.., value)| max.max(value.abs()))
+        rows::largest(same.map(|(.., value)| value))
     };
     let mut scales: Vec<(&str, f64)> = Vec::new();
     for (row, name, written, expected) in compared {

@@ -1,10 +1,10 @@
 //! `linearise` takes the equilibrium that is nearest to the start. From a start near each equilibrium of the table it must be that one.
 
-use super::modes::number;
 use super::rest::Rest;
 use super::runs::linearise_nearest;
 use super::starts::Start;
 use crate::written::poses::compared::Compared;
+use crate::written::poses::stated::result;
 
 /// A start is so far from its equilibrium, in parts of the distance to the next one.
 const ASIDE: f64 = 0.1;
@@ -55,14 +55,19 @@ fn compare_near(
                 free.name
             )
         };
-        let at = number(&summary, &format!("equilibrium.{}", free.name));
+        let at = result(&summary, &format!("equilibrium.{}", free.name));
         let at = at.ok_or("`linearise` without the place of its equilibrium")?;
-        let again = compared.of("written-rest-again");
-        again.add(at - place[k], free.size.max(place[k].abs()), "", what);
-        let away = number(&summary, &format!("equilibrium.{}.from_start", free.name));
+        compared.add(
+            "written-rest-again",
+            at - place[k],
+            free.size.max(place[k].abs()),
+            "",
+            what,
+        );
+        let away = result(&summary, &format!("equilibrium.{}.from_start", free.name));
         let away = away.ok_or("`linearise` without the distance from the start")?;
-        let nearest = compared.of("written-rest-nearest");
-        nearest.add(
+        compared.add(
+            "written-rest-nearest",
             away - (place[k] - from[k]),
             free.size.max(place[k].abs()),
             "",

@@ -53,9 +53,7 @@ impl Slopes<'_> {
             };
             let place = || format!("{row} at the state itself");
             let scale = scales.get(unit).copied().unwrap_or(0.0);
-            compared
-                .of("written-linear")
-                .add(own - of_row, scale, "", place);
+            compared.add("written-linear", own - of_row, scale, "", place);
         }
         compared.merge("written-linear-equations", base.equations);
         for (changed, column) in self.start.changes() {
@@ -105,7 +103,7 @@ impl Slopes<'_> {
                 };
                 let scale = scales.get(unit).copied().unwrap_or(0.0) / self.size(changed);
                 let place = || format!("{row} by {column}");
-                compared.of(key).add(entry - slope, scale, "", place);
+                compared.add(key, entry - slope, scale, "", place);
             }
         }
         Ok(())

@@ -115,8 +115,20 @@ impl Compared {
         self.of(key).merge(differences);
     }
 
+    /// Adds a difference of a key with its scale.
+    pub(crate) fn add<S: Into<String>>(
+        &mut self,
+        key: &'static str,
+        difference: f64,
+        scale: f64,
+        unit: &'static str,
+        at: impl FnOnce() -> S,
+    ) {
+        self.of(key).add(difference, scale, unit, at);
+    }
+
     /// Something of a key could not be compared.
-    pub(crate) fn fail(&mut self, key: &'static str, reason: String) {
+    pub(crate) fn fail(&mut self, key: &'static str, reason: impl Into<String>) {
         self.of(key).fail(reason);
     }
 

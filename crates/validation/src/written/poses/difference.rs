@@ -26,12 +26,12 @@ pub(crate) struct Texts<'a> {
 
 impl Differences {
     /// Adds a difference with its scale; its place is only composed if it is the worst.
-    pub(crate) fn add(
+    pub(crate) fn add<S: Into<String>>(
         &mut self,
         difference: f64,
         scale: f64,
         unit: &'static str,
-        at: impl FnOnce() -> String,
+        at: impl FnOnce() -> S,
     ) {
         let relative = match difference.abs() {
             0.0 => 0.0,
@@ -40,14 +40,35 @@ impl Differences {
         let is_worse = !self.relative.is_nan() && (relative.is_nan() || relative > self.relative);
         if self.count == 0 || is_worse {
             (self.absolute, self.relative, self.unit) = (difference.abs(), relative, unit);
-            self.worst_at = at();
+            self.worst_at = at().into();
         }
         self.count += 1;
     }
 
+    /// Adds the differences of successive rows, each with its place.
+    pub(crate) fn add_rows(
+        &mut self,
+        differences: impl IntoIterator<Item = f64>,
+        scale: f64,
+        unit: &'static str,
+        at: impl Fn(usize) -> String,
+    ) {
+        for (row, difference) in differences.into_iter().enumerate() {
+            self.add(difference, scale, unit, || at(row));
+        }
+    }
+
     /// Something could not be compared: the finding fails with this reason.
-    pub(crate) fn fail(&mut self, reason: String) {
-        self.failure.get_or_insert(reason);
+    pub(crate) fn fail(&mut self, reason: impl Into<String>) {
+        self.failure.get_or_insert(reason.into());
+    }
+
+    /// Counts what must hold; where it does not, the finding fails.
+    pub(crate) fn require(&mut self, holds: bool, reason: impl FnOnce() -> String) {
+        self.add(0.0, 1.0, "", || "");
+        if !holds {
+            self.fail(reason());
+        }
     }
 
     /// The largest relative difference.

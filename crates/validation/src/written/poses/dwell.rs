@@ -3,32 +3,28 @@
 use super::difference::Differences;
 use super::program::Program;
 use super::rows::Rows;
-use super::stated::{sentence_differences, summary_differences};
-use toml::{Table, Value};
+use super::scene_text::table_of;
+use super::stated::{result, sentence_differences, summary_differences};
+use toml::Value;
 
 /// Runs `kinematics` on a scene that requests a dwell; nothing where it requests none.
 pub(super) fn dwell_differences(program: &Program, scene: &str) -> Result<Differences, String> {
-    let table: Table = scene
-        .parse()
-        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let table = table_of(scene)?;
     let request = table.get("requests").and_then(|r| r.get("dwell"));
     let Some(body) = request.and_then(|r| r.get("body")).and_then(Value::as_str) else {
         return Ok(Differences::default());
     };
-    let run = program
-        .run("dwell", scene, &["kinematics"])
-        .map_err(|e| e.to_string())?;
+    let run = program.run("dwell", scene, &["kinematics"])?;
     let rows = run.csv("-kinematics.csv")?;
     let summary = run.json("-kinematics.json")?;
-    let band = summary["results"]["dwell.relative_band"]["value"].as_f64();
-    let band = band.ok_or("`kinematics` writes no dwell")?;
+    let band = result(&summary, "dwell.relative_band").ok_or("`kinematics` writes no dwell")?;
     let expected =
         numbers(&rows, body, band).ok_or("the rows have no angle of the body that rests")?;
     let expected = expected
         .iter()
         .map(|(name, value)| (name.as_str(), (*value, 1.0)));
     let mut found = summary_differences(&summary, expected, "kinematics");
-    let angle = summary["results"]["dwell.angle"]["value"].as_f64();
+    let angle = result(&summary, "dwell.angle");
     let said = angle.map(|angle| vec![(angle, 1.0), (100.0 * band, 100.0 * band)]);
     let line = [(format!("{body} rests at "), said.unwrap_or_default())];
     // Of an angle in degrees the number is another.

@@ -298,7 +298,7 @@ fn add_sentence(to: &mut Differences, line: &str, summary: &Value, command: &str
 }
 
 /// The value of one in the last printed digit.
-pub(super) fn last_digit(number: &str) -> f64 {
+pub(crate) fn last_digit(number: &str) -> f64 {
     let (digits, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
     let decimals = digits
         .split_once('.')

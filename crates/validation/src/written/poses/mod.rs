@@ -10,7 +10,7 @@
 
 pub(crate) mod angle_table;
 pub(crate) mod closure;
-pub(super) mod compared;
+pub(crate) mod compared;
 mod contents_files;
 mod contents_motions;
 mod described_again;
@@ -59,4 +59,4 @@ pub(super) mod wrenches;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use positions::findings;
+pub(super) use positions::compare;

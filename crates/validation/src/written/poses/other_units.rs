@@ -3,6 +3,7 @@
 
 use super::law::number;
 use super::reading::{JointKind, Measure, Reading};
+use super::scene_text::value_of;
 use super::units::{ANGLES, LENGTHS, MASSES, Units};
 use toml::{Table, Value};
 
@@ -46,12 +47,9 @@ pub(crate) fn in_other_units(scene: &Table, reading: &Reading, system: usize) ->
         ("inertia", &inertia.0),
         ("angle", angle.0),
     ];
-    let units = names.map(|(key, name)| (key.to_owned(), Value::String(name.to_owned())));
+    let units = value_of(names.map(|(key, name)| (key, name.into())));
     let mut changed = scene.clone();
-    changed.insert(
-        "units".to_owned(),
-        Value::Table(units.into_iter().collect()),
-    );
+    changed.insert("units".to_owned(), units);
     factors.convert(&mut changed, reading);
     (changed, names.map(|(_, name)| name).join(", "))
 }

@@ -4,7 +4,7 @@ use super::difference::Differences;
 use super::drawn_laws::DrawnMotion;
 use super::jet::Jet;
 use super::program::Program;
-use super::scene_text::text_of;
+use super::scene_text::{table_of, text_of};
 use super::table_curve::TableCurve;
 use toml::{Table, Value};
 
@@ -24,10 +24,7 @@ pub(super) fn warning_differences(
     program: &Program,
     motion: &DrawnMotion,
 ) -> Result<Differences, String> {
-    let mut scene: Table = motion
-        .text
-        .parse()
-        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let mut scene = table_of(&motion.text)?;
     let mut all = Differences::default();
     let Some(coordinate) = motion.reading.coordinates.first() else {
         return Ok(all);
@@ -43,7 +40,7 @@ pub(super) fn warning_differences(
     let expected = TableCurve::read(law, "spline", [1.0, unit]).and_then(|curve| overshoot(&curve));
     let name = format!("{}-abrupt", motion.name);
     let run = program.run(&name, &text_of(&scene)?, &["kinematics", "--points", "7"]);
-    let printed = printed(&run.map_err(|e| e.to_string())?.messages);
+    let printed = printed(&run?.messages);
     let expected: Vec<Overshoot> = expected
         .filter(|o| o[0] > 100.0 * WARNED_FROM)
         .into_iter()
@@ -82,9 +79,12 @@ pub(super) fn warning_count(scene: &Table, messages: &str) -> Differences {
     let mut expected = 0;
     count(scene, "spline", &mut expected);
     let found = printed(messages).len();
-    all.add(found as f64 - expected as f64, 1.0, "", || {
-        "warnings of splines in `check`".to_owned()
-    });
+    all.add(
+        found as f64 - expected as f64,
+        1.0,
+        "",
+        || "warnings of splines in `check`",
+    );
     all
 }
 

@@ -16,11 +16,9 @@ use super::quotients::quotient_differences;
 use super::rates::rates;
 use super::reading::{JointKind, Reading};
 use super::reduced_files::compare_reduced;
-use super::scene_text::{Draws, requests_everything, text_of};
+use super::scene_text::{Draws, has_motion, requests_everything, table_of, text_of, value_of};
 use super::section_files::compare_sections;
 use super::unit_files::compare_units;
-use dwell_findings::Finding;
-use std::path::Path;
 
 /// The pressure angle of teeth where the scene gives none, rad: 20°.
 const PRESSURE_ANGLE: f64 = 0.349_065_850_398_865_9;
@@ -29,22 +27,12 @@ const OTHER_POINTS: &str = "26";
 /// How far a case without a motion is swept, rad or m.
 const SWEEP: f64 = 0.4;
 
-/// Runs the program at `path` on a case and judges the files. A run that fails is a failed finding.
-pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
-    let mut compared = Compared::default();
-    if let Err(reason) = compare_all(&mut compared, path, name, scene) {
-        compared.fail("written-closure", reason);
-    }
-    compared.findings()
-}
-
-fn compare_all(
+/// Runs the commands about positions on a case and compares their files.
+pub(crate) fn compare(
     compared: &mut Compared,
-    path: &Path,
-    name: &str,
+    program: &Program,
     scene: &str,
 ) -> Result<(), String> {
-    let program = Program::new(path, name).map_err(|e| format!("no folder for the files: {e}"))?;
     let reading = Reading::new(scene)?;
     let mut draws = Draws::of(scene);
     let everything = text_of(&requests_everything(scene)?)?;
@@ -77,29 +65,18 @@ fn compare_all(
 
 /// The scene with a sweep from its assembly on, if it has no motion that forces of inertia follow from.
 fn with_motion(scene: &str, reading: &Reading, draws: &mut Draws) -> Result<String, String> {
-    let mut table: toml::Table = scene
-        .parse()
-        .map_err(|e| format!("the scene is no TOML: {e}"))?;
-    let has_motion = ["prescribed", "coordinate-sweep"]
-        .iter()
-        .any(|key| table.contains_key(*key));
-    if has_motion || reading.actuator_count == 0 {
+    let mut table = table_of(scene)?;
+    if has_motion(&table) || reading.actuator_count == 0 {
         return Ok(scene.to_owned());
     }
     let coordinate = &reading.coordinates[0];
     let unit = reading.unit_of(coordinate.measure);
     let assembly = table.get("assembly").and_then(|a| a.get(&coordinate.name));
     let start = number(assembly).unwrap_or(0.0);
-    let ends = [start, start + SWEEP / unit].map(toml::Value::Float);
-    let speed = toml::Value::Float((1.0 + 3.0 * draws.share()) / unit);
-    let sweep = [
-        (coordinate.name.clone(), toml::Value::Array(ends.to_vec())),
-        ("speed".to_owned(), speed),
-    ];
-    table.insert(
-        "coordinate-sweep".to_owned(),
-        toml::Value::Table(sweep.into_iter().collect()),
-    );
+    let ends = vec![start, start + SWEEP / unit].into();
+    let speed = (1.0 + 3.0 * draws.share()) / unit;
+    let sweep = value_of([(coordinate.name.as_str(), ends), ("speed", speed.into())]);
+    table.insert("coordinate-sweep".to_owned(), sweep);
     text_of(&table)
 }
 
@@ -109,9 +86,7 @@ fn compare_kinematics(
     reading: &Reading,
     scene: &str,
 ) -> Result<(), String> {
-    let run = program
-        .run("kinematics", scene, &["kinematics"])
-        .map_err(|e| e.to_string())?;
+    let run = program.run("kinematics", scene, &["kinematics"])?;
     let rows = run.csv("-kinematics.csv")?;
     add_formats(compared, &run, reading, "kinematics")?;
     let of_movement = movement(&run, reading, &rows)?;
@@ -151,18 +126,14 @@ fn compare_forces(
     scene: &str,
     draws: &mut Draws,
 ) -> Result<(), String> {
-    let has_motion = scene
-        .parse::<toml::Table>()
-        .is_ok_and(|s| s.contains_key("prescribed") || s.contains_key("coordinate-sweep"));
+    let has_motion = has_motion(&table_of(scene)?);
     for command in ["kinetostatics", "statics"] {
         // Without a motion there are no speeds that forces of inertia follow from.
         if !has_motion && (command == "kinetostatics" || reading.actuator_count > 1) {
             continue;
         }
         let points = (61 + draws.below(60)).to_string();
-        let run = program
-            .run(command, scene, &[command, "--points", &points])
-            .map_err(|e| e.to_string())?;
+        let run = program.run(command, scene, &[command, "--points", &points])?;
         let rows = run.npz(&format!("-{command}.npz"))?;
         let of = closure(reading, &rows, command);
         compared.merge("written-closure", of.joints);
@@ -216,9 +187,7 @@ fn with_pressure_angles(scene: &str, reading: &Reading) -> Option<Result<String,
 
 /// Forces of the scene whose teeth have pressure angles.
 fn compare_teeth(compared: &mut Compared, program: &Program, scene: &str) -> Result<(), String> {
-    let run = program
-        .run("teeth", scene, &["kinetostatics", "--points", "37"])
-        .map_err(|e| e.to_string())?;
+    let run = program.run("teeth", scene, &["kinetostatics", "--points", "37"])?;
     let reading = Reading::new(scene)?;
     let rows = run.npz("-kinetostatics.npz")?;
     let forces = equilibrium(&reading, &rows, "teeth", false);
@@ -248,7 +217,7 @@ fn add_other_rows(
     }
     let other = program.run("other-rows", scene, &[command, "--points", OTHER_POINTS]);
     let end = format!("-{command}.json");
-    let other = other.map_err(|e| e.to_string())?.json(&end)?;
+    let other = other?.json(&end)?;
     let same = same_extrema([&run.json(&end)?, &other], command);
     compared.merge("written-extrema-again", same);
     Ok(())

@@ -4,6 +4,7 @@
 use super::angle_table::AngleTable;
 use super::expression::Expression;
 use super::law::{Law, LawUnits, number};
+use super::scene_text::table_of;
 use super::table_curve::TableCurve;
 use super::units::Units;
 use toml::{Table, Value};
@@ -225,9 +226,7 @@ pub(crate) fn entries<'a>(
 impl Reading {
     /// Reads a scene; why it cannot, in words.
     pub(crate) fn new(text: &str) -> Result<Self, String> {
-        let scene: Table = text
-            .parse()
-            .map_err(|e| format!("the scene is no TOML: {e}"))?;
+        let scene = table_of(text)?;
         let units = Units::read(&scene).ok_or("unknown units")?;
         let mut reading = Self {
             units,
@@ -337,6 +336,11 @@ impl Reading {
 
     pub(crate) fn coordinate(&self, name: &str) -> Option<&Coordinate> {
         self.coordinates.iter().find(|c| c.name == name)
+    }
+
+    /// The coordinates that are driven.
+    pub(crate) fn actuators(&self) -> &[Coordinate] {
+        &self.coordinates[..self.actuator_count]
     }
 
     /// The unit of a coordinate in the scene, in SI units.

@@ -43,9 +43,7 @@ pub(crate) fn reduced(reading: &Reading, files: &ReducedFiles<'_>, coordinate: &
         .map(|row| Motion::new(reading, run, row))
         .collect();
     let Some(motions) = motions else {
-        found
-            .sums
-            .fail("a column of a body is missing in the run".to_owned());
+        found.sums.fail("a column of a body is missing in the run");
         return found;
     };
     add_positions(&mut found.sums, rows, run, coordinate);

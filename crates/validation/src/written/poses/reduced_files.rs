@@ -18,7 +18,7 @@ use super::reading::Reading;
 use super::reduced::{ReducedFiles, reduced};
 use super::rows::Rows;
 use super::same_columns::same_columns;
-use super::scene_text::{Draws, text_of};
+use super::scene_text::{Draws, table_of, text_of, value_of, without_forces};
 use super::stated::{Expected, sentence_differences, summary_differences};
 use super::table_file::{table_differences, table_rows};
 use super::variants::calibration_differences;
@@ -34,9 +34,7 @@ pub(crate) fn compare_reduced(
 ) -> Result<(), String> {
     let points = (181 + draws.below(180)).to_string();
     let run = |name: &str, scene: &str, command: &str| {
-        program
-            .run(name, scene, &[command, "--points", &points])
-            .map_err(|e| e.to_string())
+        program.run(name, scene, &[command, "--points", &points])
     };
     let whole_run = run("reduce", everything, "reduce")?;
     let all = whole_run.csv("-reduced.csv")?;
@@ -44,8 +42,7 @@ pub(crate) fn compare_reduced(
     let headings = heading_differences(&file, reading, "reduce");
     compared.merge("written-headings", headings);
     compare_stated(compared, &whole_run, &all)?;
-    let contents = program.run("range", everything, &["check"]);
-    let contents = contents.map_err(|e| e.to_string())?;
+    let contents = program.run("range", everything, &["check"])?;
     let coordinate = &reading.coordinates[0].name;
     let range = range_differences(
         (&contents.json("-check.json")?, &contents.printed),
@@ -76,9 +73,7 @@ pub(crate) fn compare_reduced(
         [0, all.count.saturating_sub(1)].map(|row| all.get(row, coordinate).unwrap_or(f64::NAN));
     compare_laws(compared, program, reading, everything, range, draws)?;
     compare_copies(compared, program, reading, everything, &files)?;
-    let whole: toml::Table = everything
-        .parse()
-        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let whole = table_of(everything)?;
     compared.merge(
         "written-calibration",
         calibration_differences(program, &whole, reading)?,
@@ -128,7 +123,7 @@ fn compare_stated(compared: &mut Compared, run: &Run, rows: &Rows) -> Result<(),
 fn run_sentences(printed: &str, both: [&Rows; 2]) -> Differences {
     let starts = ["run i: speed ", "run ii: acceleration "];
     let lines = starts.into_iter().zip(both).map(|(start, rows)| {
-        let end = rows.time(rows.count.saturating_sub(1));
+        let end = rows.end();
         let columns = rows.columns.len() as f64;
         let numbers = [1.0, end, columns].map(|number| (number, number));
         (start.to_owned(), numbers.to_vec())
@@ -149,8 +144,7 @@ fn compare_peak(
     scene: &str,
     many: &Rows,
 ) -> Result<(), String> {
-    let few = program.run("few", scene, &["reduce", "--points", FEW_POINTS]);
-    let few = few.map_err(|e| e.to_string())?;
+    let few = program.run("few", scene, &["reduce", "--points", FEW_POINTS])?;
     let said = few.printed.lines();
     let line = said
         .map(str::trim)
@@ -248,11 +242,8 @@ fn compare_copies(
             compared.merge("written-table-bodies", of.bodies);
         }
         // Not every mechanism has one, as its format says.
-        Err(e)
-            if ["tables are of driven angles", "no table:"]
-                .iter()
-                .any(|why| e.to_string().contains(why)) => {}
-        Err(e) => compared.fail("written-table", e.to_string()),
+        Err(e) if e.contains("tables are of driven angles") || e.contains("no table:") => {}
+        Err(e) => compared.fail("written-table", e),
     }
     let reaction = reading
         .joints
@@ -278,8 +269,8 @@ fn compare_copies(
                 compared.merge(key, differences(&text, rows, coordinate, &reaction));
             }
             // Not every mechanism has a closed form; then the command says so.
-            Err(e) if e.to_string().contains("closed form") => {}
-            Err(e) => compared.fail("written-code", e.to_string()),
+            Err(e) if e.contains("closed form") => {}
+            Err(e) => compared.fail("written-code", e),
         }
     }
     Ok(())
@@ -323,32 +314,16 @@ fn compare_laws(
 
 /// The mechanism without forces, swept over the positions of a file of `reduce` at unit speed.
 fn swept(scene: &str, reading: &Reading, rows: &Rows) -> Result<String, String> {
-    let mut scene: toml::Table = scene
-        .parse()
-        .map_err(|e| format!("the scene is no TOML: {e}"))?;
-    for section in [
-        "prescribed",
-        "loads",
-        "friction",
-        "drives",
-        "stops",
-        "motion",
-        "calibration",
-    ] {
-        scene.remove(section);
-    }
+    let mut scene = without_forces(scene)?;
     let coordinate = &reading.coordinates[0];
     let unit = reading.unit_of(coordinate.measure);
     let column = rows
         .columns
         .get(&coordinate.name)
         .ok_or("`reduce` has no column of the coordinate")?;
-    let ends = [column.first(), column.last()]
-        .into_iter()
-        .flatten()
-        .map(|q| toml::Value::Float(q / unit));
-    let mut sweep = toml::Table::new();
-    sweep.insert(coordinate.name.clone(), toml::Value::Array(ends.collect()));
-    scene.insert("coordinate-sweep".to_owned(), toml::Value::Table(sweep));
+    let ends = [column.first(), column.last()].into_iter().flatten();
+    let ends: Vec<f64> = ends.map(|q| q / unit).collect();
+    let sweep = value_of([(coordinate.name.as_str(), ends.into())]);
+    scene.insert("coordinate-sweep".to_owned(), sweep);
     text_of(&scene)
 }

@@ -5,7 +5,7 @@ use super::difference::Differences;
 use super::program::Program;
 use super::reading::Reading;
 use super::rows::Rows;
-use super::scene_text::{Draws, text_of};
+use super::scene_text::{Draws, table_of, text_of, value_of};
 use super::sections::{Link, links, sections};
 use super::stated::sentence_differences;
 
@@ -29,9 +29,7 @@ pub(crate) fn compare_sections(
     }
     let arguments = ["kinetostatics", "--points", "37"];
     let scene = requesting_sections(scene, reading, &drawn)?;
-    let run = program
-        .run("sections", &scene, &arguments)
-        .map_err(|e| e.to_string())?;
+    let run = program.run("sections", &scene, &arguments)?;
     let rows = run.csv("-kinetostatics.csv")?;
     let summary = run.json("-kinetostatics.json")?;
     let abscissa = summary["extrema_over"]["name"].as_str().unwrap_or("t");
@@ -66,9 +64,13 @@ pub(crate) fn compare_sections(
         );
         let column = cuts.columns.get("bending").into_iter().flatten();
         let largest = column.fold(0.0_f64, |max, v| max.max(v.abs()));
-        compared
-            .of("written-files")
-            .add(said.abs() - largest, largest, "N m", || name.clone());
+        compared.add(
+            "written-files",
+            said.abs() - largest,
+            largest,
+            "N m",
+            || name.clone(),
+        );
     }
     Ok(())
 }
@@ -140,22 +142,15 @@ fn within(cuts: &Rows, envelope: &Rows, link: &str) -> Differences {
 }
 
 fn requesting_sections(scene: &str, reading: &Reading, drawn: &[Link]) -> Result<String, String> {
-    let mut scene: toml::Table = scene
-        .parse()
-        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let mut scene = table_of(scene)?;
     let request = |link: &Link| {
         let [from, to] = &link.names;
-        let entries = [
-            ("body", &reading.bodies[link.body].name),
-            ("from", from),
-            ("to", to),
-        ];
-        let entry =
-            |(key, value): (&str, &String)| (key.to_owned(), toml::Value::String(value.clone()));
-        toml::Value::Table(entries.into_iter().map(entry).collect())
+        let body = &reading.bodies[link.body].name;
+        let entries = [("body", body), ("from", from), ("to", to)];
+        value_of(entries.map(|(key, value)| (key, value.as_str().into())))
     };
     let requested = toml::Value::Array(drawn.iter().map(request).collect());
-    let requests = toml::Table::from_iter([("sections".to_owned(), requested)]);
-    scene.insert("requests".to_owned(), toml::Value::Table(requests));
+    let requests = value_of([("sections", requested)]);
+    scene.insert("requests".to_owned(), requests);
     text_of(&scene)
 }

@@ -7,7 +7,7 @@ use super::other_units::in_other_units;
 use super::program::Program;
 use super::reading::Reading;
 use super::same_columns::same_columns;
-use super::scene_text::{Draws, text_of};
+use super::scene_text::{Draws, has_motion, table_of, text_of};
 use super::units::LENGTHS;
 
 /// Systems of units in which each case is written again: as many as there are units of length.
@@ -21,12 +21,8 @@ pub(crate) fn compare_units(
     scene: &str,
     draws: &mut Draws,
 ) -> Result<(), String> {
-    let table: toml::Table = scene
-        .parse()
-        .map_err(|e| format!("the scene is no TOML: {e}"))?;
-    let has_motion = ["prescribed", "coordinate-sweep"]
-        .iter()
-        .any(|key| table.contains_key(*key));
+    let table = table_of(scene)?;
+    let has_motion = has_motion(&table);
     let command = if has_motion {
         "kinetostatics"
     } else {
@@ -35,7 +31,7 @@ pub(crate) fn compare_units(
     let file = format!("-{command}.npz");
     let run = |name: &str, scene: &str| {
         let run = program.run(name, scene, &[command, "--points", "31"]);
-        run.map_err(|e| e.to_string())?.npz(&file)
+        run?.npz(&file)
     };
     let expected = run("units", scene)?;
     let first = draws.below(SYSTEMS);

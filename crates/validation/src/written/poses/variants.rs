@@ -62,9 +62,7 @@ pub(crate) fn calibration_differences(
     else {
         return Ok(all);
     };
-    let run = program
-        .run("calibrate", &text_of(scene)?, &["calibrate"])
-        .map_err(|e| e.to_string())?;
+    let run = program.run("calibrate", &text_of(scene)?, &["calibrate"])?;
     let results = &run.json("-calibrate.json")?["results"];
     let number = |name: &str| results[name]["value"].as_f64().unwrap_or(f64::NAN);
     let unit = if key == "mass" {
@@ -74,9 +72,7 @@ pub(crate) fn calibration_differences(
     };
     let changed = with_number(scene, &["bodies", body, key], number(parameter) / unit)
         .ok_or("no such number")?;
-    let run = program
-        .run("calibrated", &text_of(&changed)?, &["reduce"])
-        .map_err(|e| e.to_string())?;
+    let run = program.run("calibrated", &text_of(&changed)?, &["reduce"])?;
     let rows = run.csv("-reduced.csv")?;
     let Some(period) = period(scene, reading, &rows) else {
         return Ok(all);

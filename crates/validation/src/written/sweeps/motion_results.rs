@@ -28,14 +28,12 @@ pub(super) fn motion_differences(
     let [first, second] = mass.values;
     let vary = format!("{}.mass={first:?},{second:?}", mass.body);
     let arguments = ["sweep", "--result", "motion", "--vary", &vary];
-    let run = program.run("sweep-motion", &text_of(scene)?, &arguments);
-    let run = run.map_err(|e| e.to_string())?;
+    let run = program.run("sweep-motion", &text_of(scene)?, &arguments)?;
     // Messages have commas: the database has them in a column of their own.
     let swept = run.sqlite("-sweep.sqlite", "points")?;
     let changed = with_number(scene, &["bodies", mass.body, "mass"], second);
     let changed = changed.ok_or("the body has no mass")?;
-    let single = program.run("point-motion", &text_of(&changed)?, &["simulate"]);
-    let single = single.map_err(|e| e.to_string())?;
+    let single = program.run("point-motion", &text_of(&changed)?, &["simulate"])?;
     let rows = single.csv("-motion.csv")?;
     let summary = single.json("-simulate.json")?;
     for (name, values) in swept
@@ -46,7 +44,7 @@ pub(super) fn motion_differences(
         let value = values.get(1).copied().unwrap_or(f64::NAN);
         let Some((column, what)) = name.trim_start_matches("motion.").rsplit_once('.') else {
             // The end of the motion itself.
-            let end = rows.time(rows.count.saturating_sub(1));
+            let end = rows.end();
             all.add(value - end, end, "", || name.clone());
             continue;
         };
@@ -56,7 +54,7 @@ pub(super) fn motion_differences(
         }
     }
     if all.count == 0 {
-        all.fail("`sweep` has no results of the motion".to_owned());
+        all.fail("`sweep` has no results of the motion");
     }
     Ok(all)
 }
