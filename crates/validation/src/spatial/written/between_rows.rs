@@ -5,7 +5,7 @@ use super::finding;
 use super::scenes::{ROWS, Scenes, sinusoid};
 use crate::written::motions::{simpson, summary_of_rows};
 use crate::written::poses::difference::{Differences, Texts};
-use crate::written::poses::rows::Rows;
+use crate::written::poses::rows::{Rows, largest};
 use dwell_findings::{Check, Finding};
 use dwell_scene::SpaceScene;
 use serde_json::Value;
@@ -105,7 +105,7 @@ pub(super) fn motion(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
     let column = |k: usize, end: &str| rows.columns.get(&format!("{}{end}", actuators[k].name));
     let largest = |end: &str| {
         let all = (0..actuators.len()).filter_map(|k| column(k, end));
-        all.flatten().fold(0.0_f64, |max, v| max.max(v.abs()))
+        largest(all.flatten())
     };
     for (k, actuator) in actuators.iter().enumerate() {
         for [of, rate] in [["", ".velocity"], [".velocity", ".acceleration"]] {
@@ -138,12 +138,10 @@ pub(super) fn again(scene: &SpaceScene, both: [&Rows; 2]) -> Option<Finding> {
             found.fail(format!("{} and {} numbers", one.len(), other.len()));
             continue;
         }
-        let scale = one.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
-        for (i, (a, b)) in one.iter().zip(other).enumerate() {
-            found.add(a - b, scale, "", || {
-                format!("number {i} of coordinates{end}")
-            });
-        }
+        let differences = one.iter().zip(other).map(|(a, b)| a - b);
+        found.add_rows(differences, largest(one), "", |i| {
+            format!("number {i} of coordinates{end}")
+        });
     }
     found.finding(AGAIN, "motion")
 }
@@ -151,23 +149,15 @@ pub(super) fn again(scene: &SpaceScene, both: [&Rows; 2]) -> Option<Finding> {
 /// No row is beyond a rigid stop.
 pub(super) fn stops(scene: &SpaceScene, both: [&Rows; 2]) -> Option<Finding> {
     let mut found = Differences::default();
-    let none = Vec::new();
     for stop in scene.stops.iter().filter(|stop| stop.yielding.is_none()) {
         let coordinate = &scene.mechanism.actuators[stop.actuator.0].name;
         for rows in both {
-            for (row, value) in rows
-                .columns
-                .get(coordinate)
-                .unwrap_or(&none)
-                .iter()
-                .enumerate()
-            {
+            let beyond = rows.column(coordinate).iter().map(|value| {
                 let above = stop.max.map_or(0.0, |max| value - max);
                 let below = stop.min.map_or(0.0, |min| min - value);
-                found.add(above.max(below).max(0.0), 1.0, "", || {
-                    format!("row {row}, {coordinate}")
-                });
-            }
+                above.max(below).max(0.0)
+            });
+            found.add_rows(beyond, 1.0, "", |row| format!("row {row}, {coordinate}"));
         }
     }
     found.finding(STOPS, "motion")

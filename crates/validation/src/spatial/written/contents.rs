@@ -4,6 +4,7 @@
 use super::super::claims::SpaceClaims;
 use crate::written::poses::difference::{Differences, Texts};
 use crate::written::poses::program::Program;
+use crate::written::poses::stated::result;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::{Placement, Vec3};
 use dwell_kinetostatics::MachineModel as _;
@@ -118,9 +119,8 @@ fn masses(summary: &Json, scene: &SpaceScene, places: &[Placement], size: f64) -
     let all = (0..scene.masses.len()).filter(moving);
     let total: f64 = all.clone().map(|body| scene.masses[body].mass).sum();
     let mut add = |name: &str, value: f64, scale: f64, unit: &'static str| {
-        let written = summary["results"][name]["value"].as_f64();
         if total > 0.0 {
-            let difference = written.unwrap_or(f64::NAN) - value;
+            let difference = result(summary, name).unwrap_or(f64::NAN) - value;
             found.add(difference, scale, unit, || name.to_owned());
         }
     };

@@ -8,7 +8,7 @@ use crate::written::motions::simpson;
 use crate::written::poses::difference::{Differences, Texts};
 use crate::written::poses::program::Program;
 use crate::written::poses::range::range_differences;
-use crate::written::poses::rows::Rows;
+use crate::written::poses::rows::{Rows, largest};
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::Magnitude;
 use dwell_kinetostatics::space::LoadKind;
@@ -84,20 +84,17 @@ pub(super) fn findings(
 
 /// m′ = 2·½m′, and V′ = −Σ w F of the loads that have a potential, by Simpson's rule between rows.
 fn slopes(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
-    let column = |name: &str| rows.columns.get(name).cloned().unwrap_or_default();
-    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
-    let q = column(&scene.mechanism.actuators[0].name);
-    let span = q
-        .last()
-        .zip(q.first())
-        .map_or(1.0, |(last, first)| last - first);
+    let q = rows.column(&scene.mechanism.actuators[0].name);
+    let ends = q.last().zip(q.first());
+    let span = ends.map_or(1.0, |(last, first)| last - first);
     let mut found = Differences::default();
     let mut compare = |what: &str, values: &[f64], slope: &[f64]| {
         let scale = largest(values).max(largest(slope) * span.abs());
-        simpson(&mut found, &q, [values, slope], scale, what);
+        simpson(&mut found, q, [values, slope], scale, what);
     };
-    let slope: Vec<f64> = column("half_dm").iter().map(|half| 2.0 * half).collect();
-    compare("m", &column("m"), &slope);
+    let halves = rows.column("half_dm").iter();
+    let slope: Vec<f64> = halves.map(|half| 2.0 * half).collect();
+    compare("m", rows.column("m"), &slope);
     let constant = |load: &dwell_kinetostatics::space::Load| match (&load.kind, &load.magnitude) {
         (LoadKind::Gravity(_), Magnitude::Constant(magnitude)) => Some(*magnitude),
         _ => None,
@@ -107,12 +104,12 @@ fn slopes(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
     if let (Some(weights), true) = (weights, rows.columns.contains_key("V")) {
         let mut slope = vec![0.0; q.len()];
         for (load, magnitude) in scene.loads.iter().zip(weights) {
-            let w = column(&format!("{}.w", load.name));
+            let w = rows.column(&format!("{}.w", load.name));
             for (slope, w) in slope.iter_mut().zip(w) {
                 *slope -= magnitude * w;
             }
         }
-        compare("V", &column("V"), &slope);
+        compare("V", rows.column("V"), &slope);
     }
     found.finding(SLOPES, "reduced.csv")
 }

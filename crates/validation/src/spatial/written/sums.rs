@@ -4,7 +4,7 @@ use super::super::claims::SpaceClaims;
 use super::super::worst::{Comparison, Worst};
 use super::finding;
 use super::states::{Kind, state, vector};
-use crate::written::poses::rows::Rows;
+use crate::written::poses::rows::{Rows, largest};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::{ActuatorKind, Vec3};
 use dwell_kinetostatics::Magnitude;
@@ -60,8 +60,7 @@ pub(super) fn findings(
             let Some(found) = rows.get(row, &name) else {
                 continue;
             };
-            let of_column = rows.columns.get(&name).into_iter().flatten();
-            let largest = of_column.fold(size, |max, v| max.max(v.abs()));
+            let largest = size.max(largest(rows.column(&name)));
             worst.add([found, wanted, largest], "", || {
                 format!("row {row}, {name}")
             });

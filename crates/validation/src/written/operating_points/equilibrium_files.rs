@@ -8,6 +8,7 @@ use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::equilibrium::equilibrium;
 use crate::written::poses::program::{Program, Run};
+use crate::written::poses::rows::{extent, largest};
 use crate::written::poses::scene_text::{text_of, value_of};
 use crate::written::poses::stated::result;
 use serde_json::Value as Json;
@@ -320,11 +321,6 @@ fn static_rows(
     Ok(Some([column(&free.name)?, forces]))
 }
 
-fn extent(values: &[f64]) -> [f64; 2] {
-    let ends = [f64::INFINITY, f64::NEG_INFINITY];
-    values.iter().fold(ends, |[a, b], v| [a.min(*v), b.max(*v)])
-}
-
 /// Where every position is an equilibrium, no row has a force.
 fn add_balanced(
     to: &mut Differences,
@@ -332,7 +328,7 @@ fn add_balanced(
     free: &FreeCoordinate,
     [places, forces]: [&[f64]; 2],
 ) {
-    let largest = forces.iter().fold(0.0_f64, |max, f| max.max(f.abs()));
+    let largest = largest(forces);
     let count = result(summary, "equilibria").unwrap_or(0.0) as usize;
     for k in 1..=count {
         let end = |end: &str| {

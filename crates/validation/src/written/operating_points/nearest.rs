@@ -16,9 +16,8 @@ pub(super) fn compare(rest: &Rest<'_>, compared: &mut Compared) -> Result<(), St
         .collect();
     let places = places.ok_or("an equilibrium without a place")?;
     // Friction holds in whole intervals, and the ends of these are no equilibria of their own; of neutral ones each position is one.
-    let is_neutral = rest.summary["results"]
-        .as_object()
-        .is_some_and(|all| all.keys().any(|key| key.contains(".neutral")));
+    let results = rest.summary["results"].as_object();
+    let is_neutral = results.is_some_and(|all| all.keys().any(|key| key.contains(".neutral")));
     if rest.start.scene.contains_key("friction") || is_neutral {
         return Ok(());
     }

@@ -7,6 +7,7 @@ use super::motion::Motion;
 use super::overshoot::warning_count;
 use super::program::Program;
 use super::reading::{Body, JointKind, Reading};
+use super::rows::extent;
 use super::scene_text::{table_of, text_of, value_of, without_forces};
 use super::stated::{Expected, result, sentence_differences, summary_differences};
 use serde_json::Value;
@@ -230,12 +231,10 @@ impl Contents {
                 [at.x.value(), at.y.value()]
             })
             .collect();
-        let ends = |k: usize| {
-            let of = points.iter().map(|p| p[k]);
-            let low = of.clone().fold(f64::INFINITY, f64::min);
-            of.fold(f64::NEG_INFINITY, f64::max) - low
-        };
-        let size = [ends(0), ends(1)];
+        let size = [0, 1].map(|k| {
+            let [low, high] = extent(points.iter().map(|p| &p[k]));
+            high - low
+        });
         let scale = size[0].max(size[1]).max(reading.size());
         for (name, extent) in ["size.width", "size.height"].into_iter().zip(size) {
             numbers.push((name.to_owned(), extent, scale));

@@ -5,7 +5,7 @@ use super::difference::Differences;
 use super::drawn_laws::DrawnMotion;
 use super::law::{Law, Shape};
 use super::program::Program;
-use super::rows::Rows;
+use super::rows::{Rows, largest};
 use super::scene_text::{table_of, text_of, value_of};
 use toml::{Table, Value};
 
@@ -158,7 +158,7 @@ fn compare(
             all.fail(format!("{}: no column {column}", motion.name));
             continue;
         };
-        let scale = first.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+        let scale = largest(first);
         for row in (0..rows.count).filter(|&row| order == 0 || !is_corner(row)) {
             let other = match how {
                 Description::Same => second[row],

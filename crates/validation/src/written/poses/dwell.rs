@@ -2,7 +2,7 @@
 
 use super::difference::Differences;
 use super::program::Program;
-use super::rows::Rows;
+use super::rows::{Rows, extent};
 use super::scene_text::table_of;
 use super::stated::{result, sentence_differences, summary_differences};
 use toml::Value;
@@ -37,22 +37,18 @@ pub(super) fn dwell_differences(program: &Program, scene: &str) -> Result<Differ
 /// The middle of the angles in the longest window, and where it begins and ends.
 fn numbers(rows: &Rows, body: &str, band: f64) -> Option<Vec<(String, f64)>> {
     let angles = rows.columns.get(&format!("{body}.angle"))?;
-    let ends = |of: &[f64]| {
-        let low = of.iter().copied().fold(f64::INFINITY, f64::min);
-        [low, of.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
-    };
-    let [low, high] = ends(angles);
+    let [low, high] = extent(angles);
     let mut longest = [0, 0];
     for first in 0..angles.len() {
         // A window from here that is longer than the longest one.
         while let Some(window) = angles.get(first..=first + longest[1] - longest[0] + 1)
-            && ends(window)[1] - ends(window)[0] <= band * (high - low)
+            && extent(window)[1] - extent(window)[0] <= band * (high - low)
         {
             longest = [first, first + longest[1] - longest[0] + 1];
         }
     }
     let [first, last] = longest;
-    let [low, high] = ends(&angles[first..=last]);
+    let [low, high] = extent(&angles[first..=last]);
     let mut all = vec![("dwell.angle".to_owned(), 0.5 * (low + high))];
     if let Some(times) = rows.columns.get("t") {
         all.push(("dwell.t.from".to_owned(), times[first]));

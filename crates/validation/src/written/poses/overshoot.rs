@@ -4,6 +4,7 @@ use super::difference::Differences;
 use super::drawn_laws::DrawnMotion;
 use super::jet::Jet;
 use super::program::Program;
+use super::rows::extent;
 use super::scene_text::{table_of, text_of};
 use super::table_curve::TableCurve;
 use toml::{Table, Value};
@@ -121,9 +122,7 @@ fn make_abrupt(law: &mut Table) -> Option<()> {
 /// Where a spline goes farthest beyond the range of its points; none where it stays within.
 fn overshoot(curve: &TableCurve) -> Option<Overshoot> {
     let points = curve.points();
-    let values = points.iter().map(|p| p[1]);
-    let low = values.clone().fold(f64::INFINITY, f64::min);
-    let high = values.fold(f64::NEG_INFINITY, f64::max);
+    let [low, high] = extent(points.iter().map(|p| &p[1]));
     let at = |x: f64| curve.at(Jet([x, 1.0, 0.0])).map(|jet| jet.0);
     let mut farthest: Option<Overshoot> = None;
     for piece in points.windows(2) {

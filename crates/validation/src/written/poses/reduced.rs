@@ -5,7 +5,7 @@ use super::difference::Differences;
 use super::equilibrium::{ForceColumns, add_residuals, body_residuals, written_joint_wrenches};
 use super::motion::Motion;
 use super::reading::{JointKind, Load, LoadKind, Magnitude, Reading};
-use super::rows::Rows;
+use super::rows::{Rows, largest};
 use super::wrenches::Wrench;
 
 /// Differences of a file of `reduce`.
@@ -273,7 +273,6 @@ fn add_slopes(
         return;
     };
     let mut compare = |what: &str, value: &[f64], slope: &[f64]| {
-        let largest = |v: &[f64]| v.iter().fold(0.0, |max: f64, x| max.max(x.abs()));
         let range = q.last().zip(q.first()).map_or(1.0, |(b, a)| b - a);
         let scale = largest(value).max(largest(slope) * range);
         for i in 2..value.len().saturating_sub(2) {

@@ -16,10 +16,10 @@ use super::range::range_differences;
 use super::rates::rates;
 use super::reading::Reading;
 use super::reduced::{ReducedFiles, reduced};
-use super::rows::Rows;
+use super::rows::{Rows, extent, largest};
 use super::same_columns::same_columns;
 use super::scene_text::{Draws, table_of, text_of, value_of, without_forces};
-use super::stated::{Expected, sentence_differences, summary_differences};
+use super::stated::{Expected, result, sentence_differences, summary_differences};
 use super::table_file::{table_differences, table_rows};
 use super::variants::calibration_differences;
 
@@ -186,21 +186,15 @@ const ROUNDING: f64 = 1e-12;
 
 /// Smallest and largest m and ½m′ of the rows, as `reduce` prints them.
 fn printed_extrema(rows: &Rows, summary: &serde_json::Value) -> [(&'static str, [Expected; 2]); 2] {
-    let ends = |name: &str| {
-        let values = rows.columns.get(name).into_iter().flatten();
-        let low = values.clone().copied().fold(f64::INFINITY, f64::min);
-        [low, values.copied().fold(f64::NEG_INFINITY, f64::max)]
-    };
-    let [m, half_dm] = [ends("m"), ends("half_dm")];
-    let largest = |[low, high]: [f64; 2]| low.abs().max(high.abs());
-    let error = summary["results"]["rounding_error.half_dm"]["value"].as_f64();
-    let zero = (ERRORS * error.unwrap_or(0.0)).max(ROUNDING) * largest(m);
-    let half_dm = match largest(half_dm) <= zero {
+    let [m, half_dm] = ["m", "half_dm"].map(|name| extent(rows.column(name)));
+    let error = result(summary, "rounding_error.half_dm");
+    let zero = (ERRORS * error.unwrap_or(0.0)).max(ROUNDING) * largest(&m);
+    let half_dm = match largest(&half_dm) <= zero {
         true => [0.0; 2],
         false => half_dm,
     };
     [("m", m), ("half_dm", half_dm)].map(|(name, ends)| {
-        let scale = largest(ends);
+        let scale = largest(&ends);
         (name, ends.map(|end| (end, scale)))
     })
 }
@@ -317,12 +311,11 @@ fn swept(scene: &str, reading: &Reading, rows: &Rows) -> Result<String, String> 
     let mut scene = without_forces(scene)?;
     let coordinate = &reading.coordinates[0];
     let unit = reading.unit_of(coordinate.measure);
-    let column = rows
-        .columns
-        .get(&coordinate.name)
-        .ok_or("`reduce` has no column of the coordinate")?;
-    let ends = [column.first(), column.last()].into_iter().flatten();
-    let ends: Vec<f64> = ends.map(|q| q / unit).collect();
+    let column = rows.column(&coordinate.name);
+    let (Some(first), Some(last)) = (column.first(), column.last()) else {
+        return Err("`reduce` has no column of the coordinate".to_owned());
+    };
+    let ends = vec![first / unit, last / unit];
     let sweep = value_of([(coordinate.name.as_str(), ends.into())]);
     scene.insert("coordinate-sweep".to_owned(), sweep);
     text_of(&scene)

@@ -4,10 +4,10 @@ use super::compared::Compared;
 use super::difference::Differences;
 use super::program::Program;
 use super::reading::Reading;
-use super::rows::Rows;
+use super::rows::{Rows, largest};
 use super::scene_text::{Draws, table_of, text_of, value_of};
 use super::sections::{Link, links, sections};
-use super::stated::sentence_differences;
+use super::stated::{result, sentence_differences};
 
 /// Links of a case whose internal forces are compared.
 const LINKS: usize = 2;
@@ -40,11 +40,9 @@ pub(crate) fn compare_sections(
             "-kinetostatics-internal-forces-{body}.{from}.{to}.csv"
         ))?;
         let name = format!("{body} from {from} to {to}.bending_moment");
-        let at = summary["results"][format!("{name}.at")]["value"].as_f64();
+        let at = result(&summary, &format!("{name}.at"));
         let is_there = |x: &f64| at.is_some_and(|at| (x - at).abs() <= 1e-12 * (1.0 + at.abs()));
-        let column = rows.columns.get(abscissa);
-        let row = column.and_then(|column| column.iter().position(is_there));
-        let Some(row) = row else {
+        let Some(row) = rows.column(abscissa).iter().position(is_there) else {
             let reason = format!("the largest {name} is at {at:?}, which is no row");
             compared.fail("written-sections", reason);
             continue;
@@ -55,15 +53,12 @@ pub(crate) fn compare_sections(
         let file = format!("-kinetostatics-internal-forces-{body}.{from}.{to}.envelope.csv");
         compared.merge("written-envelope", within(&cuts, &run.csv(&file)?, &name));
         // The largest moment that is printed is one of the cuts.
-        let said = summary["results"][&name]["value"]
-            .as_f64()
-            .unwrap_or(f64::NAN);
+        let said = result(&summary, &name).unwrap_or(f64::NAN);
         compared.merge(
             "written-sentences",
             moment_sentence(&run.printed, [body, from, to], said),
         );
-        let column = cuts.columns.get("bending").into_iter().flatten();
-        let largest = column.fold(0.0_f64, |max, v| max.max(v.abs()));
+        let largest = largest(cuts.column("bending"));
         compared.add(
             "written-files",
             said.abs() - largest,
@@ -96,8 +91,7 @@ fn moment_sentence(printed: &str, [body, from, to]: [&str; 3], said: f64) -> Dif
 /// Every cut is within the envelope of its station, which goes nowhere beyond the largest bending moment.
 fn within(cuts: &Rows, envelope: &Rows, link: &str) -> Differences {
     let mut all = Differences::default();
-    let size = |of: &[f64]| of.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
-    let scale = |name: &str| cuts.columns.get(name).map_or(0.0, |of| size(of));
+    let scale = |name: &str| largest(cuts.column(name));
     let forces = scale("axial").max(scale("shear"));
     for (name, scale) in [
         ("axial", forces),
@@ -110,21 +104,13 @@ fn within(cuts: &Rows, envelope: &Rows, link: &str) -> Differences {
             all.fail(format!("{link}: no envelope of {name}"));
             continue;
         };
-        let stations = envelope
-            .columns
-            .get("station")
-            .into_iter()
-            .flatten()
-            .enumerate();
+        let stations = envelope.column("station");
         for (row, value) in values.iter().enumerate() {
             let at = cuts.get(row, "station").unwrap_or(f64::NAN);
-            let aside = |k: usize| (envelope.get(k, "station").unwrap_or(f64::NAN) - at).abs();
-            let nearest = stations
-                .clone()
-                .map(|(k, _)| k)
-                .min_by(|a, b| aside(*a).total_cmp(&aside(*b)));
+            let aside = |k: &usize| (stations[*k] - at).abs();
+            let nearest = (0..stations.len()).min_by(|a, b| aside(a).total_cmp(&aside(b)));
             // Stations on both sides of a concentrated load are cuts of their own.
-            let Some(k) = nearest.filter(|k| aside(*k) <= 1e-12 * (1.0 + at.abs())) else {
+            let Some(k) = nearest.filter(|k| aside(k) <= 1e-12 * (1.0 + at.abs())) else {
                 continue;
             };
             let beyond = (min[k] - value).max(value - max[k]).max(0.0);
@@ -132,7 +118,7 @@ fn within(cuts: &Rows, envelope: &Rows, link: &str) -> Differences {
         }
         if name == "bending" {
             // Its station need not be one of the envelope, but none of those has a larger one.
-            let beyond = (size(min).max(size(max)) - scale).max(0.0);
+            let beyond = (largest(min).max(largest(max)) - scale).max(0.0);
             all.add(beyond, scale, "N m", || {
                 format!("{link}, the largest bending moment")
             });

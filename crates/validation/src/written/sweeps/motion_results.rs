@@ -3,7 +3,7 @@
 
 use crate::written::poses::difference::Differences;
 use crate::written::poses::program::Program;
-use crate::written::poses::rows::Rows;
+use crate::written::poses::rows::{Rows, largest};
 use crate::written::poses::scene_text::text_of;
 use crate::written::poses::variants::with_number;
 use serde_json::Value;
@@ -63,12 +63,11 @@ pub(super) fn motion_differences(
 fn expected(rows: &Rows, summary: &Value, column: &str, what: &str) -> Option<[f64; 2]> {
     let [values, times] = [column, "t"].map(|name| rows.columns.get(name));
     let (values, times) = (values?, times?);
-    let size = |of: &[f64]| of.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
     let extrema = summary["extrema"].as_array()?.iter();
     let of_column = extrema.filter(|entry| entry["quantity"] == column);
     let ends = of_column.flat_map(|entry| ["min", "max"].map(|end| entry[end]["value"].as_f64()));
     let between: Vec<f64> = ends.flatten().collect();
-    let largest = size(values).max(size(&between));
+    let largest = largest(values.iter().chain(&between));
     // By trapezoids, as the rows are joined in a picture.
     let mean = |of: fn(f64) -> f64| {
         let pieces = (1..values.len())

@@ -2,7 +2,7 @@
 
 use crate::written::poses::difference::Differences;
 use crate::written::poses::rows::Rows;
-use crate::written::poses::stated::{Expected, sentence_differences};
+use crate::written::poses::stated::{Expected, result as number, sentence_differences};
 use serde_json::Value;
 
 /// What the rows say of a result.
@@ -70,7 +70,7 @@ impl Stated {
         rows: &Rows,
         (result, inputs): (&str, &[String]),
     ) {
-        let column = rows.columns.get(result).map_or(&[][..], Vec::as_slice);
+        let column = rows.column(result);
         let Some(found) = Statistics::of(column) else {
             self.summary.fail(format!("the rows have no {result}"));
             return;
@@ -91,7 +91,7 @@ impl Stated {
         }
         for (what, expected, scale) in numbers.iter().chain(&places) {
             let name = format!("{result}.{what}");
-            match summary["results"][&name]["value"].as_f64() {
+            match number(summary, &name) {
                 Some(stated) => self.summary.add(stated - expected, *scale, "", || name),
                 None => self.summary.fail(format!("the summary has no {name}")),
             }

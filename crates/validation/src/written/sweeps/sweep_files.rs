@@ -8,7 +8,7 @@ use crate::written::motions::sentences;
 use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::program::{Program, Run};
-use crate::written::poses::reading::Reading;
+use crate::written::poses::reading::{Body, Reading};
 use crate::written::poses::rows::Rows;
 use crate::written::poses::scene_text::{Draws, requests_everything, text_of};
 use crate::written::poses::variants::{beyond_rows, with_number};
@@ -67,9 +67,8 @@ pub(crate) fn compare(
     let stored = program.run("sweep-parts", &text_of(&everything)?, &arguments)?;
     compared.merge("written-sweep-files", same_files([&run, &stored], &rows)?);
     let summary = run.json("-sweep.json")?;
-    let results = ["m.min", "m.max"].map(|name| rows.columns.get(name));
-    let mut results = results.into_iter().flatten().flatten();
-    let is_whole = results.all(|value| value.is_finite());
+    let mut results = ["m.min", "m.max"].into_iter();
+    let is_whole = results.all(|name| rows.column(name).iter().all(|value| value.is_finite()));
     if is_whole && run.printed.contains("could not be computed completely") {
         let reason = "`sweep` says that points failed, and every row has its numbers";
         compared.fail("written-sweep-sentences", reason.to_owned());
@@ -174,7 +173,7 @@ fn variations(scene: &Table, reading: &Reading, draws: &mut Draws) -> Vec<Variat
     while !bodies.is_empty() && drawn.len() < 3 {
         drawn.push(bodies.swap_remove(draws.below(bodies.len())));
     }
-    let variation = |(k, body): (usize, &crate::written::poses::reading::Body)| {
+    let variation = |(k, body): (usize, &Body)| {
         let nominal = body.mass / reading.units.mass;
         Variation {
             body: body.name.clone(),
