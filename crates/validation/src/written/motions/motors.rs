@@ -36,24 +36,22 @@ pub(super) fn motors(motion: &MotionReading, rows: &Rows, file: &str) -> Motors 
                 continue;
             };
             let place = || format!("{file}, row {row}, `{}`", drive.name);
-            let Some([voltage, current, resistance]) =
-                drive.circuit_values(&motion.reading, rows, row, &state)
-            else {
+            let Some(circuit) = drive.circuit(&state) else {
                 continue;
             };
-            let lost = resistance * current * current;
-            let difference = taken - voltage * current;
+            let lost = circuit.resistance * circuit.current * circuit.current;
+            let difference = taken - circuit.voltage * circuit.current;
             found.electrical.add(difference, scale, "W", place);
-            if let Some(written) = rows.get(row, &format!("{}.current", drive.name)) {
-                let difference = (written - current) * voltage;
+            if let Some(written) = state.get(&format!("{}.current", drive.name)) {
+                let difference = (written - circuit.current) * circuit.voltage;
                 found.electrical.add(difference, scale, "W", place);
             }
             let [_, speed, acceleration] = state.measure(drive.measure).0;
-            let Some(net) = drive.written_force(rows, row) else {
+            let Some(net) = drive.written_force(&state) else {
                 continue;
             };
             // With what accelerates the rotor.
-            let delivered = (net + drive.rotor_inertia() * acceleration) * speed;
+            let delivered = (net + drive.rotor_inertia * acceleration) * speed;
             // None is delivered by a motor that brakes.
             let difference = match delivered > 0.0 {
                 true => efficiency * (delivered + lost) - delivered,

@@ -161,9 +161,9 @@ impl Slopes<'_> {
         let reading = &motion.reading;
         let position = Motion::new(reading, rows, 0)?;
         for drive in &motion.drives {
-            let force = drive.force(reading, rows, 0, &position)?;
+            let force = drive.force(&position)?;
             values.insert(format!("{}.actuator_force", drive.name), force);
-            if let Some(rate) = drive.state_rate(reading, rows, 0, &position) {
+            if let Some(rate) = drive.state_rate(&position) {
                 for state in ["current", "integral"] {
                     values.insert(format!("d({}.{state})/dt", drive.name), rate);
                 }

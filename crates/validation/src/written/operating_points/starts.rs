@@ -50,8 +50,8 @@ impl<'a> Start<'a> {
     }
 
     pub(super) fn is_angle(&self, name: &str) -> bool {
-        let measure = self.motion.reading.coordinate(name).map(|c| &c.measure);
-        measure.is_some_and(|m| matches!(m, crate::written::poses::reading::Measure::Angle(_)))
+        let coordinate = self.motion.reading.coordinate(name);
+        coordinate.is_some_and(|c| c.measure.is_angle())
     }
 
     /// How many drives there are, if the force of each at rest is the same at every coordinate.
@@ -75,11 +75,14 @@ impl<'a> Start<'a> {
         let coordinate = |(k, name): (usize, &String)| {
             let measure = motion.reading.coordinate(name)?.measure;
             let unit = motion.reading.unit_of(measure);
-            let is_angle = matches!(measure, crate::written::poses::reading::Measure::Angle(_));
             Some(FreeCoordinate {
                 name: name.clone(),
                 unit,
-                size: if is_angle { 1.0 } else { motion.reading.size() },
+                size: if measure.is_angle() {
+                    1.0
+                } else {
+                    motion.reading.size()
+                },
                 value: *state.get(k)?,
                 velocity: *state.get(names.len() + k)?,
             })

@@ -7,7 +7,7 @@ use super::motion::Motion;
 use super::overshoot::warning_count;
 use super::program::Program;
 use super::reading::{Body, JointKind, Reading};
-use super::rows::extent;
+use super::rows::{Rows, extent};
 use super::scene_text::{table_of, text_of, value_of, without_forces};
 use super::stated::{Expected, result, sentence_differences, summary_differences};
 use serde_json::Value;
@@ -23,8 +23,9 @@ pub(super) fn contents_differences(
 ) -> Result<[Differences; 3], String> {
     let run = program.run("contents", scene, &["check"])?;
     let summary = run.json("-check.json")?;
-    let start = start_of(program, reading, scene, &summary)?;
-    let expected = Contents::of(reading, &start);
+    let rows = start_of(program, reading, scene, &summary)?;
+    let start = Motion::new(reading, &rows, 0).ok_or("no row of the start")?;
+    let expected = Contents::of(&start);
     let numbers = expected.numbers.iter();
     let numbers = numbers.map(|(name, value, scale)| (name.as_str(), (*value, *scale)));
     let summed = summary_differences(&summary, numbers, "check");
@@ -185,7 +186,7 @@ fn start_of(
     reading: &Reading,
     scene: &str,
     summary: &Value,
-) -> Result<Motion, String> {
+) -> Result<Rows, String> {
     let mut scene = without_forces(scene)?;
     let mut sweep = toml::Table::new();
     for (k, coordinate) in reading.actuators().iter().enumerate() {
@@ -201,8 +202,7 @@ fn start_of(
     }
     scene.insert("coordinate-sweep".to_owned(), sweep.into());
     let run = program.run("start", &text_of(&scene)?, &["kinematics", "--points", "2"])?;
-    let rows = run.csv("-kinematics.csv")?;
-    Motion::new(reading, &rows, 0).ok_or_else(|| "no row of the start".to_owned())
+    run.csv("-kinematics.csv")
 }
 
 /// What a scene has, by its text and the places of its bodies.
@@ -212,25 +212,17 @@ struct Contents {
 }
 
 impl Contents {
-    fn of(reading: &Reading, start: &Motion) -> Self {
-        let moving: Vec<(usize, &Body)> = reading
-            .bodies
-            .iter()
-            .enumerate()
-            .filter(|(_, body)| !body.is_ground)
-            .collect();
+    fn of(start: &Motion<'_>) -> Self {
+        let reading = start.reading;
+        let bodies = reading.bodies.iter().enumerate();
+        let moving: Vec<(usize, &Body)> = bodies.filter(|(_, body)| !body.is_ground).collect();
         let mut numbers = vec![("moving_bodies".to_owned(), moving.len() as f64, 1.0)];
         let mass: f64 = moving.iter().map(|(_, body)| body.mass).sum();
         numbers.push(("mass".to_owned(), mass, mass));
         let joints = reading.joints.iter();
         let joints = joints.filter(|joint| !matches!(joint.kind, JointKind::Coupling { .. }));
-        let points: Vec<[f64; 2]> = joints
-            .flat_map(|joint| joint.places)
-            .map(|place| {
-                let at = start.point(place);
-                [at.x.value(), at.y.value()]
-            })
-            .collect();
+        let places = joints.flat_map(|joint| joint.places);
+        let points: Vec<[f64; 2]> = places.map(|place| start.point(place).order(0)).collect();
         let size = [0, 1].map(|k| {
             let [low, high] = extent(points.iter().map(|p| &p[k]));
             high - low
@@ -242,11 +234,8 @@ impl Contents {
         if mass > 0.0 {
             let mut sums = [0.0; 2];
             for (b, body) in &moving {
-                let center = start.center(reading, *b);
-                sums = [
-                    sums[0] + body.mass * center.x.value(),
-                    sums[1] + body.mass * center.y.value(),
-                ];
+                let center = start.center(*b).order(0);
+                sums = [0, 1].map(|k| sums[k] + body.mass * center[k]);
             }
             for (name, sum) in ["mass.center.x", "mass.center.y"].into_iter().zip(sums) {
                 numbers.push((name.to_owned(), sum / mass, scale));

@@ -14,7 +14,7 @@ use super::movement::movement;
 use super::program::{Program, Run};
 use super::quotients::quotient_differences;
 use super::rates::rates;
-use super::reading::{JointKind, Reading};
+use super::reading::{Joint, JointKind, Reading};
 use super::reduced_files::compare_reduced;
 use super::scene_text::{Draws, has_motion, requests_everything, table_of, text_of, value_of};
 use super::section_files::compare_sections;
@@ -157,23 +157,12 @@ fn compare_forces(
 
 /// The scene with a pressure angle of every pair of teeth; none where it has no teeth, or those have theirs.
 fn with_pressure_angles(scene: &str, reading: &Reading) -> Option<Result<String, String>> {
-    let is_open = |kind: &JointKind| {
-        matches!(
-            kind,
-            JointKind::Gear {
-                pressure_angle: 0.0,
-                ..
-            } | JointKind::Rack {
-                pressure_angle: 0.0,
-                ..
-            }
-        )
-    };
-    let teeth: Vec<&str> = reading
-        .joints
-        .iter()
-        .filter(|j| is_open(&j.kind))
-        .map(|j| j.name.as_str())
+    let has_teeth =
+        |joint: &Joint| matches!(joint.kind, JointKind::Gear { .. } | JointKind::Rack { .. });
+    let joints = reading.joints.iter();
+    let teeth: Vec<&str> = joints
+        .filter(|joint| has_teeth(joint) && joint.pressure_angle == 0.0)
+        .map(|joint| joint.name.as_str())
         .collect();
     let mut table: toml::Table = scene.parse().ok()?;
     let joints = table.get_mut("joints")?.as_table_mut()?;

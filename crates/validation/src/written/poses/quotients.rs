@@ -75,7 +75,7 @@ fn links(reading: &Reading, pin: &Joint) -> Option<[Place; 2]> {
 }
 
 /// The angle between the lines from the pin to the others, from 0 to π rad.
-fn angle(motion: &Motion, pin: &Joint, ends: [Place; 2]) -> f64 {
+fn angle(motion: &Motion<'_>, pin: &Joint, ends: [Place; 2]) -> f64 {
     let line = |k: usize| {
         let [from, to] = [motion.point(pin.places[k]), motion.point(ends[k])];
         [to.x.value() - from.x.value(), to.y.value() - from.y.value()]

@@ -72,6 +72,8 @@ pub(crate) struct Joint {
     pub(crate) kind: JointKind,
     /// Of a coupling both are the origin of the ground.
     pub(crate) places: [Place; 2],
+    /// Of teeth, rad; zero of all others.
+    pub(crate) pressure_angle: f64,
 }
 
 /// The kind of a joint, lengths in m and angles in rad.
@@ -90,12 +92,10 @@ pub(crate) enum JointKind {
     Gear {
         radii: [f64; 2],
         is_internal: bool,
-        pressure_angle: f64,
     },
     Rack {
         axis: [f64; 2],
         radius: f64,
-        pressure_angle: f64,
     },
     Rolling {
         axis: [f64; 2],
@@ -122,6 +122,13 @@ pub(crate) enum Measure {
     Length([Place; 2]),
 }
 
+impl Measure {
+    /// Whether it measures an angle.
+    pub(crate) fn is_angle(self) -> bool {
+        matches!(self, Self::Angle(_))
+    }
+}
+
 /// A named coordinate.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Coordinate {
@@ -146,37 +153,21 @@ pub(crate) enum LoadKind {
         in_body: bool,
         magnitude: Magnitude,
     },
-    Torque {
-        bodies: [usize; 2],
-        magnitude: Magnitude,
-    },
-    PointToPoint {
-        places: [Place; 2],
-        magnitude: Magnitude,
-    },
-    SlideForce {
-        places: [Place; 2],
-        axis: [f64; 2],
-        magnitude: Magnitude,
-    },
+    /// Along a coordinate, of its first body on its second: positive where it makes the coordinate grow.
+    Along(Measure, Source),
+}
+
+/// What the force or moment along a coordinate follows.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Source {
+    Given(Magnitude),
+    /// Stiffness, and the length or angle without a force.
     Spring {
-        places: [Place; 2],
         stiffness: Magnitude,
-        free_length: f64,
+        free: f64,
     },
-    TorsionSpring {
-        bodies: [usize; 2],
-        stiffness: Magnitude,
-        free_angle: f64,
-    },
-    Damper {
-        places: [Place; 2],
-        damping: Magnitude,
-    },
-    RotationalDamper {
-        bodies: [usize; 2],
-        damping: Magnitude,
-    },
+    /// By its damping.
+    Damper(Magnitude),
 }
 
 /// A magnitude in SI units.
@@ -345,9 +336,9 @@ impl Reading {
 
     /// The unit of a coordinate in the scene, in SI units.
     pub(crate) fn unit_of(&self, measure: Measure) -> f64 {
-        match measure {
-            Measure::Angle(_) => self.units.angle,
-            Measure::Travel(..) | Measure::Length(_) => self.units.length,
+        match measure.is_angle() {
+            true => self.units.angle,
+            false => self.units.length,
         }
     }
 
@@ -386,6 +377,7 @@ impl Reading {
                 name: name.clone(),
                 kind,
                 places,
+                pressure_angle: 0.0,
             });
         }
         Ok(())
@@ -445,12 +437,10 @@ impl Reading {
                     .get("internal")
                     .and_then(Value::as_bool)
                     .unwrap_or(false),
-                pressure_angle: angle("pressure-angle"),
             },
             "rack" => JointKind::Rack {
                 axis: axis()?,
                 radius: length("radius")?,
-                pressure_angle: angle("pressure-angle"),
             },
             "rolling" => JointKind::Rolling {
                 axis: axis()?,
@@ -468,6 +458,7 @@ impl Reading {
             },
             kind: kind.clone(),
             places: [places[0], *second],
+            pressure_angle: angle("pressure-angle"),
         };
         (places.len() >= 2).then(|| places[1..].iter().map(joint).collect())
     }
