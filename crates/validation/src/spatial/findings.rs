@@ -7,13 +7,14 @@ use super::reference::Reference;
 use super::reference_poses::ReferencePoses;
 use super::samples::{PASSES, POSITIONS, Pass, Samples};
 use super::states::state_findings;
-use super::worst::{Comparison, Worst};
 use crate::error::ValidationError;
+use crate::written::poses::difference::Differences;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::{Placement, Vec3};
 use dwell_kinetostatics::{Coefficients, ReducedModel as _};
 use dwell_study::PreparedSpaceScene;
 use dwell_study::reduce::compute::ReducedScene as _;
+use dwell_verify::FindingSpec;
 use dwell_verify::space::{DenseSpace, closure_error};
 
 /// Rounding of positions, amplified by the condition of the equations.
@@ -21,102 +22,102 @@ const ROUNDING: &str = "rounding, amplified by the condition of the equations";
 /// The step of differences of m, in rad or sizes of the mechanism.
 const STEP: f64 = 1e-3;
 
-const CLOSURE: Comparison = Comparison {
+const CLOSURE: FindingSpec<'_> = FindingSpec {
     key: "closure",
     check: Check::ConstraintClosure,
     comparison: "points and axes of both bodies of each joint",
     scale: "the size of the mechanism, or one radian",
     tolerance: 1e-12,
-    reason: ROUNDING,
+    tolerance_reason: ROUNDING,
 };
-const ENERGY: Comparison = Comparison {
+const ENERGY: FindingSpec<'_> = FindingSpec {
     key: "m-energy",
     check: Check::KineticEnergy,
     comparison: "m with twice the kinetic energy at unit speed, of velocities by the dense equations",
     scale: "m",
     tolerance: 1e-11,
-    reason: ROUNDING,
+    tolerance_reason: ROUNDING,
 };
-const SLOPE: Comparison = Comparison {
+const SLOPE: FindingSpec<'_> = FindingSpec {
     key: "half-dm-differences",
     check: Check::EnergySlope,
     comparison: "½m′ with differences of m, extrapolated once",
     scale: "the largest m",
     tolerance: 1e-7,
-    reason: "differences of the fourth order",
+    tolerance_reason: "differences of the fourth order",
 };
-const POWER: Comparison = Comparison {
+const POWER: FindingSpec<'_> = FindingSpec {
     key: "half-dm-power",
     check: Check::Power,
     comparison: "½m′ with the power of the inertia forces at unit speed, of motions by the dense equations",
     scale: "the largest m",
     tolerance: 1e-11,
-    reason: ROUNDING,
+    tolerance_reason: ROUNDING,
 };
-const ACTIONS: Comparison = Comparison {
+const ACTIONS: FindingSpec<'_> = FindingSpec {
     key: "dense-actions",
     check: Check::NewtonEuler,
     comparison: "m, ½m′ and the weight's w with the actuator of the dense equations",
     scale: "the largest m, and the largest w",
     tolerance: 1e-11,
-    reason: ROUNDING,
+    tolerance_reason: ROUNDING,
 };
-const REACTIONS: Comparison = Comparison {
+const REACTIONS: FindingSpec<'_> = FindingSpec {
     key: "dense-reactions",
     check: Check::NewtonEuler,
     comparison: "a, b and the weight's c of all determined reactions with the dense equations",
     scale: "the largest force or moment of the pass there, or a thousandth of what the whole mass makes",
     tolerance: 1e-10,
-    reason: ROUNDING,
+    tolerance_reason: ROUNDING,
 };
-const IN_PASSES: Comparison = Comparison {
+const IN_PASSES: FindingSpec<'_> = FindingSpec {
     key: "reduced-passes",
     check: Check::NewtonEuler,
     comparison: "m, ½m′, a and b of the reduced model with the two runs of the mechanism in space",
     scale: "m, and the largest reaction of the run there",
     // Seen: 3.5e-15.
     tolerance: 3e-13,
-    reason: ROUNDING,
+    tolerance_reason: ROUNDING,
 };
-const FORCES: Comparison = Comparison {
+const FORCES: FindingSpec<'_> = FindingSpec {
     key: "newton-force",
     check: Check::NewtonEuler,
     comparison: "forces on each body with its momentum, differenced from positions",
     scale: "the largest force on a body there, or a thousandth of the whole mass at its size",
     tolerance: 1e-6,
-    reason: "second differences of positions, of the fourth order",
+    tolerance_reason: "second differences of positions, of the fourth order",
 };
-const MOMENTS: Comparison = Comparison {
+const MOMENTS: FindingSpec<'_> = FindingSpec {
     key: "euler-moment",
     check: Check::NewtonEuler,
     comparison: "moments on each body with its angular momentum, differenced from positions",
     scale: "the largest moment on a body there, or a thousandth of the whole mass at its size",
     tolerance: 1e-6,
-    reason: "second differences of positions, of the fourth order",
+    tolerance_reason: "second differences of positions, of the fourth order",
 };
-const REFERENCE: Comparison = Comparison {
+const REFERENCE: FindingSpec<'_> = FindingSpec {
     key: "reference-inertia",
     check: Check::ReferenceValues,
     comparison: "m, ½m′ and the weight's w with the reference of 25 digits",
     scale: "the largest of each",
     tolerance: 1e-12,
-    reason: ROUNDING,
+    tolerance_reason: ROUNDING,
 };
-const REFERENCE_REACTIONS: Comparison = Comparison {
+const REFERENCE_REACTIONS: FindingSpec<'_> = FindingSpec {
     key: "reference-reactions",
     check: Check::ReferenceValues,
     comparison: "a, b and the weight's c with the reference of 25 digits",
     scale: "the largest of each",
     tolerance: 1e-12,
-    reason: ROUNDING,
+    tolerance_reason: ROUNDING,
 };
-const DIGITS: Comparison = Comparison {
+const DIGITS: FindingSpec<'_> = FindingSpec {
     key: "rounding",
     check: Check::Rounding,
     comparison: "m, ½m′, a and b with 32-digit arithmetic",
     scale: "the largest of each kind",
     tolerance: 1e-11,
-    reason: ROUNDING,
+    tolerance_reason: ROUNDING,
 };
 
 /// All findings; a reference may be missing.
@@ -186,8 +187,8 @@ fn energy_and_power(
 }
 
 /// Closure, actions, reactions, energy and power at all positions.
-fn against_dense(samples: &mut Samples<'_>) -> Result<[Worst; 5], ValidationError> {
-    let mut worst: [Worst; 5] = Default::default();
+fn against_dense(samples: &mut Samples<'_>) -> Result<[Differences; 5], ValidationError> {
+    let mut worst: [Differences; 5] = Default::default();
     let [closure, actions, reactions, energy, power] = &mut worst;
     // The actuator's actions of each pass, those found and those wanted.
     let mut taus: [Vec<[f64; 2]>; 3] = Default::default();
@@ -206,7 +207,7 @@ fn against_dense(samples: &mut Samples<'_>) -> Result<[Worst; 5], ValidationErro
             });
             if !is_driven {
                 let open = closure_error(joint, &placements);
-                closure.add([open, 0.0, size.max(1.0)], "m or rad", || at(&joint.name));
+                closure.compare([open, 0.0, size.max(1.0)], "m or rad", || at(&joint.name));
             }
         }
         for (pass, taus) in PASSES.into_iter().zip(&mut taus) {
@@ -218,8 +219,8 @@ fn against_dense(samples: &mut Samples<'_>) -> Result<[Worst; 5], ValidationErro
             if pass.q_dot != 0.0 {
                 let inertia = samples.found(q, PASSES[1])?.tau[0];
                 let [doubled, rate] = energy_and_power(samples, &placements, &dense);
-                energy.add([inertia, doubled, doubled], "kg m2", || at("m"));
-                power.add([found.tau[0], rate, doubled], "kg m2/rad", || at("½m′"));
+                energy.compare([inertia, doubled, doubled], "kg m2", || at("m"));
+                power.compare([found.tau[0], rate, doubled], "kg m2/rad", || at("½m′"));
             }
             compare_reactions(
                 samples,
@@ -239,7 +240,7 @@ fn against_dense(samples: &mut Samples<'_>) -> Result<[Worst; 5], ValidationErro
     for ((taus, what), largest) in taus.iter().zip(["½m′", "m", "w"]).zip(scales) {
         for (k, [found, wanted]) in taus.iter().enumerate() {
             let q = samples.q[k];
-            actions.add([*found, *wanted, largest], "", || {
+            actions.compare([*found, *wanted, largest], "", || {
                 format!("q = {q:.4}, {what}")
             });
         }
@@ -252,7 +253,7 @@ fn compare_reactions(
     samples: &Samples<'_>,
     (found, determined): (&[f64], &[bool]),
     (dense, pass): (&DenseSpace, Pass),
-    worst: &mut Worst,
+    worst: &mut Differences,
     at: &impl Fn(&str) -> String,
 ) {
     let wanted = dense.reactions.iter().map(|w| {
@@ -273,15 +274,18 @@ fn compare_reactions(
         let joint = &samples.scene.mechanism.joints[k / 6].name;
         let (kind, axis) = (k % 6 / 3, ["x", "y", "z"][k % 3]);
         let (what, unit) = [("", "N"), ("moment-", "N m")][kind];
-        worst.add([found[k], wanted[k], scales[kind]], unit, || {
+        worst.compare([found[k], wanted[k], scales[kind]], unit, || {
             at(&format!("{joint}.{what}{axis}"))
         });
     }
 }
 
 /// The reduced coefficients, which may come from a planar equivalent, with the passes that the dense equations judge.
-fn against_passes(prepared: &PreparedSpaceScene<'_>, q: &[f64]) -> Result<Worst, ValidationError> {
-    let mut worst = Worst::default();
+fn against_passes(
+    prepared: &PreparedSpaceScene<'_>,
+    q: &[f64],
+) -> Result<Differences, ValidationError> {
+    let mut worst = Differences::default();
     let model = prepared.model.model();
     let (mut workspace, mut found) = (model.workspace(), model.result_buffer());
     let names = prepared.reaction_units();
@@ -293,11 +297,11 @@ fn against_passes(prepared: &PreparedSpaceScene<'_>, q: &[f64]) -> Result<Worst,
                 model.inverse_dynamics(&[q], &rates[0], &rates[1], &mut workspace, &mut found);
             done.map_err(|e| prepared.explain(&e))?;
             let place = |what: &str| format!("q = {q:.4}, {what}");
-            worst.add([action, found.tau[0], at.m], "kg m2", || place("m or ½m′"));
+            worst.compare([action, found.tau[0], at.m], "kg m2", || place("m or ½m′"));
             let wanted = &found.reactions;
             let largest = wanted.iter().fold(0.0_f64, |max, r| max.max(r.abs()));
             for ((name, _), (found, wanted)) in names.iter().zip(reactions.iter().zip(wanted)) {
-                worst.add([*found, *wanted, largest], "", || place(name));
+                worst.compare([*found, *wanted, largest], "", || place(name));
             }
         }
     }
@@ -305,8 +309,8 @@ fn against_passes(prepared: &PreparedSpaceScene<'_>, q: &[f64]) -> Result<Worst,
 }
 
 /// ½m′ by differences of m, and the rounding errors.
-fn by_evaluation(samples: &mut Samples<'_>) -> Result<[Worst; 2], ValidationError> {
-    let mut worst: [Worst; 2] = Default::default();
+fn by_evaluation(samples: &mut Samples<'_>) -> Result<[Differences; 2], ValidationError> {
+    let mut worst: [Differences; 2] = Default::default();
     let prepared = samples.prepared;
     let mut workspace = prepared.model.workspace();
     let mut m_at = |q: f64| prepared.model.inertia(q, &mut workspace).map(|(m, _)| m);
@@ -327,17 +331,17 @@ fn by_evaluation(samples: &mut Samples<'_>) -> Result<[Worst; 2], ValidationErro
         let mut central = |h: f64| Some((m_at(q + h).ok()? - m_at(q - h).ok()?) / (2.0 * h));
         if let (Some(one), Some(two)) = (central(step), central(2.0 * step)) {
             let half = 0.5 * (4.0 * one - two) / 3.0;
-            worst[0].add([at.half_dm, half, m_max], "kg m2/rad", || {
+            worst[0].compare([at.half_dm, half, m_max], "kg m2/rad", || {
                 format!("q = {q:.4}")
             });
         }
         let errors = prepared.rounding_errors(q, at)?;
         let place = |what: &str| format!("q = {q:.4}, {what}");
-        worst[1].add([errors.m, 0.0, m_max], "kg m2", || place("m"));
-        worst[1].add([errors.half_dm, 0.0, m_max], "kg m2/rad", || place("½m′"));
+        worst[1].compare([errors.m, 0.0, m_max], "kg m2", || place("m"));
+        worst[1].compare([errors.half_dm, 0.0, m_max], "kg m2/rad", || place("½m′"));
         for (errors, max, what) in [(&errors.a, a_max, "a"), (&errors.b, b_max, "b")] {
             let error = errors.iter().copied().fold(0.0, f64::max);
-            worst[1].add([error, 0.0, max], "", || place(what));
+            worst[1].compare([error, 0.0, max], "", || place(what));
         }
     }
     Ok(worst)
@@ -347,8 +351,8 @@ fn by_evaluation(samples: &mut Samples<'_>) -> Result<[Worst; 2], ValidationErro
 fn against_reference(
     prepared: &PreparedSpaceScene<'_>,
     reference: &Reference,
-) -> Result<[Worst; 2], ValidationError> {
-    let mut worst: [Worst; 2] = Default::default();
+) -> Result<[Differences; 2], ValidationError> {
+    let mut worst: [Differences; 2] = Default::default();
     let samples: Vec<_> = reference.samples().collect();
     let q: Vec<f64> = samples.iter().filter_map(|s| s.number("q")).collect();
     let found = prepared.coefficients(&q)?;
@@ -376,10 +380,10 @@ fn against_reference(
         let place = |what: &str| format!("q = {:.4}, {what}", q[k]);
         let m = sample.number("m").unwrap_or(f64::NAN);
         let half_dm = sample.number("half_dm").unwrap_or(f64::NAN);
-        worst[0].add([at.m, m, m], "kg m2", || place("m"));
-        worst[0].add([at.half_dm, half_dm, m], "kg m2/rad", || place("½m′"));
+        worst[0].compare([at.m, m, m], "kg m2", || place("m"));
+        worst[0].compare([at.half_dm, half_dm, m], "kg m2/rad", || place("½m′"));
         if let Some(w) = sample.weight() {
-            worst[0].add([column("weight.w", k), w, w_max], "N m", || place("w"));
+            worst[0].compare([column("weight.w", k), w, w_max], "N m", || place("w"));
         }
         for (i, (name, _)) in names.iter().enumerate() {
             let found = [at.a[i], at.b[i], column(&format!("{name}.c.weight"), k)];
@@ -387,7 +391,7 @@ fn against_reference(
             for (j, wanted) in wanted.into_iter().enumerate() {
                 // What the joint cannot transmit there is not in the reference: it is zero.
                 let wanted = wanted.unwrap_or(0.0);
-                worst[1].add([found[j], wanted, scales[j]], "", || place(name));
+                worst[1].compare([found[j], wanted, scales[j]], "", || place(name));
             }
         }
     }

@@ -3,8 +3,8 @@
 use super::claims::SpaceClaims;
 use super::reference::Reference;
 use super::states::{free_accelerations, free_machine, in_units};
-use super::worst::{Comparison, Worst};
 use crate::error::ValidationError;
+use crate::written::poses::difference::Differences;
 use dwell_dynamics::{
     DenseOutput, Machine, MachineOde, Method, OdeState, Options, StepControl, integrate,
 };
@@ -13,6 +13,7 @@ use dwell_geometry::space::BodyMotion;
 use dwell_kinetostatics::space::{LoadKind, Model};
 use dwell_kinetostatics::{MachineModel as _, Magnitude};
 use dwell_scene::{MotionDuration, SpaceScene};
+use dwell_verify::FindingSpec;
 use dwell_verify::space::{DensePose, kinetic_energy, potential_energy};
 
 /// The motion without `[motion]`: its speeds at the assembly, rad/s or fifths of the size per s, and the longest time, s.
@@ -24,32 +25,32 @@ const TIMES: usize = 8;
 pub(super) const TOLERANCE: f64 = 1e-12;
 pub(super) const MAX_STEPS: usize = 20_000;
 
-const EQUATIONS: Comparison = Comparison {
+const EQUATIONS: FindingSpec<'_> = FindingSpec {
     key: "motion-equations",
     check: Check::MultibodyMotion,
     comparison: "the accelerations of a free motion with those of the dense equations",
     scale: "the largest acceleration that one action makes, or the largest squared speed",
     // The largest seen in a case is 9.3e-13.
     tolerance: 5e-11,
-    reason: "rounding, amplified by the condition of the equations and of the inertias",
+    tolerance_reason: "rounding, amplified by the condition of the equations and of the inertias",
 };
-const ENERGY: Comparison = Comparison {
+const ENERGY: FindingSpec<'_> = FindingSpec {
     key: "motion-energy",
     check: Check::Power,
     comparison: "kinetic and potential energy, of placements and dense velocities, with the start's and the work of all other loads",
     scale: "the largest kinetic energy, or the largest change of the potential one",
     // The largest seen in a case is 1.7e-13.
     tolerance: 1e-11,
-    reason: "the tolerance of the integration, 1e-12 for each step",
+    tolerance_reason: "the tolerance of the integration, 1e-12 for each step",
 };
-const REFERENCE: Comparison = Comparison {
+const REFERENCE: FindingSpec<'_> = FindingSpec {
     key: "reference-motion",
     check: Check::ReferenceValues,
     comparison: "the coordinates of the free motion with those of the reference",
     scale: "one radian or the size",
     // The largest seen in a case is 7.1e-15.
     tolerance: 5e-13,
-    reason: "the tolerance of the integration, 1e-12 for each step",
+    tolerance_reason: "the tolerance of the integration, 1e-12 for each step",
 };
 
 /// States of the machine at ascending times, as far as the motion goes.
@@ -128,7 +129,7 @@ pub(super) fn motion_findings(
     if !wanted.is_empty() {
         let times: Vec<f64> = wanted.iter().map(|(t, _)| *t).collect();
         let found = states_at(&machine, &y, &times).unwrap_or_default();
-        let mut worst = Worst::default();
+        let mut worst = Differences::default();
         for (k, (t, wanted)) in wanted.iter().enumerate() {
             for (i, wanted) in wanted.iter().enumerate() {
                 let found = found.get(k).map_or(f64::NAN, |state| state.y[i]);
@@ -136,7 +137,7 @@ pub(super) fn motion_findings(
                 let unit = if is_angle { 1.0 } else { claims.case().size };
                 let name = &scene.mechanism.actuators[i].name;
                 let of = if is_angle { "rad" } else { "m" };
-                worst.add([found, *wanted, unit], of, || format!("t = {t} s, {name}"));
+                worst.compare([found, *wanted, unit], of, || format!("t = {t} s, {name}"));
             }
         }
         let domain = format!("{} times of the reference", wanted.len());
@@ -146,8 +147,12 @@ pub(super) fn motion_findings(
 }
 
 /// Accelerations and energies along a motion.
-fn along(claims: &SpaceClaims<'_>, machine: &Machine<Model>, states: &[OdeState]) -> [Worst; 2] {
-    let [mut equations, mut energy] = [Worst::default(), Worst::default()];
+fn along(
+    claims: &SpaceClaims<'_>,
+    machine: &Machine<Model>,
+    states: &[OdeState],
+) -> [Differences; 2] {
+    let [mut equations, mut energy] = <[Differences; 2]>::default();
     let mut energies: Vec<[f64; 3]> = Vec::new();
     let n = claims.model().plan().actuators();
     for OdeState { t, y } in states {
@@ -157,7 +162,7 @@ fn along(claims: &SpaceClaims<'_>, machine: &Machine<Model>, states: &[OdeState]
             Some((found, dense))
         });
         let Some((found, dense)) = judged else {
-            equations.add([f64::NAN, 0.0, 1.0], "", || format!("t = {t} s"));
+            equations.compare([f64::NAN, 0.0, 1.0], "", || format!("t = {t} s"));
             continue;
         };
         // Those of speeds may cancel.
@@ -169,7 +174,7 @@ fn along(claims: &SpaceClaims<'_>, machine: &Machine<Model>, states: &[OdeState]
         let scale = speeds.fold(dense.scale, f64::max);
         for (k, (found, wanted)) in found.iter().zip(&dense.accelerations).enumerate() {
             let name = &claims.case().mechanism.actuators[k].name;
-            equations.add([*found, *wanted, scale], "1/s2", || {
+            equations.compare([*found, *wanted, scale], "1/s2", || {
                 format!("t = {t:.4} s, {name}")
             });
         }
@@ -184,7 +189,7 @@ fn along(claims: &SpaceClaims<'_>, machine: &Machine<Model>, states: &[OdeState]
     });
     for ([t, v, w], state) in energies.iter().zip(states) {
         let (found, wanted) = (t + v - potential, kinetic + w - work);
-        energy.add([found, wanted, scale], "J", || {
+        energy.compare([found, wanted, scale], "J", || {
             format!("t = {:.4} s", state.t)
         });
     }

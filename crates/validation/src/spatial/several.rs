@@ -8,10 +8,10 @@ use super::states::{
     STATES, free_accelerations, free_machine, in_units, near_assembly, state_findings,
 };
 use super::stopped_motion::stopped_findings;
-use super::worst::{Comparison, Worst};
 use crate::case_report::validate::Validation;
 use crate::error::ValidationError;
 use crate::report_parts::{figure_blocks, findings_text};
+use crate::written::poses::difference::Differences;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::Wrench;
 use dwell_kinetostatics::space::Axes;
@@ -19,25 +19,26 @@ use dwell_report::{Block, Document, Figure, Files, markdown_text};
 use dwell_scene::SpaceScene;
 use dwell_study::output::{Picture, provenance_line};
 use dwell_study::{Outcome, mechanism_figure_in_space};
+use dwell_verify::FindingSpec;
 use std::fmt::Write as _;
 
-const INERTIA: Comparison = Comparison {
+const INERTIA: FindingSpec<'_> = FindingSpec {
     key: "reference-inertia",
     check: Check::ReferenceValues,
     comparison: "the generalised inertias and the actuators' actions with the reference of 25 digits",
     scale: "the largest of each",
     // The largest seen in a case is 6.5e-16.
     tolerance: 5e-14,
-    reason: "rounding, amplified by the condition of the equations",
+    tolerance_reason: "rounding, amplified by the condition of the equations",
 };
-const REACTIONS: Comparison = Comparison {
+const REACTIONS: FindingSpec<'_> = FindingSpec {
     key: "reference-reactions",
     check: Check::ReferenceValues,
     comparison: "the reactions under the weight, in motion, with the reference of 25 digits",
     scale: "the largest force or moment",
     // The largest seen in a case is 5.0e-15.
     tolerance: 5e-13,
-    reason: "rounding, amplified by the condition of the equations",
+    tolerance_reason: "rounding, amplified by the condition of the equations",
 };
 /// Speeds and accelerations at which a reference is compared.
 const RATES: [[f64; 4]; 2] = [[1.3, -0.7, 0.4, 0.2], [-0.9, 1.1, 0.6, -0.5]];
@@ -65,7 +66,7 @@ fn against_reference(
     claims: &SpaceClaims<'_>,
     reference: &Reference,
 ) -> Result<Vec<Finding>, ValidationError> {
-    let mut worst = [Worst::default(), Worst::default()];
+    let mut worst = <[Differences; 2]>::default();
     let rates = RATES.each_ref().map(|row| in_units(claims.model(), row));
     let rates = [&rates[0][..], &rates[1][..]];
     let mut count = 0;
@@ -82,17 +83,17 @@ fn against_reference(
         let place = |what: &str| format!("q = {:.4} {:.4}, {what}", q[0], q[1]);
         let state = claims.state::<f64>(0.0, [&q, rates[0], rates[1]], Axes::Ground);
         let Ok(state) = state else {
-            worst[0].add([f64::NAN, 0.0, 1.0], "", || place("no pose"));
+            worst[0].compare([f64::NAN, 0.0, 1.0], "", || place("no pose"));
             continue;
         };
         let largest = |of: &[f64]| of.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
         let scale = largest(&inertias);
         for (found, wanted) in state.inertias.iter().zip(inertias) {
-            worst[0].add([*found, wanted, scale], "kg m2", || place("inertia"));
+            worst[0].compare([*found, wanted, scale], "kg m2", || place("inertia"));
         }
         let scale = largest(&actions);
         for (found, wanted) in state.tau.iter().zip(actions) {
-            worst[0].add([*found, wanted, scale], "N m", || place("action"));
+            worst[0].compare([*found, wanted, scale], "N m", || place("action"));
         }
         let reactions = sample.reactions(rates);
         let scales = [0, 1].map(|kind| {
@@ -104,7 +105,7 @@ fn against_reference(
             let found = joints.find(|(j, _)| j.name == joint);
             let found = found.map_or(f64::NAN, |(_, wrench)| part(wrench, k));
             let unit = ["N", "N m"][k / 3];
-            worst[1].add([found, wanted, scales[k / 3]], unit, || place(&joint));
+            worst[1].compare([found, wanted, scales[k / 3]], unit, || place(&joint));
         }
     }
     let domain = format!("{count} positions of the reference");

@@ -1,25 +1,25 @@
 //! Along the rows of a file: prescribed coordinates with their law, and free ones with the integrals of their speeds.
 
-use super::super::worst::{Comparison, Worst};
 use super::finding;
 use super::scenes::{ROWS, Scenes, sinusoid};
 use crate::written::motions::{simpson, summary_of_rows};
-use crate::written::poses::difference::{Differences, Texts};
+use crate::written::poses::difference::Differences;
 use crate::written::poses::rows::{Rows, largest};
 use dwell_findings::{Check, Finding};
 use dwell_scene::SpaceScene;
+use dwell_verify::FindingSpec;
 use serde_json::Value;
 
-const LAWS: Comparison = Comparison {
+const LAWS: FindingSpec<'_> = FindingSpec {
     key: "written-kinetostatics-laws",
     check: Check::WrittenLaws,
     comparison: "prescribed coordinates, speeds and accelerations with sinusoids from the assembly",
     scale: "the amplitude, times the angular frequency for each derivative",
     // The largest seen in a case is 0.
     tolerance: 1e-15,
-    reason: "rounding of the law",
+    tolerance_reason: "rounding of the law",
 };
-const AGAIN: Texts<'_> = Texts {
+const AGAIN: FindingSpec<'_> = FindingSpec {
     key: "written-motion-again",
     check: Check::WrittenTwice,
     comparison: "coordinates and speeds by the default method and to an accuracy of 1e-8",
@@ -28,7 +28,7 @@ const AGAIN: Texts<'_> = Texts {
     tolerance: 5e-7,
     tolerance_reason: "the errors of both motions",
 };
-const SUMMARY: Texts<'_> = Texts {
+const SUMMARY: FindingSpec<'_> = FindingSpec {
     key: "written-motion-summary",
     check: Check::WrittenTotals,
     comparison: "energies and events of the summary of `simulate` with rows and events",
@@ -37,7 +37,7 @@ const SUMMARY: Texts<'_> = Texts {
     tolerance: 4e-8,
     tolerance_reason: "the tolerance of the integration",
 };
-const DEFAULT_ROWS: Texts<'_> = Texts {
+const DEFAULT_ROWS: FindingSpec<'_> = FindingSpec {
     key: "written-motion-rows",
     check: Check::WrittenPositions,
     comparison: "the number of rows without an interval with 1001, and their end with that of other rows",
@@ -46,7 +46,7 @@ const DEFAULT_ROWS: Texts<'_> = Texts {
     tolerance: 1e-14,
     tolerance_reason: "rounding of times",
 };
-const STOPS: Texts<'_> = Texts {
+const STOPS: FindingSpec<'_> = FindingSpec {
     key: "written-motion-stops",
     check: Check::WrittenPositions,
     comparison: "coordinates with the ends that their stops of no compliance allow",
@@ -55,7 +55,7 @@ const STOPS: Texts<'_> = Texts {
     tolerance: 1e-14,
     tolerance_reason: "an impact is located to the tolerance of the integration",
 };
-const SPEEDS: Texts<'_> = Texts {
+const SPEEDS: FindingSpec<'_> = FindingSpec {
     key: "written-motion-speeds",
     check: Check::WrittenRates,
     comparison: "what coordinates and speeds change by between rows with the integrals of speeds and accelerations, by Simpson's rule",
@@ -67,7 +67,7 @@ const SPEEDS: Texts<'_> = Texts {
 
 /// Prescribed coordinates with their sinusoids.
 pub(super) fn laws(scenes: &Scenes, scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
-    let mut worst = Worst::default();
+    let mut worst = Differences::default();
     for (k, amplitude) in scenes.amplitudes.as_ref()?.iter().enumerate() {
         let actuator = &scene.mechanism.actuators[k].name;
         let start = scene.assembly.q[k];
@@ -87,7 +87,7 @@ pub(super) fn laws(scenes: &Scenes, scene: &SpaceScene, rows: &Rows) -> Option<F
             {
                 let name = format!("{actuator}{end}");
                 let found = rows.get(row, &name).unwrap_or(f64::NAN);
-                worst.add([found, wanted, scale], "", || format!("row {row}, {name}"));
+                worst.compare([found, wanted, scale], "", || format!("row {row}, {name}"));
             }
         }
     }
@@ -99,7 +99,7 @@ pub(super) fn motion(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
     let mut found = Differences::default();
     let Some(times) = rows.columns.get("t") else {
         found.fail("the file has no time");
-        return found.finding(SPEEDS, "motion");
+        return found.counted_finding(&SPEEDS, "motion");
     };
     let actuators = &scene.mechanism.actuators;
     let column = |k: usize, end: &str| rows.columns.get(&format!("{}{end}", actuators[k].name));
@@ -118,7 +118,7 @@ pub(super) fn motion(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
             }
         }
     }
-    found.finding(SPEEDS, "motion")
+    found.counted_finding(&SPEEDS, "motion")
 }
 
 /// The same motion in two files.
@@ -143,7 +143,7 @@ pub(super) fn again(scene: &SpaceScene, both: [&Rows; 2]) -> Option<Finding> {
             format!("number {i} of coordinates{end}")
         });
     }
-    found.finding(AGAIN, "motion")
+    found.counted_finding(&AGAIN, "motion")
 }
 
 /// No row is beyond a rigid stop.
@@ -160,12 +160,12 @@ pub(super) fn stops(scene: &SpaceScene, both: [&Rows; 2]) -> Option<Finding> {
             found.add_rows(beyond, 1.0, "", |row| format!("row {row}, {coordinate}"));
         }
     }
-    found.finding(STOPS, "motion")
+    found.counted_finding(&STOPS, "motion")
 }
 
 /// The summary of a motion with its rows and events.
 pub(super) fn summary(summary: &Value, rows: &Rows, events: Option<&Rows>) -> Option<Finding> {
-    summary_of_rows(summary, rows, events).finding(SUMMARY, "simulate")
+    summary_of_rows(summary, rows, events).counted_finding(&SUMMARY, "simulate")
 }
 
 /// Rows without an interval of their own: a thousand equal ones, to the same end.
@@ -178,5 +178,5 @@ pub(super) fn default_rows(all: &Rows, others: &Rows) -> Option<Finding> {
     }
     let end = |rows: &Rows| rows.end();
     found.add(end(all) - end(others), end(others), "s", || "the end");
-    found.finding(DEFAULT_ROWS, "simulate")
+    found.counted_finding(&DEFAULT_ROWS, "simulate")
 }

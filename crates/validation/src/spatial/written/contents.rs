@@ -2,13 +2,14 @@
 //! how many bodies, joints and coordinates there are.
 
 use super::super::claims::SpaceClaims;
-use crate::written::poses::difference::{Differences, Texts};
+use crate::written::poses::difference::Differences;
 use crate::written::poses::program::Program;
 use crate::written::poses::stated::result;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::{Placement, Vec3};
 use dwell_kinetostatics::MachineModel as _;
 use dwell_scene::SpaceScene;
+use dwell_verify::FindingSpec;
 use dwell_verify::space::DenseSpace;
 use serde_json::Value as Json;
 
@@ -88,7 +89,7 @@ pub(super) fn findings(
         }
     }
     let masses = masses(&summary, scene, case.start.1, claims.model().plan().size());
-    let texts = Texts {
+    let texts = FindingSpec {
         key: "written-contents",
         check: Check::WrittenSentences,
         comparison: "counts and determined reactions that `check` prints with the scene and the ranks of the dense equations",
@@ -96,7 +97,7 @@ pub(super) fn findings(
         tolerance: 0.0,
         tolerance_reason: "words",
     };
-    let of_masses = Texts {
+    let of_masses = FindingSpec {
         key: "written-contents-masses",
         check: Check::WrittenTotals,
         comparison: "the whole mass and its centre with the sums over the bodies where they are assembled",
@@ -106,8 +107,8 @@ pub(super) fn findings(
         tolerance_reason: "a sum of rounded terms",
     };
     let found = [
-        found.finding(texts, "check"),
-        masses.finding(of_masses, "check"),
+        found.counted_finding(&texts, "check"),
+        masses.counted_finding(&of_masses, "check"),
     ];
     Ok(found.into_iter().flatten().collect())
 }

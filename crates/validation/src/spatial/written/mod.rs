@@ -18,15 +18,15 @@ mod states;
 mod sums;
 
 use super::claims::SpaceClaims;
-use super::worst::Worst;
 use crate::error::ValidationError;
-use crate::written::poses::difference::{Differences, Texts};
+use crate::written::poses::difference::Differences;
 use crate::written::poses::extrema_again::same_extrema;
 use crate::written::poses::formats::{Formats, formats};
 use crate::written::poses::program::{Program, Run};
 use crate::written::poses::rows::Rows;
 use dwell_findings::{Check, Finding};
 use dwell_scene::SpaceScene;
+use dwell_verify::FindingSpec;
 use scenes::Scenes;
 use std::path::Path;
 
@@ -38,7 +38,7 @@ const ACCURACY_WITH_STOPS: &str = "1e-6";
 const OTHER_ROWS: f64 = 88.3;
 /// The largest rounding error that a case may state of positions and forces, of the largest of a unit; 1e-13 is seen.
 const MAX_ROUNDING: f64 = 1e-11;
-const EXTREMA_AGAIN: Texts<'_> = Texts {
+const EXTREMA_AGAIN: FindingSpec<'_> = FindingSpec {
     key: "written-motion-extrema-again",
     check: Check::WrittenTwice,
     comparison: "extrema of `simulate` with those of the same motion by dop853 in other rows",
@@ -164,7 +164,7 @@ fn free(
         .run(&name, text, &arguments)?
         .json("-simulate.json")?;
     let same = same_extrema([&summary, &again], "simulate and simulate by dop853");
-    found.extend(same.finding(EXTREMA_AGAIN, "simulate"));
+    found.extend(same.counted_finding(&EXTREMA_AGAIN, "simulate"));
     Ok(found)
 }
 
@@ -181,7 +181,7 @@ fn twice(run: &Run, stem: &str, command: &str) -> Result<Vec<Finding>, String> {
     }
     let [of_files, of_extrema, of_places] = tolerances(command);
     let of = |differences: Differences, end: &str, check, comparison, tolerance| {
-        let texts = Texts {
+        let texts = FindingSpec {
             key: &format!("written-{stem}-{end}"),
             check,
             comparison,
@@ -189,7 +189,7 @@ fn twice(run: &Run, stem: &str, command: &str) -> Result<Vec<Finding>, String> {
             tolerance,
             tolerance_reason: "the same numbers; between rows, the error of a polynomial through them",
         };
-        differences.finding(texts, command)
+        differences.counted_finding(&texts, command)
     };
     let all = [
         of(
@@ -258,11 +258,6 @@ fn rounding(printed: &str) -> Differences {
 }
 
 /// A finding of a worst difference with its texts.
-fn finding(
-    worst: Worst,
-    of: &super::worst::Comparison,
-    rows: &Rows,
-    file: &str,
-) -> Option<Finding> {
+fn finding(worst: Differences, of: &FindingSpec<'_>, rows: &Rows, file: &str) -> Option<Finding> {
     worst.finding(of, &format!("{file}, {} rows", rows.count))
 }

@@ -1,11 +1,10 @@
 //! The table of `reduce`: m, ½m′, a, b, and what the loads make, at its rows, with the dense equations at the model's placements there.
 
 use super::super::samples::{PASSES, Samples};
-use super::super::worst::{Comparison, Worst};
 use super::finding;
 use crate::error::ValidationError;
 use crate::written::motions::simpson;
-use crate::written::poses::difference::{Differences, Texts};
+use crate::written::poses::difference::Differences;
 use crate::written::poses::program::Program;
 use crate::written::poses::range::range_differences;
 use crate::written::poses::rows::{Rows, largest};
@@ -14,19 +13,20 @@ use dwell_kinetostatics::Magnitude;
 use dwell_kinetostatics::space::LoadKind;
 use dwell_scene::SpaceScene;
 use dwell_study::PreparedSpaceScene;
+use dwell_verify::FindingSpec;
 use std::path::Path;
 
-const COEFFICIENTS: Comparison = Comparison {
+const COEFFICIENTS: FindingSpec<'_> = FindingSpec {
     key: "written-reduced",
     check: Check::WrittenForces,
     comparison: "m, ½m′, w, a, b and c of the table with the dense equations at unit speed, unit acceleration and under the loads",
     scale: "the largest of each pass, of its kind, in the row, or a thousandth of what the whole mass makes",
     // The largest seen in a case is 2.6e-12.
     tolerance: 2e-10,
-    reason: "rounding, amplified by the condition of the equations",
+    tolerance_reason: "rounding, amplified by the condition of the equations",
 };
 
-const RANGE: Texts<'_> = Texts {
+const RANGE: FindingSpec<'_> = FindingSpec {
     key: "written-range",
     check: Check::WrittenTotals,
     comparison: "the ends of the rows of `reduce` with the limit positions of `check`",
@@ -35,7 +35,7 @@ const RANGE: Texts<'_> = Texts {
     tolerance: 1e-14,
     tolerance_reason: "rounding of the limits",
 };
-const SLOPES: Texts<'_> = Texts {
+const SLOPES: FindingSpec<'_> = FindingSpec {
     key: "written-slopes",
     check: Check::WrittenRates,
     comparison: "m and V of `reduce` with the integrals of 2·½m′ and −w between rows, by Simpson's rule",
@@ -70,7 +70,7 @@ pub(super) fn findings(
         Ok(read) => read,
         Err(reason) => return Ok(vec![super::refused(&reason)]),
     };
-    let mut worst = Worst::default();
+    let mut worst = Differences::default();
     for row in (1..rows.count).step_by(STEP) {
         compare(&mut worst, &mut samples, scene, (&rows, row))?;
     }
@@ -78,7 +78,7 @@ pub(super) fn findings(
         .into_iter()
         .collect();
     found.extend(slopes(scene, &rows));
-    found.extend(range.finding(RANGE, "reduced.csv"));
+    found.extend(range.counted_finding(&RANGE, "reduced.csv"));
     Ok(found)
 }
 
@@ -111,13 +111,13 @@ fn slopes(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
         }
         compare("V", rows.column("V"), &slope);
     }
-    found.finding(SLOPES, "reduced.csv")
+    found.counted_finding(&SLOPES, "reduced.csv")
 }
 
 /// The three passes of a row.
 // Long because each pass has its columns, its signs and its scales.
 fn compare(
-    worst: &mut Worst,
+    worst: &mut Differences,
     samples: &mut Samples<'_>,
     scene: &SpaceScene,
     (rows, row): (&Rows, usize),
@@ -176,7 +176,7 @@ fn compare(
             // The loads do what the actuator must undo.
             let sign = if pass.is_loaded { -1.0 } else { 1.0 };
             let wanted = sign * dense.actuator_actions[0];
-            worst.add([found, wanted, wanted.abs().max(floor * unit)], "", || {
+            worst.compare([found, wanted, wanted.abs().max(floor * unit)], "", || {
                 format!("q = {q:.4}, {of_actuator}")
             });
         }
@@ -187,7 +187,7 @@ fn compare(
             {
                 let name = format!("{}.{end}", joint.name);
                 if let Some(found) = written(&name, of_reaction) {
-                    worst.add([found, values[k], scales[k / 3]], "", || {
+                    worst.compare([found, values[k], scales[k / 3]], "", || {
                         format!("q = {q:.4}, {name}.{of_reaction}")
                     });
                 }

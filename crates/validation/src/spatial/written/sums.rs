@@ -1,25 +1,26 @@
 //! Sums over bodies and loads of a row: power, energies, the force and moment on the ground, and magnitudes of vectors.
 
 use super::super::claims::SpaceClaims;
-use super::super::worst::{Comparison, Worst};
 use super::finding;
 use super::states::{Kind, state, vector};
+use crate::written::poses::difference::Differences;
 use crate::written::poses::rows::{Rows, largest};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::{ActuatorKind, Vec3};
 use dwell_kinetostatics::Magnitude;
 use dwell_kinetostatics::space::LoadKind;
 use dwell_scene::SpaceScene;
+use dwell_verify::FindingSpec;
 use dwell_verify::space::{SpaceState, potential_energy};
 
-const SUMS: Comparison = Comparison {
+const SUMS: FindingSpec<'_> = FindingSpec {
     key: "written-sums",
     check: Check::WrittenTotals,
     comparison: "powers, energies, the force and moment on the ground and magnitudes with sums over the bodies and loads of the row",
     scale: "the largest of each kind in the file, or the largest sum of its absolute terms",
     // The largest seen in a case is 9.8e-15.
     tolerance: 9e-13,
-    reason: "a sum of rounded terms",
+    tolerance_reason: "a sum of rounded terms",
 };
 
 /// Sums of a row, by the name of their column, each with the sum of its absolute terms.
@@ -36,7 +37,7 @@ pub(super) fn findings(
         "kinetostatics" => Kind::Forced,
         _ => Kind::Free,
     };
-    let mut worst = Worst::default();
+    let mut worst = Differences::default();
     let mut start: Option<f64> = None;
     let step = (rows.count / 8).max(1);
     for row in (0..rows.count).step_by(step) {
@@ -61,7 +62,7 @@ pub(super) fn findings(
                 continue;
             };
             let largest = size.max(largest(rows.column(&name)));
-            worst.add([found, wanted, largest], "", || {
+            worst.compare([found, wanted, largest], "", || {
                 format!("row {row}, {name}")
             });
         }

@@ -1,7 +1,8 @@
 //! What was found of a case's files: differences by the key of their finding.
 
-use super::difference::{Differences, Texts};
+use super::difference::Differences;
 use dwell_findings::{Check, Finding};
+use dwell_verify::FindingSpec;
 use std::collections::BTreeMap;
 
 /// A finding's key, check, comparison, and tolerance: that measured over all cases, with room for another machine's
@@ -135,7 +136,7 @@ impl Compared {
     /// The findings, in the order of their checks.
     pub(crate) fn findings(mut self) -> Vec<Finding> {
         let finding = |(key, check, comparison, tolerance): Spec| {
-            let texts = Texts {
+            let spec = FindingSpec {
                 key,
                 check,
                 comparison,
@@ -151,7 +152,7 @@ impl Compared {
             };
             self.by_key
                 .remove(key)?
-                .finding(texts, "all rows of the files")
+                .counted_finding(&spec, "all rows of the files")
         };
         SPECS.into_iter().filter_map(finding).collect()
     }

@@ -1,6 +1,7 @@
 //! The largest of many differences, and the finding that it makes.
 
-use dwell_findings::{Check, Finding};
+use dwell_findings::Finding;
+use dwell_verify::FindingSpec;
 
 /// The largest difference relative to its scale. What could not be compared fails.
 #[derive(Debug, Clone, Default)]
@@ -11,17 +12,6 @@ pub(crate) struct Differences {
     unit: &'static str,
     worst_at: String,
     failure: Option<String>,
-}
-
-/// The constant texts of a finding.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Texts<'a> {
-    pub(crate) key: &'a str,
-    pub(crate) check: Check,
-    pub(crate) comparison: &'a str,
-    pub(crate) scale: &'a str,
-    pub(crate) tolerance: f64,
-    pub(crate) tolerance_reason: &'a str,
 }
 
 impl Differences {
@@ -43,6 +33,16 @@ impl Differences {
             self.worst_at = at().into();
         }
         self.count += 1;
+    }
+
+    /// Adds a value that should be another, relative to a scale.
+    pub(crate) fn compare<S: Into<String>>(
+        &mut self,
+        [found, wanted, scale]: [f64; 3],
+        unit: &'static str,
+        at: impl FnOnce() -> S,
+    ) {
+        self.add(found - wanted, scale, unit, at);
     }
 
     /// Adds the differences of successive rows, each with its place.
@@ -97,8 +97,14 @@ impl Differences {
         (self.failure, self.count) = (failure, count);
     }
 
+    /// The finding over a domain, which says how many comparisons there were; none where there was nothing to compare.
+    pub(crate) fn counted_finding(self, spec: &FindingSpec<'_>, domain: &str) -> Option<Finding> {
+        let domain = format!("{domain}, {} comparisons", self.count);
+        self.finding(spec, &domain)
+    }
+
     /// The finding over a domain; none where there was nothing to compare.
-    pub(crate) fn finding(self, texts: Texts<'_>, domain: &str) -> Option<Finding> {
+    pub(crate) fn finding(self, spec: &FindingSpec<'_>, domain: &str) -> Option<Finding> {
         if self.count == 0 && self.failure.is_none() {
             return None;
         }
@@ -107,13 +113,13 @@ impl Differences {
             None => [self.absolute, self.relative],
         };
         Some(Finding {
-            comparison: texts.comparison.to_owned(),
-            domain: format!("{domain}, {} comparisons", self.count),
+            comparison: spec.comparison.to_owned(),
+            domain: domain.to_owned(),
             unit: self.unit.to_owned(),
-            scale: texts.scale.to_owned(),
+            scale: spec.scale.to_owned(),
             worst_at: self.failure.unwrap_or(self.worst_at),
-            tolerance_reason: texts.tolerance_reason.to_owned(),
-            ..Finding::new(texts.key, texts.check, numbers, texts.tolerance)
+            tolerance_reason: spec.tolerance_reason.to_owned(),
+            ..Finding::new(spec.key, spec.check, numbers, spec.tolerance)
         })
     }
 }
