@@ -1,14 +1,15 @@
 //! All findings of a case in space.
 
 use super::bodies::body_by_body;
-use super::claims::SpaceClaims;
+use super::claims::{NAMES, SpaceClaims, components};
 use super::period::period;
-use super::reference::Reference;
+use super::reference::{Reference, Sample};
 use super::reference_poses::ReferencePoses;
 use super::samples::{PASSES, POSITIONS, Pass, Samples};
 use super::states::state_findings;
 use crate::error::ValidationError;
 use crate::written::poses::difference::Differences;
+use crate::written::poses::rows::largest;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::{Placement, Vec3};
 use dwell_kinetostatics::{Coefficients, ReducedModel as _};
@@ -158,7 +159,6 @@ pub(super) fn findings(
         let poses = ReferencePoses::of(prepared.scene, reference);
         found.extend(poses.placements(&claims.case(), &claims.in_numbers::<f64>()));
     }
-    found.sort_by_key(|finding| finding.check);
     Ok(found)
 }
 
@@ -231,10 +231,7 @@ fn against_dense(samples: &mut Samples<'_>) -> Result<[Differences; 5], Validati
             );
         }
     }
-    let largest = |pass: usize| {
-        let all = taus[pass].iter();
-        all.fold(0.0_f64, |max, [_, wanted]| max.max(wanted.abs()))
-    };
+    let largest = |pass: usize| largest(taus[pass].iter().map(|[_, wanted]| wanted));
     // ½m′ may vanish where m does not.
     let scales = [largest(0).max(largest(1)), largest(1), largest(2)];
     for ((taus, what), largest) in taus.iter().zip(["½m′", "m", "w"]).zip(scales) {
@@ -256,27 +253,24 @@ fn compare_reactions(
     worst: &mut Differences,
     at: &impl Fn(&str) -> String,
 ) {
-    let wanted = dense.reactions.iter().map(|w| {
-        let (f, m) = (w.force, w.moment);
-        [f.x, f.y, f.z, m.x, m.y, m.z]
-    });
-    let wanted: Vec<f64> = wanted.flatten().collect();
+    let wanted: Vec<f64> = dense.reactions.iter().flat_map(components).collect();
     // Of a determined component both must say so; what is open is not compared.
     let both = |k: usize| determined[k] && dense.determined[k / 6][k % 6];
     let largest = |kind: usize| {
         let of_kind = (0..wanted.len()).filter(|k| k % 6 / 3 == kind && both(*k));
-        of_kind.map(|k| wanted[k].abs()).fold(0.0, f64::max)
+        largest(of_kind.map(|k| &wanted[k]))
     };
     // What nothing makes is zero to the rounding of what may be.
     let [force, size] = [samples.floor(pass), samples.model.plan().size()];
     let scales = [largest(0).max(force), largest(1).max(force * size)];
     for k in (0..wanted.len()).filter(|k| both(*k)) {
         let joint = &samples.scene.mechanism.joints[k / 6].name;
-        let (kind, axis) = (k % 6 / 3, ["x", "y", "z"][k % 3]);
-        let (what, unit) = [("", "N"), ("moment-", "N m")][kind];
-        worst.compare([found[k], wanted[k], scales[kind]], unit, || {
-            at(&format!("{joint}.{what}{axis}"))
-        });
+        let (kind, name) = (k % 6 / 3, NAMES[k % 6]);
+        worst.compare(
+            [found[k], wanted[k], scales[kind]],
+            ["N", "N m"][kind],
+            || at(&format!("{joint}.{name}")),
+        );
     }
 }
 
@@ -299,7 +293,7 @@ fn against_passes(
             let place = |what: &str| format!("q = {q:.4}, {what}");
             worst.compare([action, found.tau[0], at.m], "kg m2", || place("m or ½m′"));
             let wanted = &found.reactions;
-            let largest = wanted.iter().fold(0.0_f64, |max, r| max.max(r.abs()));
+            let largest = largest(wanted);
             for ((name, _), (found, wanted)) in names.iter().zip(reactions.iter().zip(wanted)) {
                 worst.compare([*found, *wanted, largest], "", || place(name));
             }
@@ -322,10 +316,7 @@ fn by_evaluation(samples: &mut Samples<'_>) -> Result<[Differences; 2], Validati
         };
     let all = prepared.coefficients(&samples.q)?;
     let m_max = all.iter().map(|at| at.m).fold(0.0, f64::max);
-    let largest = |of: fn(&Coefficients) -> &Vec<f64>| {
-        let values = all.iter().flat_map(|at| of(at).iter());
-        values.fold(0.0_f64, |max, value| max.max(value.abs()))
-    };
+    let largest = |of: fn(&Coefficients) -> &Vec<f64>| largest(all.iter().flat_map(of));
     let (a_max, b_max) = (largest(|at| &at.a), largest(|at| &at.b));
     for (&q, at) in samples.q.iter().zip(&all) {
         let mut central = |h: f64| Some((m_at(q + h).ok()? - m_at(q - h).ok()?) / (2.0 * h));
@@ -364,18 +355,15 @@ fn against_reference(
         column.map_or(0.0, |(_, values)| gravity * values[k])
     };
     let names = prepared.reaction_units();
-    let largest = |k: usize| {
+    let scales = [0, 1, 2].map(|k| {
         let all = samples
             .iter()
-            .flat_map(|s| names.iter().map(move |(name, _)| s.reaction(name)[k]));
-        all.flatten()
-            .fold(0.0_f64, |max, value| max.max(value.abs()))
-    };
-    let scales = [0, 1, 2].map(largest);
-    let w_max = samples
-        .iter()
-        .filter_map(|s| s.weight())
-        .fold(0.0_f64, |a, b| a.max(b.abs()));
+            .flat_map(|s| names.iter().map(move |n| (s, n)));
+        let all = all.filter_map(|(s, (name, _))| s.reaction(name)[k]);
+        largest(&all.collect::<Vec<f64>>())
+    });
+    let weights: Vec<f64> = samples.iter().filter_map(Sample::weight).collect();
+    let w_max = largest(&weights);
     for (k, (sample, at)) in samples.iter().zip(&found).enumerate() {
         let place = |what: &str| format!("q = {:.4}, {what}", q[k]);
         let m = sample.number("m").unwrap_or(f64::NAN);

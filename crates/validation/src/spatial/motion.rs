@@ -1,17 +1,19 @@
 //! A free motion of a case with several coordinates: its accelerations against the dense equations, its energy, and a reference.
 
-use super::claims::SpaceClaims;
+use super::claims::{SpaceClaims, constant};
 use super::reference::Reference;
 use super::states::{free_accelerations, free_machine, in_units};
 use crate::error::ValidationError;
 use crate::written::poses::difference::Differences;
+use crate::written::poses::rows::largest;
+use crate::written::poses::table_curve::solve;
 use dwell_dynamics::{
     DenseOutput, Machine, MachineOde, Method, OdeState, Options, StepControl, integrate,
 };
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::BodyMotion;
+use dwell_kinetostatics::MachineModel as _;
 use dwell_kinetostatics::space::{LoadKind, Model};
-use dwell_kinetostatics::{MachineModel as _, Magnitude};
 use dwell_scene::{MotionDuration, SpaceScene};
 use dwell_verify::FindingSpec;
 use dwell_verify::space::{DensePose, kinetic_energy, potential_energy};
@@ -153,7 +155,7 @@ fn along(
     states: &[OdeState],
 ) -> [Differences; 2] {
     let [mut equations, mut energy] = <[Differences; 2]>::default();
-    let mut energies: Vec<[f64; 3]> = Vec::new();
+    let mut energies = Vec::new();
     let n = claims.model().plan().actuators();
     for OdeState { t, y } in states {
         let [q, q_dot] = [&y[..n], &y[n..2 * n]];
@@ -179,21 +181,24 @@ fn along(
             });
         }
         let work: f64 = y[machine.work_offset()..].iter().sum();
-        energies.push([dense.kinetic, dense.potential, work]);
+        energies.push((*t, [dense.kinetic, dense.potential, work]));
     }
-    let Some(&[kinetic, potential, work]) = energies.first() else {
-        return [equations, energy];
-    };
-    let scale = energies.iter().fold(0.0_f64, |max, [t, v, _]| {
-        max.max(*t).max((v - potential).abs())
-    });
-    for ([t, v, w], state) in energies.iter().zip(states) {
-        let (found, wanted) = (t + v - potential, kinetic + w - work);
-        energy.compare([found, wanted, scale], "J", || {
-            format!("t = {:.4} s", state.t)
-        });
-    }
+    compare_energies(&mut energy, &energies);
     [equations, energy]
+}
+
+/// Kinetic and potential energy with those of the first time and the work since, at times.
+pub(super) fn compare_energies(to: &mut Differences, energies: &[(f64, [f64; 3])]) {
+    let Some(&(_, [kinetic, potential, work])) = energies.first() else {
+        return;
+    };
+    let larger =
+        |max: f64, (_, [t, v, _]): &(f64, [f64; 3])| max.max(*t).max((v - potential).abs());
+    let scale = energies.iter().fold(0.0, larger);
+    for (time, [t, v, w]) in energies {
+        let (found, wanted) = (t + v - potential, kinetic + w - work);
+        to.compare([found, wanted, scale], "J", || format!("t = {time:.4} s"));
+    }
 }
 
 /// What the dense equations say of a state.
@@ -236,15 +241,11 @@ impl Dense {
             let mut one = at_rest.clone();
             one[k] = *action;
             let parts = solved(&columns, &one)?;
-            scale = parts.iter().fold(scale, |max, part| max.max(part.abs()));
+            scale = scale.max(largest(&parts));
         }
         let motions: Vec<BodyMotion> = pose.velocities(q_dot);
-        let conservative = claims.model().loads().iter().filter_map(|load| {
-            let Magnitude::Constant(magnitude) = load.magnitude else {
-                return None;
-            };
-            potential_energy(&case, &placements, (load.kind, magnitude))
-        });
+        let constant = claims.model().loads().iter().filter_map(constant);
+        let conservative = constant.filter_map(|load| potential_energy(&case, &placements, load));
         Some(Self {
             accelerations,
             scale,
@@ -256,20 +257,9 @@ impl Dense {
     }
 }
 
-/// x of Σ columns x = right, by elimination with the largest pivot.
+/// x of Σ columns x = right.
 fn solved(columns: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
     let n = columns.len();
     let row = |i: usize| columns.iter().map(|c| c[i]).chain([right[i]]).collect();
-    let mut rows: Vec<Vec<f64>> = (0..n).map(row).collect();
-    for c in 0..n {
-        let pivot = (c..n).max_by(|&i, &j| rows[i][c].abs().total_cmp(&rows[j][c].abs()))?;
-        rows.swap(c, pivot);
-        let pivot_row = rows[c].clone();
-        for (_, other) in rows.iter_mut().enumerate().filter(|(i, _)| *i != c) {
-            let factor = other[c] / pivot_row[c];
-            let pairs = other.iter_mut().zip(&pivot_row);
-            pairs.for_each(|(a, b)| *a -= factor * b);
-        }
-    }
-    Some((0..n).map(|i| rows[i][n] / rows[i][i]).collect())
+    solve((0..n).map(row).collect())
 }

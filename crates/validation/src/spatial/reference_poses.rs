@@ -3,6 +3,7 @@
 use super::reference::Reference;
 use crate::error::ValidationError;
 use crate::written::poses::difference::Differences;
+use crate::written::poses::rows::largest;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::{Placement, Vec3};
 use dwell_scene::SpaceScene;
@@ -97,7 +98,7 @@ impl ReferencePoses {
         let mut worst = Differences::default();
         for ReferencePose { q, inertias, .. } in &self.poses {
             let found = subject.inertias(q).unwrap_or_default();
-            let scale = inertias.iter().fold(0.0_f64, |max, m| max.max(m.abs()));
+            let scale = largest(inertias);
             for (k, wanted) in inertias.iter().enumerate() {
                 let found = found.get(k).copied().unwrap_or(f64::NAN);
                 worst.compare([found, *wanted, scale], "kg m2", || format!("q = {q:?}"));

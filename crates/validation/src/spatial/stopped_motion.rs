@@ -3,7 +3,7 @@
 //! is pressed in.
 
 use super::claims::SpaceClaims;
-use super::motion::{Dense, MAX_STEPS, TOLERANCE, start};
+use super::motion::{Dense, MAX_STEPS, TOLERANCE, compare_energies, start};
 use crate::error::ValidationError;
 use crate::written::poses::difference::Differences;
 use dwell_dynamics::{
@@ -213,17 +213,7 @@ impl StoppedMotion<'_> {
             let work: f64 = y[self.machine.work_offset()..].iter().sum();
             energies.push((*t, [dense.kinetic, dense.potential, work]));
         }
-        let Some(&(_, [kinetic, potential, work])) = energies.first() else {
-            return worst;
-        };
-        let largest =
-            |max: f64, (_, [t, v, _]): &(f64, [f64; 3])| max.max(*t).max((v - potential).abs());
-        let scale = energies.iter().fold(0.0, largest);
-        for (t, [kinetic_now, potential_now, work_now]) in &energies {
-            let found = kinetic_now + potential_now - potential;
-            let wanted = kinetic + work_now - work;
-            worst.compare([found, wanted, scale], "J", || format!("t = {t:.4} s"));
-        }
+        compare_energies(&mut worst, &energies);
         worst
     }
 }

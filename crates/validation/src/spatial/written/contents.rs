@@ -1,7 +1,7 @@
 //! What `check` says of a scene: which components of reactions the loads determine, by the ranks of the dense equations at the assembly, and
 //! how many bodies, joints and coordinates there are.
 
-use super::super::claims::SpaceClaims;
+use super::super::claims::{NAMES, SpaceClaims};
 use crate::written::poses::difference::Differences;
 use crate::written::poses::program::Program;
 use crate::written::poses::stated::result;
@@ -20,15 +20,9 @@ pub(super) fn findings(
     (claims, scene): (&SpaceClaims<'_>, &SpaceScene),
 ) -> Result<Vec<Finding>, String> {
     let run = program.run(&scene.name, scene.source.inner(), &["check"])?;
-    let case = claims.case();
     let zero = vec![0.0; scene.mechanism.actuators.len()];
-    let dense = DenseSpace::new(
-        &scene.mechanism,
-        &scene.masses,
-        case.start.1,
-        [&zero, &zero],
-        &[],
-    );
+    let (case, rates) = (claims.case(), [&zero[..]; 2]);
+    let dense = DenseSpace::new(case.mechanism, case.masses, case.start.1, rates, &[]);
     let dense = dense.map_err(|e| e.to_string())?;
     let mut found = Differences::default();
     let mut says = |what: String| {
@@ -47,14 +41,11 @@ pub(super) fn findings(
     says(count(scene.mechanism.joints.len(), "joint", "joints"));
     says(count(zero.len(), "degree of freedom", "degrees of freedom"));
     if !scene.lists_reactions {
-        let ends = ["x", "y", "z", "moment-x", "moment-y", "moment-z"];
-        let said = run
-            .printed
-            .lines()
-            .find_map(|line| line.trim().strip_prefix("statically determinate: "));
+        let mut lines = run.printed.lines();
+        let said = lines.find_map(|line| line.trim().strip_prefix("statically determinate: "));
         let said: Vec<&str> = said.map_or_else(Vec::new, |list| list.split(", ").collect());
         for (joint, determined) in scene.mechanism.joints.iter().zip(&dense.determined) {
-            for (end, is) in ends.into_iter().zip(determined) {
+            for (end, is) in NAMES.into_iter().zip(determined) {
                 let name = format!("{}.{end}", joint.name);
                 // A component that the joint does not transmit is zero, and not a reaction.
                 let is_right = *is || !said.contains(&name.as_str());

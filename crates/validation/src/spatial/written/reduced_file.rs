@@ -1,5 +1,6 @@
 //! The table of `reduce`: m, ½m′, a, b, and what the loads make, at its rows, with the dense equations at the model's placements there.
 
+use super::super::claims::{NAMES, components, constant};
 use super::super::samples::{PASSES, Samples};
 use super::finding;
 use crate::error::ValidationError;
@@ -9,8 +10,7 @@ use crate::written::poses::program::Program;
 use crate::written::poses::range::range_differences;
 use crate::written::poses::rows::{Rows, largest};
 use dwell_findings::{Check, Finding};
-use dwell_kinetostatics::Magnitude;
-use dwell_kinetostatics::space::LoadKind;
+use dwell_kinetostatics::space::{Load, LoadKind};
 use dwell_scene::SpaceScene;
 use dwell_study::PreparedSpaceScene;
 use dwell_verify::FindingSpec;
@@ -95,12 +95,12 @@ fn slopes(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
     let halves = rows.column("half_dm").iter();
     let slope: Vec<f64> = halves.map(|half| 2.0 * half).collect();
     compare("m", rows.column("m"), &slope);
-    let constant = |load: &dwell_kinetostatics::space::Load| match (&load.kind, &load.magnitude) {
-        (LoadKind::Gravity(_), Magnitude::Constant(magnitude)) => Some(*magnitude),
+    let weight = |load: &Load| match constant(load)? {
+        (LoadKind::Gravity(_), magnitude) => Some(magnitude),
         _ => None,
     };
     // Of other loads not every one has a potential.
-    let weights: Option<Vec<f64>> = scene.loads.iter().map(constant).collect();
+    let weights: Option<Vec<f64>> = scene.loads.iter().map(weight).collect();
     if let (Some(weights), true) = (weights, rows.columns.contains_key("V")) {
         let mut slope = vec![0.0; q.len()];
         for (load, magnitude) in scene.loads.iter().zip(weights) {
@@ -122,16 +122,12 @@ fn compare(
     scene: &SpaceScene,
     (rows, row): (&Rows, usize),
 ) -> Result<(), ValidationError> {
-    let q = rows
-        .get(row, &scene.mechanism.actuators[0].name)
-        .unwrap_or(f64::NAN);
+    let q = rows.get(row, &scene.mechanism.actuators[0].name);
+    let q = q.unwrap_or(f64::NAN);
     let placements = samples.placements(q)?;
     let size = samples.model.plan().size();
-    for (pass, [of_actuator, of_reaction]) in
-        PASSES
-            .into_iter()
-            .zip([["half_dm", "b"], ["m", "a"], ["w", "c"]])
-    {
+    let columns = [["half_dm", "b"], ["m", "a"], ["w", "c"]];
+    for (pass, [of_actuator, of_reaction]) in PASSES.into_iter().zip(columns) {
         let Some(dense) = samples.dense(&placements, pass) else {
             continue;
         };
@@ -140,10 +136,8 @@ fn compare(
             false if name.is_empty() => rows.get(row, kind),
             false => rows.get(row, &format!("{name}.{kind}")),
             true => {
-                let of_load = |load: &dwell_kinetostatics::space::Load| {
-                    let Magnitude::Constant(magnitude) = load.magnitude else {
-                        return None;
-                    };
+                let of_load = |load: &Load| {
+                    let (_, magnitude) = constant(load)?;
                     let column = match name.is_empty() {
                         true => format!("{}.{kind}", load.name),
                         false => format!("{name}.{kind}.{}", load.name),
@@ -154,18 +148,13 @@ fn compare(
             }
         };
         let floor = samples.floor(pass);
-        let of_wrench = |w: &dwell_geometry::space::Wrench| {
-            let (f, m) = (w.force, w.moment);
-            [f.x, f.y, f.z, m.x, m.y, m.z]
-        };
-        let all: Vec<[f64; 6]> = dense.reactions.iter().map(of_wrench).collect();
+        let all: Vec<[f64; 6]> = dense.reactions.iter().map(components).collect();
         let largest = |kind: usize| {
             let of_kind = all.iter().zip(&dense.determined).flat_map(|(v, is)| {
-                (3 * kind..3 * kind + 3)
-                    .filter(|k| is[*k])
-                    .map(|k| v[k].abs())
+                let determined = (3 * kind..3 * kind + 3).filter(|k| is[*k]);
+                determined.map(|k| &v[k])
             });
-            of_kind.fold(0.0, f64::max)
+            largest(of_kind)
         };
         let scales = [largest(0).max(floor), largest(1).max(floor * size)];
         let unit = match samples.model.plan().is_angle(0) {
@@ -181,10 +170,7 @@ fn compare(
             });
         }
         for (joint, values) in scene.mechanism.joints.iter().zip(&all) {
-            for (k, end) in ["x", "y", "z", "moment-x", "moment-y", "moment-z"]
-                .into_iter()
-                .enumerate()
-            {
+            for (k, end) in NAMES.into_iter().enumerate() {
                 let name = format!("{}.{end}", joint.name);
                 if let Some(found) = written(&name, of_reaction) {
                     worst.compare([found, values[k], scales[k / 3]], "", || {

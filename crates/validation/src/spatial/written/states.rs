@@ -1,7 +1,7 @@
 //! Rows of a file as states, which the dense equations judge as they judge those of the model: closure, velocities, accelerations,
 //! reactions, actions, power, momenta.
 
-use super::super::claims::SpaceClaims;
+use super::super::claims::{NAMES, SpaceClaims};
 use super::finding;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::rows::Rows;
@@ -128,9 +128,8 @@ pub(super) fn state(
     let vectors = scene.mechanism.joints.iter().zip(&mut state.reactions);
     for (joint, reaction) in vectors {
         let (f, m) = (&mut reaction.force, &mut reaction.moment);
-        let ends = ["x", "y", "z", "moment-x", "moment-y", "moment-z"];
         let parts = [&mut f.x, &mut f.y, &mut f.z, &mut m.x, &mut m.y, &mut m.z];
-        for (end, part) in ends.into_iter().zip(parts) {
+        for (end, part) in NAMES.into_iter().zip(parts) {
             if let Some(value) = rows.get(row, &format!("{}.{end}", joint.name)) {
                 *part = value;
             }

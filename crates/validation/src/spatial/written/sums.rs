@@ -1,13 +1,12 @@
 //! Sums over bodies and loads of a row: power, energies, the force and moment on the ground, and magnitudes of vectors.
 
-use super::super::claims::SpaceClaims;
+use super::super::claims::{NAMES, SpaceClaims, constant};
 use super::finding;
 use super::states::{Kind, state, vector};
 use crate::written::poses::difference::Differences;
 use crate::written::poses::rows::{Rows, largest};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::{ActuatorKind, Vec3};
-use dwell_kinetostatics::Magnitude;
 use dwell_kinetostatics::space::LoadKind;
 use dwell_scene::SpaceScene;
 use dwell_verify::FindingSpec;
@@ -164,12 +163,9 @@ fn gravity(state: &SpaceState) -> Vec3 {
 fn magnitudes(scene: &SpaceScene, at: (&Rows, usize)) -> Sums {
     let mut sums = Vec::new();
     for joint in &scene.mechanism.joints {
-        let ends = [
-            ("magnitude", ["x", "y", "z"]),
-            ("moment-magnitude", ["moment-x", "moment-y", "moment-z"]),
-        ];
-        for (end, parts) in ends {
-            if let Some(v) = vector(at, &joint.name, parts) {
+        let (parts, _) = NAMES.as_chunks::<3>();
+        for (end, parts) in ["magnitude", "moment-magnitude"].into_iter().zip(parts) {
+            if let Some(v) = vector(at, &joint.name, *parts) {
                 sums.push((format!("{}.{end}", joint.name), v.norm(), v.norm()));
             }
         }
@@ -179,11 +175,8 @@ fn magnitudes(scene: &SpaceScene, at: (&Rows, usize)) -> Sums {
 
 /// The potential energy of all loads, J; none if one of them has none.
 fn potential(claims: &SpaceClaims<'_>, scene: &SpaceScene, state: &SpaceState) -> Option<f64> {
-    let of = scene.loads.iter().map(|load| {
-        let Magnitude::Constant(magnitude) = load.magnitude else {
-            return None;
-        };
-        potential_energy(&claims.case(), &state.placements, (load.kind, magnitude))
-    });
-    of.sum()
+    let loads = scene.loads.iter();
+    loads
+        .map(|load| potential_energy(&claims.case(), &state.placements, constant(load)?))
+        .sum()
 }

@@ -48,7 +48,7 @@ pub(crate) mod scene_text;
 mod section_files;
 mod sections;
 pub(crate) mod stated;
-pub(super) mod table_curve;
+pub(crate) mod table_curve;
 mod table_file;
 pub(super) mod totals;
 mod unit_files;
