@@ -55,22 +55,16 @@ pub(crate) fn compare(
     let other_rows = other_rows(run, &rows)?;
     let events =
         [&first, &again, &wanted, &other_rows].map(|run| run.csv("-motion-events.csv").ok());
+    let again = compared.of("written-motion-again");
     for (other, its_events) in [(&rows_again, &events[1]), (&rows_wanted, &events[2])] {
-        let same = same_motion(&motion.reading, [&rows, other]);
-        compared.merge("written-motion-again", same);
-        let same = same_events(&rows, [&events[0], its_events]);
-        compared.merge("written-motion-again", same);
+        again.merge(same_motion(&motion.reading, [&rows, other]));
+        again.merge(same_events(&rows, [&events[0], its_events]));
     }
-    compared.merge(
-        "written-motion-again",
-        same_events(&rows, [&events[0], &events[3]]),
-    );
+    again.merge(same_events(&rows, [&events[0], &events[3]]));
     let summaries = [&first, &other_rows].map(|run| run.json("-simulate.json"));
     if let [Ok(one), Ok(other)] = &summaries {
-        let same = same_extrema(
-            [one, other],
-            "simulate and simulate by esdirk34 in other rows",
-        );
+        let what = "simulate and simulate by esdirk34 in other rows";
+        let same = same_extrema([one, other], what);
         compared.merge("written-motion-extrema-again", same);
     }
     // Both are free of the error of the default method.
@@ -122,10 +116,8 @@ fn compare_rows(
     rows: &Rows,
     file: &str,
 ) -> Result<(), String> {
-    compared.merge(
-        "written-motion-closure",
-        closure(&motion.reading, rows, file).joints,
-    );
+    let of = closure(&motion.reading, rows, file);
+    compared.merge("written-motion-closure", of.joints);
     let pins = joint_force_differences(&motion.reading, rows, file);
     compared.merge("written-motion-joint-forces", pins);
     let of_motors = motors(motion, rows, file);
@@ -138,12 +130,7 @@ fn compare_rows(
     compared.merge("written-motion-energies", energy.columns);
     compared.merge("written-motion-equations", of.equations);
     compared.merge("written-motion-forces", of.forces);
-    if let Some(time) = rows.columns.get("t") {
-        compared.merge(
-            "written-motion-rates",
-            rates(rows, time, &corners(&motion.reading), file),
-        );
-    }
+    compared.merge("written-motion-rates", rates(&motion.reading, rows, file));
     Ok(())
 }
 

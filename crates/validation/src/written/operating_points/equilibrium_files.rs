@@ -1,7 +1,7 @@
 //! What `equilibria` and `linearise` write of equilibria beside their modes: how far they are from the start, what was searched, the words for
 //! their stability, that both commands find the same, and the extent of the static force, which `statics` gives row by row.
 
-use super::characteristic::Complex;
+use super::characteristic::{Complex, largest_size};
 use super::modes::eigenvalues;
 use super::starts::{FreeCoordinate, Start};
 use crate::written::poses::compared::Compared;
@@ -44,12 +44,8 @@ pub(super) fn compare(
         add_neutral(start_of, start, &linear, &name);
         let words = compared.of("written-rest-words");
         add_words(words, &about.printed, &linear, std::slice::from_ref(&name));
-        add_same(
-            compared.of("written-rest-again"),
-            start,
-            (&summary, &names),
-            &linear,
-        );
+        let again = compared.of("written-rest-again");
+        add_same(again, start, (&summary, &names), &linear);
     }
     static_force(compared, program, start, &summary)
 }
@@ -118,10 +114,8 @@ fn add_searched(to: &mut Differences, start: &Start<'_>, summary: &Json) {
 
 /// The words for the stability of eigenvalues whose error is known; none where zero is within it.
 fn word(values: &[Complex], error: f64) -> Option<&'static str> {
-    let largest = values
-        .iter()
-        .map(|[re, _]| *re)
-        .fold(f64::NEG_INFINITY, f64::max);
+    let parts = values.iter().map(|[re, _]| *re);
+    let largest = parts.fold(f64::NEG_INFINITY, f64::max);
     let is_near_zero = |[re, im]: &Complex| re.hypot(*im) <= 2.0 * error;
     if values.is_empty() || values.iter().any(is_near_zero) {
         return None;
@@ -199,10 +193,9 @@ fn add_same(
         &start.values().collect::<Vec<_>>()[..],
     ) {
         let aside = |at: Option<f64>| at.map_or(f64::INFINITY, |at| (at - from).abs());
-        let of_table = names
-            .iter()
-            .map(|name| result(summary, &format!("{name}.{}", free.name)));
-        let least = of_table.map(aside).fold(f64::INFINITY, f64::min);
+        let of_table = |name: &String| result(summary, &format!("{name}.{}", free.name));
+        let all = names.iter().map(|name| aside(of_table(name)));
+        let least = all.fold(f64::INFINITY, f64::min);
         let this = aside(result(linear, &format!("equilibrium.{}", free.name)));
         to.add(
             (this - least).max(0.0),
@@ -215,10 +208,7 @@ fn add_same(
         eigenvalues(linear, "equilibrium"),
         eigenvalues(summary, nearest),
     ];
-    let largest = these
-        .iter()
-        .map(|[re, im]| re.hypot(*im))
-        .fold(f64::MIN_POSITIVE, f64::max);
+    let largest = largest_size(&these);
     if these.len() != those.len() {
         to.fail(format!("{} and {} eigenvalues", these.len(), those.len()));
     }

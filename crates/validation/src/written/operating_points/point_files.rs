@@ -1,6 +1,6 @@
 //! The findings over operating points of a case.
 
-use super::characteristic::{Complex, error_of_root, size};
+use super::characteristic::{Complex, error_of_root, largest_size, size};
 use super::equilibrium_files;
 use super::linear_file::LinearFile;
 use super::modes::{add_modes, eigenvalues};
@@ -105,10 +105,7 @@ fn linearised(compared: &mut Compared, run: &Run) -> Result<(), String> {
         let (count, states) = (found.len(), matrix.len());
         return Err(format!("{count} eigenvalues of {states} states"));
     }
-    let largest = found
-        .iter()
-        .map(|l| size(*l))
-        .fold(f64::MIN_POSITIVE, f64::max);
+    let largest = largest_size(&found);
     let mut roots = Differences::default();
     for lambda in &found {
         let error = error_of_root(&matrix, *lambda, largest);
@@ -152,8 +149,8 @@ fn equilibria(compared: &mut Compared, run: &Run) -> Result<(), String> {
 fn add_row(compared: &mut Compared, summary: &Value, rows: &Rows, row: usize) {
     let place = |what: &str| format!("equilibrium {}, {what}", row + 1);
     let name = format!("equilibrium.{}", row + 1);
-    let known: Vec<f64> = eigenvalues(summary, &name).into_iter().map(size).collect();
-    let largest = known.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let values = eigenvalues(summary, &name);
+    let largest = largest_size(&values);
     let mut modes = 0;
     for mode in 1.. {
         let of = |what: &str| rows.get(row, &format!("mode{mode}.{what}"));
@@ -174,23 +171,18 @@ fn add_row(compared: &mut Compared, summary: &Value, rows: &Rows, row: usize) {
             || place(&format!("mode {mode}")),
         );
         for value in [angular, TAU * hertz] {
-            let nearest = known
-                .iter()
-                .map(|k| (k - value).abs())
-                .fold(f64::INFINITY, f64::min);
+            let away = values.iter().map(|known| (size(*known) - value).abs());
+            let nearest = away.fold(f64::INFINITY, f64::min);
             compared.add("written-point-files", nearest, largest, "1/s", || {
                 place(&format!("mode {mode} in table and summary"))
             });
         }
     }
     let error = result(summary, &format!("{name}.error.eigenvalues")).unwrap_or(0.0);
-    let values = eigenvalues(summary, &name);
     // One of each pair whose imaginary parts are clear of their errors.
     let pairs = values.iter().filter(|[_, im]| *im > 2.0 * error).count();
-    if values
-        .iter()
-        .all(|[_, im]| *im == 0.0 || im.abs() > 2.0 * error)
-    {
+    let is_clear = |[_, im]: &Complex| *im == 0.0 || im.abs() > 2.0 * error;
+    if values.iter().all(is_clear) {
         let modes = f64::from(modes) - pairs as f64;
         compared.add("written-modes", modes, 1.0, "", || {
             place("the number of modes")

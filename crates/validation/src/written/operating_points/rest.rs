@@ -2,7 +2,7 @@
 //! must find the same modes there. One that oscillates does so again with a damper that has a known share of its critical
 //! damping.
 
-use super::characteristic::size;
+use super::characteristic::{largest_size, size};
 use super::linear_file::LinearFile;
 use super::modes::eigenvalues;
 use super::nearest;
@@ -133,10 +133,7 @@ impl Rest<'_> {
         }
         let found = eigenvalues(&run.json("-linearise.json")?, "initial");
         let written = eigenvalues(self.summary, &format!("equilibrium.{}", row + 1));
-        let largest = found
-            .iter()
-            .map(|l| size(*l))
-            .fold(f64::MIN_POSITIVE, f64::max);
+        let largest = largest_size(&found);
         for (one, other) in found.iter().zip(&written) {
             let difference = size([one[0] - other[0], one[1] - other[1]]);
             let place = || format!("equilibrium {}, eigenvalues", row + 1);

@@ -25,12 +25,12 @@ pub(super) fn contents_differences(
     let summary = run.json("-check.json")?;
     let rows = start_of(program, reading, scene, &summary)?;
     let start = Motion::new(reading, &rows, 0).ok_or("no row of the start")?;
-    let expected = Contents::of(&start);
-    let numbers = expected.numbers.iter();
+    let expected = contents_of(&start);
+    let numbers = expected.iter();
     let numbers = numbers.map(|(name, value, scale)| (name.as_str(), (*value, *scale)));
     let summed = summary_differences(&summary, numbers, "check");
     let table = table_of(scene)?;
-    let mut lines = expected.sentences(reading);
+    let mut lines = sentences(&expected, reading);
     lines.extend(motion_lines(reading, &table));
     let mut printed = sentence_differences(&run.printed, &lines, "check");
     add_modes(&mut printed, &run.printed);
@@ -205,81 +205,74 @@ fn start_of(
     run.csv("-kinematics.csv")
 }
 
-/// What a scene has, by its text and the places of its bodies.
-struct Contents {
-    /// By name of the summary: value and scale.
-    numbers: Vec<(String, f64, f64)>,
+/// What a scene has, by its text and the places of its bodies: by name of the summary, value and scale.
+fn contents_of(start: &Motion<'_>) -> Vec<(String, f64, f64)> {
+    let reading = start.reading;
+    let bodies = reading.bodies.iter().enumerate();
+    let moving: Vec<(usize, &Body)> = bodies.filter(|(_, body)| !body.is_ground).collect();
+    let mut numbers = vec![("moving_bodies".to_owned(), moving.len() as f64, 1.0)];
+    let mass: f64 = moving.iter().map(|(_, body)| body.mass).sum();
+    numbers.push(("mass".to_owned(), mass, mass));
+    let joints = reading.joints.iter();
+    let joints = joints.filter(|joint| !matches!(joint.kind, JointKind::Coupling { .. }));
+    let places = joints.flat_map(|joint| joint.places);
+    let points: Vec<[f64; 2]> = places.map(|place| start.point(place).order(0)).collect();
+    let size = [0, 1].map(|k| {
+        let [low, high] = extent(points.iter().map(|p| &p[k]));
+        high - low
+    });
+    let scale = size[0].max(size[1]).max(reading.size());
+    for (name, extent) in ["size.width", "size.height"].into_iter().zip(size) {
+        numbers.push((name.to_owned(), extent, scale));
+    }
+    if mass > 0.0 {
+        let mut sums = [0.0; 2];
+        for (b, body) in &moving {
+            let center = start.center(*b).order(0);
+            sums = [0, 1].map(|k| sums[k] + body.mass * center[k]);
+        }
+        for (name, sum) in ["mass.center.x", "mass.center.y"].into_iter().zip(sums) {
+            numbers.push((name.to_owned(), sum / mass, scale));
+        }
+    }
+    for (b, body) in moving {
+        if body.mass != 0.0 || body.inertia != 0.0 {
+            numbers.push((format!("mass.{}", body.name), body.mass, body.mass));
+            numbers.push((format!("inertia.{}", body.name), body.inertia, body.inertia));
+        }
+        let angle = start.bodies[b].angle.value();
+        numbers.push((format!("start.{}.angle", body.name), angle, 1.0));
+    }
+    numbers
 }
 
-impl Contents {
-    fn of(start: &Motion<'_>) -> Self {
-        let reading = start.reading;
-        let bodies = reading.bodies.iter().enumerate();
-        let moving: Vec<(usize, &Body)> = bodies.filter(|(_, body)| !body.is_ground).collect();
-        let mut numbers = vec![("moving_bodies".to_owned(), moving.len() as f64, 1.0)];
-        let mass: f64 = moving.iter().map(|(_, body)| body.mass).sum();
-        numbers.push(("mass".to_owned(), mass, mass));
-        let joints = reading.joints.iter();
-        let joints = joints.filter(|joint| !matches!(joint.kind, JointKind::Coupling { .. }));
-        let places = joints.flat_map(|joint| joint.places);
-        let points: Vec<[f64; 2]> = places.map(|place| start.point(place).order(0)).collect();
-        let size = [0, 1].map(|k| {
-            let [low, high] = extent(points.iter().map(|p| &p[k]));
-            high - low
-        });
-        let scale = size[0].max(size[1]).max(reading.size());
-        for (name, extent) in ["size.width", "size.height"].into_iter().zip(size) {
-            numbers.push((name.to_owned(), extent, scale));
-        }
-        if mass > 0.0 {
-            let mut sums = [0.0; 2];
-            for (b, body) in &moving {
-                let center = start.center(*b).order(0);
-                sums = [0, 1].map(|k| sums[k] + body.mass * center[k]);
-            }
-            for (name, sum) in ["mass.center.x", "mass.center.y"].into_iter().zip(sums) {
-                numbers.push((name.to_owned(), sum / mass, scale));
-            }
-        }
-        for (b, body) in moving {
-            if body.mass != 0.0 || body.inertia != 0.0 {
-                numbers.push((format!("mass.{}", body.name), body.mass, body.mass));
-                numbers.push((format!("inertia.{}", body.name), body.inertia, body.inertia));
-            }
-            let angle = start.bodies[b].angle.value();
-            numbers.push((format!("start.{}.angle", body.name), angle, 1.0));
-        }
-        Self { numbers }
+/// The beginnings of printed lines, and the numbers that follow, with their scales.
+fn sentences(numbers: &[(String, f64, f64)], reading: &Reading) -> Vec<(String, Vec<Expected>)> {
+    let of = |name: &str, unit: f64| {
+        let found = numbers.iter().find(|(named, ..)| named == name);
+        found.map(|(_, value, scale)| (value / unit, scale / unit))
+    };
+    let length = reading.units.length;
+    let size: Vec<_> = ["size.width", "size.height"]
+        .into_iter()
+        .filter_map(|n| of(n, length))
+        .collect();
+    let mut all = vec![("overall size at the start: ".to_owned(), size)];
+    let mut whole: Vec<_> = of("mass", 1.0).into_iter().collect();
+    let centers = ["mass.center.x", "mass.center.y"].into_iter();
+    whole.extend(centers.filter_map(|name| of(name, length)));
+    if whole.len() == 3 {
+        all.push(("moving mass ".to_owned(), whole));
     }
-
-    /// The beginnings of printed lines, and the numbers that follow, with their scales.
-    fn sentences(&self, reading: &Reading) -> Vec<(String, Vec<Expected>)> {
-        let of = |name: &str, unit: f64| {
-            let found = self.numbers.iter().find(|(named, ..)| named == name);
-            found.map(|(_, value, scale)| (value / unit, scale / unit))
-        };
-        let length = reading.units.length;
-        let size: Vec<_> = ["size.width", "size.height"]
-            .into_iter()
-            .filter_map(|n| of(n, length))
-            .collect();
-        let mut all = vec![("overall size at the start: ".to_owned(), size)];
-        let mut whole: Vec<_> = of("mass", 1.0).into_iter().collect();
-        let centers = ["mass.center.x", "mass.center.y"].into_iter();
-        whole.extend(centers.filter_map(|name| of(name, length)));
-        if whole.len() == 3 {
-            all.push(("moving mass ".to_owned(), whole));
+    for body in &reading.bodies {
+        let named = ["mass", "inertia"].map(|what| of(&format!("{what}.{}", body.name), 1.0));
+        if let [Some(mass), Some(inertia)] = named {
+            all.push((format!("{}: ", body.name), vec![mass, inertia]));
         }
-        for body in &reading.bodies {
-            let named = ["mass", "inertia"].map(|what| of(&format!("{what}.{}", body.name), 1.0));
-            if let [Some(mass), Some(inertia)] = named {
-                all.push((format!("{}: ", body.name), vec![mass, inertia]));
-            }
-            if let Some((angle, _)) = of(&format!("start.{}.angle", body.name), 1.0) {
-                let degrees = (angle.to_degrees(), 360.0);
-                all.push((format!("{} ", body.name), vec![(angle, 1.0), degrees]));
-            }
+        if let Some((angle, _)) = of(&format!("start.{}.angle", body.name), 1.0) {
+            let degrees = (angle.to_degrees(), 360.0);
+            all.push((format!("{} ", body.name), vec![(angle, 1.0), degrees]));
         }
-        all
     }
+    all
 }

@@ -66,10 +66,8 @@ impl<'a> Motion<'a> {
 
     /// The point of a body.
     pub(crate) fn point(&self, place: Place) -> JetVector {
-        let frame = self.bodies[place.body];
-        frame
-            .origin
-            .plus(JetVector::rotated(place.point, frame.angle))
+        let Frame { origin, angle } = self.bodies[place.body];
+        origin.plus(JetVector::rotated(place.point, angle))
     }
 
     /// A direction of a body.
@@ -100,13 +98,9 @@ impl<'a> Motion<'a> {
 
     /// The same positions without velocities and accelerations.
     pub(crate) fn at_rest(&self) -> Self {
-        let still = |jet: Jet| Jet::constant(jet.value());
         let frame = |frame: &Frame| Frame {
-            origin: JetVector {
-                x: still(frame.origin.x),
-                y: still(frame.origin.y),
-            },
-            angle: still(frame.angle),
+            origin: JetVector::constant(frame.origin.order(0)),
+            angle: Jet::constant(frame.angle.value()),
         };
         Self {
             bodies: self.bodies.iter().map(frame).collect(),
@@ -124,8 +118,7 @@ impl<'a> Motion<'a> {
 /// A point as written.
 pub(crate) fn point_in(rows: &Rows, row: usize, body: &str, point: &str) -> Option<JetVector> {
     let prefix = format!("{body}.{point}");
-    Some(JetVector {
-        x: rows.jet(row, &prefix, [".x", ".vx", ".ax"])?,
-        y: rows.jet(row, &prefix, [".y", ".vy", ".ay"])?,
-    })
+    let x = rows.jet(row, &prefix, [".x", ".vx", ".ax"])?;
+    let y = rows.jet(row, &prefix, [".y", ".vy", ".ay"])?;
+    Some(JetVector::new(x, y))
 }

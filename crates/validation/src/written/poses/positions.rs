@@ -3,6 +3,7 @@
 use super::closure::closure;
 use super::compared::Compared;
 use super::contents_files::contents_differences;
+use super::difference::Differences;
 use super::dwell::dwell_differences;
 use super::equilibrium::equilibrium;
 use super::extrema_again::same_extrema;
@@ -33,34 +34,49 @@ pub(crate) fn compare(
     program: &Program,
     scene: &str,
 ) -> Result<(), String> {
-    let reading = Reading::new(scene)?;
-    let mut draws = Draws::of(scene);
-    let everything = text_of(&requests_everything(scene)?)?;
-    let moving = with_motion(&everything, &reading, &mut draws)?;
-    // With several actuators a motion says which of them moves.
-    let kinematic = if reading.actuator_count == 1 {
-        &everything
-    } else {
-        &moving
+    let reading = &Reading::new(scene)?;
+    let case = &mut Case {
+        program,
+        reading,
+        draws: Draws::of(scene),
+        compared,
     };
-    compare_kinematics(compared, &program, &reading, kinematic)?;
-    compared.merge("written-dwell", dwell_differences(&program, scene)?);
-    let [contents, sentences, warnings] = contents_differences(&program, &reading, &everything)?;
-    compared.merge("written-contents", contents);
-    compared.merge("written-contents-sentences", sentences);
-    compared.merge("written-warnings", warnings);
-    compare_forces(compared, &program, &reading, &moving, &mut draws)?;
-    compare_units(compared, &program, &reading, &moving, &mut draws)?;
-    if reading.actuator_count == 1 {
-        compare_reduced(
-            compared,
-            &program,
-            &reading,
-            [scene, &everything],
-            &mut draws,
-        )?;
+    let everything = text_of(&requests_everything(scene)?)?;
+    let moving = with_motion(&everything, reading, &mut case.draws)?;
+    // With several actuators a motion says which of them moves.
+    let is_single = reading.actuator_count == 1;
+    compare_kinematics(case, if is_single { &everything } else { &moving })?;
+    case.merge("written-dwell", dwell_differences(program, scene)?);
+    let [contents, sentences, warnings] = contents_differences(program, reading, &everything)?;
+    case.merge("written-contents", contents);
+    case.merge("written-contents-sentences", sentences);
+    case.merge("written-warnings", warnings);
+    compare_forces(case, &moving)?;
+    compare_units(case, &moving)?;
+    if is_single {
+        compare_reduced(case, [scene, &everything])?;
     }
     Ok(())
+}
+
+/// A case whose files about positions are compared.
+pub(super) struct Case<'a> {
+    pub(super) program: &'a Program,
+    pub(super) reading: &'a Reading,
+    pub(super) draws: Draws,
+    pub(super) compared: &'a mut Compared,
+}
+
+impl Case<'_> {
+    /// Runs a command on a scene under a name.
+    pub(super) fn run(&self, name: &str, scene: &str, arguments: &[&str]) -> Result<Run, String> {
+        self.program.run(name, scene, arguments)
+    }
+
+    /// Adds differences to those of a key.
+    pub(super) fn merge(&mut self, key: &'static str, differences: Differences) {
+        self.compared.merge(key, differences);
+    }
 }
 
 /// The scene with a sweep from its assembly on, if it has no motion that forces of inertia follow from.
@@ -80,77 +96,57 @@ fn with_motion(scene: &str, reading: &Reading, draws: &mut Draws) -> Result<Stri
     text_of(&table)
 }
 
-fn compare_kinematics(
-    compared: &mut Compared,
-    program: &Program,
-    reading: &Reading,
-    scene: &str,
-) -> Result<(), String> {
-    let run = program.run("kinematics", scene, &["kinematics"])?;
+fn compare_kinematics(case: &mut Case<'_>, scene: &str) -> Result<(), String> {
+    let (reading, command) = (case.reading, "kinematics");
+    let run = case.run(command, scene, &[command])?;
     let rows = run.csv("-kinematics.csv")?;
-    add_formats(compared, &run, reading, "kinematics")?;
+    add_formats(case.compared, &run, reading, command)?;
     let of_movement = movement(&run, reading, &rows)?;
-    compared.merge("written-movement", of_movement.numbers);
-    compared.merge("written-movement-sentences", of_movement.sentences);
-    add_other_rows(compared, program, (&run, reading), (scene, "kinematics"))?;
-    let of = closure(reading, &rows, "kinematics");
-    compared.merge("written-closure", of.joints);
-    compared.merge("written-laws", of.laws);
-    compared.merge(
-        "written-quotients",
-        quotient_differences(reading, &rows, "kinematics"),
-    );
-    if let Some(time) = rows.columns.get("t") {
-        compared.merge(
-            "written-rates",
-            rates(&rows, time, &corners(reading), "kinematics"),
-        );
-    }
+    case.merge("written-movement", of_movement.numbers);
+    case.merge("written-movement-sentences", of_movement.sentences);
+    add_other_rows(case, &run, (scene, command))?;
+    let of = closure(reading, &rows, command);
+    case.merge("written-closure", of.joints);
+    case.merge("written-laws", of.laws);
+    let quotients = quotient_differences(reading, &rows, command);
+    case.merge("written-quotients", quotients);
+    case.merge("written-rates", rates(reading, &rows, command));
     Ok(())
 }
 
 /// Where laws of the prescribed motion have corners, s.
 pub(crate) fn corners(reading: &Reading) -> Vec<f64> {
-    reading
-        .laws
-        .iter()
-        .flatten()
-        .flat_map(Law::corners)
-        .collect()
+    let laws = reading.laws.iter().flatten();
+    laws.flat_map(Law::corners).collect()
 }
 
-fn compare_forces(
-    compared: &mut Compared,
-    program: &Program,
-    reading: &Reading,
-    scene: &str,
-    draws: &mut Draws,
-) -> Result<(), String> {
+fn compare_forces(case: &mut Case<'_>, scene: &str) -> Result<(), String> {
+    let reading = case.reading;
     let has_motion = has_motion(&table_of(scene)?);
     for command in ["kinetostatics", "statics"] {
         // Without a motion there are no speeds that forces of inertia follow from.
         if !has_motion && (command == "kinetostatics" || reading.actuator_count > 1) {
             continue;
         }
-        let points = (61 + draws.below(60)).to_string();
-        let run = program.run(command, scene, &[command, "--points", &points])?;
+        let points = (61 + case.draws.below(60)).to_string();
+        let run = case.run(command, scene, &[command, "--points", &points])?;
         let rows = run.npz(&format!("-{command}.npz"))?;
         let of = closure(reading, &rows, command);
-        compared.merge("written-closure", of.joints);
+        case.merge("written-closure", of.joints);
         let forces = equilibrium(reading, &rows, command, command == "statics");
-        compared.merge("written-equilibrium", forces.bodies);
-        compared.merge("written-loads", forces.loads);
-        compared.merge("written-totals", forces.totals);
+        case.merge("written-equilibrium", forces.bodies);
+        case.merge("written-loads", forces.loads);
+        case.merge("written-totals", forces.totals);
         let pins = joint_force_differences(reading, &rows, command);
-        compared.merge("written-joint-forces", pins);
-        add_formats(compared, &run, reading, command)?;
-        add_other_rows(compared, program, (&run, reading), (scene, command))?;
+        case.merge("written-joint-forces", pins);
+        add_formats(case.compared, &run, reading, command)?;
+        add_other_rows(case, &run, (scene, command))?;
     }
     if has_motion {
-        compare_sections(compared, program, reading, scene, draws)?;
+        compare_sections(case, scene)?;
     }
     if let Some(scene) = with_pressure_angles(scene, reading).filter(|_| has_motion) {
-        compare_teeth(compared, program, &scene?)?;
+        compare_teeth(case, &scene?)?;
     }
     Ok(())
 }
@@ -175,40 +171,39 @@ fn with_pressure_angles(scene: &str, reading: &Reading) -> Option<Result<String,
 }
 
 /// Forces of the scene whose teeth have pressure angles.
-fn compare_teeth(compared: &mut Compared, program: &Program, scene: &str) -> Result<(), String> {
-    let run = program.run("teeth", scene, &["kinetostatics", "--points", "37"])?;
+fn compare_teeth(case: &mut Case<'_>, scene: &str) -> Result<(), String> {
+    let run = case.run("teeth", scene, &["kinetostatics", "--points", "37"])?;
     let reading = Reading::new(scene)?;
     let rows = run.npz("-kinetostatics.npz")?;
     let forces = equilibrium(&reading, &rows, "teeth", false);
-    compared.merge("written-equilibrium", forces.bodies);
-    compared.merge("written-loads", forces.loads);
-    compared.merge("written-totals", forces.totals);
-    compared.merge(
+    case.merge("written-equilibrium", forces.bodies);
+    case.merge("written-loads", forces.loads);
+    case.merge("written-totals", forces.totals);
+    case.merge(
         "written-joint-forces",
         joint_force_differences(&reading, &rows, "teeth"),
     );
-    add_formats(compared, &run, &reading, "kinetostatics")?;
-    let [_, sentences, _] = contents_differences(program, &reading, scene)?;
-    compared.merge("written-contents-sentences", sentences);
+    add_formats(case.compared, &run, &reading, "kinetostatics")?;
+    let [_, sentences, _] = contents_differences(case.program, &reading, scene)?;
+    case.merge("written-contents-sentences", sentences);
     Ok(())
 }
 
 /// The extrema of the same motion in fewer rows.
 fn add_other_rows(
-    compared: &mut Compared,
-    program: &Program,
-    (run, reading): (&Run, &Reading),
+    case: &mut Case<'_>,
+    run: &Run,
     (scene, command): (&str, &str),
 ) -> Result<(), String> {
     // Where smoothed friction reverses, forces may have peaks that are narrower than what is looked at between rows.
-    if !reading.frictions.is_empty() {
+    if !case.reading.frictions.is_empty() {
         return Ok(());
     }
-    let other = program.run("other-rows", scene, &[command, "--points", OTHER_POINTS]);
+    let other = case.run("other-rows", scene, &[command, "--points", OTHER_POINTS]);
     let end = format!("-{command}.json");
     let other = other?.json(&end)?;
     let same = same_extrema([&run.json(&end)?, &other], command);
-    compared.merge("written-extrema-again", same);
+    case.merge("written-extrema-again", same);
     Ok(())
 }
 

@@ -2,6 +2,8 @@
 //! of Hermite, whose error is estimated from twice the interval.
 
 use super::difference::Differences;
+use super::positions::corners;
+use super::reading::Reading;
 use super::rows::{Rows, largest};
 
 /// Endings of a value, its rate and the rate of that.
@@ -16,8 +18,13 @@ const RATES: [[&str; 3]; 5] = [
 const ERROR_FACTOR: f64 = 4.0;
 
 /// Differences between rows, in time; rows next to which a rate jumps (the corners of laws) are left out.
-pub(crate) fn rates(rows: &Rows, time: &[f64], corners: &[f64], file: &str) -> Differences {
+/// None of a file without a time.
+pub(crate) fn rates(reading: &Reading, rows: &Rows, file: &str) -> Differences {
     let mut all = Differences::default();
+    let Some(time) = rows.columns.get("t") else {
+        return all;
+    };
+    let corners = &corners(reading);
     // Points and travels have one scale, and so have all angles.
     for kinds in [&RATES[..1], &RATES[1..2], &RATES[2..]] {
         let mut found = Vec::new();

@@ -1,11 +1,10 @@
 //! The files of internal forces of drawn links.
 
-use super::compared::Compared;
 use super::difference::Differences;
-use super::program::Program;
+use super::positions::Case;
 use super::reading::Reading;
 use super::rows::{Rows, largest};
-use super::scene_text::{Draws, table_of, text_of, value_of};
+use super::scene_text::{table_of, text_of, value_of};
 use super::sections::{Link, links, sections};
 use super::stated::{result, sentence_differences};
 
@@ -13,23 +12,18 @@ use super::stated::{result, sentence_differences};
 const LINKS: usize = 2;
 
 /// The internal forces of drawn links, in the row where the program has found the largest bending moment.
-pub(crate) fn compare_sections(
-    compared: &mut Compared,
-    program: &Program,
-    reading: &Reading,
-    scene: &str,
-    draws: &mut Draws,
-) -> Result<(), String> {
+pub(super) fn compare_sections(case: &mut Case<'_>, scene: &str) -> Result<(), String> {
+    let reading = case.reading;
     let mut links = links(reading);
     let drawn: Vec<_> = (0..LINKS.min(links.len()))
-        .map(|_| links.remove(draws.below(links.len())))
+        .map(|_| links.remove(case.draws.below(links.len())))
         .collect();
     if drawn.is_empty() {
         return Ok(());
     }
     let arguments = ["kinetostatics", "--points", "37"];
     let scene = requesting_sections(scene, reading, &drawn)?;
-    let run = program.run("sections", &scene, &arguments)?;
+    let run = case.run("sections", &scene, &arguments)?;
     let rows = run.csv("-kinetostatics.csv")?;
     let summary = run.json("-kinetostatics.json")?;
     let abscissa = summary["extrema_over"]["name"].as_str().unwrap_or("t");
@@ -44,22 +38,22 @@ pub(crate) fn compare_sections(
         let is_there = |x: &f64| at.is_some_and(|at| (x - at).abs() <= 1e-12 * (1.0 + at.abs()));
         let Some(row) = rows.column(abscissa).iter().position(is_there) else {
             let reason = format!("the largest {name} is at {at:?}, which is no row");
-            compared.fail("written-sections", reason);
+            case.compared.fail("written-sections", reason);
             continue;
         };
         let of = sections(reading, &rows, row, link, &cuts);
-        compared.merge("written-sections", of.cuts);
-        compared.merge("written-section-ends", of.ends);
+        case.merge("written-sections", of.cuts);
+        case.merge("written-section-ends", of.ends);
         let file = format!("-kinetostatics-internal-forces-{body}.{from}.{to}.envelope.csv");
-        compared.merge("written-envelope", within(&cuts, &run.csv(&file)?, &name));
+        case.merge("written-envelope", within(&cuts, &run.csv(&file)?, &name));
         // The largest moment that is printed is one of the cuts.
         let said = result(&summary, &name).unwrap_or(f64::NAN);
-        compared.merge(
+        case.merge(
             "written-sentences",
             moment_sentence(&run.printed, [body, from, to], said),
         );
         let largest = largest(cuts.column("bending"));
-        compared.add(
+        case.compared.add(
             "written-files",
             said.abs() - largest,
             largest,

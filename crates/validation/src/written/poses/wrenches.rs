@@ -17,6 +17,17 @@ pub(crate) struct Wrench {
 }
 
 impl Wrench {
+    /// A force on a body at a point.
+    fn new(body: usize, force: [f64; 2], point: [f64; 2]) -> Self {
+        let couple = 0.0;
+        Self {
+            body,
+            force,
+            point,
+            couple,
+        }
+    }
+
     /// A multiple of it.
     pub(crate) fn times(&self, factor: f64) -> Self {
         Self {
@@ -72,15 +83,11 @@ fn plus([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
 /// A force on the second body and its opposite on the first.
 fn both([first, second]: [usize; 2], force: [f64; 2], point: [f64; 2], couple: f64) -> [Wrench; 2] {
     let on = |body: usize, force: [f64; 2], couple: f64| Wrench {
-        body,
-        force,
-        point,
         couple,
+        ..Wrench::new(body, force, point)
     };
-    [
-        on(first, scaled(force, -1.0), -couple),
-        on(second, force, couple),
-    ]
+    let opposite = on(first, scaled(force, -1.0), -couple);
+    [opposite, on(second, force, couple)]
 }
 
 fn unit(gap: JetVector) -> [f64; 2] {
@@ -91,11 +98,9 @@ fn unit(gap: JetVector) -> [f64; 2] {
 /// A force between two points along their line, on each body at its own point.
 fn between(motion: &Motion<'_>, places: [Place; 2], force: f64) -> [Wrench; 2] {
     let line = unit(motion.gap(places));
-    let on = |k: usize, sign: f64| Wrench {
-        body: places[k].body,
-        force: scaled(line, sign * force),
-        point: motion.point(places[k]).order(0),
-        couple: 0.0,
+    let on = |k: usize, sign: f64| {
+        let point = motion.point(places[k]).order(0);
+        Wrench::new(places[k].body, scaled(line, sign * force), point)
     };
     [on(0, -1.0), on(1, 1.0)]
 }
@@ -238,11 +243,9 @@ impl Load {
             LoadKind::Gravity([x, y]) => {
                 let size = x.hypot(*y);
                 let bodies = motion.reading.bodies.iter().enumerate();
-                let weight = |(body, of): (usize, &Body)| Wrench {
-                    body,
-                    force: scaled([*x, *y], if size > 0.0 { of.mass / size } else { 0.0 }),
-                    point: motion.center(body).order(0),
-                    couple: 0.0,
+                let weight = |(body, of): (usize, &Body)| {
+                    let force = scaled([*x, *y], if size > 0.0 { of.mass / size } else { 0.0 });
+                    Wrench::new(body, force, motion.center(body).order(0))
                 };
                 bodies.map(weight).collect()
             }
@@ -256,12 +259,7 @@ impl Load {
                     true => motion.direction(at.body, *direction).order(0),
                     false => *direction,
                 };
-                vec![Wrench {
-                    body: at.body,
-                    force,
-                    point: motion.point(*at).order(0),
-                    couple: 0.0,
-                }]
+                vec![Wrench::new(at.body, force, motion.point(*at).order(0))]
             }
             LoadKind::Along(measure, _) => along(motion, *measure, 1.0).to_vec(),
         }
