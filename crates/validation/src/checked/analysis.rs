@@ -101,11 +101,8 @@ pub(crate) fn analyse<'a>(
             period.iter().flatten().cloned().collect(),
         ],
     );
-    findings.extend(
-        program
-            .into_iter()
-            .flat_map(|path| written_findings(path, scene)),
-    );
+    let written = |path| written::findings(path, &scene.name, scene.source.inner());
+    findings.extend(program.into_iter().flat_map(written));
     reference.apply_tolerances(&mut findings)?;
     done("states");
     Ok(CaseAnalysis {
@@ -116,21 +113,6 @@ pub(crate) fn analyse<'a>(
         free_motion,
         reduced,
     })
-}
-
-/// The findings over the files that the program at a path writes of a scene.
-fn written_findings(program: &Path, scene: &Scene) -> Vec<Finding> {
-    let text = scene.source.inner();
-    let mut findings = written::poses::findings(program, &scene.name, text);
-    findings.extend(written::motions::findings(program, &scene.name, text));
-    findings.extend(written::operating_points::findings(
-        program,
-        &scene.name,
-        text,
-    ));
-    findings.extend(written::cycles::findings(program, &scene.name, text));
-    findings.extend(written::sweeps::findings(program, &scene.name, text));
-    findings
 }
 
 /// The findings of the reduced model, the free motion, rounding, states, multibody equations and period in the order of

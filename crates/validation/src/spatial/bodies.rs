@@ -5,8 +5,8 @@
 //! ```
 
 use super::samples::{PASSES, Samples};
-use super::worst::Worst;
 use crate::error::ValidationError;
+use crate::written::poses::difference::Differences;
 use dwell_geometry::BodyId;
 use dwell_geometry::space::{Placement, Vec3, Wrench, vec3};
 use dwell_kinetostatics::InverseDynamics;
@@ -84,8 +84,8 @@ fn given(
 }
 
 /// The largest differences of forces and of moments over all positions, relative to the largest of their kind there.
-pub(super) fn body_by_body(samples: &mut Samples<'_>) -> Result<[Worst; 2], ValidationError> {
-    let mut worst = [Worst::default(), Worst::default()];
+pub(super) fn body_by_body(samples: &mut Samples<'_>) -> Result<[Differences; 2], ValidationError> {
+    let mut worst = <[Differences; 2]>::default();
     let is_angle = samples.model.plan().is_angle(0);
     let step = STEP
         * if is_angle {
@@ -116,7 +116,7 @@ pub(super) fn body_by_body(samples: &mut Samples<'_>) -> Result<[Worst; 2], Vali
             for (k, unit) in ["kg m", "kg m2"].into_iter().enumerate() {
                 let rate = derivative(|i| all[i][k], 2, step);
                 let error = (given[k] - rate).norm();
-                worst[k].add([error, 0.0, scales[k]], unit, || {
+                worst[k].compare([error, 0.0, scales[k]], unit, || {
                     format!("q = {q:.4}, {name}")
                 });
             }

@@ -5,7 +5,9 @@ use dwell_geometry::space::{
 };
 use dwell_geometry::{JointId, PositionError};
 use dwell_kinetostatics::space::{Axes, Component, Load, LoadKind, Model, Reaction};
-use dwell_kinetostatics::{Friction, FrictionContact, KinetostaticsError, MachineModel as _};
+use dwell_kinetostatics::{
+    Friction, FrictionContact, KinematicState, KinetostaticsError, MachineModel as _, Magnitude,
+};
 use dwell_numerics::Scalar;
 use dwell_scene::SpaceScene;
 use dwell_study::{StudyError, loaded_model_in_space};
@@ -32,21 +34,7 @@ impl<'a> SpaceClaims<'a> {
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be assembled, or a load does not fit it.
     pub fn new(scene: &'a SpaceScene) -> Result<Self, StudyError> {
-        let components = |j: usize| {
-            [Axes::Ground, Axes::Joint]
-                .into_iter()
-                .flat_map(move |axes| {
-                    (0..COMPONENTS).map(move |k| Reaction {
-                        joint: JointId(j),
-                        component: match k {
-                            0..3 => Component::Force(axes, k),
-                            _ => Component::Moment(axes, k - 3),
-                        },
-                    })
-                })
-        };
-        let joints = 0..scene.mechanism.joints.len();
-        let all: Vec<Reaction> = joints.flat_map(components).collect();
+        let all = all_reactions(scene, &[Axes::Ground, Axes::Joint]);
         let model = loaded_model_in_space(scene, &all)?;
         let mut pose = model.plan().pose::<f64>();
         // The mechanism was assembled there.
@@ -301,16 +289,7 @@ impl<'a> SpaceClaims<'a> {
         let found = state.inverse_dynamics();
         claimed.tau = found.tau.iter().map(|v| v.value()).collect();
         claimed.reactions = self.wrenches(&found.reactions, &claimed.placements, axes);
-        let mut state = state.into_kinematic_state();
-        let mut unit = self.model.result_buffer::<T>();
-        let n = q.len();
-        claimed.inertias = vec![0.0; n * n];
-        for j in 0..n {
-            state.mass_matrix_column(j, &mut unit);
-            for (i, tau) in unit.tau.iter().enumerate() {
-                claimed.inertias[i * n + j] = tau.value();
-            }
-        }
+        claimed.inertias = self.mass_matrix(&mut state.into_kinematic_state(), q.len());
         Ok(claimed)
     }
 
@@ -397,12 +376,19 @@ impl<'a> SpaceClaims<'a> {
     /// [`SubjectError`] where there is no pose.
     pub fn inertias<T: Scalar>(&self, q: &[f64]) -> Result<Vec<f64>, SubjectError> {
         let (mut workspace, n) = (self.model.workspace(), q.len());
-        let mut unit = self.model.result_buffer::<T>();
-        let rates = [lifted::<T>(q), vec![T::default(); n]];
-        let state = self
-            .model
-            .kinematic_state(&rates[0], &rates[1], &mut workspace);
+        let [q_of, rest] = [lifted::<T>(q), vec![T::default(); n]];
+        let state = self.model.kinematic_state(&q_of, &rest, &mut workspace);
         let mut state = state.map_err(|e| refused(q, &e))?;
+        Ok(self.mass_matrix(&mut state, n))
+    }
+
+    /// The generalised inertias of a state, row by row.
+    fn mass_matrix<T: Scalar>(
+        &self,
+        state: &mut KinematicState<'_, T, Model>,
+        n: usize,
+    ) -> Vec<f64> {
+        let mut unit = self.model.result_buffer::<T>();
         let mut inertias = vec![0.0; n * n];
         for j in 0..n {
             state.mass_matrix_column(j, &mut unit);
@@ -410,7 +396,7 @@ impl<'a> SpaceClaims<'a> {
                 inertias[i * n + j] = tau.value();
             }
         }
-        Ok(inertias)
+        inertias
     }
 
     /// What is asked beside the states, in a kind of number.
@@ -436,6 +422,38 @@ impl<T: Scalar> SpaceSubject for ClaimsIn<'_, T> {
 
     fn inertias(&self, q: &[f64]) -> Result<Vec<f64>, SubjectError> {
         self.claims.inertias::<T>(q)
+    }
+}
+
+/// All components of the reactions of all joints, joint by joint, in some kinds of axes.
+pub(super) fn all_reactions(scene: &SpaceScene, axes: &[Axes]) -> Vec<Reaction> {
+    let joints = 0..scene.mechanism.joints.len();
+    let kinds = joints.flat_map(|j| axes.iter().map(move |&axes| (j, axes)));
+    let component = |(j, axes): (usize, Axes)| {
+        (0..COMPONENTS).map(move |k| Reaction {
+            joint: JointId(j),
+            component: match k {
+                0..3 => Component::Force(axes, k),
+                _ => Component::Moment(axes, k - 3),
+            },
+        })
+    };
+    kinds.flat_map(component).collect()
+}
+
+/// Names of the components of a reaction, and the components themselves.
+pub(super) const NAMES: [&str; COMPONENTS] = ["x", "y", "z", "moment-x", "moment-y", "moment-z"];
+
+pub(super) fn components(wrench: &Wrench) -> [f64; COMPONENTS] {
+    let (f, m) = (wrench.force, wrench.moment);
+    [f.x, f.y, f.z, m.x, m.y, m.z]
+}
+
+/// A load of constant magnitude.
+pub(super) fn constant(load: &Load) -> Option<(LoadKind, f64)> {
+    match load.magnitude {
+        Magnitude::Constant(magnitude) => Some((load.kind, magnitude)),
+        _ => None,
     }
 }
 

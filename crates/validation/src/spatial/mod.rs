@@ -3,7 +3,7 @@
 //! and what the program writes of each.
 //!
 //! ```text
-//! worst ── reference ── samples ── findings ── written ── report
+//! reference ── samples ── findings ── written ── report
 //! ```
 
 mod bodies;
@@ -18,7 +18,6 @@ mod samples;
 mod several;
 mod states;
 mod stopped_motion;
-mod worst;
 mod written;
 
 pub use claims::{ClaimsIn, SpaceClaims};

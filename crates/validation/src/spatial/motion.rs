@@ -1,18 +1,21 @@
 //! A free motion of a case with several coordinates: its accelerations against the dense equations, its energy, and a reference.
 
-use super::claims::SpaceClaims;
+use super::claims::{SpaceClaims, constant};
 use super::reference::Reference;
 use super::states::{free_accelerations, free_machine, in_units};
-use super::worst::{Comparison, Worst};
 use crate::error::ValidationError;
+use crate::written::poses::difference::Differences;
+use crate::written::poses::rows::largest;
+use crate::written::poses::table_curve::solve;
 use dwell_dynamics::{
     DenseOutput, Machine, MachineOde, Method, OdeState, Options, StepControl, integrate,
 };
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::BodyMotion;
+use dwell_kinetostatics::MachineModel as _;
 use dwell_kinetostatics::space::{LoadKind, Model};
-use dwell_kinetostatics::{MachineModel as _, Magnitude};
 use dwell_scene::{MotionDuration, SpaceScene};
+use dwell_verify::FindingSpec;
 use dwell_verify::space::{DensePose, kinetic_energy, potential_energy};
 
 /// The motion without `[motion]`: its speeds at the assembly, rad/s or fifths of the size per s, and the longest time, s.
@@ -24,32 +27,32 @@ const TIMES: usize = 8;
 pub(super) const TOLERANCE: f64 = 1e-12;
 pub(super) const MAX_STEPS: usize = 20_000;
 
-const EQUATIONS: Comparison = Comparison {
+const EQUATIONS: FindingSpec<'_> = FindingSpec {
     key: "motion-equations",
     check: Check::MultibodyMotion,
     comparison: "the accelerations of a free motion with those of the dense equations",
     scale: "the largest acceleration that one action makes, or the largest squared speed",
     // The largest seen in a case is 9.3e-13.
     tolerance: 5e-11,
-    reason: "rounding, amplified by the condition of the equations and of the inertias",
+    tolerance_reason: "rounding, amplified by the condition of the equations and of the inertias",
 };
-const ENERGY: Comparison = Comparison {
+const ENERGY: FindingSpec<'_> = FindingSpec {
     key: "motion-energy",
     check: Check::Power,
     comparison: "kinetic and potential energy, of placements and dense velocities, with the start's and the work of all other loads",
     scale: "the largest kinetic energy, or the largest change of the potential one",
     // The largest seen in a case is 1.7e-13.
     tolerance: 1e-11,
-    reason: "the tolerance of the integration, 1e-12 for each step",
+    tolerance_reason: "the tolerance of the integration, 1e-12 for each step",
 };
-const REFERENCE: Comparison = Comparison {
+const REFERENCE: FindingSpec<'_> = FindingSpec {
     key: "reference-motion",
     check: Check::ReferenceValues,
     comparison: "the coordinates of the free motion with those of the reference",
     scale: "one radian or the size",
     // The largest seen in a case is 7.1e-15.
     tolerance: 5e-13,
-    reason: "the tolerance of the integration, 1e-12 for each step",
+    tolerance_reason: "the tolerance of the integration, 1e-12 for each step",
 };
 
 /// States of the machine at ascending times, as far as the motion goes.
@@ -128,7 +131,7 @@ pub(super) fn motion_findings(
     if !wanted.is_empty() {
         let times: Vec<f64> = wanted.iter().map(|(t, _)| *t).collect();
         let found = states_at(&machine, &y, &times).unwrap_or_default();
-        let mut worst = Worst::default();
+        let mut worst = Differences::default();
         for (k, (t, wanted)) in wanted.iter().enumerate() {
             for (i, wanted) in wanted.iter().enumerate() {
                 let found = found.get(k).map_or(f64::NAN, |state| state.y[i]);
@@ -136,7 +139,7 @@ pub(super) fn motion_findings(
                 let unit = if is_angle { 1.0 } else { claims.case().size };
                 let name = &scene.mechanism.actuators[i].name;
                 let of = if is_angle { "rad" } else { "m" };
-                worst.add([found, *wanted, unit], of, || format!("t = {t} s, {name}"));
+                worst.compare([found, *wanted, unit], of, || format!("t = {t} s, {name}"));
             }
         }
         let domain = format!("{} times of the reference", wanted.len());
@@ -146,9 +149,13 @@ pub(super) fn motion_findings(
 }
 
 /// Accelerations and energies along a motion.
-fn along(claims: &SpaceClaims<'_>, machine: &Machine<Model>, states: &[OdeState]) -> [Worst; 2] {
-    let [mut equations, mut energy] = [Worst::default(), Worst::default()];
-    let mut energies: Vec<[f64; 3]> = Vec::new();
+fn along(
+    claims: &SpaceClaims<'_>,
+    machine: &Machine<Model>,
+    states: &[OdeState],
+) -> [Differences; 2] {
+    let [mut equations, mut energy] = <[Differences; 2]>::default();
+    let mut energies = Vec::new();
     let n = claims.model().plan().actuators();
     for OdeState { t, y } in states {
         let [q, q_dot] = [&y[..n], &y[n..2 * n]];
@@ -157,7 +164,7 @@ fn along(claims: &SpaceClaims<'_>, machine: &Machine<Model>, states: &[OdeState]
             Some((found, dense))
         });
         let Some((found, dense)) = judged else {
-            equations.add([f64::NAN, 0.0, 1.0], "", || format!("t = {t} s"));
+            equations.compare([f64::NAN, 0.0, 1.0], "", || format!("t = {t} s"));
             continue;
         };
         // Those of speeds may cancel.
@@ -169,26 +176,29 @@ fn along(claims: &SpaceClaims<'_>, machine: &Machine<Model>, states: &[OdeState]
         let scale = speeds.fold(dense.scale, f64::max);
         for (k, (found, wanted)) in found.iter().zip(&dense.accelerations).enumerate() {
             let name = &claims.case().mechanism.actuators[k].name;
-            equations.add([*found, *wanted, scale], "1/s2", || {
+            equations.compare([*found, *wanted, scale], "1/s2", || {
                 format!("t = {t:.4} s, {name}")
             });
         }
         let work: f64 = y[machine.work_offset()..].iter().sum();
-        energies.push([dense.kinetic, dense.potential, work]);
+        energies.push((*t, [dense.kinetic, dense.potential, work]));
     }
-    let Some(&[kinetic, potential, work]) = energies.first() else {
-        return [equations, energy];
-    };
-    let scale = energies.iter().fold(0.0_f64, |max, [t, v, _]| {
-        max.max(*t).max((v - potential).abs())
-    });
-    for ([t, v, w], state) in energies.iter().zip(states) {
-        let (found, wanted) = (t + v - potential, kinetic + w - work);
-        energy.add([found, wanted, scale], "J", || {
-            format!("t = {:.4} s", state.t)
-        });
-    }
+    compare_energies(&mut energy, &energies);
     [equations, energy]
+}
+
+/// Kinetic and potential energy with those of the first time and the work since, at times.
+pub(super) fn compare_energies(to: &mut Differences, energies: &[(f64, [f64; 3])]) {
+    let Some(&(_, [kinetic, potential, work])) = energies.first() else {
+        return;
+    };
+    let larger =
+        |max: f64, (_, [t, v, _]): &(f64, [f64; 3])| max.max(*t).max((v - potential).abs());
+    let scale = energies.iter().fold(0.0, larger);
+    for (time, [t, v, w]) in energies {
+        let (found, wanted) = (t + v - potential, kinetic + w - work);
+        to.compare([found, wanted, scale], "J", || format!("t = {time:.4} s"));
+    }
 }
 
 /// What the dense equations say of a state.
@@ -231,15 +241,11 @@ impl Dense {
             let mut one = at_rest.clone();
             one[k] = *action;
             let parts = solved(&columns, &one)?;
-            scale = parts.iter().fold(scale, |max, part| max.max(part.abs()));
+            scale = scale.max(largest(&parts));
         }
         let motions: Vec<BodyMotion> = pose.velocities(q_dot);
-        let conservative = claims.model().loads().iter().filter_map(|load| {
-            let Magnitude::Constant(magnitude) = load.magnitude else {
-                return None;
-            };
-            potential_energy(&case, &placements, (load.kind, magnitude))
-        });
+        let constant = claims.model().loads().iter().filter_map(constant);
+        let conservative = constant.filter_map(|load| potential_energy(&case, &placements, load));
         Some(Self {
             accelerations,
             scale,
@@ -251,20 +257,9 @@ impl Dense {
     }
 }
 
-/// x of Σ columns x = right, by elimination with the largest pivot.
+/// x of Σ columns x = right.
 fn solved(columns: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
     let n = columns.len();
     let row = |i: usize| columns.iter().map(|c| c[i]).chain([right[i]]).collect();
-    let mut rows: Vec<Vec<f64>> = (0..n).map(row).collect();
-    for c in 0..n {
-        let pivot = (c..n).max_by(|&i, &j| rows[i][c].abs().total_cmp(&rows[j][c].abs()))?;
-        rows.swap(c, pivot);
-        let pivot_row = rows[c].clone();
-        for (_, other) in rows.iter_mut().enumerate().filter(|(i, _)| *i != c) {
-            let factor = other[c] / pivot_row[c];
-            let pairs = other.iter_mut().zip(&pivot_row);
-            pairs.for_each(|(a, b)| *a -= factor * b);
-        }
-    }
-    Some((0..n).map(|i| rows[i][n] / rows[i][i]).collect())
+    solve((0..n).map(row).collect())
 }

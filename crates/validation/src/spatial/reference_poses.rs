@@ -1,30 +1,32 @@
 //! Placements and generalised inertias of a reference, in plain numbers, against those of a subject.
 
 use super::reference::Reference;
-use super::worst::{Comparison, Worst};
 use crate::error::ValidationError;
+use crate::written::poses::difference::Differences;
+use crate::written::poses::rows::largest;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::{Placement, Vec3};
 use dwell_scene::SpaceScene;
+use dwell_verify::FindingSpec;
 use dwell_verify::space::{SpaceCase, SpaceSubject};
 use std::path::Path;
 
-const PLACEMENTS: Comparison = Comparison {
+const PLACEMENTS: FindingSpec<'_> = FindingSpec {
     key: "reference-placements",
     check: Check::ReferenceValues,
     comparison: "positions and rotations of all bodies with the reference of 25 digits",
     scale: "the size of the mechanism, or one radian",
     // The largest seen in a case is 1.8e-14.
     tolerance: 1e-12,
-    reason: "rounding, amplified by the condition of the equations",
+    tolerance_reason: "rounding, amplified by the condition of the equations",
 };
-const INERTIAS: Comparison = Comparison {
+const INERTIAS: FindingSpec<'_> = FindingSpec {
     key: "reference-inertias",
     check: Check::ReferenceValues,
     comparison: "the generalised inertias with the reference of 25 digits",
     scale: "the largest of each position",
     tolerance: 1e-12,
-    reason: "rounding, amplified by the condition of the equations",
+    tolerance_reason: "rounding, amplified by the condition of the equations",
 };
 
 /// A position of a reference.
@@ -74,7 +76,7 @@ impl ReferencePoses {
 
     /// The finding on placements; none where the reference has no placements.
     pub fn placements(&self, case: &SpaceCase<'_>, subject: &dyn SpaceSubject) -> Option<Finding> {
-        let mut worst = Worst::default();
+        let mut worst = Differences::default();
         for ReferencePose { q, placements, .. } in &self.poses {
             if placements.is_empty() {
                 continue;
@@ -85,7 +87,7 @@ impl ReferencePoses {
                     .get(*body)
                     .map_or(f64::NAN, |found| apart(case, *body, [found, wanted]));
                 let name = &case.mechanism.bodies[*body].name;
-                worst.add([error, 0.0, 1.0], "", || format!("q = {:.4}, {name}", q[0]));
+                worst.compare([error, 0.0, 1.0], "", || format!("q = {:.4}, {name}", q[0]));
             }
         }
         worst.finding(&PLACEMENTS, &self.domain())
@@ -93,13 +95,13 @@ impl ReferencePoses {
 
     /// The finding on generalised inertias.
     pub fn inertias(&self, subject: &dyn SpaceSubject) -> Option<Finding> {
-        let mut worst = Worst::default();
+        let mut worst = Differences::default();
         for ReferencePose { q, inertias, .. } in &self.poses {
             let found = subject.inertias(q).unwrap_or_default();
-            let scale = inertias.iter().fold(0.0_f64, |max, m| max.max(m.abs()));
+            let scale = largest(inertias);
             for (k, wanted) in inertias.iter().enumerate() {
                 let found = found.get(k).copied().unwrap_or(f64::NAN);
-                worst.add([found, *wanted, scale], "kg m2", || format!("q = {q:?}"));
+                worst.compare([found, *wanted, scale], "kg m2", || format!("q = {q:?}"));
             }
         }
         worst.finding(&INERTIAS, &self.domain())

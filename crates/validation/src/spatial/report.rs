@@ -2,7 +2,7 @@
 
 use super::findings::findings;
 use super::reference::Reference;
-use super::several::validate_several;
+use super::several::of_several;
 use super::written::written_findings;
 use crate::case_report::validate::Validation;
 use crate::error::ValidationError;
@@ -23,6 +23,20 @@ use std::path::Path;
 /// Positions in the snapshot.
 const PRINTED: usize = 8;
 
+/// What a report says of a case, beside the findings of what is written of it.
+pub(super) struct Report {
+    pub(super) findings: Vec<Finding>,
+    /// What follows the number of findings that pass.
+    pub(super) about: String,
+    /// What a reference is called.
+    pub(super) reference: &'static str,
+    /// What is said below it.
+    pub(super) more: Option<String>,
+    /// Values that every machine reproduces.
+    pub(super) values: String,
+    pub(super) figures: Vec<Figure>,
+}
+
 /// Validates a scene in space, with the reference in a file if there is one, and what the program at a path writes of it when it runs as a
 /// process. The files are `NAME.md` and `NAME.txt`.
 ///
@@ -36,20 +50,25 @@ pub fn validate_in_space(
     let reference = reference.map(Reference::read).transpose()?;
     let written = program.map(|path| written_findings(scene, path));
     let written = written.transpose()?.unwrap_or_default();
-    if scene.mechanism.actuators.len() != 1 {
-        return validate_several(scene, reference.as_ref(), written);
+    let mut report = match scene.mechanism.actuators.len() {
+        1 => of_one(scene, reference.as_ref())?,
+        _ => of_several(scene, reference.as_ref())?,
+    };
+    report.findings.extend(written);
+    report.findings.sort_by_key(|finding| finding.check);
+    let document = document(scene, reference.as_ref(), &report);
+    let Report {
+        findings,
+        figures,
+        values: mut snapshot,
+        ..
+    } = report;
+    snapshot.push('\n');
+    // Writing to a string cannot fail.
+    for f in &findings {
+        let result = if f.pass { "pass" } else { "FAIL" };
+        let _ = writeln!(snapshot, "{result}  {}  [{}]", f.key, f.check);
     }
-    let prepared = PreparedSpaceScene::new(scene)?;
-    let mut findings = findings(&prepared, reference.as_ref())?;
-    findings.extend(written);
-    findings.sort_by_key(|finding| finding.check);
-    let curves = ReducedCurves::new(&prepared, None)?;
-    let is_rounding = curves.rounding(&prepared);
-    let mut figures = vec![prepared.mechanism_figure()?];
-    figures.push(reduce::figures::reduced(&prepared, &curves, &is_rounding));
-    figures.extend(reduce::figures::coefficients(&prepared, &curves, &is_rounding).0);
-    let snapshot = snapshot(&prepared, &findings)?;
-    let document = document(&prepared, (reference.as_ref(), &findings), &figures);
     let name = &scene.name;
     let mut files = Files::new();
     files.add(format!("{name}.txt"), snapshot.clone());
@@ -71,49 +90,25 @@ pub fn validate_in_space(
     })
 }
 
-fn document(
-    prepared: &PreparedSpaceScene<'_>,
-    (reference, findings): (Option<&Reference>, &[Finding]),
-    figures: &[Figure],
-) -> Document {
-    let scene = prepared.scene;
-    let mut blocks: Vec<Block> = scene.note.iter().cloned().map(Block::Words).collect();
+fn document(scene: &SpaceScene, reference: Option<&Reference>, report: &Report) -> Document {
+    let findings = &report.findings;
     let passed = findings.iter().filter(|f| f.pass).count();
-    blocks.push(Block::Text(format!(
-        "{passed} of {} findings pass.",
-        findings.len()
-    )));
-    if let Some(reference) = reference {
+    let mut texts = vec![format!(
+        "{passed} of {} findings pass.{}",
+        findings.len(),
+        report.about
+    )];
+    texts.extend(reference.map(|reference| {
         let source = markdown_text(reference.source());
-        blocks.push(Block::Text(format!("Reference of 25 digits: {source}.")));
-    }
-    let mobility = prepared.model.model().plan().mobility();
-    if mobility.redundant_count > 0 {
-        let redundant = count(mobility.redundant_count, "constraint");
-        let mut text = format!("The mechanism is overconstrained by {redundant}.");
-        let open: Vec<String> = prepared
-            .indeterminate
-            .iter()
-            .map(|&r| scene.reaction_name(r))
-            .collect();
-        if !open.is_empty() {
-            text += &format!(
-                " So these reactions are statically indeterminate and are given nowhere: {}.",
-                markdown_text(&open.join(", "))
-            );
-        }
-        let named = prepared.reaction_units().into_iter().map(|(name, _)| name);
-        let named: Vec<String> = named.collect();
-        text += &match named.is_empty() {
-            true => " No component along the axes of the ground is determined.".to_owned(),
-            false => format!(" Determined are {}.", markdown_text(&named.join(", "))),
-        };
-        blocks.push(Block::Text(text));
-    }
+        format!("{}: {source}.", report.reference)
+    }));
+    texts.extend(report.more.clone());
+    let mut blocks: Vec<Block> = scene.note.iter().cloned().map(Block::Words).collect();
+    blocks.extend(texts.into_iter().map(Block::Text));
     blocks.push(Block::Heading("Findings".to_owned()));
-    blocks.push(Block::Findings(findings.to_vec()));
+    blocks.push(Block::Findings(findings.clone()));
     blocks.push(Block::Heading("Figures".to_owned()));
-    blocks.extend(figure_blocks(&scene.name, figures, true));
+    blocks.extend(figure_blocks(&scene.name, &report.figures, true));
     blocks.push(Block::Text(provenance_line(scene)));
     Document {
         title: scene.title.clone(),
@@ -121,14 +116,55 @@ fn document(
     }
 }
 
+/// The report of a case of one coordinate.
+fn of_one(scene: &SpaceScene, reference: Option<&Reference>) -> Result<Report, ValidationError> {
+    let prepared = PreparedSpaceScene::new(scene)?;
+    let findings = findings(&prepared, reference)?;
+    let curves = ReducedCurves::new(&prepared, None)?;
+    let is_rounding = curves.rounding(&prepared);
+    let mut figures = vec![prepared.mechanism_figure()?];
+    figures.push(reduce::figures::reduced(&prepared, &curves, &is_rounding));
+    figures.extend(reduce::figures::coefficients(&prepared, &curves, &is_rounding).0);
+    Ok(Report {
+        findings,
+        about: String::new(),
+        reference: "Reference of 25 digits",
+        more: overconstrained(&prepared),
+        values: values(&prepared)?,
+        figures,
+    })
+}
+
+/// What is said of a mechanism with redundant constraints.
+fn overconstrained(prepared: &PreparedSpaceScene<'_>) -> Option<String> {
+    let mobility = prepared.model.model().plan().mobility();
+    if mobility.redundant_count == 0 {
+        return None;
+    }
+    let redundant = count(mobility.redundant_count, "constraint");
+    let mut text = format!("The mechanism is overconstrained by {redundant}.");
+    let open = prepared.indeterminate.iter();
+    let open: Vec<String> = open.map(|&r| prepared.scene.reaction_name(r)).collect();
+    if !open.is_empty() {
+        text += &format!(
+            " So these reactions are statically indeterminate and are given nowhere: {}.",
+            markdown_text(&open.join(", "))
+        );
+    }
+    let named = prepared.reaction_units().into_iter().map(|(name, _)| name);
+    let named: Vec<String> = named.collect();
+    text += &match named.is_empty() {
+        true => " No component along the axes of the ground is determined.".to_owned(),
+        false => format!(" Determined are {}.", markdown_text(&named.join(", "))),
+    };
+    Some(text)
+}
+
 /// Forces that are all smaller than this part of the moments over the size, and moments than the forces times the size, are rounding.
 const NO_PART: f64 = 1e-6;
 
-/// The reduced model at eight positions, to seven digits after the first of the largest value of its kind, and which findings pass.
-fn snapshot(
-    prepared: &PreparedSpaceScene<'_>,
-    findings: &[Finding],
-) -> Result<String, ValidationError> {
+/// The reduced model at eight positions, to seven digits after the first of the largest value of its kind.
+fn values(prepared: &PreparedSpaceScene<'_>) -> Result<String, ValidationError> {
     let [from, to] = prepared.drawn_range();
     let at = |k: usize| from + (to - from) * (k as f64 + 0.5) / PRINTED as f64;
     let q: Vec<f64> = (0..PRINTED).map(at).collect();
@@ -159,11 +195,6 @@ fn snapshot(
             let [a, b] = [at.a[k], at.b[k]].map(|value| rounded(value, scale));
             let _ = writeln!(text, "    {name}  a = {a}  b = {b}");
         }
-    }
-    text.push('\n');
-    for f in findings {
-        let result = if f.pass { "pass" } else { "FAIL" };
-        let _ = writeln!(text, "{result}  {}  [{}]", f.key, f.check);
     }
     Ok(text)
 }

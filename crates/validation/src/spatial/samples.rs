@@ -1,10 +1,11 @@
 //! A scene with its model of every reaction, at a number of positions: what was found there, and the dense equations' answer.
 
+use super::claims::{all_reactions, constant};
 use crate::error::ValidationError;
+use dwell_geometry::PositionError;
 use dwell_geometry::space::{Placement, Pose};
-use dwell_geometry::{JointId, PositionError};
-use dwell_kinetostatics::space::{Axes, Component, LoadKind, Model, Reaction, Workspace};
-use dwell_kinetostatics::{InverseDynamics, Magnitude};
+use dwell_kinetostatics::InverseDynamics;
+use dwell_kinetostatics::space::{Axes, LoadKind, Model, Workspace};
 use dwell_scene::SpaceScene;
 use dwell_study::{PreparedSpaceScene, StudyError};
 use dwell_verify::space::DenseSpace;
@@ -54,18 +55,7 @@ pub(super) const PASSES: [Pass; 3] = [
 impl<'a> Samples<'a> {
     pub(super) fn new(prepared: &'a PreparedSpaceScene<'a>) -> Result<Self, ValidationError> {
         let scene = prepared.scene;
-        let joints = 0..scene.mechanism.joints.len();
-        let components = |j: usize| {
-            (0..6).map(move |k| Reaction {
-                joint: JointId(j),
-                component: match k {
-                    0..3 => Component::Force(Axes::Ground, k),
-                    _ => Component::Moment(Axes::Ground, k - 3),
-                },
-            })
-        };
-        let all: Vec<Reaction> = joints.flat_map(components).collect();
-        let model = prepared.model_for(&all)?;
+        let model = prepared.model_for(&all_reactions(scene, &[Axes::Ground]))?;
         // Between the ends of the range, and at no special place of it.
         let ends = prepared.drawn_range();
         let at = |k: usize| ends[0] + (ends[1] - ends[0]) * (k as f64 + 0.43) / POSITIONS as f64;
@@ -105,32 +95,23 @@ impl<'a> Samples<'a> {
 
     /// The loads of constant magnitude.
     pub(super) fn loads(&self) -> Vec<(LoadKind, f64)> {
-        let constant = self.scene.loads.iter().filter_map(|load| {
-            let Magnitude::Constant(magnitude) = load.magnitude else {
-                return None;
-            };
-            Some((load.kind, magnitude))
-        });
-        constant.collect()
+        self.scene.loads.iter().filter_map(constant).collect()
     }
 
     /// Actuator's action and reactions in a pass, of the model.
     pub(super) fn found(&mut self, q: f64, pass: Pass) -> Result<InverseDynamics<f64>, StudyError> {
         let mut found = self.model.result_buffer();
         if !pass.is_loaded {
-            let rates = [[pass.q_dot], [pass.q_ddot]];
-            let [q_dot, q_ddot] = &rates;
-            let done =
-                self.model
-                    .inverse_dynamics(&[q], q_dot, q_ddot, &mut self.workspace, &mut found);
+            let [q_dot, q_ddot] = &[[pass.q_dot], [pass.q_ddot]];
+            let workspace = &mut self.workspace;
+            let done = (self.model).inverse_dynamics(&[q], q_dot, q_ddot, workspace, &mut found);
             done.map_err(|e| self.prepared.explain(&e))?;
             return Ok(found);
         }
         let mut of_load = self.model.result_buffer();
         for (kind, magnitude) in self.loads() {
-            let done =
-                self.model
-                    .unit_load_response(&[q], &kind, &mut self.workspace, &mut of_load);
+            let workspace = &mut self.workspace;
+            let done = (self.model).unit_load_response(&[q], &kind, workspace, &mut of_load);
             done.map_err(|e| self.prepared.explain(&e))?;
             let sums = found.tau.iter_mut().chain(&mut found.reactions);
             for (sum, part) in sums.zip(of_load.tau.iter().chain(&of_load.reactions)) {
@@ -147,14 +128,7 @@ impl<'a> Samples<'a> {
             false => Vec::new(),
         };
         let (mechanism, masses) = (&self.scene.mechanism, &self.scene.masses);
-        let rates = [[pass.q_dot], [pass.q_ddot]];
-        DenseSpace::new(
-            mechanism,
-            masses,
-            placements,
-            [&rates[0], &rates[1]],
-            &loads,
-        )
-        .ok()
+        let rates: [&[f64]; 2] = [&[pass.q_dot], &[pass.q_ddot]];
+        DenseSpace::new(mechanism, masses, placements, rates, &loads).ok()
     }
 }

@@ -1,43 +1,41 @@
 //! A case of several coordinates: its findings and its report.
 
-use super::claims::SpaceClaims;
+use super::claims::{SpaceClaims, components};
 use super::motion::motion_findings;
 use super::reference::Reference;
-use super::report::rounded;
+use super::report::{Report, rounded};
 use super::states::{
     STATES, free_accelerations, free_machine, in_units, near_assembly, state_findings,
 };
 use super::stopped_motion::stopped_findings;
-use super::worst::{Comparison, Worst};
-use crate::case_report::validate::Validation;
 use crate::error::ValidationError;
-use crate::report_parts::{figure_blocks, findings_text};
+use crate::written::poses::difference::Differences;
+use crate::written::poses::rows::largest;
 use dwell_findings::{Check, Finding};
-use dwell_geometry::space::Wrench;
 use dwell_kinetostatics::space::Axes;
-use dwell_report::{Block, Document, Figure, Files, markdown_text};
+use dwell_report::Figure;
 use dwell_scene::SpaceScene;
-use dwell_study::output::{Picture, provenance_line};
-use dwell_study::{Outcome, mechanism_figure_in_space};
+use dwell_study::mechanism_figure_in_space;
+use dwell_verify::FindingSpec;
 use std::fmt::Write as _;
 
-const INERTIA: Comparison = Comparison {
+const INERTIA: FindingSpec<'_> = FindingSpec {
     key: "reference-inertia",
     check: Check::ReferenceValues,
     comparison: "the generalised inertias and the actuators' actions with the reference of 25 digits",
     scale: "the largest of each",
     // The largest seen in a case is 6.5e-16.
     tolerance: 5e-14,
-    reason: "rounding, amplified by the condition of the equations",
+    tolerance_reason: "rounding, amplified by the condition of the equations",
 };
-const REACTIONS: Comparison = Comparison {
+const REACTIONS: FindingSpec<'_> = FindingSpec {
     key: "reference-reactions",
     check: Check::ReferenceValues,
     comparison: "the reactions under the weight, in motion, with the reference of 25 digits",
     scale: "the largest force or moment",
     // The largest seen in a case is 5.0e-15.
     tolerance: 5e-13,
-    reason: "rounding, amplified by the condition of the equations",
+    tolerance_reason: "rounding, amplified by the condition of the equations",
 };
 /// Speeds and accelerations at which a reference is compared.
 const RATES: [[f64; 4]; 2] = [[1.3, -0.7, 0.4, 0.2], [-0.9, 1.1, 0.6, -0.5]];
@@ -56,7 +54,6 @@ fn findings(
     if let Some(reference) = reference {
         found.extend(against_reference(scene, &claims, reference)?);
     }
-    found.sort_by_key(|finding| finding.check);
     Ok(found)
 }
 
@@ -65,7 +62,7 @@ fn against_reference(
     claims: &SpaceClaims<'_>,
     reference: &Reference,
 ) -> Result<Vec<Finding>, ValidationError> {
-    let mut worst = [Worst::default(), Worst::default()];
+    let mut worst = <[Differences; 2]>::default();
     let rates = RATES.each_ref().map(|row| in_units(claims.model(), row));
     let rates = [&rates[0][..], &rates[1][..]];
     let mut count = 0;
@@ -82,29 +79,28 @@ fn against_reference(
         let place = |what: &str| format!("q = {:.4} {:.4}, {what}", q[0], q[1]);
         let state = claims.state::<f64>(0.0, [&q, rates[0], rates[1]], Axes::Ground);
         let Ok(state) = state else {
-            worst[0].add([f64::NAN, 0.0, 1.0], "", || place("no pose"));
+            worst[0].compare([f64::NAN, 0.0, 1.0], "", || place("no pose"));
             continue;
         };
-        let largest = |of: &[f64]| of.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
         let scale = largest(&inertias);
         for (found, wanted) in state.inertias.iter().zip(inertias) {
-            worst[0].add([*found, wanted, scale], "kg m2", || place("inertia"));
+            worst[0].compare([*found, wanted, scale], "kg m2", || place("inertia"));
         }
         let scale = largest(&actions);
         for (found, wanted) in state.tau.iter().zip(actions) {
-            worst[0].add([*found, wanted, scale], "N m", || place("action"));
+            worst[0].compare([*found, wanted, scale], "N m", || place("action"));
         }
         let reactions = sample.reactions(rates);
         let scales = [0, 1].map(|kind| {
             let of_kind = reactions.iter().filter(|(_, k, _)| k / 3 == kind);
-            largest(&of_kind.map(|(.., value)| *value).collect::<Vec<f64>>())
+            largest(of_kind.map(|(.., value)| value))
         });
         for (joint, k, wanted) in reactions {
             let mut joints = scene.mechanism.joints.iter().zip(&state.reactions);
             let found = joints.find(|(j, _)| j.name == joint);
-            let found = found.map_or(f64::NAN, |(_, wrench)| part(wrench, k));
+            let found = found.map_or(f64::NAN, |(_, wrench)| components(wrench)[k]);
             let unit = ["N", "N m"][k / 3];
-            worst[1].add([found, wanted, scales[k / 3]], unit, || place(&joint));
+            worst[1].compare([found, wanted, scales[k / 3]], unit, || place(&joint));
         }
     }
     let domain = format!("{count} positions of the reference");
@@ -116,44 +112,25 @@ fn against_reference(
     Ok(found.into_iter().flatten().collect())
 }
 
-fn part(wrench: &Wrench, k: usize) -> f64 {
-    let (f, m) = (wrench.force, wrench.moment);
-    [f.x, f.y, f.z, m.x, m.y, m.z][k]
-}
-
-/// Validates a scene of several coordinates, with the findings of what is written of it.
+/// The report of a case of several coordinates.
 ///
 /// # Errors
 /// [`ValidationError`] when the scene cannot be used.
-pub(super) fn validate_several(
+pub(super) fn of_several(
     scene: &SpaceScene,
     reference: Option<&Reference>,
-    written: Vec<Finding>,
-) -> Result<Validation, ValidationError> {
-    let mut findings = findings(scene, reference)?;
-    findings.extend(written);
-    findings.sort_by_key(|finding| finding.check);
-    let figures = vec![mechanism(scene)?];
-    let snapshot = snapshot(scene, &findings)?;
-    let document = document(scene, (reference, &findings), &figures);
-    let name = &scene.name;
-    let mut files = Files::new();
-    files.add(format!("{name}.txt"), snapshot.clone());
-    files.add_document(name, &document);
-    let picture = |figure: Figure| {
-        let path = format!("{name}/{}.png", figure.name);
-        Picture::figure(scene, path, true, figure)
-    };
-    Ok(Validation {
-        outcome: Outcome {
-            summary: findings_text(name, &findings, ""),
-            files,
-            findings,
-            pictures: figures.into_iter().map(picture).collect(),
-            ..Outcome::default()
-        },
-        snapshot,
-        ..Validation::default()
+) -> Result<Report, ValidationError> {
+    Ok(Report {
+        findings: findings(scene, reference)?,
+        about: format!(
+            " The mechanism has {} coordinates, so there is no reduced model: states near the assembly are \
+             checked, at prescribed accelerations and in free motion, and a free motion.",
+            scene.mechanism.actuators.len()
+        ),
+        reference: "Reference",
+        more: None,
+        values: values(scene)?,
+        figures: vec![mechanism(scene)?],
     })
 }
 
@@ -166,69 +143,31 @@ fn mechanism(scene: &SpaceScene) -> Result<Figure, ValidationError> {
     Ok(mechanism_figure_in_space(scene, vec![position], provenance))
 }
 
-fn document(
-    scene: &SpaceScene,
-    (reference, findings): (Option<&Reference>, &[Finding]),
-    figures: &[Figure],
-) -> Document {
-    let mut blocks: Vec<Block> = scene.note.iter().cloned().map(Block::Words).collect();
-    let passed = findings.iter().filter(|f| f.pass).count();
-    blocks.push(Block::Text(format!(
-        "{passed} of {} findings pass. The mechanism has {} coordinates, so there is no reduced model: states near the assembly are \
-         checked, at prescribed accelerations and in free motion, and a free motion.",
-        findings.len(),
-        scene.mechanism.actuators.len()
-    )));
-    if let Some(reference) = reference {
-        let source = markdown_text(reference.source());
-        blocks.push(Block::Text(format!("Reference: {source}.")));
-    }
-    blocks.push(Block::Heading("Findings".to_owned()));
-    blocks.push(Block::Findings(findings.to_vec()));
-    blocks.push(Block::Heading("Figures".to_owned()));
-    blocks.extend(figure_blocks(&scene.name, figures, true));
-    blocks.push(Block::Text(provenance_line(scene)));
-    Document {
-        title: scene.title.clone(),
-        blocks,
-    }
-}
-
 /// Inertias, actions under the loads at rest and free accelerations at some states, to seven digits after the first of the largest of
-/// their kind, and which findings pass.
-fn snapshot(scene: &SpaceScene, findings: &[Finding]) -> Result<String, ValidationError> {
+/// their kind.
+fn values(scene: &SpaceScene) -> Result<String, ValidationError> {
     let claims = SpaceClaims::new(scene)?;
     let machine = free_machine(scene)?;
-    let names: Vec<&str> = scene
-        .mechanism
-        .actuators
-        .iter()
-        .map(|a| a.name.as_str())
-        .collect();
+    let actuators = scene.mechanism.actuators.iter();
+    let names: Vec<&str> = actuators.map(|a| a.name.as_str()).collect();
     let mut text = format!("{}\n\n", scene.title);
     // What is zero but for rounding has no digits beside what an acceleration of one makes.
     let line = |values: &[f64], least: f64| {
-        let largest = values.iter().fold(least, |max, v| max.max(v.abs()));
+        let largest = largest(values).max(least);
         let all: Vec<String> = values.iter().map(|v| rounded(*v, largest)).collect();
         all.join("  ")
     };
     // Writing to a string cannot fail.
     for q in near_assembly(scene, claims.model()).iter().take(STATES) {
-        let at: Vec<String> = names
-            .iter()
-            .zip(q)
-            .map(|(name, q)| format!("{name} = {q:.7}"))
-            .collect();
+        let at = names.iter().zip(q);
+        let at: Vec<String> = at.map(|(name, q)| format!("{name} = {q:.7}")).collect();
         let _ = writeln!(text, "{}", at.join("  "));
         let at_rest = vec![0.0; q.len()];
         let Ok(state) = claims.state::<f64>(0.0, [q, &at_rest, &at_rest], Axes::Ground) else {
             let _ = writeln!(text, "    no pose");
             continue;
         };
-        let inertia = state
-            .inertias
-            .iter()
-            .fold(0.0_f64, |max, m| max.max(m.abs()));
+        let inertia = largest(&state.inertias);
         for (name, row) in names.iter().zip(state.inertias.chunks(q.len())) {
             let _ = writeln!(text, "    inertia {name}: {}", line(row, inertia));
         }
@@ -237,11 +176,6 @@ fn snapshot(scene: &SpaceScene, findings: &[Finding]) -> Result<String, Validati
         if let Some(free) = machine.and_then(|m| free_accelerations(m, 0.0, [q, &at_rest])) {
             let _ = writeln!(text, "    free accelerations: {}", line(&free, 1.0));
         }
-    }
-    text.push('\n');
-    for f in findings {
-        let result = if f.pass { "pass" } else { "FAIL" };
-        let _ = writeln!(text, "{result}  {}  [{}]", f.key, f.check);
     }
     Ok(text)
 }

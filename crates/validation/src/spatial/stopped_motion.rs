@@ -3,9 +3,9 @@
 //! is pressed in.
 
 use super::claims::SpaceClaims;
-use super::motion::{Dense, MAX_STEPS, TOLERANCE, start};
-use super::worst::{Comparison, Worst};
+use super::motion::{Dense, MAX_STEPS, TOLERANCE, compare_energies, start};
 use crate::error::ValidationError;
+use crate::written::poses::difference::Differences;
 use dwell_dynamics::{
     ContactEvent, Machine, Method, OdeState, Options, Solution, StopChange, solve,
 };
@@ -13,17 +13,18 @@ use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::space::Model;
 use dwell_scene::{NamedStop, SpaceScene};
 use dwell_study::machines::MachineScene;
+use dwell_verify::FindingSpec;
 
-const FORCES: Comparison = Comparison {
+const FORCES: FindingSpec<'_> = FindingSpec {
     key: "stop-forces",
     check: Check::MultibodyMotion,
     comparison: "what the dense equations require along each coordinate of a motion with the force of its end stop",
     scale: "the largest action of a coordinate, of inertia or loads",
     // The largest seen in a case is 1.2e-13.
     tolerance: 1e-11,
-    reason: "rounding, amplified by the condition of the equations and of the inertias",
+    tolerance_reason: "rounding, amplified by the condition of the equations and of the inertias",
 };
-const IMPACTS: Comparison = Comparison {
+const IMPACTS: FindingSpec<'_> = FindingSpec {
     key: "stop-impacts",
     check: Check::Momentum,
     comparison: "the impulses that the dense inertias give of each impact's change of speeds with one along its coordinate alone, and the \
@@ -31,16 +32,16 @@ const IMPACTS: Comparison = Comparison {
     scale: "the impulse, and the speed before",
     // The largest seen in a case is 9.4e-15.
     tolerance: 9e-13,
-    reason: "rounding, amplified by the condition of the inertias",
+    tolerance_reason: "rounding, amplified by the condition of the inertias",
 };
-const ENERGY: Comparison = Comparison {
+const ENERGY: FindingSpec<'_> = FindingSpec {
     key: "stop-energy",
     check: Check::Power,
     comparison: "kinetic and potential energy, of placements and dense velocities, with the start's and the work of stops and other loads",
     scale: "the largest kinetic energy, or the largest change of the potential one",
     // The largest seen in a case is 2.2e-13.
     tolerance: 2e-11,
-    reason: "the tolerance of the integration, 1e-12 for each step, and of the times of events",
+    tolerance_reason: "the tolerance of the integration, 1e-12 for each step, and of the times of events",
 };
 
 /// The findings of the motion of a scene with end stops whose coordinates are all free; none where something drives them.
@@ -126,8 +127,8 @@ impl StoppedMotion<'_> {
         }
     }
 
-    fn forces(&self, solution: &Solution) -> Worst {
-        let mut worst = Worst::default();
+    fn forces(&self, solution: &Solution) -> Differences {
+        let mut worst = Differences::default();
         let mut workspace = self.machine.workspace();
         let is_event = |t: f64| solution.contact_events.iter().any(|event| event.t() == t);
         for OdeState { t, y } in solution.steps.iter().filter(|step| !is_event(step.t)) {
@@ -136,7 +137,7 @@ impl StoppedMotion<'_> {
             let q_ddot = state.map(|state| state.q_ddot().to_vec());
             let (Some(q_ddot), Some(dense)) = (q_ddot, Dense::new(self.claims, *t, [q, q_dot]))
             else {
-                worst.add([f64::NAN, 0.0, 1.0], "", || format!("t = {t} s"));
+                worst.compare([f64::NAN, 0.0, 1.0], "", || format!("t = {t} s"));
                 continue;
             };
             let required = |i: usize| {
@@ -152,12 +153,12 @@ impl StoppedMotion<'_> {
             for (i, [found, _]) in all.iter().enumerate() {
                 let at = || format!("t = {t:.4} s, coordinate {}", i + 1);
                 match self.force(i, [q[i], q_dot[i]]) {
-                    Some(wanted) => worst.add([*found, wanted, scale], "N m", at),
+                    Some(wanted) => worst.compare([*found, wanted, scale], "N m", at),
                     // It stands, and is pushed inwards.
                     None => {
                         let push = (self.side(i, q[i]) * found).max(0.0) * self.side(i, q[i]);
-                        worst.add([*found, push, scale], "N m", at);
-                        worst.add([q_ddot[i], 0.0, 1.0], "rad/s2", at);
+                        worst.compare([*found, push, scale], "N m", at);
+                        worst.compare([q_ddot[i], 0.0, 1.0], "rad/s2", at);
                     }
                 }
             }
@@ -165,8 +166,8 @@ impl StoppedMotion<'_> {
         worst
     }
 
-    fn impacts(&self, solution: &Solution) -> Worst {
-        let mut worst = Worst::default();
+    fn impacts(&self, solution: &Solution) -> Differences {
+        let mut worst = Differences::default();
         for event in &solution.contact_events {
             let ContactEvent::Stop {
                 t,
@@ -180,7 +181,7 @@ impl StoppedMotion<'_> {
             let [q, after] = self.parts(y);
             let at = |what: &str| format!("t = {t:.4} s, {what}");
             let Some(dense) = Dense::new(self.claims, *t, [q, after]) else {
-                worst.add([f64::NAN, 0.0, 1.0], "", || at("no pose"));
+                worst.compare([f64::NAN, 0.0, 1.0], "", || at("no pose"));
                 continue;
             };
             let i = self.stops[*stop].actuator.0;
@@ -188,11 +189,11 @@ impl StoppedMotion<'_> {
                 let columns = dense.columns.iter().zip(changes);
                 let found: f64 = columns.map(|(column, change)| column[k] * change).sum();
                 let wanted = if k == i { *impulse } else { 0.0 };
-                worst.add([found, wanted, impulse.abs()], "N m s", || at("impulse"));
+                worst.compare([found, wanted, impulse.abs()], "N m s", || at("impulse"));
             }
             let before = after[i] - changes[i];
             let restitution = self.stops[*stop].restitution;
-            worst.add(
+            worst.compare(
                 [after[i], -restitution * before, before.abs()],
                 "rad/s",
                 || at("speed"),
@@ -201,28 +202,18 @@ impl StoppedMotion<'_> {
         worst
     }
 
-    fn energy(&self, solution: &Solution) -> Worst {
-        let mut worst = Worst::default();
+    fn energy(&self, solution: &Solution) -> Differences {
+        let mut worst = Differences::default();
         let mut energies = Vec::new();
         for OdeState { t, y } in &solution.steps {
             let Some(dense) = Dense::new(self.claims, *t, self.parts(y)) else {
-                worst.add([f64::NAN, 0.0, 1.0], "", || format!("t = {t} s"));
+                worst.compare([f64::NAN, 0.0, 1.0], "", || format!("t = {t} s"));
                 continue;
             };
             let work: f64 = y[self.machine.work_offset()..].iter().sum();
             energies.push((*t, [dense.kinetic, dense.potential, work]));
         }
-        let Some(&(_, [kinetic, potential, work])) = energies.first() else {
-            return worst;
-        };
-        let largest =
-            |max: f64, (_, [t, v, _]): &(f64, [f64; 3])| max.max(*t).max((v - potential).abs());
-        let scale = energies.iter().fold(0.0, largest);
-        for (t, [kinetic_now, potential_now, work_now]) in &energies {
-            let found = kinetic_now + potential_now - potential;
-            let wanted = kinetic + work_now - work;
-            worst.add([found, wanted, scale], "J", || format!("t = {t:.4} s"));
-        }
+        compare_energies(&mut worst, &energies);
         worst
     }
 }

@@ -1,25 +1,25 @@
 //! Along the rows of a file: prescribed coordinates with their law, and free ones with the integrals of their speeds.
 
-use super::super::worst::{Comparison, Worst};
 use super::finding;
 use super::scenes::{ROWS, Scenes, sinusoid};
 use crate::written::motions::{simpson, summary_of_rows};
-use crate::written::poses::difference::{Differences, Texts};
-use crate::written::poses::rows::Rows;
+use crate::written::poses::difference::Differences;
+use crate::written::poses::rows::{Rows, largest};
 use dwell_findings::{Check, Finding};
 use dwell_scene::SpaceScene;
+use dwell_verify::FindingSpec;
 use serde_json::Value;
 
-const LAWS: Comparison = Comparison {
+const LAWS: FindingSpec<'_> = FindingSpec {
     key: "written-kinetostatics-laws",
     check: Check::WrittenLaws,
     comparison: "prescribed coordinates, speeds and accelerations with sinusoids from the assembly",
     scale: "the amplitude, times the angular frequency for each derivative",
     // The largest seen in a case is 0.
     tolerance: 1e-15,
-    reason: "rounding of the law",
+    tolerance_reason: "rounding of the law",
 };
-const AGAIN: Texts<'_> = Texts {
+const AGAIN: FindingSpec<'_> = FindingSpec {
     key: "written-motion-again",
     check: Check::WrittenTwice,
     comparison: "coordinates and speeds by the default method and to an accuracy of 1e-8",
@@ -28,7 +28,7 @@ const AGAIN: Texts<'_> = Texts {
     tolerance: 5e-7,
     tolerance_reason: "the errors of both motions",
 };
-const SUMMARY: Texts<'_> = Texts {
+const SUMMARY: FindingSpec<'_> = FindingSpec {
     key: "written-motion-summary",
     check: Check::WrittenTotals,
     comparison: "energies and events of the summary of `simulate` with rows and events",
@@ -37,7 +37,7 @@ const SUMMARY: Texts<'_> = Texts {
     tolerance: 4e-8,
     tolerance_reason: "the tolerance of the integration",
 };
-const DEFAULT_ROWS: Texts<'_> = Texts {
+const DEFAULT_ROWS: FindingSpec<'_> = FindingSpec {
     key: "written-motion-rows",
     check: Check::WrittenPositions,
     comparison: "the number of rows without an interval with 1001, and their end with that of other rows",
@@ -46,7 +46,7 @@ const DEFAULT_ROWS: Texts<'_> = Texts {
     tolerance: 1e-14,
     tolerance_reason: "rounding of times",
 };
-const STOPS: Texts<'_> = Texts {
+const STOPS: FindingSpec<'_> = FindingSpec {
     key: "written-motion-stops",
     check: Check::WrittenPositions,
     comparison: "coordinates with the ends that their stops of no compliance allow",
@@ -55,7 +55,7 @@ const STOPS: Texts<'_> = Texts {
     tolerance: 1e-14,
     tolerance_reason: "an impact is located to the tolerance of the integration",
 };
-const SPEEDS: Texts<'_> = Texts {
+const SPEEDS: FindingSpec<'_> = FindingSpec {
     key: "written-motion-speeds",
     check: Check::WrittenRates,
     comparison: "what coordinates and speeds change by between rows with the integrals of speeds and accelerations, by Simpson's rule",
@@ -67,7 +67,7 @@ const SPEEDS: Texts<'_> = Texts {
 
 /// Prescribed coordinates with their sinusoids.
 pub(super) fn laws(scenes: &Scenes, scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
-    let mut worst = Worst::default();
+    let mut worst = Differences::default();
     for (k, amplitude) in scenes.amplitudes.as_ref()?.iter().enumerate() {
         let actuator = &scene.mechanism.actuators[k].name;
         let start = scene.assembly.q[k];
@@ -87,7 +87,7 @@ pub(super) fn laws(scenes: &Scenes, scene: &SpaceScene, rows: &Rows) -> Option<F
             {
                 let name = format!("{actuator}{end}");
                 let found = rows.get(row, &name).unwrap_or(f64::NAN);
-                worst.add([found, wanted, scale], "", || format!("row {row}, {name}"));
+                worst.compare([found, wanted, scale], "", || format!("row {row}, {name}"));
             }
         }
     }
@@ -98,14 +98,14 @@ pub(super) fn laws(scenes: &Scenes, scene: &SpaceScene, rows: &Rows) -> Option<F
 pub(super) fn motion(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
     let mut found = Differences::default();
     let Some(times) = rows.columns.get("t") else {
-        found.fail("the file has no time".to_owned());
-        return found.finding(SPEEDS, "motion");
+        found.fail("the file has no time");
+        return found.counted_finding(&SPEEDS, "motion");
     };
     let actuators = &scene.mechanism.actuators;
     let column = |k: usize, end: &str| rows.columns.get(&format!("{}{end}", actuators[k].name));
     let largest = |end: &str| {
         let all = (0..actuators.len()).filter_map(|k| column(k, end));
-        all.flatten().fold(0.0_f64, |max, v| max.max(v.abs()))
+        largest(all.flatten())
     };
     for (k, actuator) in actuators.iter().enumerate() {
         for [of, rate] in [["", ".velocity"], [".velocity", ".acceleration"]] {
@@ -118,7 +118,7 @@ pub(super) fn motion(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
             }
         }
     }
-    found.finding(SPEEDS, "motion")
+    found.counted_finding(&SPEEDS, "motion")
 }
 
 /// The same motion in two files.
@@ -138,44 +138,34 @@ pub(super) fn again(scene: &SpaceScene, both: [&Rows; 2]) -> Option<Finding> {
             found.fail(format!("{} and {} numbers", one.len(), other.len()));
             continue;
         }
-        let scale = one.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
-        for (i, (a, b)) in one.iter().zip(other).enumerate() {
-            found.add(a - b, scale, "", || {
-                format!("number {i} of coordinates{end}")
-            });
-        }
+        let differences = one.iter().zip(other).map(|(a, b)| a - b);
+        found.add_rows(differences, largest(one), "", |i| {
+            format!("number {i} of coordinates{end}")
+        });
     }
-    found.finding(AGAIN, "motion")
+    found.counted_finding(&AGAIN, "motion")
 }
 
 /// No row is beyond a rigid stop.
 pub(super) fn stops(scene: &SpaceScene, both: [&Rows; 2]) -> Option<Finding> {
     let mut found = Differences::default();
-    let none = Vec::new();
     for stop in scene.stops.iter().filter(|stop| stop.yielding.is_none()) {
         let coordinate = &scene.mechanism.actuators[stop.actuator.0].name;
         for rows in both {
-            for (row, value) in rows
-                .columns
-                .get(coordinate)
-                .unwrap_or(&none)
-                .iter()
-                .enumerate()
-            {
+            let beyond = rows.column(coordinate).iter().map(|value| {
                 let above = stop.max.map_or(0.0, |max| value - max);
                 let below = stop.min.map_or(0.0, |min| min - value);
-                found.add(above.max(below).max(0.0), 1.0, "", || {
-                    format!("row {row}, {coordinate}")
-                });
-            }
+                above.max(below).max(0.0)
+            });
+            found.add_rows(beyond, 1.0, "", |row| format!("row {row}, {coordinate}"));
         }
     }
-    found.finding(STOPS, "motion")
+    found.counted_finding(&STOPS, "motion")
 }
 
 /// The summary of a motion with its rows and events.
 pub(super) fn summary(summary: &Value, rows: &Rows, events: Option<&Rows>) -> Option<Finding> {
-    summary_of_rows(summary, rows, events).finding(SUMMARY, "simulate")
+    summary_of_rows(summary, rows, events).counted_finding(&SUMMARY, "simulate")
 }
 
 /// Rows without an interval of their own: a thousand equal ones, to the same end.
@@ -184,13 +174,9 @@ pub(super) fn default_rows(all: &Rows, others: &Rows) -> Option<Finding> {
     // A motion that ends early has fewer, and one that strikes a stop has those of its impacts besides.
     if others.count == ROWS + 1 {
         let count = all.count as f64;
-        found.add(count - 1001.0, 1001.0, "", || {
-            "the number of rows".to_owned()
-        });
+        found.add(count - 1001.0, 1001.0, "", || "the number of rows");
     }
-    let end = |rows: &Rows| rows.time(rows.count.saturating_sub(1));
-    found.add(end(all) - end(others), end(others), "s", || {
-        "the end".to_owned()
-    });
-    found.finding(DEFAULT_ROWS, "simulate")
+    let end = |rows: &Rows| rows.end();
+    found.add(end(all) - end(others), end(others), "s", || "the end");
+    found.counted_finding(&DEFAULT_ROWS, "simulate")
 }

@@ -1,13 +1,15 @@
 //! What `check` says of a scene: which components of reactions the loads determine, by the ranks of the dense equations at the assembly, and
 //! how many bodies, joints and coordinates there are.
 
-use super::super::claims::SpaceClaims;
-use crate::written::poses::difference::{Differences, Texts};
+use super::super::claims::{NAMES, SpaceClaims};
+use crate::written::poses::difference::Differences;
 use crate::written::poses::program::Program;
+use crate::written::poses::stated::result;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::{Placement, Vec3};
 use dwell_kinetostatics::MachineModel as _;
 use dwell_scene::SpaceScene;
+use dwell_verify::FindingSpec;
 use dwell_verify::space::DenseSpace;
 use serde_json::Value as Json;
 
@@ -17,23 +19,15 @@ pub(super) fn findings(
     program: &Program,
     (claims, scene): (&SpaceClaims<'_>, &SpaceScene),
 ) -> Result<Vec<Finding>, String> {
-    let run = super::run(program, &scene.name, scene.source.inner(), &["check"])?;
-    let case = claims.case();
+    let run = program.run(&scene.name, scene.source.inner(), &["check"])?;
     let zero = vec![0.0; scene.mechanism.actuators.len()];
-    let dense = DenseSpace::new(
-        &scene.mechanism,
-        &scene.masses,
-        case.start.1,
-        [&zero, &zero],
-        &[],
-    );
+    let (case, rates) = (claims.case(), [&zero[..]; 2]);
+    let dense = DenseSpace::new(case.mechanism, case.masses, case.start.1, rates, &[]);
     let dense = dense.map_err(|e| e.to_string())?;
     let mut found = Differences::default();
     let mut says = |what: String| {
-        found.add(0.0, 1.0, "", String::new);
-        if !run.printed.contains(&what) {
-            found.fail(format!("`check` does not say `{what}`"));
-        }
+        let is_said = run.printed.contains(&what);
+        found.require(is_said, || format!("`check` does not say `{what}`"));
     };
     let count = |n: usize, one: &str, many: &str| match n {
         1 => format!("1 {one}"),
@@ -47,20 +41,17 @@ pub(super) fn findings(
     says(count(scene.mechanism.joints.len(), "joint", "joints"));
     says(count(zero.len(), "degree of freedom", "degrees of freedom"));
     if !scene.lists_reactions {
-        let ends = ["x", "y", "z", "moment-x", "moment-y", "moment-z"];
-        let said = run
-            .printed
-            .lines()
-            .find_map(|line| line.trim().strip_prefix("statically determinate: "));
+        let mut lines = run.printed.lines();
+        let said = lines.find_map(|line| line.trim().strip_prefix("statically determinate: "));
         let said: Vec<&str> = said.map_or_else(Vec::new, |list| list.split(", ").collect());
         for (joint, determined) in scene.mechanism.joints.iter().zip(&dense.determined) {
-            for (end, is) in ends.into_iter().zip(determined) {
+            for (end, is) in NAMES.into_iter().zip(determined) {
                 let name = format!("{}.{end}", joint.name);
-                found.add(0.0, 1.0, "", String::new);
                 // A component that the joint does not transmit is zero, and not a reaction.
-                if said.contains(&name.as_str()) && !is {
-                    found.fail(format!("`check` says that {name} is determined"));
-                }
+                let is_right = *is || !said.contains(&name.as_str());
+                found.require(is_right, || {
+                    format!("`check` says that {name} is determined")
+                });
             }
         }
     }
@@ -89,7 +80,7 @@ pub(super) fn findings(
         }
     }
     let masses = masses(&summary, scene, case.start.1, claims.model().plan().size());
-    let texts = Texts {
+    let texts = FindingSpec {
         key: "written-contents",
         check: Check::WrittenSentences,
         comparison: "counts and determined reactions that `check` prints with the scene and the ranks of the dense equations",
@@ -97,7 +88,7 @@ pub(super) fn findings(
         tolerance: 0.0,
         tolerance_reason: "words",
     };
-    let of_masses = Texts {
+    let of_masses = FindingSpec {
         key: "written-contents-masses",
         check: Check::WrittenTotals,
         comparison: "the whole mass and its centre with the sums over the bodies where they are assembled",
@@ -107,8 +98,8 @@ pub(super) fn findings(
         tolerance_reason: "a sum of rounded terms",
     };
     let found = [
-        found.finding(texts, "check"),
-        masses.finding(of_masses, "check"),
+        found.counted_finding(&texts, "check"),
+        masses.counted_finding(&of_masses, "check"),
     ];
     Ok(found.into_iter().flatten().collect())
 }
@@ -120,9 +111,8 @@ fn masses(summary: &Json, scene: &SpaceScene, places: &[Placement], size: f64) -
     let all = (0..scene.masses.len()).filter(moving);
     let total: f64 = all.clone().map(|body| scene.masses[body].mass).sum();
     let mut add = |name: &str, value: f64, scale: f64, unit: &'static str| {
-        let written = summary["results"][name]["value"].as_f64();
         if total > 0.0 {
-            let difference = written.unwrap_or(f64::NAN) - value;
+            let difference = result(summary, name).unwrap_or(f64::NAN) - value;
             found.add(difference, scale, unit, || name.to_owned());
         }
     };

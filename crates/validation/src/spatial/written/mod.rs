@@ -18,15 +18,15 @@ mod states;
 mod sums;
 
 use super::claims::SpaceClaims;
-use super::worst::Worst;
 use crate::error::ValidationError;
-use crate::written::poses::difference::{Differences, Texts};
+use crate::written::poses::difference::Differences;
 use crate::written::poses::extrema_again::same_extrema;
 use crate::written::poses::formats::{Formats, formats};
 use crate::written::poses::program::{Program, Run};
 use crate::written::poses::rows::Rows;
 use dwell_findings::{Check, Finding};
 use dwell_scene::SpaceScene;
+use dwell_verify::FindingSpec;
 use scenes::Scenes;
 use std::path::Path;
 
@@ -38,7 +38,7 @@ const ACCURACY_WITH_STOPS: &str = "1e-6";
 const OTHER_ROWS: f64 = 88.3;
 /// The largest rounding error that a case may state of positions and forces, of the largest of a unit; 1e-13 is seen.
 const MAX_ROUNDING: f64 = 1e-11;
-const EXTREMA_AGAIN: Texts<'_> = Texts {
+const EXTREMA_AGAIN: FindingSpec<'_> = FindingSpec {
     key: "written-motion-extrema-again",
     check: Check::WrittenTwice,
     comparison: "extrema of `simulate` with those of the same motion by dop853 in other rows",
@@ -56,15 +56,15 @@ pub(super) fn written_findings(
     let claims = SpaceClaims::new(scene)?;
     let scenes = Scenes::new(scene, &claims);
     let runs = Program::new(program, &format!("{}-in-space", scene.name));
-    let judged = runs.map_err(|e| e.to_string()).and_then(|program| {
-        let given = (&claims, scene);
-        let mut found = forced(&program, given, &scenes)?;
-        found.extend(free(&program, given, &scenes)?);
-        found.extend(without_forces(&program, scene, &scenes)?);
-        found.extend(contents::findings(&program, given)?);
+    let given = (&claims, scene);
+    let judged = || {
+        let mut found = forced(&runs, given, &scenes)?;
+        found.extend(free(&runs, given, &scenes)?);
+        found.extend(without_forces(&runs, scene, &scenes)?);
+        found.extend(contents::findings(&runs, given)?);
         Ok(found)
-    });
-    let mut found = judged.unwrap_or_else(|reason| vec![refused(&reason)]);
+    };
+    let mut found = judged().unwrap_or_else(|reason: String| vec![refused(&reason)]);
     if scene.mechanism.actuators.len() == 1 {
         found.extend(reduced_file::findings(scene, (program, &scenes.plain))?);
     }
@@ -86,12 +86,8 @@ fn forced(
     (claims, scene): (&SpaceClaims<'_>, &SpaceScene),
     scenes: &Scenes,
 ) -> Result<Vec<Finding>, String> {
-    let run = run(
-        program,
-        &scene.name,
-        &scenes.forced,
-        &["kinetostatics", "--points", "25"],
-    )?;
+    let arguments = ["kinetostatics", "--points", "25"];
+    let run = program.run(&scene.name, &scenes.forced, &arguments)?;
     let rows = run.csv("-kinetostatics.csv")?;
     let mut found = states::findings(claims, scene, &rows, states::Kind::Forced)?;
     found.extend(sums::findings(claims, scene, &rows, "kinetostatics"));
@@ -108,16 +104,12 @@ fn without_forces(
 ) -> Result<Vec<Finding>, String> {
     let name = format!("{}-forced", scene.name);
     let arguments = ["kinematics", "--points", "25"];
-    let moved = run(program, &name, &scenes.forced, &arguments)?;
+    let moved = program.run(&name, &scenes.forced, &arguments)?;
     let mut found = twice(&moved, "kinematics", "kinematics")?;
     if scene.mechanism.actuators.len() == 1 {
         let name = format!("{}-at-rest", scene.name);
-        let held = run(
-            program,
-            &name,
-            &scenes.plain,
-            &["statics", "--points", "121"],
-        )?;
+        let arguments = ["statics", "--points", "121"];
+        let held = program.run(&name, &scenes.plain, &arguments)?;
         found.extend(twice(&held, "statics", "statics")?);
     }
     Ok(found)
@@ -133,7 +125,7 @@ fn free(
         return Ok(Vec::new());
     };
     let arguments = ["simulate", "--sample-interval", interval];
-    let first = run(program, &scene.name, text, &arguments)?;
+    let first = program.run(&scene.name, text, &arguments)?;
     let rows = first.csv("-motion.csv")?;
     let mut found = Vec::new();
     // An end stop acts beside the loads.
@@ -147,7 +139,9 @@ fn free(
     let events = first.csv("-motion-events.csv").ok();
     found.extend(between_rows::summary(&summary, &rows, events.as_ref()));
     let name = format!("{}-default-rows", scene.name);
-    let all = run(program, &name, text, &["simulate"])?.csv("-motion.csv")?;
+    let all = program
+        .run(&name, text, &["simulate"])?
+        .csv("-motion.csv")?;
     found.extend(between_rows::default_rows(&all, &rows));
     let accuracy = match scene.stops.is_empty() {
         true => ACCURACY,
@@ -155,26 +149,23 @@ fn free(
     };
     let arguments = [&arguments[..], &["--accuracy", accuracy]].concat();
     let name = format!("{}-to-accuracy", scene.name);
-    let other = run(program, &name, text, &arguments)?;
+    let other = program.run(&name, text, &arguments)?;
     let others = other.csv("-motion.csv")?;
     if scene.stops.is_empty() {
         found.extend(between_rows::again(scene, [&rows, &others]));
     }
     found.extend(between_rows::stops(scene, [&rows, &others]));
-    let duration = rows.time(rows.count.saturating_sub(1));
+    let duration = rows.end();
     let interval = format!("{:e}", duration / OTHER_ROWS);
     let arguments = ["simulate", "--method", "dop853", "--rtol", "1e-9"];
     let arguments = [&arguments[..], &["--sample-interval", &interval]].concat();
     let name = format!("{}-other-rows", scene.name);
-    let again = run(program, &name, text, &arguments)?.json("-simulate.json")?;
+    let again = program
+        .run(&name, text, &arguments)?
+        .json("-simulate.json")?;
     let same = same_extrema([&summary, &again], "simulate and simulate by dop853");
-    found.extend(same.finding(EXTREMA_AGAIN, "simulate"));
+    found.extend(same.counted_finding(&EXTREMA_AGAIN, "simulate"));
     Ok(found)
-}
-
-fn run(program: &Program, name: &str, text: &str, arguments: &[&str]) -> Result<Run, String> {
-    let done = program.run(name, text, arguments);
-    done.map_err(|e| e.to_string())
 }
 
 /// The same numbers in the files and sentences of a run.
@@ -190,7 +181,7 @@ fn twice(run: &Run, stem: &str, command: &str) -> Result<Vec<Finding>, String> {
     }
     let [of_files, of_extrema, of_places] = tolerances(command);
     let of = |differences: Differences, end: &str, check, comparison, tolerance| {
-        let texts = Texts {
+        let texts = FindingSpec {
             key: &format!("written-{stem}-{end}"),
             check,
             comparison,
@@ -198,7 +189,7 @@ fn twice(run: &Run, stem: &str, command: &str) -> Result<Vec<Finding>, String> {
             tolerance,
             tolerance_reason: "the same numbers; between rows, the error of a polynomial through them",
         };
-        differences.finding(texts, command)
+        differences.counted_finding(&texts, command)
     };
     let all = [
         of(
@@ -267,11 +258,6 @@ fn rounding(printed: &str) -> Differences {
 }
 
 /// A finding of a worst difference with its texts.
-fn finding(
-    worst: Worst,
-    of: &super::worst::Comparison,
-    rows: &Rows,
-    file: &str,
-) -> Option<Finding> {
+fn finding(worst: Differences, of: &FindingSpec<'_>, rows: &Rows, file: &str) -> Option<Finding> {
     worst.finding(of, &format!("{file}, {} rows", rows.count))
 }

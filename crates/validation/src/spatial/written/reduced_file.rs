@@ -1,32 +1,32 @@
 //! The table of `reduce`: m, ½m′, a, b, and what the loads make, at its rows, with the dense equations at the model's placements there.
 
+use super::super::claims::{NAMES, components, constant};
 use super::super::samples::{PASSES, Samples};
-use super::super::worst::{Comparison, Worst};
 use super::finding;
 use crate::error::ValidationError;
 use crate::written::motions::simpson;
-use crate::written::poses::difference::{Differences, Texts};
+use crate::written::poses::difference::Differences;
 use crate::written::poses::program::Program;
 use crate::written::poses::range::range_differences;
-use crate::written::poses::rows::Rows;
+use crate::written::poses::rows::{Rows, largest};
 use dwell_findings::{Check, Finding};
-use dwell_kinetostatics::Magnitude;
-use dwell_kinetostatics::space::LoadKind;
+use dwell_kinetostatics::space::{Load, LoadKind};
 use dwell_scene::SpaceScene;
 use dwell_study::PreparedSpaceScene;
+use dwell_verify::FindingSpec;
 use std::path::Path;
 
-const COEFFICIENTS: Comparison = Comparison {
+const COEFFICIENTS: FindingSpec<'_> = FindingSpec {
     key: "written-reduced",
     check: Check::WrittenForces,
     comparison: "m, ½m′, w, a, b and c of the table with the dense equations at unit speed, unit acceleration and under the loads",
     scale: "the largest of each pass, of its kind, in the row, or a thousandth of what the whole mass makes",
     // The largest seen in a case is 2.6e-12.
     tolerance: 2e-10,
-    reason: "rounding, amplified by the condition of the equations",
+    tolerance_reason: "rounding, amplified by the condition of the equations",
 };
 
-const RANGE: Texts<'_> = Texts {
+const RANGE: FindingSpec<'_> = FindingSpec {
     key: "written-range",
     check: Check::WrittenTotals,
     comparison: "the ends of the rows of `reduce` with the limit positions of `check`",
@@ -35,7 +35,7 @@ const RANGE: Texts<'_> = Texts {
     tolerance: 1e-14,
     tolerance_reason: "rounding of the limits",
 };
-const SLOPES: Texts<'_> = Texts {
+const SLOPES: FindingSpec<'_> = FindingSpec {
     key: "written-slopes",
     check: Check::WrittenRates,
     comparison: "m and V of `reduce` with the integrals of 2·½m′ and −w between rows, by Simpson's rule",
@@ -57,13 +57,10 @@ pub(super) fn findings(
     let prepared = PreparedSpaceScene::new(scene)?;
     let mut samples = Samples::new(&prepared)?;
     let read = || -> Result<(Rows, Differences), String> {
-        let program =
-            Program::new(program, &format!("{}-reduced", scene.name)).map_err(|e| e.to_string())?;
-        let run = program.run(&scene.name, text, &["reduce", "--points", POINTS]);
-        let run = run.map_err(|e| e.to_string())?;
+        let program = Program::new(program, &format!("{}-reduced", scene.name));
+        let run = program.run(&scene.name, text, &["reduce", "--points", POINTS])?;
         let rows = run.csv("-reduced.csv")?;
-        let contents = program.run(&scene.name, text, &["check"]);
-        let contents = contents.map_err(|e| e.to_string())?;
+        let contents = program.run(&scene.name, text, &["check"])?;
         let summary = contents.json("-check.json")?;
         let coordinate = &scene.mechanism.actuators[0].name;
         let range = range_differences((&summary, &contents.printed), &rows, coordinate);
@@ -73,7 +70,7 @@ pub(super) fn findings(
         Ok(read) => read,
         Err(reason) => return Ok(vec![super::refused(&reason)]),
     };
-    let mut worst = Worst::default();
+    let mut worst = Differences::default();
     for row in (1..rows.count).step_by(STEP) {
         compare(&mut worst, &mut samples, scene, (&rows, row))?;
     }
@@ -81,63 +78,56 @@ pub(super) fn findings(
         .into_iter()
         .collect();
     found.extend(slopes(scene, &rows));
-    found.extend(range.finding(RANGE, "reduced.csv"));
+    found.extend(range.counted_finding(&RANGE, "reduced.csv"));
     Ok(found)
 }
 
 /// m′ = 2·½m′, and V′ = −Σ w F of the loads that have a potential, by Simpson's rule between rows.
 fn slopes(scene: &SpaceScene, rows: &Rows) -> Option<Finding> {
-    let column = |name: &str| rows.columns.get(name).cloned().unwrap_or_default();
-    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
-    let q = column(&scene.mechanism.actuators[0].name);
-    let span = q
-        .last()
-        .zip(q.first())
-        .map_or(1.0, |(last, first)| last - first);
+    let q = rows.column(&scene.mechanism.actuators[0].name);
+    let ends = q.last().zip(q.first());
+    let span = ends.map_or(1.0, |(last, first)| last - first);
     let mut found = Differences::default();
     let mut compare = |what: &str, values: &[f64], slope: &[f64]| {
         let scale = largest(values).max(largest(slope) * span.abs());
-        simpson(&mut found, &q, [values, slope], scale, what);
+        simpson(&mut found, q, [values, slope], scale, what);
     };
-    let slope: Vec<f64> = column("half_dm").iter().map(|half| 2.0 * half).collect();
-    compare("m", &column("m"), &slope);
-    let constant = |load: &dwell_kinetostatics::space::Load| match (&load.kind, &load.magnitude) {
-        (LoadKind::Gravity(_), Magnitude::Constant(magnitude)) => Some(*magnitude),
+    let halves = rows.column("half_dm").iter();
+    let slope: Vec<f64> = halves.map(|half| 2.0 * half).collect();
+    compare("m", rows.column("m"), &slope);
+    let weight = |load: &Load| match constant(load)? {
+        (LoadKind::Gravity(_), magnitude) => Some(magnitude),
         _ => None,
     };
     // Of other loads not every one has a potential.
-    let weights: Option<Vec<f64>> = scene.loads.iter().map(constant).collect();
+    let weights: Option<Vec<f64>> = scene.loads.iter().map(weight).collect();
     if let (Some(weights), true) = (weights, rows.columns.contains_key("V")) {
         let mut slope = vec![0.0; q.len()];
         for (load, magnitude) in scene.loads.iter().zip(weights) {
-            let w = column(&format!("{}.w", load.name));
+            let w = rows.column(&format!("{}.w", load.name));
             for (slope, w) in slope.iter_mut().zip(w) {
                 *slope -= magnitude * w;
             }
         }
-        compare("V", &column("V"), &slope);
+        compare("V", rows.column("V"), &slope);
     }
-    found.finding(SLOPES, "reduced.csv")
+    found.counted_finding(&SLOPES, "reduced.csv")
 }
 
 /// The three passes of a row.
 // Long because each pass has its columns, its signs and its scales.
 fn compare(
-    worst: &mut Worst,
+    worst: &mut Differences,
     samples: &mut Samples<'_>,
     scene: &SpaceScene,
     (rows, row): (&Rows, usize),
 ) -> Result<(), ValidationError> {
-    let q = rows
-        .get(row, &scene.mechanism.actuators[0].name)
-        .unwrap_or(f64::NAN);
+    let q = rows.get(row, &scene.mechanism.actuators[0].name);
+    let q = q.unwrap_or(f64::NAN);
     let placements = samples.placements(q)?;
     let size = samples.model.plan().size();
-    for (pass, [of_actuator, of_reaction]) in
-        PASSES
-            .into_iter()
-            .zip([["half_dm", "b"], ["m", "a"], ["w", "c"]])
-    {
+    let columns = [["half_dm", "b"], ["m", "a"], ["w", "c"]];
+    for (pass, [of_actuator, of_reaction]) in PASSES.into_iter().zip(columns) {
         let Some(dense) = samples.dense(&placements, pass) else {
             continue;
         };
@@ -146,10 +136,8 @@ fn compare(
             false if name.is_empty() => rows.get(row, kind),
             false => rows.get(row, &format!("{name}.{kind}")),
             true => {
-                let of_load = |load: &dwell_kinetostatics::space::Load| {
-                    let Magnitude::Constant(magnitude) = load.magnitude else {
-                        return None;
-                    };
+                let of_load = |load: &Load| {
+                    let (_, magnitude) = constant(load)?;
                     let column = match name.is_empty() {
                         true => format!("{}.{kind}", load.name),
                         false => format!("{name}.{kind}.{}", load.name),
@@ -160,18 +148,13 @@ fn compare(
             }
         };
         let floor = samples.floor(pass);
-        let of_wrench = |w: &dwell_geometry::space::Wrench| {
-            let (f, m) = (w.force, w.moment);
-            [f.x, f.y, f.z, m.x, m.y, m.z]
-        };
-        let all: Vec<[f64; 6]> = dense.reactions.iter().map(of_wrench).collect();
+        let all: Vec<[f64; 6]> = dense.reactions.iter().map(components).collect();
         let largest = |kind: usize| {
             let of_kind = all.iter().zip(&dense.determined).flat_map(|(v, is)| {
-                (3 * kind..3 * kind + 3)
-                    .filter(|k| is[*k])
-                    .map(|k| v[k].abs())
+                let determined = (3 * kind..3 * kind + 3).filter(|k| is[*k]);
+                determined.map(|k| &v[k])
             });
-            of_kind.fold(0.0, f64::max)
+            largest(of_kind)
         };
         let scales = [largest(0).max(floor), largest(1).max(floor * size)];
         let unit = match samples.model.plan().is_angle(0) {
@@ -182,18 +165,15 @@ fn compare(
             // The loads do what the actuator must undo.
             let sign = if pass.is_loaded { -1.0 } else { 1.0 };
             let wanted = sign * dense.actuator_actions[0];
-            worst.add([found, wanted, wanted.abs().max(floor * unit)], "", || {
+            worst.compare([found, wanted, wanted.abs().max(floor * unit)], "", || {
                 format!("q = {q:.4}, {of_actuator}")
             });
         }
         for (joint, values) in scene.mechanism.joints.iter().zip(&all) {
-            for (k, end) in ["x", "y", "z", "moment-x", "moment-y", "moment-z"]
-                .into_iter()
-                .enumerate()
-            {
+            for (k, end) in NAMES.into_iter().enumerate() {
                 let name = format!("{}.{end}", joint.name);
                 if let Some(found) = written(&name, of_reaction) {
-                    worst.add([found, values[k], scales[k / 3]], "", || {
+                    worst.compare([found, values[k], scales[k / 3]], "", || {
                         format!("q = {q:.4}, {name}.{of_reaction}")
                     });
                 }

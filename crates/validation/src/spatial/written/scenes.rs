@@ -1,7 +1,7 @@
 //! The scene of a case with what the commands need: a prescribed motion, and a free one.
 
 use super::super::claims::SpaceClaims;
-use crate::written::poses::scene_text::text_of;
+use crate::written::poses::scene_text::{text_of, value_of};
 use crate::written::poses::units::Units;
 use dwell_kinetostatics::MachineModel as _;
 use dwell_scene::{MotionDuration, SpaceScene};
@@ -53,20 +53,15 @@ impl Scenes {
         let mut forced = table.clone();
         let mut amplitudes = Vec::new();
         if !has_forced {
-            let mut prescribed = Table::new();
-            prescribed.insert("duration".to_owned(), Value::Float(PERIOD));
+            let mut prescribed = vec![("duration", PERIOD.into())];
             for (k, actuator) in scene.mechanism.actuators.iter().enumerate() {
                 let (amplitude, written) = in_units(k, AMPLITUDES[k % AMPLITUDES.len()]);
                 amplitudes.push(amplitude);
-                let sinusoid = [("amplitude", written), ("period", PERIOD)];
-                let sinusoid = sinusoid.map(|(key, v)| (key.to_owned(), Value::Float(v)));
-                let law = [(
-                    "sinusoid".to_owned(),
-                    Value::Table(Table::from_iter(sinusoid)),
-                )];
-                prescribed.insert(actuator.name.clone(), Value::Table(Table::from_iter(law)));
+                let sinusoid = [("amplitude", written.into()), ("period", PERIOD.into())];
+                let law = value_of([("sinusoid", value_of(sinusoid))]);
+                prescribed.push((&actuator.name, law));
             }
-            forced.insert("prescribed".to_owned(), Value::Table(prescribed));
+            forced.insert("prescribed".to_owned(), value_of(prescribed));
         }
         Self {
             forced: text_of(&forced).unwrap_or_default(),

@@ -1,14 +1,15 @@
 //! Rows of a file as states, which the dense equations judge as they judge those of the model: closure, velocities, accelerations,
 //! reactions, actions, power, momenta.
 
-use super::super::claims::SpaceClaims;
-use super::super::worst::{Comparison, Worst};
+use super::super::claims::{NAMES, SpaceClaims};
 use super::finding;
+use crate::written::poses::difference::Differences;
 use crate::written::poses::rows::Rows;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::{BodyMotion, Placement, Rotation, Vec3, vec3};
 use dwell_kinetostatics::space::Axes;
 use dwell_scene::SpaceScene;
+use dwell_verify::FindingSpec;
 use dwell_verify::space::{SpaceState, check_states_in_space};
 
 /// Tolerance of forces on each body of a row.
@@ -16,14 +17,14 @@ const SPRINGS: f64 = 5e-11;
 /// So many rows of a file are judged.
 const STATES: usize = 6;
 
-const POINTS: Comparison = Comparison {
+const POINTS: FindingSpec<'_> = FindingSpec {
     key: "written-points",
     check: Check::WrittenPositions,
     comparison: "positions, velocities and accelerations of all points of a body with one placement and motion of it",
     scale: "the size, or the largest velocity or acceleration of its kind",
     // The largest seen in a case is 2.5e-15.
     tolerance: 2e-13,
-    reason: "a sum of rounded terms",
+    tolerance_reason: "a sum of rounded terms",
 };
 
 /// The command by which actions are given or not.
@@ -49,7 +50,7 @@ pub(super) fn findings(
     rows: &Rows,
     kind: Kind,
 ) -> Result<Vec<Finding>, String> {
-    let mut points = Worst::default();
+    let mut points = Differences::default();
     let mut states = Vec::new();
     for k in 0..STATES.min(rows.count) {
         // Not at its ends: there a coordinate may be at the end of its range, or of a turn, where an idle body may stand in another way.
@@ -127,9 +128,8 @@ pub(super) fn state(
     let vectors = scene.mechanism.joints.iter().zip(&mut state.reactions);
     for (joint, reaction) in vectors {
         let (f, m) = (&mut reaction.force, &mut reaction.moment);
-        let ends = ["x", "y", "z", "moment-x", "moment-y", "moment-z"];
         let parts = [&mut f.x, &mut f.y, &mut f.z, &mut m.x, &mut m.y, &mut m.z];
-        for (end, part) in ends.into_iter().zip(parts) {
+        for (end, part) in NAMES.into_iter().zip(parts) {
             if let Some(value) = rows.get(row, &format!("{}.{end}", joint.name)) {
                 *part = value;
             }
@@ -179,7 +179,7 @@ fn placement(
 
 /// The other points of each body.
 fn compare_points(
-    worst: &mut Worst,
+    worst: &mut Differences,
     claims: &SpaceClaims<'_>,
     scene: &SpaceScene,
     at: (&Rows, usize),
@@ -209,7 +209,7 @@ fn compare_points(
             for (ends, wanted, scale, unit) in wanted {
                 if let Some(found) = vector(at, &name, ends) {
                     let difference = (found - wanted).norm();
-                    worst.add([difference, 0.0, scale], unit, || {
+                    worst.compare([difference, 0.0, scale], unit, || {
                         format!("row {}, {name}.{}", at.1, ends[0])
                     });
                 }

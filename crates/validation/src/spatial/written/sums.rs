@@ -1,25 +1,25 @@
 //! Sums over bodies and loads of a row: power, energies, the force and moment on the ground, and magnitudes of vectors.
 
-use super::super::claims::SpaceClaims;
-use super::super::worst::{Comparison, Worst};
+use super::super::claims::{NAMES, SpaceClaims, constant};
 use super::finding;
 use super::states::{Kind, state, vector};
-use crate::written::poses::rows::Rows;
+use crate::written::poses::difference::Differences;
+use crate::written::poses::rows::{Rows, largest};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::space::{ActuatorKind, Vec3};
-use dwell_kinetostatics::Magnitude;
 use dwell_kinetostatics::space::LoadKind;
 use dwell_scene::SpaceScene;
+use dwell_verify::FindingSpec;
 use dwell_verify::space::{SpaceState, potential_energy};
 
-const SUMS: Comparison = Comparison {
+const SUMS: FindingSpec<'_> = FindingSpec {
     key: "written-sums",
     check: Check::WrittenTotals,
     comparison: "powers, energies, the force and moment on the ground and magnitudes with sums over the bodies and loads of the row",
     scale: "the largest of each kind in the file, or the largest sum of its absolute terms",
     // The largest seen in a case is 9.8e-15.
     tolerance: 9e-13,
-    reason: "a sum of rounded terms",
+    tolerance_reason: "a sum of rounded terms",
 };
 
 /// Sums of a row, by the name of their column, each with the sum of its absolute terms.
@@ -36,7 +36,7 @@ pub(super) fn findings(
         "kinetostatics" => Kind::Forced,
         _ => Kind::Free,
     };
-    let mut worst = Worst::default();
+    let mut worst = Differences::default();
     let mut start: Option<f64> = None;
     let step = (rows.count / 8).max(1);
     for row in (0..rows.count).step_by(step) {
@@ -60,9 +60,8 @@ pub(super) fn findings(
             let Some(found) = rows.get(row, &name) else {
                 continue;
             };
-            let of_column = rows.columns.get(&name).into_iter().flatten();
-            let largest = of_column.fold(size, |max, v| max.max(v.abs()));
-            worst.add([found, wanted, largest], "", || {
+            let largest = size.max(largest(rows.column(&name)));
+            worst.compare([found, wanted, largest], "", || {
                 format!("row {row}, {name}")
             });
         }
@@ -164,12 +163,9 @@ fn gravity(state: &SpaceState) -> Vec3 {
 fn magnitudes(scene: &SpaceScene, at: (&Rows, usize)) -> Sums {
     let mut sums = Vec::new();
     for joint in &scene.mechanism.joints {
-        let ends = [
-            ("magnitude", ["x", "y", "z"]),
-            ("moment-magnitude", ["moment-x", "moment-y", "moment-z"]),
-        ];
-        for (end, parts) in ends {
-            if let Some(v) = vector(at, &joint.name, parts) {
+        let (parts, _) = NAMES.as_chunks::<3>();
+        for (end, parts) in ["magnitude", "moment-magnitude"].into_iter().zip(parts) {
+            if let Some(v) = vector(at, &joint.name, *parts) {
                 sums.push((format!("{}.{end}", joint.name), v.norm(), v.norm()));
             }
         }
@@ -179,11 +175,8 @@ fn magnitudes(scene: &SpaceScene, at: (&Rows, usize)) -> Sums {
 
 /// The potential energy of all loads, J; none if one of them has none.
 fn potential(claims: &SpaceClaims<'_>, scene: &SpaceScene, state: &SpaceState) -> Option<f64> {
-    let of = scene.loads.iter().map(|load| {
-        let Magnitude::Constant(magnitude) = load.magnitude else {
-            return None;
-        };
-        potential_energy(&claims.case(), &state.placements, (load.kind, magnitude))
-    });
-    of.sum()
+    let loads = scene.loads.iter();
+    loads
+        .map(|load| potential_energy(&claims.case(), &state.placements, constant(load)?))
+        .sum()
 }

@@ -6,13 +6,12 @@ use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::program::{Program, Run};
 use crate::written::poses::reading::{Measure, Reading};
-use crate::written::poses::rows::Rows;
-use crate::written::poses::stated::sentence_differences;
+use crate::written::poses::rows::{Rows, largest};
+use crate::written::poses::scene_text::{table_of, text_of, value_of};
+use crate::written::poses::stated::{result, sentence_differences};
 use crate::written::poses::units::Units;
-use dwell_findings::Finding;
 use serde_json::Value;
 use std::f64::consts::{PI, TAU};
-use std::path::Path;
 use toml::Table;
 
 /// The fluctuation for which a flywheel is wanted.
@@ -24,27 +23,15 @@ const MAX_CYCLES: f64 = 24.0;
 
 /// Runs `cycle` on a scene with drives and a motion and compares what it writes. Where there is no steady cycle, nothing is
 /// compared.
-pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
-    let mut compared = Compared::default();
-    let table = scene.parse::<Table>();
-    let table = table
-        .ok()
-        .filter(|t| t.contains_key("motion") && t.contains_key("drives"));
-    let program = Program::new(path, &format!("{name}-cycle"));
-    if let (Some(table), Ok(program)) = (table, program)
-        && let Err(reason) = compare(&mut compared, &program, scene, &table)
-    {
-        compared.fail("written-cycle", reason);
-    }
-    compared.findings()
-}
-
-fn compare(
+pub(crate) fn compare(
     compared: &mut Compared,
     program: &Program,
     scene: &str,
-    table: &Table,
 ) -> Result<(), String> {
+    let table = &table_of(scene)?;
+    if !table.contains_key("motion") || !table.contains_key("drives") {
+        return Ok(());
+    }
     let wanted = FLUCTUATION.to_string();
     // Without a steady cycle the status is another, and there are no files.
     let Ok(run) = program.run("cycle", scene, &["cycle", "--fluctuation", &wanted]) else {
@@ -57,11 +44,7 @@ fn compare(
     let rows = run.csv("-cycle.csv")?;
     let coordinate = coordinate(&rows).ok_or("the rows have no coordinate")?;
     compare_rows(compared, (&summary, ""), &rows, &coordinate, "cycle");
-    for (name, work) in rows
-        .columns
-        .iter()
-        .filter(|(name, _)| name.ends_with(".work"))
-    {
+    for (name, work) in rows.ending(".work") {
         add_works(compared.of("written-cycle"), &summary, name, work);
     }
     if let (Ok(rows), Some(_)) = (
@@ -97,12 +80,9 @@ fn add_need(to: &mut Differences, run: &Run, summary: &Value) {
     };
     let is_needed = fluctuation > FLUCTUATION;
     let has_file = run.csv("-cycle-flywheel.csv").is_ok();
-    to.add(0.0, 1.0, "", String::new);
-    if is_needed != (inertia > 0.0) || is_needed != has_file {
-        to.fail(format!(
-            "a flywheel of {inertia} kg m2 where the coefficient of fluctuation is {fluctuation}, and its file: {has_file}"
-        ));
-    }
+    to.require(is_needed == (inertia > 0.0) && is_needed == has_file, || {
+        format!("a flywheel of {inertia} kg m2 where the coefficient of fluctuation is {fluctuation}, and its file: {has_file}")
+    });
 }
 
 /// The lines that the summary asks for; angles of the scene are in this unit, rad.
@@ -157,10 +137,8 @@ fn with_heavier_body(
     let Some(entry) = entry else { return Ok(()) };
     let sum = (reading.bodies[body].inertia + inertia) / reading.units.inertia;
     entry.insert("inertia".to_owned(), sum.into());
-    let text = toml::to_string(&heavier).map_err(|e| e.to_string())?;
-    let run = program
-        .run("heavier", &text, &["cycle"])
-        .map_err(|e| e.to_string())?;
+    let text = text_of(&heavier)?;
+    let run = program.run("heavier", &text, &["cycle"])?;
     let other = run.json("-cycle.json")?;
     let found = compared.of("written-cycle-flywheel");
     let [wheel, body] = [(summary, "flywheel."), (&other, "")].map(|(of, prefix)| {
@@ -168,15 +146,9 @@ fn with_heavier_body(
             .map(|name| result(of, &format!("{prefix}{name}")).unwrap_or(f64::NAN))
     });
     for (one, two) in wheel.into_iter().zip(body) {
-        found.add(one - two, two, "rad/s", || {
-            "speeds with the flywheel".to_owned()
-        });
+        found.add(one - two, two, "rad/s", || "speeds with the flywheel");
     }
     Ok(())
-}
-
-fn result(summary: &Value, name: &str) -> Option<f64> {
-    summary["results"][name]["value"].as_f64()
 }
 
 /// The coordinate whose velocity is a column.
@@ -198,48 +170,33 @@ fn compare_rows(
     coordinate: &str,
     file: &str,
 ) {
-    let column = |name: &str| rows.columns.get(name).cloned().unwrap_or_default();
-    let (time, q) = (column("t"), column(coordinate));
-    let speed = column(&format!("{coordinate}.velocity"));
-    add_rates(
-        compared.of("written-cycle-rates"),
-        [
-            &time,
-            &q,
-            &speed,
-            &column(&format!("{coordinate}.acceleration")),
-        ],
-        file,
-    );
-    let ends = |values: &[f64]| {
-        values
-            .last()
-            .zip(values.first())
-            .map_or(f64::NAN, |(l, f)| l - f)
-    };
-    let fastest = speed.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+    let (time, q) = (rows.column("t"), rows.column(coordinate));
+    let [speed, acceleration] =
+        ["velocity", "acceleration"].map(|end| rows.column(&format!("{coordinate}.{end}")));
+    let columns = [time, q, speed, acceleration];
+    add_rates(compared.of("written-cycle-rates"), columns, file);
+    let fastest = largest(speed);
     let found = compared.of("written-cycle");
     let place = |what: &str| format!("{file}, {what}");
-    found.add(ends(&speed), fastest, "rad/s", || {
+    found.add(change(speed), fastest, "rad/s", || {
         place("speed at both ends")
     });
-    let mean = ends(&q) / ends(&time);
+    let mean = change(q) / change(time);
     let of = |name: &str| result(summary, &format!("{prefix}{name}")).unwrap_or(f64::NAN);
     found.add(of("mean_speed") - mean, fastest, "rad/s", || {
         place("mean speed")
     });
     if prefix.is_empty() {
-        found.add(of("period") - ends(&time), ends(&time), "s", || {
-            place("period")
-        });
+        let period = change(time);
+        found.add(of("period") - period, period, "s", || place("period"));
     }
     // A cycle begins in the first revolutions of its coordinate.
     let turns = result(summary, "revolutions").unwrap_or(f64::NAN);
     let start = q.first().copied().unwrap_or(f64::NAN);
     let outside = (-start).max(start - TAU * turns).max(0.0);
     found.add(outside, TAU, "rad", || place("the first coordinate"));
-    found.add(ends(&q) - TAU * turns, TAU, "rad", || place("revolutions"));
-    add_speeds(found, &of, &speed, file);
+    found.add(change(q) - TAU * turns, TAU, "rad", || place("revolutions"));
+    add_speeds(found, &of, speed, file);
     let fluctuation = (of("fastest_speed").abs() - of("slowest_speed").abs()) / mean.abs();
     // With the flywheel it is the wanted one.
     let stated = match prefix {
@@ -251,15 +208,18 @@ fn compare_rows(
     });
 }
 
+/// The last value less the first.
+fn change(values: &[f64]) -> f64 {
+    let ends = values.last().zip(values.first());
+    ends.map_or(f64::NAN, |(last, first)| last - first)
+}
+
 /// Between rows the motion may be faster or slower, by no more than the largest change from row to row.
 fn add_speeds(to: &mut Differences, of: &dyn Fn(&str) -> f64, speed: &[f64], file: &str) {
     let changes = speed.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let change = changes.fold(0.0, f64::max);
-    let sizes = || speed.iter().map(|v| v.abs());
-    let (least, most) = (
-        sizes().fold(f64::INFINITY, f64::min),
-        sizes().fold(0.0, f64::max),
-    );
+    let sizes = speed.iter().map(|v| v.abs());
+    let (least, most) = (sizes.fold(f64::INFINITY, f64::min), largest(speed));
     for (beyond, what) in [
         (least - of("slowest_speed").abs(), "slowest speed"),
         (of("fastest_speed").abs() - most, "fastest speed"),
@@ -273,32 +233,19 @@ fn add_speeds(to: &mut Differences, of: &dyn Fn(&str) -> f64, speed: &[f64], fil
 fn add_rates(to: &mut Differences, [time, q, speed, acceleration]: [&[f64]; 4], file: &str) {
     let slowness: Vec<f64> = speed.iter().map(|v| 1.0 / v).collect();
     let squares: Vec<f64> = speed.iter().map(|v| 0.5 * v * v).collect();
-    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
-    simpson(
-        to,
-        q,
-        [time, &slowness],
-        largest(time),
-        &format!("{file}, t"),
-    );
-    simpson(
-        to,
-        q,
-        [&squares, acceleration],
-        largest(&squares),
-        &format!("{file}, speed"),
-    );
+    for (values, rate, what) in [
+        (time, &slowness[..], "t"),
+        (&squares, acceleration, "speed"),
+    ] {
+        let place = format!("{file}, {what}");
+        simpson(to, q, [values, rate], largest(values), &place);
+    }
 }
 
 /// The work of a source in a cycle, by its column.
 fn add_works(to: &mut Differences, summary: &Value, name: &str, work: &[f64]) {
-    let largest = work.iter().fold(0.0_f64, |max, w| max.max(w.abs()));
-    let change = work
-        .last()
-        .zip(work.first())
-        .map_or(f64::NAN, |(l, f)| l - f);
     if let Some(stated) = result(summary, name) {
-        to.add(stated - change, largest, "J", || {
+        to.add(stated - change(work), largest(work), "J", || {
             format!("{name} of a cycle")
         });
     }
@@ -328,36 +275,34 @@ fn long_motion(
     let Some(motion) = long.get_mut("motion").and_then(toml::Value::as_table_mut) else {
         return Ok(());
     };
-    let event: Table = [("revolution".to_owned(), coordinate.into())]
-        .into_iter()
-        .collect();
-    let events: Table = [("settled".to_owned(), event.into())].into_iter().collect();
-    motion.insert("events".to_owned(), events.into());
+    let event = value_of([("revolution", coordinate.into())]);
+    motion.insert("events".to_owned(), value_of([("settled", event)]));
     motion.insert("duration".to_owned(), (period * (cycles + 2.0)).into());
-    let text = toml::to_string(&long).map_err(|e| e.to_string())?;
-    let run: Run = program
-        .run(
-            "long",
-            &text,
-            &["simulate", "--method", "dop853", "--rtol", "1e-11"],
-        )
-        .map_err(|e| e.to_string())?;
+    let text = text_of(&long)?;
+    let arguments = ["simulate", "--method", "dop853", "--rtol", "1e-11"];
+    let run = program.run("long", &text, &arguments)?;
     let events = run.csv("-motion-events.csv")?;
-    let times = events.columns.get("t").map_or(&[][..], Vec::as_slice);
+    let times = events.column("t");
     let [.., before, last] = times else {
         return Err("the long motion has no two revolutions".to_owned());
     };
     let mean = result(summary, "mean_speed").map_or(f64::NAN, f64::abs);
     let turn = TAU / (last - before);
-    let found = compared.of("written-cycle-period");
-    found.add(last - before - period, period, "s", || {
-        format!("period after {} cycles of `simulate`", times.len())
-    });
-    found.add(mean - turn, turn, "rad/s", || {
-        "mean speed of `simulate`".to_owned()
-    });
-    let speeds = events.columns.get(&format!("{coordinate}.velocity"));
-    let speeds = speeds.map_or(&[][..], Vec::as_slice);
+    compared.add(
+        "written-cycle-period",
+        last - before - period,
+        period,
+        "s",
+        || format!("period after {} cycles of `simulate`", times.len()),
+    );
+    compared.add(
+        "written-cycle-period",
+        mean - turn,
+        turn,
+        "rad/s",
+        || "mean speed of `simulate`",
+    );
+    let speeds = events.column(&format!("{coordinate}.velocity"));
     let decay = multiplier_differences(speeds, &multipliers);
     compared.merge("written-cycle-multiplier", decay);
     Ok(())

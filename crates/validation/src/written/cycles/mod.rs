@@ -3,4 +3,4 @@
 mod cycle_files;
 mod multipliers;
 
-pub(crate) use cycle_files::findings;
+pub(super) use cycle_files::compare;

@@ -3,7 +3,7 @@
 
 use super::row_forces::{ComparedRows, MotionReading};
 use crate::written::poses::difference::Differences;
-use crate::written::poses::rows::Rows;
+use crate::written::poses::rows::{Rows, largest};
 
 /// An estimated error of the rule counts this many times: the next order of it is unknown.
 const ERROR_FACTOR: f64 = 4.0;
@@ -31,34 +31,17 @@ pub(super) fn between_rows(
     };
     let (kinetic, power): (Vec<f64>, Vec<f64>) =
         of_rows.energies.iter().map(|[t, p]| (*t, *p)).unzip();
-    let potential = rows.columns.get("energy.potential");
-    let works = rows
-        .columns
-        .iter()
-        .filter(|(name, _)| name.ends_with(".work"));
-    let works = works.flat_map(|(_, work)| work);
-    let energies = kinetic.iter().chain(potential.into_iter().flatten());
-    let sizes = energies.chain(works).map(|e| e.abs());
-    let scale = sizes.fold(0.0, f64::max);
+    let potential = rows.column("energy.potential");
+    let works = rows.ending(".work").flat_map(|(_, work)| work);
+    let scale = largest(kinetic.iter().chain(potential).chain(works));
     let at = |what: &str| format!("{file}, {what}");
-    simpson(
-        &mut found.balance,
-        time,
-        [&kinetic, &power],
-        scale,
-        &at("kinetic energy"),
-    );
+    let (values, place) = ([&kinetic[..], &power], at("kinetic energy"));
+    simpson(&mut found.balance, time, values, scale, &place);
     for (drive, rates) in motion.drives.iter().zip(&of_rows.current_rates) {
         let name = format!("{}.current", drive.name);
         if let (Some(current), false) = (rows.columns.get(&name), rates.is_empty()) {
-            let scale = current.iter().fold(0.0_f64, |max, i| max.max(i.abs()));
-            simpson(
-                &mut found.balance,
-                time,
-                [current, rates],
-                scale,
-                &at(&name),
-            );
+            let (values, scale) = ([&current[..], rates], largest(current));
+            simpson(&mut found.balance, time, values, scale, &at(&name));
         }
     }
     add_columns(&mut found.columns, (motion, of_rows), rows, (scale, file));
@@ -72,38 +55,26 @@ fn add_columns(
     rows: &Rows,
     (scale, file): (f64, &str),
 ) {
-    let column = |name: &str| rows.columns.get(name).cloned().unwrap_or_default();
-    let (time, potential) = (column("t"), column("energy.potential"));
+    let (time, potential) = (rows.column("t"), "energy.potential");
     let at = |what: &str| format!("{file}, {what}");
     let lost: Vec<f64> = of_rows.conservative_power.iter().map(|p| -p).collect();
-    simpson(
-        to,
-        &time,
-        [&potential, &lost],
-        scale,
-        &at("energy.potential"),
-    );
-    let written = column("energy.kinetic");
-    for (row, (written, [kinetic, _])) in written.iter().zip(&of_rows.energies).enumerate() {
+    let values = [rows.column(potential), &lost];
+    simpson(to, time, values, scale, &at(potential));
+    let written = rows.column("energy.kinetic").iter();
+    for (row, (written, [kinetic, _])) in written.zip(&of_rows.energies).enumerate() {
         to.add(written - kinetic, scale, "J", || {
             format!("{file}, row {row}, energy.kinetic")
         });
     }
-    let works = rows
-        .columns
-        .iter()
-        .filter(|(name, _)| name.ends_with(".work"));
-    for (name, work) in works {
-        let of_drive = motion
-            .drives
-            .iter()
-            .position(|d| format!("{}.work", d.name) == *name);
+    for (name, work) in rows.ending(".work") {
+        let mut drives = motion.drives.iter();
+        let of_drive = drives.position(|d| format!("{}.work", d.name) == *name);
         let power = match of_drive {
             Some(k) => of_rows.drive_power.get(k),
             None => rows.columns.get(&name.replace(".work", ".power")),
         };
         if let Some(power) = power {
-            simpson(to, &time, [work, power], scale, &at(name));
+            simpson(to, time, [work, power], scale, &at(name));
         }
     }
 }

@@ -3,7 +3,6 @@
 use crate::written::poses::law::number;
 use crate::written::poses::motion::Motion;
 use crate::written::poses::reading::{Magnitude, Measure, Reading, entries};
-use crate::written::poses::rows::Rows;
 use toml::Table;
 
 /// A drive, in SI units.
@@ -12,6 +11,10 @@ pub(crate) struct Drive {
     pub(crate) name: String,
     pub(crate) measure: Measure,
     pub(crate) kind: DriveKind,
+    /// Of a motor; 1 of another drive.
+    gear_ratio: f64,
+    /// The rotor's inertia on the coordinate, kg m² or kg.
+    pub(super) rotor_inertia: f64,
 }
 
 /// What it exerts.
@@ -24,13 +27,11 @@ pub(crate) enum DriveKind {
         torque_constant: f64,
         resistance: f64,
         inductance: f64,
-        shaft: Shaft,
     },
     /// Torque of the shaft at rest, and its speed without load.
     Line {
         stall_torque: f64,
         no_load_speed: f64,
-        shaft: Shaft,
     },
     /// Its integral is in no file: its rows are compared alone. The reference speed, none of a table; N m/rad or N/m.
     SpeedController {
@@ -39,19 +40,12 @@ pub(crate) enum DriveKind {
     },
 }
 
-/// The gear and the rotor of a motor.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Shaft {
-    gear_ratio: f64,
-    inertia: f64,
-}
-
 /// The circuit of a motor in a row: voltage and induced voltage, V; current, A; resistance, Ω; inductance, H.
-struct CircuitState {
-    voltage: f64,
+pub(super) struct CircuitState {
+    pub(super) voltage: f64,
     induced: f64,
-    current: f64,
-    resistance: f64,
+    pub(super) current: f64,
+    pub(super) resistance: f64,
     inductance: f64,
 }
 
@@ -69,10 +63,8 @@ fn drive(name: &str, table: &Table, reading: &Reading) -> Option<Drive> {
     let key = kinds.into_iter().find(|kind| table.contains_key(*kind))?;
     let coordinate = reading.coordinate(table.get(key)?.as_str()?)?;
     let of = |key: &str| number(table.get(key));
-    let shaft = Shaft {
-        gear_ratio: of("gear-ratio").unwrap_or(1.0),
-        inertia: of("inertia").unwrap_or(0.0) * reading.units.inertia,
-    };
+    let gear_ratio = of("gear-ratio").unwrap_or(1.0);
+    let inertia = of("inertia").unwrap_or(0.0) * reading.units.inertia;
     let kind = match key {
         "applied-force" => DriveKind::AppliedForce(reading.magnitude(table.get("magnitude"))?),
         "speed-controller" => DriveKind::SpeedController {
@@ -89,20 +81,20 @@ fn drive(name: &str, table: &Table, reading: &Reading) -> Option<Drive> {
         _ if table.contains_key("stall-torque") => DriveKind::Line {
             stall_torque: of("stall-torque")?,
             no_load_speed: of("no-load-speed")? * reading.units.angle,
-            shaft,
         },
         _ => DriveKind::Circuit {
             voltage: reading.magnitude(table.get("voltage"))?,
             torque_constant: of("torque-constant")?,
             resistance: of("resistance")?,
             inductance: of("inductance").unwrap_or(0.0),
-            shaft,
         },
     };
     Some(Drive {
         name: name.to_owned(),
         measure: coordinate.measure,
         kind,
+        gear_ratio,
+        rotor_inertia: gear_ratio * gear_ratio * inertia,
     })
 }
 
@@ -111,90 +103,62 @@ impl Drive {
     pub(crate) fn state_slopes(&self) -> [f64; 2] {
         match &self.kind {
             DriveKind::AppliedForce(_) => [0.0; 2],
-            DriveKind::Line {
-                stall_torque,
-                shaft,
-                ..
-            } => [shaft.gear_ratio * stall_torque, 0.0],
+            DriveKind::Line { stall_torque, .. } => [self.gear_ratio * stall_torque, 0.0],
             DriveKind::Circuit {
                 torque_constant,
                 resistance,
                 inductance,
-                shaft,
                 ..
-            } => [shaft.gear_ratio * torque_constant, -resistance / inductance],
+            } => [self.gear_ratio * torque_constant, -resistance / inductance],
             DriveKind::SpeedController { integral, .. } => [*integral, 0.0],
         }
     }
 
     /// The rate of its state in a row: of a current, A/s, or of a controller's integral; none of a drive without one.
-    pub(crate) fn state_rate(
-        &self,
-        reading: &Reading,
-        rows: &Rows,
-        row: usize,
-        motion: &Motion,
-    ) -> Option<f64> {
+    pub(crate) fn state_rate(&self, motion: &Motion<'_>) -> Option<f64> {
         match &self.kind {
             DriveKind::SpeedController { reference, .. } => {
-                let reference = reference.as_ref()?.at(reading, motion, rows.time(row))?;
-                Some(reference - motion.measure(self.measure).0[1])
+                Some(reference.as_ref()?.at(motion)? - motion.measure(self.measure).0[1])
             }
-            _ => self.current_rate(reading, rows, row, motion),
+            _ => self.current_rate(motion),
         }
     }
 
     /// The force on the coordinate in a row. That of a controller is the written one, and so is a current with inductance.
-    pub(crate) fn force(
-        &self,
-        reading: &Reading,
-        rows: &Rows,
-        row: usize,
-        motion: &Motion,
-    ) -> Option<f64> {
-        let t = rows.time(row);
-        let speed = motion.measure(self.measure).0[1];
+    pub(crate) fn force(&self, motion: &Motion<'_>) -> Option<f64> {
+        let (speed, n) = (motion.measure(self.measure).0[1], self.gear_ratio);
         match &self.kind {
-            DriveKind::AppliedForce(magnitude) => magnitude.at(reading, motion, t),
+            DriveKind::AppliedForce(magnitude) => magnitude.at(motion),
             DriveKind::Line {
                 stall_torque,
                 no_load_speed,
-                shaft: Shaft { gear_ratio: n, .. },
             } => Some(n * stall_torque * (1.0 - n * speed / no_load_speed)),
             DriveKind::Circuit {
-                torque_constant: k,
-                shaft: Shaft { gear_ratio: n, .. },
-                ..
-            } => Some(n * k * self.circuit(reading, rows, row, motion)?.current),
+                torque_constant: k, ..
+            } => Some(n * k * self.circuit(motion)?.current),
             // It has no rotor.
-            DriveKind::SpeedController { .. } => self.written_force(rows, row),
+            DriveKind::SpeedController { .. } => self.written_force(motion),
         }
     }
 
     /// The circuit of a motor in a row, of one that is given by its line at 1 V; none of another drive. With inductance the current is the written one.
-    fn circuit(
-        &self,
-        reading: &Reading,
-        rows: &Rows,
-        row: usize,
-        motion: &Motion,
-    ) -> Option<CircuitState> {
+    pub(super) fn circuit(&self, motion: &Motion<'_>) -> Option<CircuitState> {
         let [voltage, constant, resistance, inductance] = match &self.kind {
             DriveKind::Circuit {
                 voltage,
                 torque_constant,
                 resistance,
                 inductance,
-                ..
-            } => {
-                let voltage = voltage.at(reading, motion, rows.time(row))?;
-                [voltage, *torque_constant, *resistance, *inductance]
-            }
+            } => [
+                voltage.at(motion)?,
+                *torque_constant,
+                *resistance,
+                *inductance,
+            ],
             // As a circuit at 1 V.
             DriveKind::Line {
                 stall_torque,
                 no_load_speed,
-                ..
             } => {
                 let constant = 1.0 / no_load_speed;
                 [1.0, constant, constant / stall_torque, 0.0]
@@ -202,9 +166,9 @@ impl Drive {
             DriveKind::AppliedForce(_) | DriveKind::SpeedController { .. } => return None,
         };
         let speed = motion.measure(self.measure).0[1];
-        let induced = constant * self.gear_ratio() * speed;
+        let induced = constant * self.gear_ratio * speed;
         let current = match inductance > 0.0 {
-            true => rows.get(row, &format!("{}.current", self.name))?,
+            true => motion.get(&format!("{}.current", self.name))?,
             false => (voltage - induced) / resistance,
         };
         Some(CircuitState {
@@ -217,33 +181,15 @@ impl Drive {
     }
 
     /// The rate of the current by the circuit, A/s, where the current is a state.
-    pub(super) fn current_rate(
-        &self,
-        reading: &Reading,
-        rows: &Rows,
-        row: usize,
-        motion: &Motion,
-    ) -> Option<f64> {
-        let of = self.circuit(reading, rows, row, motion)?;
+    pub(super) fn current_rate(&self, motion: &Motion<'_>) -> Option<f64> {
+        let of = self.circuit(motion)?;
         let rest = of.voltage - of.resistance * of.current - of.induced;
         (of.inductance > 0.0).then(|| rest / of.inductance)
     }
 
-    /// Of a motor: voltage, V; current, A; resistance, Ω.
-    pub(super) fn circuit_values(
-        &self,
-        reading: &Reading,
-        rows: &Rows,
-        row: usize,
-        motion: &Motion,
-    ) -> Option<[f64; 3]> {
-        let of = self.circuit(reading, rows, row, motion)?;
-        Some([of.voltage, of.current, of.resistance])
-    }
-
     /// The force as it is written: what remains of it beside what accelerates the rotor.
-    pub(super) fn written_force(&self, rows: &Rows, row: usize) -> Option<f64> {
-        let of = |end: &str| rows.get(row, &format!("{}.load_{end}", self.name));
+    pub(super) fn written_force(&self, motion: &Motion<'_>) -> Option<f64> {
+        let of = |end: &str| motion.get(&format!("{}.load_{end}", self.name));
         of("moment").or_else(|| of("force"))
     }
 
@@ -253,22 +199,5 @@ impl Drive {
             self.kind,
             DriveKind::Line { .. } | DriveKind::Circuit { .. }
         )
-    }
-
-    fn gear_ratio(&self) -> f64 {
-        match self.kind {
-            DriveKind::Line { shaft, .. } | DriveKind::Circuit { shaft, .. } => shaft.gear_ratio,
-            DriveKind::AppliedForce(_) | DriveKind::SpeedController { .. } => 1.0,
-        }
-    }
-
-    /// The rotor's inertia on the coordinate, kg m² or kg.
-    pub(super) fn rotor_inertia(&self) -> f64 {
-        match self.kind {
-            DriveKind::Line { shaft, .. } | DriveKind::Circuit { shaft, .. } => {
-                shaft.gear_ratio * shaft.gear_ratio * shaft.inertia
-            }
-            DriveKind::AppliedForce(_) | DriveKind::SpeedController { .. } => 0.0,
-        }
     }
 }

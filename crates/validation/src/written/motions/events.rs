@@ -4,7 +4,7 @@
 use crate::written::poses::difference::Differences;
 use crate::written::poses::law::number;
 use crate::written::poses::reading::Reading;
-use crate::written::poses::rows::Rows;
+use crate::written::poses::rows::{Rows, largest};
 use std::f64::consts::TAU;
 use toml::{Table, Value};
 
@@ -26,11 +26,8 @@ pub(super) fn missing_events(
     if scene.contains_key("stops") {
         return found;
     }
-    let none = Vec::new();
-    let times = rows.columns.get("t").unwrap_or(&none);
-    let located = events
-        .and_then(|events| events.columns.get("t"))
-        .unwrap_or(&none);
+    let times = rows.column("t");
+    let located = events.map_or(&[][..], |events| events.column("t"));
     for (name, event) in wanted {
         for [from, to] in sides(reading, rows, event)
             .into_iter()
@@ -41,10 +38,9 @@ pub(super) fn missing_events(
             let is_there = located
                 .iter()
                 .any(|t| (from - near..=to + near).contains(t));
-            found.add(0.0, 1.0, "", String::new);
-            if !is_there {
-                found.fail(format!("no event `{name}` between t = {from} s and {to} s"));
-            }
+            found.require(is_there, || {
+                format!("no event `{name}` between t = {from} s and {to} s")
+            });
         }
     }
     found
@@ -79,7 +75,7 @@ fn sides(reading: &Reading, rows: &Rows, event: &Value) -> Vec<Vec<f64>> {
 
 /// The pairs of rows between which a quantity changes its sign, both clearly off zero.
 fn changes(side: &[f64]) -> Vec<[usize; 2]> {
-    let clear = CLEAR * side.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+    let clear = CLEAR * largest(side);
     let is_change = |row: &usize| {
         let [a, b] = [side[*row - 1], side[*row]];
         a * b < 0.0 && a.abs() > clear && b.abs() > clear

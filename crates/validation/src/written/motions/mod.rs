@@ -17,6 +17,6 @@ mod summary;
 
 pub(crate) use between_rows::simpson;
 pub(crate) use drives::{Drive, DriveKind};
-pub(crate) use motion_files::findings;
+pub(super) use motion_files::compare;
 pub(crate) use row_forces::MotionReading;
 pub(crate) use summary::{sentences, summary_of_rows};

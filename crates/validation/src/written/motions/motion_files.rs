@@ -16,10 +16,8 @@ use crate::written::poses::positions::corners;
 use crate::written::poses::program::{Program, Run};
 use crate::written::poses::rates::rates;
 use crate::written::poses::reading::Reading;
-use crate::written::poses::rows::Rows;
+use crate::written::poses::rows::{Rows, largest};
 use crate::written::poses::scene_text::{requests_everything, text_of};
-use dwell_findings::Finding;
-use std::path::Path;
 
 /// The accuracy of one of the runs.
 const ACCURACY: &str = "1e-8";
@@ -27,29 +25,22 @@ const ACCURACY: &str = "1e-8";
 /// Intervals between the rows of another.
 const OTHER_ROWS: f64 = 131.7;
 
-/// Runs `simulate` on a scene and compares its files; nothing of a scene without a motion. A run that fails is a failed
-/// finding.
-pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
-    let mut compared = Compared::default();
-    if let Err(reason) = compare(&mut compared, path, name, scene) {
-        compared.fail("written-motion-closure", reason);
-    }
-    compared.findings()
-}
-
+/// Runs `simulate` on a scene and compares its files; nothing of a scene without a motion.
 // Long because it is the list of all runs of a motion and what is compared of them.
-fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Result<(), String> {
+pub(crate) fn compare(
+    compared: &mut Compared,
+    program: &Program,
+    scene: &str,
+) -> Result<(), String> {
     let everything = requests_everything(scene)?;
     if !everything.contains_key("motion") {
         return Ok(());
     }
-    let program = Program::new(path, &format!("{name}-motion")).map_err(|e| e.to_string())?;
     let text = text_of(&everything)?;
     let motion = MotionReading::new(&text)?;
     let run = |name: &str, options: &[&str]| {
         let arguments = [&["simulate"], options].concat();
-        let run = program.run(name, &text, &arguments);
-        run.map_err(|e| e.to_string())
+        program.run(name, &text, &arguments)
     };
     let first = run("simulate", &[])?;
     let again = run("again", &["--method", "dop853", "--rtol", "1e-12"])?;
@@ -64,22 +55,16 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
     let other_rows = other_rows(run, &rows)?;
     let events =
         [&first, &again, &wanted, &other_rows].map(|run| run.csv("-motion-events.csv").ok());
+    let again = compared.of("written-motion-again");
     for (other, its_events) in [(&rows_again, &events[1]), (&rows_wanted, &events[2])] {
-        let same = same_motion(&motion.reading, [&rows, other]);
-        compared.merge("written-motion-again", same);
-        let same = same_events(&rows, [&events[0], its_events]);
-        compared.merge("written-motion-again", same);
+        again.merge(same_motion(&motion.reading, [&rows, other]));
+        again.merge(same_events(&rows, [&events[0], its_events]));
     }
-    compared.merge(
-        "written-motion-again",
-        same_events(&rows, [&events[0], &events[3]]),
-    );
+    again.merge(same_events(&rows, [&events[0], &events[3]]));
     let summaries = [&first, &other_rows].map(|run| run.json("-simulate.json"));
     if let [Ok(one), Ok(other)] = &summaries {
-        let same = same_extrema(
-            [one, other],
-            "simulate and simulate by esdirk34 in other rows",
-        );
+        let what = "simulate and simulate by esdirk34 in other rows";
+        let same = same_extrema([one, other], what);
         compared.merge("written-motion-extrema-again", same);
     }
     // Both are free of the error of the default method.
@@ -88,8 +73,7 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
     compared.merge("written-motion-accuracy", stated_accuracy(&wanted)?);
     let missing = missing_events(&motion.reading, &everything, &rows, events[0].as_ref());
     compared.merge("written-motion-events", missing);
-    let contents = program.run("contents", &text, &["check"]);
-    let contents = contents.map_err(|e| e.to_string())?;
+    let contents = program.run("contents", &text, &["check"])?;
     let points = change_points(&contents.printed, &first.printed);
     compared.merge("written-motion-change-points", points);
     for (run, rows, events) in [
@@ -132,10 +116,8 @@ fn compare_rows(
     rows: &Rows,
     file: &str,
 ) -> Result<(), String> {
-    compared.merge(
-        "written-motion-closure",
-        closure(&motion.reading, rows, file).joints,
-    );
+    let of = closure(&motion.reading, rows, file);
+    compared.merge("written-motion-closure", of.joints);
     let pins = joint_force_differences(&motion.reading, rows, file);
     compared.merge("written-motion-joint-forces", pins);
     let of_motors = motors(motion, rows, file);
@@ -148,12 +130,7 @@ fn compare_rows(
     compared.merge("written-motion-energies", energy.columns);
     compared.merge("written-motion-equations", of.equations);
     compared.merge("written-motion-forces", of.forces);
-    if let Some(time) = rows.columns.get("t") {
-        compared.merge(
-            "written-motion-rates",
-            rates(rows, time, &corners(&motion.reading), file),
-        );
-    }
+    compared.merge("written-motion-rates", rates(&motion.reading, rows, file));
     Ok(())
 }
 
@@ -162,7 +139,7 @@ fn other_rows(
     run: impl Fn(&str, &[&str]) -> Result<Run, String>,
     rows: &Rows,
 ) -> Result<Run, String> {
-    let end = rows.time(rows.count.saturating_sub(1));
+    let end = rows.end();
     let interval = format!("{:e}", (end - rows.time(0)) / OTHER_ROWS);
     let method = ["--method", "esdirk34", "--rtol", "1e-9"];
     run(
@@ -177,18 +154,15 @@ fn stated_accuracy(wanted: &Run) -> Result<Differences, String> {
     let of = |name: &str| summary["results"][name]["value"].as_f64();
     let mut found = Differences::default();
     let Some(accuracy) = of("accuracy") else {
-        found.fail("the summary does not say which accuracy was asked for".to_owned());
+        found.fail("the summary does not say which accuracy was asked for");
         return Ok(found);
     };
     let is_reached = !wanted.messages.contains("is not reached");
     for name in ["coordinates", "kinetic_energy", "reactions"] {
-        let error = of(&format!("error.{name}")).filter(|error| is_reached && *error > accuracy);
-        found.add(0.0, 1.0, "", String::new);
-        if let Some(error) = error {
-            found.fail(format!(
-                "the stated error of {name}, {error:.1e}, is above the accuracy of {accuracy:.1e} that is said to be reached"
-            ));
-        }
+        let error = of(&format!("error.{name}")).unwrap_or(0.0);
+        found.require(!is_reached || error <= accuracy, || {
+            format!("the stated error of {name}, {error:.1e}, is above the accuracy of {accuracy:.1e} that is said to be reached")
+        });
     }
     Ok(found)
 }
@@ -198,12 +172,12 @@ fn same_events(rows: &Rows, events: [&Option<Rows>; 2]) -> Differences {
     let mut same = Differences::default();
     match events {
         [Some(events), Some(others)] => {
-            let end = rows.time(rows.count.saturating_sub(1));
+            let end = rows.end();
             same_column(&mut same, "t", [events, others], end, "events");
             same_column(&mut same, "event", [events, others], 1.0, "events");
         }
         [None, None] => {}
-        _ => same.fail("events in a file of one run alone".to_owned()),
+        _ => same.fail("events in a file of one run alone"),
     }
     same
 }
@@ -211,14 +185,10 @@ fn same_events(rows: &Rows, events: [&Option<Rows>; 2]) -> Differences {
 /// The coordinates of two motions of the same rows.
 fn same_motion(reading: &Reading, both: [&Rows; 2]) -> Differences {
     let mut to = Differences::default();
-    for coordinate in &reading.coordinates[..reading.actuator_count] {
+    for coordinate in reading.actuators() {
         for end in ["", ".velocity"] {
             let name = format!("{}{end}", coordinate.name);
-            let values = both[1].columns.get(&name);
-            let scale = values
-                .into_iter()
-                .flatten()
-                .fold(0.0, |max: f64, v| max.max(v.abs()));
+            let scale = largest(both[1].column(&name));
             same_column(&mut to, &name, both, scale, "rows");
         }
     }
@@ -239,7 +209,8 @@ fn same_column(to: &mut Differences, name: &str, [one, other]: [&Rows; 2], scale
         ));
         return;
     }
-    for (row, (one, other)) in one.iter().zip(other).enumerate() {
-        to.add(one - other, scale, "", || format!("{what}, {row}, {name}"));
-    }
+    let differences = one.iter().zip(other).map(|(one, other)| one - other);
+    to.add_rows(differences, scale, "", |row| {
+        format!("{what}, {row}, {name}")
+    });
 }

@@ -4,7 +4,7 @@
 use super::row_forces::MotionReading;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::motion::Motion;
-use crate::written::poses::rows::Rows;
+use crate::written::poses::rows::{Rows, largest};
 
 /// Differences of the columns of motors.
 #[derive(Debug, Default)]
@@ -30,32 +30,28 @@ pub(super) fn motors(motion: &MotionReading, rows: &Rows, file: &str) -> Motors 
                 .fail(format!("{file}: no electrical power of `{}`", drive.name));
             continue;
         };
-        let scale = taken
-            .iter()
-            .fold(0.0_f64, |max, power| max.max(power.abs()));
+        let scale = largest(taken);
         for (row, (taken, efficiency)) in taken.iter().zip(efficiency).enumerate() {
             let Some(state) = Motion::new(&motion.reading, rows, row) else {
                 continue;
             };
             let place = || format!("{file}, row {row}, `{}`", drive.name);
-            let Some([voltage, current, resistance]) =
-                drive.circuit_values(&motion.reading, rows, row, &state)
-            else {
+            let Some(circuit) = drive.circuit(&state) else {
                 continue;
             };
-            let lost = resistance * current * current;
-            let difference = taken - voltage * current;
+            let lost = circuit.resistance * circuit.current * circuit.current;
+            let difference = taken - circuit.voltage * circuit.current;
             found.electrical.add(difference, scale, "W", place);
-            if let Some(written) = rows.get(row, &format!("{}.current", drive.name)) {
-                let difference = (written - current) * voltage;
+            if let Some(written) = state.get(&format!("{}.current", drive.name)) {
+                let difference = (written - circuit.current) * circuit.voltage;
                 found.electrical.add(difference, scale, "W", place);
             }
             let [_, speed, acceleration] = state.measure(drive.measure).0;
-            let Some(net) = drive.written_force(rows, row) else {
+            let Some(net) = drive.written_force(&state) else {
                 continue;
             };
             // With what accelerates the rotor.
-            let delivered = (net + drive.rotor_inertia() * acceleration) * speed;
+            let delivered = (net + drive.rotor_inertia * acceleration) * speed;
             // None is delivered by a motor that brakes.
             let difference = match delivered > 0.0 {
                 true => efficiency * (delivered + lost) - delivered,

@@ -3,12 +3,13 @@
 use super::drives::{Drive, drives};
 use crate::written::poses::difference::Differences;
 use crate::written::poses::equilibrium::{
-    ForceColumns, add_residuals, body_residuals, reaction, written_joint_wrenches,
+    add_residuals, body_residuals, reaction, written_joint_wrenches,
 };
 use crate::written::poses::motion::Motion;
-use crate::written::poses::reading::Reading;
-use crate::written::poses::rows::Rows;
-use crate::written::poses::wrenches::along;
+use crate::written::poses::reading::{Coordinate, Reading};
+use crate::written::poses::rows::{self, Rows};
+use crate::written::poses::scene_text::table_of;
+use crate::written::poses::wrenches::{Wrench, along};
 
 /// The scene of a motion, read once more.
 #[derive(Debug)]
@@ -37,9 +38,7 @@ pub(crate) struct ComparedRows {
 impl MotionReading {
     /// Reads a scene; why it cannot, in words.
     pub(crate) fn new(text: &str) -> Result<Self, String> {
-        let scene = text
-            .parse()
-            .map_err(|e| format!("the scene is no TOML: {e}"))?;
+        let scene = table_of(text)?;
         let reading = Reading::new(text)?;
         let drives = drives(&scene, &reading)?;
         Ok(Self { reading, drives })
@@ -56,25 +55,24 @@ impl MotionReading {
         let mut compared = Vec::new();
         for row in 0..rows.count {
             let motion = Motion::new(&self.reading, rows, row)?;
-            let mut wrenches = self.loads(rows, row, &motion, &mut found)?;
+            let mut wrenches = self.loads(&motion, &mut found)?;
             let mut power: f64 = wrenches.iter().map(|w| w.power(&motion)).sum();
             for (k, drive) in self.drives.iter().enumerate() {
-                let force = drive.force(&self.reading, rows, row, &motion)?;
+                let force = drive.force(&motion)?;
                 let coordinate = motion.measure(drive.measure);
                 power += force * coordinate.0[1];
                 found.drive_power[k].push(force * coordinate.0[1]);
-                let net = force - drive.rotor_inertia() * coordinate.0[2];
+                let net = force - drive.rotor_inertia * coordinate.0[2];
                 wrenches.extend(along(&motion, drive.measure, net));
-                compared.push((row, &drive.name, drive.written_force(rows, row), net));
-                let rate = drive.current_rate(&self.reading, rows, row, &motion);
-                found.current_rates[k].extend(rate);
+                compared.push((row, &drive.name, drive.written_force(&motion), net));
+                found.current_rates[k].extend(drive.current_rate(&motion));
             }
             for friction in &self.reading.frictions {
                 let joint = &self.reading.joints[friction.joint];
-                let reaction = reaction(rows, row, joint, "").unwrap_or_default();
-                let of = friction.wrenches(&self.reading, &motion, &reaction)?;
+                let reaction = reaction(&motion, joint, "").unwrap_or_default();
+                let of = friction.wrenches(&motion, &reaction)?;
                 let lost: f64 = of.iter().map(|w| w.power(&motion)).sum();
-                let column = |kind: &str| rows.get(row, &format!("{}.{kind}.power", joint.name));
+                let column = |kind: &str| motion.get(&format!("{}.{kind}.power", joint.name));
                 let written = [column("friction"), column("viscous")];
                 let sum = written.iter().flatten().sum::<f64>();
                 let is_there = written.iter().any(Option::is_some);
@@ -82,22 +80,18 @@ impl MotionReading {
                 power += lost;
                 wrenches.extend(of);
             }
-            let actuators = self.actuator_forces(rows, row);
+            // A free one has none.
+            let force = |c: &Coordinate| motion.get(&format!("{}.actuator_force", c.name));
+            let actuators = self.reading.actuators().iter();
+            let actuators: Vec<f64> = actuators.map(|c| force(c).unwrap_or(0.0)).collect();
             for (coordinate, force) in self.reading.coordinates.iter().zip(&actuators) {
                 power += force * motion.measure(coordinate.measure).0[1];
             }
             found.energies.push([self.kinetic(&motion), power]);
-            let columns = ForceColumns {
-                reaction_end: "",
-                actuators,
-            };
             // Statically indeterminate reactions are in no file.
-            if let Some(joints) =
-                written_joint_wrenches(&self.reading, rows, row, &motion, &columns)
-            {
+            if let Some(joints) = written_joint_wrenches(&motion, "", &actuators) {
                 wrenches.extend(joints);
-                let of = body_residuals(&self.reading, &motion, &wrenches, Some(2));
-                residuals.push((row, of));
+                residuals.push((row, body_residuals(&motion, &wrenches, Some(2))));
             }
         }
         add_residuals(&mut found.equations, &self.reading, &residuals, file);
@@ -106,20 +100,16 @@ impl MotionReading {
     }
 
     /// The forces of all loads.
-    fn loads(
-        &self,
-        rows: &Rows,
-        row: usize,
-        motion: &Motion,
-        found: &mut ComparedRows,
-    ) -> Option<Vec<crate::written::poses::wrenches::Wrench>> {
+    fn loads(&self, motion: &Motion<'_>, found: &mut ComparedRows) -> Option<Vec<Wrench>> {
         let mut all = Vec::new();
         let mut conservative = 0.0;
         for load in &self.reading.loads {
-            let magnitude = load.magnitude(&self.reading, motion, rows.time(row))?;
-            let unit = load.unit_wrenches(&self.reading, motion);
-            let of: Vec<_> = unit.iter().map(|wrench| wrench.times(magnitude)).collect();
-            if !rows.columns.contains_key(&format!("{}.work", load.name)) {
+            let of = load.wrenches(motion)?;
+            if !motion
+                .rows
+                .columns
+                .contains_key(&format!("{}.work", load.name))
+            {
                 conservative += of.iter().map(|w| w.power(motion)).sum::<f64>();
             }
             all.extend(of);
@@ -128,27 +118,17 @@ impl MotionReading {
         Some(all)
     }
 
-    /// Forces of prescribed actuators; a free one has none.
-    fn actuator_forces(&self, rows: &Rows, row: usize) -> Vec<f64> {
-        let actuators = &self.reading.coordinates[..self.reading.actuator_count];
-        let of = |name: &str| rows.get(row, &format!("{name}.actuator_force"));
-        actuators
-            .iter()
-            .map(|c| of(&c.name).unwrap_or(0.0))
-            .collect()
-    }
-
     /// The kinetic energy of bodies and rotors, J.
-    fn kinetic(&self, motion: &Motion) -> f64 {
+    fn kinetic(&self, motion: &Motion<'_>) -> f64 {
         let bodies = self.reading.bodies.iter().enumerate().map(|(b, body)| {
-            let [vx, vy] = motion.center(&self.reading, b).order(1);
+            let [vx, vy] = motion.center(b).order(1);
             let [angle, omega, _] = motion.bodies[b].angle.0;
             let inertia = body.inertia_at(angle)[0];
             0.5 * (body.mass * (vx * vx + vy * vy) + inertia * omega * omega)
         });
         let rotors = self.drives.iter().map(|drive| {
             let speed = motion.measure(drive.measure).0[1];
-            0.5 * drive.rotor_inertia() * speed * speed
+            0.5 * drive.rotor_inertia * speed * speed
         });
         bodies.sum::<f64>() + rotors.sum::<f64>()
     }
@@ -158,7 +138,7 @@ impl MotionReading {
 fn add_compared(to: &mut Differences, compared: &[(usize, &String, Option<f64>, f64)], file: &str) {
     let largest = |name: &str| {
         let same = compared.iter().filter(|(_, of, ..)| *of == name);
-        same.fold(0.0_f64, |max, (.., value)| max.max(value.abs()))
+        rows::largest(same.map(|(.., value)| value))
     };
     let mut scales: Vec<(&str, f64)> = Vec::new();
     for (row, name, written, expected) in compared {

@@ -1,8 +1,10 @@
 //! The summary and the printed sentences of `simulate` against its rows and events.
 
 use crate::written::poses::difference::Differences;
+use crate::written::poses::formats::last_digit;
 use crate::written::poses::program::Run;
-use crate::written::poses::rows::Rows;
+use crate::written::poses::rows::{Rows, largest};
+use crate::written::poses::stated::result;
 use serde_json::Value;
 use std::f64::consts::PI;
 
@@ -12,22 +14,17 @@ const FACTORS: [f64; 4] = [1.0, 180.0 / PI, 1e3, 30.0 / PI];
 /// Energies and events of the summary with the rows.
 pub(crate) fn summary_of_rows(summary: &Value, rows: &Rows, events: Option<&Rows>) -> Differences {
     let mut found = Differences::default();
-    let result = |name: &str| summary["results"][name]["value"].as_f64();
-    let column = |name: &str| rows.columns.get(name).cloned().unwrap_or_default();
-    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+    let result = |name: &str| result(summary, name);
     let [kinetic, potential, balance] =
-        ["energy.kinetic", "energy.potential", "energy.balance_error"].map(column);
-    let works: Vec<&Vec<f64>> = rows
-        .columns
-        .iter()
-        .filter_map(|(name, work)| name.ends_with(".work").then_some(work))
-        .collect();
+        ["energy.kinetic", "energy.potential", "energy.balance_error"]
+            .map(|name| rows.column(name));
+    let works: Vec<&Vec<f64>> = rows.ending(".work").map(|(_, work)| work).collect();
     let energy = |row: usize| {
         let work: f64 = works.iter().map(|work| work[row]).sum();
         kinetic[row] + potential.get(row).unwrap_or(&0.0) - work
     };
-    let sizes = works.iter().map(|work| largest(work));
-    let scale = sizes.fold(largest(&kinetic).max(largest(&potential)), f64::max);
+    let sizes = works.iter().map(|work| largest(*work));
+    let scale = sizes.fold(largest(kinetic).max(largest(potential)), f64::max);
     for (row, error) in balance.iter().enumerate() {
         let expected = energy(row) - energy(0);
         found.add(error - expected, scale, "J", || {
@@ -38,17 +35,17 @@ pub(crate) fn summary_of_rows(summary: &Value, rows: &Rows, events: Option<&Rows
         // Between the rows it may be larger, by no more than the largest change from row to row.
         let changes = kinetic.windows(2).map(|pair| (pair[1] - pair[0]).abs());
         let change = changes.fold(0.0, f64::max);
-        let difference = kinetic_energy - largest(&kinetic);
+        let difference = kinetic_energy - largest(kinetic);
         let excess = (-difference).max(difference - change).max(0.0);
-        found.add(excess, scale, "J", || "largest_kinetic_energy".to_owned());
+        found.add(excess, scale, "J", || "largest_kinetic_energy");
         if let (Some(stated), false) = (result("energy_balance_error"), balance.is_empty()) {
-            let difference = (stated * kinetic_energy - largest(&balance)).min(0.0);
-            found.add(difference, scale, "J", || "energy_balance_error".to_owned());
+            let difference = (stated * kinetic_energy - largest(balance)).min(0.0);
+            found.add(difference, scale, "J", || "energy_balance_error");
         }
     }
     if let (Some(time), Some(end)) = (rows.columns.get("t"), result("end")) {
         let last = time.last().copied().unwrap_or(f64::NAN);
-        found.add(end - last, last, "s", || "the end".to_owned());
+        found.add(end - last, last, "s", || "the end");
     }
     add_events(&mut found, summary, events);
     found
@@ -57,7 +54,7 @@ pub(crate) fn summary_of_rows(summary: &Value, rows: &Rows, events: Option<&Rows
 /// The number of events of each kind, and the first of them.
 fn add_events(found: &mut Differences, summary: &Value, events: Option<&Rows>) {
     let Some(results) = summary["results"].as_object() else {
-        found.fail("the summary has no results".to_owned());
+        found.fail("the summary has no results");
         return;
     };
     let stated = results.iter().filter_map(|(name, of)| {
@@ -68,7 +65,7 @@ fn add_events(found: &mut Differences, summary: &Value, events: Option<&Rows>) {
     let rows = events.map_or(0, |events| events.count);
     let sum: f64 = stated.iter().map(|(_, count)| count).sum();
     if !stated.is_empty() || rows > 0 {
-        found.add(sum - rows as f64, 1.0, "", || "number of events".to_owned());
+        found.add(sum - rows as f64, 1.0, "", || "number of events");
     }
     let times = events.and_then(|events| events.columns.get("t"));
     for (event, count) in stated {
@@ -136,16 +133,6 @@ fn numbers(line: &str) -> impl Iterator<Item = &str> {
             .starts_with(|c: char| c.is_ascii_digit());
         starts && word.contains('.') && word.parse::<f64>().is_ok()
     })
-}
-
-/// The value of one in the last printed digit.
-fn last_digit(number: &str) -> f64 {
-    let (digits, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
-    let decimals = digits
-        .split_once('.')
-        .map_or(0, |(_, decimals)| decimals.len());
-    let exponent: i32 = exponent.parse().unwrap_or(0);
-    10_f64.powi(exponent - i32::try_from(decimals).unwrap_or(0))
 }
 
 #[cfg(test)]

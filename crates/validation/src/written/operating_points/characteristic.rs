@@ -21,6 +21,12 @@ pub(super) fn size([a, b]: Complex) -> f64 {
     a.hypot(b)
 }
 
+/// The largest absolute value of some numbers, not below the smallest that is not zero.
+pub(super) fn largest_size(values: &[Complex]) -> f64 {
+    let sizes = values.iter().map(|value| size(*value));
+    sizes.fold(f64::MIN_POSITIVE, f64::max)
+}
+
 /// det(A − λ 1), by elimination with the largest pivot of each column.
 fn determinant(matrix: &[Vec<f64>], lambda: Complex) -> Complex {
     let n = matrix.len();

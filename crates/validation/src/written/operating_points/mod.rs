@@ -20,4 +20,4 @@ mod runs;
 mod slopes;
 mod starts;
 
-pub(crate) use point_files::findings;
+pub(super) use point_files::compare;

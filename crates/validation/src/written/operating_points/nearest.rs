@@ -1,10 +1,10 @@
 //! `linearise` takes the equilibrium that is nearest to the start. From a start near each equilibrium of the table it must be that one.
 
-use super::modes::number;
 use super::rest::Rest;
 use super::runs::linearise_nearest;
 use super::starts::Start;
 use crate::written::poses::compared::Compared;
+use crate::written::poses::stated::result;
 
 /// A start is so far from its equilibrium, in parts of the distance to the next one.
 const ASIDE: f64 = 0.1;
@@ -16,9 +16,8 @@ pub(super) fn compare(rest: &Rest<'_>, compared: &mut Compared) -> Result<(), St
         .collect();
     let places = places.ok_or("an equilibrium without a place")?;
     // Friction holds in whole intervals, and the ends of these are no equilibria of their own; of neutral ones each position is one.
-    let is_neutral = rest.summary["results"]
-        .as_object()
-        .is_some_and(|all| all.keys().any(|key| key.contains(".neutral")));
+    let results = rest.summary["results"].as_object();
+    let is_neutral = results.is_some_and(|all| all.keys().any(|key| key.contains(".neutral")));
     if rest.start.scene.contains_key("friction") || is_neutral {
         return Ok(());
     }
@@ -55,14 +54,19 @@ fn compare_near(
                 free.name
             )
         };
-        let at = number(&summary, &format!("equilibrium.{}", free.name));
+        let at = result(&summary, &format!("equilibrium.{}", free.name));
         let at = at.ok_or("`linearise` without the place of its equilibrium")?;
-        let again = compared.of("written-rest-again");
-        again.add(at - place[k], free.size.max(place[k].abs()), "", what);
-        let away = number(&summary, &format!("equilibrium.{}.from_start", free.name));
+        compared.add(
+            "written-rest-again",
+            at - place[k],
+            free.size.max(place[k].abs()),
+            "",
+            what,
+        );
+        let away = result(&summary, &format!("equilibrium.{}.from_start", free.name));
         let away = away.ok_or("`linearise` without the distance from the start")?;
-        let nearest = compared.of("written-rest-nearest");
-        nearest.add(
+        compared.add(
+            "written-rest-nearest",
             away - (place[k] - from[k]),
             free.size.max(place[k].abs()),
             "",

@@ -1,9 +1,9 @@
 //! The findings over operating points of a case.
 
-use super::characteristic::{Complex, error_of_root, size};
+use super::characteristic::{Complex, error_of_root, largest_size, size};
 use super::equilibrium_files;
 use super::linear_file::LinearFile;
-use super::modes::{add_modes, eigenvalues, number};
+use super::modes::{add_modes, eigenvalues};
 use super::rest::Rest;
 use super::slopes::Slopes;
 use super::starts::Start;
@@ -12,51 +12,43 @@ use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::program::{Program, Run};
 use crate::written::poses::rows::Rows;
-use crate::written::poses::scene_text::{requests_everything, text_of};
-use dwell_findings::Finding;
+use crate::written::poses::scene_text::{requests_everything, table_of, text_of};
+use crate::written::poses::stated::result;
 use serde_json::Value;
 use std::f64::consts::TAU;
-use std::path::Path;
 
 /// Runs `linearise` about the initial state and `equilibria` on a scene with a motion, and compares what they write. A run
 /// that is refused leaves nothing to compare.
-pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
-    let mut compared = Compared::default();
-    let has_motion = scene
-        .parse::<toml::Table>()
-        .is_ok_and(|s| s.contains_key("motion"));
-    let program = Program::new(path, &format!("{name}-points"));
-    if let (true, Ok(program)) = (has_motion, program) {
-        let linear_run = program.run("linear", scene, &["linearise", "--about", "initial"]);
-        let rest = program.run("rest", scene, &["equilibria"]);
-        let linear = linear_run.as_ref();
-        let linear = linear.map_or(Ok(()), |run| linearised(&mut compared, run));
-        let points = rest
-            .as_ref()
-            .map_or(Ok(()), |run| equilibria(&mut compared, run));
-        for reason in [linear, points].into_iter().filter_map(Result::err) {
+pub(crate) fn compare(
+    compared: &mut Compared,
+    program: &Program,
+    scene: &str,
+) -> Result<(), String> {
+    if !table_of(scene)?.contains_key("motion") {
+        return Ok(());
+    }
+    let linear = program.run("linear", scene, &["linearise", "--about", "initial"]);
+    let rest = program.run("rest", scene, &["equilibria"]);
+    let of_linear = linear.as_ref().map(|run| linearised(compared, run));
+    let of_rest = rest.as_ref().map(|run| equilibria(compared, run));
+    for compared_files in [of_linear, of_rest] {
+        if let Ok(Err(reason)) = compared_files {
             compared.fail("written-modes", reason);
         }
-        let about = program.run("about", scene, &["linearise"]);
-        for (run, words) in [
-            (&linear_run, "the initial state"),
-            (&about, "its equilibrium"),
-        ] {
-            if let Ok(run) = run {
-                let found = compared.of("written-rest-words");
-                found.add(0.0, 1.0, "", String::new);
-                let first = run.printed.lines().next().unwrap_or("");
-                if !first.ends_with(&format!(": linearised about {words}")) {
-                    found.fail(format!("`linearise` about {words} prints `{first}`"));
-                }
-            }
-        }
-        let rest = rest.as_ref().ok().zip(Some(about.as_ref().ok()));
-        if let Err(reason) = other_starts(&mut compared, &program, scene, rest) {
-            compared.fail("written-linear", reason);
+    }
+    let about = program.run("about", scene, &["linearise"]);
+    for (run, words) in [(&linear, "the initial state"), (&about, "its equilibrium")] {
+        if let Ok(run) = run {
+            let first = run.printed.lines().next().unwrap_or("");
+            let is_said = first.ends_with(&format!(": linearised about {words}"));
+            let found = compared.of("written-rest-words");
+            found.require(is_said, || {
+                format!("`linearise` about {words} prints `{first}`")
+            });
         }
     }
-    compared.findings()
+    let rest = rest.as_ref().ok().zip(Some(about.as_ref().ok()));
+    other_starts(compared, program, scene, rest)
 }
 
 /// A, B, C and D with differences, what is written of equilibria, and the motion from them; nothing of a motion that cannot be linearised.
@@ -91,7 +83,7 @@ fn other_starts(
         return Ok(());
     };
     equilibrium_files::compare(compared, program, &start, (rest, about))?;
-    if number(&rest.json("-equilibria.json")?, "equilibria") == Some(0.0) {
+    if result(&rest.json("-equilibria.json")?, "equilibria") == Some(0.0) {
         return Ok(());
     }
     let found = Rest {
@@ -113,10 +105,7 @@ fn linearised(compared: &mut Compared, run: &Run) -> Result<(), String> {
         let (count, states) = (found.len(), matrix.len());
         return Err(format!("{count} eigenvalues of {states} states"));
     }
-    let largest = found
-        .iter()
-        .map(|l| size(*l))
-        .fold(f64::MIN_POSITIVE, f64::max);
+    let largest = largest_size(&found);
     let mut roots = Differences::default();
     for lambda in &found {
         let error = error_of_root(&matrix, *lambda, largest);
@@ -126,7 +115,7 @@ fn linearised(compared: &mut Compared, run: &Run) -> Result<(), String> {
     }
     let trace: f64 = (0..matrix.len()).map(|k| matrix[k][k]).sum();
     let sum: f64 = found.iter().map(|l| l[0]).sum();
-    roots.add(trace - sum, largest, "1/s", || "the trace of A".to_owned());
+    roots.add(trace - sum, largest, "1/s", || "the trace of A");
     compared.merge("written-eigenvalues", roots);
     add_modes(compared.of("written-modes"), &summary, "initial");
     compared.merge("written-point-sentences", sentences(run, &summary));
@@ -135,17 +124,19 @@ fn linearised(compared: &mut Compared, run: &Run) -> Result<(), String> {
 
 fn equilibria(compared: &mut Compared, run: &Run) -> Result<(), String> {
     let summary = run.json("-equilibria.json")?;
-    let count = number(&summary, "equilibria").unwrap_or(0.0);
+    let count = result(&summary, "equilibria").unwrap_or(0.0);
     compared.merge("written-point-sentences", sentences(run, &summary));
     if count == 0.0 {
         return Ok(());
     }
     let rows = run.csv("-equilibria.csv")?;
-    compared
-        .of("written-point-files")
-        .add(rows.count as f64 - count, 1.0, "", || {
-            "number of equilibria".to_owned()
-        });
+    compared.add(
+        "written-point-files",
+        rows.count as f64 - count,
+        1.0,
+        "",
+        || "number of equilibria",
+    );
     for row in 0..rows.count {
         let name = format!("equilibrium.{}", row + 1);
         add_modes(compared.of("written-modes"), &summary, &name);
@@ -158,8 +149,8 @@ fn equilibria(compared: &mut Compared, run: &Run) -> Result<(), String> {
 fn add_row(compared: &mut Compared, summary: &Value, rows: &Rows, row: usize) {
     let place = |what: &str| format!("equilibrium {}, {what}", row + 1);
     let name = format!("equilibrium.{}", row + 1);
-    let known: Vec<f64> = eigenvalues(summary, &name).into_iter().map(size).collect();
-    let largest = known.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
+    let values = eigenvalues(summary, &name);
+    let largest = largest_size(&values);
     let mut modes = 0;
     for mode in 1.. {
         let of = |what: &str| rows.get(row, &format!("mode{mode}.{what}"));
@@ -172,39 +163,36 @@ fn add_row(compared: &mut Compared, summary: &Value, rows: &Rows, row: usize) {
         }
         modes += 1;
         let hertz = of("frequency").unwrap_or(f64::NAN);
-        compared
-            .of("written-modes")
-            .add(TAU * hertz - angular, largest, "1/s", || {
-                place(&format!("mode {mode}"))
-            });
+        compared.add(
+            "written-modes",
+            TAU * hertz - angular,
+            largest,
+            "1/s",
+            || place(&format!("mode {mode}")),
+        );
         for value in [angular, TAU * hertz] {
-            let nearest = known
-                .iter()
-                .map(|k| (k - value).abs())
-                .fold(f64::INFINITY, f64::min);
-            compared
-                .of("written-point-files")
-                .add(nearest, largest, "1/s", || {
-                    place(&format!("mode {mode} in table and summary"))
-                });
+            let away = values.iter().map(|known| (size(*known) - value).abs());
+            let nearest = away.fold(f64::INFINITY, f64::min);
+            compared.add("written-point-files", nearest, largest, "1/s", || {
+                place(&format!("mode {mode} in table and summary"))
+            });
         }
     }
-    let error = number(summary, &format!("{name}.error.eigenvalues")).unwrap_or(0.0);
-    let values = eigenvalues(summary, &name);
+    let error = result(summary, &format!("{name}.error.eigenvalues")).unwrap_or(0.0);
     // One of each pair whose imaginary parts are clear of their errors.
     let pairs = values.iter().filter(|[_, im]| *im > 2.0 * error).count();
-    if values
-        .iter()
-        .all(|[_, im]| *im == 0.0 || im.abs() > 2.0 * error)
-    {
+    let is_clear = |[_, im]: &Complex| *im == 0.0 || im.abs() > 2.0 * error;
+    if values.iter().all(is_clear) {
         let modes = f64::from(modes) - pairs as f64;
-        let of = compared.of("written-modes");
-        of.add(modes, 1.0, "", || place("the number of modes"));
+        compared.add("written-modes", modes, 1.0, "", || {
+            place("the number of modes")
+        });
     }
     for (column, values) in &rows.columns {
-        if let Some(stated) = number(summary, &format!("{name}.{column}")) {
+        if let Some(stated) = result(summary, &format!("{name}.{column}")) {
             let value = values[row];
-            compared.of("written-point-files").add(
+            compared.add(
+                "written-point-files",
                 value - stated,
                 stated.abs().max(1.0),
                 "",

@@ -2,7 +2,7 @@
 //! must find the same modes there. One that oscillates does so again with a damper that has a known share of its critical
 //! damping.
 
-use super::characteristic::size;
+use super::characteristic::{largest_size, size};
 use super::linear_file::LinearFile;
 use super::modes::eigenvalues;
 use super::nearest;
@@ -12,6 +12,7 @@ use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::program::Program;
 use crate::written::poses::rows::Rows;
+use crate::written::poses::scene_text::value_of;
 use serde_json::Value as Json;
 use std::f64::consts::TAU;
 use toml::Value;
@@ -101,8 +102,13 @@ impl Rest<'_> {
             let column = format!("{}.deflection", free.name);
             if let (Some(at), Some(written)) = (of(&free.name), of(&column)) {
                 let place = || format!("equilibrium {}, {column}", row + 1);
-                let found = compared.of("written-rest-start");
-                found.add(written - (at - from), free.size.max(from.abs()), "", place);
+                compared.add(
+                    "written-rest-start",
+                    written - (at - from),
+                    free.size.max(from.abs()),
+                    "",
+                    place,
+                );
             }
         }
         let (start, changed, by) = self.place(row).ok_or("an equilibrium without a place")?;
@@ -123,22 +129,15 @@ impl Rest<'_> {
                 .get(0, &format!("{}.acceleration", free.name));
             let acceleration = acceleration.ok_or("a row without accelerations")?;
             let place = || format!("equilibrium {}, {}", row + 1, free.name);
-            compared
-                .of("written-rest")
-                .add(acceleration, scale, "per s²", place);
+            compared.add("written-rest", acceleration, scale, "per s²", place);
         }
         let found = eigenvalues(&run.json("-linearise.json")?, "initial");
         let written = eigenvalues(self.summary, &format!("equilibrium.{}", row + 1));
-        let largest = found
-            .iter()
-            .map(|l| size(*l))
-            .fold(f64::MIN_POSITIVE, f64::max);
+        let largest = largest_size(&found);
         for (one, other) in found.iter().zip(&written) {
             let difference = size([one[0] - other[0], one[1] - other[1]]);
             let place = || format!("equilibrium {}, eigenvalues", row + 1);
-            compared
-                .of("written-rest-modes")
-                .add(difference, largest, "1/s", place);
+            compared.add("written-rest-modes", difference, largest, "1/s", place);
         }
         Ok(())
     }
@@ -178,8 +177,8 @@ impl Rest<'_> {
             ("mode1.damping_ratio", -re / size([re, im]), 1.0),
             ("max_real_eigenvalue", re, frequency),
         ];
-        let table = self.program.run("damped", &text, &["equilibria"]);
-        let table = table.map_err(|e| e.to_string())?.csv("-equilibria.csv")?;
+        let table = self.program.run("damped", &text, &["equilibria"])?;
+        let table = table.csv("-equilibria.csv")?;
         // The search goes around another start: the row may be another.
         let place = self.rows.get(row, &free.name).unwrap_or(f64::NAN);
         let aside = |k: &usize| (table.get(*k, &free.name).unwrap_or(f64::NAN) - place).abs();
@@ -195,11 +194,8 @@ impl Rest<'_> {
 fn with_damper(start: &Start<'_>, free: &FreeCoordinate, damping: f64) -> Result<String, String> {
     let mut scene = start.scene.clone();
     let force = format!("-({damping:e})*{}.velocity", free.name);
-    let added = [
-        ("applied-force".to_owned(), Value::String(free.name.clone())),
-        ("magnitude".to_owned(), Value::String(force)),
-    ];
-    let added = Value::Table(added.into_iter().collect());
+    let coordinate = free.name.as_str().into();
+    let added = value_of([("applied-force", coordinate), ("magnitude", force.into())]);
     let drives = scene.entry("drives");
     if let Value::Table(drives) = drives.or_insert(Value::Table(toml::Table::new())) {
         drives.insert("added-damper".to_owned(), added);

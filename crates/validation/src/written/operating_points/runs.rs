@@ -16,15 +16,10 @@ pub(super) struct Simulated {
 /// Runs `simulate` on the text of a scene.
 pub(super) fn simulate(program: &Program, name: &str, text: &str) -> Result<Simulated, String> {
     let interval = DURATION.to_string();
-    let options = [
-        "simulate",
-        "--method",
-        "dop853",
-        "--sample-interval",
-        &interval,
-    ];
-    let run = program.run(&format!("simulate-{name}"), text, &options);
-    let rows = run.map_err(|e| e.to_string())?.csv("-motion.csv")?;
+    let method = ["simulate", "--method", "dop853"];
+    let options = [&method[..], &["--sample-interval", &interval]].concat();
+    let run = program.run(&format!("simulate-{name}"), text, &options)?;
+    let rows = run.csv("-motion.csv")?;
     let motion = MotionReading::new(text)?;
     let compared = motion.compare(&rows, name);
     let compared = compared.ok_or("a column of `simulate` is missing")?;
@@ -38,12 +33,10 @@ pub(super) fn simulate(program: &Program, name: &str, text: &str) -> Result<Simu
 /// Runs `linearise` about the initial state.
 pub(super) fn linearise(program: &Program, name: &str, text: &str) -> Result<Run, String> {
     let options = ["linearise", "--about", "initial"];
-    let run = program.run(&format!("linearise-{name}"), text, &options);
-    run.map_err(|e| e.to_string())
+    program.run(&format!("linearise-{name}"), text, &options)
 }
 
 /// Runs `linearise` about the equilibrium that is nearest to the start.
 pub(super) fn linearise_nearest(program: &Program, name: &str, text: &str) -> Result<Run, String> {
-    let run = program.run(&format!("linearise-{name}"), text, &["linearise"]);
-    run.map_err(|e| e.to_string())
+    program.run(&format!("linearise-{name}"), text, &["linearise"])
 }

@@ -53,9 +53,7 @@ impl Slopes<'_> {
             };
             let place = || format!("{row} at the state itself");
             let scale = scales.get(unit).copied().unwrap_or(0.0);
-            compared
-                .of("written-linear")
-                .add(own - of_row, scale, "", place);
+            compared.add("written-linear", own - of_row, scale, "", place);
         }
         compared.merge("written-linear-equations", base.equations);
         for (changed, column) in self.start.changes() {
@@ -105,7 +103,7 @@ impl Slopes<'_> {
                 };
                 let scale = scales.get(unit).copied().unwrap_or(0.0) / self.size(changed);
                 let place = || format!("{row} by {column}");
-                compared.of(key).add(entry - slope, scale, "", place);
+                compared.add(key, entry - slope, scale, "", place);
             }
         }
         Ok(())
@@ -163,9 +161,9 @@ impl Slopes<'_> {
         let reading = &motion.reading;
         let position = Motion::new(reading, rows, 0)?;
         for drive in &motion.drives {
-            let force = drive.force(reading, rows, 0, &position)?;
+            let force = drive.force(&position)?;
             values.insert(format!("{}.actuator_force", drive.name), force);
-            if let Some(rate) = drive.state_rate(reading, rows, 0, &position) {
+            if let Some(rate) = drive.state_rate(&position) {
                 for state in ["current", "integral"] {
                     values.insert(format!("d({}.{state})/dt", drive.name), rate);
                 }

@@ -1,7 +1,7 @@
 //! A motion that is started in neighbouring states and with changed inputs of its drives, in the plain text of its scene.
 
 use crate::written::motions::{Drive, DriveKind, MotionReading};
-use crate::written::poses::scene_text::text_of;
+use crate::written::poses::scene_text::{text_of, value_of};
 use toml::{Table, Value};
 
 /// How far a coordinate is changed, rad or parts of the size of the mechanism; and its velocity, per s.
@@ -27,8 +27,8 @@ pub(super) enum Changed {
 #[derive(Debug, Clone)]
 pub(super) struct FreeCoordinate {
     pub(super) name: String,
-    /// The unit of the scene's text.
-    unit: f64,
+    /// The unit of the scene's text, in SI units.
+    pub(super) unit: f64,
     /// Of its changes.
     pub(super) size: f64,
     value: f64,
@@ -43,13 +43,6 @@ pub(super) struct Start<'a> {
     pub(super) free: Vec<FreeCoordinate>,
 }
 
-impl FreeCoordinate {
-    /// The unit of the scene's text in SI units.
-    pub(super) fn unit(&self) -> f64 {
-        self.unit
-    }
-}
-
 impl<'a> Start<'a> {
     /// The coordinates at the start, in SI units.
     pub(super) fn values(&self) -> impl Iterator<Item = f64> + '_ {
@@ -57,8 +50,8 @@ impl<'a> Start<'a> {
     }
 
     pub(super) fn is_angle(&self, name: &str) -> bool {
-        let measure = self.motion.reading.coordinate(name).map(|c| &c.measure);
-        measure.is_some_and(|m| matches!(m, crate::written::poses::reading::Measure::Angle(_)))
+        let coordinate = self.motion.reading.coordinate(name);
+        coordinate.is_some_and(|c| c.measure.is_angle())
     }
 
     /// How many drives there are, if the force of each at rest is the same at every coordinate.
@@ -82,11 +75,14 @@ impl<'a> Start<'a> {
         let coordinate = |(k, name): (usize, &String)| {
             let measure = motion.reading.coordinate(name)?.measure;
             let unit = motion.reading.unit_of(measure);
-            let is_angle = matches!(measure, crate::written::poses::reading::Measure::Angle(_));
             Some(FreeCoordinate {
                 name: name.clone(),
                 unit,
-                size: if is_angle { 1.0 } else { motion.reading.size() },
+                size: if measure.is_angle() {
+                    1.0
+                } else {
+                    motion.reading.size()
+                },
                 value: *state.get(k)?,
                 velocity: *state.get(names.len() + k)?,
             })
@@ -175,14 +171,12 @@ impl<'a> Start<'a> {
     }
 
     fn started(&self, mut scene: Table, add: &dyn Fn(Changed) -> f64) -> Result<String, String> {
-        let table_of = |value: &dyn Fn(usize, &FreeCoordinate) -> f64| {
-            let entry = |(k, c): (usize, &FreeCoordinate)| {
-                (c.name.clone(), Value::Float(value(k, c) / c.unit))
-            };
-            Value::Table(self.free.iter().enumerate().map(entry).collect())
+        let by_name = |value: &dyn Fn(usize, &FreeCoordinate) -> f64| {
+            let free = self.free.iter().enumerate();
+            value_of(free.map(|(k, c)| (c.name.as_str(), (value(k, c) / c.unit).into())))
         };
-        let coordinates = table_of(&|k, c| c.value + add(Changed::Coordinate(k)));
-        let velocities = table_of(&|k, c| c.velocity + add(Changed::Velocity(k)));
+        let coordinates = by_name(&|k, c| c.value + add(Changed::Coordinate(k)));
+        let velocities = by_name(&|k, c| c.velocity + add(Changed::Velocity(k)));
         if let Some(Value::Table(motion)) = scene.get_mut("motion") {
             motion.insert("initial-coordinate".to_owned(), coordinates);
             motion.insert("initial-velocity".to_owned(), velocities);
@@ -218,12 +212,8 @@ impl<'a> Start<'a> {
         let of = drives.get(&drive.name)?.as_table()?;
         let kinds = ["motor", "speed-controller"];
         let coordinate = kinds.into_iter().find_map(|kind| of.get(kind))?.clone();
-        let force = Value::Float(drive.state_slopes()[0] * by);
-        let added = [
-            ("applied-force".to_owned(), coordinate),
-            ("magnitude".to_owned(), force),
-        ];
-        let added = Value::Table(added.into_iter().collect());
+        let force = drive.state_slopes()[0] * by;
+        let added = value_of([("applied-force", coordinate), ("magnitude", force.into())]);
         drives.insert("added-force".to_owned(), added);
         Some(())
     }

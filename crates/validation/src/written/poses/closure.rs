@@ -4,8 +4,8 @@
 use super::difference::Differences;
 use super::jet::Jet;
 use super::motion::{Motion, point_in};
-use super::reading::{Joint, JointKind, Reading};
-use super::rows::Rows;
+use super::reading::{Joint, JointKind, Place, Reading};
+use super::rows::{Rows, largest};
 use std::f64::consts::TAU;
 
 /// What should be zero, with its derivatives, and what it is relative to: 1 of an angle, the size of a length.
@@ -32,21 +32,18 @@ pub(crate) struct Closure {
 /// The closure of a file. The rows of a sweep have no time; rates are those of the file.
 pub(crate) fn closure(reading: &Reading, rows: &Rows, file: &str) -> Closure {
     let mut closure = Closure::default();
-    let motions: Option<Vec<Motion>> = (0..rows.count)
-        .map(|row| Motion::new(reading, rows, row))
-        .collect();
+    let motions = Motion::of_all(reading, rows);
     let Some(motions) = motions.filter(|motions| !motions.is_empty()) else {
-        closure
-            .joints
-            .fail(format!("{file}: a column of a body is missing"));
+        let reason = format!("{file}: a column of a body is missing");
+        closure.joints.fail(reason);
         return closure;
     };
     let scale = scale(reading, &motions);
     for (row, motion) in motions.iter().enumerate() {
-        for residual in residuals(reading, rows, row, motion, &motions[0]) {
+        for residual in residuals(motion, &motions[0]) {
             add(&mut closure.joints, &residual, &scale, file, row);
         }
-        for residual in law_residuals(reading, rows, row, motion) {
+        for residual in law_residuals(motion) {
             add(&mut closure.laws, &residual, &scale, file, row);
         }
     }
@@ -54,29 +51,31 @@ pub(crate) fn closure(reading: &Reading, rows: &Rows, file: &str) -> Closure {
 }
 
 fn add(to: &mut Differences, residual: &Residual, scale: &Scale, file: &str, row: usize) {
-    for (order, rate) in ["", ", its velocity", ", its acceleration"]
-        .iter()
-        .enumerate()
-    {
-        let factor = if residual.is_angle { 1.0 } else { scale.size };
+    let (factor, unit) = match residual.is_angle {
+        true => (1.0, "rad"),
+        false => (scale.size, "m"),
+    };
+    let rates = ["", ", its velocity", ", its acceleration"];
+    for (order, rate) in rates.into_iter().enumerate() {
         let size = factor * scale.angular[order];
-        let unit = if residual.is_angle { "rad" } else { "m" };
         to.add(residual.jet.0[order], size, unit, || {
             format!("{file}, row {row}, {}{rate}", residual.what)
         });
     }
 }
 
-fn scale(reading: &Reading, motions: &[Motion]) -> Scale {
+fn scale(reading: &Reading, motions: &[Motion<'_>]) -> Scale {
     let (mut size, mut angular) = (0.0_f64, [1.0, 0.0, 0.0_f64]);
     for motion in motions {
-        for (b, body) in reading.bodies.iter().enumerate() {
-            for (_, point) in &body.points {
-                let p = motion.point(super::reading::Place {
-                    body: b,
-                    point: *point,
-                });
-                size = size.max(p.x.value().hypot(p.y.value()));
+        for (body, of) in reading.bodies.iter().enumerate() {
+            for (_, point) in &of.points {
+                let [x, y] = motion
+                    .point(Place {
+                        body,
+                        point: *point,
+                    })
+                    .order(0);
+                size = size.max(x.hypot(y));
             }
         }
     }
@@ -91,21 +90,13 @@ fn scale(reading: &Reading, motions: &[Motion]) -> Scale {
         }
     }
     // Angles of many revolutions are rounded as such.
-    let largest = motions
-        .iter()
-        .flat_map(|m| &m.bodies)
-        .map(|f| f.angle.value().abs());
-    angular[0] = largest.fold(1.0, f64::max);
+    let frames = motions.iter().flat_map(|m| &m.bodies);
+    angular[0] = largest(frames.map(|frame| &frame.angle.0[0])).max(1.0);
     Scale { size, angular }
 }
 
-fn residuals(
-    reading: &Reading,
-    rows: &Rows,
-    row: usize,
-    motion: &Motion,
-    first: &Motion,
-) -> Vec<Residual> {
+fn residuals(motion: &Motion<'_>, first: &Motion<'_>) -> Vec<Residual> {
+    let reading = motion.reading;
     let mut all = Vec::new();
     let mut add = |what: String, jet: Jet, is_angle: bool| {
         all.push(Residual {
@@ -114,20 +105,16 @@ fn residuals(
             is_angle,
         });
     };
-    for (b, body) in reading
-        .bodies
-        .iter()
-        .enumerate()
-        .filter(|(_, body)| !body.is_ground)
-    {
-        for (name, point) in &body.points {
-            if let Some(written) = point_in(rows, row, &body.name, name) {
-                let open = written.minus(motion.point(super::reading::Place {
-                    body: b,
+    let bodies = reading.bodies.iter().enumerate();
+    for (body, of) in bodies.filter(|(_, body)| !body.is_ground) {
+        for (name, point) in &of.points {
+            if let Some(written) = point_in(motion.rows, motion.row, &of.name, name) {
+                let open = written.minus(motion.point(Place {
+                    body,
                     point: *point,
                 }));
-                add(format!("{}.{name}.x", body.name), open.x, false);
-                add(format!("{}.{name}.y", body.name), open.y, false);
+                add(format!("{}.{name}.x", of.name), open.x, false);
+                add(format!("{}.{name}.y", of.name), open.y, false);
             }
         }
     }
@@ -137,15 +124,12 @@ fn residuals(
         }
     }
     for coordinate in &reading.coordinates {
-        let ends = ["", ".velocity", ".acceleration"];
-        if let Some(written) = rows.jet(row, &coordinate.name, ends) {
-            let is_angle = reading.unit_of(coordinate.measure) == reading.units.angle
-                && matches!(coordinate.measure, super::reading::Measure::Angle(_));
+        if let Some(written) = written(motion, &coordinate.name) {
+            let is_angle = coordinate.measure.is_angle();
             let open = written - motion.measure(coordinate.measure);
-            let open = if is_angle {
-                without_revolutions(open, TAU)
-            } else {
-                open
+            let open = match is_angle {
+                true => without_revolutions(open, TAU),
+                false => open,
             };
             // A file of statics has no velocities, and its bodies rest.
             add(format!("coordinate {}", coordinate.name), open, is_angle);
@@ -154,17 +138,22 @@ fn residuals(
     all
 }
 
-fn law_residuals(reading: &Reading, rows: &Rows, row: usize, motion: &Motion) -> Vec<Residual> {
+/// A coordinate as written.
+fn written(motion: &Motion<'_>, name: &str) -> Option<Jet> {
+    let ends = ["", ".velocity", ".acceleration"];
+    motion.rows.jet(motion.row, name, ends)
+}
+
+fn law_residuals(motion: &Motion<'_>) -> Vec<Residual> {
     let mut all = Vec::new();
+    let reading = motion.reading;
     for (coordinate, law) in reading.coordinates.iter().zip(&reading.laws) {
-        let written = rows.jet(row, &coordinate.name, ["", ".velocity", ".acceleration"]);
-        let (Some(law), Some(written), Some(t)) = (law, written, rows.get(row, "t")) else {
+        let written = written(motion, &coordinate.name);
+        let (Some(law), Some(written), Some(t)) = (law, written, motion.get("t")) else {
             continue;
         };
-        let at_corner = law
-            .corners()
-            .iter()
-            .any(|corner| (corner - t).abs() <= 1e-12 * (1.0 + t.abs()));
+        let is_near = |corner: &f64| (corner - t).abs() <= 1e-12 * (1.0 + t.abs());
+        let at_corner = law.corners().iter().any(is_near);
         let names = |name: &str| (name == "t").then_some(Jet([t, 1.0, 0.0]));
         let Some(expected) = law.at(Jet([t, 1.0, 0.0]), &names) else {
             continue;
@@ -174,14 +163,12 @@ fn law_residuals(reading: &Reading, rows: &Rows, row: usize, motion: &Motion) ->
         if at_corner {
             open.0[2] = 0.0;
         }
-        let is_angle = matches!(coordinate.measure, super::reading::Measure::Angle(_));
         all.push(Residual {
             what: format!("law of {}", coordinate.name),
             jet: open,
-            is_angle,
+            is_angle: coordinate.measure.is_angle(),
         });
     }
-    let _ = motion;
     all
 }
 
@@ -191,19 +178,12 @@ fn without_revolutions(jet: Jet, revolution: f64) -> Jet {
 
 /// What a joint keeps at zero, and whether it is an angle. Meshing and rolling keep what they have in the first row.
 // Long: an arm for each kind of joint.
-fn joint_residuals(joint: &Joint, motion: &Motion, first: &Motion) -> Vec<(Jet, bool)> {
+fn joint_residuals(joint: &Joint, motion: &Motion<'_>, first: &Motion<'_>) -> Vec<(Jet, bool)> {
     let places = joint.places;
     let bodies = places.map(|p| p.body);
     let gap = motion.gap(places);
     let along = |axis: [f64; 2]| motion.direction(bodies[0], axis);
-    let kept = |of: &dyn Fn(&Motion) -> Jet, revolution: f64| {
-        let change = of(motion) - Jet::constant(of(first).value());
-        if revolution == 0.0 {
-            change
-        } else {
-            without_revolutions(change, revolution)
-        }
-    };
+    let kept = |of: &dyn Fn(&Motion<'_>) -> Jet| of(motion) - Jet::constant(of(first).value());
     match &joint.kind {
         JointKind::Revolute => vec![(gap.x, false), (gap.y, false)],
         JointKind::Prismatic { axes } => {
@@ -222,23 +202,23 @@ fn joint_residuals(joint: &Joint, motion: &Motion, first: &Motion) -> Vec<(Jet, 
         JointKind::Gear {
             radii: [r, s],
             is_internal,
-            ..
         } => {
             let s = if *is_internal { -s } else { *s };
-            let rolled = |m: &Motion| {
+            let rolled = |m: &Motion<'_>| {
                 let line = m.gap(places);
                 let line = line.y.atan2(line.x);
                 let [a, b] = bodies.map(|b| m.bodies[b].angle - line);
                 Jet::constant(*r) * a + Jet::constant(s) * b
             };
-            vec![(kept(&rolled, (r + s).abs() * TAU), false)]
+            let open = without_revolutions(kept(&rolled), (r + s).abs() * TAU);
+            vec![(open, false)]
         }
-        JointKind::Rack { axis, radius, .. } | JointKind::Rolling { axis, radius } => {
-            let rolled = |m: &Motion| {
+        JointKind::Rack { axis, radius } | JointKind::Rolling { axis, radius } => {
+            let rolled = |m: &Motion<'_>| {
                 let travel = m.gap(places).dot(m.direction(bodies[0], *axis));
                 travel + Jet::constant(*radius) * m.relative_angle(bodies)
             };
-            let mut all = vec![(kept(&rolled, 0.0), false)];
+            let mut all = vec![(kept(&rolled), false)];
             if matches!(joint.kind, JointKind::Rolling { .. }) {
                 let height = along(*axis).normal().dot(gap) - Jet::constant(*radius);
                 all.push((height, false));
@@ -251,13 +231,9 @@ fn joint_residuals(joint: &Joint, motion: &Motion, first: &Motion) -> Vec<(Jet, 
             independent,
             law,
         } => {
-            let of = |m: super::reading::Measure| motion.measure(m);
-            let value = law.at(of(*independent), &|_| None);
-            let is_angle = matches!(dependent, super::reading::Measure::Angle(_));
-            value
-                .map(|value| (of(*dependent) - value, is_angle))
-                .into_iter()
-                .collect()
+            let value = law.at(motion.measure(*independent), &|_| None);
+            let open = |value: Jet| (motion.measure(*dependent) - value, dependent.is_angle());
+            value.map(open).into_iter().collect()
         }
     }
 }

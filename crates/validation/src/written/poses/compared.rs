@@ -1,7 +1,8 @@
 //! What was found of a case's files: differences by the key of their finding.
 
-use super::difference::{Differences, Texts};
+use super::difference::Differences;
 use dwell_findings::{Check, Finding};
+use dwell_verify::FindingSpec;
 use std::collections::BTreeMap;
 
 /// A finding's key, check, comparison, and tolerance: that measured over all cases, with room for another machine's
@@ -115,15 +116,27 @@ impl Compared {
         self.of(key).merge(differences);
     }
 
+    /// Adds a difference of a key with its scale.
+    pub(crate) fn add<S: Into<String>>(
+        &mut self,
+        key: &'static str,
+        difference: f64,
+        scale: f64,
+        unit: &'static str,
+        at: impl FnOnce() -> S,
+    ) {
+        self.of(key).add(difference, scale, unit, at);
+    }
+
     /// Something of a key could not be compared.
-    pub(crate) fn fail(&mut self, key: &'static str, reason: String) {
+    pub(crate) fn fail(&mut self, key: &'static str, reason: impl Into<String>) {
         self.of(key).fail(reason);
     }
 
     /// The findings, in the order of their checks.
     pub(crate) fn findings(mut self) -> Vec<Finding> {
         let finding = |(key, check, comparison, tolerance): Spec| {
-            let texts = Texts {
+            let spec = FindingSpec {
                 key,
                 check,
                 comparison,
@@ -139,7 +152,7 @@ impl Compared {
             };
             self.by_key
                 .remove(key)?
-                .finding(texts, "all rows of the files")
+                .counted_finding(&spec, "all rows of the files")
         };
         SPECS.into_iter().filter_map(finding).collect()
     }

@@ -1,7 +1,7 @@
 //! What `check` prints of motions, stops and teeth, against the scene's text: the beginnings of lines, and the numbers that follow.
 
 use super::law::number;
-use super::reading::{JointKind, Reading};
+use super::reading::Reading;
 use super::stated::Expected;
 use toml::{Table, Value};
 
@@ -107,19 +107,7 @@ fn stops(scene: &Table) -> Vec<Line> {
 
 /// Pressure angles of teeth, in degrees.
 fn teeth(reading: &Reading) -> Option<Line> {
-    let angle = |kind: &JointKind| match kind {
-        JointKind::Gear { pressure_angle, .. } | JointKind::Rack { pressure_angle, .. } => {
-            Some(*pressure_angle)
-        }
-        JointKind::Revolute
-        | JointKind::Prismatic { .. }
-        | JointKind::Slot { .. }
-        | JointKind::Weld { .. }
-        | JointKind::Rolling { .. }
-        | JointKind::Distance { .. }
-        | JointKind::Coupling { .. } => None,
-    };
-    let angles = reading.joints.iter().filter_map(|joint| angle(&joint.kind));
+    let angles = reading.joints.iter().map(|joint| joint.pressure_angle);
     let angles: Vec<Expected> = angles
         .filter(|a| *a != 0.0)
         .map(|a| expected(a.to_degrees()))

@@ -5,8 +5,8 @@ use super::difference::Differences;
 use super::drawn_laws::DrawnMotion;
 use super::law::{Law, Shape};
 use super::program::Program;
-use super::rows::Rows;
-use super::scene_text::text_of;
+use super::rows::{Rows, largest};
+use super::scene_text::{table_of, text_of, value_of};
 use toml::{Table, Value};
 
 /// Rows this near to a corner are not compared, part of the duration: its derivatives are those of either side.
@@ -24,10 +24,7 @@ pub(crate) fn described_again_differences(
     program: &Program,
     motion: &DrawnMotion,
 ) -> Result<Differences, String> {
-    let mut scene: Table = motion
-        .text
-        .parse()
-        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let mut scene = table_of(&motion.text)?;
     let Some((coordinate, law)) = prescribed(motion) else {
         return Ok(Differences::default());
     };
@@ -46,22 +43,16 @@ pub(crate) fn described_again_differences(
             let Some(text) = expression(law) else {
                 return Ok(Differences::default());
             };
-            let entry = [("expression".to_owned(), Value::String(text))];
-            prescribed.insert(
-                coordinate.0.to_owned(),
-                Value::Table(entry.into_iter().collect()),
-            );
+            let entry = value_of([("expression", text.into())]);
+            prescribed.insert(coordinate.0.to_owned(), entry);
             Description::Same
         }
     };
     let count = motion.rows.count.to_string();
     let name = format!("{}-again", motion.name);
-    let run = program.run(
-        &name,
-        &text_of(&scene)?,
-        &["kinematics", "--points", &count],
-    );
-    let rows = run.map_err(|e| e.to_string())?.csv("-kinematics.csv")?;
+    let arguments = ["kinematics", "--points", &count];
+    let run = program.run(&name, &text_of(&scene)?, &arguments)?;
+    let rows = run.csv("-kinematics.csv")?;
     Ok(compare(motion, &rows, coordinate.0, law, &description))
 }
 
@@ -85,12 +76,8 @@ fn turn(prescribed: &mut Table, coordinate: &str) -> Option<f64> {
         [points.first()?[1], points.last()?[1]],
         [points.first()?[0], points.last()?[0]],
     );
-    let turned = points.iter().rev().map(|[x, y]| {
-        Value::Array(vec![
-            Value::Float(begin + end - x),
-            Value::Float(first + last - y),
-        ])
-    });
+    let turned = points.iter().rev();
+    let turned = turned.map(|[x, y]| vec![begin + end - x, first + last - y].into());
     *rows = turned.collect();
     Some(first + last)
 }
@@ -171,7 +158,7 @@ fn compare(
             all.fail(format!("{}: no column {column}", motion.name));
             continue;
         };
-        let scale = first.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
+        let scale = largest(first);
         for row in (0..rows.count).filter(|&row| order == 0 || !is_corner(row)) {
             let other = match how {
                 Description::Same => second[row],

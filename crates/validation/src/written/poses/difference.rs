@@ -1,6 +1,7 @@
 //! The largest of many differences, and the finding that it makes.
 
-use dwell_findings::{Check, Finding};
+use dwell_findings::Finding;
+use dwell_verify::FindingSpec;
 
 /// The largest difference relative to its scale. What could not be compared fails.
 #[derive(Debug, Clone, Default)]
@@ -13,25 +14,14 @@ pub(crate) struct Differences {
     failure: Option<String>,
 }
 
-/// The constant texts of a finding.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Texts<'a> {
-    pub(crate) key: &'a str,
-    pub(crate) check: Check,
-    pub(crate) comparison: &'a str,
-    pub(crate) scale: &'a str,
-    pub(crate) tolerance: f64,
-    pub(crate) tolerance_reason: &'a str,
-}
-
 impl Differences {
     /// Adds a difference with its scale; its place is only composed if it is the worst.
-    pub(crate) fn add(
+    pub(crate) fn add<S: Into<String>>(
         &mut self,
         difference: f64,
         scale: f64,
         unit: &'static str,
-        at: impl FnOnce() -> String,
+        at: impl FnOnce() -> S,
     ) {
         let relative = match difference.abs() {
             0.0 => 0.0,
@@ -40,14 +30,45 @@ impl Differences {
         let is_worse = !self.relative.is_nan() && (relative.is_nan() || relative > self.relative);
         if self.count == 0 || is_worse {
             (self.absolute, self.relative, self.unit) = (difference.abs(), relative, unit);
-            self.worst_at = at();
+            self.worst_at = at().into();
         }
         self.count += 1;
     }
 
+    /// Adds a value that should be another, relative to a scale.
+    pub(crate) fn compare<S: Into<String>>(
+        &mut self,
+        [found, wanted, scale]: [f64; 3],
+        unit: &'static str,
+        at: impl FnOnce() -> S,
+    ) {
+        self.add(found - wanted, scale, unit, at);
+    }
+
+    /// Adds the differences of successive rows, each with its place.
+    pub(crate) fn add_rows(
+        &mut self,
+        differences: impl IntoIterator<Item = f64>,
+        scale: f64,
+        unit: &'static str,
+        at: impl Fn(usize) -> String,
+    ) {
+        for (row, difference) in differences.into_iter().enumerate() {
+            self.add(difference, scale, unit, || at(row));
+        }
+    }
+
     /// Something could not be compared: the finding fails with this reason.
-    pub(crate) fn fail(&mut self, reason: String) {
-        self.failure.get_or_insert(reason);
+    pub(crate) fn fail(&mut self, reason: impl Into<String>) {
+        self.failure.get_or_insert(reason.into());
+    }
+
+    /// Counts what must hold; where it does not, the finding fails.
+    pub(crate) fn require(&mut self, holds: bool, reason: impl FnOnce() -> String) {
+        self.add(0.0, 1.0, "", || "");
+        if !holds {
+            self.fail(reason());
+        }
     }
 
     /// The largest relative difference.
@@ -76,8 +97,14 @@ impl Differences {
         (self.failure, self.count) = (failure, count);
     }
 
+    /// The finding over a domain, which says how many comparisons there were; none where there was nothing to compare.
+    pub(crate) fn counted_finding(self, spec: &FindingSpec<'_>, domain: &str) -> Option<Finding> {
+        let domain = format!("{domain}, {} comparisons", self.count);
+        self.finding(spec, &domain)
+    }
+
     /// The finding over a domain; none where there was nothing to compare.
-    pub(crate) fn finding(self, texts: Texts<'_>, domain: &str) -> Option<Finding> {
+    pub(crate) fn finding(self, spec: &FindingSpec<'_>, domain: &str) -> Option<Finding> {
         if self.count == 0 && self.failure.is_none() {
             return None;
         }
@@ -86,13 +113,13 @@ impl Differences {
             None => [self.absolute, self.relative],
         };
         Some(Finding {
-            comparison: texts.comparison.to_owned(),
-            domain: format!("{domain}, {} comparisons", self.count),
+            comparison: spec.comparison.to_owned(),
+            domain: domain.to_owned(),
             unit: self.unit.to_owned(),
-            scale: texts.scale.to_owned(),
+            scale: spec.scale.to_owned(),
             worst_at: self.failure.unwrap_or(self.worst_at),
-            tolerance_reason: texts.tolerance_reason.to_owned(),
-            ..Finding::new(texts.key, texts.check, numbers, texts.tolerance)
+            tolerance_reason: spec.tolerance_reason.to_owned(),
+            ..Finding::new(spec.key, spec.check, numbers, spec.tolerance)
         })
     }
 }

@@ -4,7 +4,7 @@
 use super::program::Program;
 use super::reading::Reading;
 use super::rows::Rows;
-use super::scene_text::{Draws, text_of};
+use super::scene_text::{Draws, table_of, text_of, value_of};
 use toml::{Table, Value};
 
 /// Functions of the time t whose values are compared, with room for two drawn numbers.
@@ -76,9 +76,7 @@ pub(crate) fn drawn_motions(
 ) -> Result<Vec<DrawnMotion>, String> {
     let mut all = Vec::new();
     for kind in KINDS {
-        let mut table: Table = scene
-            .parse()
-            .map_err(|e| format!("the scene is no TOML: {e}"))?;
+        let mut table = table_of(scene)?;
         for section in [
             "prescribed",
             "coordinate-sweep",
@@ -104,9 +102,7 @@ pub(crate) fn drawn_motions(
             "kinematics"
         };
         let name = format!("law-{kind}");
-        let run = program
-            .run(&name, &text, &[command, "--points", POINTS])
-            .map_err(|e| e.to_string())?;
+        let run = program.run(&name, &text, &[command, "--points", POINTS])?;
         let rows = run.csv(&format!("-{command}.csv"))?;
         all.push(DrawnMotion {
             reading: Reading::new(&text)?,
@@ -141,14 +137,8 @@ fn loads(reading: &Reading, draws: &mut Draws) -> Result<Table, String> {
     let load = |(k, text): (usize, &&str)| {
         let magnitude = Value::String(drawn(text, draws));
         let torque = Value::String(body.name.clone());
-        let entry = [
-            ("torque".to_owned(), torque),
-            ("magnitude".to_owned(), magnitude),
-        ];
-        (
-            format!("function{k}"),
-            Value::Table(entry.into_iter().collect()),
-        )
+        let entry = value_of([("torque", torque), ("magnitude", magnitude)]);
+        (format!("function{k}"), entry)
     };
     Ok(MAGNITUDES.iter().enumerate().map(load).collect())
 }
@@ -175,26 +165,17 @@ fn prescribe(
     };
     let direction = if room[1] > room[0] { 1.0 } else { -1.0 };
     let amplitude = direction * 0.4 * room[0].max(room[1]).min(1.5) * (0.5 + 0.5 * draws.share());
-    let float = |x: f64| Value::Float(x);
-    let of = |entries: Vec<(&str, Value)>| {
-        Value::Table(
-            entries
-                .into_iter()
-                .map(|(key, value)| (key.to_owned(), value))
-                .collect(),
-        )
-    };
     let delay = 0.1 + 0.1 * draws.share();
     let rise = |with_ramp: bool| {
         let mut entries = vec![
-            ("rise", float(amplitude / unit)),
-            ("duration", float(DURATION - 2.0 * delay)),
-            ("delay", float(delay)),
+            ("rise", (amplitude / unit).into()),
+            ("duration", (DURATION - 2.0 * delay).into()),
+            ("delay", delay.into()),
         ];
         if with_ramp {
-            entries.push(("ramp", float(0.3)));
+            entries.push(("ramp", 0.3_f64.into()));
         }
-        of(entries)
+        value_of(entries)
     };
     let law = match kind {
         "sinusoid" => {
@@ -205,15 +186,13 @@ fn prescribe(
             } else {
                 0.25 * amplitude.abs()
             };
-            let phase = Value::Float(draws.share() / reading.units.angle);
-            of(vec![(
-                "sinusoid",
-                of(vec![
-                    ("amplitude", float(size / unit)),
-                    ("period", float(0.9)),
-                    ("phase", phase),
-                ]),
-            )])
+            let phase = draws.share() / reading.units.angle;
+            let sinusoid = value_of([
+                ("amplitude", (size / unit).into()),
+                ("period", 0.9_f64.into()),
+                ("phase", phase.into()),
+            ]);
+            value_of([("sinusoid", sinusoid)])
         }
         "spline" | "monotone" => {
             let points = (0..7).map(|k| {
@@ -222,31 +201,21 @@ fn prescribe(
                 } else {
                     (f64::from(k) + 0.6 * draws.share()) / 7.0
                 };
-                Value::Array(vec![
-                    float(DURATION * f64::from(k) / 6.0),
-                    float((start + amplitude * share) / unit),
-                ])
+                let time = DURATION * f64::from(k) / 6.0;
+                vec![time, (start + amplitude * share) / unit].into()
             });
-            of(vec![
-                ("table", Value::Array(points.collect())),
-                ("interpolation", Value::String(kind.to_owned())),
-            ])
+            let points = Value::Array(points.collect());
+            value_of([("table", points), ("interpolation", kind.into())])
         }
         "expression" => {
             let mixture = drawn(MIXTURE, draws);
             let text = format!("{start:?} + {:?}*({mixture})", 0.8 * amplitude);
-            of(vec![(
-                "expression",
-                Value::String(text.replace("+ -", "- ")),
-            )])
+            value_of([("expression", text.replace("+ -", "- ").into())])
         }
-        _ => of(vec![(kind, rise(kind == "trapezoidal"))]),
+        _ => value_of([(kind, rise(kind == "trapezoidal"))]),
     };
-    let prescribed = vec![
-        ("duration", float(DURATION)),
-        (coordinate.name.as_str(), law),
-    ];
-    table.insert("prescribed".to_owned(), of(prescribed));
+    let prescribed = value_of([("duration", DURATION.into()), (&coordinate.name, law)]);
+    table.insert("prescribed".to_owned(), prescribed);
     Some(())
 }
 

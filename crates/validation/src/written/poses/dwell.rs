@@ -2,33 +2,29 @@
 
 use super::difference::Differences;
 use super::program::Program;
-use super::rows::Rows;
-use super::stated::{sentence_differences, summary_differences};
-use toml::{Table, Value};
+use super::rows::{Rows, extent};
+use super::scene_text::table_of;
+use super::stated::{result, sentence_differences, summary_differences};
+use toml::Value;
 
 /// Runs `kinematics` on a scene that requests a dwell; nothing where it requests none.
 pub(super) fn dwell_differences(program: &Program, scene: &str) -> Result<Differences, String> {
-    let table: Table = scene
-        .parse()
-        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let table = table_of(scene)?;
     let request = table.get("requests").and_then(|r| r.get("dwell"));
     let Some(body) = request.and_then(|r| r.get("body")).and_then(Value::as_str) else {
         return Ok(Differences::default());
     };
-    let run = program
-        .run("dwell", scene, &["kinematics"])
-        .map_err(|e| e.to_string())?;
+    let run = program.run("dwell", scene, &["kinematics"])?;
     let rows = run.csv("-kinematics.csv")?;
     let summary = run.json("-kinematics.json")?;
-    let band = summary["results"]["dwell.relative_band"]["value"].as_f64();
-    let band = band.ok_or("`kinematics` writes no dwell")?;
+    let band = result(&summary, "dwell.relative_band").ok_or("`kinematics` writes no dwell")?;
     let expected =
         numbers(&rows, body, band).ok_or("the rows have no angle of the body that rests")?;
     let expected = expected
         .iter()
         .map(|(name, value)| (name.as_str(), (*value, 1.0)));
     let mut found = summary_differences(&summary, expected, "kinematics");
-    let angle = summary["results"]["dwell.angle"]["value"].as_f64();
+    let angle = result(&summary, "dwell.angle");
     let said = angle.map(|angle| vec![(angle, 1.0), (100.0 * band, 100.0 * band)]);
     let line = [(format!("{body} rests at "), said.unwrap_or_default())];
     // Of an angle in degrees the number is another.
@@ -41,22 +37,18 @@ pub(super) fn dwell_differences(program: &Program, scene: &str) -> Result<Differ
 /// The middle of the angles in the longest window, and where it begins and ends.
 fn numbers(rows: &Rows, body: &str, band: f64) -> Option<Vec<(String, f64)>> {
     let angles = rows.columns.get(&format!("{body}.angle"))?;
-    let ends = |of: &[f64]| {
-        let low = of.iter().copied().fold(f64::INFINITY, f64::min);
-        [low, of.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
-    };
-    let [low, high] = ends(angles);
+    let [low, high] = extent(angles);
     let mut longest = [0, 0];
     for first in 0..angles.len() {
         // A window from here that is longer than the longest one.
         while let Some(window) = angles.get(first..=first + longest[1] - longest[0] + 1)
-            && ends(window)[1] - ends(window)[0] <= band * (high - low)
+            && extent(window)[1] - extent(window)[0] <= band * (high - low)
         {
             longest = [first, first + longest[1] - longest[0] + 1];
         }
     }
     let [first, last] = longest;
-    let [low, high] = ends(&angles[first..=last]);
+    let [low, high] = extent(&angles[first..=last]);
     let mut all = vec![("dwell.angle".to_owned(), 0.5 * (low + high))];
     if let Some(times) = rows.columns.get("t") {
         all.push(("dwell.t.from".to_owned(), times[first]));

@@ -3,8 +3,8 @@
 
 use super::difference::Differences;
 use super::motion::Motion;
-use super::reading::Reading;
-use super::rows::Rows;
+use super::reading::{Body, Coordinate, Joint, Reading};
+use super::rows::{Rows, largest};
 use super::totals::Totals;
 use super::wrenches::{Wrench, along, components, joint_wrenches};
 use std::collections::BTreeMap;
@@ -20,46 +20,27 @@ pub(crate) struct Equilibrium {
     pub(crate) totals: Differences,
 }
 
-/// Names of the columns of a column group: reactions with this ending, and of the actuators.
-pub(crate) struct ForceColumns<'a> {
-    pub(crate) reaction_end: &'a str,
-    pub(crate) actuators: Vec<f64>,
-}
-
-/// Forces and inertia of a body are relative to the largest of a file.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct ForceScale {
-    pub(crate) force: f64,
-    pub(crate) moment: f64,
-}
-
-/// The wrenches of all joints of a row; none where a column is missing (statically indeterminate reactions).
+/// The wrenches of all joints of a row, by columns of reactions with this ending, and of the actuators' forces; none where a column is missing
+/// (statically indeterminate reactions).
 pub(crate) fn written_joint_wrenches(
-    reading: &Reading,
-    rows: &Rows,
-    row: usize,
-    motion: &Motion,
-    columns: &ForceColumns<'_>,
+    motion: &Motion<'_>,
+    end: &str,
+    actuators: &[f64],
 ) -> Option<Vec<Wrench>> {
     let mut all = Vec::new();
-    for joint in &reading.joints {
-        let reaction = reaction(rows, row, joint, columns.reaction_end)?;
+    for joint in &motion.reading.joints {
+        let reaction = reaction(motion, joint, end)?;
         all.extend(joint_wrenches(joint, motion, &reaction)?);
     }
-    for (coordinate, force) in reading.coordinates.iter().zip(&columns.actuators) {
+    for (coordinate, force) in motion.reading.coordinates.iter().zip(actuators) {
         all.extend(along(motion, coordinate.measure, *force));
     }
     Some(all)
 }
 
 /// The components of a reaction as written.
-pub(crate) fn reaction(
-    rows: &Rows,
-    row: usize,
-    joint: &super::reading::Joint,
-    end: &str,
-) -> Option<Vec<f64>> {
-    let of = |component: &&str| rows.get(row, &format!("{}.{component}{end}", joint.name));
+pub(crate) fn reaction(motion: &Motion<'_>, joint: &Joint, end: &str) -> Option<Vec<f64>> {
+    let of = |component: &&str| motion.get(&format!("{}.{component}{end}", joint.name));
     components(joint).iter().map(of).collect()
 }
 
@@ -100,18 +81,14 @@ pub(crate) type BodyResidual = (usize, [f64; 3], [f64; 2]);
 /// Newton's and Euler's equations of a row, with an order of the derivative as acceleration: 2, or 1 where velocities
 /// stand for accelerations, or none at rest.
 pub(crate) fn body_residuals(
-    reading: &Reading,
-    motion: &Motion,
+    motion: &Motion<'_>,
     wrenches: &[Wrench],
     order: Option<usize>,
 ) -> Vec<BodyResidual> {
-    let moving = reading
-        .bodies
-        .iter()
-        .enumerate()
-        .filter(|(_, body)| !body.is_ground);
-    let of = |(b, body): (usize, &super::reading::Body)| {
-        let center = motion.center(reading, b);
+    let bodies = motion.reading.bodies.iter().enumerate();
+    let moving = bodies.filter(|(_, body)| !body.is_ground);
+    let of = |(b, body): (usize, &Body)| {
+        let center = motion.center(b);
         let inertia = order.map_or([0.0; 3], |k| {
             let [x, y] = center.order(k);
             [
@@ -140,24 +117,17 @@ pub(crate) fn add_residuals(
     all: &[(usize, Vec<BodyResidual>)],
     what: &str,
 ) {
-    let terms = |k: usize| {
-        all.iter()
-            .flat_map(|(_, r)| r)
-            .map(move |(_, _, t)| t[k])
-            .fold(0.0, f64::max)
-    };
-    let scale = ForceScale {
-        force: terms(0),
-        moment: terms(1).max(terms(0) * reading.size()),
-    };
+    let terms = all.iter().flat_map(|(_, r)| r).map(|(.., terms)| terms);
+    let [force, moment] = [0, 1].map(|k| terms.clone().map(|t| t[k]).fold(0.0, f64::max));
+    let moment = moment.max(force * reading.size());
+    let axes = [
+        ("x", force, "N"),
+        ("y", force, "N"),
+        ("moment", moment, "N m"),
+    ];
     for (row, residuals) in all {
         for (body, sum, _) in residuals {
-            for (k, axis) in ["x", "y", "moment"].iter().enumerate() {
-                let (scale, unit) = if k < 2 {
-                    (scale.force, "N")
-                } else {
-                    (scale.moment, "N m")
-                };
+            for (k, (axis, scale, unit)) in axes.into_iter().enumerate() {
                 let name = &reading.bodies[*body].name;
                 to.add(sum[k], scale, unit, || {
                     format!("{what}, row {row}, {name} {axis}")
@@ -186,35 +156,27 @@ pub(crate) fn equilibrium(
             return found;
         };
         let motion = if at_rest { motion.at_rest() } else { motion };
-        let Some(mut wrenches) = loads.wrenches(reading, rows, row, &motion) else {
+        let Some(mut wrenches) = loads.wrenches(&motion) else {
             found
                 .loads
                 .fail(format!("{file}, row {row}: a load has no value"));
             return found;
         };
-        let columns = ForceColumns {
-            reaction_end: "",
-            actuators: actuator_forces(reading, rows, row),
-        };
-        totals.add(reading, rows, row, &motion, &wrenches);
-        loads.add_known_reactions(reading, rows, row, &motion);
+        totals.add(&motion, &wrenches);
+        loads.add_known_reactions(&motion);
         // Statically indeterminate reactions are in no file.
-        let Some(joints) = written_joint_wrenches(reading, rows, row, &motion, &columns) else {
+        let joints = written_joint_wrenches(&motion, "", &actuator_forces(&motion));
+        let Some(joints) = joints else {
             continue;
         };
         wrenches.extend(joints);
         for friction in &reading.frictions {
-            let reaction =
-                reaction(rows, row, &reading.joints[friction.joint], "").unwrap_or_default();
-            wrenches.extend(
-                friction
-                    .wrenches(reading, &motion, &reaction)
-                    .into_iter()
-                    .flatten(),
-            );
+            let joint = &reading.joints[friction.joint];
+            let reaction = reaction(&motion, joint, "").unwrap_or_default();
+            wrenches.extend(friction.wrenches(&motion, &reaction).into_iter().flatten());
         }
         let order = (!at_rest).then_some(2);
-        residuals.push((row, body_residuals(reading, &motion, &wrenches, order)));
+        residuals.push((row, body_residuals(&motion, &wrenches, order)));
     }
     add_residuals(&mut found.bodies, reading, &residuals, file);
     loads.add(&mut found.loads, reading, file);
@@ -235,48 +197,38 @@ struct LoadDifferences {
 
 impl LoadDifferences {
     /// The forces of all loads in a row; none where one has no value.
-    fn wrenches(
-        &mut self,
-        reading: &Reading,
-        rows: &Rows,
-        row: usize,
-        motion: &Motion,
-    ) -> Option<Vec<Wrench>> {
-        let t = rows.time(row);
+    fn wrenches(&mut self, motion: &Motion<'_>) -> Option<Vec<Wrench>> {
         let mut all = Vec::new();
-        for (k, load) in reading.loads.iter().enumerate() {
-            let magnitude = load.magnitude(reading, motion, t)?;
-            let column = |end: &&str| rows.get(row, &format!("{}.load_{end}", load.name));
+        for (k, load) in motion.reading.loads.iter().enumerate() {
+            let magnitude = load.magnitude(motion)?;
+            let column = |end: &&str| motion.get(&format!("{}.load_{end}", load.name));
             if let Some(written) = ["force", "moment"].iter().find_map(column) {
                 let largest = self.largest.entry(k).or_default();
                 *largest = largest.max(magnitude.abs());
-                self.differences.push((row, k, written - magnitude));
+                self.differences.push((motion.row, k, written - magnitude));
             }
-            let unit = load.unit_wrenches(reading, motion);
-            all.extend(unit.iter().map(|wrench| wrench.times(magnitude)));
+            all.extend(load.wrenches(motion)?);
         }
         Some(all)
     }
 
     /// The written reactions that the scene gives over the angle of a body.
-    fn add_known_reactions(&mut self, reading: &Reading, rows: &Rows, row: usize, motion: &Motion) {
-        for (b, body) in reading.bodies.iter().enumerate() {
+    fn add_known_reactions(&mut self, motion: &Motion<'_>) {
+        for (b, body) in motion.reading.bodies.iter().enumerate() {
             let [angle, omega, alpha] = motion.bodies[b].angle.0;
             let Some(table) = &body.varying else { continue };
             for reaction in table.reactions_at(angle, [omega, alpha]) {
-                if let Some(written) = rows.get(row, reaction.name) {
+                if let Some(written) = motion.get(reaction.name) {
                     let name = reaction.name.to_owned();
-                    self.known.push((row, name, [written, reaction.value]));
+                    self.known
+                        .push((motion.row, name, [written, reaction.value]));
                 }
             }
         }
     }
 
     fn add(self, to: &mut Differences, reading: &Reading, file: &str) {
-        let largest = self
-            .known
-            .iter()
-            .fold(0.0_f64, |max, (.., [_, x])| max.max(x.abs()));
+        let largest = largest(self.known.iter().map(|(.., [_, expected])| expected));
         for (row, name, [written, expected]) in &self.known {
             to.add(written - expected, largest, "N", || {
                 format!("{file}, row {row}, {name}")
@@ -293,9 +245,8 @@ impl LoadDifferences {
 }
 
 /// The actuator forces of a row.
-pub(crate) fn actuator_forces(reading: &Reading, rows: &Rows, row: usize) -> Vec<f64> {
-    let actuators = reading.coordinates.iter().take(reading.actuator_count);
-    let force =
-        |c: &super::reading::Coordinate| rows.get(row, &format!("{}.actuator_force", c.name));
+pub(crate) fn actuator_forces(motion: &Motion<'_>) -> Vec<f64> {
+    let force = |c: &Coordinate| motion.get(&format!("{}.actuator_force", c.name));
+    let actuators = motion.reading.actuators().iter();
     actuators.map(|c| force(c).unwrap_or(f64::NAN)).collect()
 }

@@ -114,6 +114,8 @@ fn call(name: &str, a: Jet, b: Option<Jet>, c: Option<Jet>) -> Option<Jet> {
     let u = a.value();
     let one = Jet::constant(1.0);
     let half = Jet::constant(0.5);
+    let smaller = |a: Jet, b: Jet| if b.value() < a.value() { b } else { a };
+    let larger = |a: Jet, b: Jet| if b.value() > a.value() { b } else { a };
     Some(match name {
         "sin" => a.sin(),
         "cos" => a.cos(),
@@ -128,54 +130,19 @@ fn call(name: &str, a: Jet, b: Option<Jet>, c: Option<Jet>) -> Option<Jet> {
         "ln" => a.ln(),
         "log10" => a.ln() / Jet::constant(std::f64::consts::LN_10),
         "sqrt" => a.sqrt(),
-        "abs" | "fabs" => {
-            if u < 0.0 {
-                -a
-            } else {
-                a
-            }
-        }
-        "sign" => Jet::constant(if u > 0.0 {
-            1.0
-        } else if u < 0.0 {
-            -1.0
-        } else {
-            0.0
-        }),
+        "abs" | "fabs" if u < 0.0 => -a,
+        "abs" | "fabs" => a,
+        "sign" => Jet::constant(f64::from(i8::from(u > 0.0) - i8::from(u < 0.0))),
         "floor" => Jet::constant(u.floor()),
         "step" => Jet::constant(f64::from(u8::from(u >= 0.0))),
         "atan2" => a.atan2(b?),
         "hypot" => (a * a + b? * b?).sqrt(),
-        "min" => {
-            if b?.value() < u {
-                b?
-            } else {
-                a
-            }
-        }
-        "max" => {
-            if b?.value() > u {
-                b?
-            } else {
-                a
-            }
-        }
+        "min" => smaller(a, b?),
+        "max" => larger(a, b?),
         "pow" => operate(Operator::Power, a, b?),
-        "clamp" => {
-            let lower = if b?.value() > u { b? } else { a };
-            if c?.value() < lower.value() {
-                c?
-            } else {
-                lower
-            }
-        }
-        "if" => {
-            if u != 0.0 {
-                b?
-            } else {
-                c?
-            }
-        }
+        "clamp" => smaller(larger(a, b?), c?),
+        "if" if u != 0.0 => b?,
+        "if" => c?,
         _ => return None,
     })
 }
@@ -195,9 +162,8 @@ impl Reader<'_> {
     fn take_while(&mut self, belongs: impl Fn(usize, char) -> bool) -> String {
         let mut characters = self.rest.char_indices();
         let end = characters.find(|&(at, c)| !belongs(at, c));
-        let (taken, rest) = self
-            .rest
-            .split_at(end.map_or(self.rest.len(), |(at, _)| at));
+        let end = end.map_or(self.rest.len(), |(at, _)| at);
+        let (taken, rest) = self.rest.split_at(end);
         self.rest = rest;
         taken.to_owned()
     }

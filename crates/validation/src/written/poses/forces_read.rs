@@ -2,7 +2,9 @@
 
 use super::expression::Expression;
 use super::law::{Law, LawUnits, number};
-use super::reading::{Friction, JointKind, Load, LoadKind, Magnitude, Reading, entries, pair};
+use super::reading::{
+    Friction, JointKind, Load, LoadKind, Magnitude, Measure, Reading, Source, entries, pair,
+};
 use super::table_curve::TableCurve;
 use toml::{Table, Value};
 
@@ -80,12 +82,18 @@ impl Reading {
 
     // Long: an arm for each kind of load.
     fn load(&self, table: &Table) -> Option<LoadKind> {
-        let magnitude = || self.magnitude(table.get("magnitude"));
-        let damping = || self.magnitude(table.get("damping"));
-        let stiffness = || self.magnitude(table.get("stiffness"));
+        let magnitude = |key: &str| self.magnitude(table.get(key));
+        let given = || Some(Source::Given(magnitude("magnitude")?));
+        let damper = || Some(Source::Damper(magnitude("damping")?));
+        let spring = |free: &str, unit: f64| {
+            Some(Source::Spring {
+                stiffness: magnitude("stiffness")?,
+                free: number(table.get(free))? * unit,
+            })
+        };
         let has = |key: &str| table.contains_key(key);
-        let places = |key: &str| self.places(table.get(key));
-        let bodies = |key: &str| self.body_pair(table.get(key));
+        let length = |key: &str| self.places(table.get(key)).map(Measure::Length);
+        let angle = |key: &str| self.body_pair(table.get(key)).map(Measure::Angle);
         Some(if has("gravity") {
             LoadKind::Gravity(pair(table.get("gravity"))?)
         } else if has("force") {
@@ -95,57 +103,30 @@ impl Reading {
                 at: self.place(table.get("force")?.as_str()?)?,
                 direction: [x / length, y / length],
                 in_body: table.get("frame").and_then(Value::as_str) == Some("body"),
-                magnitude: magnitude()?,
+                magnitude: magnitude("magnitude")?,
             }
+        } else if let Some(Value::String(body)) = table.get("torque") {
+            // The first acts on the second; of one body the ground acts on it.
+            let ground = self.bodies.iter().position(|b| b.is_ground)?;
+            let bodies = [ground, self.body_index(body)?];
+            LoadKind::Along(Measure::Angle(bodies), given()?)
         } else if has("torque") {
-            let bodies = match table.get("torque")? {
-                // The first acts on the second; of one body the ground acts on it.
-                Value::String(body) => {
-                    let ground = self.bodies.iter().position(|b| b.is_ground)?;
-                    [ground, self.body_index(body)?]
-                }
-                _ => bodies("torque")?,
-            };
-            LoadKind::Torque {
-                bodies,
-                magnitude: magnitude()?,
-            }
+            LoadKind::Along(angle("torque")?, given()?)
         } else if has("point-to-point-force") {
-            let places = places("point-to-point-force")?;
-            LoadKind::PointToPoint {
-                places,
-                magnitude: magnitude()?,
-            }
+            LoadKind::Along(length("point-to-point-force")?, given()?)
         } else if has("slide-force") {
             let (places, axis) = self.slide(table.get("slide-force")?.as_str()?)?;
-            LoadKind::SlideForce {
-                places,
-                axis,
-                magnitude: magnitude()?,
-            }
+            LoadKind::Along(Measure::Travel(places, axis), given()?)
         } else if has("spring") {
-            LoadKind::Spring {
-                places: places("spring")?,
-                stiffness: stiffness()?,
-                free_length: number(table.get("free-length"))? * self.units.length,
-            }
+            let spring = spring("free-length", self.units.length)?;
+            LoadKind::Along(length("spring")?, spring)
         } else if has("torsion-spring") {
-            LoadKind::TorsionSpring {
-                bodies: bodies("torsion-spring")?,
-                stiffness: stiffness()?,
-                free_angle: number(table.get("free-angle"))? * self.units.angle,
-            }
+            let spring = spring("free-angle", self.units.angle)?;
+            LoadKind::Along(angle("torsion-spring")?, spring)
         } else if has("damper") {
-            LoadKind::Damper {
-                places: places("damper")?,
-                damping: damping()?,
-            }
+            LoadKind::Along(length("damper")?, damper()?)
         } else {
-            let bodies = bodies("rotational-damper")?;
-            LoadKind::RotationalDamper {
-                bodies,
-                damping: damping()?,
-            }
+            LoadKind::Along(angle("rotational-damper")?, damper()?)
         })
     }
 }

@@ -53,11 +53,8 @@ pub(crate) fn formats(
 fn same_bits(csv: &Rows, npz: &Rows, command: &str) -> Differences {
     let mut all = Differences::default();
     for (name, values) in &csv.columns {
-        let Some(others) = npz
-            .columns
-            .get(name)
-            .filter(|others| others.len() == values.len())
-        else {
+        let others = npz.columns.get(name);
+        let Some(others) = others.filter(|others| others.len() == values.len()) else {
             all.fail(format!(
                 "{command}: the NPZ file has no column {name} of {} rows",
                 values.len()
@@ -298,7 +295,7 @@ fn add_sentence(to: &mut Differences, line: &str, summary: &Value, command: &str
 }
 
 /// The value of one in the last printed digit.
-pub(super) fn last_digit(number: &str) -> f64 {
+pub(crate) fn last_digit(number: &str) -> f64 {
     let (digits, exponent) = number.split_once(['e', 'E']).unwrap_or((number, "0"));
     let decimals = digits
         .split_once('.')

@@ -3,7 +3,7 @@
 use super::difference::Differences;
 use super::expression::Expression;
 use super::jet::Jet;
-use super::rows::Rows;
+use super::rows::{Rows, largest};
 use std::collections::HashMap;
 
 /// The assignments of generated Rust, Python or C, in their order.
@@ -131,10 +131,7 @@ pub(crate) fn code_differences_of(
         ("a", format!("{reaction}.a")),
         ("b", format!("{reaction}.b")),
     ];
-    let largest = |name: &str| {
-        let column = rows.columns.get(name).into_iter().flatten();
-        column.fold(0.0_f64, |max, v| max.max(v.abs()))
-    };
+    let largest = |name: &str| largest(rows.column(name));
     let scales = [largest("m"), largest("m").max(largest("half_dm"))];
     let forces = largest(&columns[2].1)
         .max(largest(&columns[3].1))

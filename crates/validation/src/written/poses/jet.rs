@@ -68,21 +68,17 @@ impl Jet {
         let value = self.value().atan2(x.value());
         let first = (x.0[0] * self.0[1] - self.0[0] * x.0[1]) / square.value();
         let numerator_rate = x.0[0] * self.0[2] - self.0[0] * x.0[2];
-        Self([
-            value,
-            first,
-            (numerator_rate - first * square.0[1]) / square.value(),
-        ])
+        let second = (numerator_rate - first * square.0[1]) / square.value();
+        Self([value, first, second])
     }
 
     /// uᵖ with a constant p.
     pub(crate) fn power(self, p: f64) -> Self {
         let u = self.value();
         let first = if p == 0.0 { 0.0 } else { p * u.powf(p - 1.0) };
-        let second = if p == 0.0 || p == 1.0 {
-            0.0
-        } else {
-            p * (p - 1.0) * u.powf(p - 2.0)
+        let second = match p {
+            0.0 | 1.0 => 0.0,
+            _ => p * (p - 1.0) * u.powf(p - 2.0),
         };
         self.chain([u.powf(p), first, second])
     }
@@ -128,36 +124,28 @@ impl Neg for Jet {
 }
 
 impl JetVector {
+    pub(crate) fn new(x: Jet, y: Jet) -> Self {
+        Self { x, y }
+    }
+
     /// A vector that does not change.
     pub(crate) fn constant([x, y]: [f64; 2]) -> Self {
-        Self {
-            x: Jet::constant(x),
-            y: Jet::constant(y),
-        }
+        Self::new(Jet::constant(x), Jet::constant(y))
     }
 
     /// A vector of a frame, in the plane: rotated by the frame's angle.
     pub(crate) fn rotated([x, y]: [f64; 2], angle: Jet) -> Self {
         let (s, c) = (angle.sin(), angle.cos());
         let [x, y] = [x, y].map(Jet::constant);
-        Self {
-            x: c * x - s * y,
-            y: s * x + c * y,
-        }
+        Self::new(c * x - s * y, s * x + c * y)
     }
 
     pub(crate) fn plus(self, other: Self) -> Self {
-        Self {
-            x: self.x + other.x,
-            y: self.y + other.y,
-        }
+        Self::new(self.x + other.x, self.y + other.y)
     }
 
     pub(crate) fn minus(self, other: Self) -> Self {
-        Self {
-            x: self.x - other.x,
-            y: self.y - other.y,
-        }
+        Self::new(self.x - other.x, self.y - other.y)
     }
 
     pub(crate) fn dot(self, other: Self) -> Jet {
@@ -170,10 +158,7 @@ impl JetVector {
 
     /// Turned by +90°.
     pub(crate) fn normal(self) -> Self {
-        Self {
-            x: -self.y,
-            y: self.x,
-        }
+        Self::new(-self.y, self.x)
     }
 
     pub(crate) fn length(self) -> Jet {

@@ -37,12 +37,9 @@ pub(super) fn add_largest(to: &mut Differences, printed: &str, summary: &Value, 
             let mut lines = printed.lines().map(str::trim_start);
             lines.any(|line| starts.iter().any(|start| line.starts_with(start)))
         });
-        to.add(0.0, 1.0, "", String::new);
-        if !is_said {
-            to.fail(format!(
-                "`{command}` does not say where {largest} {unit}, the largest of its unit, is reached"
-            ));
-        }
+        to.require(is_said, || {
+            format!("`{command}` does not say where {largest} {unit}, the largest of its unit, is reached")
+        });
     }
 }
 

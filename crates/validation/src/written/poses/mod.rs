@@ -10,7 +10,7 @@
 
 pub(crate) mod angle_table;
 pub(crate) mod closure;
-pub(super) mod compared;
+pub(crate) mod compared;
 mod contents_files;
 mod contents_motions;
 mod described_again;
@@ -48,7 +48,7 @@ pub(crate) mod scene_text;
 mod section_files;
 mod sections;
 pub(crate) mod stated;
-pub(super) mod table_curve;
+pub(crate) mod table_curve;
 mod table_file;
 pub(super) mod totals;
 mod unit_files;
@@ -59,4 +59,4 @@ pub(super) mod wrenches;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use positions::findings;
+pub(super) use positions::compare;

@@ -5,9 +5,12 @@ use super::jet::{Jet, JetVector};
 use super::reading::{Body, Measure, Place, Reading};
 use super::rows::Rows;
 
-/// The motion of all bodies in one row.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Motion {
+/// The motion of all bodies in one row of a file.
+#[derive(Debug, Clone)]
+pub(crate) struct Motion<'a> {
+    pub(crate) reading: &'a Reading,
+    pub(crate) rows: &'a Rows,
+    pub(crate) row: usize,
     pub(crate) bodies: Vec<Frame>,
 }
 
@@ -18,37 +21,53 @@ pub(crate) struct Frame {
     pub(crate) angle: Jet,
 }
 
-impl Motion {
+impl<'a> Motion<'a> {
     /// The motion in a row; none where a column is missing. A file without velocities is one of rest.
-    pub(crate) fn new(reading: &Reading, rows: &Rows, row: usize) -> Option<Self> {
+    pub(crate) fn new(reading: &'a Reading, rows: &'a Rows, row: usize) -> Option<Self> {
         let frame = |body: &Body| {
             if body.is_ground {
-                let origin = JetVector::constant([0.0; 2]);
                 return Some(Frame {
-                    origin,
+                    origin: JetVector::constant([0.0; 2]),
                     angle: Jet::constant(0.0),
                 });
             }
-            let angle = rows.jet(
-                row,
-                &body.name,
-                [".angle", ".angular_velocity", ".angular_acceleration"],
-            )?;
+            let ends = [".angle", ".angular_velocity", ".angular_acceleration"];
+            let angle = rows.jet(row, &body.name, ends)?;
             let (point, at) = body.points.first()?;
             let point = point_in(rows, row, &body.name, point)?;
             let origin = point.minus(JetVector::rotated(*at, angle));
             Some(Frame { origin, angle })
         };
         let bodies = reading.bodies.iter().map(frame).collect::<Option<_>>()?;
-        Some(Self { bodies })
+        Some(Self {
+            reading,
+            rows,
+            row,
+            bodies,
+        })
+    }
+
+    /// The motions in all rows; none where a column is missing.
+    pub(crate) fn of_all(reading: &'a Reading, rows: &'a Rows) -> Option<Vec<Self>> {
+        (0..rows.count)
+            .map(|row| Self::new(reading, rows, row))
+            .collect()
+    }
+
+    /// A number of the row.
+    pub(crate) fn get(&self, name: &str) -> Option<f64> {
+        self.rows.get(self.row, name)
+    }
+
+    /// The variable of the row.
+    pub(crate) fn time(&self) -> f64 {
+        self.rows.time(self.row)
     }
 
     /// The point of a body.
     pub(crate) fn point(&self, place: Place) -> JetVector {
-        let frame = self.bodies[place.body];
-        frame
-            .origin
-            .plus(JetVector::rotated(place.point, frame.angle))
+        let Frame { origin, angle } = self.bodies[place.body];
+        origin.plus(JetVector::rotated(place.point, angle))
     }
 
     /// A direction of a body.
@@ -79,33 +98,27 @@ impl Motion {
 
     /// The same positions without velocities and accelerations.
     pub(crate) fn at_rest(&self) -> Self {
-        let still = |jet: Jet| Jet::constant(jet.value());
         let frame = |frame: &Frame| Frame {
-            origin: JetVector {
-                x: still(frame.origin.x),
-                y: still(frame.origin.y),
-            },
-            angle: still(frame.angle),
+            origin: JetVector::constant(frame.origin.order(0)),
+            angle: Jet::constant(frame.angle.value()),
         };
         Self {
             bodies: self.bodies.iter().map(frame).collect(),
+            ..*self
         }
     }
 
     /// The centre of mass of a body.
-    pub(crate) fn center(&self, reading: &Reading, body: usize) -> JetVector {
-        self.point(Place {
-            body,
-            point: reading.bodies[body].center,
-        })
+    pub(crate) fn center(&self, body: usize) -> JetVector {
+        let point = self.reading.bodies[body].center;
+        self.point(Place { body, point })
     }
 }
 
 /// A point as written.
 pub(crate) fn point_in(rows: &Rows, row: usize, body: &str, point: &str) -> Option<JetVector> {
     let prefix = format!("{body}.{point}");
-    Some(JetVector {
-        x: rows.jet(row, &prefix, [".x", ".vx", ".ax"])?,
-        y: rows.jet(row, &prefix, [".y", ".vy", ".ay"])?,
-    })
+    let x = rows.jet(row, &prefix, [".x", ".vx", ".ax"])?;
+    let y = rows.jet(row, &prefix, [".y", ".vy", ".ay"])?;
+    Some(JetVector::new(x, y))
 }

@@ -3,6 +3,7 @@
 
 use super::law::number;
 use super::reading::{JointKind, Measure, Reading};
+use super::scene_text::value_of;
 use super::units::{ANGLES, LENGTHS, MASSES, Units};
 use toml::{Table, Value};
 
@@ -46,12 +47,9 @@ pub(crate) fn in_other_units(scene: &Table, reading: &Reading, system: usize) ->
         ("inertia", &inertia.0),
         ("angle", angle.0),
     ];
-    let units = names.map(|(key, name)| (key.to_owned(), Value::String(name.to_owned())));
+    let units = value_of(names.map(|(key, name)| (key, name.into())));
     let mut changed = scene.clone();
-    changed.insert(
-        "units".to_owned(),
-        Value::Table(units.into_iter().collect()),
-    );
+    changed.insert("units".to_owned(), units);
     factors.convert(&mut changed, reading);
     (changed, names.map(|(_, name)| name).join(", "))
 }
@@ -89,14 +87,20 @@ fn tables<'a>(
 
 impl Factors {
     fn of(&self, measure: Measure) -> f64 {
-        match measure {
-            Measure::Angle(_) => self.angle,
-            Measure::Travel(..) | Measure::Length(_) => self.length,
+        match measure.is_angle() {
+            true => self.angle,
+            false => self.length,
         }
     }
 
     fn of_name(&self, reading: &Reading, name: &str) -> Option<f64> {
         Some(self.of(reading.coordinate(name)?.measure))
+    }
+
+    /// Of the coordinate that an entry names under a key.
+    fn of_named(&self, reading: &Reading, entry: &Table, key: &str) -> f64 {
+        let name = entry.get(key).and_then(Value::as_str).unwrap_or("");
+        self.of_name(reading, name).unwrap_or(1.0)
     }
 
     fn convert(&self, scene: &mut Table, reading: &Reading) {
@@ -132,16 +136,14 @@ impl Factors {
         }
         let is_pin = |name: &str| {
             let of_pin = format!("{name}-");
+            let is_named = |of: &str| of == name || of.starts_with(&of_pin);
             let mut joints = reading.joints.iter();
-            joints.any(|j| {
-                j.kind == JointKind::Revolute && (j.name == name || j.name.starts_with(&of_pin))
-            })
+            joints.any(|j| j.kind == JointKind::Revolute && is_named(&j.name))
         };
         for (name, friction) in tables(scene, "friction") {
-            let speed = if is_pin(&name) {
-                self.angle
-            } else {
-                self.length
+            let speed = match is_pin(&name) {
+                true => self.angle,
+                false => self.length,
             };
             scale(friction.get_mut("radius"), self.length);
             scale(friction.get_mut("guide-length"), self.length);
@@ -223,20 +225,15 @@ impl Factors {
     }
 
     fn convert_sweep(&self, scene: &mut Table, reading: &Reading) {
-        let Some(sweep) = scene
-            .get_mut("coordinate-sweep")
-            .and_then(Value::as_table_mut)
-        else {
+        let sweep = scene.get_mut("coordinate-sweep");
+        let Some(sweep) = sweep.and_then(Value::as_table_mut) else {
             return;
         };
-        let swept = sweep
-            .iter()
-            .find(|(_, value)| value.is_array())
-            .map(|(name, _)| name.clone());
-        let swept = swept.or_else(|| reading.coordinates.first().map(|c| c.name.clone()));
-        let speed = swept
-            .and_then(|name| self.of_name(reading, &name))
-            .unwrap_or(1.0);
+        let swept = sweep.iter().find(|(_, value)| value.is_array());
+        let swept = swept.map(|(name, _)| name.as_str());
+        let swept = swept.or_else(|| reading.coordinates.first().map(|c| c.name.as_str()));
+        let speed = swept.and_then(|name| self.of_name(reading, name));
+        let speed = speed.unwrap_or(1.0);
         for (name, value) in sweep.iter_mut() {
             if name == "speed" {
                 scale(Some(value), speed);
@@ -249,12 +246,7 @@ impl Factors {
     /// Free motions, their drives and stops.
     fn convert_motion(&self, scene: &mut Table, reading: &Reading) {
         for (_, stop) in tables(scene, "stops") {
-            let name = stop
-                .get("coordinate")
-                .and_then(Value::as_str)
-                .unwrap_or("")
-                .to_owned();
-            let factor = self.of_name(reading, &name).unwrap_or(1.0);
+            let factor = self.of_named(reading, stop, "coordinate");
             for key in ["min", "max"] {
                 scale(stop.get_mut(key), factor);
             }
@@ -262,12 +254,7 @@ impl Factors {
         for (_, drive) in tables(scene, "drives") {
             scale(drive.get_mut("no-load-speed"), self.angle);
             scale(drive.get_mut("inertia"), self.inertia);
-            let name = drive
-                .get("speed-controller")
-                .and_then(Value::as_str)
-                .unwrap_or("")
-                .to_owned();
-            let factor = self.of_name(reading, &name).unwrap_or(1.0);
+            let factor = self.of_named(reading, drive, "speed-controller");
             match drive.get_mut("speed") {
                 Some(Value::Table(table)) => scale_rows(table.get_mut("table"), [1.0, factor]),
                 speed => scale(speed, factor),
@@ -276,10 +263,8 @@ impl Factors {
         let Some(motion) = scene.get_mut("motion").and_then(Value::as_table_mut) else {
             return;
         };
-        let first = reading
-            .coordinates
-            .first()
-            .map_or(1.0, |c| self.of(c.measure));
+        let first = reading.coordinates.first();
+        let first = first.map_or(1.0, |c| self.of(c.measure));
         for key in ["initial-coordinate", "initial-velocity"] {
             match motion.get_mut(key) {
                 Some(Value::Table(table)) => {
@@ -295,15 +280,8 @@ impl Factors {
             self.convert_law(law, [1.0, factor]);
         }
         for (_, event) in tables(motion, "events") {
-            let name = event
-                .get("reaches")
-                .and_then(Value::as_str)
-                .unwrap_or("")
-                .to_owned();
-            scale(
-                event.get_mut("value"),
-                self.of_name(reading, &name).unwrap_or(1.0),
-            );
+            let factor = self.of_named(reading, event, "reaches");
+            scale(event.get_mut("value"), factor);
         }
     }
 }

@@ -4,7 +4,8 @@ use super::difference::Differences;
 use super::drawn_laws::DrawnMotion;
 use super::jet::Jet;
 use super::program::Program;
-use super::scene_text::text_of;
+use super::rows::extent;
+use super::scene_text::{table_of, text_of};
 use super::table_curve::TableCurve;
 use toml::{Table, Value};
 
@@ -24,10 +25,7 @@ pub(super) fn warning_differences(
     program: &Program,
     motion: &DrawnMotion,
 ) -> Result<Differences, String> {
-    let mut scene: Table = motion
-        .text
-        .parse()
-        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let mut scene = table_of(&motion.text)?;
     let mut all = Differences::default();
     let Some(coordinate) = motion.reading.coordinates.first() else {
         return Ok(all);
@@ -43,7 +41,7 @@ pub(super) fn warning_differences(
     let expected = TableCurve::read(law, "spline", [1.0, unit]).and_then(|curve| overshoot(&curve));
     let name = format!("{}-abrupt", motion.name);
     let run = program.run(&name, &text_of(&scene)?, &["kinematics", "--points", "7"]);
-    let printed = printed(&run.map_err(|e| e.to_string())?.messages);
+    let printed = printed(&run?.messages);
     let expected: Vec<Overshoot> = expected
         .filter(|o| o[0] > 100.0 * WARNED_FROM)
         .into_iter()
@@ -82,9 +80,12 @@ pub(super) fn warning_count(scene: &Table, messages: &str) -> Differences {
     let mut expected = 0;
     count(scene, "spline", &mut expected);
     let found = printed(messages).len();
-    all.add(found as f64 - expected as f64, 1.0, "", || {
-        "warnings of splines in `check`".to_owned()
-    });
+    all.add(
+        found as f64 - expected as f64,
+        1.0,
+        "",
+        || "warnings of splines in `check`",
+    );
     all
 }
 
@@ -121,9 +122,7 @@ fn make_abrupt(law: &mut Table) -> Option<()> {
 /// Where a spline goes farthest beyond the range of its points; none where it stays within.
 fn overshoot(curve: &TableCurve) -> Option<Overshoot> {
     let points = curve.points();
-    let values = points.iter().map(|p| p[1]);
-    let low = values.clone().fold(f64::INFINITY, f64::min);
-    let high = values.fold(f64::NEG_INFINITY, f64::max);
+    let [low, high] = extent(points.iter().map(|p| &p[1]));
     let at = |x: f64| curve.at(Jet([x, 1.0, 0.0])).map(|jet| jet.0);
     let mut farthest: Option<Overshoot> = None;
     for piece in points.windows(2) {

@@ -107,13 +107,16 @@ impl Formula<'_> {
         Some(product)
     }
 
+    /// A sum, and the text behind it.
+    fn sum_before(&mut self, end: &str) -> Option<f64> {
+        let sum = self.sum()?;
+        self.takes(end).then_some(sum)
+    }
+
     fn factor(&mut self) -> Option<f64> {
         let base = self.base()?;
         match self.takes("^{") {
-            true => {
-                let exponent = self.sum()?;
-                self.takes("}").then(|| base.powf(exponent))
-            }
+            true => self.sum_before("}").map(|exponent| base.powf(exponent)),
             false => Some(base),
         }
     }
@@ -129,34 +132,21 @@ impl Formula<'_> {
             }
         }
         if self.takes("\\frac{") {
-            let above = self.sum()?;
-            let below = if self.takes("}{") {
-                self.sum()?
-            } else {
-                return None;
-            };
-            return self.takes("}").then_some(above / below);
+            let above = self.sum_before("}{")?;
+            return self.sum_before("}").map(|below| above / below);
         }
         if self.takes("\\sqrt{") {
-            let root = self.sum()?.sqrt();
-            return self.takes("}").then_some(root);
+            return self.sum_before("}").map(f64::sqrt);
         }
         if self.takes("\\operatorname{atan2}\\left(") {
-            let y = self.sum()?;
-            let x = if self.takes(",") {
-                self.sum()?
-            } else {
-                return None;
-            };
-            return self.takes("\\right)").then(|| y.atan2(x));
+            let y = self.sum_before(",")?;
+            return self.sum_before("\\right)").map(|x| y.atan2(x));
         }
         if self.takes("\\left(") {
-            let inner = self.sum()?;
-            return self.takes("\\right)").then_some(inner);
+            return self.sum_before("\\right)");
         }
         if self.takes("{") {
-            let inner = self.sum()?;
-            return self.takes("}").then_some(inner);
+            return self.sum_before("}");
         }
         self.number().or_else(|| self.name())
     }

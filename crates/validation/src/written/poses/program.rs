@@ -3,7 +3,6 @@
 use super::read_files::{add_parquet_rows, csv_rows, npz_rows, sqlite_rows};
 use super::rows::Rows;
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -24,25 +23,23 @@ pub(crate) struct Run {
 }
 
 impl Program {
-    /// The program at a path, with a new folder for a case.
-    pub(crate) fn new(path: &Path, case: &str) -> io::Result<Self> {
-        let folder =
-            std::env::temp_dir().join(format!("dwell-written-{}-{case}", std::process::id()));
-        fs::create_dir_all(&folder)?;
-        Ok(Self {
+    /// The program at a path, with a folder for a case.
+    pub(crate) fn new(path: &Path, case: &str) -> Self {
+        let folder = format!("dwell-written-{}-{case}", std::process::id());
+        Self {
             path: path.to_owned(),
-            folder,
-        })
+            folder: std::env::temp_dir().join(folder),
+        }
     }
 
-    /// Runs a command on a scene under a name; the files go to the folder of that name.
-    pub(crate) fn run(&self, name: &str, scene: &str, arguments: &[&str]) -> io::Result<Run> {
+    /// Runs a command on a scene under a name; the files go to the folder of that name. Why it cannot, in words.
+    pub(crate) fn run(&self, name: &str, scene: &str, arguments: &[&str]) -> Result<Run, String> {
         // A name of the scene may hold what separates folders.
         let name = name.replace(['/', '\\'], "_");
         let folder = self.folder.join(&name);
-        fs::create_dir_all(&folder)?;
+        fs::create_dir_all(&folder).map_err(|e| format!("no folder for the files: {e}"))?;
         let file = self.folder.join(format!("{name}.toml"));
-        fs::write(&file, scene)?;
+        fs::write(&file, scene).map_err(|e| e.to_string())?;
         let (command, options) = arguments.split_first().unwrap_or((&"check", &[]));
         let mut process = Command::new(&self.path);
         process
@@ -55,16 +52,16 @@ impl Program {
             process.args(["--pictures", "none"]);
         }
         // A process of each case is enough: cases run at once.
-        let output = process.env("RAYON_NUM_THREADS", "1").output()?;
+        let output = process.env("RAYON_NUM_THREADS", "1").output();
+        let output = output.map_err(|e| e.to_string())?;
         let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
         // With status 1 there are results with a reservation; otherwise none.
         if !matches!(output.status.code(), Some(0 | 1)) {
-            let message = format!(
+            return Err(format!(
                 "`{command}` of {name} ended with {}: {}",
                 output.status,
                 text(&output.stderr).trim()
-            );
-            return Err(io::Error::other(message));
+            ));
         }
         Ok(Run {
             printed: text(&output.stdout),
@@ -83,11 +80,19 @@ impl Drop for Program {
 }
 
 impl Run {
+    /// Where the file or folder `NAME-END` is.
+    fn path(&self, end: &str) -> PathBuf {
+        self.folder.join(format!("{}{end}", self.name))
+    }
+
+    /// Why a file cannot be read.
+    fn fault(&self, end: &str, why: &dyn std::fmt::Display) -> String {
+        format!("{}{end}: {why}; {}", self.name, self.messages.trim())
+    }
+
     /// The text of a file `NAME-END`; why it cannot be read.
     pub(crate) fn text(&self, end: &str) -> Result<String, String> {
-        let file = format!("{}{end}", self.name);
-        fs::read_to_string(self.folder.join(&file))
-            .map_err(|e| format!("{file}: {e}; {}", self.messages.trim()))
+        fs::read_to_string(self.path(end)).map_err(|e| self.fault(end, &e))
     }
 
     /// The columns of a CSV file.
@@ -98,30 +103,25 @@ impl Run {
 
     /// The columns of an NPZ file.
     pub(crate) fn npz(&self, end: &str) -> Result<Rows, String> {
-        let file = format!("{}{end}", self.name);
-        let bytes = fs::read(self.folder.join(&file))
-            .map_err(|e| format!("{file}: {e}; {}", self.messages.trim()))?;
-        npz_rows(&bytes).ok_or_else(|| format!("{file} is no archive of arrays"))
+        let bytes = fs::read(self.path(end)).map_err(|e| self.fault(end, &e))?;
+        npz_rows(&bytes).ok_or_else(|| format!("{}{end} is no archive of arrays", self.name))
     }
 
     /// The columns of numbers of a table of an SQLite file; the units in brackets are not part of the names.
     pub(crate) fn sqlite(&self, end: &str, table: &str) -> Result<Rows, String> {
-        let file = format!("{}{end}", self.name);
-        sqlite_rows(&self.folder.join(&file), table).map_err(|e| format!("{file}: {e}"))
+        sqlite_rows(&self.path(end), table).map_err(|e| format!("{}{end}: {e}", self.name))
     }
 
     /// The columns of numbers of the Parquet files in a folder.
     pub(crate) fn parquet(&self, end: &str) -> Result<Rows, String> {
-        let folder = format!("{}{end}", self.name);
-        let fault = |e: &dyn std::fmt::Display| format!("{folder}: {e}; {}", self.messages.trim());
-        let entries = fs::read_dir(self.folder.join(&folder)).map_err(|e| fault(&e))?;
+        let entries = fs::read_dir(self.path(end)).map_err(|e| self.fault(end, &e))?;
         let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
         let is_part = |path: &PathBuf| path.extension().is_some_and(|end| end == "parquet");
         let mut parts: Vec<PathBuf> = paths.filter(is_part).collect();
         parts.sort();
         let mut rows = Rows::default();
         for part in parts {
-            add_parquet_rows(&part, &mut rows).map_err(|e| fault(&e))?;
+            add_parquet_rows(&part, &mut rows).map_err(|e| self.fault(end, &e))?;
         }
         Ok(rows)
     }

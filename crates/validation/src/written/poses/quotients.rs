@@ -4,7 +4,7 @@
 use super::difference::Differences;
 use super::motion::Motion;
 use super::reading::{Joint, JointKind, Place, Reading};
-use super::rows::Rows;
+use super::rows::{Rows, largest};
 use std::f64::consts::PI;
 
 /// Every such column of a file.
@@ -13,14 +13,15 @@ pub(crate) fn quotient_differences(reading: &Reading, rows: &Rows, file: &str) -
     for joint in &reading.joints {
         let name = format!("{}.transmission_angle", joint.name);
         if let (Some(values), Some(ends)) = (rows.columns.get(&name), links(reading, joint)) {
-            for (row, value) in values.iter().enumerate() {
-                let expected =
-                    Motion::new(reading, rows, row).map(|motion| angle(&motion, joint, ends));
-                let difference = value - expected.unwrap_or(f64::NAN);
-                all.add(difference, PI, "rad", || {
-                    format!("{file}, row {row}, {name}")
-                });
-            }
+            let expected = |row: usize| {
+                let motion = Motion::new(reading, rows, row);
+                motion.map_or(f64::NAN, |motion| angle(&motion, joint, ends))
+            };
+            let differences = values.iter().enumerate();
+            let differences = differences.map(|(row, value)| value - expected(row));
+            all.add_rows(differences, PI, "rad", |row| {
+                format!("{file}, row {row}, {name}")
+            });
         }
     }
     all
@@ -44,15 +45,14 @@ fn velocity_ratios(reading: &Reading, rows: &Rows, file: &str) -> Differences {
         let Some(velocities) = columns.into_iter().flatten().next() else {
             continue;
         };
-        let size = |of: &[f64]| of.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
         // Where a body does not turn, its velocity is compared with that of the others' rounding.
-        let scale = size(velocities).max(1e-3 * size(speeds));
-        for (row, ratio) in ratios.iter().enumerate() {
-            let difference = ratio * speeds[row] - velocities[row];
-            all.add(difference, scale, "", || {
-                format!("{file}, row {row}, {name}")
-            });
-        }
+        let scale = largest(velocities).max(1e-3 * largest(speeds));
+        let velocities = velocities.iter().zip(speeds);
+        let pairs = ratios.iter().zip(velocities);
+        let differences = pairs.map(|(ratio, (velocity, speed))| ratio * speed - velocity);
+        all.add_rows(differences, scale, "", |row| {
+            format!("{file}, row {row}, {name}")
+        });
     }
     all
 }
@@ -75,7 +75,7 @@ fn links(reading: &Reading, pin: &Joint) -> Option<[Place; 2]> {
 }
 
 /// The angle between the lines from the pin to the others, from 0 to π rad.
-fn angle(motion: &Motion, pin: &Joint, ends: [Place; 2]) -> f64 {
+fn angle(motion: &Motion<'_>, pin: &Joint, ends: [Place; 2]) -> f64 {
     let line = |k: usize| {
         let [from, to] = [motion.point(pin.places[k]), motion.point(ends[k])];
         [to.x.value() - from.x.value(), to.y.value() - from.y.value()]

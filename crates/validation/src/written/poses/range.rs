@@ -2,6 +2,7 @@
 
 use super::difference::Differences;
 use super::rows::Rows;
+use super::stated::result;
 use serde_json::Value;
 
 /// The part of the range that is left out at each limit position.
@@ -14,16 +15,15 @@ pub(crate) fn range_differences(
     coordinate: &str,
 ) -> Differences {
     let mut to = Differences::default();
-    let limit = |end: &str| contents["results"][format!("range.{end}")]["value"].as_f64();
+    let limit = |end: &str| result(contents, &format!("range.{end}"));
     // Elsewhere the range is how far was searched.
     let is_limited = said.contains("limit positions at both ends")
         || said.matches("limit position of ").count() >= 2;
     let (Some(lower), Some(upper), true) = (limit("lower"), limit("upper"), is_limited) else {
         return to;
     };
-    let column = rows.columns.get(coordinate);
-    let ends = column.and_then(|values| values.first().zip(values.last()));
-    let Some((first, last)) = ends else {
+    let column = rows.column(coordinate);
+    let (Some(first), Some(last)) = (column.first(), column.last()) else {
         to.fail(format!("`reduce` has no row of {coordinate}"));
         return to;
     };

@@ -2,7 +2,9 @@
 //! of Hermite, whose error is estimated from twice the interval.
 
 use super::difference::Differences;
-use super::rows::Rows;
+use super::positions::corners;
+use super::reading::Reading;
+use super::rows::{Rows, largest};
 
 /// Endings of a value, its rate and the rate of that.
 const RATES: [[&str; 3]; 5] = [
@@ -16,17 +18,18 @@ const RATES: [[&str; 3]; 5] = [
 const ERROR_FACTOR: f64 = 4.0;
 
 /// Differences between rows, in time; rows next to which a rate jumps (the corners of laws) are left out.
-pub(crate) fn rates(rows: &Rows, time: &[f64], corners: &[f64], file: &str) -> Differences {
+/// None of a file without a time.
+pub(crate) fn rates(reading: &Reading, rows: &Rows, file: &str) -> Differences {
     let mut all = Differences::default();
+    let Some(time) = rows.columns.get("t") else {
+        return all;
+    };
+    let corners = &corners(reading);
     // Points and travels have one scale, and so have all angles.
     for kinds in [&RATES[..1], &RATES[1..2], &RATES[2..]] {
         let mut found = Vec::new();
         for [value, rate, second] in kinds {
-            for (name, values) in rows
-                .columns
-                .iter()
-                .filter(|(name, _)| name.ends_with(value))
-            {
+            for (name, values) in rows.ending(value) {
                 let Some(stem) = name.strip_suffix(value) else {
                     continue;
                 };
@@ -36,34 +39,17 @@ pub(crate) fn rates(rows: &Rows, time: &[f64], corners: &[f64], file: &str) -> D
                 }
             }
         }
-        let duration = time
-            .last()
-            .zip(time.first())
-            .map_or(0.0, |(last, first)| last - first);
-        let of = |k: usize| {
-            found
-                .iter()
-                .map(|(_, columns)| largest(columns[k]))
-                .fold(0.0, f64::max)
-        };
+        let ends = time.last().zip(time.first());
+        let duration = ends.map_or(0.0, |(last, first)| last - first);
+        let of = |k: usize| largest(found.iter().flat_map(|(_, columns)| columns[k]));
         let scales =
             [of(0).max(of(1) * duration), of(1).max(of(2) * duration)].map(|s| s / duration);
         for (name, columns) in found {
-            compare(
-                &mut all,
-                columns,
-                time,
-                scales,
-                corners,
-                &format!("{file}, {name}"),
-            );
+            let what = format!("{file}, {name}");
+            compare(&mut all, columns, time, scales, corners, &what);
         }
     }
     all
-}
-
-fn largest(values: &[f64]) -> f64 {
-    values.iter().fold(0.0, |max: f64, v| max.max(v.abs()))
 }
 
 /// y₂ − y₀ by y′ at three rows and y″ at the ends, and y′ by y″ alone at three rows (Simpson).

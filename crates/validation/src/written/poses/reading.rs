@@ -4,6 +4,7 @@
 use super::angle_table::AngleTable;
 use super::expression::Expression;
 use super::law::{Law, LawUnits, number};
+use super::scene_text::table_of;
 use super::table_curve::TableCurve;
 use super::units::Units;
 use toml::{Table, Value};
@@ -71,6 +72,8 @@ pub(crate) struct Joint {
     pub(crate) kind: JointKind,
     /// Of a coupling both are the origin of the ground.
     pub(crate) places: [Place; 2],
+    /// Of teeth, rad; zero of all others.
+    pub(crate) pressure_angle: f64,
 }
 
 /// The kind of a joint, lengths in m and angles in rad.
@@ -89,12 +92,10 @@ pub(crate) enum JointKind {
     Gear {
         radii: [f64; 2],
         is_internal: bool,
-        pressure_angle: f64,
     },
     Rack {
         axis: [f64; 2],
         radius: f64,
-        pressure_angle: f64,
     },
     Rolling {
         axis: [f64; 2],
@@ -121,6 +122,13 @@ pub(crate) enum Measure {
     Length([Place; 2]),
 }
 
+impl Measure {
+    /// Whether it measures an angle.
+    pub(crate) fn is_angle(self) -> bool {
+        matches!(self, Self::Angle(_))
+    }
+}
+
 /// A named coordinate.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Coordinate {
@@ -145,37 +153,21 @@ pub(crate) enum LoadKind {
         in_body: bool,
         magnitude: Magnitude,
     },
-    Torque {
-        bodies: [usize; 2],
-        magnitude: Magnitude,
-    },
-    PointToPoint {
-        places: [Place; 2],
-        magnitude: Magnitude,
-    },
-    SlideForce {
-        places: [Place; 2],
-        axis: [f64; 2],
-        magnitude: Magnitude,
-    },
+    /// Along a coordinate, of its first body on its second: positive where it makes the coordinate grow.
+    Along(Measure, Source),
+}
+
+/// What the force or moment along a coordinate follows.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Source {
+    Given(Magnitude),
+    /// Stiffness, and the length or angle without a force.
     Spring {
-        places: [Place; 2],
         stiffness: Magnitude,
-        free_length: f64,
+        free: f64,
     },
-    TorsionSpring {
-        bodies: [usize; 2],
-        stiffness: Magnitude,
-        free_angle: f64,
-    },
-    Damper {
-        places: [Place; 2],
-        damping: Magnitude,
-    },
-    RotationalDamper {
-        bodies: [usize; 2],
-        damping: Magnitude,
-    },
+    /// By its damping.
+    Damper(Magnitude),
 }
 
 /// A magnitude in SI units.
@@ -225,9 +217,7 @@ pub(crate) fn entries<'a>(
 impl Reading {
     /// Reads a scene; why it cannot, in words.
     pub(crate) fn new(text: &str) -> Result<Self, String> {
-        let scene: Table = text
-            .parse()
-            .map_err(|e| format!("the scene is no TOML: {e}"))?;
+        let scene = table_of(text)?;
         let units = Units::read(&scene).ok_or("unknown units")?;
         let mut reading = Self {
             units,
@@ -339,11 +329,16 @@ impl Reading {
         self.coordinates.iter().find(|c| c.name == name)
     }
 
+    /// The coordinates that are driven.
+    pub(crate) fn actuators(&self) -> &[Coordinate] {
+        &self.coordinates[..self.actuator_count]
+    }
+
     /// The unit of a coordinate in the scene, in SI units.
     pub(crate) fn unit_of(&self, measure: Measure) -> f64 {
-        match measure {
-            Measure::Angle(_) => self.units.angle,
-            Measure::Travel(..) | Measure::Length(_) => self.units.length,
+        match measure.is_angle() {
+            true => self.units.angle,
+            false => self.units.length,
         }
     }
 
@@ -382,6 +377,7 @@ impl Reading {
                 name: name.clone(),
                 kind,
                 places,
+                pressure_angle: 0.0,
             });
         }
         Ok(())
@@ -441,12 +437,10 @@ impl Reading {
                     .get("internal")
                     .and_then(Value::as_bool)
                     .unwrap_or(false),
-                pressure_angle: angle("pressure-angle"),
             },
             "rack" => JointKind::Rack {
                 axis: axis()?,
                 radius: length("radius")?,
-                pressure_angle: angle("pressure-angle"),
             },
             "rolling" => JointKind::Rolling {
                 axis: axis()?,
@@ -464,6 +458,7 @@ impl Reading {
             },
             kind: kind.clone(),
             places: [places[0], *second],
+            pressure_angle: angle("pressure-angle"),
         };
         (places.len() >= 2).then(|| places[1..].iter().map(joint).collect())
     }

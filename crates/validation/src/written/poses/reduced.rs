@@ -2,10 +2,10 @@
 //! positions as `runs` writes it (unit speed, no acceleration), by the equations of every body and by the rows' own slope.
 
 use super::difference::Differences;
-use super::equilibrium::{ForceColumns, add_residuals, body_residuals, written_joint_wrenches};
+use super::equilibrium::{add_residuals, body_residuals, written_joint_wrenches};
 use super::motion::Motion;
-use super::reading::{JointKind, Load, LoadKind, Magnitude, Reading};
-use super::rows::Rows;
+use super::reading::{Load, LoadKind, Magnitude, Reading, Source};
+use super::rows::{Rows, largest};
 use super::wrenches::Wrench;
 
 /// Differences of a file of `reduce`.
@@ -39,19 +39,19 @@ pub(crate) fn reduced(reading: &Reading, files: &ReducedFiles<'_>, coordinate: &
         ));
         return found;
     }
-    let motions: Option<Vec<Motion>> = (0..run.count)
-        .map(|row| Motion::new(reading, run, row))
-        .collect();
-    let Some(motions) = motions else {
-        found
-            .sums
-            .fail("a column of a body is missing in the run".to_owned());
+    let Some(mut motions) = Motion::of_all(reading, run) else {
+        let reason = "a column of a body is missing in the run";
+        found.sums.fail(reason);
         return found;
     };
+    // At the same positions all other columns are those of `reduce`.
+    for motion in &mut motions {
+        motion.rows = rows;
+    }
     add_positions(&mut found.sums, rows, run, coordinate);
     let run_ii = (!differs(rows, files.run_ii, coordinate)).then_some(files.run_ii);
     add_sums(&mut found.sums, reading, rows, &motions);
-    add_bodies(&mut found.bodies, reading, rows, &motions);
+    add_bodies(&mut found.bodies, reading, &motions);
     add_slopes(&mut found.slopes, reading, rows, &motions, coordinate);
     add_runs(&mut found.runs, [rows, run], run_ii, coordinate);
     found
@@ -103,11 +103,11 @@ fn add_column(
     }
 }
 
-fn add_sums(to: &mut Differences, reading: &Reading, rows: &Rows, motions: &[Motion]) {
-    let inertia = |motion: &Motion, orders: [usize; 2]| {
+fn add_sums(to: &mut Differences, reading: &Reading, rows: &Rows, motions: &[Motion<'_>]) {
+    let inertia = |motion: &Motion<'_>, orders: [usize; 2]| {
         let bodies = reading.bodies.iter().enumerate();
         let terms = bodies.map(|(b, body)| {
-            let center = motion.center(reading, b);
+            let center = motion.center(b);
             let [[ux, uy], [vx, vy]] = orders.map(|k| center.order(k));
             let angle = motion.bodies[b].angle.0;
             let moment = match orders[1] {
@@ -120,18 +120,14 @@ fn add_sums(to: &mut Differences, reading: &Reading, rows: &Rows, motions: &[Mot
         });
         terms.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d])
     };
-    let all = |orders: [usize; 2]| {
-        motions
-            .iter()
-            .map(|m| inertia(m, orders))
-            .collect::<Vec<_>>()
-    };
-    add_column(to, rows, "m", &all([1, 1]), "kg m2");
-    add_column(to, rows, "half_dm", &all([1, 2]), "kg m2");
+    for (name, orders) in [("m", [1, 1]), ("half_dm", [1, 2])] {
+        let all: Vec<[f64; 2]> = motions.iter().map(|m| inertia(m, orders)).collect();
+        add_column(to, rows, name, &all, "kg m2");
+    }
     add_known_coefficients(to, reading, rows, motions);
     for load in &reading.loads {
-        let power = |motion: &Motion| {
-            let powers = load.coefficient_wrenches(reading, motion);
+        let power = |motion: &Motion<'_>| {
+            let powers = load.coefficient_wrenches(motion);
             let powers = powers.iter().map(|w| w.power(motion));
             powers.fold([0.0; 2], |[a, b], p| [a + p, b + p.abs()])
         };
@@ -145,11 +141,11 @@ fn add_known_coefficients(
     to: &mut Differences,
     reading: &Reading,
     rows: &Rows,
-    motions: &[Motion],
+    motions: &[Motion<'_>],
 ) {
     for (b, body) in reading.bodies.iter().enumerate() {
         let Some(table) = &body.varying else { continue };
-        let at = |motion: &Motion| {
+        let at = |motion: &Motion<'_>| {
             let [angle, ratio, second] = motion.bodies[b].angle.0;
             let found = table.reactions_at(angle, [ratio, second]).into_iter();
             found.map(|r| [r.a * ratio, r.value]).collect()
@@ -167,95 +163,64 @@ fn add_known_coefficients(
 
 impl Load {
     /// Its forces for a coefficient of 1: a force of 1 N, or a stiffness of 1 N/m.
-    fn coefficient_wrenches(&self, reading: &Reading, motion: &Motion) -> Vec<Wrench> {
+    fn coefficient_wrenches(&self, motion: &Motion<'_>) -> Vec<Wrench> {
         let factor = match &self.kind {
-            LoadKind::Spring {
-                places,
-                free_length,
-                ..
-            } => free_length - motion.gap(*places).length().value(),
-            LoadKind::TorsionSpring {
-                bodies, free_angle, ..
-            } => free_angle - motion.relative_angle(*bodies).value(),
+            LoadKind::Along(measure, Source::Spring { free, .. }) => {
+                free - motion.measure(*measure).value()
+            }
+            // The magnitude of a damper pulls together, or back.
+            LoadKind::Along(_, Source::Damper(_)) => -1.0,
             LoadKind::Gravity(_)
             | LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::PointToPoint { .. }
-            | LoadKind::SlideForce { .. } => 1.0,
-            // The magnitude of a damper pulls together, or back.
-            LoadKind::Damper { .. } | LoadKind::RotationalDamper { .. } => -1.0,
+            | LoadKind::Along(_, Source::Given(_)) => 1.0,
         };
-        let unit = self.unit_wrenches(reading, motion);
+        let unit = self.unit_wrenches(motion);
         unit.iter().map(|w| w.times(factor)).collect()
     }
 
     /// Its constant coefficient, if it has a potential that V counts: weights, forces of a fixed direction and springs.
-    fn potential_coefficient(&self, reading: &Reading, motion: &Motion) -> Option<f64> {
+    fn potential_coefficient(&self, motion: &Motion<'_>) -> Option<f64> {
         let constant = |m: &Magnitude| match m {
-            Magnitude::Expression(e) if !e.mentions(&|_| true) => m.at(reading, motion, 0.0),
+            Magnitude::Expression(e) if !e.mentions(&|_| true) => m.at(motion),
             Magnitude::Expression(_) | Magnitude::Table { .. } => None,
         };
         match &self.kind {
             LoadKind::Gravity([x, y]) => Some(x.hypot(*y)),
             LoadKind::Force {
-                magnitude,
-                in_body: false,
-                ..
-            } => constant(magnitude),
-            LoadKind::Spring { stiffness, .. } | LoadKind::TorsionSpring { stiffness, .. } => {
-                constant(stiffness)
-            }
-            LoadKind::Force { in_body: true, .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::PointToPoint { .. }
-            | LoadKind::SlideForce { .. }
-            | LoadKind::Damper { .. }
-            | LoadKind::RotationalDamper { .. } => None,
+                magnitude, in_body, ..
+            } => constant(magnitude).filter(|_| !in_body),
+            LoadKind::Along(_, Source::Spring { stiffness, .. }) => constant(stiffness),
+            LoadKind::Along(_, Source::Given(_) | Source::Damper(_)) => None,
         }
     }
 }
 
-/// Teeth with a pressure angle have a force that is not linear in the others.
-fn is_linear(reading: &Reading) -> bool {
-    let angle = |kind: &JointKind| match kind {
-        JointKind::Gear { pressure_angle, .. } | JointKind::Rack { pressure_angle, .. } => {
-            *pressure_angle
-        }
-        _ => 0.0,
-    };
-    reading.joints.iter().all(|joint| angle(&joint.kind) == 0.0)
-}
-
-fn add_bodies(to: &mut Differences, reading: &Reading, rows: &Rows, motions: &[Motion]) {
-    if !is_linear(reading) {
+fn add_bodies(to: &mut Differences, reading: &Reading, motions: &[Motion<'_>]) {
+    // Teeth with a pressure angle have a force that is not linear in the others.
+    if reading
+        .joints
+        .iter()
+        .any(|joint| joint.pressure_angle != 0.0)
+    {
         return;
     }
-    let of = |row: usize, name: &str| rows.get(row, name).unwrap_or(f64::NAN);
+    let of = |motion: &Motion<'_>, name: &str| motion.get(name).unwrap_or(f64::NAN);
     for (end, actuator, order) in [(".a", "m", 1), (".b", "half_dm", 2)] {
-        let residuals = |(row, motion): (usize, &Motion)| {
-            let columns = ForceColumns {
-                reaction_end: end,
-                actuators: vec![of(row, actuator)],
-            };
-            let wrenches = written_joint_wrenches(reading, rows, row, motion, &columns)?;
-            Some((row, body_residuals(reading, motion, &wrenches, Some(order))))
+        let residuals = |motion: &Motion<'_>| {
+            let wrenches = written_joint_wrenches(motion, end, &[of(motion, actuator)])?;
+            Some((motion.row, body_residuals(motion, &wrenches, Some(order))))
         };
-        let all: Vec<_> = motions.iter().enumerate().filter_map(residuals).collect();
+        let all: Vec<_> = motions.iter().filter_map(residuals).collect();
         add_residuals(to, reading, &all, end);
     }
     for load in &reading.loads {
-        let end = format!(".c.{}", load.name);
-        let residuals = |(row, motion): (usize, &Motion)| {
-            let actuators = vec![-of(row, &format!("{}.w", load.name))];
-            let columns = ForceColumns {
-                reaction_end: &end,
-                actuators,
-            };
-            let mut wrenches = written_joint_wrenches(reading, rows, row, motion, &columns)?;
-            wrenches.extend(load.coefficient_wrenches(reading, motion));
-            Some((row, body_residuals(reading, motion, &wrenches, None)))
+        let (end, w) = (format!(".c.{}", load.name), format!("{}.w", load.name));
+        let residuals = |motion: &Motion<'_>| {
+            let mut wrenches = written_joint_wrenches(motion, &end, &[-of(motion, &w)])?;
+            wrenches.extend(load.coefficient_wrenches(motion));
+            Some((motion.row, body_residuals(motion, &wrenches, None)))
         };
-        let all: Vec<_> = motions.iter().enumerate().filter_map(residuals).collect();
+        let all: Vec<_> = motions.iter().filter_map(residuals).collect();
         add_residuals(to, reading, &all, &end);
     }
 }
@@ -268,14 +233,13 @@ fn add_slopes(
     to: &mut Differences,
     reading: &Reading,
     rows: &Rows,
-    motions: &[Motion],
+    motions: &[Motion<'_>],
     coordinate: &str,
 ) {
     let Some(q) = rows.columns.get(coordinate) else {
         return;
     };
     let mut compare = |what: &str, value: &[f64], slope: &[f64]| {
-        let largest = |v: &[f64]| v.iter().fold(0.0, |max: f64, x| max.max(x.abs()));
         let range = q.last().zip(q.first()).map_or(1.0, |(b, a)| b - a);
         let scale = largest(value).max(largest(slope) * range);
         for i in 2..value.len().saturating_sub(2) {
@@ -294,23 +258,19 @@ fn add_slopes(
     if let [Some(m), Some(half)] = ["m", "half_dm"].map(|name| rows.columns.get(name)) {
         compare("m", m, &half.iter().map(|x| 2.0 * x).collect::<Vec<_>>());
     }
-    let loads: Vec<&Load> = reading
-        .loads
-        .iter()
-        .filter(|load| {
-            motions
-                .first()
-                .is_some_and(|m| load.potential_coefficient(reading, m).is_some())
-        })
-        .collect();
-    let force = |(row, motion): (usize, &Motion)| {
+    let has_potential = |load: &&Load| {
+        let mut first = motions.iter().take(1);
+        first.any(|motion| load.potential_coefficient(motion).is_some())
+    };
+    let loads: Vec<&Load> = reading.loads.iter().filter(has_potential).collect();
+    let force = |motion: &Motion<'_>| {
         let of = |load: &&Load| {
-            let coefficient = load.potential_coefficient(reading, motion)?;
-            Some(-coefficient * rows.get(row, &format!("{}.w", load.name))?)
+            let coefficient = load.potential_coefficient(motion)?;
+            Some(-coefficient * motion.get(&format!("{}.w", load.name))?)
         };
         loads.iter().map(of).sum::<Option<f64>>()
     };
-    let slope: Option<Vec<f64>> = motions.iter().enumerate().map(force).collect();
+    let slope: Option<Vec<f64>> = motions.iter().map(force).collect();
     if let (Some(potential), Some(slope)) = (rows.columns.get("V"), slope) {
         compare("V", potential, &slope);
     }

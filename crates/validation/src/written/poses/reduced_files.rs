@@ -1,7 +1,6 @@
 //! The files of `reduce` and what repeats them: runs, tables, generated code, sweeps, and drawn motions.
 
 use super::closure::closure;
-use super::compared::Compared;
 use super::described_again::described_again_differences;
 use super::difference::Differences;
 use super::drawn_laws::drawn_motions;
@@ -9,61 +8,57 @@ use super::equilibrium::equilibrium;
 use super::generated_code::code_differences;
 use super::headings::heading_differences;
 use super::overshoot::warning_differences;
-use super::positions::corners;
+use super::positions::Case;
 use super::printed_formulas::formula_differences;
-use super::program::{Program, Run};
+use super::program::Run;
 use super::range::range_differences;
 use super::rates::rates;
 use super::reading::Reading;
 use super::reduced::{ReducedFiles, reduced};
-use super::rows::Rows;
+use super::rows::{Rows, extent, largest};
 use super::same_columns::same_columns;
-use super::scene_text::{Draws, text_of};
-use super::stated::{Expected, sentence_differences, summary_differences};
+use super::scene_text::{table_of, text_of, value_of, without_forces};
+use super::stated::{Expected, result, sentence_differences, summary_differences};
 use super::table_file::{table_differences, table_rows};
 use super::variants::calibration_differences;
 
 /// Runs `reduce` and its like on a scene with one actuator, as it is and with everything requested.
 // Long because it is the list of all files of `reduce` and its like.
-pub(crate) fn compare_reduced(
-    compared: &mut Compared,
-    program: &Program,
-    reading: &Reading,
+pub(super) fn compare_reduced(
+    case: &mut Case<'_>,
     [scene, everything]: [&str; 2],
-    draws: &mut Draws,
 ) -> Result<(), String> {
-    let points = (181 + draws.below(180)).to_string();
+    let (program, reading) = (case.program, case.reading);
+    let points = (181 + case.draws.below(180)).to_string();
     let run = |name: &str, scene: &str, command: &str| {
-        program
-            .run(name, scene, &[command, "--points", &points])
-            .map_err(|e| e.to_string())
+        program.run(name, scene, &[command, "--points", &points])
     };
     let whole_run = run("reduce", everything, "reduce")?;
     let all = whole_run.csv("-reduced.csv")?;
     let file = whole_run.text("-reduced.csv")?;
     let headings = heading_differences(&file, reading, "reduce");
-    compared.merge("written-headings", headings);
-    compare_stated(compared, &whole_run, &all)?;
-    let contents = program.run("range", everything, &["check"]);
-    let contents = contents.map_err(|e| e.to_string())?;
+    case.merge("written-headings", headings);
+    compare_stated(case, &whole_run, &all)?;
+    let contents = program.run("range", everything, &["check"])?;
     let coordinate = &reading.coordinates[0].name;
     let range = range_differences(
         (&contents.json("-check.json")?, &contents.printed),
         &all,
         coordinate,
     );
-    compared.merge("written-range", range);
+    case.merge("written-range", range);
     let requested = run("requested", scene, "reduce")?.npz("-reduced.npz")?;
     let swept = swept(everything, reading, &all)?;
     let run_i = run("sweep", &swept, "kinetostatics")?.npz("-kinetostatics.npz")?;
-    compare_peak(compared, program, reading, everything, &all)?;
+    compare_peak(case, everything, &all)?;
     let runs = run("runs", everything, "runs")?;
     let run_ii = runs.csv("-run-ii.csv")?;
     let both = [&runs.csv("-run-i.csv")?, &run_ii];
-    compared.merge("written-sentences", run_sentences(&runs.printed, both));
+    case.merge("written-sentences", run_sentences(&runs.printed, both));
     if run_ii.count != all.count {
         let counts = format!("{} rows where `reduce` has {}", run_ii.count, all.count);
-        compared.fail("written-runs", format!("run ii has {counts}"));
+        case.compared
+            .fail("written-runs", format!("run ii has {counts}"));
     }
     let files = ReducedFiles {
         reduced: &all,
@@ -74,53 +69,40 @@ pub(crate) fn compare_reduced(
     let of = reduced(reading, &files, coordinate);
     let range =
         [0, all.count.saturating_sub(1)].map(|row| all.get(row, coordinate).unwrap_or(f64::NAN));
-    compare_laws(compared, program, reading, everything, range, draws)?;
-    compare_copies(compared, program, reading, everything, &files)?;
-    let whole: toml::Table = everything
-        .parse()
-        .map_err(|e| format!("the scene is no TOML: {e}"))?;
-    compared.merge(
-        "written-calibration",
-        calibration_differences(program, &whole, reading)?,
-    );
-    compared.merge("written-reduced", of.sums);
-    compared.merge("written-coefficients", of.bodies);
-    compared.merge("written-slopes", of.slopes);
-    compared.merge("written-runs", of.runs);
-    compared.merge(
-        "written-runs",
-        same_columns(&requested, &all, "the requested file of `reduce`"),
-    );
+    compare_laws(case, everything, range)?;
+    compare_copies(case, everything, &files)?;
+    let whole = table_of(everything)?;
+    let calibrated = calibration_differences(program, &whole, reading)?;
+    case.merge("written-calibration", calibrated);
+    case.merge("written-reduced", of.sums);
+    case.merge("written-coefficients", of.bodies);
+    case.merge("written-slopes", of.slopes);
+    case.merge("written-runs", of.runs);
+    let same = same_columns(&requested, &all, "the requested file of `reduce`");
+    case.merge("written-runs", same);
     for (rows, file) in [(&run_i, "run i"), (&run_ii, "run ii")] {
-        compared.merge("written-closure", closure(reading, rows, file).joints);
+        case.merge("written-closure", closure(reading, rows, file).joints);
     }
     Ok(())
 }
 
 /// Smallest and largest m and ½m′ in the summary and the sentences of `reduce`.
-fn compare_stated(compared: &mut Compared, run: &Run, rows: &Rows) -> Result<(), String> {
+fn compare_stated(case: &mut Case<'_>, run: &Run, rows: &Rows) -> Result<(), String> {
     let summary = run.json("-reduce.json")?;
     let ends = printed_extrema(rows, &summary);
     let named = |(name, [low, high]): &(&str, [Expected; 2])| {
-        [
-            (format!("{name}.min"), *low),
-            (format!("{name}.max"), *high),
-        ]
+        [("min", *low), ("max", *high)].map(|(end, value)| (format!("{name}.{end}"), value))
     };
     let numbers: Vec<_> = ends.iter().flat_map(named).collect();
     let numbers = numbers.iter().map(|(name, end)| (name.as_str(), *end));
-    compared.merge(
-        "written-files",
-        summary_differences(&summary, numbers, "reduce"),
-    );
+    let summed = summary_differences(&summary, numbers, "reduce");
+    case.merge("written-files", summed);
     let lines = ends.iter().zip(["m    from ", "½m′  from "]);
     let lines: Vec<_> = lines
         .map(|((_, ends), line)| (line.to_owned(), ends.to_vec()))
         .collect();
-    compared.merge(
-        "written-sentences",
-        sentence_differences(&run.printed, &lines, "reduce"),
-    );
+    let printed = sentence_differences(&run.printed, &lines, "reduce");
+    case.merge("written-sentences", printed);
     Ok(())
 }
 
@@ -128,7 +110,7 @@ fn compare_stated(compared: &mut Compared, run: &Run, rows: &Rows) -> Result<(),
 fn run_sentences(printed: &str, both: [&Rows; 2]) -> Differences {
     let starts = ["run i: speed ", "run ii: acceleration "];
     let lines = starts.into_iter().zip(both).map(|(start, rows)| {
-        let end = rows.time(rows.count.saturating_sub(1));
+        let end = rows.end();
         let columns = rows.columns.len() as f64;
         let numbers = [1.0, end, columns].map(|number| (number, number));
         (start.to_owned(), numbers.to_vec())
@@ -142,15 +124,8 @@ const FEW_POINTS: &str = "7";
 const BETWEEN_ROWS: f64 = 1e-2;
 
 /// Where few rows miss the largest m, `reduce` says how large it is: no smaller than in many rows, and where these have it.
-fn compare_peak(
-    compared: &mut Compared,
-    program: &Program,
-    reading: &Reading,
-    scene: &str,
-    many: &Rows,
-) -> Result<(), String> {
-    let few = program.run("few", scene, &["reduce", "--points", FEW_POINTS]);
-    let few = few.map_err(|e| e.to_string())?;
+fn compare_peak(case: &mut Case<'_>, scene: &str, many: &Rows) -> Result<(), String> {
+    let few = case.run("few", scene, &["reduce", "--points", FEW_POINTS])?;
     let said = few.printed.lines();
     let line = said
         .map(str::trim)
@@ -158,10 +133,10 @@ fn compare_peak(
     let Some(line) = line else {
         return Ok(());
     };
-    let found = compared.of("written-sentences");
+    let found = case.compared.of("written-sentences");
     let first = |text: &str| text.split([' ', ',']).next()?.parse::<f64>().ok();
     let place = line.split_once(" = ").and_then(|(_, rest)| first(rest));
-    let columns = [&reading.coordinates[0].name, "m"].map(|name| many.columns.get(name));
+    let columns = [&case.reading.coordinates[0].name, "m"].map(|name| many.columns.get(name));
     let (Some(value), Some(place), [Some(q), Some(m)]) = (first(line), place, columns) else {
         found.fail(format!("`reduce` says `{line}`"));
         return Ok(());
@@ -192,21 +167,15 @@ const ROUNDING: f64 = 1e-12;
 
 /// Smallest and largest m and ½m′ of the rows, as `reduce` prints them.
 fn printed_extrema(rows: &Rows, summary: &serde_json::Value) -> [(&'static str, [Expected; 2]); 2] {
-    let ends = |name: &str| {
-        let values = rows.columns.get(name).into_iter().flatten();
-        let low = values.clone().copied().fold(f64::INFINITY, f64::min);
-        [low, values.copied().fold(f64::NEG_INFINITY, f64::max)]
-    };
-    let [m, half_dm] = [ends("m"), ends("half_dm")];
-    let largest = |[low, high]: [f64; 2]| low.abs().max(high.abs());
-    let error = summary["results"]["rounding_error.half_dm"]["value"].as_f64();
-    let zero = (ERRORS * error.unwrap_or(0.0)).max(ROUNDING) * largest(m);
-    let half_dm = match largest(half_dm) <= zero {
+    let [m, half_dm] = ["m", "half_dm"].map(|name| extent(rows.column(name)));
+    let error = result(summary, "rounding_error.half_dm");
+    let zero = (ERRORS * error.unwrap_or(0.0)).max(ROUNDING) * largest(&m);
+    let half_dm = match largest(&half_dm) <= zero {
         true => [0.0; 2],
         false => half_dm,
     };
     [("m", m), ("half_dm", half_dm)].map(|(name, ends)| {
-        let scale = largest(ends);
+        let scale = largest(&ends);
         (name, ends.map(|end| (end, scale)))
     })
 }
@@ -220,12 +189,11 @@ type Comparison = fn(&str, &Rows, &str, &str) -> Differences;
 /// The reduced model once more: as a table, as code in three languages, and as formulas.
 // Long because it is the list of all copies of the reduced model.
 fn compare_copies(
-    compared: &mut Compared,
-    program: &Program,
-    reading: &Reading,
+    case: &mut Case<'_>,
     scene: &str,
     files: &ReducedFiles<'_>,
 ) -> Result<(), String> {
+    let (program, reading) = (case.program, case.reading);
     let (coordinate, rows) = (&reading.coordinates[0].name, files.reduced);
     let arguments = [
         "reduce",
@@ -237,22 +205,19 @@ fn compare_copies(
     match program.run("table", scene, &arguments) {
         Ok(run) => {
             let text = run.text(".table")?;
-            compared.merge("written-table", table_differences(&text, rows, coordinate));
+            case.merge("written-table", table_differences(&text, rows, coordinate));
             let of_table = table_rows(&text, rows, coordinate).ok_or("no rows of the table")?;
             let files = ReducedFiles {
                 reduced: &of_table,
                 ..*files
             };
             let of = reduced(reading, &files, coordinate);
-            compared.merge("written-table-sums", of.sums);
-            compared.merge("written-table-bodies", of.bodies);
+            case.merge("written-table-sums", of.sums);
+            case.merge("written-table-bodies", of.bodies);
         }
         // Not every mechanism has one, as its format says.
-        Err(e)
-            if ["tables are of driven angles", "no table:"]
-                .iter()
-                .any(|why| e.to_string().contains(why)) => {}
-        Err(e) => compared.fail("written-table", e.to_string()),
+        Err(e) if e.contains("tables are of driven angles") || e.contains("no table:") => {}
+        Err(e) => case.compared.fail("written-table", e),
     }
     let reaction = reading
         .joints
@@ -275,47 +240,34 @@ fn compare_copies(
                     "latex" => ("written-formulas", formula_differences),
                     _ => ("written-code", code_differences),
                 };
-                compared.merge(key, differences(&text, rows, coordinate, &reaction));
+                case.merge(key, differences(&text, rows, coordinate, &reaction));
             }
             // Not every mechanism has a closed form; then the command says so.
-            Err(e) if e.to_string().contains("closed form") => {}
-            Err(e) => compared.fail("written-code", e.to_string()),
+            Err(e) if e.contains("closed form") => {}
+            Err(e) => case.compared.fail("written-code", e),
         }
     }
     Ok(())
 }
 
 /// Laws of every kind and expressions of every function in drawn motions.
-fn compare_laws(
-    compared: &mut Compared,
-    program: &Program,
-    reading: &Reading,
-    scene: &str,
-    range: [f64; 2],
-    draws: &mut Draws,
-) -> Result<(), String> {
-    for motion in drawn_motions(program, scene, reading, range, draws)? {
+fn compare_laws(case: &mut Case<'_>, scene: &str, range: [f64; 2]) -> Result<(), String> {
+    let program = case.program;
+    for motion in drawn_motions(program, scene, case.reading, range, &mut case.draws)? {
         let (reading, rows) = (&motion.reading, &motion.rows);
         let of = closure(reading, rows, &motion.name);
-        compared.merge("written-closure", of.joints);
-        compared.merge("written-laws", of.laws);
-        if let Some(time) = rows.columns.get("t") {
-            compared.merge(
-                "written-law-rates",
-                rates(rows, time, &corners(reading), &motion.name),
-            );
-        }
-        compared.merge(
-            "written-laws-again",
-            described_again_differences(program, &motion)?,
-        );
+        case.merge("written-closure", of.joints);
+        case.merge("written-laws", of.laws);
+        case.merge("written-law-rates", rates(reading, rows, &motion.name));
+        let again = described_again_differences(program, &motion)?;
+        case.merge("written-laws-again", again);
         if motion.name.ends_with("spline") {
-            compared.merge("written-warnings", warning_differences(program, &motion)?);
+            case.merge("written-warnings", warning_differences(program, &motion)?);
         }
         if motion.name.ends_with("expression") {
             let forces = equilibrium(reading, rows, &motion.name, false);
-            compared.merge("written-equilibrium", forces.bodies);
-            compared.merge("written-loads", forces.loads);
+            case.merge("written-equilibrium", forces.bodies);
+            case.merge("written-loads", forces.loads);
         }
     }
     Ok(())
@@ -323,32 +275,15 @@ fn compare_laws(
 
 /// The mechanism without forces, swept over the positions of a file of `reduce` at unit speed.
 fn swept(scene: &str, reading: &Reading, rows: &Rows) -> Result<String, String> {
-    let mut scene: toml::Table = scene
-        .parse()
-        .map_err(|e| format!("the scene is no TOML: {e}"))?;
-    for section in [
-        "prescribed",
-        "loads",
-        "friction",
-        "drives",
-        "stops",
-        "motion",
-        "calibration",
-    ] {
-        scene.remove(section);
-    }
+    let mut scene = without_forces(scene)?;
     let coordinate = &reading.coordinates[0];
     let unit = reading.unit_of(coordinate.measure);
-    let column = rows
-        .columns
-        .get(&coordinate.name)
-        .ok_or("`reduce` has no column of the coordinate")?;
-    let ends = [column.first(), column.last()]
-        .into_iter()
-        .flatten()
-        .map(|q| toml::Value::Float(q / unit));
-    let mut sweep = toml::Table::new();
-    sweep.insert(coordinate.name.clone(), toml::Value::Array(ends.collect()));
-    scene.insert("coordinate-sweep".to_owned(), toml::Value::Table(sweep));
+    let column = rows.column(&coordinate.name);
+    let (Some(first), Some(last)) = (column.first(), column.last()) else {
+        return Err("`reduce` has no column of the coordinate".to_owned());
+    };
+    let ends = vec![first / unit, last / unit];
+    let sweep = value_of([(coordinate.name.as_str(), ends.into())]);
+    scene.insert("coordinate-sweep".to_owned(), sweep);
     text_of(&scene)
 }

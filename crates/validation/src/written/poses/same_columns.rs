@@ -1,7 +1,7 @@
 //! The columns of a file against those of another that has them, too.
 
 use super::difference::Differences;
-use super::rows::Rows;
+use super::rows::{Rows, largest};
 use std::collections::BTreeMap;
 
 /// What the columns of a name are compared with: forces in x and y, and along the axes of a body, are of one kind.
@@ -31,7 +31,7 @@ pub(crate) fn same_columns(rows: &Rows, other: &Rows, file: &str) -> Differences
     let mut scales = BTreeMap::<String, f64>::new();
     for (name, values) in &other.columns {
         let scale = scales.entry(ending(name)).or_default();
-        *scale = values.iter().fold(*scale, |max, v| max.max(v.abs()));
+        *scale = scale.max(largest(values));
     }
     // Where nothing accelerates, what the velocities would make of it stands in.
     for (coordinate, point) in [("velocity", "v"), ("acceleration", "a")] {
@@ -45,16 +45,10 @@ pub(crate) fn same_columns(rows: &Rows, other: &Rows, file: &str) -> Differences
         *scale = scale.max(velocity * velocity);
     }
     let mut all = Differences::default();
-    for (name, values) in rows
-        .columns
-        .iter()
-        .filter(|(name, _)| *name != "relative_error")
-    {
-        let Some(others) = other
-            .columns
-            .get(name)
-            .filter(|others| others.len() == values.len())
-        else {
+    let known = |(name, _): &(&String, &Vec<f64>)| *name != "relative_error";
+    for (name, values) in rows.columns.iter().filter(known) {
+        let others = other.columns.get(name);
+        let Some(others) = others.filter(|others| others.len() == values.len()) else {
             all.fail(format!(
                 "{file} has a column {name} of {} rows that the whole one does not have",
                 values.len()
@@ -62,11 +56,11 @@ pub(crate) fn same_columns(rows: &Rows, other: &Rows, file: &str) -> Differences
             continue;
         };
         let scale = scales.get(&ending(name)).copied().unwrap_or(0.0);
-        for (row, (value, expected)) in values.iter().zip(others).enumerate() {
-            all.add(value - expected, scale, "", || {
-                format!("{file}, row {row}, {name}")
-            });
-        }
+        let pairs = values.iter().zip(others);
+        let differences = pairs.map(|(value, expected)| value - expected);
+        all.add_rows(differences, scale, "", |row| {
+            format!("{file}, row {row}, {name}")
+        });
     }
     all
 }

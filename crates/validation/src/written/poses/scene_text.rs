@@ -1,6 +1,6 @@
 //! Scenes that the checks write: the scene of a case, changed in its plain TOML.
 
-use toml::Table;
+use toml::{Table, Value};
 
 /// FNV-1a of a text, 64 bits: the same on every machine.
 pub(crate) fn hash(text: &str) -> u64 {
@@ -36,11 +36,45 @@ impl Draws {
     }
 }
 
+/// The table of a scene's text.
+pub(crate) fn table_of(text: &str) -> Result<Table, String> {
+    text.parse()
+        .map_err(|e| format!("the scene is no TOML: {e}"))
+}
+
+/// A value that is a table of some entries.
+pub(crate) fn value_of<'a>(entries: impl IntoIterator<Item = (&'a str, Value)>) -> Value {
+    let named = entries
+        .into_iter()
+        .map(|(key, value)| (key.to_owned(), value));
+    Value::Table(named.collect())
+}
+
+/// Whether a scene has a motion along which forces of inertia are known.
+pub(crate) fn has_motion(scene: &Table) -> bool {
+    scene.contains_key("prescribed") || scene.contains_key("coordinate-sweep")
+}
+
+/// The scene without what moves and loads it.
+pub(crate) fn without_forces(text: &str) -> Result<Table, String> {
+    let mut scene = table_of(text)?;
+    for section in [
+        "prescribed",
+        "loads",
+        "friction",
+        "drives",
+        "stops",
+        "motion",
+        "calibration",
+    ] {
+        scene.remove(section);
+    }
+    Ok(scene)
+}
+
 /// The scene without its requests: everything is written.
 pub(crate) fn requests_everything(text: &str) -> Result<Table, String> {
-    let mut scene: Table = text
-        .parse()
-        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let mut scene = table_of(text)?;
     scene.remove("requests");
     Ok(scene)
 }

@@ -1,37 +1,29 @@
 //! The files of internal forces of drawn links.
 
-use super::compared::Compared;
 use super::difference::Differences;
-use super::program::Program;
+use super::positions::Case;
 use super::reading::Reading;
-use super::rows::Rows;
-use super::scene_text::{Draws, text_of};
+use super::rows::{Rows, largest};
+use super::scene_text::{table_of, text_of, value_of};
 use super::sections::{Link, links, sections};
-use super::stated::sentence_differences;
+use super::stated::{result, sentence_differences};
 
 /// Links of a case whose internal forces are compared.
 const LINKS: usize = 2;
 
 /// The internal forces of drawn links, in the row where the program has found the largest bending moment.
-pub(crate) fn compare_sections(
-    compared: &mut Compared,
-    program: &Program,
-    reading: &Reading,
-    scene: &str,
-    draws: &mut Draws,
-) -> Result<(), String> {
+pub(super) fn compare_sections(case: &mut Case<'_>, scene: &str) -> Result<(), String> {
+    let reading = case.reading;
     let mut links = links(reading);
     let drawn: Vec<_> = (0..LINKS.min(links.len()))
-        .map(|_| links.remove(draws.below(links.len())))
+        .map(|_| links.remove(case.draws.below(links.len())))
         .collect();
     if drawn.is_empty() {
         return Ok(());
     }
     let arguments = ["kinetostatics", "--points", "37"];
     let scene = requesting_sections(scene, reading, &drawn)?;
-    let run = program
-        .run("sections", &scene, &arguments)
-        .map_err(|e| e.to_string())?;
+    let run = case.run("sections", &scene, &arguments)?;
     let rows = run.csv("-kinetostatics.csv")?;
     let summary = run.json("-kinetostatics.json")?;
     let abscissa = summary["extrema_over"]["name"].as_str().unwrap_or("t");
@@ -42,33 +34,32 @@ pub(crate) fn compare_sections(
             "-kinetostatics-internal-forces-{body}.{from}.{to}.csv"
         ))?;
         let name = format!("{body} from {from} to {to}.bending_moment");
-        let at = summary["results"][format!("{name}.at")]["value"].as_f64();
+        let at = result(&summary, &format!("{name}.at"));
         let is_there = |x: &f64| at.is_some_and(|at| (x - at).abs() <= 1e-12 * (1.0 + at.abs()));
-        let column = rows.columns.get(abscissa);
-        let row = column.and_then(|column| column.iter().position(is_there));
-        let Some(row) = row else {
+        let Some(row) = rows.column(abscissa).iter().position(is_there) else {
             let reason = format!("the largest {name} is at {at:?}, which is no row");
-            compared.fail("written-sections", reason);
+            case.compared.fail("written-sections", reason);
             continue;
         };
         let of = sections(reading, &rows, row, link, &cuts);
-        compared.merge("written-sections", of.cuts);
-        compared.merge("written-section-ends", of.ends);
+        case.merge("written-sections", of.cuts);
+        case.merge("written-section-ends", of.ends);
         let file = format!("-kinetostatics-internal-forces-{body}.{from}.{to}.envelope.csv");
-        compared.merge("written-envelope", within(&cuts, &run.csv(&file)?, &name));
+        case.merge("written-envelope", within(&cuts, &run.csv(&file)?, &name));
         // The largest moment that is printed is one of the cuts.
-        let said = summary["results"][&name]["value"]
-            .as_f64()
-            .unwrap_or(f64::NAN);
-        compared.merge(
+        let said = result(&summary, &name).unwrap_or(f64::NAN);
+        case.merge(
             "written-sentences",
             moment_sentence(&run.printed, [body, from, to], said),
         );
-        let column = cuts.columns.get("bending").into_iter().flatten();
-        let largest = column.fold(0.0_f64, |max, v| max.max(v.abs()));
-        compared
-            .of("written-files")
-            .add(said.abs() - largest, largest, "N m", || name.clone());
+        let largest = largest(cuts.column("bending"));
+        case.compared.add(
+            "written-files",
+            said.abs() - largest,
+            largest,
+            "N m",
+            || name.clone(),
+        );
     }
     Ok(())
 }
@@ -94,8 +85,7 @@ fn moment_sentence(printed: &str, [body, from, to]: [&str; 3], said: f64) -> Dif
 /// Every cut is within the envelope of its station, which goes nowhere beyond the largest bending moment.
 fn within(cuts: &Rows, envelope: &Rows, link: &str) -> Differences {
     let mut all = Differences::default();
-    let size = |of: &[f64]| of.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
-    let scale = |name: &str| cuts.columns.get(name).map_or(0.0, |of| size(of));
+    let scale = |name: &str| largest(cuts.column(name));
     let forces = scale("axial").max(scale("shear"));
     for (name, scale) in [
         ("axial", forces),
@@ -108,21 +98,13 @@ fn within(cuts: &Rows, envelope: &Rows, link: &str) -> Differences {
             all.fail(format!("{link}: no envelope of {name}"));
             continue;
         };
-        let stations = envelope
-            .columns
-            .get("station")
-            .into_iter()
-            .flatten()
-            .enumerate();
+        let stations = envelope.column("station");
         for (row, value) in values.iter().enumerate() {
             let at = cuts.get(row, "station").unwrap_or(f64::NAN);
-            let aside = |k: usize| (envelope.get(k, "station").unwrap_or(f64::NAN) - at).abs();
-            let nearest = stations
-                .clone()
-                .map(|(k, _)| k)
-                .min_by(|a, b| aside(*a).total_cmp(&aside(*b)));
+            let aside = |k: &usize| (stations[*k] - at).abs();
+            let nearest = (0..stations.len()).min_by(|a, b| aside(a).total_cmp(&aside(b)));
             // Stations on both sides of a concentrated load are cuts of their own.
-            let Some(k) = nearest.filter(|k| aside(*k) <= 1e-12 * (1.0 + at.abs())) else {
+            let Some(k) = nearest.filter(|k| aside(k) <= 1e-12 * (1.0 + at.abs())) else {
                 continue;
             };
             let beyond = (min[k] - value).max(value - max[k]).max(0.0);
@@ -130,7 +112,7 @@ fn within(cuts: &Rows, envelope: &Rows, link: &str) -> Differences {
         }
         if name == "bending" {
             // Its station need not be one of the envelope, but none of those has a larger one.
-            let beyond = (size(min).max(size(max)) - scale).max(0.0);
+            let beyond = (largest(min).max(largest(max)) - scale).max(0.0);
             all.add(beyond, scale, "N m", || {
                 format!("{link}, the largest bending moment")
             });
@@ -140,22 +122,15 @@ fn within(cuts: &Rows, envelope: &Rows, link: &str) -> Differences {
 }
 
 fn requesting_sections(scene: &str, reading: &Reading, drawn: &[Link]) -> Result<String, String> {
-    let mut scene: toml::Table = scene
-        .parse()
-        .map_err(|e| format!("the scene is no TOML: {e}"))?;
+    let mut scene = table_of(scene)?;
     let request = |link: &Link| {
         let [from, to] = &link.names;
-        let entries = [
-            ("body", &reading.bodies[link.body].name),
-            ("from", from),
-            ("to", to),
-        ];
-        let entry =
-            |(key, value): (&str, &String)| (key.to_owned(), toml::Value::String(value.clone()));
-        toml::Value::Table(entries.into_iter().map(entry).collect())
+        let body = &reading.bodies[link.body].name;
+        let entries = [("body", body), ("from", from), ("to", to)];
+        value_of(entries.map(|(key, value)| (key, value.as_str().into())))
     };
     let requested = toml::Value::Array(drawn.iter().map(request).collect());
-    let requests = toml::Table::from_iter([("sections".to_owned(), requested)]);
-    scene.insert("requests".to_owned(), toml::Value::Table(requests));
+    let requests = value_of([("sections", requested)]);
+    scene.insert("requests".to_owned(), requests);
     text_of(&scene)
 }

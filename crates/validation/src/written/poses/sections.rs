@@ -2,9 +2,9 @@
 //! that part, and the inertia of its mass by quadrature.
 
 use super::difference::Differences;
-use super::equilibrium::{ForceColumns, actuator_forces, reaction, written_joint_wrenches};
+use super::equilibrium::{actuator_forces, reaction, written_joint_wrenches};
 use super::motion::Motion;
-use super::reading::{LoadKind, Place, Reading};
+use super::reading::{Joint, LoadKind, Place, Reading};
 use super::rows::Rows;
 use super::wrenches::Wrench;
 
@@ -26,12 +26,8 @@ pub(crate) struct Sections {
 /// The links whose forces are all at points: of bodies on which couples act, only those of their joints' pins.
 pub(crate) fn links(reading: &Reading) -> Vec<Link> {
     let mut all = Vec::new();
-    for (body, of) in reading
-        .bodies
-        .iter()
-        .enumerate()
-        .filter(|(_, of)| !of.is_ground && of.mass > 0.0)
-    {
+    let bodies = reading.bodies.iter().enumerate();
+    for (body, of) in bodies.filter(|(_, of)| !of.is_ground && of.mass > 0.0) {
         for (k, (first, from)) in of.points.iter().enumerate() {
             for (second, to) in &of.points[k + 1..] {
                 if (to[0] - from[0]).hypot(to[1] - from[1]) > 0.0 {
@@ -65,10 +61,12 @@ pub(crate) fn sections(
 ) -> Sections {
     let mut found = Sections::default();
     let name = format!(
-        "{}.{}.{}",
-        reading.bodies[link.body].name, link.names[0], link.names[1]
+        "{}.{}",
+        reading.bodies[link.body].name,
+        link.names.join(".")
     );
-    let Some((applied, mass)) = forces_on(reading, rows, row, link) else {
+    let motion = Motion::new(reading, rows, row);
+    let Some((applied, mass)) = motion.and_then(|motion| forces_on(&motion, link)) else {
         return found;
     };
     let [from, to] = link.ends;
@@ -201,36 +199,24 @@ impl Line {
 
 /// The forces on a body by their feet on the line of a link, and the bar's mass if it is uniform. None where a reaction
 /// is not in the file, or a couple acts on the body that no joint places.
-fn forces_on(
-    reading: &Reading,
-    rows: &Rows,
-    row: usize,
-    link: &Link,
-) -> Option<(Vec<Applied>, Option<Bar>)> {
-    let motion = Motion::new(reading, rows, row)?;
-    let ends = link.ends.map(|point| {
-        motion.point(Place {
-            body: link.body,
-            point,
-        })
-    });
+fn forces_on(motion: &Motion<'_>, link: &Link) -> Option<(Vec<Applied>, Option<Bar>)> {
+    let (reading, body) = (motion.reading, link.body);
+    let ends = link.ends.map(|point| motion.point(Place { body, point }));
     let [[ax, ay], [bx, by]] = ends.map(|end| end.order(0));
     let length = (bx - ax).hypot(by - ay);
     let line = Line {
         origin: [ax, ay],
         direction: [(bx - ax) / length, (by - ay) / length],
     };
-    let wrenches = placed_wrenches(reading, rows, row, &motion, link.body)?;
+    let wrenches = placed_wrenches(motion, body)?;
     let applied =
         |(wrench, place): &(Wrench, [f64; 2])| line.applied(wrench.force, *place, wrench.couple);
     let mut all: Vec<Applied> = wrenches.iter().map(applied).collect();
-    let gravity = reading
-        .loads
-        .iter()
-        .fold([0.0; 2], |[x, y], load| match load.kind {
-            LoadKind::Gravity([gx, gy]) => [x + gx, y + gy],
-            _ => [x, y],
-        });
+    let loads = reading.loads.iter();
+    let gravity = loads.fold([0.0; 2], |[x, y], load| match load.kind {
+        LoadKind::Gravity([gx, gy]) => [x + gx, y + gy],
+        _ => [x, y],
+    });
     let body = &reading.bodies[link.body];
     let middle = [0, 1].map(|k| 0.5 * (link.ends[0][k] + link.ends[1][k]));
     let bar = body.mass * length * length / 12.0;
@@ -249,7 +235,7 @@ fn forces_on(
             }),
         ));
     }
-    let center = motion.center(reading, link.body);
+    let center = motion.center(link.body);
     let [x, y] = center.order(2);
     let force = [body.mass * (gravity[0] - x), body.mass * (gravity[1] - y)];
     let couple = -body.inertia * motion.bodies[link.body].angle.0[2];
@@ -258,30 +244,16 @@ fn forces_on(
 }
 
 /// What joints, actuators, loads but weights, and friction exert on a body, and where.
-fn placed_wrenches(
-    reading: &Reading,
-    rows: &Rows,
-    row: usize,
-    motion: &Motion,
-    body: usize,
-) -> Option<Vec<(Wrench, [f64; 2])>> {
-    let columns = ForceColumns {
-        reaction_end: "",
-        actuators: actuator_forces(reading, rows, row),
-    };
-    let mut wrenches = written_joint_wrenches(reading, rows, row, motion, &columns)?;
+fn placed_wrenches(motion: &Motion<'_>, body: usize) -> Option<Vec<(Wrench, [f64; 2])>> {
+    let reading = motion.reading;
+    let mut wrenches = written_joint_wrenches(motion, "", &actuator_forces(motion))?;
     let is_weight = |kind: &LoadKind| matches!(kind, LoadKind::Gravity(_));
     for load in reading.loads.iter().filter(|load| !is_weight(&load.kind)) {
-        let magnitude = load.magnitude(reading, motion, rows.time(row))?;
-        wrenches.extend(
-            load.unit_wrenches(reading, motion)
-                .iter()
-                .map(|w| w.times(magnitude)),
-        );
+        wrenches.extend(load.wrenches(motion)?);
     }
     for friction in &reading.frictions {
-        let reaction = reaction(rows, row, &reading.joints[friction.joint], "")?;
-        wrenches.extend(friction.wrenches(reading, motion, &reaction)?);
+        let reaction = reaction(motion, &reading.joints[friction.joint], "")?;
+        wrenches.extend(friction.wrenches(motion, &reaction)?);
     }
     let place = |(k, wrench): (usize, &Wrench)| match wrench.force {
         // Couples come in pairs, one behind the other, with the bodies between which they act.
@@ -292,28 +264,21 @@ fn placed_wrenches(
                 .filter_map(|k| wrenches.get(k))
                 .find(is_opposite)?
                 .body;
-            Some((*wrench, couple_place(reading, motion, body, other)?))
+            Some((*wrench, couple_place(motion, body, other)?))
         }
         _ => Some((*wrench, wrench.point)),
     };
-    wrenches
-        .iter()
-        .enumerate()
-        .filter(|(_, w)| w.body == body)
-        .map(place)
-        .collect()
+    let all = wrenches.iter().enumerate();
+    all.filter(|(_, w)| w.body == body).map(place).collect()
 }
 
 /// Where a couple between two bodies acts: at the only joint of both.
-fn couple_place(reading: &Reading, motion: &Motion, body: usize, other: usize) -> Option<[f64; 2]> {
-    let between = |joint: &&super::reading::Joint| {
+fn couple_place(motion: &Motion<'_>, body: usize, other: usize) -> Option<[f64; 2]> {
+    let between = |joint: &&Joint| {
         let bodies = joint.places.map(|p| p.body);
         bodies == [body, other] || bodies == [other, body]
     };
-    let mut joints = reading.joints.iter().filter(between);
-    let joint = joints.next()?;
-    joints
-        .next()
-        .is_none()
-        .then(|| motion.point(joint.places[1]).order(0))
+    let mut joints = motion.reading.joints.iter().filter(between);
+    let joint = joints.next().filter(|_| joints.next().is_none())?;
+    Some(motion.point(joint.places[1]).order(0))
 }

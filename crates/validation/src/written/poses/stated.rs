@@ -7,6 +7,11 @@ use serde_json::Value;
 /// A value that should stand somewhere, and its scale.
 pub(crate) type Expected = (f64, f64);
 
+/// A number of the results of a summary.
+pub(crate) fn result(summary: &Value, name: &str) -> Option<f64> {
+    summary["results"][name]["value"].as_f64()
+}
+
 /// Numbers of a summary, by their names.
 pub(super) fn summary_differences<'a>(
     summary: &Value,
@@ -15,8 +20,7 @@ pub(super) fn summary_differences<'a>(
 ) -> Differences {
     let mut all = Differences::default();
     for (name, (value, scale)) in expected {
-        let written = summary["results"][name]["value"].as_f64();
-        let difference = written.unwrap_or(f64::NAN) - value;
+        let difference = result(summary, name).unwrap_or(f64::NAN) - value;
         all.add(difference, scale, "", || format!("{command}, {name}"));
     }
     all

@@ -136,7 +136,7 @@ fn spline_slopes(points: &[[f64; 2]]) -> Option<Vec<f64>> {
 }
 
 /// Gauss's elimination with the largest pivots; the right side is the last column.
-fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
+pub(crate) fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     let n = rows.len();
     for column in 0..n {
         let size = |row: &usize| rows[*row][column].abs();
@@ -146,16 +146,10 @@ fn solve(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
         if pivot_row[column] == 0.0 {
             return None;
         }
-        for row in rows
-            .iter_mut()
-            .enumerate()
-            .filter(|(k, _)| *k != column)
-            .map(|(_, row)| row)
-        {
+        for (_, row) in rows.iter_mut().enumerate().filter(|(k, _)| *k != column) {
             let factor = row[column] / pivot_row[column];
-            row.iter_mut()
-                .zip(&pivot_row)
-                .for_each(|(x, p)| *x -= factor * p);
+            let pairs = row.iter_mut().zip(&pivot_row);
+            pairs.for_each(|(x, p)| *x -= factor * p);
         }
     }
     Some((0..n).map(|k| rows[k][n] / rows[k][k]).collect())

@@ -127,7 +127,7 @@ pub(crate) fn table_rows(text: &str, rows: &Rows, coordinate: &str) -> Option<Ro
 pub(crate) fn table_differences(text: &str, rows: &Rows, coordinate: &str) -> Differences {
     let mut all = Differences::default();
     let Some(file) = TableFile::read(text) else {
-        all.fail("the table is not as its format says".to_owned());
+        all.fail("the table is not as its format says");
         return all;
     };
     let checksum = text.rfind("check ").and_then(|at| {
@@ -135,7 +135,7 @@ pub(crate) fn table_differences(text: &str, rows: &Rows, coordinate: &str) -> Di
         Some(written == hash(&text[..at]))
     });
     if checksum != Some(true) {
-        all.fail("the checksum of the table is another".to_owned());
+        all.fail("the checksum of the table is another");
     }
     let columns = file.columns();
     let of = |key: &str| file.numbers.get(key).cloned().unwrap_or_default();

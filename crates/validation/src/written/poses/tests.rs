@@ -107,7 +107,7 @@ fn pendulum() -> Rows {
 fn differences(rows: &Rows) -> [f64; 5] {
     let reading = Reading::new(PENDULUM).expect("a scene");
     let positions = closure(&reading, rows, "rows");
-    let between = rates(rows, &rows.columns["t"], &[], "rows");
+    let between = rates(&reading, rows, "rows");
     let forces = equilibrium(&reading, rows, "rows", false);
     [
         positions.joints,

@@ -3,8 +3,7 @@
 use super::difference::Differences;
 use super::equilibrium::actuator_forces;
 use super::motion::Motion;
-use super::reading::{LoadKind, Reading};
-use super::rows::Rows;
+use super::reading::{Load, LoadKind};
 use super::wrenches::Wrench;
 
 /// The written sums of a file, and those of its bodies.
@@ -30,57 +29,36 @@ const UNITS: [&str; 4] = ["N", "N m", "J", "W"];
 
 impl Totals {
     /// Adds a row; the loads' forces are those of the second reading.
-    pub(crate) fn add(
-        &mut self,
-        reading: &Reading,
-        rows: &Rows,
-        row: usize,
-        motion: &Motion,
-        loads: &[Wrench],
-    ) {
-        let mut compare = |name: &'static str, [value, terms]: [f64; 2]| {
-            if let Some(written) = rows.get(row, name) {
-                self.sums.push((row, name, [written - value, terms]));
-            }
-        };
-        for (name, sum) in ["shaking.fx", "shaking.fy", "shaking.moment"]
-            .into_iter()
-            .zip(shaking(reading, motion, rows.time(row)))
-        {
-            compare(name, sum);
-        }
-        let [energy, power] = kinetic(reading, motion);
-        compare("energy.kinetic_bodies", energy);
-        compare("power.kinetic", power);
+    pub(crate) fn add(&mut self, motion: &Motion<'_>, loads: &[Wrench]) {
+        let reading = motion.reading;
+        let [fx, fy, moment] = shaking(motion);
+        let [energy, power] = kinetic(motion);
         let sum = |values: &[f64]| [values.iter().sum(), values.iter().map(|v| v.abs()).sum()];
-        let rates = reading
-            .coordinates
-            .iter()
-            .map(|c| motion.measure(c.measure).0[1]);
-        let forces = actuator_forces(reading, rows, row).into_iter().zip(rates);
-        compare(
-            "power.actuators",
-            sum(&forces.map(|(f, v)| f * v).collect::<Vec<_>>()),
-        );
-        if reading.frictions.is_empty() {
-            let powers = loads.iter().map(|load| load.power(motion));
-            compare("power.loads", sum(&powers.collect::<Vec<_>>()));
+        let coordinates = reading.coordinates.iter().zip(actuator_forces(motion));
+        let powers = coordinates.map(|(c, force)| force * motion.measure(c.measure).0[1]);
+        let actuators = sum(&powers.collect::<Vec<_>>());
+        let powers = loads.iter().map(|load| load.power(motion));
+        let loads = sum(&powers.collect::<Vec<_>>());
+        let sums = [fx, fy, moment, energy, power, actuators, loads];
+        for ((name, _), [value, terms]) in KINDS.into_iter().zip(sums) {
+            // What friction does is not among the loads.
+            let is_known = name != "power.loads" || reading.frictions.is_empty();
+            if let Some(written) = motion.get(name).filter(|_| is_known) {
+                let sum = (motion.row, name, [written - value, terms]);
+                self.sums.push(sum);
+            }
         }
         for joint in &reading.joints {
-            let force = rows
-                .get(row, &format!("{}.magnitude", joint.name))
-                .unwrap_or(0.0);
-            self.largest_force = self.largest_force.max(force);
+            let force = motion.get(&format!("{}.magnitude", joint.name));
+            self.largest_force = self.largest_force.max(force.unwrap_or(0.0));
         }
     }
 
     /// The differences, each relative to the largest of its kind in the file.
     pub(crate) fn differences(&self, size: f64, file: &str) -> Differences {
         let kind = |name: &str| {
-            KINDS
-                .iter()
-                .find(|(known, _)| *known == name)
-                .map_or(0, |k| k.1)
+            let known = KINDS.iter().find(|(known, _)| *known == name);
+            known.map_or(0, |k| k.1)
         };
         let mut scales = [self.largest_force, self.largest_force * size, 0.0, 0.0];
         for (_, name, [_, terms]) in &self.sums {
@@ -98,7 +76,7 @@ impl Totals {
 }
 
 /// What the ground feels: the loads from outside less the rate of the momentum; each sum with its absolute terms.
-fn shaking(reading: &Reading, motion: &Motion, t: f64) -> [[f64; 2]; 3] {
+fn shaking(motion: &Motion<'_>) -> [[f64; 2]; 3] {
     let mut sums = [[0.0; 2]; 3];
     let mut push = |[fx, fy]: [f64; 2], [x, y]: [f64; 2], couple: f64| {
         let size = fx.hypot(fy);
@@ -108,26 +86,23 @@ fn shaking(reading: &Reading, motion: &Motion, t: f64) -> [[f64; 2]; 3] {
             sums[k][1] += terms[k];
         }
     };
-    for wrench in external(reading, motion, t) {
+    for wrench in external(motion) {
         push(wrench.force, wrench.point, wrench.couple);
     }
-    for (b, body) in reading.bodies.iter().enumerate() {
-        let center = motion.center(reading, b);
+    for (b, body) in motion.reading.bodies.iter().enumerate() {
+        let center = motion.center(b);
         let force = center.order(2).map(|a| -body.mass * a);
-        push(
-            force,
-            center.order(0),
-            -body.inertia_moment(motion.bodies[b].angle.0),
-        );
+        let couple = -body.inertia_moment(motion.bodies[b].angle.0);
+        push(force, center.order(0), couple);
     }
     sums
 }
 
 /// The kinetic energy and its rate, with absolute terms.
-fn kinetic(reading: &Reading, motion: &Motion) -> [[f64; 2]; 2] {
+fn kinetic(motion: &Motion<'_>) -> [[f64; 2]; 2] {
     let mut sums = [[0.0; 2]; 2];
-    for (b, body) in reading.bodies.iter().enumerate() {
-        let center = motion.center(reading, b);
+    for (b, body) in motion.reading.bodies.iter().enumerate() {
+        let center = motion.center(b);
         let ([vx, vy], [ax, ay]) = (center.order(1), center.order(2));
         let [angle, omega, alpha] = motion.bodies[b].angle.0;
         let inertia = body.inertia_at(angle)[0];
@@ -144,17 +119,11 @@ fn kinetic(reading: &Reading, motion: &Motion) -> [[f64; 2]; 2] {
 }
 
 /// The loads that act on the mechanism from outside: weights and single forces.
-fn external(reading: &Reading, motion: &Motion, t: f64) -> Vec<Wrench> {
-    let is_external =
-        |kind: &LoadKind| matches!(kind, LoadKind::Gravity(_) | LoadKind::Force { .. });
-    let mut all = Vec::new();
-    for load in reading.loads.iter().filter(|load| is_external(&load.kind)) {
-        let magnitude = load.magnitude(reading, motion, t).unwrap_or(f64::NAN);
-        all.extend(
-            load.unit_wrenches(reading, motion)
-                .iter()
-                .map(|w| w.times(magnitude)),
-        );
-    }
-    all
+fn external(motion: &Motion<'_>) -> Vec<Wrench> {
+    let is_external = |load: &&Load| !matches!(load.kind, LoadKind::Along(..));
+    let loads = motion.reading.loads.iter().filter(is_external);
+    loads
+        .filter_map(|load| load.wrenches(motion))
+        .flatten()
+        .collect()
 }

@@ -3,8 +3,9 @@
 use super::difference::Differences;
 use super::program::Program;
 use super::reading::Reading;
-use super::rows::Rows;
+use super::rows::{Rows, largest};
 use super::scene_text::text_of;
+use super::stated::result;
 use toml::{Table, Value};
 
 /// By how much an extremum is not between the highest row and a parabola's height above it, which is at most an eighth of
@@ -21,9 +22,8 @@ pub(crate) fn beyond_rows(values: &[f64], extremum: f64, sign: f64) -> (f64, f64
     ];
     let bend = neighbours.map(|k| of(highest) - of(k)).iter().sum::<f64>();
     let above = sign * extremum - of(highest);
-    let scale = values.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
     // Twice the eighth: the curve is no parabola.
-    ((-above).max(above - 0.25 * bend).max(0.0), scale)
+    ((-above).max(above - 0.25 * bend).max(0.0), largest(values))
 }
 
 /// The scene with another number; in an array, by its place.
@@ -62,11 +62,9 @@ pub(crate) fn calibration_differences(
     else {
         return Ok(all);
     };
-    let run = program
-        .run("calibrate", &text_of(scene)?, &["calibrate"])
-        .map_err(|e| e.to_string())?;
-    let results = &run.json("-calibrate.json")?["results"];
-    let number = |name: &str| results[name]["value"].as_f64().unwrap_or(f64::NAN);
+    let run = program.run("calibrate", &text_of(scene)?, &["calibrate"])?;
+    let summary = run.json("-calibrate.json")?;
+    let number = |name: &str| result(&summary, name).unwrap_or(f64::NAN);
     let unit = if key == "mass" {
         reading.units.mass
     } else {
@@ -74,9 +72,7 @@ pub(crate) fn calibration_differences(
     };
     let changed = with_number(scene, &["bodies", body, key], number(parameter) / unit)
         .ok_or("no such number")?;
-    let run = program
-        .run("calibrated", &text_of(&changed)?, &["reduce"])
-        .map_err(|e| e.to_string())?;
+    let run = program.run("calibrated", &text_of(&changed)?, &["reduce"])?;
     let rows = run.csv("-reduced.csv")?;
     let Some(period) = period(scene, reading, &rows) else {
         return Ok(all);

@@ -4,7 +4,7 @@
 use super::jet::{Jet, JetVector};
 use super::motion::Motion;
 use super::reading::{
-    Friction, Joint, JointKind, Load, LoadKind, Magnitude, Measure, Place, Reading,
+    Body, Friction, Joint, JointKind, Load, LoadKind, Magnitude, Measure, Place, Source,
 };
 
 /// A force at a point of the plane and a couple, on a body.
@@ -17,6 +17,17 @@ pub(crate) struct Wrench {
 }
 
 impl Wrench {
+    /// A force on a body at a point.
+    fn new(body: usize, force: [f64; 2], point: [f64; 2]) -> Self {
+        let couple = 0.0;
+        Self {
+            body,
+            force,
+            point,
+            couple,
+        }
+    }
+
     /// A multiple of it.
     pub(crate) fn times(&self, factor: f64) -> Self {
         Self {
@@ -27,7 +38,7 @@ impl Wrench {
     }
 
     /// Its power on a moving body: the body's velocity at its point, and its angular velocity.
-    pub(crate) fn power(&self, motion: &Motion) -> f64 {
+    pub(crate) fn power(&self, motion: &Motion<'_>) -> f64 {
         let frame = motion.bodies[self.body];
         let ([x, y], [vx, vy], omega) = (
             frame.origin.order(0),
@@ -71,21 +82,12 @@ fn plus([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
 
 /// A force on the second body and its opposite on the first.
 fn both([first, second]: [usize; 2], force: [f64; 2], point: [f64; 2], couple: f64) -> [Wrench; 2] {
-    let opposite = Wrench {
-        body: first,
-        force: scaled(force, -1.0),
-        point,
-        couple: -couple,
+    let on = |body: usize, force: [f64; 2], couple: f64| Wrench {
+        couple,
+        ..Wrench::new(body, force, point)
     };
-    [
-        opposite,
-        Wrench {
-            body: second,
-            force,
-            point,
-            couple,
-        },
-    ]
+    let opposite = on(first, scaled(force, -1.0), -couple);
+    [opposite, on(second, force, couple)]
 }
 
 fn unit(gap: JetVector) -> [f64; 2] {
@@ -94,19 +96,17 @@ fn unit(gap: JetVector) -> [f64; 2] {
 }
 
 /// A force between two points along their line, on each body at its own point.
-fn between(motion: &Motion, places: [Place; 2], force: f64) -> [Wrench; 2] {
+fn between(motion: &Motion<'_>, places: [Place; 2], force: f64) -> [Wrench; 2] {
     let line = unit(motion.gap(places));
-    let on = |k: usize, sign: f64| Wrench {
-        body: places[k].body,
-        force: scaled(line, sign * force),
-        point: motion.point(places[k]).order(0),
-        couple: 0.0,
+    let on = |k: usize, sign: f64| {
+        let point = motion.point(places[k]).order(0);
+        Wrench::new(places[k].body, scaled(line, sign * force), point)
     };
     [on(0, -1.0), on(1, 1.0)]
 }
 
 /// A force along a coordinate, of its first body on its second: it does work when the coordinate grows.
-pub(crate) fn along(motion: &Motion, measure: Measure, force: f64) -> [Wrench; 2] {
+pub(crate) fn along(motion: &Motion<'_>, measure: Measure, force: f64) -> [Wrench; 2] {
     let at = |places: [Place; 2], line: [f64; 2]| {
         let point = motion.point(places[1]).order(0);
         both(places.map(|p| p.body), scaled(line, force), point, 0.0)
@@ -124,7 +124,7 @@ pub(crate) fn along(motion: &Motion, measure: Measure, force: f64) -> [Wrench; 2
 // Long: an arm for each kind of joint.
 pub(crate) fn joint_wrenches(
     joint: &Joint,
-    motion: &Motion,
+    motion: &Motion<'_>,
     reaction: &[f64],
 ) -> Option<Vec<Wrench>> {
     let places = joint.places;
@@ -145,11 +145,7 @@ pub(crate) fn joint_wrenches(
         JointKind::Slot { axis: t } => {
             of_pair(scaled(axis(*t).normal().order(0), of(0)?), second, 0.0)
         }
-        JointKind::Gear {
-            radii,
-            is_internal,
-            pressure_angle,
-        } => {
+        JointKind::Gear { radii, is_internal } => {
             let line = unit(motion.gap(places));
             // The pitch point, seen from the second centre: towards the first, or of a ring around the second beyond it.
             let outwards = if *is_internal && radii[0] > radii[1] {
@@ -160,17 +156,16 @@ pub(crate) fn joint_wrenches(
             let turned = [-outwards[1], outwards[0]];
             let pitch = plus(second, scaled(outwards, radii[1]));
             let tooth = of(0)?;
-            let apart = scaled(outwards, -tooth.abs() * pressure_angle.tan());
+            let apart = scaled(outwards, -tooth.abs() * joint.pressure_angle.tan());
             of_pair(plus(scaled(turned, tooth), apart), pitch, 0.0)
         }
-        JointKind::Rack {
-            axis: t,
-            radius,
-            pressure_angle,
-        } => {
+        JointKind::Rack { axis: t, radius } => {
             let (along, normal) = (axis(*t).order(0), axis(*t).normal().order(0));
             let tooth = of(0)?;
-            let apart = scaled(normal, radius.signum() * tooth.abs() * pressure_angle.tan());
+            let apart = scaled(
+                normal,
+                radius.signum() * tooth.abs() * joint.pressure_angle.tan(),
+            );
             let point = plus(second, scaled(normal, -radius));
             of_pair(plus(scaled(along, tooth), apart), point, 0.0)
         }
@@ -196,8 +191,8 @@ pub(crate) fn joint_wrenches(
 
 impl Magnitude {
     /// Its value in a row.
-    pub(crate) fn at(&self, reading: &Reading, motion: &Motion, t: f64) -> Option<f64> {
-        let names = |name: &str| signal(reading, motion, t, name);
+    pub(crate) fn at(&self, motion: &Motion<'_>) -> Option<f64> {
+        let names = |name: &str| signal(motion, name);
         match self {
             Self::Expression(expression) => expression.at(&names).map(Jet::value),
             Self::Table { of, curve } => curve.at(names(of)?).map(Jet::value),
@@ -205,58 +200,52 @@ impl Magnitude {
     }
 }
 
-fn signal(reading: &Reading, motion: &Motion, t: f64, name: &str) -> Option<Jet> {
+fn signal(motion: &Motion<'_>, name: &str) -> Option<Jet> {
+    let coordinate = |name: &str| Some(motion.measure(motion.reading.coordinate(name)?.measure));
     if name == "t" {
-        return Some(Jet::constant(t));
+        return Some(Jet::constant(motion.time()));
     }
-    if let Some(coordinate) = reading.coordinate(name) {
-        return Some(Jet::constant(motion.measure(coordinate.measure).value()));
+    if let Some(coordinate) = coordinate(name) {
+        return Some(Jet::constant(coordinate.value()));
     }
-    let coordinate = reading.coordinate(name.strip_suffix(".velocity")?)?;
-    Some(Jet::constant(motion.measure(coordinate.measure).0[1]))
+    let coordinate = coordinate(name.strip_suffix(".velocity")?)?;
+    Some(Jet::constant(coordinate.0[1]))
 }
 
 impl Load {
     /// Its force or moment in a row, as its column has it; none of a weight.
-    pub(crate) fn magnitude(&self, reading: &Reading, motion: &Motion, t: f64) -> Option<f64> {
-        let of = |m: &Magnitude| m.at(reading, motion, t);
+    pub(crate) fn magnitude(&self, motion: &Motion<'_>) -> Option<f64> {
         match &self.kind {
             LoadKind::Gravity([x, y]) => Some(x.hypot(*y)),
-            LoadKind::Force { magnitude, .. }
-            | LoadKind::Torque { magnitude, .. }
-            | LoadKind::PointToPoint { magnitude, .. }
-            | LoadKind::SlideForce { magnitude, .. } => of(magnitude),
-            // Positive pushes apart, as the force of two points does.
-            LoadKind::Spring {
-                places,
-                stiffness,
-                free_length,
-            } => Some(-of(stiffness)? * (motion.gap(*places).length().value() - free_length)),
-            LoadKind::TorsionSpring {
-                bodies,
-                stiffness,
-                free_angle,
-            } => Some(-of(stiffness)? * (motion.relative_angle(*bodies).value() - free_angle)),
-            LoadKind::Damper { places, damping } => {
-                Some(-of(damping)? * motion.gap(*places).length().0[1])
+            LoadKind::Force { magnitude, .. } | LoadKind::Along(_, Source::Given(magnitude)) => {
+                magnitude.at(motion)
             }
-            LoadKind::RotationalDamper { bodies, damping } => {
-                Some(-of(damping)? * motion.relative_angle(*bodies).0[1])
+            // Positive pushes apart, as the force of two points does.
+            LoadKind::Along(measure, Source::Spring { stiffness, free }) => {
+                Some(-stiffness.at(motion)? * (motion.measure(*measure).value() - free))
+            }
+            LoadKind::Along(measure, Source::Damper(damping)) => {
+                Some(-damping.at(motion)? * motion.measure(*measure).0[1])
             }
         }
     }
 
+    /// Its forces in a row.
+    pub(crate) fn wrenches(&self, motion: &Motion<'_>) -> Option<Vec<Wrench>> {
+        let magnitude = self.magnitude(motion)?;
+        let unit = self.unit_wrenches(motion);
+        Some(unit.iter().map(|wrench| wrench.times(magnitude)).collect())
+    }
+
     /// The forces of it for a magnitude of 1.
-    pub(crate) fn unit_wrenches(&self, reading: &Reading, motion: &Motion) -> Vec<Wrench> {
+    pub(crate) fn unit_wrenches(&self, motion: &Motion<'_>) -> Vec<Wrench> {
         match &self.kind {
             LoadKind::Gravity([x, y]) => {
                 let size = x.hypot(*y);
-                let bodies = reading.bodies.iter().enumerate();
-                let weight = |(body, of): (usize, &super::reading::Body)| Wrench {
-                    body,
-                    force: scaled([*x, *y], if size > 0.0 { of.mass / size } else { 0.0 }),
-                    point: motion.center(reading, body).order(0),
-                    couple: 0.0,
+                let bodies = motion.reading.bodies.iter().enumerate();
+                let weight = |(body, of): (usize, &Body)| {
+                    let force = scaled([*x, *y], if size > 0.0 { of.mass / size } else { 0.0 });
+                    Wrench::new(body, force, motion.center(body).order(0))
                 };
                 bodies.map(weight).collect()
             }
@@ -266,44 +255,21 @@ impl Load {
                 in_body,
                 ..
             } => {
-                let direction = match in_body {
+                let force = match in_body {
                     true => motion.direction(at.body, *direction).order(0),
                     false => *direction,
                 };
-                let point = motion.point(*at).order(0);
-                vec![Wrench {
-                    body: at.body,
-                    force: direction,
-                    point,
-                    couple: 0.0,
-                }]
+                vec![Wrench::new(at.body, force, motion.point(*at).order(0))]
             }
-            LoadKind::Torque { bodies, .. }
-            | LoadKind::TorsionSpring { bodies, .. }
-            | LoadKind::RotationalDamper { bodies, .. } => {
-                along(motion, Measure::Angle(*bodies), 1.0).to_vec()
-            }
-            LoadKind::PointToPoint { places, .. }
-            | LoadKind::Spring { places, .. }
-            | LoadKind::Damper { places, .. } => {
-                along(motion, Measure::Length(*places), 1.0).to_vec()
-            }
-            LoadKind::SlideForce { places, axis, .. } => {
-                along(motion, Measure::Travel(*places, *axis), 1.0).to_vec()
-            }
+            LoadKind::Along(measure, _) => along(motion, *measure, 1.0).to_vec(),
         }
     }
 }
 
 impl Friction {
     /// The friction of a joint with a reaction: dry and viscous, against the speed of its surfaces.
-    pub(crate) fn wrenches(
-        &self,
-        reading: &Reading,
-        motion: &Motion,
-        reaction: &[f64],
-    ) -> Option<[Wrench; 2]> {
-        let joint = &reading.joints[self.joint];
+    pub(crate) fn wrenches(&self, motion: &Motion<'_>, reaction: &[f64]) -> Option<[Wrench; 2]> {
+        let joint = &motion.reading.joints[self.joint];
         let of = |k: usize| reaction.get(k).copied();
         let (measure, pressure) = match joint.kind {
             JointKind::Revolute => {

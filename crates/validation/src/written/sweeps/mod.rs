@@ -11,4 +11,4 @@ mod motion_results;
 mod statistics;
 mod sweep_files;
 
-pub(crate) use sweep_files::findings;
+pub(super) use sweep_files::compare;

@@ -3,7 +3,7 @@
 
 use crate::written::poses::difference::Differences;
 use crate::written::poses::program::Program;
-use crate::written::poses::rows::Rows;
+use crate::written::poses::rows::{Rows, largest};
 use crate::written::poses::scene_text::text_of;
 use crate::written::poses::variants::with_number;
 use serde_json::Value;
@@ -28,14 +28,12 @@ pub(super) fn motion_differences(
     let [first, second] = mass.values;
     let vary = format!("{}.mass={first:?},{second:?}", mass.body);
     let arguments = ["sweep", "--result", "motion", "--vary", &vary];
-    let run = program.run("sweep-motion", &text_of(scene)?, &arguments);
-    let run = run.map_err(|e| e.to_string())?;
+    let run = program.run("sweep-motion", &text_of(scene)?, &arguments)?;
     // Messages have commas: the database has them in a column of their own.
     let swept = run.sqlite("-sweep.sqlite", "points")?;
     let changed = with_number(scene, &["bodies", mass.body, "mass"], second);
     let changed = changed.ok_or("the body has no mass")?;
-    let single = program.run("point-motion", &text_of(&changed)?, &["simulate"]);
-    let single = single.map_err(|e| e.to_string())?;
+    let single = program.run("point-motion", &text_of(&changed)?, &["simulate"])?;
     let rows = single.csv("-motion.csv")?;
     let summary = single.json("-simulate.json")?;
     for (name, values) in swept
@@ -46,7 +44,7 @@ pub(super) fn motion_differences(
         let value = values.get(1).copied().unwrap_or(f64::NAN);
         let Some((column, what)) = name.trim_start_matches("motion.").rsplit_once('.') else {
             // The end of the motion itself.
-            let end = rows.time(rows.count.saturating_sub(1));
+            let end = rows.end();
             all.add(value - end, end, "", || name.clone());
             continue;
         };
@@ -56,7 +54,7 @@ pub(super) fn motion_differences(
         }
     }
     if all.count == 0 {
-        all.fail("`sweep` has no results of the motion".to_owned());
+        all.fail("`sweep` has no results of the motion");
     }
     Ok(all)
 }
@@ -65,12 +63,11 @@ pub(super) fn motion_differences(
 fn expected(rows: &Rows, summary: &Value, column: &str, what: &str) -> Option<[f64; 2]> {
     let [values, times] = [column, "t"].map(|name| rows.columns.get(name));
     let (values, times) = (values?, times?);
-    let size = |of: &[f64]| of.iter().fold(0.0_f64, |max, v| max.max(v.abs()));
     let extrema = summary["extrema"].as_array()?.iter();
     let of_column = extrema.filter(|entry| entry["quantity"] == column);
     let ends = of_column.flat_map(|entry| ["min", "max"].map(|end| entry[end]["value"].as_f64()));
     let between: Vec<f64> = ends.flatten().collect();
-    let largest = size(values).max(size(&between));
+    let largest = largest(values.iter().chain(&between));
     // By trapezoids, as the rows are joined in a picture.
     let mean = |of: fn(f64) -> f64| {
         let pieces = (1..values.len())

@@ -8,12 +8,10 @@ use crate::written::motions::sentences;
 use crate::written::poses::compared::Compared;
 use crate::written::poses::difference::Differences;
 use crate::written::poses::program::{Program, Run};
-use crate::written::poses::reading::Reading;
+use crate::written::poses::reading::{Body, Reading};
 use crate::written::poses::rows::Rows;
 use crate::written::poses::scene_text::{Draws, requests_everything, text_of};
 use crate::written::poses::variants::{beyond_rows, with_number};
-use dwell_findings::Finding;
-use std::path::Path;
 use toml::{Table, Value};
 
 /// Samples of every value of the grid.
@@ -41,16 +39,12 @@ struct Variation {
 }
 
 /// Runs `sweep` on a scene with one actuator, and compares what it writes.
-pub(crate) fn findings(path: &Path, name: &str, scene: &str) -> Vec<Finding> {
-    let mut compared = Compared::default();
-    if let Err(reason) = compare(&mut compared, path, name, scene) {
-        compared.fail("written-sweep-draws", reason);
-    }
-    compared.findings()
-}
-
 // Long because it is the list of all that a sweep writes.
-fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Result<(), String> {
+pub(crate) fn compare(
+    compared: &mut Compared,
+    program: &Program,
+    scene: &str,
+) -> Result<(), String> {
     let reading = Reading::new(scene)?;
     let everything = requests_everything(scene)?;
     let mut draws = Draws::of(&format!("{scene}sweep"));
@@ -58,7 +52,6 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
     if reading.actuator_count != 1 || variations.is_empty() {
         return Ok(());
     }
-    let program = Program::new(path, &format!("{name}-sweep")).map_err(|e| e.to_string())?;
     let seed = draws.below(1_000_000) as u64;
     let mut arguments: Vec<String> = ["sweep", "--result", "m"].map(str::to_owned).into();
     for variation in &variations {
@@ -67,18 +60,15 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
     let counts = [SAMPLES.to_string(), seed.to_string()];
     arguments.extend(["--samples", &counts[0], "--seed", &counts[1]].map(str::to_owned));
     let mut arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let run = program.run("sweep", &text_of(&everything)?, &arguments);
-    let run = run.map_err(|e| e.to_string())?;
+    let run = program.run("sweep", &text_of(&everything)?, &arguments)?;
     let rows = run.csv("-sweep.csv")?;
     compare_draws(compared, &variations, &rows, seed);
     arguments.extend(["--store", "parquet"]);
-    let stored = program.run("sweep-parts", &text_of(&everything)?, &arguments);
-    let stored = stored.map_err(|e| e.to_string())?;
+    let stored = program.run("sweep-parts", &text_of(&everything)?, &arguments)?;
     compared.merge("written-sweep-files", same_files([&run, &stored], &rows)?);
     let summary = run.json("-sweep.json")?;
-    let results = ["m.min", "m.max"].map(|name| rows.columns.get(name));
-    let mut results = results.into_iter().flatten().flatten();
-    let is_whole = results.all(|value| value.is_finite());
+    let mut results = ["m.min", "m.max"].into_iter();
+    let is_whole = results.all(|name| rows.column(name).iter().all(|value| value.is_finite()));
     if is_whole && run.printed.contains("could not be computed completely") {
         let reason = "`sweep` says that points failed, and every row has its numbers";
         compared.fail("written-sweep-sentences", reason.to_owned());
@@ -105,13 +95,13 @@ fn compare(compared: &mut Compared, path: &Path, name: &str, scene: &str) -> Res
             let path = ["bodies", &variation.body, "mass"];
             changed = with_number(&changed, &path, value).ok_or("the body has no mass")?;
         }
-        compare_row(compared, &program, &changed, (&rows, row))?;
+        compare_row(compared, program, &changed, (&rows, row))?;
     }
     if let Some(variation) = variations.first() {
-        let motion = motion_differences(&program, &everything, &near(&reading, variation))?;
+        let motion = motion_differences(program, &everything, &near(&reading, variation))?;
         compared.merge("written-sweep-motion", motion);
     }
-    compare_dimension(compared, &program, &everything, &mut draws)
+    compare_dimension(compared, program, &everything, &mut draws)
 }
 
 /// Two values near that of a mass of the scene.
@@ -141,8 +131,7 @@ fn compare_dimension(
     let [low, high] = values;
     let vary = format!("{body}.points.{point}[0]={low:?},{high:?}");
     let arguments = ["sweep", "--result", "m", "--vary", &vary];
-    let run = program.run("sweep-dimension", &text_of(scene)?, &arguments);
-    let run = run.map_err(|e| e.to_string())?;
+    let run = program.run("sweep-dimension", &text_of(scene)?, &arguments)?;
     // Messages have commas: the database has them in a column of their own.
     let rows = run.sqlite("-sweep.sqlite", "points")?;
     for (row, value) in values.into_iter().enumerate() {
@@ -184,7 +173,7 @@ fn variations(scene: &Table, reading: &Reading, draws: &mut Draws) -> Vec<Variat
     while !bodies.is_empty() && drawn.len() < 3 {
         drawn.push(bodies.swap_remove(draws.below(bodies.len())));
     }
-    let variation = |(k, body): (usize, &crate::written::poses::reading::Body)| {
+    let variation = |(k, body): (usize, &Body)| {
         let nominal = body.mass / reading.units.mass;
         Variation {
             body: body.name.clone(),
@@ -262,10 +251,13 @@ fn compare_draws(compared: &mut Compared, variations: &[Variation], rows: &Rows,
         .iter()
         .filter(|v| matches!(v.varied, Varied::Grid { .. }));
     let points = SAMPLES * VALUES.pow(u32::try_from(grids.count()).unwrap_or(0));
-    let of = compared.of("written-sweep-draws");
-    of.add(rows.count as f64 - points as f64, 1.0, "", || {
-        "number of points".to_owned()
-    });
+    compared.add(
+        "written-sweep-draws",
+        rows.count as f64 - points as f64,
+        1.0,
+        "",
+        || "number of points",
+    );
     for (axis, variation) in variations.iter().enumerate() {
         let Some(column) = rows.columns.get(&variation.path()) else {
             compared.fail(
@@ -277,8 +269,7 @@ fn compare_draws(compared: &mut Compared, variations: &[Variation], rows: &Rows,
         for (row, value) in column.iter().enumerate() {
             let expected = variation.value(row, (seed, axis));
             let place = || format!("{}, point {row}", variation.path());
-            let of = compared.of("written-sweep-draws");
-            of.add(value - expected, expected, "", place);
+            compared.add("written-sweep-draws", value - expected, expected, "", place);
         }
         let first = &column[..SAMPLES.min(column.len())];
         if let Some(value) = first.first()
@@ -286,8 +277,13 @@ fn compare_draws(compared: &mut Compared, variations: &[Variation], rows: &Rows,
         {
             let share = |value: f64| variation.share_below(value).unwrap_or(f64::NAN);
             let distance = distance(first.to_vec(), share);
-            let of = compared.of("written-sweep-distribution");
-            of.add(distance, LARGEST_DISTANCE, "", || variation.text());
+            compared.add(
+                "written-sweep-distribution",
+                distance,
+                LARGEST_DISTANCE,
+                "",
+                || variation.text(),
+            );
         }
     }
 }
@@ -323,16 +319,14 @@ fn compare_row(
     changed: &Table,
     (rows, row): (&Rows, usize),
 ) -> Result<(), String> {
-    let single = program.run("point", &text_of(changed)?, &["reduce"]);
-    let single = single.map_err(|e| e.to_string())?.csv("-reduced.csv")?;
+    let single = program.run("point", &text_of(changed)?, &["reduce"])?;
+    let single = single.csv("-reduced.csv")?;
     let m = single.columns.get("m").ok_or("`reduce` has no m")?;
     for (name, sign) in [("m.min", -1.0), ("m.max", 1.0)] {
         let value = rows.get(row, name).unwrap_or(f64::NAN);
         let (beyond, scale) = beyond_rows(m, value, sign);
         let place = || format!("point {row}, {name}");
-        compared
-            .of("written-sweep")
-            .add(beyond, scale, "kg m2", place);
+        compared.add("written-sweep", beyond, scale, "kg m2", place);
     }
     Ok(())
 }
