@@ -48,6 +48,27 @@ pub(crate) fn findings_text(name: &str, findings: &[Finding], more: &str) -> Str
     text
 }
 
+/// The difference of a finding as a part of its tolerance.
+pub(crate) fn ratio(finding: &Finding) -> f64 {
+    match finding.relative_difference {
+        0.0 => 0.0,
+        // What is not a number is the worst there is.
+        relative if relative.is_nan() => f64::INFINITY,
+        relative => relative / finding.tolerance,
+    }
+}
+
+/// The finding nearest to its tolerance.
+pub(crate) fn nearest<'f>(findings: impl Iterator<Item = &'f Finding>) -> Option<&'f Finding> {
+    findings.max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
+}
+
+/// How near the nearest of some findings is, and which.
+pub(crate) fn nearness(findings: &[Finding]) -> String {
+    let nearest = nearest(findings.iter());
+    nearest.map_or_else(String::new, |f| format!("{:.2} of {}", ratio(f), f.key))
+}
+
 /// `pass` or a bold FAIL.
 pub(crate) fn pass_or_fail(pass: bool) -> &'static str {
     if pass { "pass" } else { "**FAIL**" }

@@ -6,10 +6,11 @@ use super::in_scenes::StatedTable;
 use super::ratios::FIGURE;
 use super::series::{ParameterSeries, Requirement, RunResult};
 use crate::cases::model_states::{ModelStates, StateRequest};
+use crate::checked::states::inertias;
 use dwell_findings::Finding;
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_scene::Scene;
-use dwell_verify::{Inertias, check_states};
+use dwell_verify::check_states;
 use std::fmt::Write as _;
 
 /// Positions of a revolution.
@@ -186,11 +187,8 @@ fn findings_of(text: &str) -> Result<Vec<Finding>, String> {
         model.state(&request).map_err(|e| e.to_string())
     };
     let states: Vec<_> = (0..DENSE_STATES).map(state).collect::<Result<_, _>>()?;
-    let inertias = Inertias {
-        masses: &scene.masses,
-        varying: &scene.varying_inertias,
-    };
-    let found = check_states(&scene.mechanism, inertias, &model.assembly_poses, &states);
+    let (mechanism, inertias) = (&scene.mechanism, inertias(&scene));
+    let found = check_states(mechanism, inertias, &model.assembly_poses, &states);
     let named = found.into_iter().map(|finding| Finding {
         key: format!("large-group-{}", finding.key),
         domain: format!("a ring of {DENSE_LINKS} links, {}", finding.domain),

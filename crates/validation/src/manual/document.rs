@@ -2,9 +2,9 @@
 
 use super::capabilities::CAPABILITIES;
 use super::key_study::REQUIRED;
-use super::lines::{Line, LineState, check_name, digits, numbers, ratio};
+use super::lines::{Line, LineState, check_name, digits, numbers};
 use super::machine;
-use crate::report_parts::{pass_or_fail, table};
+use crate::report_parts::{nearness, pass_or_fail, ratio, table};
 use dwell_findings::{Check, Finding};
 use dwell_report::{Block, Document, markdown_text};
 use std::fmt::Write as _;
@@ -95,9 +95,9 @@ fn how_to_read() -> Block {
 
 /// What is missing.
 fn failures(lines: &[Line]) -> Vec<Block> {
-    let failed = lines.iter().filter_map(|line| match &line.state {
-        LineState::Fail(why) => Some(format!("- `{}` `{}`: {why}", line.section, line.item)),
-        _ => None,
+    let failed = lines.iter().filter_map(|line| {
+        let why = line.failure()?;
+        Some(format!("- `{}` `{}`: {why}", line.section, line.item))
     });
     let failed: Vec<String> = failed.collect();
     match failed.is_empty() {
@@ -148,14 +148,13 @@ fn targets() -> Block {
 
 fn cases(cases: &[CaseEntry<'_>]) -> Block {
     let row = |case: &CaseEntry<'_>| {
-        let nearest = super::lines::nearest(case.findings.iter());
         let passed = case.findings.iter().filter(|f| f.pass).count();
         vec![
             format!("`{}` {}", case.name, markdown_text(case.title)),
             format!("`{}`", &case.hash[..case.hash.len().min(16)]),
             markdown_text(&case.source),
             format!("{passed} of {}", case.findings.len()),
-            nearest.map_or_else(String::new, |f| format!("{:.2} of {}", ratio(&f), f.key)),
+            nearness(case.findings),
             pass_or_fail(passed == case.findings.len()).to_owned(),
         ]
     };

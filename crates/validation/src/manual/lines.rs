@@ -3,6 +3,7 @@
 use super::capabilities::{CAPABILITIES, CommandRequirement, Interface};
 use super::committed_mutations::CommittedMutation;
 use super::key_study::{KeyResult, REQUIRED};
+use crate::report_parts::nearest;
 use dwell_findings::{Check, Finding};
 use std::collections::BTreeSet;
 
@@ -32,6 +33,16 @@ pub(super) struct Line {
     pub(super) checks: BTreeSet<usize>,
     pub(super) mutations: Vec<String>,
     pub(super) state: LineState,
+}
+
+impl Line {
+    /// What is missing or fails.
+    pub(super) fn failure(&self) -> Option<&str> {
+        match &self.state {
+            LineState::Fail(why) => Some(why),
+            LineState::Pass | LineState::Exempt(_) => None,
+        }
+    }
 }
 
 /// A case with its findings.
@@ -76,7 +87,7 @@ fn key_line(result: &KeyResult, cases: &[CaseFindings<'_>]) -> Line {
         item: result.key.name.to_owned(),
         meaning: result.key.doc.to_owned(),
         cases: users.map(|case| case.name.to_owned()).collect(),
-        nearest: nearest(judging),
+        nearest: nearest(judging).cloned(),
         checks: checks.iter().map(|check| check.number()).collect(),
         mutations: fault.into_iter().collect(),
         state,
@@ -168,28 +179,11 @@ fn checked_line(
     Line {
         meaning: requirement.clone(),
         cases: users.map(|case| case.name.to_owned()).collect(),
-        nearest: nearest(judging),
+        nearest: nearest(judging).cloned(),
         checks,
         mutations: listed.chain(more).collect(),
         state,
         ..line
-    }
-}
-
-/// The finding nearest to its tolerance.
-pub(super) fn nearest<'f>(findings: impl Iterator<Item = &'f Finding>) -> Option<Finding> {
-    findings
-        .max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
-        .cloned()
-}
-
-/// The difference of a finding as a part of its tolerance.
-pub(super) fn ratio(finding: &Finding) -> f64 {
-    match finding.relative_difference {
-        0.0 => 0.0,
-        // What is not a number is the worst there is.
-        relative if relative.is_nan() => f64::INFINITY,
-        relative => relative / finding.tolerance,
     }
 }
 
