@@ -1,8 +1,50 @@
 //! Parts that the reports of cases and studies share.
 
-use dwell_findings::Finding;
-use dwell_report::{Block, Figure};
+use dwell_findings::{Finding, all_pass};
+use dwell_report::{Block, Document, Figure, reproducible_text};
+use dwell_study::Outcome;
 use dwell_study::output::Picture;
+
+/// The report of a study: `NAME.md` and `NAME.html`, the rounded `NAME.txt`, and its pictures in the folder `NAME/`.
+pub(crate) struct StudyReport<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) title: &'a str,
+    /// What is studied, in words.
+    pub(crate) text: String,
+    /// What follows these words, before the findings.
+    pub(crate) blocks: Vec<Block>,
+    /// What the rounded text says before the findings.
+    pub(crate) snapshot: String,
+    pub(crate) figures: &'a [Figure],
+    pub(crate) findings: Vec<Finding>,
+    /// What was studied and how much of it, at the end of a line of the summary.
+    pub(crate) count: String,
+}
+
+impl StudyReport<'_> {
+    /// Adds the report to an outcome.
+    pub(crate) fn add_to(self, outcome: &mut Outcome) {
+        let (name, title, findings) = (self.name, self.title, self.findings);
+        let result = pass_or_fail(all_pass(&findings));
+        let mut blocks = vec![Block::Text(format!("{result}. {}", self.text))];
+        blocks.extend(self.blocks);
+        blocks.push(Block::Heading("Findings".to_owned()));
+        blocks.push(Block::Findings(findings.clone()));
+        let title = title.to_owned();
+        let snapshot = format!("{}\n{}", self.snapshot, reproducible_text(&findings));
+        outcome.files.add(format!("{name}.txt"), snapshot);
+        outcome
+            .files
+            .add_document(name, &Document { title, blocks });
+        let pictures = self.figures.iter().map(|figure| {
+            let path = format!("{name}/{}.png", figure.name);
+            Picture::of_no_scene(path, figure.clone())
+        });
+        outcome.pictures.extend(pictures);
+        outcome.summary += &findings_text(name, &findings, &format!(", {}", self.count));
+        outcome.findings.extend(findings);
+    }
+}
 
 /// A table of a document.
 pub(crate) fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Block {
@@ -10,17 +52,6 @@ pub(crate) fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>
         header: header.iter().map(|&cell| cell.to_owned()).collect(),
         rows: rows.into_iter().collect(),
     }
-}
-
-/// Figures as pictures, each to be drawn as `FOLDER/NAME.png`.
-pub(crate) fn pictures<'a>(
-    folder: &'a str,
-    figures: &'a [Figure],
-) -> impl Iterator<Item = Picture> + 'a {
-    let path = move |figure: &Figure| format!("{folder}/{}.png", figure.name);
-    figures
-        .iter()
-        .map(move |figure| Picture::of_no_scene(path(figure), figure.clone()))
 }
 
 /// The drawn figures in a document, each with its caption or else its title below it.

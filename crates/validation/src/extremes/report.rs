@@ -2,11 +2,10 @@
 
 use super::check::check;
 use super::series::{MAX_ESTIMATE_RATIO, ResultCell, SeriesResult};
-use crate::report_parts::{figure_blocks, findings_text, pass_or_fail, pictures, table};
-use dwell_findings::{Finding, all_pass};
+use crate::report_parts::{StudyReport, figure_blocks, table};
+use dwell_findings::Finding;
 use dwell_report::{
-    Axis, Block, Chart, Column, Document, Figure, Files, Mark, Paint, Series, Stroke, Table,
-    TableExport as _, reproducible_text,
+    Axis, Chart, Column, Figure, Mark, Paint, Series, Stroke, Table, TableExport as _,
 };
 use dwell_study::output::chart;
 use dwell_study::ranges::extent;
@@ -31,22 +30,35 @@ pub fn outcome(
     let mut findings = check(results);
     findings.extend(further);
     let figures = figures(results);
-    let mut files = Files::new();
+    let mut outcome = Outcome::default();
     for result in results {
         let file = format!("{name}/{}.csv", result.series.key);
-        files.add(file, csv_table(result).csv()?);
+        outcome.files.add(file, csv_table(result).csv()?);
     }
-    files.add(format!("{name}.txt"), snapshot(results, &findings));
-    let document = document(results, name, &figures, &findings);
-    files.add_document(name, &document);
+    let header = [
+        "Row",
+        "Floor, digits",
+        "Fewest digits",
+        "Typed errors",
+        "Estimate / true error",
+        "Why this floor",
+    ];
+    let mut blocks = vec![table(&header, results.iter().map(summary_row))];
+    blocks.extend(figure_blocks(name, &figures, false));
     let cells: usize = results.iter().map(|m| m.cells.len()).sum();
-    Ok(Outcome {
-        summary: findings_text(name, &findings, &format!(", {cells} cells")),
-        files,
+    let report = StudyReport {
+        name,
+        title: "Extremes",
+        text: "Parameters are driven to their extremes, and the results are compared with closed forms in 32 digits. Each row states beforehand how many digits it must keep; below that only a typed error is accepted, and only where the condition number is above 1e8. Each result carries an estimate of its error: from the same evaluation in double-double numbers, from a second run at a tenth of the tolerance, or from the change of a period with its initial state."
+            .to_owned(),
+        blocks,
+        snapshot: snapshot(results),
+        figures: &figures,
         findings,
-        pictures: pictures(name, &figures).collect(),
-        ..Outcome::default()
-    })
+        count: format!("{cells} cells"),
+    };
+    report.add_to(&mut outcome);
+    Ok(outcome)
 }
 
 /// A figure for each family of rows: digits on the left, estimates on the right.
@@ -145,10 +157,7 @@ fn ratio_chart(result: &SeriesResult) -> Chart {
         let line = Series::line(*quantity, points(result, k, clamped));
         line.stroke(Stroke::Points).color(Paint::Palette(k))
     });
-    let line = |at: f64| Mark::Horizontal {
-        at,
-        label: String::new(),
-    };
+    let line = |at: f64| Mark::horizontal(at, "");
     Chart {
         x: parameter_axis(result),
         y: Axis::log("estimate / true error", "").with_range(low, high),
@@ -185,8 +194,8 @@ fn csv_table(result: &SeriesResult) -> Table {
     }
 }
 
-/// What every machine reproduces: the requirements, and which findings pass.
-fn snapshot(results: &[SeriesResult], findings: &[Finding]) -> String {
+/// What every machine reproduces: the requirements.
+fn snapshot(results: &[SeriesResult]) -> String {
     let mut text = "Extremes\n\n".to_owned();
     for result in results {
         let series = &result.series;
@@ -198,37 +207,7 @@ fn snapshot(results: &[SeriesResult], findings: &[Finding]) -> String {
             series.quantities.len()
         );
     }
-    text + "\n" + &reproducible_text(findings)
-}
-
-fn document(
-    results: &[SeriesResult],
-    name: &str,
-    figures: &[Figure],
-    findings: &[Finding],
-) -> Document {
-    let header = [
-        "Row",
-        "Floor, digits",
-        "Fewest digits",
-        "Typed errors",
-        "Estimate / true error",
-        "Why this floor",
-    ];
-    let mut blocks = vec![
-        Block::Text(format!(
-            "{}. Parameters are driven to their extremes, and the results are compared with closed forms in 32 digits. Each row states beforehand how many digits it must keep; below that only a typed error is accepted, and only where the condition number is above 1e8. Each result carries an estimate of its error: from the same evaluation in double-double numbers, from a second run at a tenth of the tolerance, or from the change of a period with its initial state.",
-            pass_or_fail(all_pass(findings))
-        )),
-        table(&header, results.iter().map(summary_row)),
-    ];
-    blocks.extend(figure_blocks(name, figures, false));
-    blocks.push(Block::Heading("Findings".to_owned()));
-    blocks.push(Block::Findings(findings.to_vec()));
-    Document {
-        title: "Extremes".to_owned(),
-        blocks,
-    }
+    text
 }
 
 /// A row in words.
