@@ -7,13 +7,15 @@ use dwell_scene::Scene;
 use dwell_study::number_format::{count, digits};
 use std::f64::consts::{PI, TAU};
 
+/// The name of an angle at which the quantity before it is largest.
+const LARGEST_AT: &str = "where it is largest";
 /// What varies by less than this factor over the family is called decided by the source.
 const DECIDED: f64 = 1.1;
 
 /// A quantity that the source shows or could show.
-struct Observable {
+struct Observable<'a> {
     name: String,
-    unit: String,
+    unit: &'a str,
     /// Its value in a member.
     of: fn(&Member) -> f64,
     /// An angle, whose ratio to another says nothing.
@@ -65,93 +67,40 @@ fn drawn_row(number: &DrawnNumber) -> Vec<String> {
     vec![number.name.clone(), format!("{from} and {to} times")]
 }
 
-// Long because every quantity is an entry of one list.
-fn observables(scene: &Scene) -> Vec<Observable> {
-    let mechanism = &scene.mechanism;
-    let named = |name: String, unit: &str, of, is_position| Observable {
-        name,
-        unit: unit.to_owned(),
-        of,
-        is_position,
-    };
+fn observables(scene: &Scene) -> Vec<Observable<'_>> {
     let reaction = scene.requests.reactions.first();
     let (reaction, force) = reaction.map_or(("reaction".to_owned(), "N"), |r| {
-        (mechanism.reaction_name(*r), r.component.unit())
+        (scene.mechanism.reaction_name(*r), r.component.unit())
     });
-    let (fitted, unit) = scene
-        .calibration
-        .as_ref()
-        .map_or(("", ""), |c| (c.path.as_str(), scene.unit_of(&c.path)));
-    vec![
-        named("period".to_owned(), "s", |m| last(m).t, false),
-        named(
-            "mean velocity".to_owned(),
-            "rad/s",
-            |m| TAU / last(m).t,
-            false,
-        ),
-        named(
-            "largest velocity".to_owned(),
-            "rad/s",
-            |m| fastest(m).q_dot,
-            false,
-        ),
-        named(
-            "where it is largest".to_owned(),
-            "°",
-            |m| signed_degrees(fastest(m).q),
-            true,
-        ),
-        named(
-            "smallest velocity".to_owned(),
-            "rad/s",
-            |m| slowest(m).q_dot,
-            false,
-        ),
-        named(
-            "mean of m over m at the start".to_owned(),
-            "",
-            mean_inertia,
-            false,
-        ),
-        named(
-            "m at the start".to_owned(),
-            "kg m²",
-            |m| m.start_inertia,
-            false,
-        ),
-        named(format!("fitted `{fitted}`"), unit, |m| m.calibrated, false),
-        named(
-            "dwell".to_owned(),
-            "°",
-            |m| (m.dwell.to - m.dwell.from).to_degrees(),
-            false,
-        ),
-        named(
-            "swing of the dwelling body".to_owned(),
-            "°",
-            |m| m.dwell.swing.to_degrees(),
-            false,
-        ),
-        named(
-            format!("largest magnitude of {reaction}"),
-            force,
-            |m| strongest(m).reaction.abs(),
-            false,
-        ),
-        named(
-            "where it is largest".to_owned(),
-            "°",
-            |m| signed_degrees(strongest(m).q),
-            true,
-        ),
-        named(
-            format!("changes of sign of {reaction}"),
-            "",
-            sign_changes,
-            false,
-        ),
-    ]
+    let fitted = scene.calibration.as_ref();
+    let (fitted, unit) = fitted.map_or(("", ""), |c| (&c.path, scene.unit_of(&c.path)));
+    let of_fitted = format!("fitted `{fitted}`");
+    let largest = format!("largest magnitude of {reaction}");
+    let changes = format!("changes of sign of {reaction}");
+    let named: [(&str, &str, fn(&Member) -> f64); 13] = [
+        ("period", "s", |m| last(m).t),
+        ("mean velocity", "rad/s", |m| TAU / last(m).t),
+        ("largest velocity", "rad/s", |m| fastest(m).q_dot),
+        (LARGEST_AT, "°", |m| signed_degrees(fastest(m).q)),
+        ("smallest velocity", "rad/s", |m| slowest(m).q_dot),
+        ("mean of m over m at the start", "", mean_inertia),
+        ("m at the start", "kg m²", |m| m.start_inertia),
+        (&of_fitted, unit, |m| m.calibrated),
+        ("dwell", "°", |m| (m.dwell.to - m.dwell.from).to_degrees()),
+        ("swing of the dwelling body", "°", |m| {
+            m.dwell.swing.to_degrees()
+        }),
+        (&largest, force, |m| strongest(m).reaction.abs()),
+        (LARGEST_AT, "°", |m| signed_degrees(strongest(m).q)),
+        (&changes, "", sign_changes),
+    ];
+    let observable = |(name, unit, of): (&str, _, _)| Observable {
+        name: name.to_owned(),
+        unit,
+        of,
+        is_position: name == LARGEST_AT,
+    };
+    named.map(observable).into()
 }
 
 /// A member has rows, or else there is none.
@@ -209,10 +158,10 @@ fn spread(family: &Family, of: fn(&Member) -> f64) -> [f64; 4] {
     [0.0, 0.1, 0.9, 1.0].map(|part| part_below(&values, part))
 }
 
-fn observable_row(family: &Family, observable: &Observable) -> Vec<String> {
+fn observable_row(family: &Family, observable: &Observable<'_>) -> Vec<String> {
     let own = (observable.of)(&family.reconstruction);
     let values = [own].into_iter().chain(spread(family, observable.of));
-    let names = [observable.name.clone(), observable.unit.clone()];
+    let names = [observable.name.clone(), observable.unit.to_owned()];
     names
         .into_iter()
         .chain(values.map(|v| digits(v, 4)))
@@ -220,7 +169,7 @@ fn observable_row(family: &Family, observable: &Observable) -> Vec<String> {
 }
 
 /// What the source decides: what hardly varies over the family, or over most of it.
-fn decision_sentence(family: &Family, observables: &[Observable]) -> String {
+fn decision_sentence(family: &Family, observables: &[Observable<'_>]) -> String {
     let hardly_varies = |low: f64, high: f64| high < DECIDED * low;
     let mut names: [Vec<&str>; 3] = Default::default();
     for observable in observables.iter().filter(|o| !o.is_position) {
