@@ -1,7 +1,7 @@
 //! Parts that the reports of cases and studies share.
 
 use dwell_findings::{Finding, all_pass};
-use dwell_report::{Block, Document, Figure, reproducible_text};
+use dwell_report::{Block, Column, Document, Figure, Table, reproducible_text};
 use dwell_study::Outcome;
 use dwell_study::output::Picture;
 
@@ -51,6 +51,21 @@ pub(crate) fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>
     Block::Table {
         header: header.iter().map(|&cell| cell.to_owned()).collect(),
         rows: rows.into_iter().collect(),
+    }
+}
+
+/// A number of a row, with the name and the unit of its column.
+pub(crate) type NumberColumn<'a, T> = (&'a str, &'a str, fn(&T) -> f64);
+
+/// The numbers of some rows.
+pub(crate) fn numbers<T>(columns: &[NumberColumn<'_, T>], rows: impl Iterator<Item = T>) -> Table {
+    let row = |row| columns.iter().map(|(.., value)| value(&row)).collect();
+    Table {
+        rows: rows.map(row).collect(),
+        columns: (columns
+            .iter()
+            .map(|(name, unit, _)| Column::new(*name, *unit)))
+        .collect(),
     }
 }
 

@@ -30,7 +30,7 @@ pub(super) fn blocks(scene: &Scene, family: &Family) -> Vec<Block> {
         Block::Text(family_sentence(family)),
         table(
             &["Not stated in the source", "Drawn between, of the scene's"],
-            family.drawn.iter().map(drawn_row),
+            family.described.drawn.iter().map(drawn_row),
         ),
         table(
             &[
@@ -57,8 +57,8 @@ fn family_sentence(family: &Family) -> String {
          {no_rocker} is no rocker, {no_dwell} stand still for less than {}° of the crank, and for {no_period} no value of \
          the fitted number gives the period. Not drawn are the scales: masses multiplied by μ and lengths by λ multiply m \
          by μλ² and forces by μλ, and change neither velocity nor period.",
-        count(family.draws, "drawn mechanism"),
-        digits(family.shortest_dwell, 3),
+        count(family.described.draws, "drawn mechanism"),
+        digits(family.described.shortest_dwell, 3),
     )
 }
 
@@ -84,7 +84,7 @@ fn observables(scene: &Scene) -> Vec<Observable<'_>> {
         (LARGEST_AT, "°", |m| signed_degrees(fastest(m).q)),
         ("smallest velocity", "rad/s", |m| slowest(m).q_dot),
         ("mean of m over m at the start", "", mean_inertia),
-        ("m at the start", "kg m²", |m| m.start_inertia),
+        ("m at the start", "kg m²", Member::start_inertia),
         (&of_fitted, unit, |m| m.calibrated),
         ("dwell", "°", |m| (m.dwell.to - m.dwell.from).to_degrees()),
         ("swing of the dwelling body", "°", |m| {
@@ -103,39 +103,27 @@ fn observables(scene: &Scene) -> Vec<Observable<'_>> {
     named.map(observable).into()
 }
 
-/// A member has rows, or else there is none.
-fn row(found: Option<MemberRow>) -> MemberRow {
-    found.unwrap_or(MemberRow {
-        q: f64::NAN,
-        t: f64::NAN,
-        q_dot: f64::NAN,
-        m: f64::NAN,
-        half_dm: f64::NAN,
-        reaction: f64::NAN,
-    })
-}
-
 fn last(member: &Member) -> MemberRow {
-    row(member.rows.last().copied())
+    member.rows[member.rows.len() - 1]
 }
 
 fn fastest(member: &Member) -> MemberRow {
-    row(member.row_of_largest(|row| row.q_dot.abs()))
+    member.row_of_largest(|row| row.q_dot.abs())
 }
 
 fn slowest(member: &Member) -> MemberRow {
-    row(member.row_of_largest(|row| -row.q_dot.abs()))
+    member.row_of_largest(|row| -row.q_dot.abs())
 }
 
 fn strongest(member: &Member) -> MemberRow {
-    row(member.row_of_largest(|row| row.reaction.abs()))
+    member.row_of_largest(|row| row.reaction.abs())
 }
 
 /// Over the angle; the last row repeats the first.
 fn mean_inertia(member: &Member) -> f64 {
     let rows = member.rows.len().saturating_sub(1);
     let sum: f64 = member.rows.iter().take(rows).map(|row| row.m).sum();
-    sum / (rows as f64 * member.start_inertia)
+    sum / (rows as f64 * member.start_inertia())
 }
 
 fn sign_changes(member: &Member) -> f64 {

@@ -1,7 +1,7 @@
 //! Friction near a jam, and motions of very many periods.
 
 use super::closed_forms::{dd, four_bar, root_inertia_integral};
-use super::in_scenes::StatedTable;
+use super::in_scenes::{StatedTable, column};
 use super::mechanisms::CRANK_ROCKER;
 use super::series::{ParameterSeries, Requirement, RunResult, decades, scaled_cell};
 use dwell_numerics::{DoubleDouble, Scalar};
@@ -83,15 +83,13 @@ fn periods() -> ParameterSeries {
             sample_interval: Some(duration),
         };
         let motion = compute_free_motion(&scene, &solver, &no_progress)?;
-        let table = &motion.computed.table;
-        let end = table.rows.last().ok_or("no rows")?;
-        let named = |name: &str| table.columns.iter().position(|c| c.name == name);
-        let column = named("phi").ok_or("no column")?;
+        let angles = column(&motion.computed.table, "phi")?;
+        let end = angles.last().ok_or("no rows")?;
         // At the end the duration is rounded, by less than the crank turns in it.
         let late = dd(duration) - exact;
         let angle = dd(START_ANGLE) + DoubleDouble::from_revolutions(count) + late;
         let error = motion.estimated_error.unwrap_or(f64::NAN);
-        Ok(vec![scaled_cell((end[column], error), angle, TAU)])
+        Ok(vec![scaled_cell((*end, error), angle, TAU)])
     };
     ParameterSeries {
         figure: FIGURE,

@@ -6,7 +6,7 @@ use dwell_dynamics::{
     CoordinateMode, DynamicsError, Machine, OdeState, Options, Orbit, ReducedState, Solution,
     solve, solve_reduced,
 };
-use dwell_kinetostatics::{ExactModel, Load, ReducedModel as _};
+use dwell_kinetostatics::{ExactModel, Load, LoadKind, Magnitude, ReducedModel as _};
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_study::estimate;
 
@@ -97,6 +97,15 @@ pub(super) fn wrapped_free_motion(
 pub(super) fn kinetic_energy(model: &ExactModel, y: &[f64]) -> f64 {
     let m = model.inertia(y[0], &mut model.workspace());
     m.map_or(f64::NAN, |(m, _)| 0.5 * m * y[1] * y[1])
+}
+
+/// A load of constant magnitude.
+pub(super) fn load(kind: LoadKind, magnitude: f64) -> Load {
+    Load {
+        name: "load".into(),
+        kind,
+        magnitude: Magnitude::Constant(magnitude),
+    }
 }
 
 /// A machine of one freedom under loads.

@@ -2,13 +2,13 @@
 
 use super::closed_forms::{arc_cosine, dd, elliptic_k, exponential};
 use super::mechanisms::{SliderCrank, TestMechanism, mass, rotor};
-use super::run_pair::{RunPair, loaded_motion, machine, quadrature, sampled};
+use super::run_pair::{RunPair, load, loaded_motion, machine, quadrature, sampled};
 use super::series::{ParameterSeries, Requirement, RunResult, decades, scaled_cell};
 use dwell_dynamics::{
     Atlas, Machine, MachineDescription, Method, OdeState, Options, Orbit, ReducedState,
 };
 use dwell_geometry::Vec2;
-use dwell_kinetostatics::{Load, LoadKind, Magnitude};
+use dwell_kinetostatics::LoadKind;
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_study::estimate;
 use std::f64::consts::PI;
@@ -27,13 +27,8 @@ pub(super) fn series() -> Vec<ParameterSeries> {
 
 /// 1 kg on a massless bar of 1 m under 1 m/s²: q̈ = −sin q, with q = 0 at the bottom.
 fn pendulum() -> Result<Machine, String> {
-    let weight = Load {
-        name: "weight".into(),
-        kind: LoadKind::Gravity {
-            direction: Vec2::IDENTITY,
-        },
-        magnitude: Magnitude::Constant(1.0),
-    };
+    let direction = Vec2::IDENTITY;
+    let weight = load(LoadKind::Gravity { direction }, 1.0);
     machine(&rotor(mass(1.0, [1.0, 0.0], 0.0)), &[weight])
 }
 

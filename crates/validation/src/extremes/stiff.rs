@@ -2,11 +2,11 @@
 
 use super::closed_forms::{dd, elliptic_e, exponential};
 use super::mechanisms::{mass, rotor, scotch_yoke, slider};
-use super::run_pair::{free_motion, kinetic_energy, loaded_motion, machine, quadrature};
+use super::run_pair::{free_motion, kinetic_energy, load, loaded_motion, machine, quadrature};
 use super::series::{ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell};
 use dwell_dynamics::{Method, Options, Orbit, ReducedState};
 use dwell_geometry::{BodyId, Vec2, vec2};
-use dwell_kinetostatics::{Load, LoadKind, Magnitude};
+use dwell_kinetostatics::{Load, LoadKind};
 use dwell_numerics::{DoubleDouble, Scalar};
 use std::f64::consts::TAU;
 
@@ -23,14 +23,6 @@ pub(super) fn series() -> Vec<ParameterSeries> {
 
 fn options() -> Options {
     Options::new(Method::Bdf, 1e-10)
-}
-
-fn load(kind: LoadKind, magnitude: f64) -> Load {
-    Load {
-        name: "load".into(),
-        kind,
-        magnitude: Magnitude::Constant(magnitude),
-    }
 }
 
 /// Free at zero travel of the slider, from a point 2 m behind it.

@@ -28,12 +28,12 @@ pub(crate) fn family(prepared: &PreparedScene<'_>, family: &Family) -> Figure {
         over_angle(
             "Generalised inertia",
             "m / m at the start",
-            |member, row| row.m / member.start_inertia,
+            |member, row| row.m / member.start_inertia(),
         ),
         over_angle(
             "Half its derivative",
             "½m′ / m at the start",
-            |member, row| row.half_dm / member.start_inertia,
+            |member, row| row.half_dm / member.start_inertia(),
         ),
         over_time(
             "Velocity in the free motion".to_owned(),
@@ -45,7 +45,7 @@ pub(crate) fn family(prepared: &PreparedScene<'_>, family: &Family) -> Figure {
             relative,
             |member, row| {
                 let largest = member.row_of_largest(|row| row.reaction.abs());
-                row.reaction / largest.map_or(1.0, |row| row.reaction.abs())
+                row.reaction / largest.reaction.abs()
             },
         ),
     ];
@@ -54,7 +54,10 @@ pub(crate) fn family(prepared: &PreparedScene<'_>, family: &Family) -> Figure {
          the stated period.",
         count(family.members.len(), "mechanism")
     );
-    let provenance = format!("exact reduced models of {}", count(family.draws, "draw"));
+    let provenance = format!(
+        "exact reduced models of {}",
+        count(family.described.draws, "draw")
+    );
     let title = "What the lost dimensions decide";
     Figure {
         columns: 2,

@@ -4,10 +4,8 @@ use super::check::check;
 use super::run::{ACCURACIES, MachineResult, MachineRun};
 use crate::extremes::drawn::{completed, runs};
 use crate::extremes::series::MAX_ESTIMATE_RATIO;
-use crate::report_parts::{StudyReport, figure_blocks, table};
-use dwell_report::{
-    Axis, Chart, Column, Figure, Mark, Paint, Series, Stroke, Table, TableExport as _,
-};
+use crate::report_parts::{NumberColumn, StudyReport, figure_blocks, numbers, table};
+use dwell_report::{Axis, Chart, Figure, Mark, Paint, Series, Stroke, Table, TableExport as _};
 use dwell_study::output::chart;
 use dwell_study::{Outcome, StudyError};
 
@@ -141,26 +139,13 @@ fn estimates(results: &[MachineResult]) -> Chart {
 
 /// All numbers of all runs.
 fn csv_table(results: &[MachineResult]) -> Table {
-    let columns = [
-        "machine",
-        "accuracy",
-        "refused",
-        "true error",
-        "error of the reference",
-        "estimate",
+    let columns: [NumberColumn<'_, (&MachineResult, &MachineRun)>; 6] = [
+        ("machine", "", |(machine, _)| machine.number as f64),
+        ("accuracy", "", |(_, run)| run.accuracy),
+        ("refused", "", |(_, run)| f64::from(run.refused.is_some())),
+        ("true error", "", |(_, run)| run.error),
+        ("error of the reference", "", |(_, run)| run.reference_error),
+        ("estimate", "", |(_, run)| run.estimate),
     ];
-    let rows = runs(results).map(|(m, run)| {
-        vec![
-            m.number as f64,
-            run.accuracy,
-            f64::from(u8::from(run.refused.is_some())),
-            run.error,
-            run.reference_error,
-            run.estimate,
-        ]
-    });
-    Table {
-        columns: columns.map(|name| Column::new(name, "")).into(),
-        rows: rows.collect(),
-    }
+    numbers(&columns, runs(results))
 }

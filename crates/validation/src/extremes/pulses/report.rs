@@ -4,11 +4,9 @@ use super::check::{MAX_ERROR_RATIO, check};
 use super::pulse::PulseShape;
 use super::run::{ACCURACIES, PulseResult, PulseRun, RunKind};
 use crate::extremes::drawn::{completed, runs};
-use crate::report_parts::{StudyReport, figure_blocks, table};
+use crate::report_parts::{NumberColumn, StudyReport, figure_blocks, numbers, table};
 use dwell_dynamics::Method;
-use dwell_report::{
-    Axis, Chart, Column, Figure, Mark, Paint, Series, Stroke, Table, TableExport as _,
-};
+use dwell_report::{Axis, Chart, Figure, Mark, Paint, Series, Stroke, Table, TableExport as _};
 use dwell_study::output::chart;
 use dwell_study::{Outcome, StudyError};
 
@@ -27,8 +25,8 @@ pub(in crate::extremes) fn add_to(
 ) -> Result<(), StudyError> {
     let name = format!("{name}-pulses");
     let figures = [figure(results, seed)];
-    let numbers = csv_table(results).csv()?;
-    outcome.files.add(format!("{name}/pulses.csv"), numbers);
+    let csv = csv_table(results).csv()?;
+    outcome.files.add(format!("{name}/pulses.csv"), csv);
     let header = [
         "Shape",
         "Pulses",
@@ -167,43 +165,27 @@ fn marks_chart(
 
 /// All numbers of all runs.
 fn csv_table(results: &[PulseResult]) -> Table {
-    let columns = [
-        ("pulse", ""),
-        ("relative width", ""),
-        ("span", "s"),
-        ("initial speed", "1/s"),
-        ("run", ""),
-        ("tolerance", ""),
-        ("refused", ""),
-        ("error", ""),
-        ("speed error / effect", ""),
-        ("error by hand", ""),
-        ("estimate", ""),
-        ("rounding", ""),
+    let columns: [NumberColumn<'_, (&PulseResult, usize, &PulseRun)>; 12] = [
+        ("pulse", "", |(pulse, ..)| pulse.number as f64),
+        ("relative width", "", |(pulse, ..)| pulse.relative_width),
+        ("span", "s", |(pulse, ..)| pulse.span),
+        ("initial speed", "1/s", |(pulse, ..)| pulse.speed),
+        ("run", "", |(_, k, _)| *k as f64),
+        ("tolerance", "", |(.., run)| match run.kind {
+            RunKind::Fixed(_, tolerance) | RunKind::Accuracy(tolerance) => tolerance,
+        }),
+        ("refused", "", |(.., run)| f64::from(run.refused.is_some())),
+        ("error", "", |(.., run)| run.error),
+        ("speed error / effect", "", |(.., run)| run.missed),
+        ("error by hand", "", |(.., run)| {
+            run.error_by_hand.unwrap_or(f64::NAN)
+        }),
+        ("estimate", "", |(.., run)| run.estimate),
+        ("rounding", "", |(.., run)| run.rounding),
     ];
-    let row = |p: &PulseResult, k: usize, run: &PulseRun| {
-        let (RunKind::Fixed(_, tolerance) | RunKind::Accuracy(tolerance)) = run.kind;
-        vec![
-            p.number as f64,
-            p.relative_width,
-            p.span,
-            p.speed,
-            k as f64,
-            tolerance,
-            f64::from(u8::from(run.refused.is_some())),
-            run.error,
-            run.missed,
-            run.error_by_hand.unwrap_or(f64::NAN),
-            run.estimate,
-            run.rounding,
-        ]
-    };
-    let rows = results.iter().flat_map(|p| {
-        let runs = p.runs.iter().enumerate();
-        runs.map(move |(k, run)| row(p, k, run))
+    let rows = results.iter().flat_map(|pulse| {
+        let runs = pulse.runs.iter().enumerate();
+        runs.map(move |(k, run)| (pulse, k, run))
     });
-    Table {
-        columns: columns.map(|(name, unit)| Column::new(name, unit)).into(),
-        rows: rows.collect(),
-    }
+    numbers(&columns, rows)
 }
