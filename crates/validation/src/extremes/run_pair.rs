@@ -1,6 +1,6 @@
 //! Motions of the grid, each run twice to estimate its error.
 
-use super::mechanisms::TestMechanism;
+use super::mechanisms::scene;
 use super::series::{CellResult, cell};
 use dwell_dynamics::{
     CoordinateMode, DynamicsError, Machine, OdeState, Options, Orbit, ReducedState, Solution,
@@ -9,6 +9,7 @@ use dwell_dynamics::{
 use dwell_kinetostatics::{ExactModel, Load, LoadKind, Magnitude, ReducedModel as _};
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_study::estimate;
+use dwell_study::models::compile_model;
 
 /// Times of a motion at which its two runs are compared, the end among them.
 const COMPARED_TIMES: usize = 64;
@@ -109,8 +110,8 @@ pub(super) fn load(kind: LoadKind, magnitude: f64) -> Load {
 }
 
 /// A machine of one freedom under loads.
-pub(super) fn machine(test: &TestMechanism, loads: &[Load]) -> Result<Machine, String> {
-    let model = test.model(&[]).map_err(|e| e.to_string())?;
+pub(super) fn machine(text: &str, loads: &[Load]) -> Result<Machine, String> {
+    let model = compile_model(&scene(text)?, &[]).map_err(|e| e.to_string())?;
     let free = vec![CoordinateMode::Free];
     Machine::new(model, loads, free, &[]).map_err(|e| e.to_string())
 }

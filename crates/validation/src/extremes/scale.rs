@@ -2,7 +2,7 @@
 
 use super::closed_forms::dd;
 use super::limit_positions::{ALLOWED_ROUNDINGS, QUANTITIES, compare_four_bar};
-use super::mechanisms::{CRANK_ROCKER, FourBar};
+use super::mechanisms::{CRANK_ROCKER, FourBar, reduced};
 use super::series::{ParameterSeries, Requirement, cell, decades};
 use dwell_geometry::vec2;
 use dwell_kinetostatics::Coefficients;
@@ -39,8 +39,7 @@ fn base_series(key: &str, what: &str, values: Vec<f64>, of: fn(f64) -> FourBar) 
         requirement: Box::new(required),
         run: Box::new(move |at| {
             let four_bar = of(at);
-            let test = four_bar.build();
-            let model = test.exact_model(&test.reactions("C"))?;
+            let model = reduced(&four_bar.text(), "C")?;
             compare_four_bar(&four_bar, &model, CRANK_ANGLE)
         }),
     }
@@ -91,8 +90,7 @@ fn placement() -> ParameterSeries {
 fn powers_of_two() -> ParameterSeries {
     type Reduced = Result<Coefficients, Box<dyn std::error::Error>>;
     fn reduced_at_scale(by: f64) -> Reduced {
-        let test = CRANK_ROCKER.scaled(by).build();
-        let model = test.exact_model(&test.reactions("C"))?;
+        let model = reduced(&CRANK_ROCKER.scaled(by).text(), "C")?;
         Ok(estimate::coefficients_with_errors(model.model(), CRANK_ANGLE)?.0)
     }
     ParameterSeries {
