@@ -172,7 +172,7 @@ impl Summary<'_> {
             extrema: extrema.collect(),
             event_count: record.events.len(),
             events: events.collect(),
-            findings: self.findings.iter().map(FindingRecord::from).collect(),
+            findings: self.findings.iter().map(FindingRecord).collect(),
             messages: &self.messages,
             printed: self.printed.lines().collect(),
             files: &self.files,

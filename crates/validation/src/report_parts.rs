@@ -54,6 +54,16 @@ pub(crate) fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>
     }
 }
 
+/// A cell of a row, below the header of its column.
+pub(crate) type TextColumn<T> = (&'static str, fn(&T) -> String);
+
+/// A table of a document by its columns.
+pub(crate) fn table_of<T>(columns: &[TextColumn<T>], rows: impl Iterator<Item = T>) -> Block {
+    let header: Vec<&str> = columns.iter().map(|(header, _)| *header).collect();
+    let row = |row| columns.iter().map(|(_, cell)| cell(&row)).collect();
+    table(&header, rows.map(row))
+}
+
 /// A number of a row, with the name and the unit of its column.
 pub(crate) type NumberColumn<'a, T> = (&'a str, &'a str, fn(&T) -> f64);
 

@@ -4,7 +4,7 @@
 //! The draws are the multiples of square roots of primes without their whole parts (Weyl), which fill the box of all
 //! numbers evenly and are the same on every machine.
 
-use super::dwell::{Dwell, dwell_of};
+use super::dwell::{Dwell, RangePoses, requested_dwell};
 use crate::error::ValidationError;
 use dwell_dynamics::{Orbit, ReducedState};
 use dwell_geometry::Range;
@@ -176,8 +176,8 @@ impl Member {
             if prepared.model.range() != Range::Full {
                 return Err(LeftOut::Revolution);
             }
-            let dwell = dwell_of(&prepared).map_err(|_| LeftOut::Revolution)?;
-            dwell.ok_or(LeftOut::Dwell)?
+            let poses = RangePoses::new(&prepared).map_err(|_| LeftOut::Revolution)?;
+            requested_dwell(&prepared, &poses).ok_or(LeftOut::Dwell)?
         };
         if dwell.swing >= PI {
             return Err(LeftOut::Rocker);

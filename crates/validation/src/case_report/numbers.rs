@@ -92,7 +92,7 @@ pub(super) fn numbers(
             target_period_s: c.period.into(),
         }),
         convergence_slope: motion.map(|m| m.drift_slope.into()),
-        findings: analysis.findings.iter().map(FindingRecord::from).collect(),
+        findings: analysis.findings.iter().map(FindingRecord).collect(),
         tolerance_series: runs.map(run).collect(),
     })?)
 }

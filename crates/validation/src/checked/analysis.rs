@@ -101,11 +101,8 @@ pub(crate) fn analyse<'a>(
             period.iter().flatten().cloned().collect(),
         ],
     );
-    findings.extend(
-        program
-            .into_iter()
-            .flat_map(|path| written_findings(path, scene)),
-    );
+    let written = program.map(|path| written_findings(path, scene));
+    findings.extend(written.unwrap_or_default());
     reference.apply_tolerances(&mut findings)?;
     done("states");
     Ok(CaseAnalysis {
@@ -120,28 +117,25 @@ pub(crate) fn analyse<'a>(
 
 /// The findings over the files that the program at a path writes of a scene.
 fn written_findings(program: &Path, scene: &Scene) -> Vec<Finding> {
-    let text = scene.source.inner();
-    let mut findings = written::poses::findings(program, &scene.name, text);
-    findings.extend(written::motions::findings(program, &scene.name, text));
-    findings.extend(written::operating_points::findings(
-        program,
-        &scene.name,
-        text,
-    ));
-    findings.extend(written::cycles::findings(program, &scene.name, text));
-    findings.extend(written::sweeps::findings(program, &scene.name, text));
-    findings
+    let kinds = [
+        written::poses::findings,
+        written::motions::findings,
+        written::operating_points::findings,
+        written::cycles::findings,
+        written::sweeps::findings,
+    ];
+    let of_kind = kinds.map(|findings| findings(program, &scene.name, scene.source.inner()));
+    of_kind.concat()
 }
 
 /// The findings of the reduced model, the free motion, rounding, states, multibody equations and period in the order of
 /// the snapshots.
-fn in_order(reduced: bool, findings: [Vec<Finding>; 6]) -> Vec<Finding> {
+fn in_order(reduced: bool, mut findings: [Vec<Finding>; 6]) -> Vec<Finding> {
     let order = if reduced {
         [0, 1, 2, 3, 4, 5]
     } else {
         [3, 0, 5, 4, 1, 2]
     };
-    let mut findings = findings;
     order.map(|k| std::mem::take(&mut findings[k])).concat()
 }
 

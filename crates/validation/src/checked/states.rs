@@ -101,7 +101,7 @@ pub(crate) fn check(
 }
 
 /// The states along the prescribed motion and over the sweep, so many of each.
-fn motions(
+pub(crate) fn motions(
     scene: &Scene,
     model: &ModelStates<'_>,
     reference: &Reference,
@@ -114,16 +114,6 @@ fn motions(
         _ => cosine_sweep(scene, model, reference, count),
     };
     along.into_iter().chain(across)
-}
-
-/// The same, one behind another.
-pub(crate) fn state_requests(
-    scene: &Scene,
-    model: &ModelStates<'_>,
-    reference: &Reference,
-    count: usize,
-) -> impl Iterator<Item = StateRequest> + use<> {
-    motions(scene, model, reference, count).flatten()
 }
 
 /// Masses and moments of inertia as the independent checks need them.

@@ -58,11 +58,10 @@ pub(super) fn cells(scene: &Scene) -> Result<Vec<Cell>, StudyError> {
     let of_positions = |&positions: &usize| -> Result<Vec<Cell>, StudyError> {
         let runs = compute_unit_runs(scene, Some(positions + 1), &no_progress)?;
         let of_digits = |&digits: &usize| -> Result<Vec<Cell>, StudyError> {
-            let tables = [0, 1].map(|k| {
+            let [one, two] = [0, 1].map(|k| {
                 let text = printed(&runs.runs[k], prepared.coordinate_name(), digits);
                 ExportedTable::read(["run i", "run ii"][k], &text)
             });
-            let [one, two] = tables;
             let combined = combine_runs([&one?, &two?], &ColumnNames::default())?;
             let cell = |interpolation| exact.cell(&combined, digits, interpolation);
             Ok(INTERPOLATIONS.into_iter().map(cell).collect())

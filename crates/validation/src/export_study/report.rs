@@ -1,7 +1,7 @@
 //! The picture, the table and the document of the study.
 
 use super::compute::{Cell, DIGITS, INTERPOLATIONS, POSITIONS, QUANTITIES};
-use crate::report_parts::{StudyReport, figure_blocks, table};
+use crate::report_parts::{StudyReport, TextColumn, figure_blocks, table_of};
 use dwell_findings::{Check, Finding};
 use dwell_report::{
     Axis, Block, Chart, Column, Figure, Mark, Paint, Panel, Series, Stroke, Table, TableExport as _,
@@ -164,26 +164,17 @@ fn numbers(cells: &[Cell]) -> Table {
 }
 
 fn errors_table(cells: &[Cell]) -> Block {
-    let header = [
-        "Positions",
-        "Digits",
-        "Interpolation",
-        "m",
-        "a, b",
-        "Period",
+    let columns: [TextColumn<&Cell>; 6] = [
+        ("Positions", |cell| cell.positions.to_string()),
+        ("Digits", |cell| cell.digits.to_string()),
+        ("Interpolation", |cell| cell.interpolation.name().to_owned()),
+        ("m", |cell| format!("{:.0e}", cell.errors[0])),
+        ("a, b", |cell| format!("{:.0e}", cell.errors[1])),
+        ("Period", |cell| format!("{:.0e}", cell.errors[2])),
     ];
-    let shown = cells
-        .iter()
-        .filter(|c| [36, 72, 180, 360, 720, 3600].contains(&c.positions));
-    let row = |cell: &Cell| {
-        let mut row = vec![
-            cell.positions.to_string(),
-            cell.digits.to_string(),
-            cell.interpolation.name().to_owned(),
-        ];
-        row.extend(cell.errors.iter().map(|error| format!("{error:.0e}")));
-        row
+    let is_shown = |c: &&Cell| {
+        let positions = [36, 72, 180, 360, 720, 3600];
+        positions.contains(&c.positions) && [4, 6, 12, 16].contains(&c.digits)
     };
-    let few_digits = |c: &&Cell| [4, 6, 12, 16].contains(&c.digits);
-    table(&header, shown.filter(few_digits).map(row))
+    table_of(&columns, cells.iter().filter(is_shown))
 }

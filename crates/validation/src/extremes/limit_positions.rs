@@ -2,15 +2,13 @@
 
 use super::closed_forms::{self, arc_cosine, dd};
 use super::mechanisms::{FourBar, SliderCrank, mass, reduced};
-use super::series::{ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell};
+use super::series::{
+    ALLOWED_ROUNDINGS, ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell,
+};
 use dwell_geometry::{Vec2, vec2};
 use dwell_kinetostatics::ExactModel;
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_study::estimate;
-
-/// Roundings that an evaluation of a dyad's reduced model is allowed, each magnified by the condition: it
-/// takes some hundred operations, whose roundings add up as their root.
-pub(super) const ALLOWED_ROUNDINGS: f64 = 16.0;
 
 /// A triple rocker: coupler and rocker are stretched in one line at both ends of the crank's swing.
 const ROCKER: FourBar = FourBar {

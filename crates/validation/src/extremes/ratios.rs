@@ -3,16 +3,14 @@
 use super::closed_forms::{UnitSpeedBody, at_rest, dd, exponential, four_bar};
 use super::in_scenes::StatedTable;
 use super::mechanisms::{CRANK_ROCKER, FourBar, body, mass};
-use super::series::{ParameterSeries, Requirement, RunResult, decades};
+use super::series::{
+    ALLOWED_ROUNDINGS, DYAD_CONDITION, ParameterSeries, Requirement, RunResult, decades,
+};
 use dwell_geometry::{Vec2, vec2};
 use dwell_kinetostatics::Mass;
 use dwell_numerics::{DoubleDouble, Scalar};
 use std::f64::consts::FRAC_PI_2;
 
-/// Roundings that an evaluation is allowed.
-const ALLOWED_ROUNDINGS: f64 = 16.0;
-/// Condition of a well-shaped dyad's accelerations, as of the four-bar.
-const DYAD_CONDITION: f64 = 8.0;
 /// Positions of a revolution or a motion.
 const POINTS: usize = 181;
 

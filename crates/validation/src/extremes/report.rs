@@ -2,7 +2,7 @@
 
 use super::check::check;
 use super::series::{MAX_ESTIMATE_RATIO, ResultCell, SeriesResult};
-use crate::report_parts::{StudyReport, figure_blocks, table};
+use crate::report_parts::{StudyReport, TextColumn, figure_blocks, table_of};
 use dwell_findings::Finding;
 use dwell_report::{
     Axis, Chart, Column, Figure, Mark, Paint, Series, Stroke, Table, TableExport as _,
@@ -35,15 +35,28 @@ pub fn outcome(
         let file = format!("{name}/{}.csv", result.series.key);
         outcome.files.add(file, csv_table(result).csv()?);
     }
-    let header = [
-        "Row",
-        "Floor, digits",
-        "Fewest digits",
-        "Typed errors",
-        "Estimate / true error",
-        "Why this floor",
+    let columns: [TextColumn<&SeriesResult>; 6] = [
+        ("Row", |row| row.series.description.clone()),
+        ("Floor, digits", |row| {
+            let [min, max] = extent(row.cells.iter().map(|c| c.requirement.min_digits));
+            format!("{max:.1} to {min:.1}")
+        }),
+        ("Fewest digits", |row| {
+            let [min, _] = extent(row.cells.iter().filter_map(ResultCell::digits));
+            format!("{min:.1}")
+        }),
+        ("Typed errors", |row| {
+            let errors = row.cells.iter().filter(|c| c.result.is_err());
+            format!("{} of {}", errors.count(), row.cells.len())
+        }),
+        ("Estimate / true error", |row| {
+            let ratios = row.cells.iter().filter_map(ResultCell::estimate_ratio);
+            let [low, high] = extent(ratios);
+            format!("{low:.2} to {high:.0}")
+        }),
+        ("Why this floor", |row| row.series.reason.to_owned()),
     ];
-    let mut blocks = vec![table(&header, results.iter().map(summary_row))];
+    let mut blocks = vec![table_of(&columns, results.iter())];
     blocks.extend(figure_blocks(name, &figures, false));
     let cells: usize = results.iter().map(|m| m.cells.len()).sum();
     let report = StudyReport {
@@ -208,21 +221,4 @@ fn snapshot(results: &[SeriesResult]) -> String {
         );
     }
     text
-}
-
-/// A row in words.
-fn summary_row(result: &SeriesResult) -> Vec<String> {
-    let cells = &result.cells;
-    let [min_required, max_required] = extent(cells.iter().map(|c| c.requirement.min_digits));
-    let [min_digits, _] = extent(cells.iter().filter_map(ResultCell::digits));
-    let [low, high] = extent(cells.iter().filter_map(ResultCell::estimate_ratio));
-    let typed_errors = cells.iter().filter(|c| c.result.is_err()).count();
-    vec![
-        result.series.description.clone(),
-        format!("{max_required:.1} to {min_required:.1}"),
-        format!("{min_digits:.1}"),
-        format!("{typed_errors} of {}", cells.len()),
-        format!("{low:.2} to {high:.0}"),
-        result.series.reason.to_owned(),
-    ]
 }

@@ -1,18 +1,17 @@
 //! Scales: masses, lengths, and the distance of a mechanism from the origin.
 
 use super::closed_forms::dd;
-use super::limit_positions::{ALLOWED_ROUNDINGS, QUANTITIES, compare_four_bar};
+use super::limit_positions::{QUANTITIES, compare_four_bar};
 use super::mechanisms::{CRANK_ROCKER, FourBar, reduced};
-use super::series::{ParameterSeries, Requirement, cell, decades};
+use super::series::{
+    ALLOWED_ROUNDINGS, DYAD_CONDITION, ParameterSeries, Requirement, cell, decades,
+};
 use dwell_geometry::vec2;
 use dwell_kinetostatics::Coefficients;
 use dwell_study::estimate;
 
 /// A crank angle in no special place, rad.
 const CRANK_ANGLE: f64 = 1.125;
-/// Condition of a well-shaped dyad's accelerations: the sines of its angles there are about a half, and they
-/// enter three times.
-const DYAD_CONDITION: f64 = 8.0;
 
 /// Figure of these rows, and its title.
 const FIGURE: (&str, &str) = ("scales", "Masses, lengths and places");

@@ -10,7 +10,7 @@ use super::motion_claims::{MotionClaims, differ};
 use crate::cases::model_states::{ModelStates, StateRequest};
 use crate::cases::reference::Reference;
 use crate::checked::known_reactions::known_reaction_findings;
-use crate::checked::states::{state_findings, state_requests};
+use crate::checked::states::{motions, state_findings};
 use dwell_findings::{Check, Finding};
 use dwell_scene::Scene;
 use dwell_study::StudyError;
@@ -157,8 +157,8 @@ impl PlantedScene {
     fn claims(&self, scene: &Scene) -> Option<StateClaims> {
         let claims = || -> Result<StateClaims, StudyError> {
             let mut model = ModelStates::new(scene)?;
-            let requests: Vec<StateRequest> =
-                state_requests(scene, &model, &self.reference, STATES).collect();
+            let requests = motions(scene, &model, &self.reference, STATES).flatten();
+            let requests: Vec<StateRequest> = requests.collect();
             let (mut states, mut mass_matrices) = (Vec::new(), Vec::new());
             for request in &requests {
                 states.push(model.state(request)?);

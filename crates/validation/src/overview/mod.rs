@@ -52,15 +52,11 @@ pub(crate) fn check_cells(done: &Validation) -> [CheckCell; Check::ALL.len()] {
 
 /// The report on all cases beside their own: `index.md`, `index.html`, and the picture of its table, `index.png`, to be drawn.
 pub fn index(results: &[CaseResult<'_>]) -> Outcome {
-    let good = |(_, result): &&CaseResult<'_>| match result {
-        Ok((_, done)) => all_pass(&done.outcome.findings),
-        Err(_) => false,
-    };
     let heads = Check::ALL.map(|check| check.to_string());
     let mut blocks = vec![
         Block::Text(format!(
             "{} of {} cases pass. Written by Dwell {}.",
-            results.iter().filter(good).count(),
+            passed(results),
             results.len(),
             env!("CARGO_PKG_VERSION")
         )),
@@ -109,6 +105,15 @@ pub fn index(results: &[CaseResult<'_>]) -> Outcome {
     let overview = Picture::of_no_scene("index.png".to_owned(), figure::overview(results));
     outcome.pictures.push(overview);
     outcome
+}
+
+/// How many cases pass.
+fn passed(results: &[CaseResult<'_>]) -> usize {
+    let done = results
+        .iter()
+        .filter_map(|(_, result)| result.as_ref().ok());
+    done.filter(|(_, done)| all_pass(&done.outcome.findings))
+        .count()
 }
 
 fn link(scene: &Scene) -> String {

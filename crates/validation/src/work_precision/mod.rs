@@ -120,18 +120,15 @@ pub fn measure_with<S: StudiedScene>(
             done(&format!("{name}, {}", method.name()));
             series
         };
-    let methods = Method::ALL.into_iter();
-    let series_by_method: Vec<ToleranceSeries> =
-        methods.map(|method| series(exact, method, None)).collect();
+    let series_by_method = Method::ALL.map(|method| series(exact, method, None));
     let mut reference = ReferenceSolution::new(&subject, exact, &series_by_method, effort)
         .map_err(|e| no_reference_error(&subject, &e, &series_by_method))?;
     let mut trials: Vec<Trial<'_>> = Vec::new();
-    for (k, evaluator) in evaluators.iter().enumerate() {
-        let evaluator = &**evaluator;
+    for (k, evaluator) in evaluators.iter().map(|e| &**e).enumerate() {
         let rerun =
             |reference: &ToleranceSeries| series(evaluator, reference.method, Some(reference));
         let all = match k {
-            0 => series_by_method.clone(),
+            0 => series_by_method.to_vec(),
             _ => series_by_method.iter().map(rerun).collect(),
         };
         collect_trials(evaluator, &subject, all, &mut trials, &mut omitted);
@@ -143,20 +140,17 @@ pub fn measure_with<S: StudiedScene>(
     let fixed_step = fixed_step::fixed_step(&mut reference, exact, &subject, evaluation_time);
     let fixed_step =
         fixed_step.map_err(|e| omitted.push(format!("fixed step: {}", run::reason(&e))));
-    let mut exported = Ok(Vec::new());
-    if effort.exported_code {
-        exported = exported_code::exported_code(&mut reference, exact, &subject, evaluation_time);
-    }
-    let exported = exported.map_err(|e| omitted.push(format!("exported code: {e}")));
+    let exported_code = match effort.exported_code {
+        true => exported_code::exported_code(&mut reference, exact, &subject, evaluation_time),
+        false => Ok(Vec::new()),
+    };
+    let exported_code = exported_code.map_err(|e| omitted.push(format!("exported code: {e}")));
     Ok(WorkPrecision {
         points,
         fixed_step: fixed_step.ok(),
-        exported_code: exported.unwrap_or_default(),
+        exported_code: exported_code.unwrap_or_default(),
         omitted,
-        reference: ReferenceInfo {
-            method: reference.method,
-            error: reference.error,
-        },
+        reference: reference.info,
         motion_notes: subject.notes.clone(),
         duration: subject.end(),
         unit: subject.unit(),

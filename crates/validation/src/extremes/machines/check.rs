@@ -19,10 +19,6 @@ pub fn check(results: &[MachineResult]) -> Vec<Finding> {
     let ratios: Vec<f64> = ratios.collect();
     let too_large = ratios.iter().filter(|ratio| **ratio > MAX_ESTIMATE_RATIO);
     let too_large = too_large.count() as f64 / ratios.len().max(1) as f64;
-    let unknown = results.iter().filter(|m| m.without_reference.is_some());
-    let unknown: Vec<usize> = unknown.map(|m| m.number).collect();
-    let first_unknown = unknown.first().map(|number| format!("machine {number}"));
-    let unknown = unknown.len() as f64 / results.len().max(1) as f64;
     let of =
         |key: &str, words: [&str; 3], found, allowed| finding(results, key, words, found, allowed);
     vec![
@@ -73,10 +69,18 @@ pub fn check(results: &[MachineResult]) -> Vec<Finding> {
                 "the machines",
                 "what has no reference is not checked",
             ],
-            (unknown, first_unknown.unwrap_or_default()),
+            without_reference(results),
             MAX_UNKNOWN,
         ),
     ]
+}
+
+/// The part of the machines that have no reference, with the first of them.
+fn without_reference(results: &[MachineResult]) -> (f64, String) {
+    let mut unknown = results.iter().filter(|m| m.without_reference.is_some());
+    let part = unknown.clone().count() as f64 / results.len().max(1) as f64;
+    let first = unknown.next().map(|m| format!("machine {}", m.number));
+    (part, first.unwrap_or_default())
 }
 
 impl Drawn for MachineResult {

@@ -139,10 +139,8 @@ impl Reference {
         column: &dyn Fn(&str) -> Vec<f64>,
     ) -> Vec<(f64, f64, f64)> {
         let largest = |i: usize| {
-            self.reactions
-                .iter()
-                .map(|at| at[i].abs())
-                .fold(0.0, f64::max)
+            let sizes = self.reactions.iter().map(|at| at[i].abs());
+            sizes.fold(0.0, f64::max)
         };
         let of_unit = |wanted: &str| {
             let alike = self.of_reactions.iter().enumerate();

@@ -60,14 +60,8 @@ fn machine_result(seed: u64, number: usize) -> MachineResult {
         .collect();
     let reference = Reference::new(&random, &times);
     // Without a reference there is nothing to compare with.
-    let runs = reference.as_ref().map_or_else(
-        |_| Vec::new(),
-        |reference| {
-            ACCURACIES
-                .map(|accuracy| run(&random, accuracy, reference))
-                .into()
-        },
-    );
+    let runs = |reference| ACCURACIES.map(|accuracy| run(&random, accuracy, reference));
+    let runs = reference.iter().flat_map(runs).collect();
     MachineResult {
         number,
         kind: random.kind,
