@@ -76,7 +76,7 @@ pub struct DisplayUnit {
 }
 
 /// Numbers along the rows.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct PageColumn {
     /// Its name in tables: no other column has it.
     pub key: String,
@@ -88,7 +88,8 @@ pub struct PageColumn {
     pub group: String,
     /// What it is.
     pub description: String,
-    /// By row; NaN where there is no value.
+    /// By row; NaN where there is no value. They are in the block of numbers, not in the description.
+    #[serde(skip)]
     pub values: Vec<f64>,
 }
 

@@ -4,7 +4,7 @@ use crate::description::{
     DisplayUnit, FileLink, Page, PageColumn, PageMessage, PageScene, PageTable, Peak,
 };
 use crate::drawing::{Drawing, DrawnBody, DrawnPath, ForceArrow, Part};
-use dwell_findings::{Finding, RecordedEvent, RecordedNumber};
+use dwell_findings::Finding;
 use serde::{Serialize, Serializer};
 use std::collections::HashMap;
 
@@ -58,6 +58,25 @@ impl Page {
         let columns = columns.collect::<Result<Vec<_>, _>>()?;
         let drawing = self.drawing.as_ref();
         let drawing = drawing.map(|drawing| block.drawing(drawing)).transpose()?;
+        let peak = |peak: &Peak| {
+            let [min, max] = peak.ends.map(|end| end.map(Number));
+            EncodedPeak {
+                column: peak.column,
+                min,
+                max,
+                error: peak.error.map(Number),
+            }
+        };
+        let numbers = self.numbers.iter().map(|number| EncodedNumber {
+            name: &number.name,
+            unit: &number.unit,
+            value: Number(number.value),
+            error: number.error.map(Number),
+        });
+        let events = self.events.iter().map(|event| EncodedEvent {
+            name: &event.name,
+            t: Number(event.t),
+        });
         let description = serde_json::to_string(&Description {
             format: FORMAT,
             title: &self.title,
@@ -73,13 +92,13 @@ impl Page {
             columns,
             rows_note: self.rows_note.as_deref(),
             drawing,
-            peaks: self.peaks.iter().map(EncodedPeak::from).collect(),
+            peaks: self.peaks.iter().map(peak).collect(),
             peaks_note: self.peaks_note.as_deref(),
             findings: self.findings.iter().map(EncodedFinding::from).collect(),
             messages: &self.messages,
             printed: &self.printed,
-            numbers: self.numbers.iter().map(EncodedNumber::from).collect(),
-            events: self.events.iter().map(EncodedEvent::from).collect(),
+            numbers: numbers.collect(),
+            events: events.collect(),
             tables: &self.tables,
             files: &self.files,
         })?;
@@ -200,41 +219,12 @@ struct Description<'a> {
     files: &'a [FileLink],
 }
 
+/// A column without its values, which are those of a slot.
+#[derive(Serialize)]
 struct EncodedColumn<'a> {
+    #[serde(flatten)]
     of: &'a PageColumn,
     slot: usize,
-}
-
-impl Serialize for EncodedColumn<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Fields<'a> {
-            key: &'a str,
-            label: &'a str,
-            unit: &'a str,
-            group: &'a str,
-            description: &'a str,
-            slot: usize,
-        }
-        let PageColumn {
-            key,
-            label,
-            unit,
-            group,
-            description,
-            values: _,
-        } = self.of;
-        let slot = self.slot;
-        Fields {
-            key,
-            label,
-            unit,
-            group,
-            description,
-            slot,
-        }
-        .serialize(serializer)
-    }
 }
 
 #[derive(Serialize)]
@@ -260,18 +250,6 @@ struct EncodedPeak {
     min: [Number; 2],
     max: [Number; 2],
     error: Option<Number>,
-}
-
-impl From<&Peak> for EncodedPeak {
-    fn from(peak: &Peak) -> Self {
-        let [min, max] = peak.ends.map(|end| end.map(Number));
-        Self {
-            column: peak.column,
-            min,
-            max,
-            error: peak.error.map(Number),
-        }
-    }
 }
 
 /// A finding; its texts are those of the reports.
@@ -318,30 +296,10 @@ struct EncodedNumber<'a> {
     error: Option<Number>,
 }
 
-impl<'a> From<&'a RecordedNumber> for EncodedNumber<'a> {
-    fn from(number: &'a RecordedNumber) -> Self {
-        Self {
-            name: &number.name,
-            unit: &number.unit,
-            value: Number(number.value),
-            error: number.error.map(Number),
-        }
-    }
-}
-
 #[derive(Serialize)]
 struct EncodedEvent<'a> {
     name: &'a str,
     t: Number,
-}
-
-impl<'a> From<&'a RecordedEvent> for EncodedEvent<'a> {
-    fn from(event: &'a RecordedEvent) -> Self {
-        Self {
-            name: &event.name,
-            t: Number(event.t),
-        }
-    }
 }
 
 /// A number of the description: one that is not finite becomes `"NaN"`, `"Infinity"` or `"-Infinity"`, which `Number()`

@@ -97,16 +97,11 @@ impl Animation {
         Ok(Pictures { size, frames })
     }
 
-    /// Width and height of the page that is drawn, in pixels.
-    pub(crate) fn page_size(&self) -> Result<[u32; 2], ReportError> {
-        Ok(self.page()?.size)
-    }
-
-    /// Notes on the layout of every frame.
-    pub(crate) fn records(&self) -> Result<Vec<LayoutRecord>, ReportError> {
+    /// Width and height of the page that is drawn, in pixels, and notes on the layout of every frame.
+    pub(crate) fn records(&self) -> Result<([u32; 2], Vec<LayoutRecord>), ReportError> {
         let page = self.page()?;
         let record = |drawing| recorded(page.size, |canvas| page.draw(canvas, drawing));
-        Ok(self.frames.iter().map(record).collect())
+        Ok((page.size, self.frames.iter().map(record).collect()))
     }
 
     fn page(&self) -> Result<FramePage, ReportError> {

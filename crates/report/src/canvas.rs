@@ -118,8 +118,8 @@ fn text_area(text: &str, [x, y]: [f64; 2], style: TextStyle) -> Rect {
 
 impl<'a> Canvas<'a> {
     /// A page of the given size in pixels, written into `svg`.
-    pub(crate) fn new(svg: &'a mut String, width: u32, height: u32) -> Self {
-        let size = [width, height].map(|side| side.saturating_mul(UNITS_PER_PIXEL as u32));
+    pub(crate) fn new(svg: &'a mut String, size: [u32; 2]) -> Self {
+        let size = size.map(|side| side.saturating_mul(UNITS_PER_PIXEL as u32));
         Self {
             backend: SVGBackend::with_string(svg, size.into()),
             record: None,
@@ -128,10 +128,9 @@ impl<'a> Canvas<'a> {
 
     /// The same page, with notes on where everything is.
     pub(crate) fn recording(svg: &'a mut String, size: [u32; 2]) -> Self {
-        let [width, height] = size;
         Self {
             record: Some(LayoutRecord::new(size)),
-            ..Self::new(svg, width, height)
+            ..Self::new(svg, size)
         }
     }
 

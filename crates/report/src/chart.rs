@@ -6,7 +6,7 @@ use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::coincidence;
 use crate::curve::{clipped, clipped_area};
 use crate::end_labels::{self, EndLabel};
-use crate::extent::{Extent, has_markers};
+use crate::extent::{Extent, has_markers, has_markers_only};
 use crate::figure::{Chart, Series, Stroke};
 use crate::layout_record::LayoutRecord;
 use crate::legend::{self, LegendEntry, LegendHandle, PlacedLegend};
@@ -24,14 +24,6 @@ pub(crate) const HEIGHT: f64 = 0.68;
 const MARKER_STEP: f64 = 15.0;
 /// Opacity of an area.
 const FILL_OPACITY: f64 = 0.22;
-
-/// Whether the points of a series are shown alone.
-fn has_markers_only(series: &Series) -> bool {
-    matches!(
-        series.stroke,
-        Stroke::Points | Stroke::Hollow | Stroke::Crosses
-    )
-}
 
 /// A chart with its spans found.
 pub(crate) struct PreparedChart<'a> {
@@ -132,13 +124,8 @@ impl<'a> PreparedChart<'a> {
     /// Draws the chart.
     pub(crate) fn draw(&self, canvas: &mut Canvas<'_>, cell: &Rect, insets: Insets) {
         let chart = self.chart;
-        let Layout {
-            frame,
-            styles,
-            end_labels,
-            legend,
-            occupied,
-        } = self.layout(cell, insets);
+        let layout = self.layout(cell, insets);
+        let frame = layout.frame;
         let x_ticks = axes::horizontal_ticks(&frame.x, frame.plot.width());
         let y_ticks = axes::vertical_ticks(&frame.y, frame.plot.height());
         marks::bands(canvas, &frame, &chart.marks);
@@ -152,27 +139,27 @@ impl<'a> PreparedChart<'a> {
             draw_area(canvas, &frame, series, style);
         }
         canvas.note(LayoutRecord::begin_plot);
-        for (series, style) in chart.series.iter().zip(&styles) {
+        for (series, style) in chart.series.iter().zip(&layout.styles) {
             canvas.note(|record| record.begin_curve(Some(&typeset(&series.name))));
             draw_series(canvas, &frame, series, style);
         }
         canvas.note(|record| record.begin_curve(None));
         marks::rings(canvas, &frame, &chart.marks);
         axes::title(canvas, &chart.title, &frame.plot, cell);
-        if let Some(end_labels) = &end_labels {
+        if let Some(end_labels) = &layout.end_labels {
             end_labels::draw(canvas, end_labels, &frame.plot);
         }
-        if let Some(legend) = &legend {
+        if let Some(legend) = &layout.legend {
             legend.draw(canvas);
         }
-        let mut written: Vec<Rect> = legend.map(|legend| legend.area).into_iter().collect();
+        let mut written: Vec<Rect> = layout.legend.iter().map(|legend| legend.area).collect();
         if !self.has_data(&frame) {
             let [x, y] = frame.plot.centre();
             let style = TextStyle::new(LABEL_SIZE, GREY, Align::Middle);
             canvas.text_centred("no data", [x, y], style);
             written.push(no_data_area(&frame));
         }
-        marks::draw_labels(canvas, &frame, &chart.marks, &occupied, written);
+        marks::draw_labels(canvas, &frame, &chart.marks, &layout.occupied, written);
     }
 
     fn vertical_axes(
@@ -254,7 +241,7 @@ impl<'a> PreparedChart<'a> {
     fn occupied(&self, frame: &PlotFrame) -> Occupancy {
         let mut occupied = Occupancy::new(frame.plot);
         for series in &self.chart.series {
-            if !has_markers_only(series) {
+            if !has_markers_only(series.stroke) {
                 let runs = polylines(frame, series);
                 runs.iter().for_each(|run| occupied.line(run));
             }
@@ -281,7 +268,7 @@ impl<'a> PreparedChart<'a> {
             let color = style.line.color;
             let patch = lightened(color, 1.0 - FILL_OPACITY);
             let handle = LegendHandle {
-                line: (!has_markers_only(series)).then_some(style.line),
+                line: (!has_markers_only(series.stroke)).then_some(style.line),
                 marker: has_markers(series.stroke).then_some((style.marker, color)),
                 patch: (series.stroke == Stroke::Filled).then_some(patch),
             };
@@ -339,7 +326,7 @@ fn draw_area(canvas: &mut Canvas<'_>, frame: &PlotFrame, series: &Series, style:
 }
 
 fn draw_series(canvas: &mut Canvas<'_>, frame: &PlotFrame, series: &Series, style: &SeriesStyle) {
-    if !has_markers_only(series) {
+    if !has_markers_only(series.stroke) {
         for run in polylines(frame, series) {
             canvas.line(&run, style.line);
         }

@@ -68,10 +68,12 @@ impl Extent {
 
 /// Whether a series has markers, which need room at the ends.
 pub(crate) fn has_markers(stroke: Stroke) -> bool {
-    matches!(
-        stroke,
-        Stroke::Points | Stroke::Hollow | Stroke::Crosses | Stroke::LineAndPoints
-    )
+    has_markers_only(stroke) || stroke == Stroke::LineAndPoints
+}
+
+/// Whether the points of a series are shown alone.
+pub(crate) fn has_markers_only(stroke: Stroke) -> bool {
+    matches!(stroke, Stroke::Points | Stroke::Hollow | Stroke::Crosses)
 }
 
 /// Where a mark is, on the axes it belongs to. Bands and power laws go as far as the axes do.

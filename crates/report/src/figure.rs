@@ -198,3 +198,17 @@ pub enum Mark {
         label: String,
     },
 }
+
+impl Mark {
+    /// A vertical line.
+    pub fn vertical(at: f64, label: impl Into<String>) -> Self {
+        let label = label.into();
+        Self::Vertical { at, label }
+    }
+
+    /// A horizontal line.
+    pub fn horizontal(at: f64, label: impl Into<String>) -> Self {
+        let label = label.into();
+        Self::Horizontal { at, label }
+    }
+}

@@ -33,6 +33,11 @@ pub(crate) struct Ink {
     pub(crate) owner: Owner,
 }
 
+/// The first cell from a place on; below zero saturates, and a cell counts if its middle is covered.
+fn first_cell(v: f64) -> usize {
+    (v / CELL + 0.5).floor().max(0.0) as usize
+}
+
 impl Ink {
     pub(crate) fn new(size: [f64; 2]) -> Self {
         let [columns, rows] = size.map(|side| (side / CELL).ceil().clamp(1.0, 20_000.0) as usize);
@@ -64,14 +69,9 @@ impl Ink {
     /// A block of cells, such as the box of a disc.
     pub(crate) fn block(&mut self, block: &Rect) {
         let Rect { x0, y0, x1, y1 } = *block;
-        let [left, top, right, bottom] = self.extent;
-        self.extent = [left.min(x0), top.min(y0), right.max(x1), bottom.max(y1)];
-        // Below zero saturates; a cell counts if its middle is covered.
-        let first = |v: f64| ((v / CELL + 0.5).floor().max(0.0)) as usize;
-        let (columns, rows) = (
-            first(x0)..first(x1).min(self.columns),
-            first(y0)..first(y1).min(self.rows),
-        );
+        self.extend([x0, y0, x1, y1]);
+        let columns = first_cell(x0)..first_cell(x1).min(self.columns);
+        let rows = first_cell(y0)..first_cell(y1).min(self.rows);
         for row in rows {
             for column in columns.clone() {
                 self.cell(row * self.columns + column);
@@ -86,14 +86,8 @@ impl Ink {
             ys().fold(f64::INFINITY, f64::min),
             ys().fold(-f64::INFINITY, f64::max),
         );
-        for p in points {
-            let [left, top, right, bottom] = self.extent;
-            self.extent = [
-                left.min(p[0]),
-                top.min(p[1]),
-                right.max(p[0]),
-                bottom.max(p[1]),
-            ];
+        for [x, y] in points {
+            self.extend([*x, *y, *x, *y]);
         }
         let mut y = (top.max(0.0) / CELL).floor() * CELL + 0.5 * CELL;
         while y < bottom.min(self.rows as f64 * CELL) {
@@ -106,13 +100,18 @@ impl Ink {
             xs.sort_by(f64::total_cmp);
             for span in xs.chunks_exact(2) {
                 let row = (y / CELL) as usize;
-                let first = |v: f64| ((v / CELL + 0.5).floor().max(0.0)) as usize;
-                for column in first(span[0])..first(span[1]).min(self.columns) {
+                for column in first_cell(span[0])..first_cell(span[1]).min(self.columns) {
                     self.cell(row * self.columns + column);
                 }
             }
             y += CELL;
         }
+    }
+
+    /// Notes left, top, right and bottom of new ink.
+    fn extend(&mut self, [x0, y0, x1, y1]: [f64; 4]) {
+        let [left, top, right, bottom] = self.extent;
+        self.extent = [left.min(x0), top.min(y0), right.max(x1), bottom.max(y1)];
     }
 
     fn cell(&mut self, index: usize) {

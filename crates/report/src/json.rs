@@ -38,13 +38,7 @@ impl Serialize for Number {
 
 /// A finding as it stands in JSON documents: its fields are their keys.
 #[derive(Debug, Clone, PartialEq)]
-pub struct FindingRecord<'a>(&'a Finding);
-
-impl<'a> From<&'a Finding> for FindingRecord<'a> {
-    fn from(finding: &'a Finding) -> Self {
-        Self(finding)
-    }
-}
+pub struct FindingRecord<'a>(pub &'a Finding);
 
 impl Serialize for FindingRecord<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -88,7 +82,7 @@ mod tests {
             condition_number: f64::INFINITY,
             ..Finding::default()
         };
-        let text = json(&FindingRecord::from(&finding)).unwrap();
+        let text = json(&FindingRecord(&finding)).unwrap();
         assert!(!text.contains("null") && text.contains("\"inf\""), "{text}");
     }
 }

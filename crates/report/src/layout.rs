@@ -71,11 +71,10 @@ impl Layout {
     /// # Errors
     /// As [`Animation::gif`].
     pub fn of_animation(animation: &Animation) -> Result<Vec<Self>, ReportError> {
-        let size = animation.page_size()?;
-        let recorded = animation.records()?.into_iter();
-        let mut frames: Vec<Self> = recorded
-            .map(|record| Self::from_record(record, size))
-            .collect();
+        let (size, recorded) = animation.records()?;
+        let frames = recorded.into_iter();
+        let frames = frames.map(|record| Self::from_record(record, size));
+        let mut frames: Vec<Self> = frames.collect();
         let mut largest: Vec<NamedCurve> = Vec::new();
         for curve in frames.iter().flat_map(|frame| &frame.curves) {
             match largest

@@ -156,17 +156,15 @@ pub(crate) fn place_inside(
     let mut column_counts = vec![1, 2, max_columns];
     column_counts.retain(|&columns| columns <= max_columns);
     column_counts.dedup();
-    for columns in column_counts {
+    column_counts.into_iter().find_map(|columns| {
         let legend = Legend::new(entries, columns, f64::INFINITY);
-        if let Some(area) = free_area(legend.width(), legend.height(), plot, occupied) {
-            return Some(PlacedLegend {
-                legend,
-                area,
-                is_inside: true,
-            });
-        }
-    }
-    None
+        let area = free_area(legend.width(), legend.height(), plot, occupied)?;
+        Some(PlacedLegend {
+            legend,
+            area,
+            is_inside: true,
+        })
+    })
 }
 
 fn free_area(width: f64, height: f64, plot: &Rect, occupied: &Occupancy) -> Option<Rect> {

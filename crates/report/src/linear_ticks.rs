@@ -1,6 +1,6 @@
 //! Ticks of a linear axis, and what all ticks are made of.
 
-use crate::number::{exponent, fixed, power_of_ten};
+use crate::number::{exponent, fixed, power_of_ten, trimmed};
 
 /// Ticks of one axis.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -103,14 +103,9 @@ fn offset_text(base: f64, e: i32) -> String {
     let size = exponent(base) + e;
     if (-5..7).contains(&size) {
         let text = fixed(base * 10f64.powi(e), usize::try_from(-e).unwrap_or(0));
-        return if text.contains('.') {
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
-        } else {
-            text
-        };
+        return trimmed(&text).to_owned();
     }
     let digits = usize::try_from(exponent(base)).unwrap_or(0);
     let mantissa = fixed(base / 10f64.powi(exponent(base)), digits);
-    let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
-    format!("{mantissa}·{}", power_of_ten(size))
+    format!("{}·{}", trimmed(&mantissa), power_of_ten(size))
 }

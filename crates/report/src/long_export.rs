@@ -37,7 +37,11 @@ impl LongExport {
     /// Writes the file.
     pub(crate) fn write(&self, file: &mut File) -> Result<(), ReportError> {
         let mut out = BufWriter::new(file);
-        let described: Vec<Column> = self.columns.iter().map(|&k| self.column(k)).collect();
+        let described = self
+            .columns
+            .iter()
+            .map(|&k| self.table.columns()[k].clone());
+        let described: Vec<Column> = described.collect();
         match self.format {
             TableFormat::Csv => {
                 out.write_all(csv_header(&described)?.as_bytes())
@@ -56,10 +60,6 @@ impl LongExport {
         }
         out.flush().map_err(csv::Error::from)?;
         Ok(())
-    }
-
-    fn column(&self, k: usize) -> Column {
-        self.table.columns()[k].clone()
     }
 }
 

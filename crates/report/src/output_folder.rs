@@ -116,18 +116,14 @@ impl OutputFolder {
     /// # Errors
     /// [`ReportError::File`] with the path and the system's reason.
     pub fn write(mut self, files: &Files) -> Result<Vec<PathBuf>, ReportError> {
-        let mut staged: Vec<(PathBuf, PathBuf)> = Vec::new();
-        let owner = self.owner.take();
-        let owner = owner.map(|(name, scene)| {
+        let mut staged = Vec::new();
+        let owner = self.owner.take().map(|(name, scene)| {
             let text = format!("{}\n", scene.display());
-            (self.owner_file(&name), text.into_bytes())
+            (self.owner_file(&name), Content::Bytes(text.into_bytes()))
         });
-        let owner = owner.map(|(path, text)| (path, Content::Bytes(text)));
-        let owner = owner.as_ref().map(|(path, text)| (path.clone(), text));
-        let files = files
-            .contents()
-            .map(|(path, content)| (self.root.join(path), content));
-        let mut unwritten = Vec::new();
+        let owner = owner.iter().map(|(path, text)| (path.clone(), text));
+        let files = files.contents();
+        let files = files.map(|(path, content)| (self.root.join(path), content));
         for (target, content) in files.chain(owner).collect::<Vec<_>>() {
             // Renaming onto a folder would fail too, but only after others have been renamed.
             if target.is_dir() {
@@ -138,12 +134,11 @@ impl OutputFolder {
             };
             self.create(parent)?;
             let temporary = self.unfinished.join(staged.len().to_string());
-            staged.push((temporary, target));
-            unwritten.push(content);
+            staged.push((temporary, target, content));
         }
-        store_all(&staged, &unwritten)?;
+        store_all(&staged)?;
         let mut written = Vec::with_capacity(staged.len());
-        for (temporary, target) in staged {
+        for (temporary, target, _) in staged {
             fs::rename(temporary, &target).map_err(file_error(&target))?;
             written.push(target);
         }
@@ -172,12 +167,11 @@ impl OutputFolder {
 }
 
 /// Stores files under their temporary names, several at a time: the system stores those that wait together at once.
-fn store_all(staged: &[(PathBuf, PathBuf)], contents: &[&Content]) -> Result<(), ReportError> {
-    let files: Vec<_> = staged.iter().zip(contents).collect();
-    for some in files.chunks(MAX_STORED_AT_ONCE) {
+fn store_all(staged: &[(PathBuf, PathBuf, &Content)]) -> Result<(), ReportError> {
+    for some in staged.chunks(MAX_STORED_AT_ONCE) {
         let stored: Vec<Result<(), ReportError>> = thread::scope(|scope| {
             let mut threads = Vec::new();
-            for &((temporary, target), content) in some {
+            for (temporary, target, content) in some {
                 let store_one = move || store(temporary, content).map_err(file_error(target));
                 threads.push(scope.spawn(store_one));
             }

@@ -28,7 +28,7 @@ impl SvgPicture {
     /// A page of the given width and height in pixels, drawn by `draw`.
     pub(crate) fn new([width, height]: [u32; 2], draw: impl FnOnce(&mut Canvas<'_>)) -> Self {
         let mut svg = String::new();
-        let mut canvas = Canvas::new(&mut svg, width, height);
+        let mut canvas = Canvas::new(&mut svg, [width, height]);
         draw(&mut canvas);
         canvas.finish();
         // The backend sets neither, and mitred joins make spikes of sharp turns.

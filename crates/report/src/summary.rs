@@ -2,7 +2,7 @@
 
 use crate::error::ReportError;
 use crate::json::{FindingRecord, Number, json};
-use dwell_findings::{Finding, Record, RecordedExtrema, RecordedNumber};
+use dwell_findings::{Finding, Record, RecordedNumber};
 use serde::Serialize;
 use serde::ser::{SerializeMap as _, Serializer};
 
@@ -101,22 +101,6 @@ struct ExtremaRecord<'a> {
     estimated_error: Option<Number>,
 }
 
-impl<'a> From<&'a RecordedExtrema> for ExtremaRecord<'a> {
-    fn from(extrema: &'a RecordedExtrema) -> Self {
-        let [min, max] = extrema.ends.map(|[value, at]| EndRecord {
-            value: Number(value),
-            at: Number(at),
-        });
-        Self {
-            quantity: &extrema.column.name,
-            unit: &extrema.column.unit,
-            min,
-            max,
-            estimated_error: extrema.error.map(Number),
-        }
-    }
-}
-
 #[derive(Serialize)]
 struct AbscissaRecord<'a> {
     name: &'a str,
@@ -162,6 +146,17 @@ impl Summary<'_> {
             name: &event.name,
             t: Number(event.t),
         });
+        let end = |[value, at]: [f64; 2]| EndRecord {
+            value: Number(value),
+            at: Number(at),
+        };
+        let extrema = record.extrema.iter().map(|extrema| ExtremaRecord {
+            quantity: &extrema.column.name,
+            unit: &extrema.column.unit,
+            min: end(extrema.ends[0]),
+            max: end(extrema.ends[1]),
+            estimated_error: extrema.error.map(Number),
+        });
         json(&SummaryFile {
             format: FORMAT,
             program: format!("Dwell {}", self.version),
@@ -174,10 +169,10 @@ impl Summary<'_> {
                 name: &column.name,
                 unit: &column.unit,
             }),
-            extrema: record.extrema.iter().map(ExtremaRecord::from).collect(),
+            extrema: extrema.collect(),
             event_count: record.events.len(),
             events: events.collect(),
-            findings: self.findings.iter().map(FindingRecord::from).collect(),
+            findings: self.findings.iter().map(FindingRecord).collect(),
             messages: &self.messages,
             printed: self.printed.lines().collect(),
             files: &self.files,
@@ -188,7 +183,7 @@ impl Summary<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_findings::{Column, RecordedEvent};
+    use dwell_findings::{Column, RecordedEvent, RecordedExtrema};
 
     #[test]
     fn every_number_is_kept_or_named() {

@@ -1,6 +1,6 @@
 //! Numbers of a text as papers print them.
 
-use crate::number::{exponent, fixed, power_of_ten};
+use crate::number::{exponent, fixed, power_of_ten, trimmed};
 
 /// Powers of ten that are written out: `0.00125`, and not `1.25 × 10⁻³`.
 const WRITTEN_OUT: std::ops::RangeInclusive<i32> = -3..=4;
@@ -64,18 +64,14 @@ fn leading_number(text: &str) -> Option<(usize, String)> {
     let plain = |text: &str| text.replace('−', "-");
     let mantissa: f64 = plain(&text[..mantissa_end]).parse().ok()?;
     let power: i32 = plain(&text[exponent_start..at]).parse().ok()?;
-    let trimmed = |text: &str| match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text.to_owned(),
-    };
     let decimals = text[sign + whole..mantissa_end].len().saturating_sub(1);
     if mantissa == 0.0 || WRITTEN_OUT.contains(&(power + exponent(mantissa))) {
         // Through decimal text: a product would leave digits that nobody wrote.
         let value: f64 = plain(&text[..at]).parse().ok()?;
         let places = (decimals as i64 - i64::from(power)).clamp(0, 20) as usize;
-        return Some((at, trimmed(&fixed(value, places))));
+        return Some((at, trimmed(&fixed(value, places)).to_owned()));
     }
-    let mantissa = match trimmed(&fixed(mantissa, decimals)).as_str() {
+    let mantissa = match trimmed(&fixed(mantissa, decimals)) {
         "1" => String::new(),
         "−1" => "−".to_owned(),
         mantissa => format!("{mantissa}\u{a0}×\u{a0}"),

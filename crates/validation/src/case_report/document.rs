@@ -5,7 +5,7 @@ use super::family::Family;
 use super::{dimensions, family_page};
 use crate::cases::reference::Reference;
 use crate::checked::analysis::CaseAnalysis;
-use crate::report_parts::{figure_blocks, table};
+use crate::report_parts::{TextColumn, figure_blocks, table_of};
 use dwell_findings::Finding;
 use dwell_report::{Block, Document, Figure};
 use dwell_scene::Scene;
@@ -122,8 +122,7 @@ fn tolerances_block(findings: &[Finding]) -> Block {
 
 /// Cost and errors of every method and tolerance.
 fn tolerance_runs_block(motion: &CheckedFreeMotion) -> Block {
-    type Cell = fn(&ToleranceRun) -> String;
-    let columns: [(&str, Cell); 10] = [
+    let columns: [TextColumn<&ToleranceRun>; 10] = [
         ("Method", |r| r.method.name().to_owned()),
         ("Tolerance", |r| format!("{:.0e}", r.tolerance)),
         ("Steps", |r| r.statistics.steps.to_string()),
@@ -137,7 +136,5 @@ fn tolerance_runs_block(motion: &CheckedFreeMotion) -> Block {
             format!("{:.0}", r.drift / r.tolerance)
         }),
     ];
-    let row = |r| columns.iter().map(|(_, cell)| cell(r)).collect();
-    let rows = motion.tolerance_runs.iter().map(row);
-    table(&columns.map(|(name, _)| name), rows)
+    table_of(&columns, motion.tolerance_runs.iter())
 }

@@ -1,6 +1,6 @@
 //! The bodies over the range, and how long one of them stands still.
 
-use dwell_geometry::{BodyId, Plan, Pose, Range, Vec2, vec2};
+use dwell_geometry::{BodyId, Pose, Range, Vec2, vec2};
 use dwell_kinetostatics::ReducedModel;
 use dwell_study::bodies::{BodyPose, point_position};
 use dwell_study::explain::explain_position;
@@ -42,7 +42,11 @@ impl RangePoses {
                 .map_err(|e| explain_position(prepared.scene, plan, &e))?;
             let all = plan.body_frames(mechanism, &pose).into_iter().enumerate();
             let pose = |(b, [x, y, _]): (usize, [f64; 3])| {
-                (vec2(x, y), body_rotation(plan, mechanism.ground, b, &pose))
+                let rotation = match b == mechanism.ground {
+                    true => Vec2::IDENTITY,
+                    false => plan.body_rotation(BodyId(b), &pose),
+                };
+                (vec2(x, y), rotation)
             };
             body_poses.push(all.map(pose).collect());
         }
@@ -65,23 +69,7 @@ impl RangePoses {
     }
 }
 
-fn body_rotation(plan: &Plan, ground: usize, body: usize, pose: &Pose<f64>) -> Vec2 {
-    if body == ground {
-        Vec2::IDENTITY
-    } else {
-        plan.body_rotation(BodyId(body), pose)
-    }
-}
-
 /// The dwell that a scene requests, if it does.
-///
-/// # Errors
-/// [`StudyError::Scene`] where a position has no solution.
-pub(crate) fn dwell_of(prepared: &PreparedScene<'_>) -> Result<Option<Dwell>, StudyError> {
-    let poses = RangePoses::new(prepared)?;
-    Ok(requested_dwell(prepared, &poses))
-}
-
 pub(crate) fn requested_dwell(prepared: &PreparedScene<'_>, poses: &RangePoses) -> Option<Dwell> {
     let full = prepared.model.range() == Range::Full;
     let request = prepared.scene.requests.dwell.as_ref();

@@ -4,7 +4,7 @@
 //! The draws are the multiples of square roots of primes without their whole parts (Weyl), which fill the box of all
 //! numbers evenly and are the same on every machine.
 
-use super::dwell::{Dwell, dwell_of};
+use super::dwell::{Dwell, RangePoses, requested_dwell};
 use crate::error::ValidationError;
 use dwell_dynamics::{Orbit, ReducedState};
 use dwell_geometry::Range;
@@ -29,11 +29,13 @@ const PRIMES: [f64; 12] = [
 /// What the file says.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
-struct Description {
-    draws: usize,
-    /// Degrees of the crank.
-    shortest_dwell: f64,
-    drawn: Vec<DrawnNumber>,
+pub(super) struct Description {
+    /// Number of draws.
+    pub(super) draws: usize,
+    /// The shortest dwell of a member, degrees of the crank.
+    pub(super) shortest_dwell: f64,
+    /// What is drawn.
+    pub(super) drawn: Vec<DrawnNumber>,
 }
 
 /// A number that the source does not give.
@@ -51,11 +53,7 @@ pub(super) struct DrawnNumber {
 /// The members of a family, and those drawn that are none.
 pub(super) struct Family {
     /// What is drawn.
-    pub(super) drawn: Vec<DrawnNumber>,
-    /// Number of draws.
-    pub(super) draws: usize,
-    /// The shortest dwell of a member, degrees.
-    pub(super) shortest_dwell: f64,
+    pub(super) described: Description,
     /// Draws that cannot be assembled over a whole revolution, whose dwelling body is no rocker, that stand still for a
     /// shorter time, and for which no value of the calibrated number gives the period.
     pub(super) left_out: [usize; 4],
@@ -71,9 +69,7 @@ pub(super) struct Member {
     pub(super) calibrated: f64,
     /// Its dwell.
     pub(super) dwell: Dwell,
-    /// Generalised inertia at the start, kg m².
-    pub(super) start_inertia: f64,
-    /// Its motion over one revolution.
+    /// Its motion over one revolution: the first row is its start.
     pub(super) rows: Vec<MemberRow>,
 }
 
@@ -144,9 +140,7 @@ impl Family {
             }
         }
         Ok(Some(Self {
-            draws: described.draws,
-            shortest_dwell: described.shortest_dwell,
-            drawn: described.drawn,
+            described,
             left_out,
             reconstruction,
             members,
@@ -182,8 +176,8 @@ impl Member {
             if prepared.model.range() != Range::Full {
                 return Err(LeftOut::Revolution);
             }
-            let dwell = dwell_of(&prepared).map_err(|_| LeftOut::Revolution)?;
-            dwell.ok_or(LeftOut::Dwell)?
+            let poses = RangePoses::new(&prepared).map_err(|_| LeftOut::Revolution)?;
+            requested_dwell(&prepared, &poses).ok_or(LeftOut::Dwell)?
         };
         if dwell.swing >= PI {
             return Err(LeftOut::Rocker);
@@ -201,15 +195,20 @@ impl Member {
         Ok(Self {
             calibrated: fitted.value,
             dwell,
-            start_inertia: rows.first().map_or(f64::NAN, |row| row.m),
             rows,
         })
     }
 
+    /// Generalised inertia at the start, kg m².
+    pub(super) fn start_inertia(&self) -> f64 {
+        self.rows[0].m
+    }
+
     /// The row in which a value is largest.
-    pub(super) fn row_of_largest(&self, value: impl Fn(&MemberRow) -> f64) -> Option<MemberRow> {
+    pub(super) fn row_of_largest(&self, value: impl Fn(&MemberRow) -> f64) -> MemberRow {
         let rows = self.rows.iter().copied();
-        rows.max_by(|a, b| value(a).total_cmp(&value(b)))
+        let largest = rows.max_by(|a, b| value(a).total_cmp(&value(b)));
+        largest.unwrap_or(self.rows[0])
     }
 }
 
@@ -268,8 +267,13 @@ mod tests {
             .expect("a family")
             .expect("a file");
         let kept = family.members.len();
-        assert!(kept >= 30, "{kept} members of {} draws", family.draws);
-        assert_eq!(kept + family.left_out.iter().sum::<usize>(), family.draws);
+        let Description {
+            draws,
+            shortest_dwell,
+            ..
+        } = family.described;
+        assert!(kept >= 30, "{kept} members of {draws} draws");
+        assert_eq!(kept + family.left_out.iter().sum::<usize>(), draws);
         for member in family.members.iter().chain([&family.reconstruction]) {
             assert_eq!(member.rows[0].q_dot, 1.0);
             let rows = &member.rows[..INTERVALS];
@@ -279,7 +283,7 @@ mod tests {
                 .sum();
             assert!((period - 5.42).abs() < 1e-9, "{period}");
             let dwell = (member.dwell.to - member.dwell.from).to_degrees();
-            assert!(dwell >= family.shortest_dwell);
+            assert!(dwell >= shortest_dwell);
         }
     }
 

@@ -7,13 +7,15 @@ use dwell_scene::Scene;
 use dwell_study::number_format::{count, digits};
 use std::f64::consts::{PI, TAU};
 
+/// The name of an angle at which the quantity before it is largest.
+const LARGEST_AT: &str = "where it is largest";
 /// What varies by less than this factor over the family is called decided by the source.
 const DECIDED: f64 = 1.1;
 
 /// A quantity that the source shows or could show.
-struct Observable {
+struct Observable<'a> {
     name: String,
-    unit: String,
+    unit: &'a str,
     /// Its value in a member.
     of: fn(&Member) -> f64,
     /// An angle, whose ratio to another says nothing.
@@ -28,7 +30,7 @@ pub(super) fn blocks(scene: &Scene, family: &Family) -> Vec<Block> {
         Block::Text(family_sentence(family)),
         table(
             &["Not stated in the source", "Drawn between, of the scene's"],
-            family.drawn.iter().map(drawn_row),
+            family.described.drawn.iter().map(drawn_row),
         ),
         table(
             &[
@@ -55,8 +57,8 @@ fn family_sentence(family: &Family) -> String {
          {no_rocker} is no rocker, {no_dwell} stand still for less than {}° of the crank, and for {no_period} no value of \
          the fitted number gives the period. Not drawn are the scales: masses multiplied by μ and lengths by λ multiply m \
          by μλ² and forces by μλ, and change neither velocity nor period.",
-        count(family.draws, "drawn mechanism"),
-        digits(family.shortest_dwell, 3),
+        count(family.described.draws, "drawn mechanism"),
+        digits(family.described.shortest_dwell, 3),
     )
 }
 
@@ -65,128 +67,63 @@ fn drawn_row(number: &DrawnNumber) -> Vec<String> {
     vec![number.name.clone(), format!("{from} and {to} times")]
 }
 
-// Long because every quantity is an entry of one list.
-fn observables(scene: &Scene) -> Vec<Observable> {
-    let mechanism = &scene.mechanism;
-    let named = |name: String, unit: &str, of, is_position| Observable {
-        name,
-        unit: unit.to_owned(),
-        of,
-        is_position,
-    };
+fn observables(scene: &Scene) -> Vec<Observable<'_>> {
     let reaction = scene.requests.reactions.first();
     let (reaction, force) = reaction.map_or(("reaction".to_owned(), "N"), |r| {
-        (mechanism.reaction_name(*r), r.component.unit())
+        (scene.mechanism.reaction_name(*r), r.component.unit())
     });
-    let (fitted, unit) = scene
-        .calibration
-        .as_ref()
-        .map_or(("", ""), |c| (c.path.as_str(), scene.unit_of(&c.path)));
-    vec![
-        named("period".to_owned(), "s", |m| last(m).t, false),
-        named(
-            "mean velocity".to_owned(),
-            "rad/s",
-            |m| TAU / last(m).t,
-            false,
-        ),
-        named(
-            "largest velocity".to_owned(),
-            "rad/s",
-            |m| fastest(m).q_dot,
-            false,
-        ),
-        named(
-            "where it is largest".to_owned(),
-            "°",
-            |m| signed_degrees(fastest(m).q),
-            true,
-        ),
-        named(
-            "smallest velocity".to_owned(),
-            "rad/s",
-            |m| slowest(m).q_dot,
-            false,
-        ),
-        named(
-            "mean of m over m at the start".to_owned(),
-            "",
-            mean_inertia,
-            false,
-        ),
-        named(
-            "m at the start".to_owned(),
-            "kg m²",
-            |m| m.start_inertia,
-            false,
-        ),
-        named(format!("fitted `{fitted}`"), unit, |m| m.calibrated, false),
-        named(
-            "dwell".to_owned(),
-            "°",
-            |m| (m.dwell.to - m.dwell.from).to_degrees(),
-            false,
-        ),
-        named(
-            "swing of the dwelling body".to_owned(),
-            "°",
-            |m| m.dwell.swing.to_degrees(),
-            false,
-        ),
-        named(
-            format!("largest magnitude of {reaction}"),
-            force,
-            |m| strongest(m).reaction.abs(),
-            false,
-        ),
-        named(
-            "where it is largest".to_owned(),
-            "°",
-            |m| signed_degrees(strongest(m).q),
-            true,
-        ),
-        named(
-            format!("changes of sign of {reaction}"),
-            "",
-            sign_changes,
-            false,
-        ),
-    ]
-}
-
-/// A member has rows, or else there is none.
-fn row(found: Option<MemberRow>) -> MemberRow {
-    found.unwrap_or(MemberRow {
-        q: f64::NAN,
-        t: f64::NAN,
-        q_dot: f64::NAN,
-        m: f64::NAN,
-        half_dm: f64::NAN,
-        reaction: f64::NAN,
-    })
+    let fitted = scene.calibration.as_ref();
+    let (fitted, unit) = fitted.map_or(("", ""), |c| (&c.path, scene.unit_of(&c.path)));
+    let of_fitted = format!("fitted `{fitted}`");
+    let largest = format!("largest magnitude of {reaction}");
+    let changes = format!("changes of sign of {reaction}");
+    let named: [(&str, &str, fn(&Member) -> f64); 13] = [
+        ("period", "s", |m| last(m).t),
+        ("mean velocity", "rad/s", |m| TAU / last(m).t),
+        ("largest velocity", "rad/s", |m| fastest(m).q_dot),
+        (LARGEST_AT, "°", |m| signed_degrees(fastest(m).q)),
+        ("smallest velocity", "rad/s", |m| slowest(m).q_dot),
+        ("mean of m over m at the start", "", mean_inertia),
+        ("m at the start", "kg m²", Member::start_inertia),
+        (&of_fitted, unit, |m| m.calibrated),
+        ("dwell", "°", |m| (m.dwell.to - m.dwell.from).to_degrees()),
+        ("swing of the dwelling body", "°", |m| {
+            m.dwell.swing.to_degrees()
+        }),
+        (&largest, force, |m| strongest(m).reaction.abs()),
+        (LARGEST_AT, "°", |m| signed_degrees(strongest(m).q)),
+        (&changes, "", sign_changes),
+    ];
+    let observable = |(name, unit, of): (&str, _, _)| Observable {
+        name: name.to_owned(),
+        unit,
+        of,
+        is_position: name == LARGEST_AT,
+    };
+    named.map(observable).into()
 }
 
 fn last(member: &Member) -> MemberRow {
-    row(member.rows.last().copied())
+    member.rows[member.rows.len() - 1]
 }
 
 fn fastest(member: &Member) -> MemberRow {
-    row(member.row_of_largest(|row| row.q_dot.abs()))
+    member.row_of_largest(|row| row.q_dot.abs())
 }
 
 fn slowest(member: &Member) -> MemberRow {
-    row(member.row_of_largest(|row| -row.q_dot.abs()))
+    member.row_of_largest(|row| -row.q_dot.abs())
 }
 
 fn strongest(member: &Member) -> MemberRow {
-    row(member.row_of_largest(|row| row.reaction.abs()))
+    member.row_of_largest(|row| row.reaction.abs())
 }
 
 /// Over the angle; the last row repeats the first.
 fn mean_inertia(member: &Member) -> f64 {
     let rows = member.rows.len().saturating_sub(1);
     let sum: f64 = member.rows.iter().take(rows).map(|row| row.m).sum();
-    sum / (rows as f64 * member.start_inertia)
+    sum / (rows as f64 * member.start_inertia())
 }
 
 fn sign_changes(member: &Member) -> f64 {
@@ -209,10 +146,10 @@ fn spread(family: &Family, of: fn(&Member) -> f64) -> [f64; 4] {
     [0.0, 0.1, 0.9, 1.0].map(|part| part_below(&values, part))
 }
 
-fn observable_row(family: &Family, observable: &Observable) -> Vec<String> {
+fn observable_row(family: &Family, observable: &Observable<'_>) -> Vec<String> {
     let own = (observable.of)(&family.reconstruction);
     let values = [own].into_iter().chain(spread(family, observable.of));
-    let names = [observable.name.clone(), observable.unit.clone()];
+    let names = [observable.name.clone(), observable.unit.to_owned()];
     names
         .into_iter()
         .chain(values.map(|v| digits(v, 4)))
@@ -220,7 +157,7 @@ fn observable_row(family: &Family, observable: &Observable) -> Vec<String> {
 }
 
 /// What the source decides: what hardly varies over the family, or over most of it.
-fn decision_sentence(family: &Family, observables: &[Observable]) -> String {
+fn decision_sentence(family: &Family, observables: &[Observable<'_>]) -> String {
     let hardly_varies = |low: f64, high: f64| high < DECIDED * low;
     let mut names: [Vec<&str>; 3] = Default::default();
     for observable in observables.iter().filter(|o| !o.is_position) {

@@ -2,9 +2,10 @@
 
 use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis};
 use crate::error::ValidationError;
+use crate::report_parts::{self, NumberColumn};
 use dwell_dynamics::Method;
 use dwell_findings::all_pass;
-use dwell_report::{Column, FindingRecord, Number, Table, json};
+use dwell_report::{FindingRecord, Number, Table, json};
 use dwell_scene::Scene;
 use dwell_verify::{CheckedFreeMotion, ToleranceRun};
 use serde::Serialize;
@@ -91,7 +92,7 @@ pub(super) fn numbers(
             target_period_s: c.period.into(),
         }),
         convergence_slope: motion.map(|m| m.drift_slope.into()),
-        findings: analysis.findings.iter().map(FindingRecord::from).collect(),
+        findings: analysis.findings.iter().map(FindingRecord).collect(),
         tolerance_series: runs.map(run).collect(),
     })?)
 }
@@ -114,12 +115,9 @@ pub(super) fn tables(reduced: &ReducedAnalysis<'_>) -> Vec<(&'static str, Table)
     tables
 }
 
-/// A number of a run.
-type RunNumber = fn(&ToleranceRun) -> f64;
-
 /// Cost and errors of one method over its tolerances.
 fn tolerance_runs_table(motion: &CheckedFreeMotion, method: Method) -> Table {
-    let columns: [(&str, &str, RunNumber); 8] = [
+    let columns: [NumberColumn<'_, &ToleranceRun>; 8] = [
         ("tolerance", "", |r| r.tolerance),
         ("steps", "", |r| r.statistics.steps as f64),
         ("evaluations", "", |r| r.statistics.evaluations as f64),
@@ -130,11 +128,5 @@ fn tolerance_runs_table(motion: &CheckedFreeMotion, method: Method) -> Table {
         ("reaction_error", "", |r| r.reaction_error),
     ];
     let runs = motion.tolerance_runs.iter().filter(|r| r.method == method);
-    let row = |r| columns.iter().map(|(.., value)| value(r)).collect();
-    Table {
-        columns: columns
-            .map(|(name, unit, _)| Column::new(name, unit))
-            .to_vec(),
-        rows: runs.map(row).collect(),
-    }
+    report_parts::numbers(&columns, runs)
 }

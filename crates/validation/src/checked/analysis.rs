@@ -117,13 +117,12 @@ pub(crate) fn analyse<'a>(
 
 /// The findings of the reduced model, the free motion, rounding, states, multibody equations and period in the order of
 /// the snapshots.
-fn in_order(reduced: bool, findings: [Vec<Finding>; 6]) -> Vec<Finding> {
+fn in_order(reduced: bool, mut findings: [Vec<Finding>; 6]) -> Vec<Finding> {
     let order = if reduced {
         [0, 1, 2, 3, 4, 5]
     } else {
         [3, 0, 5, 4, 1, 2]
     };
-    let mut findings = findings;
     order.map(|k| std::mem::take(&mut findings[k])).concat()
 }
 

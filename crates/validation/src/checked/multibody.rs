@@ -2,6 +2,7 @@
 
 use crate::cases::reference::{PublishedState, Reference};
 use crate::checked::free_motion_setup::FreeMotionSetup;
+use crate::checked::states::inertias;
 use crate::error::ValidationError;
 use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Method, OdeState, Options, Orbit};
 use dwell_findings::{Check, Finding};
@@ -12,7 +13,7 @@ use dwell_scene::{MotionDuration, Scene};
 use dwell_study::StudyError;
 use dwell_study::free_motion::compute::{FreeMotionProblem, MotionProblem as _, SegmentedMotion};
 use dwell_study::models::with_drive_loads;
-use dwell_verify::{Inertias, MotionSample, MultibodyError, MultibodySystem, check_motion};
+use dwell_verify::{MotionSample, MultibodyError, MultibodySystem, check_motion};
 use std::f64::consts::TAU;
 
 /// Integrator of the motion, and its relative and absolute tolerance.
@@ -321,11 +322,7 @@ fn multibody_system(scene: &Scene) -> Result<MultibodySystem, MultibodyError> {
         prescribed.unwrap_or(CoordinateMode::Free)
     };
     let modes: Vec<CoordinateMode> = laws.map(mode).collect();
-    let loads = &scene.loads;
-    let inertias = Inertias {
-        masses: &scene.masses,
-        varying: &scene.varying_inertias,
-    };
+    let (inertias, loads) = (inertias(scene), &scene.loads);
     MultibodySystem::new(&scene.mechanism, inertias, loads, &modes, &scene.drives)
 }
 

@@ -102,6 +102,7 @@ fn max_relative_error<T: Scalar>(
 pub(crate) fn finding(rounding: &[StateRounding]) -> Option<Finding> {
     let states = rounding.iter();
     let largest = states.max_by(|a, b| a.f64_error.total_cmp(&b.f64_error))?;
+    let error = [largest.f64_error; 2];
     let f32_errors = rounding.iter().filter_map(|s| s.f32_error);
     let f32_error = f32_errors.reduce(f64::max);
     let condition_text = match f32_error {
@@ -116,11 +117,6 @@ pub(crate) fn finding(rounding: &[StateRounding]) -> Option<Finding> {
         worst_at: format!("t = {} s, {}", largest.t, largest.quantity),
         tolerance_reason: format!("roundings of an evaluation; {condition_text}"),
         condition_number: f32_error.map_or(1.0, |error| error / f64::from(f32::EPSILON)),
-        ..Finding::new(
-            "rounding",
-            Check::Rounding,
-            [largest.f64_error; 2],
-            F64_TOLERANCE,
-        )
+        ..Finding::new("rounding", Check::Rounding, error, F64_TOLERANCE)
     })
 }

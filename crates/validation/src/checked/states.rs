@@ -84,19 +84,8 @@ pub(crate) fn check(
         actuator_forces.push((state.t, state.tau));
     }
     let start = model.assembly_poses.clone();
-    let mechanism = &scene.mechanism;
-    let inertias = Inertias {
-        masses: &scene.masses,
-        varying: &scene.varying_inertias,
-    };
-    let (sampled, sampled_matrices): (Vec<_>, Vec<_>) = energy_checked(states.len())
-        .map(|k| (states[k].clone(), mass_matrices[k].clone()))
-        .unzip();
-    let (mut findings, energy_findings) = rayon::join(
-        || check_states(mechanism, inertias, &start, &states),
-        || check_energies(mechanism, inertias, &start, &sampled, &sampled_matrices),
-    );
-    findings.extend(energy_findings);
+    let claimed = (&states[..], &mass_matrices[..]);
+    let mut findings = state_findings(scene, &start, claimed, ENERGY_CHECKED_STATES);
     findings.extend(reference.findings(scene, &mut model)?);
     Ok(CheckedStates {
         assembly_poses: start,
@@ -112,7 +101,7 @@ pub(crate) fn check(
 }
 
 /// The states along the prescribed motion and over the sweep, so many of each.
-fn motions(
+pub(crate) fn motions(
     scene: &Scene,
     model: &ModelStates<'_>,
     reference: &Reference,
@@ -127,20 +116,33 @@ fn motions(
     along.into_iter().chain(across)
 }
 
-/// The same, one behind another.
-pub(crate) fn state_requests(
-    scene: &Scene,
-    model: &ModelStates<'_>,
-    reference: &Reference,
-    count: usize,
-) -> impl Iterator<Item = StateRequest> + use<> {
-    motions(scene, model, reference, count).flatten()
+/// Masses and moments of inertia as the independent checks need them.
+pub(crate) fn inertias(scene: &Scene) -> Inertias<'_> {
+    Inertias {
+        masses: &scene.masses,
+        varying: &scene.varying_inertias,
+    }
 }
 
-/// The indices of the states that are checked by kinetic energy, spread evenly.
-fn energy_checked(count: usize) -> impl Iterator<Item = usize> {
-    let some = count.min(ENERGY_CHECKED_STATES);
-    (0..some).map(move |k| (2 * k + 1) * count / (2 * some))
+/// The findings on states of a scene with their generalised inertias; at most so many of them, spread evenly, are checked by kinetic
+/// energy.
+pub(crate) fn state_findings(
+    scene: &Scene,
+    assembly_poses: &[[f64; 3]],
+    (states, mass_matrices): (&[ClaimedState], &[Vec<f64>]),
+    energy_checked: usize,
+) -> Vec<Finding> {
+    let (mechanism, inertias) = (&scene.mechanism, inertias(scene));
+    let some = energy_checked.min(states.len());
+    let sampled = (0..some).map(|k| (2 * k + 1) * states.len() / (2 * some));
+    let sampled = sampled.map(|k| (states[k].clone(), mass_matrices[k].clone()));
+    let (sampled, matrices): (Vec<_>, Vec<_>) = sampled.unzip();
+    let (mut findings, energy_findings) = rayon::join(
+        || check_states(mechanism, inertias, assembly_poses, states),
+        || check_energies(mechanism, inertias, assembly_poses, &sampled, &matrices),
+    );
+    findings.extend(energy_findings);
+    findings
 }
 
 /// The prescribed motion.

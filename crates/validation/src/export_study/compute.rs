@@ -2,7 +2,7 @@
 
 use dwell_dynamics::{Orbit, ReducedState};
 use dwell_findings::Table;
-use dwell_kinetostatics::{Coefficients, ExactModel, ReducedModel};
+use dwell_kinetostatics::{ExactModel, ReducedModel};
 use dwell_scene::Scene;
 use dwell_study::explain::{explain_motion, explain_position};
 use dwell_study::exported_runs::{
@@ -46,7 +46,6 @@ pub(super) struct Cell {
 struct Exact {
     coefficients: Vec<[f64; 3]>,
     largest: [f64; 3],
-    start: f64,
     period: f64,
 }
 
@@ -59,11 +58,10 @@ pub(super) fn cells(scene: &Scene) -> Result<Vec<Cell>, StudyError> {
     let of_positions = |&positions: &usize| -> Result<Vec<Cell>, StudyError> {
         let runs = compute_unit_runs(scene, Some(positions + 1), &no_progress)?;
         let of_digits = |&digits: &usize| -> Result<Vec<Cell>, StudyError> {
-            let tables = [0, 1].map(|k| {
+            let [one, two] = [0, 1].map(|k| {
                 let text = printed(&runs.runs[k], prepared.coordinate_name(), digits);
                 ExportedTable::read(["run i", "run ii"][k], &text)
             });
-            let [one, two] = tables;
             let combined = combine_runs([&one?, &two?], &ColumnNames::default())?;
             let cell = |interpolation| exact.cell(&combined, digits, interpolation);
             Ok(INTERPOLATIONS.into_iter().map(cell).collect())
@@ -98,11 +96,7 @@ fn printed(table: &Table, coordinate: &str, digits: usize) -> String {
 impl Exact {
     fn of(scene: &Scene, model: &ExactModel, reaction: usize) -> Result<Self, StudyError> {
         let mut workspace = model.workspace();
-        let mut at = Coefficients {
-            a: vec![0.0; model.reactions()],
-            b: vec![0.0; model.reactions()],
-            ..Coefficients::default()
-        };
+        let mut at = model.model().coefficient_buffer();
         let mut coefficients = Vec::with_capacity(COMPARED);
         for q in compared_angles() {
             let evaluated = model.coefficients(q, &mut workspace, &mut at);
@@ -116,8 +110,7 @@ impl Exact {
         };
         Ok(Self {
             largest: [0, 1, 2].map(largest),
-            start: 0.0,
-            period: Orbit::new(model, unit_speed(0.0))
+            period: Orbit::new(model, UNIT_SPEED)
                 .map_err(|e| explain_motion(scene, model.model().plan(), &e))?
                 .period,
             coefficients,
@@ -136,7 +129,7 @@ impl Exact {
             }
         }
         let relative = [0, 1, 2].map(|i| differences[i] / self.largest[i]);
-        let orbit = Orbit::to_accuracy(&model, unit_speed(self.start), 0.1 * stated.sum(0));
+        let orbit = Orbit::to_accuracy(&model, UNIT_SPEED, 0.1 * stated.sum(0));
         let period = orbit.map_or(f64::NAN, |orbit| (orbit.period / self.period - 1.0).abs());
         Cell {
             positions: runs.q.len(),
@@ -156,10 +149,9 @@ fn compared_angles() -> impl Iterator<Item = f64> {
     (0..COMPARED).map(|k| TAU * k as f64 / COMPARED as f64 + 1e-3)
 }
 
-fn unit_speed(q: f64) -> ReducedState {
-    ReducedState {
-        t: 0.0,
-        q,
-        q_dot: 1.0,
-    }
-}
+/// The start of the motions whose periods are compared.
+const UNIT_SPEED: ReducedState = ReducedState {
+    t: 0.0,
+    q: 0.0,
+    q_dot: 1.0,
+};

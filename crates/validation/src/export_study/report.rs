@@ -1,11 +1,10 @@
 //! The picture, the table and the document of the study.
 
 use super::compute::{Cell, DIGITS, INTERPOLATIONS, POSITIONS, QUANTITIES};
-use crate::report_parts::{figure_blocks, findings_text, pass_or_fail, pictures, table};
-use dwell_findings::{Check, Finding, all_pass};
+use crate::report_parts::{StudyReport, TextColumn, figure_blocks, table_of};
+use dwell_findings::{Check, Finding};
 use dwell_report::{
-    Axis, Block, Chart, Column, Document, Figure, Files, Mark, Paint, Panel, Series, Stroke, Table,
-    TableExport as _, reproducible_text,
+    Axis, Block, Chart, Column, Figure, Mark, Paint, Panel, Series, Stroke, Table, TableExport as _,
 };
 use dwell_study::exported_runs::SampleInterpolation;
 use dwell_study::output::chart;
@@ -22,19 +21,29 @@ const ROUNDING: f64 = 2e-13;
 /// # Errors
 /// [`StudyError`] where the table cannot be written.
 pub(super) fn outcome(cells: &[Cell]) -> Result<Outcome, StudyError> {
-    let findings = findings(cells);
     let figures = [figure(cells)];
-    let mut files = Files::new();
-    files.add(format!("{NAME}/errors.csv"), numbers(cells).csv()?);
-    files.add(format!("{NAME}.txt"), snapshot(cells, &findings));
-    files.add_document(NAME, &document(cells, &figures, &findings));
-    Ok(Outcome {
-        summary: findings_text(NAME, &findings, &format!(", {} exports", cells.len())),
-        files,
-        pictures: pictures(NAME, &figures).collect(),
-        findings,
-        ..Outcome::default()
-    })
+    let mut outcome = Outcome::default();
+    let numbers = numbers(cells).csv()?;
+    outcome.files.add(format!("{NAME}/errors.csv"), numbers);
+    let mut blocks = figure_blocks(NAME, &figures, true);
+    let heading = "Errors relative to the largest value";
+    blocks.push(Block::Heading(heading.to_owned()));
+    blocks.push(errors_table(cells));
+    let report = StudyReport {
+        name: NAME,
+        title: "Exported runs",
+        text: "`dwell reduce --from RUN_I RUN_II` knows the mechanism only where the tables have positions, and only to their printed \
+               digits. Here its result is compared with the mechanism that made them, so that a user knows what to export: for a \
+               mechanism without sharp features a position for each degree, twelve digits, a whole revolution at equal angles."
+            .to_owned(),
+        blocks,
+        snapshot: format!("Exported runs\n\n{} exports\n", cells.len()),
+        figures: &figures,
+        findings: findings(cells),
+        count: format!("{} exports", cells.len()),
+    };
+    report.add_to(&mut outcome);
+    Ok(outcome)
 }
 
 /// For each interpolation and quantity: no error is above the stated one.
@@ -49,17 +58,17 @@ fn findings(cells: &[Cell]) -> Vec<Finding> {
             "period" => Check::Period,
             _ => Check::WrittenTwice,
         };
-        let mut finding = Finding::new(&key, check, [ratio, ratio], 1.0);
-        finding.comparison = format!(
-            "error of the {} of exported runs, {} interpolation, over the stated error",
-            QUANTITIES[k],
-            interpolation.name()
-        );
-        finding.scale = "the stated error".to_owned();
-        finding.worst_at = worst.map_or_else(String::new, |cell| {
-            format!("{} positions, {} digits", cell.positions, cell.digits)
-        });
-        finding
+        let worst_at = worst.map(|c| format!("{} positions, {} digits", c.positions, c.digits));
+        Finding {
+            comparison: format!(
+                "error of the {} of exported runs, {} interpolation, over the stated error",
+                QUANTITIES[k],
+                interpolation.name()
+            ),
+            scale: "the stated error".to_owned(),
+            worst_at: worst_at.unwrap_or_default(),
+            ..Finding::new(&key, check, [ratio, ratio], 1.0)
+        }
     };
     let each = |interpolation| (0..QUANTITIES.len()).map(move |k| of(interpolation, k));
     INTERPOLATIONS.into_iter().flat_map(each).collect()
@@ -68,41 +77,24 @@ fn findings(cells: &[Cell]) -> Vec<Finding> {
 /// Errors over the number of positions: by interpolation with all digits, and by digits with trigonometric interpolation.
 fn figure(cells: &[Cell]) -> Figure {
     let most = DIGITS[DIGITS.len() - 1];
+    let trigonometric = SampleInterpolation::Trigonometric;
     let of_quantity = |(k, name): (usize, &str)| {
-        let by_interpolation = INTERPOLATIONS
-            .into_iter()
-            .enumerate()
-            .flat_map(|(i, wanted)| {
-                let is_of = |c: &&Cell| c.interpolation == wanted && c.digits == most;
-                lines(
-                    wanted.name().to_owned(),
-                    i,
-                    k,
-                    &cells.iter().filter(is_of).collect::<Vec<_>>(),
-                )
-            });
-        let by_digits = DIGITS.into_iter().enumerate().flat_map(|(i, wanted)| {
-            let trigonometric = SampleInterpolation::Trigonometric;
-            let is_of = |c: &&Cell| c.interpolation == trigonometric && c.digits == wanted;
-            lines(
-                format!("{wanted} digits"),
-                i,
-                k,
-                &cells.iter().filter(is_of).collect::<Vec<_>>(),
-            )
+        let series = |(i, (name, interpolation, digits)): (usize, (String, _, usize))| {
+            let is_of = |c: &&Cell| c.interpolation == interpolation && c.digits == digits;
+            lines(name, i, k, &cells.iter().filter(is_of).collect::<Vec<_>>())
+        };
+        let by_interpolation = INTERPOLATIONS.map(|by| (by.name().to_owned(), by, most));
+        let by_digits = DIGITS.map(|n| (format!("{n} digits"), trigonometric, n));
+        let titles = [
+            format!("{name}: by interpolation, {most} digits"),
+            format!("{name}: by digits, trigonometric"),
+        ];
+        let groups = [by_interpolation.to_vec(), by_digits.to_vec()];
+        let panels = titles.into_iter().zip(groups).map(|(title, group)| {
+            let series = group.into_iter().enumerate().flat_map(series);
+            panel(&title, k, series.collect())
         });
-        [
-            panel(
-                &format!("{name}: by interpolation, {most} digits"),
-                k,
-                by_interpolation.collect(),
-            ),
-            panel(
-                &format!("{name}: by digits, trigonometric"),
-                k,
-                by_digits.collect(),
-            ),
-        ]
+        panels.collect::<Vec<_>>()
     };
     let names = ["m", "the reaction's a, b", "the period"];
     Figure {
@@ -138,12 +130,9 @@ fn panel(title: &str, quantity: usize, series: Vec<Series>) -> Panel {
     let positions = Axis::log("positions of a revolution", "").with_range(0.9 * first, 1.1 * last);
     let error = format!("error of {} / largest", QUANTITIES[quantity]);
     let errors = Axis::log(error, "").with_range(ERROR_RANGE[0], ERROR_RANGE[1]);
-    let one_degree = Mark::Vertical {
-        at: 360.0,
-        label: String::new(),
-    };
     Panel::from(Chart {
-        marks: vec![one_degree],
+        // One for each degree.
+        marks: vec![Mark::vertical(360.0, "")],
         ..chart(title, positions, errors, series)
     })
 }
@@ -174,48 +163,18 @@ fn numbers(cells: &[Cell]) -> Table {
     }
 }
 
-/// What every machine reproduces.
-fn snapshot(cells: &[Cell], findings: &[Finding]) -> String {
-    format!("Exported runs\n\n{} exports\n\n", cells.len()) + &reproducible_text(findings)
-}
-
-fn document(cells: &[Cell], figures: &[Figure], findings: &[Finding]) -> Document {
-    let header = [
-        "Positions",
-        "Digits",
-        "Interpolation",
-        "m",
-        "a, b",
-        "Period",
+fn errors_table(cells: &[Cell]) -> Block {
+    let columns: [TextColumn<&Cell>; 6] = [
+        ("Positions", |cell| cell.positions.to_string()),
+        ("Digits", |cell| cell.digits.to_string()),
+        ("Interpolation", |cell| cell.interpolation.name().to_owned()),
+        ("m", |cell| format!("{:.0e}", cell.errors[0])),
+        ("a, b", |cell| format!("{:.0e}", cell.errors[1])),
+        ("Period", |cell| format!("{:.0e}", cell.errors[2])),
     ];
-    let shown = cells
-        .iter()
-        .filter(|c| [36, 72, 180, 360, 720, 3600].contains(&c.positions));
-    let row = |cell: &Cell| {
-        let mut row = vec![
-            cell.positions.to_string(),
-            cell.digits.to_string(),
-            cell.interpolation.name().to_owned(),
-        ];
-        row.extend(cell.errors.iter().map(|error| format!("{error:.0e}")));
-        row
+    let is_shown = |c: &&Cell| {
+        let positions = [36, 72, 180, 360, 720, 3600];
+        positions.contains(&c.positions) && [4, 6, 12, 16].contains(&c.digits)
     };
-    let few_digits = |c: &&Cell| [4, 6, 12, 16].contains(&c.digits);
-    let mut blocks = vec![Block::Text(format!(
-        "{}. `dwell reduce --from RUN_I RUN_II` knows the mechanism only where the tables have positions, and only to their printed \
-         digits. Here its result is compared with the mechanism that made them, so that a user knows what to export: for a \
-         mechanism without sharp features a position for each degree, twelve digits, a whole revolution at equal angles.",
-        pass_or_fail(all_pass(findings))
-    ))];
-    blocks.extend(figure_blocks(NAME, figures, true));
-    blocks.push(Block::Heading(
-        "Errors relative to the largest value".to_owned(),
-    ));
-    blocks.push(table(&header, shown.filter(few_digits).map(row)));
-    blocks.push(Block::Heading("Findings".to_owned()));
-    blocks.push(Block::Findings(findings.to_vec()));
-    Document {
-        title: "Exported runs".to_owned(),
-        blocks,
-    }
+    table_of(&columns, cells.iter().filter(is_shown))
 }

@@ -1,7 +1,7 @@
 //! Motions: speeds, tolerances, revolutions.
 
 use super::closed_forms::{dd, four_bar, root_inertia_integral};
-use super::mechanisms::CRANK_ROCKER;
+use super::mechanisms::{CRANK_ROCKER, reduced};
 use super::run_pair::{free_motion, kinetic_energy, wrapped_free_motion};
 use super::series::{ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell};
 use dwell_dynamics::{Method, Options, ReducedState};
@@ -104,7 +104,7 @@ fn base_series(
     values: Vec<f64>,
     motion: impl Fn(f64) -> (f64, f64, Options) + Send + Sync + Clone + 'static,
 ) -> ParameterSeries {
-    let model = CRANK_ROCKER.build().exact_model(&[]);
+    let model = reduced(&CRANK_ROCKER.text(), "");
     let motion_of = motion.clone();
     ParameterSeries {
         figure: FIGURE,

@@ -14,6 +14,13 @@ pub(super) struct StatedTable {
     errors: [f64; 3],
 }
 
+/// The numbers of a column of a table.
+pub(super) fn column(table: &Table, name: &str) -> Result<Vec<f64>, String> {
+    let found = table.columns.iter().position(|c| c.name == name);
+    let column = found.ok_or_else(|| format!("no column {name}"))?;
+    Ok(table.rows.iter().map(|row| row[column]).collect())
+}
+
 /// The values of a column at the rows, in 32 digits.
 pub(super) type ReferenceColumn<'a> = (&'a str, Vec<DoubleDouble>);
 
@@ -45,9 +52,7 @@ impl StatedTable {
 
     /// The numbers of a column.
     pub(super) fn column(&self, name: &str) -> Result<Vec<f64>, String> {
-        let found = self.table.columns.iter().position(|c| c.name == name);
-        let column = found.ok_or_else(|| format!("no column {name}"))?;
-        Ok(self.table.rows.iter().map(|row| row[column]).collect())
+        column(&self.table, name)
     }
 
     /// Of each group of columns, for which one error is stated, the number with the largest error; it is relative to the largest

@@ -1,11 +1,10 @@
 //! Friction near a jam, and motions of very many periods.
 
 use super::closed_forms::{dd, four_bar, root_inertia_integral};
-use super::in_scenes::StatedTable;
-use super::mechanisms::CRANK_ROCKER;
+use super::in_scenes::{StatedTable, column};
+use super::mechanisms::{CRANK_ROCKER, FourBar, scene};
 use super::series::{ParameterSeries, Requirement, RunResult, decades, scaled_cell};
 use dwell_numerics::{DoubleDouble, Scalar};
-use dwell_scene::Scene;
 use dwell_study::{MotionSolver, compute_free_motion, no_progress};
 use std::f64::consts::TAU;
 
@@ -66,32 +65,27 @@ fn periods() -> ParameterSeries {
         let period = root_inertia_integral(&CRANK_ROCKER, QUADRATURE_POINTS) / m.sqrt();
         let exact = period * dd(count);
         let duration = exact.value();
-        let text = format!(
-            "[bodies]\nground = {{ points = {{ A = [0, 0], D = [4, 0] }} }}\n\
-             crank = {{ points = {{ A = [0, 0], B = [1, 0] }}, mass = 2, center = [0.25, 0.125], inertia = 0.5 }}\n\
-             coupler = {{ points = {{ B = [0, 0], C = [3.5, 0] }}, mass = 1.5, center = [1.75, 0.25], inertia = 1.25 }}\n\
-             rocker = {{ points = {{ D = [0, 0], C = [2.5, 0] }}, mass = 1, center = [1.25, -0.125], inertia = 0.75 }}\n\
-             [joints]\nA = {{ revolute = [\"ground.A\", \"crank.A\"] }}\nB = {{ revolute = [\"crank.B\", \"coupler.B\"] }}\n\
-             C = {{ revolute = [\"coupler.C\", \"rocker.C\"] }}\nD = {{ revolute = [\"ground.D\", \"rocker.D\"] }}\n\
-             [actuators]\nphi = {{ angle = [\"ground\", \"crank\"] }}\n[assembly]\nphi = {START_ANGLE}\ncoupler = 0.4\nrocker = 1.5\n\
-             [motion]\ninitial-coordinate = {{ phi = {START_ANGLE} }}\ninitial-velocity = {{ phi = 1 }}\nduration = {duration:?}\n\
-             [requests]\nvariables = [\"phi\", \"phi.velocity\"]\n"
+        let assembled = FourBar {
+            assembly: [START_ANGLE, 0.4],
+            ..CRANK_ROCKER
+        };
+        let motion = format!(
+            "rocker = 1.5\n[motion]\ninitial-coordinate = {{ phi = {START_ANGLE} }}\ninitial-velocity = {{ phi = 1 }}\n\
+             duration = {duration:?}\n[requests]\nvariables = [\"phi\", \"phi.velocity\"]\n"
         );
-        let scene = Scene::parse("scene.toml", &text)?;
+        let scene = scene(&(assembled.text() + &motion))?;
         let solver = MotionSolver::Accuracy {
             accuracy: 1e-10,
             sample_interval: Some(duration),
         };
         let motion = compute_free_motion(&scene, &solver, &no_progress)?;
-        let table = &motion.computed.table;
-        let end = table.rows.last().ok_or("no rows")?;
-        let named = |name: &str| table.columns.iter().position(|c| c.name == name);
-        let column = named("phi").ok_or("no column")?;
+        let angles = column(&motion.computed.table, "phi")?;
+        let end = angles.last().ok_or("no rows")?;
         // At the end the duration is rounded, by less than the crank turns in it.
         let late = dd(duration) - exact;
         let angle = dd(START_ANGLE) + DoubleDouble::from_revolutions(count) + late;
         let error = motion.estimated_error.unwrap_or(f64::NAN);
-        Ok(vec![scaled_cell((end[column], error), angle, TAU)])
+        Ok(vec![scaled_cell((*end, error), angle, TAU)])
     };
     ParameterSeries {
         figure: FIGURE,

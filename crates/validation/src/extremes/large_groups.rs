@@ -3,19 +3,19 @@
 
 use super::closed_forms::dd;
 use super::in_scenes::StatedTable;
+use super::mechanisms::{body, mass};
 use super::ratios::FIGURE;
-use super::series::{ParameterSeries, Requirement, RunResult};
+use super::series::{ALLOWED_ROUNDINGS, ParameterSeries, Requirement, RunResult};
 use crate::cases::model_states::{ModelStates, StateRequest};
+use crate::checked::states::inertias;
 use dwell_findings::Finding;
+use dwell_kinetostatics::Mass;
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_scene::Scene;
-use dwell_verify::{Inertias, check_states};
-use std::fmt::Write as _;
+use dwell_verify::check_states;
 
 /// Positions of a revolution.
 const POINTS: usize = 13;
-/// Roundings that an evaluation is allowed.
-const ALLOWED_ROUNDINGS: f64 = 16.0;
 /// Points are on a grid of so many lines per metre.
 const GRID: f64 = 8192.0;
 /// Links of the ring that is checked by dense equations.
@@ -28,75 +28,52 @@ const DENSE_STATES: usize = 8;
 /// sums over the bodies, whereas every other joint force follows from the group alone.
 struct Ring {
     text: String,
-    /// Mass (kg), centre (m) and moment of inertia (kg m²) of every body.
-    bodies: Vec<(f64, [f64; 2], f64)>,
+    bodies: Vec<Mass>,
 }
 
-/// A link with its strut: its two pins on the ring and the third one, the strut's foot on the disk, and the centres of both.
-struct Pair {
-    pins: [[f64; 2]; 2],
-    third: [f64; 2],
-    foot: [f64; 2],
-    centers: [[f64; 2]; 2],
-}
-
-impl Pair {
-    /// The pair of number `k` of so many.
-    fn new(k: usize, links: usize) -> Self {
-        let angle = |k: f64| k * std::f64::consts::TAU / links as f64;
-        // Differences of points are exact: the errors are those of the group.
-        let rounded = |x: f64| (GRID * x).round() / GRID;
-        let polar = |r: f64, a: f64| [rounded(r * a.cos()), rounded(r * a.sin())];
-        let (at, radius) = (k as f64, 0.025 * links as f64);
-        let third = polar(radius + 0.12, angle(at + 0.15));
-        let side = if k.is_multiple_of(2) { 1.5 } else { -1.5 };
-        let strut = polar(0.3, angle(at) + side + 0.2 * (3.0 * at + 1.0).sin());
-        let foot = [0, 1].map(|i| third[i] + strut[i]);
-        Self {
-            pins: [at - 0.5, at + 0.5].map(|k| polar(radius, angle(k))),
-            third,
-            foot,
-            centers: [
-                polar(radius + 0.04, angle(at)),
-                [0, 1].map(|i| rounded(0.5 * (third[i] + foot[i]))),
-            ],
-        }
-    }
+/// A link and its strut of number `k` of so many: the points and the mass of each, and the strut's foot on the disk.
+fn pair(k: usize, links: usize) -> ([(String, Mass); 2], [f64; 2]) {
+    let angle = |k: f64| k * std::f64::consts::TAU / links as f64;
+    // Differences of points are exact: the errors are those of the group.
+    let rounded = |x: f64| (GRID * x).round() / GRID;
+    let polar = |r: f64, a: f64| [rounded(r * a.cos()), rounded(r * a.sin())];
+    let (at, radius) = (k as f64, 0.025 * links as f64);
+    let [a, b] = [at - 0.5, at + 0.5].map(|k| polar(radius, angle(k)));
+    let third = polar(radius + 0.12, angle(at + 0.15));
+    let side = if k.is_multiple_of(2) { 1.5 } else { -1.5 };
+    let strut = polar(0.3, angle(at) + side + 0.2 * (3.0 * at + 1.0).sin());
+    let foot = [0, 1].map(|i| third[i] + strut[i]);
+    let (of_link, of_strut) = (0.3125 + (k % 7) as f64 / 64.0, 0.5 + (k % 6) as f64 / 32.0);
+    let middle = [0, 1].map(|i| rounded(0.5 * (third[i] + foot[i])));
+    let link = format!("A = {a:?}, B = {b:?}, C = {third:?}");
+    let strut = format!("P = {foot:?}, C = {third:?}");
+    let bodies = [
+        (link, mass(of_link, polar(radius + 0.04, angle(at)), 0.002)),
+        (strut, mass(of_strut, middle, 0.004)),
+    ];
+    (bodies, foot)
 }
 
 impl Ring {
     fn new(links: usize) -> Self {
         let mut ring = Self {
             text: String::new(),
-            bodies: vec![(2.0, [0.0; 2], 0.5)],
+            bodies: vec![mass(2.0, [0.0; 2], 0.5)],
         };
-        let (mut disk, mut bodies, mut joints) = (String::new(), String::new(), String::new());
-        let mut assembly = String::new();
+        let [mut disk, mut bodies, mut joints, mut assembly] = [const { String::new() }; 4];
         for k in 0..links {
-            let Pair {
-                pins: [a, b],
-                third,
-                foot,
-                centers: [of_link, of_strut],
-            } = Pair::new(k, links);
-            let masses = [0.3125 + (k % 7) as f64 / 64.0, 0.5 + (k % 6) as f64 / 32.0];
-            ring.bodies.push((masses[0], of_link, 0.002));
-            ring.bodies.push((masses[1], of_strut, 0.004));
+            let ([(link, of_link), (strut, of_strut)], foot) = pair(k, links);
+            ring.bodies.extend([of_link, of_strut]);
+            bodies += &body(&format!("link{k}"), &link, &of_link);
+            bodies += &body(&format!("strut{k}"), &strut, &of_strut);
+            disk += &format!("P{k} = {foot:?}, ");
             let next = (k + 1) % links;
-            _ = write!(disk, "P{k} = {foot:?}, ");
-            _ = writeln!(
-                bodies,
-                "link{k} = {{ points = {{ A = {a:?}, B = {b:?}, C = {third:?} }}, mass = {}, center = {of_link:?}, inertia = 0.002 }}\n\
-                 strut{k} = {{ points = {{ P = {foot:?}, C = {third:?} }}, mass = {}, center = {of_strut:?}, inertia = 0.004 }}",
-                masses[0], masses[1]
-            );
-            _ = writeln!(
-                joints,
+            joints += &format!(
                 "R{k} = {{ revolute = [\"link{k}.B\", \"link{next}.A\"] }}\n\
                  T{k} = {{ revolute = [\"strut{k}.C\", \"link{k}.C\"] }}\n\
-                 P{k} = {{ revolute = [\"disk.P{k}\", \"strut{k}.P\"] }}"
+                 P{k} = {{ revolute = [\"disk.P{k}\", \"strut{k}.P\"] }}\n"
             );
-            _ = writeln!(assembly, "link{k} = 0\nstrut{k} = 0");
+            assembly += &format!("link{k} = 0\nstrut{k} = 0\n");
         }
         ring.text = format!(
             "[bodies]\nground = {{ points = {{ O = [0, 0] }} }}\n\
@@ -112,10 +89,11 @@ impl Ring {
     fn sums(&self) -> (DoubleDouble, [DoubleDouble; 2]) {
         let mut m = dd(0.0);
         let mut moment = [dd(0.0); 2];
-        for (mass, center, inertia) in &self.bodies {
-            let [x, y] = center.map(dd);
-            m = m + dd(*inertia) + dd(*mass) * (x * x + y * y);
-            moment = [moment[0] + dd(*mass) * x, moment[1] + dd(*mass) * y];
+        for body in &self.bodies {
+            let [x, y] = [body.center.x, body.center.y].map(dd);
+            let mass = dd(body.mass);
+            m = m + dd(body.inertia) + mass * (x * x + y * y);
+            moment = [moment[0] + mass * x, moment[1] + mass * y];
         }
         (m, moment)
     }
@@ -186,11 +164,8 @@ fn findings_of(text: &str) -> Result<Vec<Finding>, String> {
         model.state(&request).map_err(|e| e.to_string())
     };
     let states: Vec<_> = (0..DENSE_STATES).map(state).collect::<Result<_, _>>()?;
-    let inertias = Inertias {
-        masses: &scene.masses,
-        varying: &scene.varying_inertias,
-    };
-    let found = check_states(&scene.mechanism, inertias, &model.assembly_poses, &states);
+    let (mechanism, inertias) = (&scene.mechanism, inertias(&scene));
+    let found = check_states(mechanism, inertias, &model.assembly_poses, &states);
     let named = found.into_iter().map(|finding| Finding {
         key: format!("large-group-{}", finding.key),
         domain: format!("a ring of {DENSE_LINKS} links, {}", finding.domain),

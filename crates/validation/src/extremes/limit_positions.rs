@@ -1,16 +1,14 @@
 //! Distances: to a limit position, to a flat parallelogram, to a dead point.
 
 use super::closed_forms::{self, arc_cosine, dd};
-use super::mechanisms::{FourBar, SliderCrank, mass};
-use super::series::{ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell};
+use super::mechanisms::{FourBar, SliderCrank, mass, reduced};
+use super::series::{
+    ALLOWED_ROUNDINGS, ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell,
+};
 use dwell_geometry::{Vec2, vec2};
 use dwell_kinetostatics::ExactModel;
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_study::estimate;
-
-/// Roundings that an evaluation of a dyad's reduced model is allowed, each magnified by the condition: it
-/// takes some hundred operations, whose roundings add up as their root.
-pub(super) const ALLOWED_ROUNDINGS: f64 = 16.0;
 
 /// A triple rocker: coupler and rocker are stretched in one line at both ends of the crank's swing.
 const ROCKER: FourBar = FourBar {
@@ -69,8 +67,7 @@ fn four_bar() -> ParameterSeries {
     let d = dd(ROCKER.base[1].x);
     let stretched = b + c;
     let limit = arc_cosine((a * a + d * d - stretched * stretched) / (dd(2.0) * a * d));
-    let test = ROCKER.build();
-    let model = test.exact_model(&test.reactions("C"));
+    let model = reduced(&ROCKER.text(), "C");
     ParameterSeries {
         figure: FIGURE,
         key: "limit-four-bar".into(),
@@ -96,7 +93,7 @@ fn slider_crank() -> ParameterSeries {
     let [crank, rod] = SHORT_ROD.lengths.map(dd);
     let sine = (dd(SHORT_ROD.height) + rod) / crank;
     let limit = DoubleDouble::PI * dd(0.5) - arc_cosine(sine);
-    let model = SHORT_ROD.build(false).exact_model(&[]);
+    let model = reduced(&SHORT_ROD.text(false), "");
     ParameterSeries {
         figure: FIGURE,
         key: "limit-slider-crank".into(),
@@ -123,7 +120,7 @@ fn slider_crank() -> ParameterSeries {
 }
 
 fn parallelogram() -> ParameterSeries {
-    let model = PARALLELOGRAM.build().exact_model(&[]);
+    let model = reduced(&PARALLELOGRAM.text(), "");
     ParameterSeries {
         figure: FIGURE,
         key: "flat-parallelogram".into(),
@@ -159,8 +156,7 @@ mod tests {
     /// hundred roundings × the condition.
     #[test]
     fn val_the_plan_in_two_words() {
-        let test = ROCKER.build();
-        let exact = test.exact_model(&test.reactions("C")).expect("a model");
+        let exact = reduced(&ROCKER.text(), "C").expect("a model");
         let model = exact.model();
         for distance in decades(-1, -12) {
             // Of [2, 1.5, 1.625] on 4 m the crank stops at 0.8767… rad.

@@ -1,10 +1,9 @@
-//! The mechanisms of the grid.
+//! The mechanisms of the grid, as the texts of scenes.
 
-use dwell_geometry::{
-    Actuator, ActuatorKind, AssemblyConfiguration, Body, Joint, JointId, JointKind, Mechanism,
-    Reaction, Vec2, vec2,
-};
-use dwell_kinetostatics::{ExactModel, Mass, Model, ModelError};
+use dwell_geometry::{Vec2, vec2};
+use dwell_kinetostatics::{ExactModel, Mass};
+use dwell_scene::Scene;
+use dwell_study::models::reduced_model;
 
 /// Mass in kg, centre of mass in m, moment of inertia in kg m².
 pub(crate) const fn mass(mass: f64, [x, y]: [f64; 2], inertia: f64) -> Mass {
@@ -15,61 +14,25 @@ pub(crate) const fn mass(mass: f64, [x, y]: [f64; 2], inertia: f64) -> Mass {
     }
 }
 
-/// A mechanism with its masses and its assembly.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct TestMechanism {
-    pub(crate) mechanism: Mechanism,
-    pub(crate) masses: Vec<Mass>,
-    pub(crate) assembly: AssemblyConfiguration,
+/// A body with its points, such as `A = [0, 0]`.
+pub(crate) fn body(name: &str, points: &str, of: &Mass) -> String {
+    let (Vec2 { x, y }, mass, inertia) = (of.center, of.mass, of.inertia);
+    format!(
+        "{name} = {{ points = {{ {points} }}, mass = {mass}, center = [{x}, {y}], inertia = {inertia} }}\n"
+    )
 }
 
-impl TestMechanism {
-    /// Bodies with their masses, after the ground.
-    fn new(bodies: &[(&str, Mass)]) -> Self {
-        let all = [&[("ground", Mass::default())], bodies].concat();
-        let mut test = Self::default();
-        for (name, mass) in all {
-            test.mechanism.bodies.push(Body::named(name));
-            test.masses.push(mass);
-            test.assembly.initial_guess.push(None);
-        }
-        test
-    }
+/// The scene of a text.
+pub(crate) fn scene(text: &str) -> Result<Scene, String> {
+    Scene::parse("scene.toml", text).map_err(|e| e.to_string())
+}
 
-    fn revolute(&mut self, name: &str, bodies: [usize; 2], points: [Vec2; 2]) {
-        let joint = Joint::revolute(name, bodies, points);
-        self.mechanism.joints.push(joint);
-    }
-
-    fn prismatic(&mut self, name: &str, bodies: [usize; 2], points: [Vec2; 2]) {
-        let joint = Joint::prismatic(name, bodies, points, [0.0; 2]);
-        self.mechanism.joints.push(joint);
-    }
-
-    /// Adds its actuator, with the coordinate at assembly.
-    fn actuate(&mut self, bodies: [usize; 2], kind: ActuatorKind, start: f64) {
-        self.mechanism.actuators = vec![Actuator::new("q", bodies, kind)];
-        self.assembly.q = vec![start];
-    }
-
-    /// Its model, with some reactions.
-    pub(crate) fn model(&self, reactions: &[Reaction]) -> Result<Model, ModelError> {
-        Model::new(&self.mechanism, &self.masses, &self.assembly, reactions)
-    }
-
-    /// Its reduced model.
-    pub(crate) fn exact_model(&self, reactions: &[Reaction]) -> Result<ExactModel, String> {
-        let model = self.model(reactions).map_err(|e| e.to_string())?;
-        ExactModel::new(model).ok_or_else(|| "not one actuator".to_owned())
-    }
-
-    /// Both components of a joint's reaction.
-    pub(crate) fn reactions(&self, joint: &str) -> Vec<Reaction> {
-        let named = |j: &JointId| self.mechanism.joints[j.0].name == joint;
-        let joint = (0..self.mechanism.joints.len()).map(JointId).find(named);
-        let all = self.mechanism.reactions().into_iter();
-        all.filter(|r| Some(r.joint) == joint).collect()
-    }
+/// The reduced model of a text, with the reaction of a joint if there is one of this name.
+pub(crate) fn reduced(text: &str, joint: &str) -> Result<ExactModel, String> {
+    let scene = scene(text)?;
+    let mut reactions = scene.mechanism.reactions();
+    reactions.retain(|r| scene.mechanism.joints[r.joint.0].name == joint);
+    reduced_model(&scene, &reactions).map_err(|e| e.to_string())
 }
 
 /// A four-bar from A over B and C to D. Links lie along the x axis of their frames, from A, B and D.
@@ -86,19 +49,25 @@ pub(crate) struct FourBar {
 }
 
 impl FourBar {
-    pub(crate) fn build(&self) -> TestMechanism {
-        let [crank, coupler, rocker] = self.lengths.map(|l| vec2(l, 0.0));
-        let [one, two, three] = self.masses;
-        let mut test = TestMechanism::new(&[("crank", one), ("coupler", two), ("rocker", three)]);
+    /// Its scene, up to the assembly.
+    pub(crate) fn text(&self) -> String {
         let [a, d] = self.base;
-        test.revolute("A", [0, 1], [a, Vec2::ZERO]);
-        test.revolute("B", [1, 2], [crank, Vec2::ZERO]);
-        test.revolute("C", [2, 3], [coupler, rocker]);
-        test.revolute("D", [0, 3], [d, Vec2::ZERO]);
+        let [crank, coupler, rocker] = self.lengths;
+        let [one, two, three] = &self.masses;
         let [q, initial_guess] = self.assembly;
-        test.actuate([0, 1], ActuatorKind::Angle, q);
-        test.assembly.initial_guess[2] = Some(initial_guess);
-        test
+        format!(
+            "[bodies]\nground = {{ points = {{ A = [{}, {}], D = [{}, {}] }} }}\n{}{}{}\
+             [joints]\nA = {{ revolute = [\"ground.A\", \"crank.A\"] }}\nB = {{ revolute = [\"crank.B\", \"coupler.B\"] }}\n\
+             C = {{ revolute = [\"coupler.C\", \"rocker.C\"] }}\nD = {{ revolute = [\"ground.D\", \"rocker.D\"] }}\n\
+             [actuators]\nphi = {{ angle = [\"ground\", \"crank\"] }}\n[assembly]\nphi = {q}\ncoupler = {initial_guess}\n",
+            a.x,
+            a.y,
+            d.x,
+            d.y,
+            body("crank", &format!("A = [0, 0], B = [{crank}, 0]"), one),
+            body("coupler", &format!("B = [0, 0], C = [{coupler}, 0]"), two),
+            body("rocker", &format!("D = [0, 0], C = [{rocker}, 0]"), three)
+        )
     }
 
     /// The same with all lengths scaled.
@@ -139,54 +108,57 @@ pub(crate) struct SliderCrank {
 }
 
 impl SliderCrank {
-    /// Driven at the crank, or at the slider.
-    pub(crate) fn build(&self, actuated_slider: bool) -> TestMechanism {
-        let [crank, rod] = self.lengths.map(|l| vec2(l, 0.0));
-        let [one, two, three] = self.masses;
-        let mut test = TestMechanism::new(&[("crank", one), ("rod", two), ("slider", three)]);
-        test.revolute("A", [0, 1], [Vec2::ZERO; 2]);
-        test.revolute("B", [1, 2], [crank, Vec2::ZERO]);
-        test.revolute("C", [2, 3], [rod, Vec2::ZERO]);
-        test.prismatic("guide", [0, 3], [vec2(0.0, self.height), Vec2::ZERO]);
+    /// Its scene, driven at the crank, or at the slider: then the angle at assembly is that of the crank.
+    pub(crate) fn text(&self, actuated_slider: bool) -> String {
+        let [crank, rod] = self.lengths;
+        let [one, two, three] = &self.masses;
         let [q, initial_guess] = self.assembly;
-        if actuated_slider {
-            test.actuate([0, 3], ActuatorKind::Travel(JointId(3)), q);
-            test.assembly.initial_guess[1] = Some(initial_guess);
-        } else {
-            test.actuate([0, 1], ActuatorKind::Angle, q);
-            test.assembly.initial_guess[2] = Some(initial_guess);
-        }
-        test
+        let (actuator, guessed) = match actuated_slider {
+            true => ("length = \"guide\"", "crank"),
+            false => ("angle = [\"ground\", \"crank\"]", "rod"),
+        };
+        format!(
+            "[bodies]\nground = {{ points = {{ A = [0, 0], G = [0, {}] }} }}\n{}{}{}\
+             [joints]\nA = {{ revolute = [\"ground.A\", \"crank.A\"] }}\nB = {{ revolute = [\"crank.B\", \"rod.B\"] }}\n\
+             C = {{ revolute = [\"rod.C\", \"slider.C\"] }}\nguide = {{ prismatic = [\"ground.G\", \"slider.C\"], axis = [1, 0] }}\n\
+             [actuators]\nq = {{ {actuator} }}\n[assembly]\nq = {q}\n{guessed} = {initial_guess}\n",
+            self.height,
+            body("crank", &format!("A = [0, 0], B = [{crank}, 0]"), one),
+            body("rod", &format!("B = [0, 0], C = [{rod}, 0]"), two),
+            body("slider", "C = [0, 0]", three)
+        )
     }
 }
 
 /// A crank of 1 m in a slot across a slide: the slide's travel is cos q.
-pub(crate) fn scotch_yoke(crank: f64, slide: f64) -> TestMechanism {
-    let (crank, slide) = (mass(0.0, [0.0; 2], crank), mass(slide, [0.0; 2], 0.0));
-    let mut test = TestMechanism::new(&[("crank", crank), ("yoke", slide)]);
-    test.revolute("A", [0, 1], [Vec2::ZERO; 2]);
-    let slot = JointKind::Slot {
-        axis: vec2(0.0, 1.0),
-    };
-    let slot = Joint::new("slot", [2, 1], [Vec2::ZERO, Vec2::IDENTITY], slot);
-    test.mechanism.joints.push(slot);
-    test.prismatic("guide", [0, 2], [Vec2::ZERO; 2]);
-    test.actuate([0, 1], ActuatorKind::Angle, 0.5);
-    test
+pub(crate) fn scotch_yoke(crank: f64, slide: f64) -> String {
+    let crank = mass(0.0, [0.0; 2], crank);
+    format!(
+        "[bodies]\nground = {{ points = {{ A = [0, 0] }} }}\n{}{}\
+         [joints]\nA = {{ revolute = [\"ground.A\", \"crank.A\"] }}\nslot = {{ slot = [\"yoke.A\", \"crank.B\"], axis = [0, 1] }}\n\
+         guide = {{ prismatic = [\"ground.A\", \"yoke.A\"], axis = [1, 0] }}\n\
+         [actuators]\nq = {{ angle = [\"ground\", \"crank\"] }}\n[assembly]\nq = 0.5\n",
+        body("crank", "A = [0, 0], B = [1, 0]", &crank),
+        body("yoke", "A = [0, 0]", &mass(slide, [0.0; 2], 0.0))
+    )
 }
 
 /// A body that slides along x.
-pub(crate) fn slider(kilograms: f64) -> TestMechanism {
-    let mut test = TestMechanism::new(&[("slider", mass(kilograms, [0.0; 2], 0.0))]);
-    test.prismatic("guide", [0, 1], [Vec2::ZERO; 2]);
-    test.actuate([0, 1], ActuatorKind::Travel(JointId(0)), 0.0);
-    test
+pub(crate) fn slider(kilograms: f64) -> String {
+    let slider = body("slider", "A = [0, 0]", &mass(kilograms, [0.0; 2], 0.0));
+    format!(
+        "[bodies]\nground = {{ points = {{ A = [0, 0] }} }}\n{slider}\
+         [joints]\nguide = {{ prismatic = [\"ground.A\", \"slider.A\"], axis = [1, 0] }}\n\
+         [actuators]\nq = {{ length = \"guide\" }}\n[assembly]\nq = 0\n"
+    )
 }
 
 /// A body that rotates about a fixed point.
-pub(crate) fn rotor(mass: Mass) -> TestMechanism {
-    let mut test = TestMechanism::new(&[("rotor", mass)]);
-    test.revolute("A", [0, 1], [Vec2::ZERO; 2]);
-    test.actuate([0, 1], ActuatorKind::Angle, 0.0);
-    test
+pub(crate) fn rotor(mass: &Mass) -> String {
+    let rotor = body("rotor", "A = [0, 0]", mass);
+    format!(
+        "[bodies]\nground = {{ points = {{ A = [0, 0] }} }}\n{rotor}\
+         [joints]\nA = {{ revolute = [\"ground.A\", \"rotor.A\"] }}\n\
+         [actuators]\nq = {{ angle = [\"ground\", \"rotor\"] }}\n[assembly]\nq = 0\n"
+    )
 }

@@ -4,6 +4,7 @@
 
 mod check;
 mod closed_forms;
+mod drawn;
 mod draws;
 mod free_motion;
 mod in_scenes;

@@ -4,7 +4,9 @@
 use super::closed_forms::{Point, UnitSpeedBody, at_rest, dd, four_bar_bodies};
 use super::in_scenes::StatedTable;
 use super::mechanisms::{FourBar, mass};
-use super::series::{CellResult, EstimatedValue, ParameterSeries, Requirement, RunResult, decades};
+use super::series::{
+    DYAD_CONDITION, ParameterSeries, Requirement, RunResult, decades, scaled_cell,
+};
 use dwell_geometry::{Vec2, vec2};
 use dwell_kinetostatics::Mass;
 use dwell_numerics::{DoubleDouble, Scalar};
@@ -13,8 +15,6 @@ use std::f64::consts::TAU;
 
 /// Roundings that an evaluation is allowed: of two dyads in a row.
 const ALLOWED_ROUNDINGS: f64 = 32.0;
-/// Condition of a well-shaped dyad's accelerations, as of the four-bar.
-const DYAD_CONDITION: f64 = 8.0;
 /// The length of the coupler from B to C, and from C to P, m.
 const LENGTH_BC: f64 = 0.25;
 /// Guide and slider.
@@ -220,13 +220,8 @@ fn peak_between_rows() -> ParameterSeries {
         let peak = printed.into_iter().find(|number| number.name == "m.peak");
         let peak = peak.ok_or("no peak between the rows")?;
         let reference = mechanism.peak(BETWEEN_ROWS, 50.0 * distance);
-        let cell: CellResult = Ok(EstimatedValue {
-            value: peak.value,
-            reference,
-            scale: reference.value(),
-            error_estimate: peak.error.unwrap_or(f64::NAN),
-        });
-        Ok(vec![cell])
+        let value = (peak.value, peak.error.unwrap_or(f64::NAN));
+        Ok(vec![scaled_cell(value, reference, reference.value())])
     };
     ParameterSeries {
         figure: FIGURE,

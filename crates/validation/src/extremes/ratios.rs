@@ -2,17 +2,15 @@
 
 use super::closed_forms::{UnitSpeedBody, at_rest, dd, exponential, four_bar};
 use super::in_scenes::StatedTable;
-use super::mechanisms::{CRANK_ROCKER, FourBar, mass};
-use super::series::{ParameterSeries, Requirement, RunResult, decades};
+use super::mechanisms::{CRANK_ROCKER, FourBar, body, mass};
+use super::series::{
+    ALLOWED_ROUNDINGS, DYAD_CONDITION, ParameterSeries, Requirement, RunResult, decades,
+};
 use dwell_geometry::{Vec2, vec2};
 use dwell_kinetostatics::Mass;
 use dwell_numerics::{DoubleDouble, Scalar};
 use std::f64::consts::FRAC_PI_2;
 
-/// Roundings that an evaluation is allowed.
-const ALLOWED_ROUNDINGS: f64 = 16.0;
-/// Condition of a well-shaped dyad's accelerations, as of the four-bar.
-const DYAD_CONDITION: f64 = 8.0;
 /// Positions of a revolution or a motion.
 const POINTS: usize = 181;
 
@@ -128,32 +126,23 @@ fn cam() -> ParameterSeries {
 fn long_links() -> ParameterSeries {
     let make = |length: f64| FourBar {
         lengths: [1.0, 2.5 + length, 1.0 + length],
-        masses: [
-            mass(2.0, [0.25, 0.125], 0.5),
-            mass(1.5, [1.75, 0.25], 1.25),
-            mass(1.0, [1.25, -0.125], 0.75),
-        ],
         ..CRANK_ROCKER
     };
     let run = move |length: f64| -> RunResult {
         let parts = make(length);
-        let [_, coupler, rocker] = parts.lengths;
         let four_bar_at = |q: f64| four_bar(&parts, dd(q));
         // Where C is at assembly.
         let (_, [bc, dc]) = super::closed_forms::four_bar_bodies(&parts, dd(0.0));
         let angle = |v: Vec2<DoubleDouble>| v.y.value().atan2(v.x.value());
-        let text = format!(
-            "[bodies]\nground = {{ points = {{ A = [0, 0], D = [4, 0] }} }}\n\
-             crank = {{ points = {{ A = [0, 0], B = [1, 0] }}, mass = 2, center = [0.25, 0.125], inertia = 0.5 }}\n\
-             coupler = {{ points = {{ B = [0, 0], C = [{coupler}, 0] }}, mass = 1.5, center = [1.75, 0.25], inertia = 1.25 }}\n\
-             rocker = {{ points = {{ D = [0, 0], C = [{rocker}, 0] }}, mass = 1, center = [1.25, -0.125], inertia = 0.75 }}\n\
-             [joints]\nA = {{ revolute = [\"ground.A\", \"crank.A\"] }}\nB = {{ revolute = [\"crank.B\", \"coupler.B\"] }}\n\
-             C = {{ revolute = [\"coupler.C\", \"rocker.C\"] }}\nD = {{ revolute = [\"ground.D\", \"rocker.D\"] }}\n\
-             [actuators]\nphi = {{ angle = [\"ground\", \"crank\"] }}\n[assembly]\nphi = 0\ncoupler = {}\nrocker = {}\n\
-             [requests]\nreactions = [\"C.x\", \"C.y\"]\n",
-            angle(bc),
+        let assembled = FourBar {
+            assembly: [0.0, angle(bc)],
+            ..parts
+        };
+        let rest = format!(
+            "rocker = {}\n[requests]\nreactions = [\"C.x\", \"C.y\"]\n",
             angle(dc)
         );
+        let text = assembled.text() + &rest;
         let found = StatedTable::reduced(&text, POINTS)?;
         let all: Vec<_> = found.column("phi")?.into_iter().map(four_bar_at).collect();
         let m = all.iter().map(|at| at.m).collect();
@@ -177,21 +166,15 @@ fn long_links() -> ParameterSeries {
 
 /// The scene of two bars, the second pinned to the first at 1 m.
 fn double_pendulum_text([one, two]: [&Mass; 2]) -> String {
-    let body = |of: &Mass| {
-        let Vec2 { x, y } = of.center;
-        let (mass, inertia) = (of.mass, of.inertia);
-        format!("mass = {mass}, center = [{x}, {y}], inertia = {inertia}")
-    };
     format!(
-        "[bodies]\nground = {{ points = {{ A = [0, 0] }} }}\n\
-             one = {{ points = {{ A = [0, 0], B = [1, 0] }}, {} }}\ntwo = {{ points = {{ B = [0, 0] }}, {} }}\n\
+        "[bodies]\nground = {{ points = {{ A = [0, 0] }} }}\n{}{}\
              [joints]\nA = {{ revolute = [\"ground.A\", \"one.A\"] }}\nB = {{ revolute = [\"one.B\", \"two.B\"] }}\n\
              [actuators]\np = {{ angle = [\"ground\", \"one\"] }}\nq = {{ angle = [\"ground\", \"two\"] }}\n\
              [assembly]\np = 0.4\nq = -0.3\n\
              [prescribed]\nduration = 2\np = {{ sinusoid = {{ amplitude = 0.8, period = 2 }} }}\nq = {{ sinusoid = {{ amplitude = 1.2, period = 1 }} }}\n\
              [requests]\nvariables = [\"p\", \"p.velocity\", \"p.acceleration\", \"q\", \"q.velocity\", \"q.acceleration\", \"p.actuator_force\", \"q.actuator_force\"]\n",
-        body(one),
-        body(two)
+        body("one", "A = [0, 0], B = [1, 0]", one),
+        body("two", "B = [0, 0]", two)
     )
 }
 

@@ -2,11 +2,10 @@
 
 use super::check::check;
 use super::series::{MAX_ESTIMATE_RATIO, ResultCell, SeriesResult};
-use crate::report_parts::{figure_blocks, findings_text, pass_or_fail, pictures, table};
-use dwell_findings::{Finding, all_pass};
+use crate::report_parts::{StudyReport, TextColumn, figure_blocks, table_of};
+use dwell_findings::Finding;
 use dwell_report::{
-    Axis, Block, Chart, Column, Document, Figure, Files, Mark, Paint, Series, Stroke, Table,
-    TableExport as _, reproducible_text,
+    Axis, Chart, Column, Figure, Mark, Paint, Series, Stroke, Table, TableExport as _,
 };
 use dwell_study::output::chart;
 use dwell_study::ranges::extent;
@@ -31,22 +30,48 @@ pub fn outcome(
     let mut findings = check(results);
     findings.extend(further);
     let figures = figures(results);
-    let mut files = Files::new();
+    let mut outcome = Outcome::default();
     for result in results {
         let file = format!("{name}/{}.csv", result.series.key);
-        files.add(file, csv_table(result).csv()?);
+        outcome.files.add(file, csv_table(result).csv()?);
     }
-    files.add(format!("{name}.txt"), snapshot(results, &findings));
-    let document = document(results, name, &figures, &findings);
-    files.add_document(name, &document);
+    let columns: [TextColumn<&SeriesResult>; 6] = [
+        ("Row", |row| row.series.description.clone()),
+        ("Floor, digits", |row| {
+            let [min, max] = extent(row.cells.iter().map(|c| c.requirement.min_digits));
+            format!("{max:.1} to {min:.1}")
+        }),
+        ("Fewest digits", |row| {
+            let [min, _] = extent(row.cells.iter().filter_map(ResultCell::digits));
+            format!("{min:.1}")
+        }),
+        ("Typed errors", |row| {
+            let errors = row.cells.iter().filter(|c| c.result.is_err());
+            format!("{} of {}", errors.count(), row.cells.len())
+        }),
+        ("Estimate / true error", |row| {
+            let ratios = row.cells.iter().filter_map(ResultCell::estimate_ratio);
+            let [low, high] = extent(ratios);
+            format!("{low:.2} to {high:.0}")
+        }),
+        ("Why this floor", |row| row.series.reason.to_owned()),
+    ];
+    let mut blocks = vec![table_of(&columns, results.iter())];
+    blocks.extend(figure_blocks(name, &figures, false));
     let cells: usize = results.iter().map(|m| m.cells.len()).sum();
-    Ok(Outcome {
-        summary: findings_text(name, &findings, &format!(", {cells} cells")),
-        files,
+    let report = StudyReport {
+        name,
+        title: "Extremes",
+        text: "Parameters are driven to their extremes, and the results are compared with closed forms in 32 digits. Each row states beforehand how many digits it must keep; below that only a typed error is accepted, and only where the condition number is above 1e8. Each result carries an estimate of its error: from the same evaluation in double-double numbers, from a second run at a tenth of the tolerance, or from the change of a period with its initial state."
+            .to_owned(),
+        blocks,
+        snapshot: snapshot(results),
+        figures: &figures,
         findings,
-        pictures: pictures(name, &figures).collect(),
-        ..Outcome::default()
-    })
+        count: format!("{cells} cells"),
+    };
+    report.add_to(&mut outcome);
+    Ok(outcome)
 }
 
 /// A figure for each family of rows: digits on the left, estimates on the right.
@@ -145,10 +170,7 @@ fn ratio_chart(result: &SeriesResult) -> Chart {
         let line = Series::line(*quantity, points(result, k, clamped));
         line.stroke(Stroke::Points).color(Paint::Palette(k))
     });
-    let line = |at: f64| Mark::Horizontal {
-        at,
-        label: String::new(),
-    };
+    let line = |at: f64| Mark::horizontal(at, "");
     Chart {
         x: parameter_axis(result),
         y: Axis::log("estimate / true error", "").with_range(low, high),
@@ -185,8 +207,8 @@ fn csv_table(result: &SeriesResult) -> Table {
     }
 }
 
-/// What every machine reproduces: the requirements, and which findings pass.
-fn snapshot(results: &[SeriesResult], findings: &[Finding]) -> String {
+/// What every machine reproduces: the requirements.
+fn snapshot(results: &[SeriesResult]) -> String {
     let mut text = "Extremes\n\n".to_owned();
     for result in results {
         let series = &result.series;
@@ -198,52 +220,5 @@ fn snapshot(results: &[SeriesResult], findings: &[Finding]) -> String {
             series.quantities.len()
         );
     }
-    text + "\n" + &reproducible_text(findings)
-}
-
-fn document(
-    results: &[SeriesResult],
-    name: &str,
-    figures: &[Figure],
-    findings: &[Finding],
-) -> Document {
-    let header = [
-        "Row",
-        "Floor, digits",
-        "Fewest digits",
-        "Typed errors",
-        "Estimate / true error",
-        "Why this floor",
-    ];
-    let mut blocks = vec![
-        Block::Text(format!(
-            "{}. Parameters are driven to their extremes, and the results are compared with closed forms in 32 digits. Each row states beforehand how many digits it must keep; below that only a typed error is accepted, and only where the condition number is above 1e8. Each result carries an estimate of its error: from the same evaluation in double-double numbers, from a second run at a tenth of the tolerance, or from the change of a period with its initial state.",
-            pass_or_fail(all_pass(findings))
-        )),
-        table(&header, results.iter().map(summary_row)),
-    ];
-    blocks.extend(figure_blocks(name, figures, false));
-    blocks.push(Block::Heading("Findings".to_owned()));
-    blocks.push(Block::Findings(findings.to_vec()));
-    Document {
-        title: "Extremes".to_owned(),
-        blocks,
-    }
-}
-
-/// A row in words.
-fn summary_row(result: &SeriesResult) -> Vec<String> {
-    let cells = &result.cells;
-    let [min_required, max_required] = extent(cells.iter().map(|c| c.requirement.min_digits));
-    let [min_digits, _] = extent(cells.iter().filter_map(ResultCell::digits));
-    let [low, high] = extent(cells.iter().filter_map(ResultCell::estimate_ratio));
-    let typed_errors = cells.iter().filter(|c| c.result.is_err()).count();
-    vec![
-        result.series.description.clone(),
-        format!("{max_required:.1} to {min_required:.1}"),
-        format!("{min_digits:.1}"),
-        format!("{typed_errors} of {}", cells.len()),
-        format!("{low:.2} to {high:.0}"),
-        result.series.reason.to_owned(),
-    ]
+    text
 }

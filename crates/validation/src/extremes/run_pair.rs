@@ -1,14 +1,15 @@
 //! Motions of the grid, each run twice to estimate its error.
 
-use super::mechanisms::TestMechanism;
+use super::mechanisms::scene;
 use super::series::{CellResult, cell};
 use dwell_dynamics::{
     CoordinateMode, DynamicsError, Machine, OdeState, Options, Orbit, ReducedState, Solution,
     solve, solve_reduced,
 };
-use dwell_kinetostatics::{ExactModel, Load, ReducedModel as _};
+use dwell_kinetostatics::{ExactModel, Load, LoadKind, Magnitude, ReducedModel as _};
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_study::estimate;
+use dwell_study::models::compile_model;
 
 /// Times of a motion at which its two runs are compared, the end among them.
 const COMPARED_TIMES: usize = 64;
@@ -99,9 +100,18 @@ pub(super) fn kinetic_energy(model: &ExactModel, y: &[f64]) -> f64 {
     m.map_or(f64::NAN, |(m, _)| 0.5 * m * y[1] * y[1])
 }
 
+/// A load of constant magnitude.
+pub(super) fn load(kind: LoadKind, magnitude: f64) -> Load {
+    Load {
+        name: "load".into(),
+        kind,
+        magnitude: Magnitude::Constant(magnitude),
+    }
+}
+
 /// A machine of one freedom under loads.
-pub(super) fn machine(test: &TestMechanism, loads: &[Load]) -> Result<Machine, String> {
-    let model = test.model(&[]).map_err(|e| e.to_string())?;
+pub(super) fn machine(text: &str, loads: &[Load]) -> Result<Machine, String> {
+    let model = compile_model(&scene(text)?, &[]).map_err(|e| e.to_string())?;
     let free = vec![CoordinateMode::Free];
     Machine::new(model, loads, free, &[]).map_err(|e| e.to_string())
 }

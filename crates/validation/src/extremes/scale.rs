@@ -1,18 +1,17 @@
 //! Scales: masses, lengths, and the distance of a mechanism from the origin.
 
 use super::closed_forms::dd;
-use super::limit_positions::{ALLOWED_ROUNDINGS, QUANTITIES, compare_four_bar};
-use super::mechanisms::{CRANK_ROCKER, FourBar};
-use super::series::{ParameterSeries, Requirement, cell, decades};
+use super::limit_positions::{QUANTITIES, compare_four_bar};
+use super::mechanisms::{CRANK_ROCKER, FourBar, reduced};
+use super::series::{
+    ALLOWED_ROUNDINGS, DYAD_CONDITION, ParameterSeries, Requirement, cell, decades,
+};
 use dwell_geometry::vec2;
 use dwell_kinetostatics::Coefficients;
 use dwell_study::estimate;
 
 /// A crank angle in no special place, rad.
 const CRANK_ANGLE: f64 = 1.125;
-/// Condition of a well-shaped dyad's accelerations: the sines of its angles there are about a half, and they
-/// enter three times.
-const DYAD_CONDITION: f64 = 8.0;
 
 /// Figure of these rows, and its title.
 const FIGURE: (&str, &str) = ("scales", "Masses, lengths and places");
@@ -39,8 +38,7 @@ fn base_series(key: &str, what: &str, values: Vec<f64>, of: fn(f64) -> FourBar) 
         requirement: Box::new(required),
         run: Box::new(move |at| {
             let four_bar = of(at);
-            let test = four_bar.build();
-            let model = test.exact_model(&test.reactions("C"))?;
+            let model = reduced(&four_bar.text(), "C")?;
             compare_four_bar(&four_bar, &model, CRANK_ANGLE)
         }),
     }
@@ -91,8 +89,7 @@ fn placement() -> ParameterSeries {
 fn powers_of_two() -> ParameterSeries {
     type Reduced = Result<Coefficients, Box<dyn std::error::Error>>;
     fn reduced_at_scale(by: f64) -> Reduced {
-        let test = CRANK_ROCKER.scaled(by).build();
-        let model = test.exact_model(&test.reactions("C"))?;
+        let model = reduced(&CRANK_ROCKER.scaled(by).text(), "C")?;
         Ok(estimate::coefficients_with_errors(model.model(), CRANK_ANGLE)?.0)
     }
     ParameterSeries {

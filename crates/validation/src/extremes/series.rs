@@ -2,6 +2,12 @@
 
 use dwell_numerics::{DoubleDouble, Scalar};
 
+/// Roundings that an evaluation of a dyad's reduced model is allowed, each magnified by the condition: it
+/// takes some hundred operations, whose roundings add up as their root.
+pub(super) const ALLOWED_ROUNDINGS: f64 = 16.0;
+/// Condition of a well-shaped dyad's accelerations: the sines of its angles there are about a half, and they
+/// enter three times.
+pub(super) const DYAD_CONDITION: f64 = 8.0;
 /// A typed error is an answer only where the condition number is above this.
 pub const MIN_ILL_CONDITIONED: f64 = 1e8;
 /// The rule of the estimates: so many times the true error at most, in so large a part of the cells.

@@ -1,16 +1,18 @@
 //! Edges: the separatrix of a pendulum, and a start at a dead point.
 
 use super::closed_forms::{arc_cosine, dd, elliptic_k, exponential};
-use super::mechanisms::{SliderCrank, TestMechanism, mass, rotor};
-use super::run_pair::{RunPair, loaded_motion, machine, quadrature, sampled};
+use super::mechanisms::{SliderCrank, mass, rotor, scene};
+use super::run_pair::{RunPair, load, loaded_motion, machine, quadrature, sampled};
 use super::series::{ParameterSeries, Requirement, RunResult, decades, scaled_cell};
 use dwell_dynamics::{
     Atlas, Machine, MachineDescription, Method, OdeState, Options, Orbit, ReducedState,
 };
 use dwell_geometry::Vec2;
-use dwell_kinetostatics::{Load, LoadKind, Magnitude};
+use dwell_kinetostatics::LoadKind;
 use dwell_numerics::{DoubleDouble, Scalar};
+use dwell_scene::Scene;
 use dwell_study::estimate;
+use dwell_study::models::reduced_model;
 use std::f64::consts::PI;
 
 /// Figure of these rows, and its title.
@@ -27,14 +29,9 @@ pub(super) fn series() -> Vec<ParameterSeries> {
 
 /// 1 kg on a massless bar of 1 m under 1 m/s²: q̈ = −sin q, with q = 0 at the bottom.
 fn pendulum() -> Result<Machine, String> {
-    let weight = Load {
-        name: "weight".into(),
-        kind: LoadKind::Gravity {
-            direction: Vec2::IDENTITY,
-        },
-        magnitude: Magnitude::Constant(1.0),
-    };
-    machine(&rotor(mass(1.0, [1.0, 0.0], 0.0)), &[weight])
+    let direction = Vec2::IDENTITY;
+    let weight = load(LoadKind::Gravity { direction }, 1.0);
+    machine(&rotor(&mass(1.0, [1.0, 0.0], 0.0)), &[weight])
 }
 
 /// Periods just below (−1) or above (+1) the energy of rest at the top.
@@ -151,7 +148,7 @@ fn from_dead_point(distance: f64) -> RunResult {
     let crank_velocity = dd(speed) / slope(angle);
     let mut slider_crank = DEAD_POINT_MECHANISM;
     slider_crank.assembly = [travel, angle.value()];
-    let test = slider_crank.build(true);
+    let test = scene(&slider_crank.text(true))?;
     let end = 2.0;
     let options = sampled(&Options::new(Method::Bdf, DEAD_POINT_TOLERANCE), end);
     let runs = RunPair::of(&options, |options| {
@@ -160,7 +157,7 @@ fn from_dead_point(distance: f64) -> RunResult {
     let (sin, cos) = (angle + crank_velocity * dd(end)).sin_cos();
     let reference = crank * cos + rod_projection(sin);
     // The crank's speed is as well known as the root of its inertia, over 2 s.
-    let exact = test.exact_model(&[])?;
+    let exact = reduced_model(&test, &[])?;
     let (at, error) = estimate::coefficients_with_errors(exact.model(), travel)?;
     let rounding = 2.0 * end * error.m / at.m + 4.0 * f64::EPSILON;
     let end_travel = runs.final_value(|y| y[0], rounding);
@@ -169,16 +166,17 @@ fn from_dead_point(distance: f64) -> RunResult {
 
 /// The travel of the slider at the samples of a motion from a state.
 fn travel_history(
-    test: &TestMechanism,
+    test: &Scene,
     state: [f64; 2],
     end: f64,
     options: &Options,
 ) -> Result<Vec<Vec<f64>>, Box<dyn std::error::Error>> {
+    let assembly = test.assembly.to_configuration();
     let mut atlas = Atlas::new(MachineDescription {
         varying_inertias: &[],
         mechanism: &test.mechanism,
         masses: &test.masses,
-        assembly: &test.assembly,
+        assembly: &assembly,
         loads: &[],
         drives: &[],
         reactions: &[],

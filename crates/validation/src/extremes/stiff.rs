@@ -1,12 +1,12 @@
 //! Stiffness, damping, and drives with next to no mass.
 
 use super::closed_forms::{dd, elliptic_e, exponential};
-use super::mechanisms::{mass, rotor, scotch_yoke, slider};
-use super::run_pair::{free_motion, kinetic_energy, loaded_motion, machine, quadrature};
+use super::mechanisms::{mass, reduced, rotor, scotch_yoke, slider};
+use super::run_pair::{free_motion, kinetic_energy, load, loaded_motion, machine, quadrature};
 use super::series::{ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell};
 use dwell_dynamics::{Method, Options, Orbit, ReducedState};
 use dwell_geometry::{BodyId, Vec2, vec2};
-use dwell_kinetostatics::{Load, LoadKind, Magnitude};
+use dwell_kinetostatics::{Load, LoadKind};
 use dwell_numerics::{DoubleDouble, Scalar};
 use std::f64::consts::TAU;
 
@@ -23,14 +23,6 @@ pub(super) fn series() -> Vec<ParameterSeries> {
 
 fn options() -> Options {
     Options::new(Method::Bdf, 1e-10)
-}
-
-fn load(kind: LoadKind, magnitude: f64) -> Load {
-    Load {
-        name: "load".into(),
-        kind,
-        magnitude: Magnitude::Constant(magnitude),
-    }
 }
 
 /// Free at zero travel of the slider, from a point 2 m behind it.
@@ -124,7 +116,7 @@ fn small_rotor() -> ParameterSeries {
             load(LoadKind::Torque { bodies: BODIES }, 1.0),
             load(LoadKind::RotationalDamper { bodies: BODIES }, 1.0),
         ];
-        let machine = machine(&rotor(mass(0.0, [0.0; 2], inertia)), &loads)?;
+        let machine = machine(&rotor(&mass(0.0, [0.0; 2], inertia)), &loads)?;
         let runs = loaded_motion(&machine, [0.0, 0.0], 1.0, &options())?;
         let decayed = exponential(-(dd(1.0) / dd(inertia)));
         let speed = dd(1.0) - decayed;
@@ -152,7 +144,7 @@ fn small_rotor() -> ParameterSeries {
 fn light_crank() -> ParameterSeries {
     const FROM: f64 = 1.125;
     let run = |inertia: f64| -> RunResult {
-        let model = scotch_yoke(inertia, 1.0).exact_model(&[])?;
+        let model = reduced(&scotch_yoke(inertia, 1.0), "")?;
         let (sin, _) = dd(FROM).sin_cos();
         let m = dd(inertia) + sin * sin;
         // ∮ √(J + sin² φ) dφ = 4 √(1 + J) E(k), k² = 1/(1 + J).

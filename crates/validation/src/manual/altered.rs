@@ -23,81 +23,82 @@ pub(super) struct AlteredText {
 /// The texts in which the value at a use of a key is another one, the likeliest to be a scene first; none for words that only
 /// readers see.
 pub(super) fn altered_texts(root: &Table, key_use: &KeyUse) -> Vec<AlteredText> {
-    let Some(value) = find(root, &key_use.path) else {
+    let mut whole = Value::Table(root.clone());
+    let Some(value) = at(&mut whole, &key_use.path).cloned() else {
         return Vec::new();
     };
-    let values = other_values(root, value, key_use.written);
-    let with = |(value, what): (Option<Value>, String)| {
-        let text = replaced(root, &key_use.path, value?)?;
-        Some(AlteredText { text, what })
-    };
-    let forgotten = AlteredText {
-        text: removed(root, &key_use.path).unwrap_or_default(),
-        what: "forgotten".to_owned(),
-    };
-    let all = values.into_iter().filter_map(with);
-    all.chain((key_use.written != WrittenAs::Text).then_some(forgotten))
-        .collect()
+    let values = other_values(root, &value, key_use.written).into_iter();
+    let mut texts = Vec::new();
+    for (value, what) in values.filter_map(|(value, what)| Some((value?, what))) {
+        let mut altered = whole.clone();
+        if let Some(place) = at(&mut altered, &key_use.path) {
+            *place = value;
+        }
+        let text = toml::to_string(&altered);
+        texts.extend(text.map(|text| AlteredText { text, what }));
+    }
+    if key_use.written != WrittenAs::Text {
+        texts.push(AlteredText {
+            text: removed(whole, &key_use.path).unwrap_or_default(),
+            what: "forgotten".to_owned(),
+        });
+    }
+    texts
 }
 
 /// Another value with what it is, in a few words; none where the value is not of the kind.
 type OtherValue = (Option<Value>, String);
 
+/// Other values with what they are.
+fn named<const N: usize>(values: [(Option<Value>, &str); N]) -> Vec<OtherValue> {
+    values.map(|(value, what)| (value, what.to_owned())).into()
+}
+
+/// Another word or name.
+fn read_as(name: String) -> OtherValue {
+    let what = format!("read as `{name}`");
+    (Some(Value::String(name)), what)
+}
+
 /// The values that another is mistaken for.
 fn other_values(root: &Table, value: &Value, written: WrittenAs) -> Vec<OtherValue> {
+    let is_other = |name: &String| value.as_str() != Some(name.as_str());
     match written {
         // The unit of inertia is two words of text.
         WrittenAs::Text => other_units(value),
-        WrittenAs::Number => vec![
-            (number(value, PART), "1 % more".to_owned()),
+        WrittenAs::Number => named([
+            (number(value, PART), "1 % more"),
             // Wheels that no longer fit by so much are refused.
-            (number(value, SMALL_PART), "0.05 % more".to_owned()),
-        ],
-        WrittenAs::Count => vec![(number(value, PART), "another number".to_owned())],
+            (number(value, SMALL_PART), "0.05 % more"),
+        ]),
+        WrittenAs::Count => named([(number(value, PART), "another number")]),
         WrittenAs::Boolean => {
             let other = value.as_bool().map(|b| Value::Boolean(!b));
-            vec![(other, "the opposite".to_owned())]
+            named([(other, "the opposite")])
         }
         WrittenAs::Word(words) => {
-            let others = words.iter().filter(|word| value.as_str() != Some(word));
-            let other = |word: &String| {
-                (
-                    Some(Value::String(word.clone())),
-                    format!("read as `{word}`"),
-                )
-            };
-            others.map(other).collect()
+            let others = words.iter().filter(|word| is_other(word));
+            others.cloned().map(read_as).collect()
         }
         WrittenAs::Expression => {
-            let more = value
-                .as_str()
-                .map(|text| Value::String(format!("1.01*({text})")));
-            vec![(more, "1 % more".to_owned())]
+            let more = value.as_str().map(|text| format!("1.01*({text})"));
+            named([(more.map(Value::String), "1 % more")])
         }
-        WrittenAs::Pair => vec![
-            (pair(value, PART), "turned and stretched by 1 %".to_owned()),
-            (
-                pair(value, SMALL_PART),
-                "turned and stretched by 0.05 %".to_owned(),
-            ),
-        ],
-        WrittenAs::Rows => vec![
-            (rows(value), "its values 1 % more".to_owned()),
-            (turned_rows(value), "its pairs turned".to_owned()),
-        ],
-        WrittenAs::Numbers => vec![(numbers(value), "its values 1 % more".to_owned())],
+        WrittenAs::Pair => named([
+            (pair(value, PART), "turned and stretched by 1 %"),
+            (pair(value, SMALL_PART), "turned and stretched by 0.05 %"),
+        ]),
+        WrittenAs::Rows => named([
+            (each(value, second_more), "its values 1 % more"),
+            (each(value, |row| pair(row, PART)), "its pairs turned"),
+        ]),
+        WrittenAs::Numbers => {
+            let more = each(value, |one| number(one, PART));
+            named([(more, "its values 1 % more")])
+        }
         WrittenAs::Name(sort) => {
-            let names = names(root, sort);
-            let others = names
-                .into_iter()
-                .filter(|name| value.as_str() != Some(name));
-            let other = |name: String| {
-                (
-                    Some(Value::String(name.clone())),
-                    format!("read as `{name}`"),
-                )
-            };
-            others.take(MAX_NAMES).map(other).collect()
+            let others = names(root, sort).into_iter().filter(is_other);
+            others.take(MAX_NAMES).map(read_as).collect()
         }
         WrittenAs::Names(sort) => other_lists(root, value, sort),
         WrittenAs::Table => Vec::new(),
@@ -106,90 +107,49 @@ fn other_values(root: &Table, value: &Value, written: WrittenAs) -> Vec<OtherVal
 
 /// Units of inertia, where a text is one.
 fn other_units(value: &Value) -> Vec<OtherValue> {
-    let units = INERTIA_UNITS.iter().filter(|_| {
-        let text = value.as_str().unwrap_or_default();
-        text.split(' ').count() == 2 && text.ends_with('2')
-    });
-    let other = |unit: &&str| {
-        (
-            Some(Value::String((*unit).to_owned())),
-            format!("read as `{unit}`"),
-        )
-    };
-    units.map(other).collect()
+    let text = value.as_str().unwrap_or_default();
+    match text.split(' ').count() == 2 && text.ends_with('2') {
+        true => INERTIA_UNITS.map(|unit| read_as(unit.to_owned())).into(),
+        false => Vec::new(),
+    }
 }
 
 /// Lists of names: in reverse order, without the last, with another last.
 fn other_lists(root: &Table, value: &Value, sort: &str) -> Vec<OtherValue> {
-    let reversed = value.as_array().map(|names| {
-        let reversed = names.iter().rev();
-        Value::Array(reversed.cloned().collect())
-    });
-    let shorter = value.as_array().map(|names| {
-        let first = names.iter().take(names.len().saturating_sub(1));
-        Value::Array(first.cloned().collect())
-    });
+    let list = value.as_array();
+    let reversed = list.map(|names| names.iter().rev().cloned().collect());
+    let shorter = list.map(|names| names[..names.len().saturating_sub(1)].to_vec());
     let last_replaced = names(root, sort).into_iter().take(MAX_NAMES).map(|name| {
-        let mut all = value.as_array().cloned().unwrap_or_default();
+        let what = format!("the last one read as `{name}`");
+        let mut all = list.cloned().unwrap_or_default();
         if let Some(last) = all.last_mut() {
-            *last = Value::String(name.clone());
+            *last = Value::String(name);
         }
-        (
-            Some(Value::Array(all)),
-            format!("the last one read as `{name}`"),
-        )
+        (Some(Value::Array(all)), what)
     });
-    let first = [
-        (reversed, "in reverse order".to_owned()),
-        (shorter, "the last one forgotten".to_owned()),
-    ];
+    let first = named([
+        (reversed.map(Value::Array), "in reverse order"),
+        (shorter.map(Value::Array), "the last one forgotten"),
+    ]);
     let all = first.into_iter().chain(last_replaced);
     all.filter(|(other, _)| other.as_ref() != Some(value))
         .collect()
 }
 
 /// The value at the end of some steps.
-fn find<'v>(root: &'v Table, path: &[PathStep]) -> Option<&'v Value> {
-    let (first, rest) = path.split_first()?;
-    let PathStep::Key(first) = first else {
-        return None;
-    };
-    rest.iter()
-        .try_fold(root.get(first)?, |value, step| match step {
-            PathStep::Key(key) => value.get(key),
-            PathStep::Index(k) => value.get(*k),
-        })
-}
-
-/// The text with another value there.
-fn replaced(root: &Table, path: &[PathStep], value: Value) -> Option<String> {
-    let mut root = Value::Table(root.clone());
-    let mut at = &mut root;
-    for step in path {
-        at = match step {
-            PathStep::Key(key) => at.get_mut(key)?,
-            PathStep::Index(k) => at.get_mut(*k)?,
-        };
-    }
-    *at = value;
-    toml::to_string(&root).ok()
+fn at<'v>(root: &'v mut Value, path: &[PathStep]) -> Option<&'v mut Value> {
+    path.iter().try_fold(root, |value, step| match step {
+        PathStep::Key(key) => value.get_mut(key),
+        PathStep::Index(k) => value.get_mut(*k),
+    })
 }
 
 /// The text without the key.
-fn removed(root: &Table, path: &[PathStep]) -> Option<String> {
-    let (last, steps) = path.split_last()?;
-    let mut root = Value::Table(root.clone());
-    let mut at = &mut root;
-    for step in steps {
-        at = match step {
-            PathStep::Key(key) => at.get_mut(key)?,
-            PathStep::Index(k) => at.get_mut(*k)?,
-        };
-    }
-    let PathStep::Key(last) = last else {
+fn removed(mut root: Value, path: &[PathStep]) -> Option<String> {
+    let (PathStep::Key(last), steps) = path.split_last()? else {
         return None;
     };
-    at.as_table_mut()?.remove(last)?;
+    at(&mut root, steps)?.as_table_mut()?.remove(last)?;
     toml::to_string(&root).ok()
 }
 
@@ -217,87 +177,69 @@ fn altered(value: f64, part: f64) -> f64 {
     }
 }
 
+/// The numbers of a list of two.
+fn two_numbers(value: &Value) -> Option<[f64; 2]> {
+    let numbers = value.as_array()?.iter().filter_map(as_number);
+    numbers.collect::<Vec<f64>>().try_into().ok()
+}
+
 /// A pair of numbers, turned and stretched, so that a direction changes, too.
 fn pair(value: &Value, part: f64) -> Option<Value> {
-    let pair: Vec<f64> = value.as_array()?.iter().filter_map(as_number).collect();
-    let [x, y] = *pair else { return None };
+    let [x, y] = two_numbers(value)?;
     let size = match x.hypot(y) {
         0.0 => 1.0,
         size => size,
     };
     let other = [x + part * size, y - 2.0 * part * size];
-    Some(Value::Array(other.map(Value::Float).to_vec()))
+    Some(Value::Array(other.map(Value::Float).into()))
 }
 
-/// A list of numbers, each 1 % more.
-fn numbers(value: &Value) -> Option<Value> {
-    let all = value.as_array()?.iter();
-    let all: Option<Vec<Value>> = all.map(|one| number(one, PART)).collect();
-    all.map(Value::Array)
+/// A row of two numbers with the second 1 % more.
+fn second_more(row: &Value) -> Option<Value> {
+    let [x, y] = two_numbers(row)?;
+    let y = if y == 0.0 { 0.0 } else { altered(y, PART) };
+    Some(Value::Array([x, y].map(Value::Float).into()))
 }
 
-/// Rows of two numbers with the second a part more; of a pair of directions each turned.
-fn rows(value: &Value) -> Option<Value> {
-    let rows = value.as_array()?;
-    let other = |row: &Value| {
-        let row: Vec<f64> = row.as_array()?.iter().filter_map(as_number).collect();
-        let [x, y] = *row else { return None };
-        let y = if y == 0.0 { 0.0 } else { altered(y, PART) };
-        Some(Value::Array(vec![Value::Float(x), Value::Float(y)]))
-    };
-    let other: Option<Vec<Value>> = rows.iter().map(other).collect();
-    other.map(Value::Array)
-}
-
-/// Pairs, each turned.
-fn turned_rows(value: &Value) -> Option<Value> {
-    let turned: Option<Vec<Value>> = value
-        .as_array()?
-        .iter()
-        .map(|row| pair(row, PART))
-        .collect();
-    turned.map(Value::Array)
+/// A list of which every entry is another.
+fn each(list: &Value, other: impl Fn(&Value) -> Option<Value>) -> Option<Value> {
+    let others = list.as_array()?.iter().map(other);
+    others.collect::<Option<_>>().map(Value::Array)
 }
 
 /// The names of a sort in a scene.
 fn names(root: &Table, sort: &str) -> Vec<String> {
-    let keys = |section: &str| -> Vec<String> {
-        let table = root.get(section).and_then(Value::as_table);
+    let keys_of = |table: Option<&Value>| -> Vec<String> {
+        let table = table.and_then(Value::as_table);
         table.map_or_else(Vec::new, |table| table.keys().cloned().collect())
     };
+    let keys = |section: &str| keys_of(root.get(section));
     let points = || {
-        let bodies = keys("bodies").into_iter();
-        bodies.flat_map(|body| {
-            let points = root["bodies"][&body]
-                .get("points")
-                .and_then(Value::as_table);
-            let names = points.map_or_else(Vec::new, |points| points.keys().cloned().collect());
-            names
-                .into_iter()
-                .map(move |point: String| [body.clone(), point])
+        keys("bodies").into_iter().flat_map(|body| {
+            let points = keys_of(root["bodies"][&body].get("points"));
+            points.into_iter().map(move |point| [body.clone(), point])
         })
     };
+    let coordinates = || [keys("coordinates"), keys("actuators")].concat();
     match sort {
         "body" => keys("bodies"),
         "point" => points().map(|[_, point]| point).collect(),
         "body.point" => points().map(|names| names.join(".")).collect(),
         "joint" => keys("joints"),
         "actuator" => keys("actuators"),
-        "coordinate" => [keys("coordinates"), keys("actuators")].concat(),
+        "coordinate" => coordinates(),
         "signal" => {
-            let coordinates = [keys("coordinates"), keys("actuators")].concat();
-            let rates = coordinates.iter().map(|name| format!("{name}.velocity"));
-            let rates: Vec<String> = rates.collect();
-            [vec!["t".to_owned()], coordinates, rates].concat()
+            let rates = coordinates()
+                .into_iter()
+                .map(|name| format!("{name}.velocity"));
+            [vec!["t".to_owned()], coordinates(), rates.collect()].concat()
         }
         "joint.component" => {
-            let joints = keys("joints").into_iter();
             let parts = [
                 "x", "y", "normal", "moment", "tooth", "axial", "tangent", "force",
             ];
-            joints
-                .flat_map(|joint| parts.map(|part| format!("{joint}.{part}")))
-                .collect()
+            let of_joint = |joint: String| parts.map(|part| format!("{joint}.{part}"));
+            keys("joints").into_iter().flat_map(of_joint).collect()
         }
         _ => Vec::new(),
     }

@@ -2,10 +2,10 @@
 
 use super::capabilities::CAPABILITIES;
 use super::key_study::REQUIRED;
-use super::lines::{Line, LineState, check_name, digits, numbers, ratio};
+use super::lines::{Line, LineState, digits, numbers};
 use super::machine;
-use crate::report_parts::{pass_or_fail, table};
-use dwell_findings::{Check, Finding};
+use crate::report_parts::{TextColumn, nearness, pass_or_fail, ratio, table, table_of};
+use dwell_findings::{Check, Finding, all_pass};
 use dwell_report::{Block, Document, markdown_text};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -20,6 +20,12 @@ pub(super) struct CaseEntry<'a> {
     pub(super) hash: String,
     pub(super) source: String,
     pub(super) findings: &'a [Finding],
+}
+
+impl CaseEntry<'_> {
+    fn short_hash(&self) -> &str {
+        &self.hash[..self.hash.len().min(16)]
+    }
 }
 
 /// What the document is made of.
@@ -46,11 +52,7 @@ pub(super) fn counts(lines: &[Line]) -> [usize; 3] {
 pub(super) fn document(contents: &Contents<'_>) -> Document {
     let mut blocks = vec![summary(contents), how_to_read()];
     blocks.push(Block::Heading("Where it was made".to_owned()));
-    let facts = machine::facts(contents.folder);
-    blocks.push(table(
-        &["", ""],
-        facts.into_iter().map(|fact| fact.to_vec()),
-    ));
+    blocks.push(table(&["", ""], machine::facts(contents.folder)));
     blocks.extend(failures(contents.lines));
     blocks.push(Block::Heading("Independent targets".to_owned()));
     blocks.push(targets());
@@ -95,9 +97,9 @@ fn how_to_read() -> Block {
 
 /// What is missing.
 fn failures(lines: &[Line]) -> Vec<Block> {
-    let failed = lines.iter().filter_map(|line| match &line.state {
-        LineState::Fail(why) => Some(format!("- `{}` `{}`: {why}", line.section, line.item)),
-        _ => None,
+    let failed = lines.iter().filter_map(|line| {
+        let why = line.failure()?;
+        Some(format!("- `{}` `{}`: {why}", line.section, line.item))
     });
     let failed: Vec<String> = failed.collect();
     match failed.is_empty() {
@@ -136,10 +138,7 @@ fn targets() -> Block {
         Check::ClosedForms => {
             "closed forms, in 32 digits where parameters are extreme; a rotor's own equation"
         }
-        #[allow(
-            unreachable_patterns,
-            reason = "checks that are added say what they compare by their name"
-        )]
+        // Checks that are added say what they compare by their name.
         _ => "what is written to files, read back by readers of its own",
     };
     let rows = Check::ALL.map(|check| vec![check.to_string(), about(check).to_owned()]);
@@ -147,27 +146,24 @@ fn targets() -> Block {
 }
 
 fn cases(cases: &[CaseEntry<'_>]) -> Block {
-    let row = |case: &CaseEntry<'_>| {
-        let nearest = super::lines::nearest(case.findings.iter());
-        let passed = case.findings.iter().filter(|f| f.pass).count();
-        vec![
-            format!("`{}` {}", case.name, markdown_text(case.title)),
-            format!("`{}`", &case.hash[..case.hash.len().min(16)]),
-            markdown_text(&case.source),
-            format!("{passed} of {}", case.findings.len()),
-            nearest.map_or_else(String::new, |f| format!("{:.2} of {}", ratio(&f), f.key)),
-            pass_or_fail(passed == case.findings.len()).to_owned(),
-        ]
-    };
-    let header = [
-        "Case",
-        "Hash of its scene",
-        "Source",
-        "Findings",
-        "Nearest to its tolerance",
-        "Result",
+    let columns: [TextColumn<&CaseEntry<'_>>; 6] = [
+        ("Case", |case| {
+            format!("`{}` {}", case.name, markdown_text(case.title))
+        }),
+        ("Hash of its scene", |case| {
+            format!("`{}`", case.short_hash())
+        }),
+        ("Source", |case| markdown_text(&case.source)),
+        ("Findings", |case| {
+            let passed = case.findings.iter().filter(|f| f.pass).count();
+            format!("{passed} of {}", case.findings.len())
+        }),
+        ("Nearest to its tolerance", |case| nearness(case.findings)),
+        ("Result", |case| {
+            pass_or_fail(all_pass(case.findings)).to_owned()
+        }),
     ];
-    table(&header, cases.iter().map(row))
+    table_of(&columns, cases.iter())
 }
 
 /// A section for each table of the scene and each command.
@@ -187,71 +183,63 @@ fn sections(lines: &[Line]) -> Vec<Block> {
                 theory.replace('-', " ")
             )));
         }
-        let header = [
-            "Item",
-            "Meaning",
-            "Cases",
-            "Target",
-            "Difference",
-            "Ratio",
-            "Digits",
-            "Checked by",
-            "Seeded fault, and the checks that caught it",
-            "Result",
-        ];
-        blocks.push(table(&header, of_section.iter().map(row)));
+        blocks.push(line_table(of_section));
     }
     blocks
 }
 
-fn row(line: &Line) -> Vec<String> {
-    let listed: Vec<&str> = line
-        .cases
-        .iter()
-        .take(LISTED_CASES)
-        .map(String::as_str)
-        .collect();
-    let more = line.cases.len().saturating_sub(LISTED_CASES);
-    let cases = match more {
-        0 => listed.join(", "),
-        more => format!("{} and {more} more", listed.join(", ")),
-    };
-    let near = line.nearest.as_ref();
-    let of = |text: &dyn Fn(&Finding) -> String| near.map_or_else(String::new, text);
-    let checks: Vec<String> = line.checks.iter().map(|&n| check_name(n)).collect();
-    let state = match &line.state {
-        LineState::Pass => pass_or_fail(true).to_owned(),
-        LineState::Fail(why) => format!("{}: {why}", pass_or_fail(false)),
-        LineState::Exempt(why) => format!("exempt: {why}"),
-    };
-    vec![
-        format!("`{}`", line.item),
-        markdown_text(&line.meaning),
-        markdown_text(&cases),
-        of(&|f| markdown_text(&f.comparison)),
-        of(&|f| format!("{:.1e}", f.relative_difference)),
-        of(&|f| format!("{:.2}", ratio(f))),
-        of(&|f| format!("{:.1}", digits(f))),
-        checks.join(", "),
-        markdown_text(&line.mutations.join("; ")),
-        state,
-    ]
+/// A table of lines.
+fn line_table(lines: &[Line]) -> Block {
+    let columns: [TextColumn<&Line>; 10] = [
+        ("Item", |line| format!("`{}`", line.item)),
+        ("Meaning", |line| markdown_text(&line.meaning)),
+        ("Cases", |line| {
+            let listed: Vec<&str> = (line.cases.iter().take(LISTED_CASES))
+                .map(String::as_str)
+                .collect();
+            markdown_text(&match line.cases.len().saturating_sub(LISTED_CASES) {
+                0 => listed.join(", "),
+                more => format!("{} and {more} more", listed.join(", ")),
+            })
+        }),
+        ("Target", |line| {
+            near(line, |f| markdown_text(&f.comparison))
+        }),
+        ("Difference", |line| {
+            near(line, |f| format!("{:.1e}", f.relative_difference))
+        }),
+        ("Ratio", |line| near(line, |f| format!("{:.2}", ratio(f)))),
+        ("Digits", |line| near(line, |f| format!("{:.1}", digits(f)))),
+        ("Checked by", |line| {
+            let checks: Vec<String> = line.checks.iter().map(Check::to_string).collect();
+            checks.join(", ")
+        }),
+        ("Seeded fault, and the checks that caught it", |line| {
+            markdown_text(&line.mutations.join("; "))
+        }),
+        ("Result", |line| match &line.state {
+            LineState::Pass => pass_or_fail(true).to_owned(),
+            LineState::Fail(why) => format!("{}: {why}", pass_or_fail(false)),
+            LineState::Exempt(why) => format!("exempt: {why}"),
+        }),
+    ];
+    table_of(&columns, lines.iter())
+}
+
+/// What is said of the finding of a line that is nearest to its tolerance.
+fn near(line: &Line, text: fn(&Finding) -> String) -> String {
+    line.nearest.as_ref().map_or_else(String::new, text)
 }
 
 fn extremes(findings: &[Finding]) -> Block {
-    let row = |f: &Finding| {
-        vec![
-            format!("`{}`", f.key),
-            markdown_text(&f.comparison),
-            format!("{:.2}", ratio(f)),
-            f.check.to_string(),
-            pass_or_fail(f.pass).to_owned(),
-        ]
-    };
-    table(
-        &["Series", "Compared", "Ratio", "Check", "Result"],
-        findings.iter().map(row),
-    )
+    let columns: [TextColumn<&Finding>; 5] = [
+        ("Series", |f| format!("`{}`", f.key)),
+        ("Compared", |f| markdown_text(&f.comparison)),
+        ("Ratio", |f| format!("{:.2}", ratio(f))),
+        ("Check", |f| f.check.to_string()),
+        ("Result", |f| pass_or_fail(f.pass).to_owned()),
+    ];
+    table_of(&columns, findings.iter())
 }
 
 fn limits(contents: &Contents<'_>) -> Block {
@@ -307,19 +295,14 @@ pub(super) fn text(lines: &[Line], cases: &[CaseEntry<'_>]) -> String {
                 LineState::Fail(why) => format!("FAIL {why}"),
                 LineState::Exempt(why) => format!("exempt: {why}"),
             };
-            let checks = numbers(line.checks.iter().copied());
+            let checks = numbers(&line.checks);
             let count = line.cases.len();
             let _ = writeln!(out, "  {:<24} {count:>3}  [{checks}]  {state}", line.item);
         }
     }
     let _ = writeln!(out, "\ncases");
     for case in cases {
-        let _ = writeln!(
-            out,
-            "  {:<28} {}",
-            case.name,
-            &case.hash[..case.hash.len().min(16)]
-        );
+        let _ = writeln!(out, "  {:<28} {}", case.name, case.short_hash());
     }
     out
 }

@@ -3,6 +3,7 @@
 use super::capabilities::{CAPABILITIES, CommandRequirement, Interface};
 use super::committed_mutations::CommittedMutation;
 use super::key_study::{KeyResult, REQUIRED};
+use crate::report_parts::nearest;
 use dwell_findings::{Check, Finding};
 use std::collections::BTreeSet;
 
@@ -10,8 +11,9 @@ use std::collections::BTreeSet;
 const MAX_LISTED: usize = 4;
 
 /// What became of a capability.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) enum LineState {
+    #[default]
     Pass,
     /// What is missing or fails.
     Fail(String),
@@ -20,7 +22,7 @@ pub(super) enum LineState {
 }
 
 /// A capability.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Line {
     pub(super) section: String,
     pub(super) item: String,
@@ -29,9 +31,19 @@ pub(super) struct Line {
     pub(super) cases: Vec<String>,
     /// The finding nearest to its tolerance among those of the checks.
     pub(super) nearest: Option<Finding>,
-    pub(super) checks: BTreeSet<usize>,
+    pub(super) checks: BTreeSet<Check>,
     pub(super) mutations: Vec<String>,
     pub(super) state: LineState,
+}
+
+impl Line {
+    /// What is missing or fails.
+    pub(super) fn failure(&self) -> Option<&str> {
+        match &self.state {
+            LineState::Fail(why) => Some(why),
+            LineState::Pass | LineState::Exempt(_) => None,
+        }
+    }
 }
 
 /// A case with its findings.
@@ -68,7 +80,7 @@ fn key_line(result: &KeyResult, cases: &[CaseFindings<'_>]) -> Line {
         _ => LineState::Pass,
     };
     let fault = fault.map(|fault| {
-        let numbers = numbers(fault.detected_by.iter().map(|check| check.number()));
+        let numbers = numbers(&fault.detected_by);
         format!("{}, on {}: {numbers}", fault.what, cases[fault.scene].name)
     });
     Line {
@@ -76,8 +88,8 @@ fn key_line(result: &KeyResult, cases: &[CaseFindings<'_>]) -> Line {
         item: result.key.name.to_owned(),
         meaning: result.key.doc.to_owned(),
         cases: users.map(|case| case.name.to_owned()).collect(),
-        nearest: nearest(judging),
-        checks: checks.iter().map(|check| check.number()).collect(),
+        nearest: nearest(judging).cloned(),
+        checks,
         mutations: fault.into_iter().collect(),
         state,
     }
@@ -97,12 +109,8 @@ pub(super) fn command_lines(
             let line = Line {
                 section: section.to_owned(),
                 item: item.to_owned(),
-                meaning: String::new(),
-                cases: Vec::new(),
-                nearest: None,
-                checks: BTreeSet::new(),
-                mutations: Vec::new(),
                 state: LineState::Exempt(exception.unwrap_or("not described")),
+                ..Line::default()
             };
             lines.push(match required {
                 Some(required) => checked_line(line, required, (cases, others), faults),
@@ -141,7 +149,7 @@ fn checked_line(
         .filter(|case| case.findings.iter().any(|f| judges(&f)));
     let all = cases.iter().flat_map(|case| case.findings).chain(others);
     let judging = all.filter(judges);
-    let checks: BTreeSet<usize> = judging.clone().map(|f| f.check.number()).collect();
+    let checks: BTreeSet<Check> = judging.clone().map(|f| f.check).collect();
     let failed = judging.clone().find(|f| !f.pass).map(|f| f.key.clone());
     let of_words = |fault: &&CommittedMutation| {
         let mut words = words.iter();
@@ -160,36 +168,19 @@ fn checked_line(
     };
     let listed = caught.iter().take(MAX_LISTED);
     let listed = listed.map(|fault| {
-        let by = numbers(fault.detected_by.iter().copied());
-        format!("{}: {by}", fault.description)
+        let by: Vec<String> = fault.detected_by.iter().map(usize::to_string).collect();
+        format!("{}: {}", fault.description, by.join(" "))
     });
     let more = caught.len().saturating_sub(MAX_LISTED);
     let more = (more > 0).then(|| format!("and {more} more"));
     Line {
         meaning: requirement.clone(),
         cases: users.map(|case| case.name.to_owned()).collect(),
-        nearest: nearest(judging),
+        nearest: nearest(judging).cloned(),
         checks,
         mutations: listed.chain(more).collect(),
         state,
         ..line
-    }
-}
-
-/// The finding nearest to its tolerance.
-pub(super) fn nearest<'f>(findings: impl Iterator<Item = &'f Finding>) -> Option<Finding> {
-    findings
-        .max_by(|a, b| ratio(a).total_cmp(&ratio(b)))
-        .cloned()
-}
-
-/// The difference of a finding as a part of its tolerance.
-pub(super) fn ratio(finding: &Finding) -> f64 {
-    match finding.relative_difference {
-        0.0 => 0.0,
-        // What is not a number is the worst there is.
-        relative if relative.is_nan() => f64::INFINITY,
-        relative => relative / finding.tolerance,
     }
 }
 
@@ -199,14 +190,7 @@ pub(super) fn digits(finding: &Finding) -> f64 {
 }
 
 /// Numbers of checks as text.
-pub(super) fn numbers(checks: impl Iterator<Item = usize>) -> String {
-    let all: Vec<String> = checks.map(|n| n.to_string()).collect();
-    all.join(" ")
-}
-
-/// The names of all checks by number.
-pub(super) fn check_name(number: usize) -> String {
-    Check::ALL
-        .get(number)
-        .map_or_else(|| number.to_string(), Check::to_string)
+pub(super) fn numbers(checks: &BTreeSet<Check>) -> String {
+    let all = checks.iter().map(|check| check.number().to_string());
+    all.collect::<Vec<String>>().join(" ")
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The facts, each with its name.
-pub(super) fn facts(folder: &Path) -> Vec<[String; 2]> {
+pub(super) fn facts(folder: &Path) -> [Vec<String>; 4] {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let machine = format!(
         "{}, {} {}, {threads} threads",
@@ -12,18 +12,15 @@ pub(super) fn facts(folder: &Path) -> Vec<[String; 2]> {
         std::env::consts::OS,
         std::env::consts::ARCH
     );
+    let commit = commit(folder);
+    let commit = commit.unwrap_or("unknown: the cases are not in a repository".to_owned());
     [
         ("Program", format!("Dwell {}", env!("CARGO_PKG_VERSION"))),
         ("Compiler", env!("DWELL_COMPILER").to_owned()),
-        (
-            "Commit",
-            commit(folder)
-                .unwrap_or_else(|| "unknown: the cases are not in a repository".to_owned()),
-        ),
+        ("Commit", commit),
         ("Machine", machine),
     ]
-    .map(|(name, value)| [name.to_owned(), value])
-    .to_vec()
+    .map(|(name, value)| vec![name.to_owned(), value])
 }
 
 /// The commit of the cases' repository, and whether files differ from it.

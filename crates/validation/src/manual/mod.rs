@@ -27,11 +27,11 @@ use crate::cases::reference::Reference;
 use crate::overview::CaseResult;
 use committed_mutations::committed_mutations;
 use document::{CaseEntry, Contents, counts, document, text};
-use dwell_findings::{Check, Finding};
+use dwell_findings::Finding;
 use dwell_scene::Scene;
 use dwell_study::Outcome;
 use key_study::{KeyResult, study_keys};
-use lines::{CaseFindings, Line, LineState, command_lines, key_lines};
+use lines::{CaseFindings, Line, command_lines, key_lines};
 use planted::PlantedScene;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -88,10 +88,7 @@ impl KeyStudy {
     pub fn gaps(&self) -> Vec<String> {
         let cases = self.case_findings(&[]);
         let lines = key_lines(&self.keys, &cases);
-        let missing = lines.iter().filter_map(|line| match &line.state {
-            LineState::Fail(why) => Some(format!("{} {}: {why}", line.section, line.item)),
-            _ => None,
-        });
+        let missing = missing(&lines);
         let own = self.scenes.iter().zip(&self.findings);
         let own =
             own.flat_map(|(planted, findings)| findings.iter().map(|f| (&planted.scene.name, f)));
@@ -99,10 +96,8 @@ impl KeyStudy {
             let (apart, tolerance) = (f.relative_difference, f.tolerance);
             format!("{name}: {} is {apart:.1e}, above {tolerance:.1e}", f.key)
         });
-        missing
-            .chain(wrong)
-            .chain(self.unread.iter().cloned())
-            .collect()
+        let unread = self.unread.iter().cloned();
+        missing.chain(wrong).chain(unread).collect()
     }
 
     /// The findings of each scene: those of its case, or its own.
@@ -161,12 +156,9 @@ impl KeyStudy {
         outcome.summary = format!(
             "verification manual: {passed} capabilities pass, {failed} fail, {exempt} are exempt (manual.md, manual.html)\n"
         );
-        outcome.findings = failures(&lines);
-        outcome
-            .findings
-            .extend(self.unread.iter().map(|why| failed_finding(why)));
-        let own = self.findings.iter().flatten();
-        outcome.findings.extend(own.cloned());
+        let failed = missing(&lines).chain(self.unread.iter().cloned());
+        let own = self.findings.iter().flatten().cloned();
+        outcome.findings = failed.map(failed_finding).chain(own).collect();
         outcome
     }
 
@@ -180,24 +172,24 @@ impl KeyStudy {
     }
 }
 
-/// A failed finding for each capability that fails.
-fn failures(lines: &[Line]) -> Vec<Finding> {
-    let failing = lines.iter().filter_map(|line| match &line.state {
-        LineState::Fail(why) => Some(failed_finding(&format!(
-            "{} {}: {why}",
-            line.section, line.item
-        ))),
-        _ => None,
-    });
-    failing.collect()
+/// A sentence for each capability that fails.
+fn missing(lines: &[Line]) -> impl Iterator<Item = String> {
+    let missing = |line: &Line| {
+        Some(format!(
+            "{} {}: {}",
+            line.section,
+            line.item,
+            line.failure()?
+        ))
+    };
+    lines.iter().filter_map(missing)
 }
 
-fn failed_finding(why: &str) -> Finding {
+fn failed_finding(why: String) -> Finding {
     Finding {
         key: "manual".to_owned(),
-        check: Check::default(),
         comparison: "a capability with what the verification manual requires".to_owned(),
-        worst_at: why.to_owned(),
+        worst_at: why,
         ..Finding::default()
     }
 }

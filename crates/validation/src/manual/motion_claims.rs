@@ -63,16 +63,13 @@ impl MotionClaims {
             return Vec::new();
         }
         let mut findings = vec![self.start(scene)];
-        match &own.rotor {
-            Some(rotor) => {
-                findings.extend(self.along_rotor(rotor));
-                // The multibody equations know no stops and no friction that holds.
-                if scene.stops.is_empty() && scene.loads.iter().all(|load| !load.name.contains('.'))
-                {
-                    findings.extend(self.run.check(scene));
-                }
-            }
-            None => findings.extend(self.run.check(scene)),
+        let along_rotor = own.rotor.as_ref().map(|rotor| self.along_rotor(rotor));
+        findings.extend(along_rotor.into_iter().flatten());
+        // The multibody equations know no stops and no friction that holds.
+        let mut loads = scene.loads.iter();
+        let is_known = scene.stops.is_empty() && loads.all(|load| !load.name.contains('.'));
+        if own.rotor.is_none() || is_known {
+            findings.extend(self.run.check(scene));
         }
         findings
     }
@@ -107,35 +104,17 @@ impl MotionClaims {
             relative(*speed, speed_end, speed_end.abs().max(1.0)),
         ];
         let worst = apart.into_iter().fold(0.0, f64::max);
-        let closed = Check::ClosedForms;
-        let mut findings = vec![Finding::new(
-            "rotor-end",
-            closed,
-            [worst; 2],
-            ROTOR_TOLERANCE,
-        )];
+        let mut findings = vec![finding("rotor-end", Check::ClosedForms, worst)];
         findings.extend(self.rotor_events(rotor, &motion.events));
-        let ended = rotor.is_ended(&motion);
-        if !ended {
-            let apart = relative(step.t, rotor.duration(), rotor.duration());
-            let tolerance = ROTOR_TOLERANCE;
-            findings.push(Finding::new(
-                "rotor-time",
-                Check::Period,
-                [apart; 2],
-                tolerance,
-            ));
+        if !rotor.is_ended(&motion) {
+            let apart = relative(step.t, rotor.duration, rotor.duration);
+            findings.push(finding("rotor-time", Check::Period, apart));
         }
         let over = self.overloaded_rest(rotor);
-        let rest = Finding::new("rotor-rest", Check::NewtonEuler, [over; 2], ROTOR_TOLERANCE);
-        findings.push(rest);
-        let apart = self.energy_error(rotor);
-        findings.push(Finding::new(
-            "rotor-energy",
-            Check::Power,
-            [apart; 2],
-            ENERGY_TOLERANCE,
-        ));
+        findings.push(finding("rotor-rest", Check::NewtonEuler, over));
+        let apart = [self.energy_error(rotor); 2];
+        let energy = Finding::new("rotor-energy", Check::Power, apart, ENERGY_TOLERANCE);
+        findings.push(energy);
         findings
     }
 
@@ -150,14 +129,8 @@ impl MotionClaims {
                 // One is missed, or one too many.
                 _ => f64::INFINITY,
             };
-            let closed = Check::ClosedForms;
-            findings.push(Finding::new(
-                "rotor-event",
-                closed,
-                [apart; 2],
-                ROTOR_TOLERANCE,
-            ));
-            let ended = self.run.steps.last().map_or(0.0, |last| last.t);
+            findings.push(finding("rotor-event", Check::ClosedForms, apart));
+            let ended = self.end();
             let residual = claimed.map_or(f64::INFINITY, |(_, at)| {
                 let count = self.run.coordinates.first().map_or(1, Vec::len);
                 let drive = at.y.get(2 * count).copied().unwrap_or(0.0);
@@ -172,12 +145,7 @@ impl MotionClaims {
                 true => Check::NewtonEuler,
                 false => Check::ConstraintClosure,
             };
-            findings.push(Finding::new(
-                "rotor-event-state",
-                check,
-                [residual; 2],
-                ROTOR_TOLERANCE,
-            ));
+            findings.push(finding("rotor-event-state", check, residual));
         }
         findings
     }
@@ -234,6 +202,11 @@ impl MotionClaims {
         }
         worst / largest
     }
+}
+
+/// A finding of a rotor by a relative difference.
+fn finding(key: &str, check: Check, apart: f64) -> Finding {
+    Finding::new(key, check, [apart; 2], ROTOR_TOLERANCE)
 }
 
 /// Position and speed between two states, at a part `s` of the time `h` between them.

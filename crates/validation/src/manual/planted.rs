@@ -10,11 +10,11 @@ use super::motion_claims::{MotionClaims, differ};
 use crate::cases::model_states::{ModelStates, StateRequest};
 use crate::cases::reference::Reference;
 use crate::checked::known_reactions::known_reaction_findings;
-use crate::checked::states::state_requests;
+use crate::checked::states::{motions, state_findings};
 use dwell_findings::{Check, Finding};
 use dwell_scene::Scene;
 use dwell_study::StudyError;
-use dwell_verify::{ClaimedState, Inertias, check_energies, check_states};
+use dwell_verify::ClaimedState;
 use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::OnceLock;
@@ -157,8 +157,8 @@ impl PlantedScene {
     fn claims(&self, scene: &Scene) -> Option<StateClaims> {
         let claims = || -> Result<StateClaims, StudyError> {
             let mut model = ModelStates::new(scene)?;
-            let requests: Vec<StateRequest> =
-                state_requests(scene, &model, &self.reference, STATES).collect();
+            let requests = motions(scene, &model, &self.reference, STATES).flatten();
+            let requests: Vec<StateRequest> = requests.collect();
             let (mut states, mut mass_matrices) = (Vec::new(), Vec::new());
             for request in &requests {
                 states.push(model.state(request)?);
@@ -175,24 +175,8 @@ impl PlantedScene {
 
     fn check_states(&self, claims: &StateClaims) -> Vec<Finding> {
         let own = self.own_states().map_or(&[][..], |own| &own.assembly_poses);
-        let mechanism = &self.scene.mechanism;
-        let inertias = Inertias {
-            masses: &self.scene.masses,
-            varying: &self.scene.varying_inertias,
-        };
-        let mut findings = check_states(mechanism, inertias, own, &claims.states);
-        let some = ENERGY_STATES.min(claims.states.len());
-        let at = |k: usize| (2 * k + 1) * claims.states.len() / (2 * some);
-        let (states, matrices): (Vec<_>, Vec<_>) = (0..some)
-            .map(|k| {
-                (
-                    claims.states[at(k)].clone(),
-                    claims.mass_matrices[at(k)].clone(),
-                )
-            })
-            .unzip();
-        findings.extend(check_energies(mechanism, inertias, own, &states, &matrices));
-        findings
+        let claimed = (&claims.states[..], &claims.mass_matrices[..]);
+        state_findings(&self.scene, own, claimed, ENERGY_STATES)
     }
 }
 

@@ -39,8 +39,9 @@ pub(super) struct Rotor {
     pub(super) forces: RotorForces,
     /// Mass times the distance of its centre from the pin, kg m.
     unbalance: f64,
-    pub(super) start: [f64; 2],
-    duration: f64,
+    start: [f64; 2],
+    /// When the motion is to end unless an event ends it, s.
+    pub(super) duration: f64,
     /// In the order of the scene.
     events: Vec<RotorEvent>,
     /// Lower and upper limit of a stop; infinite where there is none.
@@ -66,11 +67,8 @@ impl Rotor {
         let motion = root.get("motion")?;
         let number = |table: &Value, key: &str| table.get(key).and_then(as_number);
         let mass = number(body, "mass").unwrap_or(0.0);
-        let center = body.get("center").and_then(Value::as_array);
-        let arm = center
-            .and_then(|c| c.first())
-            .and_then(as_number)
-            .unwrap_or(0.0);
+        let center = body.get("center").and_then(|center| center.get(0));
+        let arm = center.and_then(as_number).unwrap_or(0.0);
         let joints = root.get("joints").and_then(Value::as_table)?;
         let slides = joints.values().any(|j| j.get("prismatic").is_some());
         let of_rotor = match slides {
@@ -83,10 +81,8 @@ impl Rotor {
             let inner = value.as_table().and_then(|all| all.values().next());
             as_number(inner.unwrap_or(value))
         };
-        let assembled = root
-            .get("assembly")
-            .and_then(|a| a.get("phi"))
-            .and_then(as_number);
+        let assembly = root.get("assembly");
+        let assembled = assembly.and_then(|assembly| number(assembly, "phi"));
         let events = motion.get("events").and_then(Value::as_table);
         let events = events.into_iter().flat_map(|all| all.values());
         let stops = root.get("stops").and_then(Value::as_table);
@@ -132,11 +128,6 @@ impl Rotor {
         None
     }
 
-    /// When the motion is to end unless an event ends it, s.
-    pub(super) fn duration(&self) -> f64 {
-        self.duration
-    }
-
     /// The value of an event's function.
     fn event_value(&self, event: &RotorEvent, t: f64, y: RotorState) -> f64 {
         match event.kind {
@@ -151,9 +142,10 @@ impl Rotor {
     pub(super) fn residual(&self, event: usize, t: f64, y: RotorState) -> f64 {
         let event = &self.events[event];
         let scale = match event.kind {
-            RotorEventKind::Reverses => 1.0,
             RotorEventKind::Reaction(value) => value.abs().max(1.0),
-            RotorEventKind::Reaches(_) | RotorEventKind::Revolution => 1.0,
+            RotorEventKind::Reaches(_) | RotorEventKind::Reverses | RotorEventKind::Revolution => {
+                1.0
+            }
         };
         self.event_value(event, t, y).abs() / scale
     }
@@ -161,8 +153,7 @@ impl Rotor {
     /// Where a rigid stop returns the rotor to this state, its speed before.
     pub(super) fn speed_before_impact(&self, q: f64, speed: f64, previous: f64) -> Option<f64> {
         let restitution = self.rigid?;
-        let is_there = self.is_at_limit(q);
-        (is_there && speed * previous < 0.0).then(|| -speed / restitution)
+        (self.is_at_limit(q) && speed * previous < 0.0).then(|| -speed / restitution)
     }
 
     /// Where a rigid stop is struck in this state, the speed behind the impact.
@@ -238,10 +229,9 @@ impl Rotor {
             // To the limit, where a rigid stop returns the rotor, and a little beyond: the force of one that yields jumps there.
             let at = zero_of(&|h: f64| self.forces.step(t, y, h)[0] - limit, h);
             let there = self.forces.step(t, y, at);
-            let speed = match self.rigid {
-                Some(restitution) => -restitution * there[1],
-                None => there[1],
-            };
+            let speed = self
+                .rigid
+                .map_or(there[1], |restitution| -restitution * there[1]);
             let beyond = 1e-9 * step;
             y = [limit + speed * beyond, speed, there[2]];
             t += at + beyond;

@@ -5,8 +5,8 @@ mod page;
 
 use crate::case_report::validate::Validation;
 use crate::cases::reference::SourceKind;
-use crate::report_parts::{describe_failure, pass_or_fail, table};
-use dwell_findings::{Check, Finding, all_pass};
+use crate::report_parts::{describe_failure, nearness, pass_or_fail, table};
+use dwell_findings::{Check, all_pass};
 use dwell_report::{Block, Document, markdown_text};
 use dwell_scene::Scene;
 use dwell_study::Outcome;
@@ -52,15 +52,11 @@ pub(crate) fn check_cells(done: &Validation) -> [CheckCell; Check::ALL.len()] {
 
 /// The report on all cases beside their own: `index.md`, `index.html`, and the picture of its table, `index.png`, to be drawn.
 pub fn index(results: &[CaseResult<'_>]) -> Outcome {
-    let good = |(_, result): &&CaseResult<'_>| match result {
-        Ok((_, done)) => all_pass(&done.outcome.findings),
-        Err(_) => false,
-    };
     let heads = Check::ALL.map(|check| check.to_string());
     let mut blocks = vec![
         Block::Text(format!(
             "{} of {} cases pass. Written by Dwell {}.",
-            results.iter().filter(good).count(),
+            passed(results),
             results.len(),
             env!("CARGO_PKG_VERSION")
         )),
@@ -111,34 +107,46 @@ pub fn index(results: &[CaseResult<'_>]) -> Outcome {
     outcome
 }
 
+/// How many cases pass.
+fn passed(results: &[CaseResult<'_>]) -> usize {
+    let done = results
+        .iter()
+        .filter_map(|(_, result)| result.as_ref().ok());
+    done.filter(|(_, done)| all_pass(&done.outcome.findings))
+        .count()
+}
+
 fn link(scene: &Scene) -> String {
     format!("[{}]({}.md)", markdown_text(&scene.title), scene.name)
 }
 
-/// A row of the table of digits.
-fn agreement_row((name, result): &CaseResult<'_>) -> Vec<String> {
+/// The name of a case and its cells, if it was validated.
+fn row<const N: usize>(
+    (name, result): &CaseResult<'_>,
+    cells: impl Fn(&Validation) -> [String; N],
+) -> Vec<String> {
     match result {
-        Ok((scene, validation)) => {
-            let cells = check_cells(validation).map(|cell| match cell {
-                CheckCell::Digits(digits) => format!("{digits:.1}"),
-                CheckCell::Failed(key) => format!("**FAIL** {key}"),
-                CheckCell::NotApplicable(why) => why.to_owned(),
-            });
-            std::iter::once(link(scene)).chain(cells).collect()
-        }
+        Ok((scene, done)) => [link(scene)].into_iter().chain(cells(done)).collect(),
         Err(_) => vec![format!("`{name}`"), "**not validated**".to_owned()],
     }
 }
 
+/// A row of the table of digits.
+fn agreement_row(case: &CaseResult<'_>) -> Vec<String> {
+    row(case, |validation| {
+        check_cells(validation).map(|cell| match cell {
+            CheckCell::Digits(digits) => format!("{digits:.1}"),
+            CheckCell::Failed(key) => format!("**FAIL** {key}"),
+            CheckCell::NotApplicable(why) => why.to_owned(),
+        })
+    })
+}
+
 /// Who made the reference values of a case.
-fn source_row((name, result): &CaseResult<'_>) -> Vec<String> {
-    match result {
-        Ok((scene, validation)) => {
-            let tables = SourceKind::ALL.map(|kind| validation.source_kinds.of(kind));
-            std::iter::once(link(scene)).chain(tables).collect()
-        }
-        Err(_) => vec![format!("`{name}`"), "**not validated**".to_owned()],
-    }
+fn source_row(case: &CaseResult<'_>) -> Vec<String> {
+    row(case, |validation| {
+        SourceKind::ALL.map(|kind| validation.source_kinds.of(kind))
+    })
 }
 
 /// Every failure: the equation, the location and the difference.
@@ -175,27 +183,18 @@ fn tolerance_row((name, status): &CaseResult<'_>) -> Vec<String> {
         }
     };
     let findings = &done.outcome.findings;
-    let part = |f: &Finding| match f.relative_difference {
-        0.0 => 0.0,
-        // What is not a number is the worst there is.
-        relative if relative.is_nan() => f64::INFINITY,
-        relative => relative / f.tolerance,
-    };
-    let near = findings.iter().max_by(|a, b| part(a).total_cmp(&part(b)));
-    let near = near.map_or(String::new(), |f| format!("{:.2} of {}", part(f), f.key));
     let passed = findings.iter().filter(|f| f.pass).count();
     let loose = findings.iter().filter(|f| f.is_loose());
     let loose: Vec<&str> = loose.map(|f| f.key.as_str()).collect();
-    let loose = if loose.is_empty() {
-        "none".to_owned()
-    } else {
-        loose.join(", ")
+    let loose = match loose.is_empty() {
+        true => "none".to_owned(),
+        false => loose.join(", "),
     };
     vec![
         link(scene),
         pass_or_fail(all_pass(findings)).to_owned(),
         format!("{passed} of {}", findings.len()),
-        near,
+        nearness(findings),
         loose,
     ]
 }
@@ -204,6 +203,7 @@ fn tolerance_row((name, status): &CaseResult<'_>) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::cases::reference::SourceKinds;
+    use dwell_findings::Finding;
     use dwell_scene::Scene;
 
     fn finding(check: Check, relative: f64, tolerance: f64) -> Finding {

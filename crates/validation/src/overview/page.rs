@@ -1,62 +1,25 @@
 //! The overview as one HTML file: from every case and check to its findings and pictures, and to the other reports.
 
-use super::{CaseResult, CheckCell, check_cells};
-use dwell_findings::{Check, Finding, all_pass};
+use super::{CaseResult, CheckCell, check_cells, passed};
+use dwell_findings::{Check, Finding};
 use dwell_report::escaped;
-use std::fmt::Write as _;
 
 const STYLE: &str = include_str!("page.css");
 
 /// The other reports, each with what it holds.
-const REPORTS: [(&str, &str, &str); 8] = [
-    (
-        "manual.html",
-        "Verification manual",
-        "what is required, and the evidence for each capability",
-    ),
-    (
-        "space.html",
-        "Mechanisms in space",
-        "linkages in space against the dense equations and references",
-    ),
-    (
-        "extremes.html",
-        "Extreme parameters",
-        "ratios, scales, singular and stiff cases",
-    ),
-    (
-        "extremes-pulses.html",
-        "Pulses",
-        "random pulses against closed forms",
-    ),
-    (
-        "extremes-machines.html",
-        "Machines",
-        "random machines against the multibody equations",
-    ),
-    (
-        "mutations.md",
-        "Mutation study",
-        "which checks detect which fault (just mutations)",
-    ),
-    (
-        "mutations-space.md",
-        "Mutation study in space",
-        "the same for mechanisms in space",
-    ),
-    (
-        "exported-runs.html",
-        "Exported runs",
-        "what tables of other programs are worth",
-    ),
-];
+const REPORTS: &str = "<nav><ul>\n\
+    <li><a href=\"manual.html\">Verification manual</a>: what is required, and the evidence for each capability</li>\n\
+    <li><a href=\"space.html\">Mechanisms in space</a>: linkages in space against the dense equations and references</li>\n\
+    <li><a href=\"extremes.html\">Extreme parameters</a>: ratios, scales, singular and stiff cases</li>\n\
+    <li><a href=\"extremes-pulses.html\">Pulses</a>: random pulses against closed forms</li>\n\
+    <li><a href=\"extremes-machines.html\">Machines</a>: random machines against the multibody equations</li>\n\
+    <li><a href=\"mutations.md\">Mutation study</a>: which checks detect which fault (just mutations)</li>\n\
+    <li><a href=\"mutations-space.md\">Mutation study in space</a>: the same for mechanisms in space</li>\n\
+    <li><a href=\"exported-runs.html\">Exported runs</a>: what tables of other programs are worth</li>\n\
+    </ul></nav>\n";
 
 /// The overview. Its text is escaped, it has no script, and loads nothing.
 pub(super) fn html(results: &[CaseResult<'_>]) -> String {
-    let passed = results.iter().filter(|(_, result)| match result {
-        Ok((_, done)) => all_pass(&done.outcome.findings),
-        Err(_) => false,
-    });
     let mut text = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>Dwell: cases</title>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n\
@@ -64,23 +27,16 @@ pub(super) fn html(results: &[CaseResult<'_>]) -> String {
          <h1>Cases and checks</h1>\n<p>{} of {} cases pass. Dwell {}. A number is the agreeing decimal digits of the worst finding of a check; \
          double precision has 15.7. It leads to the findings.</p>\n",
         dwell_page::source_hash(STYLE),
-        passed.count(),
+        passed(results),
         results.len(),
         env!("CARGO_PKG_VERSION"),
     );
-    text += "<nav><ul>\n";
-    for (path, title, what) in REPORTS {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "<li><a href=\"{path}\">{title}</a>: {what}</li>");
-    }
-    text += "</ul></nav>\n<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">case</th>";
-    for check in Check::ALL {
-        let _ = write!(
-            text,
-            "<th scope=\"col\" class=\"check\"><span>{}</span></th>",
-            escaped(&check.to_string())
-        );
-    }
+    text += REPORTS;
+    text += "<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">case</th>";
+    text.extend(Check::ALL.map(|check| {
+        let check = escaped(&check.to_string());
+        format!("<th scope=\"col\" class=\"check\"><span>{check}</span></th>")
+    }));
     text += "</tr></thead>\n<tbody>\n";
     text.extend(results.iter().map(row));
     text += "</tbody>\n</table></div>\n<h2>Pictures and failures</h2>\n";

@@ -9,6 +9,7 @@ use dwell_dynamics::{
 };
 use dwell_geometry::{PositionError, Range};
 use dwell_kinetostatics::{Coefficients, ExactModel, Inertia, ReducedModel, ReducibleModel};
+use dwell_numerics::Scalar;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Finds the reactions at a state, N or N·m.
@@ -242,25 +243,10 @@ impl<S: StudiedScene> Evaluator for MachineEvaluator<'_, S> {
 
     fn reactions(&self) -> ReactionFn<'_> {
         let machine = &self.subject.output_machine;
-        if self.evaluation != Evaluation::SinglePrecision {
-            let mut workspace = machine.workspace::<f64>();
-            return Box::new(move |point, out| {
-                let state = machine.evaluate(point.t, &point.y, &mut workspace)?;
-                let reactions = &state.inverse_dynamics().reactions;
-                out.copy_from_slice(&reactions[..out.len()]);
-                Ok(())
-            });
+        match self.evaluation {
+            Evaluation::SinglePrecision => reactions_in::<f32, S::Model>(machine),
+            _ => reactions_in::<f64, S::Model>(machine),
         }
-        let mut workspace = machine.workspace::<f32>();
-        let mut y = vec![0.0; machine.state_count()];
-        Box::new(move |point, out| {
-            to_f32(&point.y, &mut y);
-            let state = machine.evaluate(point.t, &y, &mut workspace)?;
-            for (out, &value) in out.iter_mut().zip(&state.inverse_dynamics().reactions) {
-                *out = f64::from(value);
-            }
-            Ok(())
-        })
     }
 
     fn jacobian_weight(&self) -> usize {
@@ -281,6 +267,19 @@ impl<S: StudiedScene> Evaluator for MachineEvaluator<'_, S> {
     }
 }
 
+/// The reactions of a machine, evaluated in a precision.
+fn reactions_in<T: Scalar, M: MovingModel>(machine: &Machine<M>) -> ReactionFn<'_> {
+    let mut workspace = machine.workspace::<T>();
+    Box::new(move |point, out| {
+        let y: Vec<T> = point.y.iter().map(|&v| T::from_f64(v)).collect();
+        let state = machine.evaluate(point.t, &y, &mut workspace)?;
+        for (out, value) in out.iter_mut().zip(&state.inverse_dynamics().reactions) {
+            *out = value.value();
+        }
+        Ok(())
+    })
+}
+
 /// A machine from a start, evaluated in single precision; its Jacobian is that of double precision.
 struct SinglePrecisionOde<'m, M: MovingModel> {
     machine: &'m Machine<M>,
@@ -296,7 +295,9 @@ impl<M: MovingModel> OdeSystem for SinglePrecisionOde<'_, M> {
     }
 
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
-        to_f32(y, &mut self.y);
+        for (single, &value) in self.y.iter_mut().zip(y) {
+            *single = value as f32;
+        }
         let state = self.machine.evaluate(t, &self.y, &mut self.workspace)?;
         state.derivative(&mut self.out);
         for (out, &value) in out.iter_mut().zip(&self.out) {
@@ -311,11 +312,5 @@ impl<M: MovingModel> OdeSystem for SinglePrecisionOde<'_, M> {
 
     fn error_weight(&self, state: usize) -> f64 {
         self.exact.error_weight(state)
-    }
-}
-
-fn to_f32(y: &[f64], single: &mut [f32]) {
-    for (single, &value) in single.iter_mut().zip(y) {
-        *single = value as f32;
     }
 }

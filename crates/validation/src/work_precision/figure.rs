@@ -81,13 +81,13 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
             label: "quadrature".to_owned(),
         });
     }
-    let build_time = found.points.iter().map(|p| p.cost.build_time);
-    let build_time = build_time.fold(0.0, f64::max);
+    let build_times = found.points.iter().map(|p| p.cost.build_time);
+    let build_time = build_times.fold(0.0, f64::max);
     if measure == CostMeasure::Time && build_time > 0.0 {
-        marks.push(Mark::Horizontal {
-            at: build_time,
-            label: "build time of the finest table".to_owned(),
-        });
+        marks.push(Mark::horizontal(
+            build_time,
+            "build time of the finest table",
+        ));
     }
     let (label_gap, cost) = match measure == CostMeasure::Evaluations {
         true => (MIN_LABEL_GAP, "evaluations"),

@@ -3,6 +3,7 @@
 
 use super::combination::Errors;
 use super::evaluator::Evaluator;
+use super::reference_solution::ReferenceSolution;
 use super::studied_scene::StudiedScene;
 use super::subject::Subject;
 use dwell_dynamics::{DynamicsError, OdeSystem};
@@ -24,14 +25,13 @@ pub struct FixedStep {
     pub errors: Errors,
 }
 
-/// The states at the subject's times, the number of steps, and their seconds: between the steps, by a part of one.
-pub(super) type FixedStepRun = (Vec<Vec<f64>>, usize, f64);
-
-/// Integrates the motion by fixed steps.
-pub(super) fn solve<S: StudiedScene>(
+/// Integrates the motion by fixed steps; to the subject's times between them by a part of one.
+pub(super) fn fixed_step<S: StudiedScene>(
+    reference: &mut ReferenceSolution<'_, S>,
     evaluator: &dyn Evaluator,
     subject: &Subject<S>,
-) -> Result<FixedStepRun, DynamicsError> {
+    evaluation_time: f64,
+) -> Result<FixedStep, DynamicsError> {
     if subject.end() / STEP > MAX_STEPS {
         let (t, max_steps) = (0.0, MAX_STEPS as usize);
         return Err(DynamicsError::MaxStepsReached { t, max_steps });
@@ -50,7 +50,11 @@ pub(super) fn solve<S: StudiedScene>(
         let from = steps as f64 * STEP;
         states.push(runge_kutta(&mut *system, from, &y, t - from)?);
     }
-    Ok((states, steps, started.elapsed().as_secs_f64()))
+    Ok(FixedStep {
+        steps,
+        time: started.elapsed().as_secs_f64() / evaluation_time,
+        errors: reference.errors(&states, &mut evaluator.reactions())?,
+    })
 }
 
 /// A step of the classical method.

@@ -120,18 +120,15 @@ pub fn measure_with<S: StudiedScene>(
             done(&format!("{name}, {}", method.name()));
             series
         };
-    let methods = Method::ALL.into_iter();
-    let series_by_method: Vec<ToleranceSeries> =
-        methods.map(|method| series(exact, method, None)).collect();
+    let series_by_method = Method::ALL.map(|method| series(exact, method, None));
     let mut reference = ReferenceSolution::new(&subject, exact, &series_by_method, effort)
         .map_err(|e| no_reference_error(&subject, &e, &series_by_method))?;
     let mut trials: Vec<Trial<'_>> = Vec::new();
-    for (k, evaluator) in evaluators.iter().enumerate() {
-        let evaluator = &**evaluator;
+    for (k, evaluator) in evaluators.iter().map(|e| &**e).enumerate() {
         let rerun =
             |reference: &ToleranceSeries| series(evaluator, reference.method, Some(reference));
         let all = match k {
-            0 => series_by_method.clone(),
+            0 => series_by_method.to_vec(),
             _ => series_by_method.iter().map(rerun).collect(),
         };
         collect_trials(evaluator, &subject, all, &mut trials, &mut omitted);
@@ -139,17 +136,21 @@ pub fn measure_with<S: StudiedScene>(
     let timed = || done("times");
     let unit_times = time_runs(&subject, &reference, exact, &mut trials, effort, &timed);
     let [evaluation_time, jacobian_time] = unit_times.map_err(|e| subject.explain(&e))?;
-    let timed = (exact, &subject, evaluation_time);
     let points = results(&mut reference, trials, evaluation_time, &mut omitted);
+    let fixed_step = fixed_step::fixed_step(&mut reference, exact, &subject, evaluation_time);
+    let fixed_step =
+        fixed_step.map_err(|e| omitted.push(format!("fixed step: {}", run::reason(&e))));
+    let exported_code = match effort.exported_code {
+        true => exported_code::exported_code(&mut reference, exact, &subject, evaluation_time),
+        false => Ok(Vec::new()),
+    };
+    let exported_code = exported_code.map_err(|e| omitted.push(format!("exported code: {e}")));
     Ok(WorkPrecision {
         points,
-        fixed_step: fixed_step_result(&mut reference, timed, &mut omitted),
-        exported_code: exported_code_results(&mut reference, timed, effort, &mut omitted),
+        fixed_step: fixed_step.ok(),
+        exported_code: exported_code.unwrap_or_default(),
         omitted,
-        reference: ReferenceInfo {
-            method: reference.method,
-            error: reference.error,
-        },
+        reference: reference.info,
         motion_notes: subject.notes.clone(),
         duration: subject.end(),
         unit: subject.unit(),
@@ -157,44 +158,6 @@ pub fn measure_with<S: StudiedScene>(
         evaluation_time,
         jacobian_cost: jacobian_time / evaluation_time,
     })
-}
-
-/// The exact evaluator, the motion, and the seconds of one exact evaluation.
-type Timed<'a, S> = (&'a dyn Evaluator, &'a Subject<S>, f64);
-
-/// The error and the cost of fixed steps.
-fn fixed_step_result<S: StudiedScene>(
-    reference: &mut ReferenceSolution<'_, S>,
-    (exact, subject, evaluation_time): Timed<'_, S>,
-    omitted: &mut Vec<String>,
-) -> Option<FixedStep> {
-    let mut solve = || {
-        let (states, steps, seconds) = fixed_step::solve(exact, subject)?;
-        Ok::<_, DynamicsError>(FixedStep {
-            steps,
-            time: seconds / evaluation_time,
-            errors: reference.errors(&states, &mut exact.reactions())?,
-        })
-    };
-    let found = solve();
-    found
-        .map_err(|e| omitted.push(format!("fixed step: {}", run::reason(&e))))
-        .ok()
-}
-
-/// The errors and the costs of the exported code, if it is wanted.
-fn exported_code_results<S: StudiedScene>(
-    reference: &mut ReferenceSolution<'_, S>,
-    (exact, subject, evaluation_time): Timed<'_, S>,
-    effort: &Effort,
-    omitted: &mut Vec<String>,
-) -> Vec<ExportedCode> {
-    if !effort.exported_code {
-        return Vec::new();
-    }
-    let found = exported_code::exported_code(reference, exact, subject, evaluation_time);
-    let found = found.map_err(|e| omitted.push(format!("exported code: {e}")));
-    found.unwrap_or_default()
 }
 
 /// Errors and costs of all runs. A run that left the range of an evaluator or of the mechanism has no error.

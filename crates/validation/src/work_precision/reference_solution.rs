@@ -4,7 +4,7 @@
 //! change under a rounding of the start. Of all others it is the method that changes least from one tolerance
 //! to the next, at its finest; its error is the difference from the second best method.
 
-use super::combination::{Effort, Errors};
+use super::combination::{Effort, Errors, ReferenceInfo};
 use super::evaluator::{Evaluator, ReactionFn};
 use super::run::{ToleranceSeries, orbit_states, solve};
 use super::studied_scene::StudiedScene;
@@ -28,7 +28,7 @@ const ZERO: f64 = 1e-12;
 pub(super) struct ReferenceSolution<'s, S: StudiedScene> {
     subject: &'s Subject<S>,
     workspace: MachineWorkspace<f64, S::Model>,
-    pub(super) method: String,
+    pub(super) info: ReferenceInfo,
     pub(super) states: Vec<Vec<f64>>,
     reactions: Vec<Vec<f64>>,
     /// By reaction: the largest of its unit.
@@ -36,7 +36,6 @@ pub(super) struct ReferenceSolution<'s, S: StudiedScene> {
     /// The largest kinetic energy, J, and the energy at the start.
     max_kinetic_energy: f64,
     initial_energy: f64,
-    pub(super) error: Errors,
 }
 
 /// A motion with its method, and others that show its error.
@@ -67,24 +66,28 @@ impl<'s, S: StudiedScene> ReferenceSolution<'s, S> {
         let mut reference = Self {
             subject,
             workspace: subject.machine.workspace(),
-            method: found.method,
+            info: ReferenceInfo {
+                method: found.method,
+                error: Errors::default(),
+            },
             states: found.states,
             reactions: Vec::new(),
             scales: Vec::new(),
             max_kinetic_energy: 0.0,
             initial_energy: 0.0,
-            error: Errors::default(),
         };
         reference.evaluate_reference(exact)?;
         for other in &found.comparisons {
             let errors = reference.errors(other, &mut exact.reactions())?;
-            reference.error.coordinate = reference.error.coordinate.max(errors.coordinate);
-            reference.error.reaction = reference.error.reaction.max(errors.reaction);
+            let own = &mut reference.info.error;
+            own.coordinate = own.coordinate.max(errors.coordinate);
+            own.reaction = own.reaction.max(errors.reaction);
         }
-        reference.error.coordinate += found.extra_error;
-        reference.error.reaction += RESULT_ROUNDING;
+        let own = &mut reference.info.error;
+        own.coordinate += found.extra_error;
+        own.reaction += RESULT_ROUNDING;
         if reference.scales.iter().all(|scale| *scale == 0.0) {
-            reference.error.reaction = f64::NAN;
+            own.reaction = f64::NAN;
         }
         Ok(reference)
     }
@@ -123,7 +126,7 @@ impl<'s, S: StudiedScene> ReferenceSolution<'s, S> {
                 *scale = 0.0;
             }
         }
-        self.error.energy = RESULT_ROUNDING * size / self.max_kinetic_energy;
+        self.info.error.energy = RESULT_ROUNDING * size / self.max_kinetic_energy;
         Ok(())
     }
 

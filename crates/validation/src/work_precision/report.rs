@@ -6,7 +6,7 @@ use super::combination::{
 };
 use super::command_times::CommandTime;
 use super::exported_code::ExportedCode;
-use crate::report_parts;
+use crate::report_parts::{TextColumn, table as table_rows, table_of};
 use dwell_dynamics::Method;
 use dwell_findings::Record;
 use dwell_report::{Block, Column, Document, Table, TableExport as _};
@@ -140,7 +140,7 @@ fn front_table(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeas
         "worst reaction",
     ];
     let front = found.pareto_front(quantity, measure).into_iter();
-    report_parts::table(&header, front.map(|k| cells(found, &found.points[k])))
+    table_rows(&header, front.map(|k| cells(found, &found.points[k])))
 }
 
 /// The cheapest combination with its cost.
@@ -169,7 +169,7 @@ pub(super) fn document(scene: &SceneFile, found: &WorkPrecision, file: &str) -> 
             caption: String::new(),
         },
         Block::Heading("The cheapest for an accuracy".to_owned()),
-        report_parts::table(
+        table_rows(
             &[
                 "error of",
                 "at most",
@@ -293,27 +293,20 @@ pub(super) fn exported_code_blocks(found: &WorkPrecision) -> Vec<Block> {
     if found.exported_code.is_empty() {
         return Vec::new();
     }
-    let header = [
-        "exported C, steps of 1 ms",
-        "error of the coefficients",
-        "error of the coordinate",
-        "energy drift",
-        "all coefficients: mean",
-        "worst",
-        "a step: mean",
-        "worst",
+    let columns: [TextColumn<&ExportedCode>; 8] = [
+        ("exported C, steps of 1 ms", |code| code.name.to_owned()),
+        ("error of the coefficients", |code| {
+            digits_or_dash(code.coefficients, 2)
+        }),
+        ("error of the coordinate", |code| {
+            digits_or_dash(code.errors.coordinate, 2)
+        }),
+        ("energy drift", |code| digits_or_dash(code.errors.energy, 2)),
+        ("all coefficients: mean", |code| digits(code.times[0][0], 2)),
+        ("worst", |code| digits(code.times[0][1], 2)),
+        ("a step: mean", |code| digits(code.times[1][0], 2)),
+        ("worst", |code| digits(code.times[1][1], 2)),
     ];
-    let row = |code: &ExportedCode| {
-        let errors = [
-            code.coefficients,
-            code.errors.coordinate,
-            code.errors.energy,
-        ];
-        let mut row = vec![code.name.to_owned()];
-        row.extend(errors.map(|error| digits_or_dash(error, 2)));
-        row.extend(code.times.as_flattened().iter().map(|&t| digits(t, 2)));
-        row
-    };
     vec![
         Block::Heading("Exported code".to_owned()),
         Block::Text(format!(
@@ -322,7 +315,7 @@ pub(super) fn exported_code_blocks(found: &WorkPrecision) -> Vec<Block> {
              of each of 2000 calls the least of seven counts, the worst is the largest of these.",
             found.unit
         )),
-        report_parts::table(&header, found.exported_code.iter().map(row)),
+        table_of(&columns, found.exported_code.iter()),
     ]
 }
 
@@ -341,21 +334,19 @@ pub(super) fn command_summary(times: &[CommandTime]) -> String {
 
 /// The seconds of the whole command, as a part of the document.
 pub(super) fn command_blocks(times: &[CommandTime]) -> [Block; 3] {
-    let header = [
-        "accuracy",
-        "estimated error",
-        "computing, s",
-        "with files, s",
-        "with the main pictures, s",
+    let columns: [TextColumn<&CommandTime>; 5] = [
+        ("accuracy", |of| {
+            format!("{}, {:.0e}", of.preset.0, of.preset.1)
+        }),
+        ("estimated error", |of| {
+            digits_or_dash(of.estimated_error.unwrap_or(f64::NAN), 2)
+        }),
+        ("computing, s", |of| digits(of.computing, 2)),
+        ("with files, s", |of| digits(of.with_files, 2)),
+        ("with the main pictures, s", |of| {
+            digits(of.with_pictures, 2)
+        }),
     ];
-    let row = |of: &CommandTime| {
-        let seconds = [of.computing, of.with_files, of.with_pictures];
-        let (name, accuracy) = of.preset;
-        let mut row = vec![format!("{name}, {accuracy:.0e}")];
-        row.push(digits_or_dash(of.estimated_error.unwrap_or(f64::NAN), 2));
-        row.extend(seconds.map(|s| digits(s, 2)));
-        row
-    };
     [
         Block::Heading("The whole command".to_owned()),
         Block::Text(
@@ -363,7 +354,7 @@ pub(super) fn command_blocks(times: &[CommandTime]) -> [Block; 3] {
              written; and with the main pictures. One run each; here the motion has the duration that the scene gives."
                 .to_owned(),
         ),
-        report_parts::table(&header, times.iter().map(row)),
+        table_of(&columns, times.iter()),
     ]
 }
 

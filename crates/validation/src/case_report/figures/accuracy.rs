@@ -86,10 +86,6 @@ pub(crate) fn rounding(
         let at = |s: &StateRounding| of(s).map(|error| [s.t, error.max(MIN_DRAWN_ERROR)]);
         drawn.iter().filter_map(at).collect()
     };
-    let precision_mark = |at: f64, label: &str| Mark::Horizontal {
-        at,
-        label: label.to_owned(),
-    };
     let chart = Chart {
         x: Axis::new("time", "s"),
         y: Axis::log("relative error", "").with_range(MIN_DRAWN_ERROR, 1.0),
@@ -98,8 +94,8 @@ pub(crate) fn rounding(
             Series::line("f64", points(&|s| Some(s.f64_error))).stroke(Stroke::LineAndPoints),
         ],
         marks: vec![
-            precision_mark(f64::from(f32::EPSILON), "last place of f32"),
-            precision_mark(f64::EPSILON, "last place of f64"),
+            Mark::horizontal(f64::from(f32::EPSILON), "last place of f32"),
+            Mark::horizontal(f64::EPSILON, "last place of f64"),
         ],
         ..Chart::default()
     };
@@ -135,10 +131,8 @@ pub(crate) fn finite_differences(prepared: &PreparedScene<'_>, curves: &[ErrorCu
         ];
         let title = format!("{} at {:.3} rad", curve.quantity, curve.q);
         let mut chart = chart(title, x, y, lines);
-        chart.marks.push(Mark::Horizontal {
-            at: f64::EPSILON,
-            label: "one rounding".to_owned(),
-        });
+        let rounding = Mark::horizontal(f64::EPSILON, "one rounding");
+        chart.marks.push(rounding);
         chart.into()
     };
     // A quantity that is zero has no relative error.

@@ -3,7 +3,7 @@
 use super::mechanism::drawing;
 use crate::case_report::dwell::RangePoses;
 use dwell_geometry::{BodyId, Vec2};
-use dwell_report::{Drawing, Paint, Panel, Pen, Shape, TextPlacement};
+use dwell_report::{Paint, Panel, Pen, Shape, TextPlacement};
 use dwell_scene::Scene;
 use dwell_study::number_format::{digits, number};
 use dwell_study::output::MechanismDrawing;
@@ -36,13 +36,8 @@ pub(super) fn dimensions(scene: &Scene, poses: &RangePoses, position: usize) -> 
         drawn.center(body, &mut shapes);
     }
     drawn.fixed_points(&mut shapes);
-    match drawing(shapes) {
-        Panel::Drawing(panel) => Some(Panel::Drawing(Drawing {
-            title: "Dimensions (m), masses and centres of mass".to_owned(),
-            ..panel
-        })),
-        other => Some(other),
-    }
+    let title = "Dimensions (m), masses and centres of mass";
+    Some(drawing(title, shapes))
 }
 
 struct DrawnDimensions<'a> {

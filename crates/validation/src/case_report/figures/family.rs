@@ -11,52 +11,53 @@ pub(crate) fn family(prepared: &PreparedScene<'_>, family: &Family) -> Figure {
     let q = symbol(prepared.coordinate_name());
     let reaction = prepared.reaction_units().into_iter().next();
     let reaction = reaction.map_or_else(|| "reaction".to_owned(), |(name, _)| name);
-    let angle = || Axis::degrees(coordinate_label(prepared));
-    let time = || Axis::new("time", "s");
-    let position = |row: &MemberRow| row.q.to_degrees();
-    let panels: Vec<Panel> = vec![
-        chart(
+    let over_angle = |title: &str, label: &str, y: Value| -> Panel {
+        let (x, curves) = (
+            Axis::degrees(coordinate_label(prepared)),
+            curves(family, |row| row.q.to_degrees(), y),
+        );
+        chart(title, x, Axis::new(label, ""), curves).into()
+    };
+    let over_time = |title: String, y_axis, y: Value| -> Panel {
+        let curves = curves(family, |row| row.t, y);
+        chart(title, Axis::new("time", "s"), y_axis, curves).into()
+    };
+    let velocity = Axis::new(format!("d{q}/dt"), "rad/s");
+    let relative = Axis::new(format!("{reaction} / its largest"), "");
+    let panels = vec![
+        over_angle(
             "Generalised inertia",
-            angle(),
-            Axis::new("m / m at the start", ""),
-            curves(family, &position, &|member, row| {
-                row.m / member.start_inertia
-            }),
-        )
-        .into(),
-        chart(
+            "m / m at the start",
+            |member, row| row.m / member.start_inertia(),
+        ),
+        over_angle(
             "Half its derivative",
-            angle(),
-            Axis::new("½m′ / m at the start", ""),
-            curves(family, &position, &|member, row| {
-                row.half_dm / member.start_inertia
-            }),
-        )
-        .into(),
-        chart(
-            "Velocity in the free motion",
-            time(),
-            Axis::new(format!("d{q}/dt"), "rad/s"),
-            curves(family, &|row| row.t, &|_, row| row.q_dot),
-        )
-        .into(),
-        chart(
+            "½m′ / m at the start",
+            |member, row| row.half_dm / member.start_inertia(),
+        ),
+        over_time(
+            "Velocity in the free motion".to_owned(),
+            velocity,
+            |_, row| row.q_dot,
+        ),
+        over_time(
             format!("Reaction {reaction} in the free motion"),
-            time(),
-            Axis::new(format!("{reaction} / its largest"), ""),
-            curves(family, &|row| row.t, &|member, row| {
+            relative,
+            |member, row| {
                 let largest = member.row_of_largest(|row| row.reaction.abs());
-                row.reaction / largest.map_or(1.0, |row| row.reaction.abs())
-            }),
-        )
-        .into(),
+                row.reaction / largest.reaction.abs()
+            },
+        ),
     ];
     let text = format!(
         "The reconstruction, and between which values four of five of {} are that meet the text of the source. All have \
          the stated period.",
         count(family.members.len(), "mechanism")
     );
-    let provenance = format!("exact reduced models of {}", count(family.draws, "draw"));
+    let provenance = format!(
+        "exact reduced models of {}",
+        count(family.described.draws, "draw")
+    );
     let title = "What the lost dimensions decide";
     Figure {
         columns: 2,
@@ -64,15 +65,14 @@ pub(crate) fn family(prepared: &PreparedScene<'_>, family: &Family) -> Figure {
     }
 }
 
+/// A value of a member at a row.
+type Value = fn(&Member, &MemberRow) -> f64;
+
 /// Abscissas at which the members are compared.
 const POINTS: usize = 361;
 
 /// The reconstruction, and the values below which a tenth and nine tenths of the members are.
-fn curves(
-    family: &Family,
-    x: &dyn Fn(&MemberRow) -> f64,
-    y: &dyn Fn(&Member, &MemberRow) -> f64,
-) -> Vec<Series> {
+fn curves(family: &Family, x: fn(&MemberRow) -> f64, y: Value) -> Vec<Series> {
     let points = |member: &Member| -> Vec<[f64; 2]> {
         let rows = member.rows.iter();
         rows.map(|row| [x(row), y(member, row)]).collect()

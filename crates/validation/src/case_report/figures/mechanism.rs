@@ -27,7 +27,7 @@ pub(crate) fn mechanism(
     let dwell = requested_dwell(prepared, &poses);
     let first_coordinate = prepared.model.model().plan().assembly_coordinates()[0];
     let shapes = faded_positions(prepared, &poses, full, dwell.as_ref());
-    let mut panels = vec![drawing(shapes)];
+    let mut panels = vec![drawing("", shapes)];
     panels.extend(dimensions(
         scene,
         &poses,
@@ -56,9 +56,9 @@ pub(crate) fn mechanism(
 }
 
 /// A panel of shapes in the plane.
-pub(super) fn drawing(shapes: Vec<Shape>) -> Panel {
+pub(super) fn drawing(title: &str, shapes: Vec<Shape>) -> Panel {
     Panel::from(Drawing {
-        title: String::new(),
+        title: title.to_owned(),
         x: Axis::new("x", "m"),
         y: Axis::new("y", "m"),
         shapes,

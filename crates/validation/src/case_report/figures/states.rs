@@ -33,7 +33,7 @@ pub(crate) fn states_drawing(scene: &Scene, checked: &CheckedStates) -> Figure {
     }
     let motion = checked.motion_text;
     let text = format!("Drawn in full at the beginning of {motion}, lighter further on.");
-    let panels = vec![drawing(shapes)];
+    let panels = vec![drawing("", shapes)];
     figure(
         scene,
         "mechanism",

@@ -17,9 +17,10 @@ pub(super) struct RandomMachine {
 /// A mechanism: its name, its bodies, joints, actuators and assembly, and the names of its free coordinates.
 type Mechanism = (&'static str, &'static str, &'static [&'static str]);
 
-const CART: Mechanism = (
-    "cart",
-    r#"[bodies.ground]
+const ALL: [Mechanism; 6] = [
+    (
+        "cart",
+        r#"[bodies.ground]
 points = { O = [0, 0] }
 [bodies.cart]
 points = { O = [0, 0] }
@@ -31,12 +32,11 @@ guide = { prismatic = ["ground.O", "cart.O"], axis = [1, 0.2] }
 [actuators]
 q = { length = "guide" }
 "#,
-    &["q"],
-);
-
-const PENDULUM: Mechanism = (
-    "pendulum",
-    r#"[bodies.ground]
+        &["q"],
+    ),
+    (
+        "pendulum",
+        r#"[bodies.ground]
 points = { O = [0, 0] }
 [bodies.bob]
 points = { O = [0, 0] }
@@ -48,12 +48,11 @@ O = { revolute = ["ground.O", "bob.O"] }
 [actuators]
 q = { angle = ["ground", "bob"] }
 "#,
-    &["q"],
-);
-
-const FOUR_BAR: Mechanism = (
-    "four-bar",
-    r#"[bodies.ground]
+        &["q"],
+    ),
+    (
+        "four-bar",
+        r#"[bodies.ground]
 points = { A = [0, 0], D = [2, 0] }
 [bodies.crank]
 points = { A = [0, 0], B = [0.5, 0] }
@@ -82,12 +81,11 @@ q = 0.8
 coupler = 0.6
 rocker = 1.9
 "#,
-    &["q"],
-);
-
-const SLIDER_CRANK: Mechanism = (
-    "slider-crank",
-    r#"[bodies.ground]
+        &["q"],
+    ),
+    (
+        "slider-crank",
+        r#"[bodies.ground]
 points = { A = [0, 0], G = [0, 0.1] }
 [bodies.crank]
 points = { A = [0, 0], B = [0.4, 0] }
@@ -116,12 +114,11 @@ q = 0.5
 rod = 0.0
 piston = 0.0
 "#,
-    &["q"],
-);
-
-const DOUBLE_PENDULUM: Mechanism = (
-    "double pendulum",
-    r#"[bodies.ground]
+        &["q"],
+    ),
+    (
+        "double pendulum",
+        r#"[bodies.ground]
 points = { O = [0, 0] }
 [bodies.one]
 points = { O = [0, 0], P = [0, -0.8] }
@@ -140,12 +137,11 @@ P = { revolute = ["one.P", "two.P"] }
 q = { angle = ["ground", "one"] }
 r = { angle = ["ground", "two"] }
 "#,
-    &["q", "r"],
-);
-
-const CRANE: Mechanism = (
-    "crane",
-    r#"[bodies.ground]
+        &["q", "r"],
+    ),
+    (
+        "crane",
+        r#"[bodies.ground]
 points = { O = [0, 0] }
 [bodies.cart]
 points = { O = [0, 0] }
@@ -164,16 +160,8 @@ O = { revolute = ["cart.O", "load.O"] }
 q = { length = "guide" }
 r = { angle = ["ground", "load"] }
 "#,
-    &["q", "r"],
-);
-
-const ALL: [Mechanism; 6] = [
-    CART,
-    PENDULUM,
-    FOUR_BAR,
-    SLIDER_CRANK,
-    DOUBLE_PENDULUM,
-    CRANE,
+        &["q", "r"],
+    ),
 ];
 
 impl RandomMachine {
@@ -184,15 +172,19 @@ impl RandomMachine {
         let mut switches = Vec::new();
         let mut drives = String::new();
         for k in 0..1 + draws.below(3) {
-            let drive = drive(draws, draws_name(k), free, span, &mut switches);
-            drives += &drive;
+            let name = ["one", "two", "three"][k];
+            drives += &drive(draws, name, free, span, &mut switches);
         }
         let weight = match draws.happens(0.6) {
             true => "weight = { gravity = [0, -9.81] }\n",
             false => "",
         };
         let velocities = free.iter().map(|name| {
-            let velocity = draws_velocity(draws);
+            // At rest, or not.
+            let velocity = match draws.happens(0.4) {
+                true => 0.0,
+                false => draws.between(-2.0, 2.0),
+            };
             format!("{name} = {velocity:.3}")
         });
         let velocities: Vec<String> = velocities.collect();
@@ -209,18 +201,6 @@ impl RandomMachine {
             span,
             switches,
         }
-    }
-}
-
-fn draws_name(k: usize) -> &'static str {
-    ["one", "two", "three"][k % 3]
-}
-
-/// At rest, or not.
-fn draws_velocity(draws: &mut Draws) -> f64 {
-    match draws.happens(0.4) {
-        true => 0.0,
-        false => draws.between(-2.0, 2.0),
     }
 }
 
@@ -253,12 +233,11 @@ fn drive(
                  {integral}, limit = {limit:.3} }}\n"
             )
         }
-        2 => {
-            let force = switched(draws, 4.0, span, switches);
-            format!("{name} = {{ applied-force = \"{q}\", magnitude = \"{force}\" }}\n")
-        }
-        _ => {
-            let force = of_the_state(draws, q);
+        kind => {
+            let force = match kind {
+                2 => switched(draws, 4.0, span, switches),
+                _ => of_the_state(draws, q),
+            };
             format!("{name} = {{ applied-force = \"{q}\", magnitude = \"{force}\" }}\n")
         }
     }

@@ -117,23 +117,20 @@ impl Reference {
             let name = scene.mechanism.reaction_name(component);
             (name, component.component.unit(), error)
         });
-        let of_reactions = of_reactions.collect();
+        let is_angle = machine
+            .free()
+            .iter()
+            .map(|&i| machine.model().plan().is_angle(i));
         Ok(Self {
-            of_reactions,
-            is_angle: machine
-                .free()
-                .iter()
-                .map(|&i| machine.model().plan().is_angle(i))
-                .collect(),
+            of_reactions: of_reactions.collect(),
+            is_angle: is_angle.collect(),
             travels: (0..free).map(travel).collect(),
             errors: (0..free).map(error).collect(),
             coordinates: fine.iter().map(|y| y[..free].to_vec()).collect(),
             reactions,
         })
     }
-}
 
-impl Reference {
     /// By reaction: the error of a column, that of the reference, and the largest reaction of the unit; only where that
     /// is more than rounding. Beside forces (N) and energies (J) moments (N m) are, in mechanisms of about a metre.
     pub(super) fn reaction_errors(
@@ -142,10 +139,8 @@ impl Reference {
         column: &dyn Fn(&str) -> Vec<f64>,
     ) -> Vec<(f64, f64, f64)> {
         let largest = |i: usize| {
-            self.reactions
-                .iter()
-                .map(|at| at[i].abs())
-                .fold(0.0, f64::max)
+            let sizes = self.reactions.iter().map(|at| at[i].abs());
+            sizes.fold(0.0, f64::max)
         };
         let of_unit = |wanted: &str| {
             let alike = self.of_reactions.iter().enumerate();

@@ -2,13 +2,10 @@
 
 use super::check::check;
 use super::run::{ACCURACIES, MachineResult, MachineRun};
+use crate::extremes::drawn::{completed, runs};
 use crate::extremes::series::MAX_ESTIMATE_RATIO;
-use crate::report_parts::{figure_blocks, findings_text, pass_or_fail, pictures, table};
-use dwell_findings::all_pass;
-use dwell_report::{
-    Axis, Block, Chart, Column, Document, Figure, Mark, Paint, Series, Stroke, Table,
-    TableExport as _, reproducible_text,
-};
+use crate::report_parts::{NumberColumn, StudyReport, figure_blocks, numbers, table};
+use dwell_report::{Axis, Chart, Figure, Mark, Paint, Series, Stroke, Table, TableExport as _};
 use dwell_study::output::chart;
 use dwell_study::{Outcome, StudyError};
 
@@ -19,91 +16,67 @@ const ERROR_RANGE: [f64; 2] = [1e-16, 1e-2];
 ///
 /// # Errors
 /// [`StudyError`] where a table cannot be written.
-// Longer than a screen, with the text of the page.
 pub(in crate::extremes) fn add_to(
     outcome: &mut Outcome,
     results: &[MachineResult],
     seed: u64,
     name: &str,
 ) -> Result<(), StudyError> {
-    let findings = check(results);
     let name = format!("{name}-machines");
     let figures = [figure(results, seed)];
-    outcome.pictures.extend(pictures(&name, &figures));
-    outcome
-        .files
-        .add(format!("{name}/machines.csv"), csv_table(results).csv()?);
+    let files = &mut outcome.files;
+    files.add(format!("{name}/machines.csv"), csv_table(results).csv()?);
     for machine in results {
         let file = format!("{name}/machine-{:03}.toml", machine.number);
-        outcome.files.add(file, machine.text.clone());
+        files.add(file, machine.text.clone());
     }
-    let head = format!("Machines\n\n{} machines of seed {seed}\n\n", results.len());
-    outcome
-        .files
-        .add(format!("{name}.txt"), head + &reproducible_text(&findings));
-    let mut blocks = vec![
-        Block::Text(format!(
-            "{}. Mechanisms of one and two freedoms, drawn by seed {seed}, under loads that switch with time, coordinates and \
+    let header = [
+        "Accuracy",
+        "Runs",
+        "Refused",
+        "Largest true error",
+        "Largest error / estimate",
+        "Estimates above 100 times",
+    ];
+    let rows = ACCURACIES.map(|accuracy| summary_row(accuracy, results));
+    let mut blocks = vec![table(&header, rows)];
+    blocks.extend(figure_blocks(&name, &figures, false));
+    let report = StudyReport {
+        name: &name,
+        title: "Random machines",
+        text: format!(
+            "Mechanisms of one and two freedoms, drawn by seed {seed}, under loads that switch with time, coordinates and \
              speeds, with motors and with speed controllers that saturate; `dwell validate --seed N` draws others. Each is \
              simulated to four accuracies, and compared with a Runge–Kutta method of order 5 with step control of its own at \
              1e-13, restarted by hand at the switches in time; the error of that reference is its difference from 1e-12. The scenes \
-             are in the folder of the picture.",
-            pass_or_fail(all_pass(&findings))
-        )),
-        table(
-            &[
-                "Accuracy",
-                "Runs",
-                "Refused",
-                "Largest true error",
-                "Largest error / estimate",
-                "Estimates above 100 times",
-            ],
-            ACCURACIES
-                .iter()
-                .map(|&accuracy| summary_row(accuracy, results)),
+             are in the folder of the picture."
         ),
-    ];
-    blocks.extend(figure_blocks(&name, &figures, false));
-    blocks.push(Block::Heading("Findings".to_owned()));
-    blocks.push(Block::Findings(findings.clone()));
-    let document = Document {
-        title: "Random machines".to_owned(),
         blocks,
+        snapshot: format!("Machines\n\n{} machines of seed {seed}\n", results.len()),
+        figures: &figures,
+        findings: check(results),
+        count: format!("{} machines", results.len()),
     };
-    outcome.files.add_document(&name, &document);
-    let count = format!(", {} machines", results.len());
-    outcome.summary += &findings_text(&name, &findings, &count);
-    outcome.findings.extend(findings);
+    report.add_to(outcome);
     Ok(())
 }
 
 /// An accuracy in numbers.
 fn summary_row(accuracy: f64, results: &[MachineResult]) -> Vec<String> {
-    let runs = || {
-        results
-            .iter()
-            .flat_map(|m| &m.runs)
-            .filter(|run| run.accuracy == accuracy)
-    };
-    let ratios: Vec<f64> = runs().filter_map(MachineRun::estimate_ratio).collect();
-    let completed = runs().filter(|run| run.refused.is_none());
-    let error = completed.map(|run| run.error).fold(0.0, f64::max);
+    let runs = runs(results).map(|(_, run)| run);
+    let runs: Vec<_> = runs.filter(|run| run.accuracy == accuracy).collect();
+    let completed = || runs.iter().filter(|run| run.refused.is_none());
+    let ratios: Vec<f64> = completed().filter_map(|run| run.estimate_ratio()).collect();
+    let error = completed().map(|run| run.error).fold(0.0, f64::max);
     let below = ratios.iter().map(|ratio| 1.0 / ratio).fold(0.0, f64::max);
+    let above = ratios.iter().filter(|ratio| **ratio > MAX_ESTIMATE_RATIO);
     vec![
         format!("{accuracy:.0e}"),
-        runs().count().to_string(),
-        runs()
-            .filter(|run| run.refused.is_some())
-            .count()
-            .to_string(),
+        runs.len().to_string(),
+        (runs.len() - completed().count()).to_string(),
         format!("{error:.1e}"),
         format!("{below:.2}"),
-        ratios
-            .iter()
-            .filter(|ratio| **ratio > MAX_ESTIMATE_RATIO)
-            .count()
-            .to_string(),
+        above.count().to_string(),
     ]
 }
 
@@ -128,10 +101,7 @@ fn by_accuracy(
     of: impl Fn(&MachineResult, &MachineRun) -> Option<[f64; 2]>,
 ) -> Vec<Series> {
     let series = ACCURACIES.iter().enumerate().map(|(k, accuracy)| {
-        let runs = results
-            .iter()
-            .flat_map(|m| m.runs.iter().map(move |run| (m, run)));
-        let runs = runs.filter(|(_, run)| run.accuracy == *accuracy && run.refused.is_none());
+        let runs = completed(results).filter(|(_, run)| run.accuracy == *accuracy);
         let points = runs.filter_map(|(m, run)| of(m, run)).collect();
         let series = Series::line(format!("accuracy {accuracy:.0e}"), points);
         series.stroke(Stroke::Points).color(Paint::Palette(k))
@@ -158,10 +128,7 @@ fn estimates(results: &[MachineResult]) -> Chart {
     let series = by_accuracy(results, |_, run| {
         Some([run.error, run.estimate_ratio()?.clamp(0.1, 1e6)])
     });
-    let line = |at: f64| Mark::Horizontal {
-        at,
-        label: String::new(),
-    };
+    let line = |at: f64| Mark::horizontal(at, "");
     let x = Axis::log("true error", "").with_range(1e-13, ERROR_RANGE[1]);
     let y = Axis::log("estimate / true error", "").with_range(0.1, 1e6);
     Chart {
@@ -172,30 +139,13 @@ fn estimates(results: &[MachineResult]) -> Chart {
 
 /// All numbers of all runs.
 fn csv_table(results: &[MachineResult]) -> Table {
-    let columns = [
-        "machine",
-        "accuracy",
-        "refused",
-        "true error",
-        "error of the reference",
-        "estimate",
+    let columns: [NumberColumn<'_, (&MachineResult, &MachineRun)>; 6] = [
+        ("machine", "", |(machine, _)| machine.number as f64),
+        ("accuracy", "", |(_, run)| run.accuracy),
+        ("refused", "", |(_, run)| f64::from(run.refused.is_some())),
+        ("true error", "", |(_, run)| run.error),
+        ("error of the reference", "", |(_, run)| run.reference_error),
+        ("estimate", "", |(_, run)| run.estimate),
     ];
-    let row = |m: &MachineResult, run: &MachineRun| {
-        let refused = f64::from(u8::from(run.refused.is_some()));
-        vec![
-            m.number as f64,
-            run.accuracy,
-            refused,
-            run.error,
-            run.reference_error,
-            run.estimate,
-        ]
-    };
-    let rows = results
-        .iter()
-        .flat_map(|m| m.runs.iter().map(move |run| row(m, run)));
-    Table {
-        columns: columns.map(|name| Column::new(name, "")).into(),
-        rows: rows.collect(),
-    }
+    numbers(&columns, runs(results))
 }

@@ -3,6 +3,7 @@
 use super::draw::RandomMachine;
 use super::reference::Reference;
 use crate::extremes::draws::Draws;
+use crate::extremes::in_scenes::column;
 use dwell_scene::Scene;
 use dwell_study::free_motion::compute::FreeMotion;
 use dwell_study::{MotionSolver, StudyError, compute_free_motion, no_progress};
@@ -59,14 +60,8 @@ fn machine_result(seed: u64, number: usize) -> MachineResult {
         .collect();
     let reference = Reference::new(&random, &times);
     // Without a reference there is nothing to compare with.
-    let runs = reference.as_ref().map_or_else(
-        |_| Vec::new(),
-        |reference| {
-            ACCURACIES
-                .map(|accuracy| run(&random, accuracy, reference))
-                .into()
-        },
-    );
+    let runs = |reference| ACCURACIES.map(|accuracy| run(&random, accuracy, reference));
+    let runs = reference.iter().flat_map(runs).collect();
     MachineResult {
         number,
         kind: random.kind,
@@ -99,10 +94,7 @@ fn run(random: &RandomMachine, accuracy: f64, reference: &Reference) -> MachineR
 /// The errors of a motion.
 fn compared(accuracy: f64, found: &FreeMotion, reference: &Reference) -> MachineRun {
     let table = &found.computed.table;
-    let cells = |name: &str| -> Vec<f64> {
-        let column = table.columns.iter().position(|c| c.name == name);
-        column.map_or_else(Vec::new, |k| table.rows.iter().map(|row| row[k]).collect())
-    };
+    let cells = |name: &str| column(table, name).unwrap_or_default();
     let largest = |values: &[f64]| values.iter().map(|v| v.abs()).fold(0.0, f64::max);
     let [kinetic, balance] =
         ["energy.kinetic", "energy.balance_error"].map(|name| largest(&cells(name)));

@@ -1,7 +1,8 @@
 //! The findings on the pulses.
 
 use super::run::{PulseResult, PulseRun, RunKind};
-use dwell_findings::{Check, Finding};
+use crate::extremes::drawn::{Drawn, finding, largest, refused};
+use dwell_findings::Finding;
 
 /// Above this part of its effect a pulse was missed: half of it would be gone.
 const MISSED: f64 = 0.5;
@@ -16,114 +17,84 @@ const MAX_REFUSED: f64 = 0.05;
 
 /// The findings: all pulses seen, accuracies kept, estimates not below the errors, errors as with restarts by hand, few
 /// refused.
-// Longer than a screen, with the text of five findings.
 pub fn check(results: &[PulseResult]) -> Vec<Finding> {
-    let runs = || {
-        results
-            .iter()
-            .flat_map(|pulse| pulse.runs.iter().map(move |run| (pulse, run)))
-    };
-    let completed = || runs().filter(|(_, run)| run.refused.is_none());
-    let refused = runs().count() - completed().count();
-    let share = refused as f64 / runs().count().max(1) as f64;
-    let missed = largest(completed(), |run| Some(run.missed / MISSED));
-    let kept = largest(completed(), PulseRun::accuracy_ratio);
-    let estimated = largest(completed(), PulseRun::estimate_shortfall);
-    let restarted = largest(completed(), |run| {
-        Some(run.restart_ratio()? / MAX_ERROR_RATIO)
-    });
-    let finding =
-        |key: &str, comparison: &str, scale: &str, reason: &str, (largest, worst_at): Largest| {
-            Finding {
-                comparison: comparison.to_owned(),
-                domain: format!("{} pulses with {} runs", results.len(), runs().count()),
-                scale: scale.to_owned(),
-                tolerance_reason: reason.to_owned(),
-                worst_at,
-                pass: largest <= 1.0 && !results.is_empty(),
-                ..Finding::new(key, Check::ClosedForms, [largest; 2], 1.0)
-            }
-        };
+    let of = |key: &str, words: [&str; 3], largest| finding(results, key, words, largest, 1.0);
+    let missed = |run: &PulseRun| Some(run.missed / MISSED);
+    let restarted = |run: &PulseRun| Some(run.restart_ratio()? / MAX_ERROR_RATIO);
     vec![
-        finding(
+        of(
             "pulses-missed",
-            "the speed after a pulse: from its impulse, or from restarts by hand",
-            "half of what the pulse changes the speed by",
-            "a pulse that is stepped over has an error of 2",
-            missed,
+            [
+                "the speed after a pulse: from its impulse, or from restarts by hand",
+                "half of what the pulse changes the speed by",
+                "a pulse that is stepped over has an error of 2",
+            ],
+            largest(results, missed),
         ),
-        finding(
+        of(
             "pulses-accuracy",
-            "the coordinate after a pulse to a required accuracy: from the impulse, or from restarts by hand",
-            "the required accuracy",
-            "what is promised is kept",
-            kept,
+            [
+                "the coordinate after a pulse to a required accuracy: from the impulse, or from restarts by hand",
+                "the required accuracy",
+                "what is promised is kept",
+            ],
+            largest(results, PulseRun::accuracy_ratio),
         ),
-        finding(
+        of(
             "pulses-error-estimate",
-            "the error of the coordinate after a pulse to a required accuracy, where it is above 1e-13",
-            "the estimated error",
-            "an estimate below the error would hide a wrong number",
-            estimated,
+            [
+                "the error of the coordinate after a pulse to a required accuracy, where it is above 1e-13",
+                "the estimated error",
+                "an estimate below the error would hide a wrong number",
+            ],
+            largest(results, PulseRun::estimate_shortfall),
+        ),
+        of(
+            "pulses-restarts",
+            [
+                "the error of a method against that of the same method restarted by hand at the switches",
+                "ten times the error with restarts by hand and that of a tolerance in coordinate and speed",
+                "switches must not cost accuracy; where restarts by hand err less than a tolerance, that is chance",
+            ],
+            largest(results, restarted),
         ),
         finding(
-            "pulses-restarts",
-            "the error of a method against that of the same method restarted by hand at the switches",
-            "ten times the error with restarts by hand and that of a tolerance in coordinate and speed",
-            "switches must not cost accuracy; where restarts by hand err less than a tolerance, that is chance",
-            restarted,
-        ),
-        Finding {
-            pass: share <= MAX_REFUSED && !results.is_empty(),
-            tolerance: MAX_REFUSED,
-            ..finding(
-                "pulses-refused",
+            results,
+            "pulses-refused",
+            [
                 "motions that are refused or end early",
                 "all runs",
                 "a refusal is no answer",
-                (share, first_refusal(runs())),
-            )
-        },
+            ],
+            refused(results),
+            MAX_REFUSED,
+        ),
     ]
 }
 
-/// The largest of something, and where it is.
-type Largest = (f64, String);
+impl Drawn for PulseResult {
+    type Run = PulseRun;
+    const NAME: &'static str = "pulses";
 
-fn largest<'r>(
-    runs: impl Iterator<Item = (&'r PulseResult, &'r PulseRun)>,
-    of: impl Fn(&PulseRun) -> Option<f64>,
-) -> Largest {
-    let sizes = runs.filter_map(|(pulse, run)| {
-        // What is no number is as bad as can be.
-        let size = of(run)?;
-        Some((if size.is_nan() { f64::INFINITY } else { size }, pulse, run))
-    });
-    let largest = sizes.max_by(|a, b| a.0.total_cmp(&b.0));
-    largest.map_or((0.0, String::new()), |(size, pulse, run)| {
-        (size, location(pulse, run))
-    })
-}
+    fn runs(&self) -> &[PulseRun] {
+        &self.runs
+    }
 
-fn location(pulse: &PulseResult, run: &PulseRun) -> String {
-    let (subject, shape) = (pulse.subject.name(), pulse.shape.name());
-    format!(
-        "pulse {}: {shape} of {:.1e} of {} s on a {subject} at {:.2} per s, {}",
-        pulse.number,
-        pulse.relative_width,
-        pulse.span,
-        pulse.speed,
-        run.kind.name()
-    )
-}
+    fn location(&self, run: &PulseRun) -> String {
+        let (subject, shape) = (self.subject.name(), self.shape.name());
+        format!(
+            "pulse {}: {shape} of {:.1e} of {} s on a {subject} at {:.2} per s, {}",
+            self.number,
+            self.relative_width,
+            self.span,
+            self.speed,
+            run.kind.name()
+        )
+    }
 
-fn first_refusal<'r>(mut runs: impl Iterator<Item = (&'r PulseResult, &'r PulseRun)>) -> String {
-    let refused = runs.find(|(_, run)| run.refused.is_some());
-    let text = |(pulse, run): (&PulseResult, &PulseRun)| {
-        let reason = run.refused.clone().unwrap_or_default();
-        format!("{}: {reason}", location(pulse, run))
-    };
-    refused.map_or_else(String::new, text)
+    fn refusal(run: &PulseRun) -> Option<&str> {
+        run.refused.as_deref()
+    }
 }
 
 impl RunKind {
@@ -132,6 +103,14 @@ impl RunKind {
         match self {
             Self::Fixed(method, tolerance) => format!("{} at {tolerance:.0e}", method.name()),
             Self::Accuracy(accuracy) => format!("accuracy {accuracy:.0e}"),
+        }
+    }
+
+    /// The method or the required accuracy, whatever the tolerance.
+    pub(super) fn group(self) -> String {
+        match self {
+            Self::Fixed(method, _) => method.name().to_owned(),
+            Self::Accuracy(_) => self.name(),
         }
     }
 }

@@ -37,15 +37,7 @@ impl PulseShape {
 
     /// Whether it has switches at which an integration can be restarted: a bell is smooth everywhere.
     pub(super) fn has_switches(self) -> bool {
-        match self {
-            Self::Bell => false,
-            Self::Triangle
-            | Self::SineSquared
-            | Self::Rectangle
-            | Self::StepPair
-            | Self::Nested
-            | Self::Periodic => true,
-        }
+        self != Self::Bell
     }
 
     /// Its name in tables.
@@ -106,20 +98,15 @@ impl Pulse {
     /// The magnitude as a scene has it, of unit area (of unit mean size where it is periodic).
     pub(super) fn expression(&self) -> String {
         let Self { at, width, .. } = *self;
-        let height = self.height();
+        let (half, height) = (0.5 * width, self.height());
         let [from, to] = self.ends();
         match self.shape {
-            PulseShape::Bell | PulseShape::Triangle | PulseShape::SineSquared => {
-                let smooth = self.smooth();
-                match self.shape {
-                    PulseShape::Bell => smooth,
-                    PulseShape::Triangle => {
-                        format!("{height}*max(0, 1 - abs(t - {at})/{})", 0.5 * width)
-                    }
-                    _ => format!("if(abs(t - {at}) < {}, {smooth}, 0)", 0.5 * width),
-                }
+            PulseShape::Bell => self.smooth(),
+            PulseShape::Triangle => format!("{height}*max(0, 1 - abs(t - {at})/{half})"),
+            PulseShape::SineSquared => {
+                format!("if(abs(t - {at}) < {half}, {}, 0)", self.smooth())
             }
-            PulseShape::Rectangle => format!("if(abs(t - {at}) < {}, {height}, 0)", 0.5 * width),
+            PulseShape::Rectangle => format!("if(abs(t - {at}) < {half}, {height}, 0)"),
             PulseShape::StepPair => format!("{height}*(step(t - {from}) - step(t - {to}))"),
             PulseShape::Nested => format!("if(t > {from}, if(t < {to}, {height}, 0), 0)"),
             PulseShape::Periodic => {
@@ -154,28 +141,20 @@ impl Pulse {
     /// The magnitude piece by piece, each of them smooth: in the order of their ends, the last at the end of the motion.
     pub(super) fn pieces(&self) -> Vec<Piece> {
         let [from, to] = self.ends();
-        let zero = || "0".to_owned();
         let height = self.height();
+        let around = |pulse: Vec<Piece>| {
+            let zero = |until: f64| vec![("0".to_owned(), until)];
+            [zero(from), pulse, zero(self.span)].concat()
+        };
         let pieces = match self.shape {
-            PulseShape::Bell | PulseShape::SineSquared => {
-                vec![(zero(), from), (self.smooth(), to), (zero(), self.span)]
-            }
+            PulseShape::Bell | PulseShape::SineSquared => around(vec![(self.smooth(), to)]),
             PulseShape::Triangle => {
                 let Self { at, width, .. } = *self;
                 let side = |sign: char| format!("{height}*(1 {sign} (t - {at})/{})", 0.5 * width);
-                vec![
-                    (zero(), from),
-                    (side('+'), at),
-                    (side('-'), to),
-                    (zero(), self.span),
-                ]
+                around(vec![(side('+'), at), (side('-'), to)])
             }
             PulseShape::Rectangle | PulseShape::StepPair | PulseShape::Nested => {
-                vec![
-                    (zero(), from),
-                    (height.to_string(), to),
-                    (zero(), self.span),
-                ]
+                around(vec![(height.to_string(), to)])
             }
             PulseShape::Periodic => self.periodic_pieces(),
         };

@@ -2,14 +2,11 @@
 
 use super::check::{MAX_ERROR_RATIO, check};
 use super::pulse::PulseShape;
-use super::run::{PulseResult, PulseRun, RunKind};
-use crate::report_parts::{figure_blocks, findings_text, pass_or_fail, pictures, table};
+use super::run::{ACCURACIES, PulseResult, PulseRun, RunKind};
+use crate::extremes::drawn::{completed, runs};
+use crate::report_parts::{NumberColumn, StudyReport, figure_blocks, numbers, table};
 use dwell_dynamics::Method;
-use dwell_findings::all_pass;
-use dwell_report::{
-    Axis, Block, Chart, Column, Document, Figure, Mark, Paint, Series, Stroke, Table,
-    TableExport as _, reproducible_text,
-};
+use dwell_report::{Axis, Chart, Figure, Mark, Paint, Series, Stroke, Table, TableExport as _};
 use dwell_study::output::chart;
 use dwell_study::{Outcome, StudyError};
 
@@ -20,58 +17,44 @@ const RATIO_RANGE: [f64; 2] = [1e-6, 1e2];
 ///
 /// # Errors
 /// [`StudyError`] where a table cannot be written.
-// Longer than a screen, with the text of the page.
 pub(in crate::extremes) fn add_to(
     outcome: &mut Outcome,
     results: &[PulseResult],
     seed: u64,
     name: &str,
 ) -> Result<(), StudyError> {
-    let findings = check(results);
     let name = format!("{name}-pulses");
     let figures = [figure(results, seed)];
-    outcome.pictures.extend(pictures(&name, &figures));
-    outcome
-        .files
-        .add(format!("{name}/pulses.csv"), csv_table(results).csv()?);
-    let head = format!("Pulses\n\n{} pulses of seed {seed}\n\n", results.len());
-    outcome
-        .files
-        .add(format!("{name}.txt"), head + &reproducible_text(&findings));
-    let mut blocks = vec![
-        Block::Text(format!(
-            "{}. Loads of widths from a millionth of the motion to all of it, at random times, on a wheel, a slider and a \
+    let csv = csv_table(results).csv()?;
+    outcome.files.add(format!("{name}/pulses.csv"), csv);
+    let header = [
+        "Shape",
+        "Pulses",
+        "Runs",
+        "Refused",
+        "Missed",
+        "Error / accuracy",
+        "Error / restarts by hand",
+    ];
+    let rows = PulseShape::ALL.map(|shape| summary_row(shape, results));
+    let mut blocks = vec![table(&header, rows)];
+    blocks.extend(figure_blocks(&name, &figures, false));
+    let report = StudyReport {
+        name: &name,
+        title: "Pulses",
+        text: format!(
+            "Loads of widths from a millionth of the motion to all of it, at random times, on a wheel, a slider and a \
              pendulum, half of them at rest. Drawn by seed {seed}; `dwell validate --seed N` draws others. Each is integrated by \
              every method and to every preset of `--accuracy`, and compared with its impulse or, on the pendulum, with a motion \
-             restarted by hand at the switches at 1e-13.",
-            pass_or_fail(all_pass(&findings))
-        )),
-        table(
-            &[
-                "Shape",
-                "Pulses",
-                "Runs",
-                "Refused",
-                "Missed",
-                "Error / accuracy",
-                "Error / restarts by hand",
-            ],
-            PulseShape::ALL
-                .iter()
-                .map(|&shape| summary_row(shape, results)),
+             restarted by hand at the switches at 1e-13."
         ),
-    ];
-    blocks.extend(figure_blocks(&name, &figures, false));
-    blocks.push(Block::Heading("Findings".to_owned()));
-    blocks.push(Block::Findings(findings.clone()));
-    let document = Document {
-        title: "Pulses".to_owned(),
         blocks,
+        snapshot: format!("Pulses\n\n{} pulses of seed {seed}\n", results.len()),
+        figures: &figures,
+        findings: check(results),
+        count: format!("{} pulses", results.len()),
     };
-    outcome.files.add_document(&name, &document);
-    let count = format!(", {} pulses", results.len());
-    outcome.summary += &findings_text(&name, &findings, &count);
-    outcome.findings.extend(findings);
+    report.add_to(outcome);
     Ok(())
 }
 
@@ -98,191 +81,111 @@ fn summary_row(shape: PulseShape, results: &[PulseResult]) -> Vec<String> {
     ]
 }
 
-/// Points of runs over the width of their pulses, within what a chart shows.
-fn points(
-    results: &[PulseResult],
-    [low, high]: [f64; 2],
-    of: impl Fn(&PulseRun) -> Option<f64>,
-) -> Vec<[f64; 2]> {
-    let runs = results
-        .iter()
-        .flat_map(|p| p.runs.iter().map(move |run| (p, run)));
-    let completed = runs.filter(|(_, run)| run.refused.is_none());
-    let point =
-        |(p, run): (&PulseResult, &PulseRun)| Some([p.relative_width, of(run)?.clamp(low, high)]);
-    completed.filter_map(point).collect()
-}
-
 fn figure(results: &[PulseResult], seed: u64) -> Figure {
-    let runs: usize = results.iter().map(|p| p.runs.len()).sum();
+    let by_method = Method::ALL.map(|method| method.name().to_owned());
+    let by_accuracy = ACCURACIES.map(|accuracy| RunKind::Accuracy(accuracy).name());
+    let chart = |title: &str, (label, range), line, groups: &[String], of: RunNumber| {
+        marks_chart(results, (title, label, range), line, groups, of)
+    };
+    let panels = [
+        chart(
+            "Seen",
+            ("error of the speed / effect of the pulse", [1e-16, 10.0]),
+            Mark::horizontal(1.0, "missed"),
+            &by_method,
+            |run| Some(run.missed),
+        ),
+        chart(
+            "Accuracy kept",
+            ("true error / required accuracy", RATIO_RANGE),
+            Mark::horizontal(1.0, "promised"),
+            &by_accuracy,
+            PulseRun::accuracy_ratio,
+        ),
+        chart(
+            "Methods",
+            ("error / error of restarts by hand", RATIO_RANGE),
+            Mark::horizontal(MAX_ERROR_RATIO, "allowed"),
+            &by_method,
+            PulseRun::restart_ratio,
+        ),
+        chart(
+            "Estimates",
+            ("estimate / true error", [0.1, 1e8]),
+            Mark::horizontal(1.0, ""),
+            &by_accuracy,
+            // Below the rounding of the reference there is no true error.
+            |run| (run.error > run.rounding).then(|| run.estimate / run.error),
+        ),
+    ];
     Figure {
         name: "pulses".to_owned(),
         title: "Pulses: none missed, accuracies reached, as exact as restarts by hand".to_owned(),
         caption: format!(
-            "{} pulses of seed {seed} in {runs} runs, one mark each, over the width of the pulse. Above: the error of the \
+            "{} pulses of seed {seed} in {} runs, one mark each, over the width of the pulse. Above: the error of the \
              speed after the pulse over what it changes the speed by, where a missed pulse is at 1; the true error of the \
              coordinate over the required accuracy, which must stay below 1. Below: the error of a method over that of the same \
              method restarted by hand at the switches, which must stay below {MAX_ERROR_RATIO}; the estimated error over \
              the true one, where it is above rounding.",
-            results.len()
+            results.len(),
+            runs(results).count()
         ),
         columns: 2,
-        panels: [
-            missed(results),
-            accuracy(results),
-            restarts(results),
-            estimates(results),
-        ]
-        .map(Into::into)
-        .into(),
+        panels: panels.map(Into::into).into(),
         ..Figure::default()
     }
 }
 
-fn width_axis() -> Axis {
-    Axis::log("width of the pulse / duration of the motion", "").with_range(5e-7, 2.0)
-}
+/// A number of a run, where it has one.
+type RunNumber = fn(&PulseRun) -> Option<f64>;
 
-fn line(at: f64, label: &str) -> Mark {
-    Mark::Horizontal {
-        at,
-        label: label.to_owned(),
-    }
-}
-
-/// A chart of marks by method, or by accuracy.
-fn marks_chart(title: &str, y: Axis, series: Vec<Series>, line: Mark) -> Chart {
-    let stroke = |series: Series| series.stroke(Stroke::Points);
-    let series = series.into_iter().map(stroke).collect();
+/// A chart of marks over the width of the pulses, in the colours of groups: the methods, or the required accuracies.
+fn marks_chart(
+    results: &[PulseResult],
+    (title, label, [low, high]): (&str, &str, [f64; 2]),
+    line: Mark,
+    groups: &[String],
+    of: RunNumber,
+) -> Chart {
+    let width = Axis::log("width of the pulse / duration of the motion", "").with_range(5e-7, 2.0);
+    let series = groups.iter().enumerate().map(|(k, group)| {
+        let of_group = completed(results).filter(|(_, run)| run.kind.group() == *group);
+        let point = |(pulse, run): (&PulseResult, _)| {
+            Some([pulse.relative_width, of(run)?.clamp(low, high)])
+        };
+        let marks = Series::line(group.clone(), of_group.filter_map(point).collect());
+        marks.stroke(Stroke::Points).color(Paint::Palette(k))
+    });
+    let y = Axis::log(label, "").with_range(low, high);
     Chart {
         marks: vec![line],
-        ..chart(title, width_axis(), y, series)
+        ..chart(title, width, y, series.collect())
     }
-}
-
-fn by_method(
-    results: &[PulseResult],
-    range: [f64; 2],
-    of: &dyn Fn(&PulseRun) -> Option<f64>,
-) -> Vec<Series> {
-    let series = Method::ALL.iter().enumerate().map(|(k, method)| {
-        let of_method = |run: &PulseRun| match run.kind {
-            RunKind::Fixed(by, _) if by == *method => of(run),
-            _ => None,
-        };
-        Series::line(method.name(), points(results, range, of_method)).color(Paint::Palette(k))
-    });
-    series.collect()
-}
-
-fn by_accuracy(
-    results: &[PulseResult],
-    range: [f64; 2],
-    of: &dyn Fn(&PulseRun) -> Option<f64>,
-) -> Vec<Series> {
-    let series = super::run::ACCURACIES
-        .iter()
-        .enumerate()
-        .map(|(k, accuracy)| {
-            let of_accuracy = |run: &PulseRun| {
-                (run.kind == RunKind::Accuracy(*accuracy))
-                    .then(|| of(run))
-                    .flatten()
-            };
-            Series::line(
-                format!("accuracy {accuracy:.0e}"),
-                points(results, range, of_accuracy),
-            )
-            .color(Paint::Palette(k))
-        });
-    series.collect()
-}
-
-fn missed(results: &[PulseResult]) -> Chart {
-    let range = [1e-16, 10.0];
-    let [low, high] = range;
-    let y = Axis::log("error of the speed / effect of the pulse", "").with_range(low, high);
-    marks_chart(
-        "Seen",
-        y,
-        by_method(results, range, &|run| Some(run.missed)),
-        line(1.0, "missed"),
-    )
-}
-
-fn accuracy(results: &[PulseResult]) -> Chart {
-    let y =
-        Axis::log("true error / required accuracy", "").with_range(RATIO_RANGE[0], RATIO_RANGE[1]);
-    let series = by_accuracy(results, RATIO_RANGE, &PulseRun::accuracy_ratio);
-    marks_chart("Accuracy kept", y, series, line(1.0, "promised"))
-}
-
-fn restarts(results: &[PulseResult]) -> Chart {
-    let y = Axis::log("error / error of restarts by hand", "")
-        .with_range(RATIO_RANGE[0], RATIO_RANGE[1]);
-    let series = by_method(results, RATIO_RANGE, &PulseRun::restart_ratio);
-    marks_chart("Methods", y, series, line(MAX_ERROR_RATIO, "allowed"))
-}
-
-fn estimates(results: &[PulseResult]) -> Chart {
-    let range = [0.1, 1e8];
-    let y = Axis::log("estimate / true error", "").with_range(range[0], range[1]);
-    // Below the rounding of the reference there is no true error.
-    let ratio = |run: &PulseRun| (run.error > run.rounding).then(|| run.estimate / run.error);
-    marks_chart(
-        "Estimates",
-        y,
-        by_accuracy(results, range, &ratio),
-        line(1.0, ""),
-    )
 }
 
 /// All numbers of all runs.
 fn csv_table(results: &[PulseResult]) -> Table {
-    let columns = [
-        ("pulse", ""),
-        ("relative width", ""),
-        ("span", "s"),
-        ("initial speed", "1/s"),
-        ("run", ""),
-        ("tolerance", ""),
-        ("refused", ""),
-        ("error", ""),
-        ("speed error / effect", ""),
-        ("error by hand", ""),
-        ("estimate", ""),
-        ("rounding", ""),
+    let columns: [NumberColumn<'_, (&PulseResult, usize, &PulseRun)>; 12] = [
+        ("pulse", "", |(pulse, ..)| pulse.number as f64),
+        ("relative width", "", |(pulse, ..)| pulse.relative_width),
+        ("span", "s", |(pulse, ..)| pulse.span),
+        ("initial speed", "1/s", |(pulse, ..)| pulse.speed),
+        ("run", "", |(_, k, _)| *k as f64),
+        ("tolerance", "", |(.., run)| match run.kind {
+            RunKind::Fixed(_, tolerance) | RunKind::Accuracy(tolerance) => tolerance,
+        }),
+        ("refused", "", |(.., run)| f64::from(run.refused.is_some())),
+        ("error", "", |(.., run)| run.error),
+        ("speed error / effect", "", |(.., run)| run.missed),
+        ("error by hand", "", |(.., run)| {
+            run.error_by_hand.unwrap_or(f64::NAN)
+        }),
+        ("estimate", "", |(.., run)| run.estimate),
+        ("rounding", "", |(.., run)| run.rounding),
     ];
-    let row = |p: &PulseResult, k: usize, run: &PulseRun| {
-        let (RunKind::Fixed(_, tolerance) | RunKind::Accuracy(tolerance)) = run.kind;
-        let refused = f64::from(u8::from(run.refused.is_some()));
-        let errors = [
-            run.error,
-            run.missed,
-            run.error_by_hand.unwrap_or(f64::NAN),
-            run.estimate,
-            run.rounding,
-        ];
-        let mut row = vec![
-            p.number as f64,
-            p.relative_width,
-            p.span,
-            p.speed,
-            k as f64,
-            tolerance,
-            refused,
-        ];
-        row.extend(errors);
-        row
-    };
-    let rows = results.iter().flat_map(|p| {
-        p.runs
-            .iter()
-            .enumerate()
-            .map(move |(k, run)| row(p, k, run))
+    let rows = results.iter().flat_map(|pulse| {
+        let runs = pulse.runs.iter().enumerate();
+        runs.map(move |(k, run)| (pulse, k, run))
     });
-    Table {
-        columns: columns.map(|(name, unit)| Column::new(name, unit)).into(),
-        rows: rows.collect(),
-    }
+    numbers(&columns, rows)
 }

@@ -4,6 +4,7 @@ use super::by_hand::{reference, restarted};
 use super::pulse::PulseShape;
 use super::subject::{INERTIA, PulseSubject, PulsedMotion};
 use crate::extremes::draws::Draws;
+use crate::extremes::in_scenes::column;
 use dwell_dynamics::Method;
 use dwell_scene::Scene;
 use dwell_study::{MotionSolver, SolverSettings, compute_free_motion, no_progress};
@@ -195,11 +196,12 @@ fn run(motion: &PulsedMotion, kind: RunKind) -> Result<UserResult, String> {
     let text = motion.scene(&motion.pulse.expression());
     let scene = Scene::parse("pulse.toml", &text).map_err(|e| e.to_string())?;
     let found = compute_free_motion(&scene, &solver, &no_progress).map_err(|e| e.to_string())?;
-    let table = &found.computed.table;
-    let column = |name: &str| table.columns.iter().position(|c| c.name == name);
-    let cells = column("q").zip(column("q.velocity")).zip(table.rows.last());
-    let ((q, q_dot), row) = cells.ok_or("no rows")?;
+    let last = |name: &str| {
+        let all = column(&found.computed.table, name)?;
+        all.last().copied().ok_or("no rows".to_owned())
+    };
+    let end = [last("q")?, last("q.velocity")?];
     let refused = found.computed.early_stop.map(|reason| reason.to_string());
     let estimate = found.estimated_error.unwrap_or(f64::NAN);
-    Ok(([row[q], row[q_dot]], estimate, refused))
+    Ok((end, estimate, refused))
 }

@@ -2,6 +2,7 @@
 
 use super::pulse::Pulse;
 use crate::extremes::draws::Draws;
+use crate::extremes::mechanisms::{mass, rotor, slider};
 
 /// The inertia of each, kg m² or kg.
 pub(super) const INERTIA: f64 = 2.0;
@@ -73,37 +74,22 @@ impl PulsedMotion {
 
     /// The scene under a magnitude of time.
     pub(super) fn scene(&self, magnitude: &str) -> String {
-        let (joint, actuator, load) = match self.subject {
-            PulseSubject::Slider => (
-                "guide = { prismatic = [\"ground.O\", \"body.O\"], axis = [1, 0] }",
-                "length = \"guide\"",
-                "slide-force = \"guide\"",
-            ),
-            PulseSubject::Wheel | PulseSubject::Pendulum => (
-                "O = { revolute = [\"ground.O\", \"body.O\"] }",
-                "angle = [\"ground\", \"body\"]",
-                "torque = \"body\"",
-            ),
+        let (mechanism, load, weight) = match self.subject {
+            PulseSubject::Slider => (slider(INERTIA), "slide-force = \"guide\"", ""),
+            PulseSubject::Wheel => {
+                let wheel = rotor(&mass(INERTIA, [0.0; 2], INERTIA));
+                (wheel, "torque = \"rotor\"", "")
+            }
+            PulseSubject::Pendulum => {
+                let pendulum = rotor(&mass(INERTIA, [0.0, -1.0], 0.0));
+                let weight = "weight = { gravity = [0, -9.81] }\n";
+                (pendulum, "torque = \"rotor\"", weight)
+            }
         };
-        let (body, weight) = match self.subject {
-            PulseSubject::Pendulum => (
-                format!("mass = {INERTIA}\ncenter = [0, -1]\ninertia = 0"),
-                "weight = { gravity = [0, -9.81] }",
-            ),
-            _ => (
-                format!("mass = {INERTIA}\ncenter = [0, 0]\ninertia = {INERTIA}"),
-                "",
-            ),
-        };
-        let Self {
-            speed,
-            pulse: Pulse { span, .. },
-            ..
-        } = self;
+        let (speed, span) = (self.speed, self.pulse.span);
         format!(
-            "[bodies.ground]\npoints = {{ O = [0, 0] }}\n[bodies.body]\npoints = {{ O = [0, 0] }}\n{body}\n[joints]\n{joint}\n\
-             [actuators]\nq = {{ {actuator} }}\n[loads]\n{weight}\npulse = {{ {load}, magnitude = \"{magnitude}\" }}\n\
-             [requests]\nreactions = []\n[motion]\ninitial-coordinate = 0.0\ninitial-velocity = {speed}\nduration = {span}\n"
+            "{mechanism}[loads]\n{weight}pulse = {{ {load}, magnitude = \"{magnitude}\" }}\n[requests]\nreactions = []\n\
+             [motion]\ninitial-coordinate = 0.0\ninitial-velocity = {speed}\nduration = {span}\n"
         )
     }
 
