@@ -20,7 +20,7 @@ use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
 use crate::machine::{CoordinateMode, Machine, MachineError, loads_with_drives};
 use crate::machine_ode::MachineOde;
-use crate::ode::{DenseOutput, OdeState};
+use crate::ode::{DenseOutput, OdeState, Step};
 use crate::options::Options;
 use crate::solve::{Event, ObservedMachine, RecorderState, Solution, TouchTolerance};
 use candidates::{Candidate, candidates, with_actuator};
@@ -324,8 +324,8 @@ impl<'s> Atlas<'s> {
         let mut ode = MachineOde::until(&current.machine, at.t, &at.y, Some(end))?;
         let mut exit = None;
         let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
-            monitor.observe(before, now, dense, &mut exit, |dense| {
-                recorder.record_step(&mut solution, options, before, now, dense)
+            monitor.observe(&mut Step { before, now, dense }, &mut exit, |step| {
+                recorder.record_step(&mut solution, options, step)
             })
         };
         let termination = integrate(&mut ode, at, Some(end), options, &mut observer)?;

@@ -13,10 +13,9 @@ use crate::contact_events::ContactMonitor;
 use crate::dop853;
 use crate::error::{DynamicsError, Result};
 use crate::integration_parts::{Parts, check_interval};
-use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, StepObserver, Termination};
+use crate::ode::{DenseOutput, OdeState, OdeSystem, Step, StepControl, StepObserver, Termination};
 use crate::options::{Method, Options};
-use crate::shared_system::SharedSystem;
-use crate::sliding_system::SlidingSystem;
+use crate::sliding_system::{SharedSystem, SlidingSystem};
 use crate::switch_monitor::{Crossing, SwitchMonitor};
 use crate::time_pieces::TimePieces;
 use diffsol::{DiffsolError, NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverState, Tableau};
@@ -122,23 +121,22 @@ fn integrate_held(
             [(); 2].map(|()| SlidingSystem::new(&shared, sliding.cloned()));
         let first_step = step.get();
         let mut watched = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
-            step.set(Some(now.t - before.t));
-            let crossing = monitor.after_step(&mut watched_system, before, now, dense)?;
-            let until = crossing.as_ref().map_or(now, |crossing| &crossing.state);
+            let mut taken = Step { before, now, dense };
+            step.set(Some(taken.duration()));
+            let crossing = monitor.after_step(&mut watched_system, &mut taken)?;
+            let mut smooth = taken.until(crossing.as_ref().map_or(now, |c| &c.state));
             let change = match &mut contacts {
-                Some(contacts) => {
-                    contacts.first_event(&mut watched_system, before, until, dense)?
-                }
+                Some(contacts) => contacts.first_event(&mut watched_system, &mut smooth)?,
                 None => None,
             };
             let found = match (change, crossing) {
                 (Some((state, touched)), _) => HeldEvent::Contacts(state, touched),
                 (None, Some(crossing)) => HeldEvent::Switch(crossing),
-                (None, None) => return observer(before, now, dense),
+                (None, None) => return observer(before, now, taken.dense),
             };
             let is_longer = found.state().t > before.t;
             let control = match is_longer {
-                true => observer(before, found.state(), dense)?,
+                true => observer(before, found.state(), taken.dense)?,
                 false => StepControl::Continue,
             };
             event = (control == StepControl::Continue).then_some(found);
@@ -209,8 +207,7 @@ fn pass_event(
     contacts: Option<&mut ContactMonitor>,
     event: HeldEvent,
 ) -> Result<OdeState> {
-    let mut shared_system = shared;
-    let system: &mut dyn OdeSystem = &mut shared_system;
+    let system = &mut SlidingSystem::new(shared, None);
     match (event, contacts) {
         (HeldEvent::Contacts(mut state, touched), Some(contacts)) => {
             monitor.refuse_to_slide(system, state.t)?;

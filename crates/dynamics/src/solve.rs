@@ -16,7 +16,7 @@ use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
 use crate::machine::{Machine, MovingModel};
 use crate::machine_ode::MachineOde;
-use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, state_at};
+use crate::ode::{DenseOutput, OdeState, OdeSystem, Step, StepControl};
 use crate::options::{Options, Statistics};
 use dwell_geometry::body_states::CoordinateFunction;
 pub(crate) use event::TouchTolerance;
@@ -193,7 +193,7 @@ fn record<O: Observed>(
     let mut recorder = recorder_state.recorder(observed, start)?;
     let mut solution = recorder.begin_solution(start, options);
     let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
-        recorder.record_step(&mut solution, options, before, now, dense)
+        recorder.record_step(&mut solution, options, &mut Step { before, now, dense })
     };
     let termination = integrate(system, start, end, options, &mut observer)?;
     if termination.error.is_none() {
@@ -284,14 +284,13 @@ impl<O: Observed> SolutionRecorder<'_, '_, O> {
         &mut self,
         solution: &mut Solution,
         options: &Options,
-        before: &OdeState,
-        now: &OdeState,
-        dense: DenseOutput<'_>,
+        step: &mut Step<'_>,
     ) -> Result<StepControl> {
         let Self { observed, state } = self;
+        let (before, now) = (step.before, step.now);
         let mut found = Vec::new();
         for tracker in &mut state.trackers {
-            tracker.locate([before, now], dense, observed, &mut found)?;
+            tracker.locate(step, observed, &mut found)?;
         }
         if solution.event_occurrences.len() + found.len() > MAX_OCCURRENCES {
             return Err(too_many_events(before.t));
@@ -307,13 +306,13 @@ impl<O: Observed> SolutionRecorder<'_, '_, O> {
                     && t <= until
                 {
                     // Between two integrations lie a few roundings of time, in which nothing happens.
-                    let mut sample = state_at(t.max(before.t), now, dense)?;
+                    let mut sample = step.state_at(t.max(before.t))?;
                     sample.t = t;
                     solution.samples.push(sample);
                     state.sample_count += 1;
                 }
             }
-            solution.steps.push(state_at(until, now, dense)?);
+            solution.steps.push(step.state_at(until)?);
         }
         solution.add_occurrences(found);
         solution.terminated_by_event = stop.is_some();
