@@ -31,6 +31,17 @@ pub(crate) struct Comparison {
     pub(crate) condition_number: f64,
 }
 
+impl Comparison {
+    /// A comparison with a reference that has no error of its own, apart from the dense rows: a difference and its scale.
+    pub(crate) fn without_error([difference, scale]: [f64; 2], unit: &'static str) -> Self {
+        Self {
+            numbers: [difference, scale, 0.0],
+            unit,
+            condition_number: 1.0,
+        }
+    }
+}
+
 impl LargestDifference {
     /// A failure without any comparison.
     pub(crate) fn failed(message: String) -> Self {

@@ -77,11 +77,8 @@ pub fn check_branch_in_space(case: &SpaceCase<'_>, states: &[SpaceState]) -> Fin
             }
         };
         for (body, both) in claimed.placements.iter().zip(&wanted).enumerate() {
-            let comparison = Comparison {
-                numbers: [apart(case, body, [both.0, both.1]), 1.0, 0.0],
-                unit: "",
-                condition_number: 1.0,
-            };
+            let distance = apart(case, body, [both.0, both.1]);
+            let comparison = Comparison::without_error([distance, 1.0], "");
             let name = &case.mechanism.bodies[body].name;
             worst.record(&comparison, || format!("q = {:?}, {name}", claimed.q));
         }
