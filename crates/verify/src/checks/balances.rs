@@ -172,8 +172,7 @@ fn balances_in_motion(
     }
     let (net, errors) = momentum_balance(context, &wrenches, momentum);
     balances.extend(components(1, None, net, errors));
-    let moving = (0..dense.bodies.len()).filter(|&b| dense.bodies[b].column.is_some());
-    for (i, body) in moving.enumerate() {
+    for (i, (body, ..)) in dense.moving_bodies().enumerate() {
         let second = [0, 1, 2].map(|c| component(&second, 3 * i + c));
         let (net, errors) = body_balance(context, (position, q_dot), &wrenches, body, second);
         balances.extend(components(3, Some(body), net, errors));
