@@ -342,9 +342,7 @@ impl<'s> Stages<'s> {
 
     /// The end of a step becomes the start of the next.
     fn advance(&mut self) {
-        for rates in &mut self.stage_rhs {
-            rates[0] = rates[END_STAGE];
-        }
+        self.continue_from_end();
         std::mem::swap(&mut self.compensation, &mut self.next_compensation);
     }
 }

@@ -19,9 +19,8 @@ use crate::machine_ode::MachineOde;
 use crate::ode::{DenseOutput, OdeState, OdeSystem, Step, StepControl};
 use crate::options::{Options, Statistics};
 use dwell_geometry::body_states::CoordinateFunction;
-pub(crate) use event::TouchTolerance;
 pub use event::{Event, EventKind, EventOccurrence};
-use event::{FoundEvent, MAX_OCCURRENCES, too_many_events};
+use event::{FoundEvent, MAX_OCCURRENCES, TouchTolerance, too_many_events};
 pub use observed::{Observed, ObservedMachine, ObservedValue};
 pub use orbit_solution::solve_orbit;
 use tracker::EventTracker;
@@ -112,8 +111,7 @@ pub fn solve<M: MovingModel>(
     options: &Options,
     events: &[Event<M::CoordinateFunction>],
 ) -> Result<Solution> {
-    let tolerance = TouchTolerance::of_integration(options);
-    let recorder_state = RecorderState::new(start.t, events, tolerance);
+    let recorder_state = RecorderState::new(start.t, events, options);
     record_machine((machine, output_model), recorder_state, start, end, options)
 }
 
@@ -129,8 +127,7 @@ pub fn solve_further<M: MovingModel>(
     options: &Options,
     events: &[Event<M::CoordinateFunction>],
 ) -> Result<Solution> {
-    let tolerance = TouchTolerance::of_integration(options);
-    let recorder_state = RecorderState::new(0.0, events, tolerance);
+    let recorder_state = RecorderState::new(0.0, events, options);
     let recorder_state = recorder_state.sampled_until(start.t, options);
     record_machine((machine, output_model), recorder_state, start, end, options)
 }
@@ -177,8 +174,7 @@ pub(crate) fn solve_with_limits<O: Observed>(
     options: &Options,
     [events, limits]: [&[Event<O::Coordinate>]; 2],
 ) -> Result<Solution> {
-    let tolerance = TouchTolerance::of_integration(options);
-    let recorder_state = RecorderState::new(start.t, events, tolerance).with_limits(limits);
+    let recorder_state = RecorderState::new(start.t, events, options).with_limits(limits);
     record(system, (observed, recorder_state), start, end, options)
 }
 
@@ -214,7 +210,8 @@ pub(crate) struct RecorderState<'e, C = CoordinateFunction> {
 }
 
 impl<'e, C: Copy> RecorderState<'e, C> {
-    pub(crate) fn new(start_time: f64, events: &'e [Event<C>], tolerance: TouchTolerance) -> Self {
+    pub(crate) fn new(start_time: f64, events: &'e [Event<C>], options: &Options) -> Self {
+        let tolerance = TouchTolerance::of_integration(options);
         Self {
             events: events.iter().map(|event| (event, tolerance)).collect(),
             trackers: Vec::with_capacity(events.len()),

@@ -127,8 +127,7 @@ impl<M: MovingModel> Passage<'_, M> {
         let contacts = workspace.contacts();
         let holds = |i: &usize| contacts.modes[*i] == ContactMode::Holds;
         let held: Vec<usize> = (0..contacts.modes.len()).filter(holds).collect();
-        let dependent = |i: usize| machine.contacts[i].dependent;
-        let basis = independent(&held, |i, j| contacts.compliance[i][dependent(j)]);
+        let basis = independent(&held, |i, j| contacts.of_two(i, j));
         let n = machine.free().len();
         let speeds = &mut self.y[n..2 * n];
         if basis.len() == n - workspace.locked() && !machine.has_prescribed() {
@@ -137,14 +136,14 @@ impl<M: MovingModel> Passage<'_, M> {
         let r = basis.len();
         let mut matrix = Vec::with_capacity(r * r);
         for &i in &basis {
-            matrix.extend(basis.iter().map(|&j| contacts.compliance[i][dependent(j)]));
+            matrix.extend(basis.iter().map(|&j| contacts.of_two(i, j)));
         }
         let mut pivots = vec![0; r];
         lu::factor(&mut matrix, &mut pivots);
         let mut impulses: Vec<f64> = basis.iter().map(|&i| contacts.speeds[i]).collect();
         lu::solve(&matrix, &pivots, &mut impulses);
         for (&i, impulse) in basis.iter().zip(impulses) {
-            let change = workspace.friction_accelerations(dependent(i));
+            let change = workspace.friction_accelerations(machine.contacts[i].dependent);
             for (speed, change) in speeds.iter_mut().zip(change) {
                 *speed -= change * impulse;
             }
