@@ -95,7 +95,6 @@ impl SwitchMonitor {
             margins: [(f64::NAN, f64::NAN); 2],
         });
         let switches: Vec<_> = switches.collect();
-        let span = if span.is_finite() { span } else { 1.0 };
         let mut monitor = Self {
             values: vec![0.0; switches.len()],
             switches,
