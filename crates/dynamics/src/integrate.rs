@@ -77,9 +77,9 @@ fn integrate_segments(
         Ok(control)
     };
     let mut parts = Parts::new(whole);
-    while let Some((begins, segment)) = pieces.next_segment()? {
+    while let Some(segment) = pieces.next_segment()? {
         let next = &mut parts.next;
-        next.start.t = next.start.t.max(begins);
+        next.start.t = next.start.t.max(segment.from);
         // The end itself, however a switch there is rounded.
         next.end = segment.restart.then_some(segment.to).or(end);
         if next.end.is_some_and(|to| to <= next.start.t) {

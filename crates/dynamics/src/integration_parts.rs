@@ -1,6 +1,6 @@
 //! An integration that ends at each switch and begins again behind it, as one.
 
-use crate::error::{DynamicsError, Result};
+use crate::error::{DynamicsError, Result, bad_option};
 use crate::ode::{OdeState, Termination};
 use crate::options::{Options, Statistics};
 
@@ -79,19 +79,11 @@ impl Parts {
 pub(crate) fn check_interval(Part { start, end, .. }: &Part) -> Result<()> {
     for &value in std::iter::once(&start.t).chain(&start.y) {
         if !value.is_finite() {
-            return Err(DynamicsError::BadOption {
-                what: "the initial state",
-                must: "finite number",
-                value,
-            });
+            return bad_option("the initial state", "finite number", value);
         }
     }
     match end.filter(|end| !(end.is_finite() && *end > start.t)) {
-        Some(value) => Err(DynamicsError::BadOption {
-            what: "the end of the motion",
-            must: "time after its start",
-            value,
-        }),
+        Some(value) => bad_option("the end of the motion", "time after its start", value),
         None => Ok(()),
     }
 }

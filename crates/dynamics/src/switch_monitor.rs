@@ -199,23 +199,18 @@ impl SwitchMonitor {
         system: &mut dyn OdeSystem,
         at: &OdeState,
     ) -> Result<f64> {
-        let mut margin = |t: f64, y: &[f64]| -> Result<f64> {
+        let mut margin = |system: &mut dyn OdeSystem, t: f64, y: &[f64]| -> Result<f64> {
             system.switch_values(t, y, &mut self.values)?;
             let margin = self.switches[k].margin(self.values[k]);
             Ok(margin.unwrap_or(f64::NAN))
         };
-        let before = margin(at.t, &at.y)?;
+        let before = margin(system, at.t, &at.y)?;
         let mut rates = vec![0.0; at.y.len()];
         system.rhs(at.t, &at.y, &mut rates)?;
         let h = PROBE * self.step;
-        let y: Vec<f64> =
-            at.y.iter()
-                .zip(&rates)
-                .map(|(y, rate)| y + h * rate)
-                .collect();
-        system.switch_values(at.t + h, &y, &mut self.values)?;
-        let after = self.switches[k].margin(self.values[k]);
-        Ok(after.unwrap_or(f64::NAN) - before)
+        let y = at.y.iter().zip(&rates).map(|(y, rate)| y + h * rate);
+        let after = margin(system, at.t + h, &y.collect::<Vec<_>>())?;
+        Ok(after - before)
     }
 
     /// Where the integration begins anew because of what happened in a step: a switch was passed, or one that was not

@@ -32,12 +32,12 @@ pub(crate) struct Comparison {
 }
 
 impl Comparison {
-    /// A comparison with a reference that has no error of its own, apart from the dense rows: a difference and its scale.
-    pub(crate) fn without_error([difference, scale]: [f64; 2], unit: &'static str) -> Self {
+    /// A difference with its scale and the reference's own error, all in `unit`.
+    pub(crate) fn new(numbers: [f64; 3], unit: &'static str, condition_number: f64) -> Self {
         Self {
-            numbers: [difference, scale, 0.0],
+            numbers,
             unit,
-            condition_number: 1.0,
+            condition_number,
         }
     }
 }

@@ -35,8 +35,8 @@ fn record(
     t: f64,
     name: &str,
 ) {
-    let numbers = [claimed - reference, reference.abs()];
-    let comparison = Comparison::without_error(numbers, unit);
+    let numbers = [claimed - reference, reference.abs(), 0.0];
+    let comparison = Comparison::new(numbers, unit, 1.0);
     to.add(comparison, format!("t = {t} s, {name}"));
 }
 

@@ -83,11 +83,17 @@ impl SpaceCase<'_> {
         }
     }
 
-    /// How far coordinates are from those at the assembly, rad or parts of the size.
-    pub(super) fn distance(&self, q: &[f64]) -> f64 {
-        let parts = self.start.0.iter().zip(q).enumerate();
-        parts.fold(0.0_f64, |max, (k, (from, to))| {
-            max.max((to - from).abs() / self.unit(k))
+    /// The coordinates on a straight line from those at the assembly to others, in steps no longer than `longest`, rad or parts of the
+    /// size; with the part of the way.
+    pub(super) fn way_to(&self, q: &[f64], longest: f64) -> impl Iterator<Item = (f64, Vec<f64>)> {
+        let both = move || self.start.0.iter().zip(q);
+        let distances = both().enumerate();
+        let distances = distances.map(|(k, (from, to))| (to - from).abs() / self.unit(k));
+        let count = (distances.fold(0.0, f64::max) / longest).ceil().max(1.0);
+        (1..=count as usize).map(move |k| {
+            let part = k as f64 / count;
+            let at = both().map(|(from, to)| from + part * (to - from));
+            (part, at.collect())
         })
     }
 }
@@ -265,7 +271,7 @@ impl DenseState<'_> {
         what: &str,
     ) {
         let q: Vec<String> = self.claimed.q.iter().map(|q| format!("{q:.4}")).collect();
-        let comparison = Comparison::without_error([difference, scale], unit);
+        let comparison = Comparison::new([difference, scale, 0.0], unit, 1.0);
         to.add(comparison, format!("q = {}, {what}", q.join(" ")));
     }
 
@@ -348,13 +354,8 @@ impl SpaceChecker<'_> {
         if errors.is_empty() {
             return Ok(errors);
         }
-        let (start, placements) = self.case.start;
-        let count = (self.case.distance(&state.q) / MESH_STEP).ceil().max(1.0);
-        let mut before = placements.to_vec();
-        for k in 1..=count as usize {
-            let part = k as f64 / count;
-            let at = |(from, to): (&f64, &f64)| from + part * (to - from);
-            let q: Vec<f64> = start.iter().zip(&state.q).map(at).collect();
+        let mut before = self.case.start.1.to_vec();
+        for (part, q) in self.case.way_to(&state.q, MESH_STEP) {
             // The last is the state itself, which may have been claimed otherwise.
             let after = match part < 1.0 {
                 true => self.subject.placements(&q)?,

@@ -130,12 +130,7 @@ impl<'a> DenseState<'a> {
     ) {
         let separator = if what.is_empty() { "" } else { ", " };
         let location = format!("t = {} s{separator}{what}", self.state.t);
-        let condition_number = self.condition_number;
-        let comparison = Comparison {
-            numbers,
-            unit,
-            condition_number,
-        };
+        let comparison = Comparison::new(numbers, unit, self.condition_number);
         set.add(comparison, location);
     }
 
