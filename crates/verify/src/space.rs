@@ -183,38 +183,29 @@ impl System {
         let svd = singular_values(&matrix)?;
         let idle = columns - rank(&svd);
         // An idle rotation stands still: the body that turns in it does not turn about its line.
-        let mut with_idle = Mat::zeros(rows.len() + 6 + idle, columns);
-        with_idle
-            .as_mut()
-            .subrows_mut(0, rows.len() + 6)
-            .copy_from(&matrix);
+        let (fixed, first) = (matrix.nrows(), matrix);
+        let mut matrix = Mat::zeros(fixed + idle, columns);
+        matrix.as_mut().subrows_mut(0, fixed).copy_from(&first);
         for k in 0..idle {
             let null = svd.V().col(columns - 1 - k);
             let turning = |b: usize| vec3(null[6 * b + 3], null[6 * b + 4], null[6 * b + 5]);
-            let most = (0..bodies.placements.len())
-                .max_by(|&a, &b| turning(a).norm().total_cmp(&turning(b).norm()));
-            if let Some(body) = most {
-                add(
-                    &mut with_idle,
-                    rows.len() + 6 + k,
-                    body,
-                    couple(turning(body)),
-                );
+            let size = |b: &usize| turning(*b).norm();
+            let all = 0..bodies.placements.len();
+            if let Some(body) = all.max_by(|a, b| size(a).total_cmp(&size(b))) {
+                add(&mut matrix, fixed + k, body, couple(turning(body)));
             }
         }
-        let svd = singular_values(&with_idle)?;
+        let svd = singular_values(&matrix)?;
+        let on_second = rows[..constraints].iter().map(|row| row.gradients[1]);
         Ok(Self {
             rank: rank(&svd),
-            rows: with_idle.nrows(),
-            matrix: with_idle,
+            rows: matrix.nrows(),
+            matrix,
             svd,
             constraints,
             idle,
             of_joint,
-            on_second: rows[..constraints]
-                .iter()
-                .map(|row| row.gradients[1])
-                .collect(),
+            on_second: on_second.collect(),
         })
     }
 
