@@ -18,11 +18,11 @@ mod revolutions;
 use crate::change_point_fit::{ChangePointFit, ChangePointFitError};
 use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
-use crate::machine::{CoordinateMode, Machine, MachineError, loads_with_drives};
+use crate::machine::{CoordinateMode, Machine, MachineError};
 use crate::machine_ode::MachineOde;
-use crate::ode::{DenseOutput, OdeState};
+use crate::ode::{DenseOutput, OdeState, Step};
 use crate::options::Options;
-use crate::solve::{Event, ObservedMachine, RecorderState, Solution, TouchTolerance};
+use crate::solve::{Event, ObservedMachine, RecorderState, Solution};
 use candidates::{Candidate, candidates, with_actuator};
 pub use continued_motion::{
     ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory, Segment,
@@ -170,9 +170,8 @@ impl<'s> Atlas<'s> {
         let model = compiled(&[])?;
         let modes = vec![CoordinateMode::Free; model.plan().actuators()];
         let machine = Machine::new(model, loads, modes, drives)?;
-        let all = loads_with_drives(mechanism, loads, drives).map_err(MachineError::from)?;
         let output_model = compiled(description.reactions)?;
-        let output_model = output_model.with_loads(all);
+        let output_model = output_model.with_loads(machine.model().loads().to_vec());
         let (name, coordinate) = match mechanism.actuators.first() {
             Some(actuator) => (actuator.name.clone(), actuator.coordinate()),
             None => return Err(MachineError::CoordinateModes.into()),
@@ -216,8 +215,7 @@ impl<'s> Atlas<'s> {
     ) -> Result<ContinuedMotion> {
         self.tighten_tolerance(options.rtol);
         let mut motion = ContinuedMotion::default();
-        let tolerance = TouchTolerance::of_integration(options);
-        let mut recorder_state = RecorderState::new(start.t, events, tolerance);
+        let mut recorder_state = RecorderState::new(start.t, events, options);
         let (mut chart, mut at) = (0, start.clone());
         let requested = options;
         let (mut options, mut max_step) = (*requested, None);
@@ -324,8 +322,8 @@ impl<'s> Atlas<'s> {
         let mut ode = MachineOde::until(&current.machine, at.t, &at.y, Some(end))?;
         let mut exit = None;
         let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
-            monitor.observe(before, now, dense, &mut exit, |dense| {
-                recorder.record_step(&mut solution, options, before, now, dense)
+            monitor.observe(&mut Step { before, now, dense }, &mut exit, |step| {
+                recorder.record_step(&mut solution, options, step)
             })
         };
         let termination = integrate(&mut ode, at, Some(end), options, &mut observer)?;

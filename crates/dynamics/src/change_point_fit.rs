@@ -30,12 +30,12 @@ const MAX_HALF_WIDTH: f64 = 0.2;
 const MIN_TOLERANCE: f64 = 1e-12;
 /// A looser tolerance does not make the window smaller.
 const MAX_TOLERANCE: f64 = 1e-9;
-/// How far from the change point poses are fitted, rad: the farthest of the good ones is taken.
+/// How far from the change point poses are fitted, rad, or parts of the size: the farthest of the good ones is taken.
 const FIT_RADII: [f64; 5] = [0.15, 0.3, 0.5, 0.8, 1.2];
 /// Largest gap between a fit and the plan at the window's ends, in first and second derivatives.
 pub(crate) const MAX_GAP: f64 = 1e-6;
 /// A gap below this is as good as any.
-const GAP_ROUNDING: f64 = 1e-11;
+pub(crate) const GAP_ROUNDING: f64 = 1e-11;
 
 /// A result that fails with a [`ChangePointFitError`] unless another error is named.
 pub(crate) type Result<T, E = ChangePointFitError> = std::result::Result<T, E>;
@@ -125,6 +125,11 @@ impl FitWindow {
     }
 }
 
+/// How far poses are fitted about half a window, in the `unit` of the coordinate, where so much is free.
+pub(crate) fn fit_radii([half_width, unit]: [f64; 2], free: f64) -> [f64; 5] {
+    FIT_RADII.map(|radius| (radius * unit).max(1.5 * half_width).min(free))
+}
+
 /// Half the window for a tolerance, rad: where N·eps/|sin θ|³ exceeds it.
 pub(crate) fn half_width_for(plan: &Plan, tolerance: f64) -> f64 {
     half_width_of_groups(plan.group_methods().len(), tolerance)
@@ -208,13 +213,8 @@ impl ChangePointFit {
             None => f64::INFINITY,
         };
         let max_radius = available_radius(branches[0]).min(available_radius(branches[1]));
-        let fit_radii = FIT_RADII.map(|fit_radius| {
-            (fit_radius * coordinate_scale)
-                .max(1.5 * half_width)
-                .min(max_radius)
-        });
-        let mut fits: Vec<(f64, f64, PolynomialFit)> = Vec::with_capacity(fit_radii.len());
-        for fit_radius in fit_radii {
+        let mut fits: Vec<(f64, f64, PolynomialFit)> = Vec::with_capacity(FIT_RADII.len());
+        for fit_radius in fit_radii([half_width, coordinate_scale], max_radius) {
             let fit = Self::polynomials(branches, center, half_width, fit_radius)?;
             let gap = derivative_gap(&fit, branches, center, [half_width, coordinate_scale])?;
             fits.push((gap, fit_radius, fit));

@@ -17,7 +17,7 @@ mod relations;
 mod search;
 mod stop;
 
-pub(crate) use held::{Unloaded, solve_contacts};
+pub(crate) use held::ContactProblem;
 pub(crate) use independent::independent;
 pub use mode::{ContactEvent, ContactMode, ContactStep, StopChange};
 pub(crate) use relations::ContactWorkspace;

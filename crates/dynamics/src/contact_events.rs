@@ -6,4 +6,5 @@ mod monitor;
 mod passage;
 
 pub(crate) use monitor::ContactMonitor;
+use passage::Passage;
 pub(crate) use passage::pass;

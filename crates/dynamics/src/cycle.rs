@@ -21,7 +21,7 @@ use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
 use crate::machine::{Machine, MovingModel};
 use crate::machine_ode::MachineOde;
-use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, root_subintervals, state_at};
+use crate::ode::{DenseOutput, OdeState, OdeSystem, Step, StepControl};
 use crate::options::Options;
 use crate::repetition::{PERIODICITY_TOLERANCE, repetition_angle};
 use dwell_numerics::lu;
@@ -357,11 +357,11 @@ impl<'m, M: MovingModel> CycleProblem<'m, M> {
         let mut extremes = vec![[first.y[0], first.y[1]]];
         let mut samples = vec![first.clone()];
         let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
-            let mut state_inside = |at: f64| -> Result<OdeState> {
-                Ok(self.machine_state(at, &state_at(at, now, dense)?.y))
-            };
-            let mut from = before.t;
-            for to in root_subintervals(before, now) {
+            let mut step = Step { before, now, dense };
+            let (ends, mut from) = (step.root_subintervals(), before.t);
+            let mut state_inside =
+                |at: f64| -> Result<OdeState> { Ok(self.machine_state(at, &step.state_at(at)?.y)) };
+            for to in ends {
                 let rises = rise(&state_inside(to)?)?;
                 if last * rises < 0.0
                     && let Some(at) = root::find(|at| rise(&state_inside(at)?), from, to)?

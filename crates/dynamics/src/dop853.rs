@@ -14,8 +14,9 @@ mod coefficients;
 mod interpolation;
 
 use crate::error::{DynamicsError, Result};
+use crate::integration_parts::Part;
 use crate::ode::{OdeState, OdeSystem, StepControl, StepObserver, Termination};
-use crate::options::{Options, Statistics};
+use crate::options::Statistics;
 use crate::time_pieces::TimePieces;
 use coefficients::{ERRORS, NODES, Row, STAGES, WEIGHTS};
 use interpolation::Interpolant;
@@ -45,32 +46,26 @@ const FAILURE_REDUCTION: f64 = 0.25;
 /// A step that ends within this part of itself before the end is stretched to it.
 const STRETCH_FRACTION: f64 = 0.01;
 
-/// Integrates a system whose start has `rates`, by a `first_step` if one is known (s), by steps no shorter than `min_step` (s), each state to its own
-/// absolute tolerance.
+/// Integrates a system whose start has `rates`, by steps no shorter than `min_step` (s), each state to its own absolute tolerance.
 pub(crate) fn integrate(
     system: &mut dyn OdeSystem,
-    (start, rates): (&OdeState, &[f64]),
-    end: Option<f64>,
-    options: &Options,
-    (atol, min_step, pieces): (&[f64], f64, Option<&mut TimePieces<'_>>),
-    first_step: Option<f64>,
+    part: &Part,
+    (rates, atol, min_step): (&[f64], &[f64], f64),
+    pieces: Option<&mut TimePieces<'_>>,
     observer: StepObserver<'_>,
 ) -> Termination {
-    let tolerance = (options.rtol, atol);
     let mut stepper = Stepper {
         stages: Stages::new(system, rates),
-        tolerance,
-        from: start.clone(),
-        to: start.clone(),
+        tolerance: (part.options.rtol, atol),
+        from: part.start.clone(),
+        to: part.start.clone(),
         min_step,
         previous_error: MIN_ERROR,
         stiffness: 0.0,
         interpolant: Interpolant::new(rates.len()),
         statistics: Statistics::default(),
     };
-    let error = stepper
-        .run((end, first_step), options, pieces, observer)
-        .err();
+    let error = stepper.run(part, pieces, observer).err();
     stepper.statistics.evaluations = stepper.stages.evaluations;
     Termination {
         state: stepper.from,
@@ -98,11 +93,11 @@ struct Stepper<'s> {
 impl Stepper<'_> {
     fn run(
         &mut self,
-        (end, first_step): (Option<f64>, Option<f64>),
-        options: &Options,
+        part: &Part,
         mut pieces: Option<&mut TimePieces<'_>>,
         observer: StepObserver<'_>,
     ) -> Result<()> {
+        let (options, end) = (&part.options, part.end);
         let max_step = options.max_step.unwrap_or(f64::INFINITY);
         let mut longest = |t: f64| -> Result<f64> {
             Ok(match &mut pieces {
@@ -113,7 +108,7 @@ impl Stepper<'_> {
         let remaining = |t: f64| end.map_or(f64::INFINITY, |end| end - t);
         let first = remaining(self.from.t).min(longest(self.from.t)?);
         // Behind an event the step before it fits, where the rates that jump have their size.
-        let mut h = match first_step {
+        let mut h = match part.first_step {
             Some(step) => step.min(first),
             None => self.initial_step(first),
         };
@@ -342,9 +337,7 @@ impl<'s> Stages<'s> {
 
     /// The end of a step becomes the start of the next.
     fn advance(&mut self) {
-        for rates in &mut self.stage_rhs {
-            rates[0] = rates[END_STAGE];
-        }
+        self.continue_from_end();
         std::mem::swap(&mut self.compensation, &mut self.next_compensation);
     }
 }

@@ -130,7 +130,8 @@ impl<M: MachineModel> CompiledDrive<M> {
         }
     }
 
-    /// Of a speed controller: the torque or force without its limit, and the error of the speed.
+    /// Of a speed controller: the torque or force without its limit, and the error of the speed. They are linear: of the rates of the
+    /// arguments, these are their rates.
     pub(crate) fn switch_values(&self, input: f64, speed: f64, state: Option<f64>) -> [f64; 2] {
         match self.law {
             DriveLaw::AppliedForce | DriveLaw::Motor(_) => [f64::NAN; 2],
@@ -140,18 +141,6 @@ impl<M: MachineModel> CompiledDrive<M> {
                     state.unwrap_or(0.0) * integral + error * proportional,
                     error,
                 ]
-            }
-        }
-    }
-
-    /// The rates of its [switching functions](Self::switch_values), from those of its input, its coordinate's speed and its
-    /// state.
-    pub(crate) fn switch_rates(&self, input: f64, acceleration: f64, state: f64) -> [f64; 2] {
-        match self.law {
-            DriveLaw::AppliedForce | DriveLaw::Motor(_) => [f64::NAN; 2],
-            DriveLaw::SpeedController([proportional, integral, _]) => {
-                let error = input - acceleration;
-                [state * integral + error * proportional, error]
             }
         }
     }

@@ -295,6 +295,11 @@ pub enum DynamicsError {
     },
 }
 
+/// That an option cannot be used.
+pub(crate) fn bad_option<T>(what: &'static str, must: &'static str, value: f64) -> Result<T> {
+    Err(DynamicsError::BadOption { what, must, value })
+}
+
 /// The inertia `m` (kg m² or kg) at `q`, if it is positive and finite.
 pub(crate) fn positive_inertia(m: f64, q: f64) -> Result<f64> {
     if m > 0.0 && m.is_finite() {

@@ -2,7 +2,7 @@
 //! a straight line over the inertia, δ ≈ ΔE / (J ω²), so that few cycles are solved for.
 
 use crate::cycle::{Cycle, steady_cycle};
-use crate::error::{DynamicsError, Result};
+use crate::error::{DynamicsError, Result, bad_option};
 use crate::machine::{Machine, MovingModel};
 use crate::options::Options;
 
@@ -44,11 +44,7 @@ pub fn size_flywheel<M: MovingModel>(
     options: &Options,
 ) -> Result<Flywheel> {
     if !(wanted.is_finite() && wanted > 0.0) {
-        return Err(DynamicsError::BadOption {
-            what: "the coefficient of fluctuation",
-            must: "positive number",
-            value: wanted,
-        });
+        return bad_option("the coefficient of fluctuation", "positive number", wanted);
     }
     let initial_inertia = machine.flywheel(0);
     let mut guess = guess.to_vec();

@@ -12,11 +12,10 @@ mod step_loop;
 use crate::contact_events::ContactMonitor;
 use crate::dop853;
 use crate::error::{DynamicsError, Result};
-use crate::integration_parts::{Parts, check_interval};
-use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, StepObserver, Termination};
+use crate::integration_parts::{Part, Parts, check_interval};
+use crate::ode::{DenseOutput, OdeState, OdeSystem, Step, StepControl, StepObserver, Termination};
 use crate::options::{Method, Options};
-use crate::shared_system::SharedSystem;
-use crate::sliding_system::SlidingSystem;
+use crate::sliding_system::{SharedSystem, SlidingSystem};
 use crate::switch_monitor::{Crossing, SwitchMonitor};
 use crate::time_pieces::TimePieces;
 use diffsol::{DiffsolError, NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverState, Tableau};
@@ -48,12 +47,18 @@ pub fn integrate(
     observer: StepObserver<'_>,
 ) -> Result<Termination> {
     options.check()?;
-    check_interval(start, end)?;
+    let whole = Part {
+        start: start.clone(),
+        end,
+        options: *options,
+        first_step: None,
+    };
+    check_interval(&whole)?;
     match system.time_features().filter(|f| !f.is_empty()) {
-        None => integrate_held(system, start, end, options, None, observer),
+        None => integrate_held(system, whole, None, observer),
         Some(features) => {
             let mut pieces = TimePieces::new(&features, start.t, end, options)?;
-            integrate_segments(system, start, end, options, &mut pieces, observer)
+            integrate_segments(system, whole, &mut pieces, observer)
         }
     }
 }
@@ -61,28 +66,26 @@ pub fn integrate(
 /// Integrates from switch to switch.
 fn integrate_segments(
     system: &mut dyn OdeSystem,
-    start: &OdeState,
-    end: Option<f64>,
-    options: &Options,
+    whole: Part,
     pieces: &mut TimePieces<'_>,
     observer: StepObserver<'_>,
 ) -> Result<Termination> {
-    let stopped = Cell::new(false);
+    let (stopped, end) = (Cell::new(false), whole.end);
     let mut watched = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
         let control = observer(before, now, dense)?;
         stopped.set(stopped.get() || control == StepControl::Stop);
         Ok(control)
     };
-    let mut parts = Parts::new(start, options);
-    while let Some((begins, segment)) = pieces.next_segment()? {
-        parts.from.t = parts.from.t.max(begins);
+    let mut parts = Parts::new(whole);
+    while let Some(segment) = pieces.next_segment()? {
+        let next = &mut parts.next;
+        next.start.t = next.start.t.max(segment.from);
         // The end itself, however a switch there is rounded.
-        let to = segment.restart.then_some(segment.to).or(end);
-        if to.is_some_and(|to| to <= parts.from.t) {
+        next.end = segment.restart.then_some(segment.to).or(end);
+        if next.end.is_some_and(|to| to <= next.start.t) {
             continue;
         }
-        let (from, remaining) = (parts.from.clone(), parts.remaining);
-        let part = integrate_held(system, &from, to, &remaining, Some(pieces), &mut watched);
+        let part = integrate_held(system, next.clone(), Some(pieces), &mut watched);
         if parts.add(part)? || stopped.get() {
             break;
         }
@@ -95,24 +98,21 @@ fn integrate_segments(
 // Long because it is one loop: what ends an integration decides how the next one begins.
 fn integrate_held(
     system: &mut dyn OdeSystem,
-    start: &OdeState,
-    end: Option<f64>,
-    options: &Options,
+    mut whole: Part,
     mut pieces: Option<&mut TimePieces<'_>>,
     observer: StepObserver<'_>,
 ) -> Result<Termination> {
-    let span = end.unwrap_or(f64::INFINITY) - start.t;
-    let mut contacts = ContactMonitor::new(system, if span.is_finite() { span } else { 1.0 });
+    let (end, span) = (whole.end, whole.span());
+    let mut contacts = ContactMonitor::new(system, span);
     if system.switch_kinds().is_empty() && contacts.is_none() {
-        return integrate_smooth(system, start, end, options, (pieces, None), observer);
+        return integrate_smooth(system, whole, pieces, observer);
     }
-    let mut start = start.clone();
     if let Some(contacts) = &mut contacts {
-        contacts.settle(system, &mut start)?;
+        contacts.settle(system, &mut whole.start)?;
     }
-    let mut monitor = SwitchMonitor::new(system, &start, end.unwrap_or(f64::INFINITY) - start.t)?;
+    let mut monitor = SwitchMonitor::new(system, &whole.start, span)?;
     let shared = SharedSystem::new(system);
-    let mut parts = Parts::new(&start, options);
+    let mut parts = Parts::new(whole);
     // The last step that an event has not cut short.
     let step = Cell::new(None);
     loop {
@@ -120,66 +120,59 @@ fn integrate_held(
         let sliding = monitor.sliding();
         let [mut integrated, mut watched_system] =
             [(); 2].map(|()| SlidingSystem::new(&shared, sliding.cloned()));
-        let first_step = step.get();
+        parts.next.first_step = step.get();
         let mut watched = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
-            step.set(Some(now.t - before.t));
-            let crossing = monitor.after_step(&mut watched_system, before, now, dense)?;
-            let until = crossing.as_ref().map_or(now, |crossing| &crossing.state);
+            let mut taken = Step { before, now, dense };
+            step.set(Some(taken.duration()));
+            let crossing = monitor.after_step(&mut watched_system, &mut taken)?;
+            let mut smooth = taken.until(crossing.as_ref().map_or(now, |c| &c.state));
             let change = match &mut contacts {
-                Some(contacts) => {
-                    contacts.first_event(&mut watched_system, before, until, dense)?
-                }
+                Some(contacts) => contacts.first_event(&mut watched_system, &mut smooth)?,
                 None => None,
             };
             let found = match (change, crossing) {
                 (Some((state, touched)), _) => HeldEvent::Contacts(state, touched),
                 (None, Some(crossing)) => HeldEvent::Switch(crossing),
-                (None, None) => return observer(before, now, dense),
+                (None, None) => return observer(before, now, taken.dense),
             };
             let is_longer = found.state().t > before.t;
             let control = match is_longer {
-                true => observer(before, found.state(), dense)?,
+                true => observer(before, found.state(), taken.dense)?,
                 false => StepControl::Continue,
             };
             event = (control == StepControl::Continue).then_some(found);
             Ok(StepControl::Stop)
         };
-        let (from, remaining) = (parts.from.clone(), parts.remaining);
+        let (from, next) = (parts.next.start.t, parts.next.clone());
         let pieces = pieces.as_deref_mut();
-        let part = integrate_smooth(
-            &mut integrated,
-            &from,
-            end,
-            &remaining,
-            (pieces, first_step),
-            &mut watched,
-        );
+        let part = integrate_smooth(&mut integrated, next, pieces, &mut watched);
         let is_ended = parts.add(part)?;
         let Some(event) = event.filter(|_| !is_ended) else {
             break;
         };
-        if matches!(event, HeldEvent::Switch(_)) || event.state().t <= from.t {
+        if matches!(event, HeldEvent::Switch(_)) || event.state().t <= from {
             // Behind a switch of a load the rates may be those of another time scale; and with the step that has led beyond
             // an event at its very start it would be met again.
             step.set(None);
         }
         let passed = pass_event(&shared, &mut monitor, contacts.as_mut(), event);
         match (passed, &mut parts.whole) {
-            (Ok(state), _) => parts.from = state,
+            (Ok(state), _) => parts.next.start = state,
             (Err(error), Some(whole)) => {
                 whole.error = Some(error);
                 break;
             }
             (Err(error), None) => return Err(error),
         }
-        let rounding = 8.0 * f64::EPSILON * parts.from.t.abs();
-        if end.is_some_and(|end| parts.from.t >= end - rounding) {
+        let t = parts.next.start.t;
+        let rounding = 8.0 * f64::EPSILON * t.abs();
+        if end.is_some_and(|end| t >= end - rounding) {
             break;
         }
     }
     if let Some(whole) = &mut parts.whole {
         // With the modes and speeds behind the last event.
-        whole.state.clone_from(&parts.from);
+        whole.state.clone_from(&parts.next.start);
         whole.statistics.event_evaluations += shared.event_evaluations();
     }
     parts.whole.ok_or(DynamicsError::DurationTooShort)
@@ -209,8 +202,7 @@ fn pass_event(
     contacts: Option<&mut ContactMonitor>,
     event: HeldEvent,
 ) -> Result<OdeState> {
-    let mut shared_system = shared;
-    let system: &mut dyn OdeSystem = &mut shared_system;
+    let system = &mut SlidingSystem::new(shared, None);
     match (event, contacts) {
         (HeldEvent::Contacts(mut state, touched), Some(contacts)) => {
             monitor.refuse_to_slide(system, state.t)?;
@@ -232,29 +224,20 @@ fn pass_event(
     }
 }
 
-/// Integrates while nothing switches in time; `pieces` limits the steps, and a first step behind an event may be known.
+/// Integrates while nothing switches in time; `pieces` limits the steps.
 fn integrate_smooth(
     system: &mut dyn OdeSystem,
-    start: &OdeState,
-    end: Option<f64>,
-    options: &Options,
-    (mut pieces, mut first_step): (Option<&mut TimePieces<'_>>, Option<f64>),
+    whole: Part,
+    mut pieces: Option<&mut TimePieces<'_>>,
     observer: StepObserver<'_>,
 ) -> Result<Termination> {
+    let options = &whole.options;
     let weights = (0..system.size()).map(|i| options.atol * system.error_weight(i));
-    let mut impasse = Impasse::new(start.t, options.rtol, weights.collect());
-    let mut parts = Parts::new(start, options);
+    let mut impasse = Impasse::new(whole.start.t, options.rtol, weights.collect());
+    let mut parts = Parts::new(whole);
     loop {
-        let (from, remaining) = (parts.from.clone(), parts.remaining);
-        let known = (pieces.as_deref_mut(), first_step);
-        let part = integrate_part(
-            system,
-            (&from, end),
-            &remaining,
-            known,
-            &mut impasse,
-            observer,
-        );
+        let pieces = pieces.as_deref_mut();
+        let part = integrate_part(system, &parts.next, pieces, &mut impasse, observer);
         let is_ended = parts.add(part)?;
         // A step whose end cannot be evaluated was taken, or one of an explicit method, which does not shorten it: a shorter one is tried.
         let shorter = impasse.failed_step.take();
@@ -263,7 +246,7 @@ fn integrate_smooth(
             break;
         };
         whole.error = None;
-        first_step = Some(FAILURE_REDUCTION * step);
+        parts.next.first_step = Some(FAILURE_REDUCTION * step);
     }
     parts.whole.ok_or(DynamicsError::DurationTooShort)
 }
@@ -272,27 +255,23 @@ fn integrate_smooth(
 // Long because diffsol's problem is a type of closures, which has no name and borrows what is counted and kept here.
 fn integrate_part(
     system: &mut dyn OdeSystem,
-    (start, end): (&OdeState, Option<f64>),
-    options: &Options,
-    (pieces, first_step): (Option<&mut TimePieces<'_>>, Option<f64>),
+    part: &Part,
+    pieces: Option<&mut TimePieces<'_>>,
     impasse: &mut Impasse,
     observer: StepObserver<'_>,
 ) -> Result<Termination> {
-    let n = system.size();
+    let (n, start, options) = (system.size(), &part.start, &part.options);
     // A start that cannot be evaluated is an error at once, not after a search for a step size.
     let mut rates = vec![0.0; n];
     system.rhs(start.t, &start.y, &mut rates)?;
     // At rest the rates show how soon something happens: a motor's current rises within microseconds.
     let started = start.y.iter().chain(&rates);
     let max_rate = started.fold(1.0_f64, |max, y| max.max(y.abs()));
-    let atol = impasse.absolute().to_vec();
+    let atol = impasse.absolute.clone();
     let min_step = MIN_STEP / max_rate;
     if options.method == Method::Dop853 {
-        let from = (start, &rates[..]);
-        let limits = (&atol[..], min_step, pieces);
-        return Ok(dop853::integrate(
-            system, from, end, options, limits, first_step, observer,
-        ));
+        let limits = (&rates[..], &atol[..], min_step);
+        return Ok(dop853::integrate(system, part, limits, pieces, observer));
     }
     let system = RefCell::new(system);
     let failure: RefCell<Option<DynamicsError>> = RefCell::new(None);
@@ -340,9 +319,7 @@ fn integrate_part(
     problem.ode_options.max_nonlinear_solver_failures = usize::MAX;
     problem.ode_options.min_timestep = min_step;
     let mut step_loop = StepLoop {
-        start,
-        end,
-        options,
+        part,
         failure: &failure,
         pieces,
         impasse,
@@ -355,8 +332,8 @@ fn integrate_part(
     // A method of one step goes on with the step before the event; that of many begins with the first order.
     let state_of = |tableau: Tableau<f64>| {
         let mut state = problem.rk_state(&tableau)?;
-        if let Some(step) = first_step {
-            *state.as_mut().h = step.min(end.map_or(f64::INFINITY, |end| end - start.t));
+        if let Some(step) = part.first_step {
+            *state.as_mut().h = step.min(part.end.map_or(f64::INFINITY, |end| end - start.t));
         }
         Ok::<_, DiffsolError>(state)
     };

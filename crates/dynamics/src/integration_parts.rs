@@ -1,25 +1,42 @@
 //! An integration that ends at each switch and begins again behind it, as one.
 
-use crate::error::{DynamicsError, Result};
+use crate::error::{DynamicsError, Result, bad_option};
 use crate::ode::{OdeState, Termination};
 use crate::options::{Options, Statistics};
+
+/// A part of an integration.
+#[derive(Clone)]
+pub(crate) struct Part {
+    pub(crate) start: OdeState,
+    /// Until when, s; none: until the observer stops it.
+    pub(crate) end: Option<f64>,
+    pub(crate) options: Options,
+    /// The first step, s, if one is known.
+    pub(crate) first_step: Option<f64>,
+}
+
+impl Part {
+    /// Its duration, or a second where it has no end.
+    pub(crate) fn span(&self) -> f64 {
+        let span = self.end.map_or(f64::INFINITY, |end| end - self.start.t);
+        if span.is_finite() { span } else { 1.0 }
+    }
+}
 
 /// An integration in parts.
 pub(crate) struct Parts {
     pub(crate) whole: Option<Termination>,
-    /// Where the next part begins, and what is left for it.
-    pub(crate) from: OdeState,
-    pub(crate) remaining: Options,
+    /// Where the next part begins, with what is left for it.
+    pub(crate) next: Part,
     max_steps: usize,
 }
 
 impl Parts {
-    pub(crate) fn new(start: &OdeState, options: &Options) -> Self {
+    pub(crate) fn new(all: Part) -> Self {
         Self {
             whole: None,
-            from: start.clone(),
-            remaining: *options,
-            max_steps: options.max_steps,
+            max_steps: all.options.max_steps,
+            next: all,
         }
     }
 
@@ -41,9 +58,9 @@ impl Parts {
                 return Ok(true);
             }
         };
-        self.from.clone_from(&part.state);
-        let steps = part.statistics.steps;
-        self.remaining.max_steps = self.remaining.max_steps.saturating_sub(steps);
+        self.next.start.clone_from(&part.state);
+        let max_steps = &mut self.next.options.max_steps;
+        *max_steps = max_steps.saturating_sub(part.statistics.steps);
         let before = self.whole.take();
         let before = before.map_or_else(Statistics::default, |before| before.statistics);
         let last = self.whole.insert(Termination {
@@ -59,22 +76,14 @@ impl Parts {
 }
 
 /// Refuses a start or an end that is not finite, or an end before the start.
-pub(crate) fn check_interval(start: &OdeState, end: Option<f64>) -> Result<()> {
+pub(crate) fn check_interval(Part { start, end, .. }: &Part) -> Result<()> {
     for &value in std::iter::once(&start.t).chain(&start.y) {
         if !value.is_finite() {
-            return Err(DynamicsError::BadOption {
-                what: "the initial state",
-                must: "finite number",
-                value,
-            });
+            return bad_option("the initial state", "finite number", value);
         }
     }
     match end.filter(|end| !(end.is_finite() && *end > start.t)) {
-        Some(value) => Err(DynamicsError::BadOption {
-            what: "the end of the motion",
-            must: "time after its start",
-            value,
-        }),
+        Some(value) => bad_option("the end of the motion", "time after its start", value),
         None => Ok(()),
     }
 }

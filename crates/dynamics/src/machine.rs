@@ -26,7 +26,7 @@ mod unloaded;
 mod works;
 mod workspace;
 
-use crate::contact::{Contact, ContactMode, Stop, Unloaded, solve_contacts};
+use crate::contact::{Contact, ContactMode, ContactProblem, Stop};
 use crate::drive::{CompiledDrive, DriveError};
 use crate::error::{DynamicsError, Result};
 use crate::state_switches::StateSwitches;
@@ -413,20 +413,16 @@ impl<M: MovingModel> Machine<M> {
             result.add_scaled(column, q_ddot);
         }
         if !self.contacts.is_empty() {
-            let unloaded = Unloaded {
-                reactions: &result.reactions,
+            let mut problem = ContactProblem {
+                contacts: &self.contacts,
+                state,
+                workspace: contacts,
+                unloaded: &result.reactions,
                 responses: friction_responses,
             };
             let accelerations = (&free_accelerations[..], &friction_accelerations[..]);
             let freedoms = locked.iter().filter(|locked| !**locked).count();
-            solve_contacts(
-                &self.contacts,
-                state,
-                contacts,
-                &unloaded,
-                accelerations,
-                freedoms,
-            )?;
+            problem.solve(accelerations, freedoms)?;
         } else if self.model.frictions().len() > 0 {
             state.solve_friction(&result.reactions, friction_responses)?;
         }

@@ -66,11 +66,6 @@ impl<'m, M: MovingModel> MachineOde<'m, M> {
     pub fn take_contact_events(&mut self) -> Vec<ContactEvent> {
         std::mem::take(&mut self.contact_events)
     }
-
-    /// The machine.
-    pub fn machine(&self) -> &'m Machine<M> {
-        self.machine
-    }
 }
 
 /// The part of the largest work below which a work does not count.

@@ -241,36 +241,57 @@ impl Termination {
 /// The parts of a step between which a change of sign is looked for.
 const ROOT_SUBINTERVALS: usize = 4;
 
-/// The ends of the subintervals of a step in which roots are looked for; the last is the step's own.
-pub(crate) fn root_subintervals(
-    before: &OdeState,
-    now: &OdeState,
-) -> impl Iterator<Item = f64> + use<> {
-    subinterval_ends(before, now, ROOT_SUBINTERVALS)
+/// The last step, with what is between its ends.
+pub(crate) struct Step<'s> {
+    pub(crate) before: &'s OdeState,
+    pub(crate) now: &'s OdeState,
+    pub(crate) dense: DenseOutput<'s>,
 }
 
-/// The ends of equal parts of a step; the last is the step's own.
-pub(crate) fn subinterval_ends(
-    before: &OdeState,
-    now: &OdeState,
-    parts: usize,
-) -> impl Iterator<Item = f64> + use<> {
-    let (from, to) = (before.t, now.t);
-    (1..=parts).map(move |k| {
-        if k == parts {
-            to
-        } else {
-            from + (to - from) * k as f64 / parts as f64
-        }
-    })
-}
-
-/// The state at a time within a step that ends at `now`.
-pub(crate) fn state_at(t: f64, now: &OdeState, dense: DenseOutput<'_>) -> Result<OdeState> {
-    let mut state = now.clone();
-    if t < now.t {
-        dense(t, &mut state.y)?;
-        state.t = t;
+impl Step<'_> {
+    /// The part of it up to a state.
+    pub(crate) fn until<'a>(&'a mut self, now: &'a OdeState) -> Step<'a> {
+        let (before, dense) = (self.before, &mut *self.dense);
+        Step { before, now, dense }
     }
-    Ok(state)
+
+    /// Its duration, s.
+    pub(crate) fn duration(&self) -> f64 {
+        self.now.t - self.before.t
+    }
+
+    /// The ends of the subintervals in which roots are looked for; the last is the step's own.
+    pub(crate) fn root_subintervals(&self) -> impl Iterator<Item = f64> + use<> {
+        self.subinterval_ends(ROOT_SUBINTERVALS)
+    }
+
+    /// The ends of equal parts of it; the last is the step's own.
+    pub(crate) fn subinterval_ends(&self, parts: usize) -> impl Iterator<Item = f64> + use<> {
+        let (from, to) = (self.before.t, self.now.t);
+        (1..=parts).map(move |k| {
+            if k == parts {
+                to
+            } else {
+                from + (to - from) * k as f64 / parts as f64
+            }
+        })
+    }
+
+    /// The state at a time within it.
+    pub(crate) fn state_at(&mut self, t: f64) -> Result<OdeState> {
+        let mut state = self.now.clone();
+        if t < self.now.t {
+            (self.dense)(t, &mut state.y)?;
+            state.t = t;
+        }
+        Ok(state)
+    }
+
+    /// The same, at its start the very state before it.
+    pub(crate) fn state_from_start(&mut self, t: f64) -> Result<OdeState> {
+        match t > self.before.t {
+            true => self.state_at(t),
+            false => Ok(self.before.clone()),
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! Options of an integration, and the work that it took.
 
-use crate::error::{DynamicsError, Result};
+use crate::error::{Result, bad_option};
 
 /// An integration method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,19 +77,18 @@ impl Options {
     /// Refuses options that would make the integrator loop endlessly.
     pub(crate) fn check(&self) -> Result<()> {
         let usable = |value: f64| value.is_finite() && value > 0.0;
-        let refuse = |what, must, value| Err(DynamicsError::BadOption { what, must, value });
         if !(self.rtol.is_finite() && self.rtol >= 0.0) {
-            return refuse("the relative tolerance", "number from 0", self.rtol);
+            return bad_option("the relative tolerance", "number from 0", self.rtol);
         }
         if !usable(self.atol) {
-            return refuse("the absolute tolerance", "positive number", self.atol);
+            return bad_option("the absolute tolerance", "positive number", self.atol);
         }
         match (self.max_step, self.sample_interval) {
             (Some(max_step), _) if !usable(max_step) => {
-                refuse("the longest step", "positive time", max_step)
+                bad_option("the longest step", "positive time", max_step)
             }
             (_, Some(sample_interval)) if !usable(sample_interval) => {
-                refuse("the distance of samples", "positive time", sample_interval)
+                bad_option("the distance of samples", "positive time", sample_interval)
             }
             _ => Ok(()),
         }

@@ -1,5 +1,5 @@
-//! A system that may slide along a switch. Where the rates f⁻ and f⁺ on its two sides both lead back to it, the motion stays on
-//! it (Filippov 1988):
+//! A system that an integrator and the monitors of its events evaluate in turn, and that may slide along a switch. Where the
+//! rates f⁻ and f⁺ on its two sides both lead back to it, the motion stays on it (Filippov 1988):
 //!
 //! ```text
 //! ẏ = (1 − α) f⁻ + α f⁺,    α = ġ⁻/(ġ⁻ − ġ⁺)          ġ = 0 along ẏ                    (1)
@@ -10,78 +10,138 @@
 use crate::contact::ContactStep;
 use crate::error::{DynamicsError, Result};
 use crate::ode::{OdeState, OdeSystem};
-use crate::shared_system::SharedSystem;
 use crate::sliding::{SideRates, Sliding};
 use dwell_laws::SwitchKind;
+use std::cell::{Cell, RefCell, RefMut};
 
 /// Step of the difference quotients of (1), as a part of a state.
 const DIFFERENCE: f64 = 1e-7;
+
+/// A system that is integrated and, between its steps, looked at.
+pub(crate) struct SharedSystem<'s> {
+    kinds: Vec<SwitchKind>,
+    inner: RefCell<&'s mut dyn OdeSystem>,
+    event_evaluations: Cell<usize>,
+}
+
+impl<'s> SharedSystem<'s> {
+    pub(crate) fn new(system: &'s mut dyn OdeSystem) -> Self {
+        Self {
+            kinds: system.switch_kinds().to_vec(),
+            inner: RefCell::new(system),
+            event_evaluations: Cell::new(0),
+        }
+    }
+
+    /// How often it was evaluated for the monitors of events.
+    pub(crate) fn event_evaluations(&self) -> usize {
+        self.event_evaluations.get()
+    }
+
+    fn inner(&self) -> RefMut<'_, &'s mut dyn OdeSystem> {
+        self.inner.borrow_mut()
+    }
+
+    /// The system, for one more evaluation of this kind.
+    fn inner_for_event(&self) -> RefMut<'_, &'s mut dyn OdeSystem> {
+        self.event_evaluations.set(self.event_evaluations.get() + 1);
+        self.inner()
+    }
+}
+
+/// Both sides of a switch: the rates of the state, the values and rates of all functions.
+#[derive(Default)]
+pub(crate) struct BothSides {
+    pub(crate) rates: [Vec<f64>; 2],
+    functions: [Vec<[f64; 2]>; 2],
+}
+
+impl BothSides {
+    /// Those of a state; none where the rates of the functions are not known.
+    pub(crate) fn at(
+        sides: &[Vec<Option<f64>>; 2],
+        system: &mut dyn OdeSystem,
+        at: &OdeState,
+    ) -> Result<Option<Self>> {
+        let mut both = Self::default();
+        let are_known = both.evaluate(sides, system, (at.t, &at.y))?;
+        Ok(are_known.then_some(both))
+    }
+
+    /// Evaluates them; whether the rates of the functions are known.
+    fn evaluate(
+        &mut self,
+        sides: &[Vec<Option<f64>>; 2],
+        system: &mut dyn OdeSystem,
+        (t, y): (f64, &[f64]),
+    ) -> Result<bool> {
+        let each = self.rates.iter_mut().zip(&mut self.functions);
+        for ((rates, functions), pieces) in each.zip(sides) {
+            rates.resize(y.len(), 0.0);
+            functions.resize(pieces.len(), [0.0; 2]);
+            system.hold_pieces(pieces);
+            system.rhs(t, y, rates)?;
+            if !system.switch_rates(t, y, rates, functions)? {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    pub(crate) fn of(&self, k: usize) -> SideRates {
+        SideRates {
+            sides: [self.functions[0][k], self.functions[1][k]],
+        }
+    }
+}
 
 /// A system on the pieces that are held, or sliding along a switch between two of them.
 pub(crate) struct SlidingSystem<'s, 'i> {
     shared: &'s SharedSystem<'i>,
     sliding: Option<Sliding>,
-    /// On both sides: the rates, and the values and rates of all switching functions.
-    rates: [Vec<f64>; 2],
-    functions: [Vec<[f64; 2]>; 2],
+    sides: BothSides,
 }
 
 impl<'s, 'i> SlidingSystem<'s, 'i> {
     /// The system, along a switch if one is given.
     pub(crate) fn new(shared: &'s SharedSystem<'i>, sliding: Option<Sliding>) -> Self {
-        let (n, switches) = (shared.states(), shared.switches());
+        let sides = BothSides::default();
         Self {
             shared,
             sliding,
-            rates: [vec![0.0; n], vec![0.0; n]],
-            functions: [vec![[0.0; 2]; switches], vec![[0.0; 2]; switches]],
+            sides,
         }
     }
 
-    /// Evaluates both sides.
-    fn evaluate_sides(&mut self, t: f64, y: &[f64], sliding: &Sliding) -> Result<SideRates> {
-        let mut system = self.shared;
-        let sides = self.rates.iter_mut().zip(&mut self.functions);
-        for ((rates, functions), pieces) in sides.zip(&sliding.sides) {
-            system.hold_pieces(pieces);
-            system.rhs(t, y, rates)?;
-            system.switch_rates(t, y, rates, functions)?;
-        }
-        let first = sliding.switches[0];
-        Ok(SideRates {
-            sides: [self.functions[0][first], self.functions[1][first]],
-        })
-    }
-
-    /// How far a sliding motion is from leaving its switch, and the part of the upper side; none where it does not slide.
+    /// Evaluates both sides, with what they do to the switching function; none where it does not slide.
     ///
     /// # Errors
     /// [`DynamicsError`](crate::DynamicsError) where the state cannot be evaluated.
-    pub(crate) fn sliding_margin(&mut self, t: f64, y: &[f64]) -> Result<Option<SideRates>> {
+    pub(crate) fn side_rates(&mut self, t: f64, y: &[f64]) -> Result<Option<SideRates>> {
         let Some(sliding) = self.sliding.take() else {
             return Ok(None);
         };
-        let found = self.evaluate_sides(t, y, &sliding);
-        self.sliding = Some(sliding);
-        found.map(Some)
+        let mut sides = std::mem::take(&mut self.sides);
+        let evaluated = sides.evaluate(&sliding.sides, self, (t, y));
+        let first = sliding.switches[0];
+        (self.sliding, self.sides) = (Some(sliding), sides);
+        evaluated?;
+        Ok(Some(self.sides.of(first)))
     }
 }
 
 impl OdeSystem for SlidingSystem<'_, '_> {
     fn size(&self) -> usize {
-        self.shared.size()
+        self.shared.inner().size()
     }
 
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
-        let Some(sliding) = self.sliding.take() else {
-            let mut shared = self.shared;
-            return shared.rhs(t, y, out);
+        let rates = self.side_rates(t, y)?;
+        let (Some(rates), Some(sliding)) = (rates, &self.sliding) else {
+            return self.shared.inner().rhs(t, y, out);
         };
-        let sides = self.evaluate_sides(t, y, &sliding);
-        let part = sides.map(|sides| sides.returning_part(&sliding));
-        self.sliding = Some(sliding);
-        let part = part?;
-        let [lower, upper] = &self.rates;
+        let part = rates.returning_part(sliding);
+        let [lower, upper] = &self.sides.rates;
         for (out, (lower, upper)) in out.iter_mut().zip(lower.iter().zip(upper)) {
             *out = lower + part * (upper - lower);
         }
@@ -90,8 +150,7 @@ impl OdeSystem for SlidingSystem<'_, '_> {
 
     fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         if self.sliding.is_none() {
-            let mut shared = self.shared;
-            return shared.jacobian(t, y, out);
+            return self.shared.inner().jacobian(t, y, out);
         }
         // For Newton's method alone, whose result does not depend on it.
         let n = y.len();
@@ -110,16 +169,15 @@ impl OdeSystem for SlidingSystem<'_, '_> {
     }
 
     fn switch_kinds(&self) -> &[SwitchKind] {
-        self.shared.kinds()
+        &self.shared.kinds
     }
 
     fn switch_source(&self, switch: usize) -> usize {
-        self.shared.switch_source(switch)
+        self.shared.inner().switch_source(switch)
     }
 
     fn switch_values(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
-        let mut shared = self.shared;
-        shared.switch_values(t, y, out)
+        self.shared.inner_for_event().switch_values(t, y, out)
     }
 
     fn switch_rates(
@@ -129,56 +187,52 @@ impl OdeSystem for SlidingSystem<'_, '_> {
         rates: &[f64],
         out: &mut [[f64; 2]],
     ) -> Result<bool> {
-        let mut shared = self.shared;
-        shared.switch_rates(t, y, rates, out)
+        let mut inner = self.shared.inner_for_event();
+        inner.switch_rates(t, y, rates, out)
     }
 
     fn record_sliding(&mut self, at: &OdeState, switch: usize, sliding: Option<&Sliding>) {
-        let mut shared = self.shared;
-        shared.record_sliding(at, switch, sliding);
+        self.shared.inner().record_sliding(at, switch, sliding);
     }
 
     fn hold_pieces(&mut self, pieces: &[Option<f64>]) {
-        let mut shared = self.shared;
-        shared.hold_pieces(pieces);
+        self.shared.inner().hold_pieces(pieces);
     }
 
     fn contact_count(&self) -> usize {
-        self.shared.contact_count()
+        self.shared.inner().contact_count()
     }
 
     fn contact_without_mode(&self, contact: usize) -> DynamicsError {
-        self.shared.contact_without_mode(contact)
+        self.shared.inner().contact_without_mode(contact)
     }
 
     fn speed_at_stop(&self, contact: usize, y: &[f64]) -> Option<(usize, f64)> {
-        self.shared.speed_at_stop(contact, y)
+        self.shared.inner().speed_at_stop(contact, y)
     }
 
     fn contact_margins(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<bool> {
-        let mut shared = self.shared;
-        let Some(sliding) = &self.sliding else {
-            return shared.contact_margins(t, y, out);
-        };
-        let sliding = sliding.clone();
-        let part = self.evaluate_sides(t, y, &sliding)?.upper_part();
-        // Held on the upper side now.
-        let is_open = shared.contact_margins(t, y, out)?;
-        let mut lower = vec![0.0; out.len()];
-        shared.hold_pieces(&sliding.sides[0]);
-        shared.contact_margins(t, y, &mut lower)?;
-        for (out, lower) in out.iter_mut().zip(lower) {
-            *out = lower + part * (*out - lower);
+        let rates = self.side_rates(t, y)?;
+        // Where it slides, held on the upper side now.
+        let is_open = self.shared.inner_for_event().contact_margins(t, y, out)?;
+        if let (Some(rates), Some(sliding)) = (rates, &self.sliding) {
+            let part = rates.upper_part();
+            let mut lower = vec![0.0; out.len()];
+            let mut inner = self.shared.inner_for_event();
+            inner.hold_pieces(&sliding.sides[0]);
+            inner.contact_margins(t, y, &mut lower)?;
+            for (out, lower) in out.iter_mut().zip(lower) {
+                *out = lower + part * (*out - lower);
+            }
         }
         Ok(is_open)
     }
 
     fn pass_contacts(&mut self, t: f64, y: &mut [f64], step: &ContactStep<'_>) -> Result<()> {
-        let mut shared = self.shared;
-        shared.pass_contacts(t, y, step)
+        self.shared.inner_for_event().pass_contacts(t, y, step)
     }
 
     fn error_weight(&self, state: usize) -> f64 {
-        self.shared.error_weight(state)
+        self.shared.inner().error_weight(state)
     }
 }

@@ -16,12 +16,11 @@ use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
 use crate::machine::{Machine, MovingModel};
 use crate::machine_ode::MachineOde;
-use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, state_at};
+use crate::ode::{DenseOutput, OdeState, OdeSystem, Step, StepControl};
 use crate::options::{Options, Statistics};
 use dwell_geometry::body_states::CoordinateFunction;
-pub(crate) use event::TouchTolerance;
 pub use event::{Event, EventKind, EventOccurrence};
-use event::{FoundEvent, MAX_OCCURRENCES, too_many_events};
+use event::{FoundEvent, MAX_OCCURRENCES, TouchTolerance, too_many_events};
 pub use observed::{Observed, ObservedMachine, ObservedValue};
 pub use orbit_solution::solve_orbit;
 use tracker::EventTracker;
@@ -112,8 +111,7 @@ pub fn solve<M: MovingModel>(
     options: &Options,
     events: &[Event<M::CoordinateFunction>],
 ) -> Result<Solution> {
-    let tolerance = TouchTolerance::of_integration(options);
-    let recorder_state = RecorderState::new(start.t, events, tolerance);
+    let recorder_state = RecorderState::new(start.t, events, options);
     record_machine((machine, output_model), recorder_state, start, end, options)
 }
 
@@ -129,8 +127,7 @@ pub fn solve_further<M: MovingModel>(
     options: &Options,
     events: &[Event<M::CoordinateFunction>],
 ) -> Result<Solution> {
-    let tolerance = TouchTolerance::of_integration(options);
-    let recorder_state = RecorderState::new(0.0, events, tolerance);
+    let recorder_state = RecorderState::new(0.0, events, options);
     let recorder_state = recorder_state.sampled_until(start.t, options);
     record_machine((machine, output_model), recorder_state, start, end, options)
 }
@@ -177,8 +174,7 @@ pub(crate) fn solve_with_limits<O: Observed>(
     options: &Options,
     [events, limits]: [&[Event<O::Coordinate>]; 2],
 ) -> Result<Solution> {
-    let tolerance = TouchTolerance::of_integration(options);
-    let recorder_state = RecorderState::new(start.t, events, tolerance).with_limits(limits);
+    let recorder_state = RecorderState::new(start.t, events, options).with_limits(limits);
     record(system, (observed, recorder_state), start, end, options)
 }
 
@@ -193,7 +189,7 @@ fn record<O: Observed>(
     let mut recorder = recorder_state.recorder(observed, start)?;
     let mut solution = recorder.begin_solution(start, options);
     let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
-        recorder.record_step(&mut solution, options, before, now, dense)
+        recorder.record_step(&mut solution, options, &mut Step { before, now, dense })
     };
     let termination = integrate(system, start, end, options, &mut observer)?;
     if termination.error.is_none() {
@@ -214,7 +210,8 @@ pub(crate) struct RecorderState<'e, C = CoordinateFunction> {
 }
 
 impl<'e, C: Copy> RecorderState<'e, C> {
-    pub(crate) fn new(start_time: f64, events: &'e [Event<C>], tolerance: TouchTolerance) -> Self {
+    pub(crate) fn new(start_time: f64, events: &'e [Event<C>], options: &Options) -> Self {
+        let tolerance = TouchTolerance::of_integration(options);
         Self {
             events: events.iter().map(|event| (event, tolerance)).collect(),
             trackers: Vec::with_capacity(events.len()),
@@ -284,14 +281,13 @@ impl<O: Observed> SolutionRecorder<'_, '_, O> {
         &mut self,
         solution: &mut Solution,
         options: &Options,
-        before: &OdeState,
-        now: &OdeState,
-        dense: DenseOutput<'_>,
+        step: &mut Step<'_>,
     ) -> Result<StepControl> {
         let Self { observed, state } = self;
+        let (before, now) = (step.before, step.now);
         let mut found = Vec::new();
         for tracker in &mut state.trackers {
-            tracker.locate([before, now], dense, observed, &mut found)?;
+            tracker.locate(step, observed, &mut found)?;
         }
         if solution.event_occurrences.len() + found.len() > MAX_OCCURRENCES {
             return Err(too_many_events(before.t));
@@ -307,13 +303,13 @@ impl<O: Observed> SolutionRecorder<'_, '_, O> {
                     && t <= until
                 {
                     // Between two integrations lie a few roundings of time, in which nothing happens.
-                    let mut sample = state_at(t.max(before.t), now, dense)?;
+                    let mut sample = step.state_at(t.max(before.t))?;
                     sample.t = t;
                     solution.samples.push(sample);
                     state.sample_count += 1;
                 }
             }
-            solution.steps.push(state_at(until, now, dense)?);
+            solution.steps.push(step.state_at(until)?);
         }
         solution.add_occurrences(found);
         solution.terminated_by_event = stop.is_some();

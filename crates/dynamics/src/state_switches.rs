@@ -160,7 +160,7 @@ impl StateSwitches {
                 let input = state.magnitude.eval(&plain, &plain, &held.magnitude);
                 let input_rate = state.magnitude.rate(&signals, &held.magnitude);
                 let values = drive.switch_values(input, speed, drive_state);
-                let rates = drive.switch_rates(input_rate, acceleration, state_rate);
+                let rates = drive.switch_values(input_rate, acceleration, Some(state_rate));
                 let both = values.into_iter().zip(rates);
                 for (out, (value, rate)) in of_drive.iter_mut().zip(both) {
                     *out = [value, rate];

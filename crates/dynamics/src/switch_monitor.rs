@@ -5,12 +5,12 @@
 //! Where the rates on both pieces lead back to the switch, as of a brake at rest, the motion [slides](crate::sliding_system)
 //! along it. Where that is not so simple, the switch is not held until it has kept its side for some steps.
 
+use crate::crossings::{are_together, fall_below_zero, first_of};
 use crate::error::{DynamicsError, Result};
-use crate::ode::{DenseOutput, OdeState, OdeSystem, root_subintervals, state_at};
+use crate::ode::{OdeState, OdeSystem, Step};
 use crate::sliding::Sliding;
 use crate::sliding_system::SlidingSystem;
 use dwell_laws::SwitchKind;
-use dwell_numerics::root;
 
 mod slide;
 
@@ -23,8 +23,6 @@ const FIRST_STEP: f64 = 1e-3;
 const PATIENCE: u32 = 4;
 /// Steps after which a switch to which its own pieces lead back is given up: they are short.
 const CHATTER_STEPS: u32 = 10_000;
-/// Roundings of time within which two switches happen together.
-const TOGETHER: f64 = 16.0 * f64::EPSILON;
 
 /// Watches the switches of a system during its integration.
 pub(crate) struct SwitchMonitor {
@@ -97,7 +95,6 @@ impl SwitchMonitor {
             margins: [(f64::NAN, f64::NAN); 2],
         });
         let switches: Vec<_> = switches.collect();
-        let span = if span.is_finite() { span } else { 1.0 };
         let mut monitor = Self {
             values: vec![0.0; switches.len()],
             switches,
@@ -202,23 +199,18 @@ impl SwitchMonitor {
         system: &mut dyn OdeSystem,
         at: &OdeState,
     ) -> Result<f64> {
-        let mut margin = |t: f64, y: &[f64]| -> Result<f64> {
+        let mut margin = |system: &mut dyn OdeSystem, t: f64, y: &[f64]| -> Result<f64> {
             system.switch_values(t, y, &mut self.values)?;
             let margin = self.switches[k].margin(self.values[k]);
             Ok(margin.unwrap_or(f64::NAN))
         };
-        let before = margin(at.t, &at.y)?;
+        let before = margin(system, at.t, &at.y)?;
         let mut rates = vec![0.0; at.y.len()];
         system.rhs(at.t, &at.y, &mut rates)?;
         let h = PROBE * self.step;
-        let y: Vec<f64> =
-            at.y.iter()
-                .zip(&rates)
-                .map(|(y, rate)| y + h * rate)
-                .collect();
-        system.switch_values(at.t + h, &y, &mut self.values)?;
-        let after = self.switches[k].margin(self.values[k]);
-        Ok(after.unwrap_or(f64::NAN) - before)
+        let y = at.y.iter().zip(&rates).map(|(y, rate)| y + h * rate);
+        let after = margin(system, at.t + h, &y.collect::<Vec<_>>())?;
+        Ok(after - before)
     }
 
     /// Where the integration begins anew because of what happened in a step: a switch was passed, or one that was not
@@ -229,20 +221,18 @@ impl SwitchMonitor {
     pub(crate) fn after_step(
         &mut self,
         system: &mut SlidingSystem<'_, '_>,
-        before: &OdeState,
-        now: &OdeState,
-        dense: DenseOutput<'_>,
+        step: &mut Step<'_>,
     ) -> Result<Option<Crossing>> {
-        let crossing = self.first_crossing(system, before, now, dense)?;
-        let until = crossing.as_ref().map_or(now, |crossing| &crossing.state);
-        if let Some(leaving) = self.leaving(system, before, until, dense)? {
+        let crossing = self.first_crossing(system, step)?;
+        let until = crossing.as_ref().map_or(step.now, |c| &c.state);
+        if let Some(leaving) = self.leaving(system, &mut step.until(until))? {
             return Ok(Some(leaving));
         }
-        if crossing.is_some() || !self.holds_again(system, now)? {
+        if crossing.is_some() || !self.holds_again(system, step.now)? {
             return Ok(crossing);
         }
         Ok(Some(Crossing {
-            state: now.clone(),
+            state: step.now.clone(),
             passed: Vec::new(),
             left: None,
         }))
@@ -252,44 +242,26 @@ impl SwitchMonitor {
     fn first_crossing(
         &mut self,
         system: &mut dyn OdeSystem,
-        before: &OdeState,
-        now: &OdeState,
-        dense: DenseOutput<'_>,
+        step: &mut Step<'_>,
     ) -> Result<Option<Crossing>> {
         if self.switches.is_empty() {
             return Ok(None);
         }
-        self.step = now.t - before.t;
-        system.switch_values(before.t, &before.y, &mut self.values)?;
+        self.step = step.duration();
+        let start = step.before;
+        system.switch_values(start.t, &start.y, &mut self.values)?;
         for (switch, &value) in self.switches.iter_mut().zip(&self.values) {
             let margin = switch.margin(value).unwrap_or(f64::NAN);
-            switch.margins = [(before.t, margin), (f64::NAN, f64::NAN)];
+            switch.margins = [(start.t, margin), (f64::NAN, f64::NAN)];
             switch.is_inside |= margin > 0.0;
         }
-        for t in root_subintervals(before, now) {
-            let point = state_at(t, now, dense)?;
+        for t in step.root_subintervals() {
+            let point = step.state_at(t)?;
             system.switch_values(t, &point.y, &mut self.values)?;
-            let mut first: Option<(f64, Vec<(usize, bool)>)> = None;
-            for k in 0..self.switches.len() {
-                let Some((at, upward)) = self.crossing_time(k, t, system, before, now, dense)?
-                else {
-                    continue;
-                };
-                match &mut first {
-                    Some((t, passed)) if (at - *t).abs() <= TOGETHER * at.abs() => {
-                        passed.push((k, upward));
-                    }
-                    Some((t, _)) if at > *t => {}
-                    _ => first = Some((at, vec![(k, upward)])),
-                }
-            }
-            if let Some((at, passed)) = first {
-                let state = if at > before.t {
-                    state_at(at, now, dense)?
-                } else {
-                    before.clone()
-                };
-                let left = None;
+            let each = 0..self.switches.len();
+            let times = each.map(|k| self.crossing_time(k, t, system, step));
+            if let Some((at, passed)) = first_of(times)? {
+                let (state, left) = (step.state_from_start(at)?, None);
                 return Ok(Some(Crossing {
                     state,
                     passed,
@@ -300,16 +272,14 @@ impl SwitchMonitor {
         Ok(None)
     }
 
-    /// When a switch is passed between the last point of the step and `t`, and whether upwards.
+    /// When a switch is passed between the last point of the step and `t`: with its index, and whether upwards.
     fn crossing_time(
         &mut self,
         k: usize,
         t: f64,
         system: &mut dyn OdeSystem,
-        before: &OdeState,
-        now: &OdeState,
-        dense: DenseOutput<'_>,
-    ) -> Result<Option<(f64, bool)>> {
+        step: &mut Step<'_>,
+    ) -> Result<Option<(f64, (usize, bool))>> {
         let value = self.values[k];
         let switch = &mut self.switches[k];
         let Some(margin) = switch.margin(value) else {
@@ -321,37 +291,19 @@ impl SwitchMonitor {
         switch.is_inside |= margin > 0.0;
         if margin < 0.0 && !was_inside {
             // It was passed, within a rounding, where the integration began.
-            return Ok(Some((earlier[0].0, switch.is_above(value))));
+            return Ok(Some((earlier[0].0, (k, switch.is_above(value)))));
         }
-        // Or into the next piece and back between two points.
-        let lowest = vertex([earlier[1], earlier[0], (t, margin)]);
-        let Some(end) = (margin < 0.0).then_some(t).or(lowest) else {
-            return Ok(None);
-        };
-        let switch = switch.clone();
-        let mut values = vec![0.0; self.switches.len()];
-        let mut value_at = |at: f64| -> Result<f64> {
-            let state = if at > before.t {
-                state_at(at, now, dense)?
-            } else {
-                before.clone()
-            };
+        let (mut values, mut beyond) = (Vec::new(), None);
+        let margin_at = |at: f64| -> Result<f64> {
+            let state = step.state_from_start(at)?;
+            values.resize(self.values.len(), 0.0);
             system.switch_values(at, &state.y, &mut values)?;
-            Ok(values[k])
+            beyond.get_or_insert(values[k]);
+            Ok(switch.margin(values[k]).unwrap_or(f64::NAN))
         };
-        let beyond = value_at(end)?;
-        if switch.margin(beyond).is_none_or(|margin| margin >= 0.0) {
-            return Ok(None);
-        }
-        let from = if end > earlier[0].0 {
-            earlier[0]
-        } else {
-            earlier[1]
-        };
-        let margin_at =
-            |at: f64| -> Result<f64> { Ok(switch.margin(value_at(at)?).unwrap_or(f64::NAN)) };
-        let found = root::find(margin_at, from.0, end)?;
-        Ok(found.map(|at| (at, switch.is_above(beyond))))
+        let found = fall_below_zero(earlier, (t, margin), margin_at)?;
+        let upward = switch.is_above(beyond.unwrap_or(value));
+        Ok(found.map(|at| (at, (k, upward))))
     }
 
     /// Holds the pieces beyond a crossing, unless the rates there lead back: then the motion slides, from the state that is
@@ -387,7 +339,7 @@ impl SwitchMonitor {
         for &(k, _) in &crossing.passed {
             let returns = self.margin_growth(k, system, at)? < 0.0;
             let switch = &mut self.switches[k];
-            let again = |last: f64| (at.t - last).abs() <= TOGETHER * at.t.abs();
+            let again = |last: f64| are_together(at.t, last);
             if returns || switch.switched.is_some_and(again) {
                 switch.piece = None;
                 switch.observed = (None, 0);
@@ -440,16 +392,4 @@ impl SwitchMonitor {
         }
         Ok(changed)
     }
-}
-
-/// Where the parabola through three points has its minimum, between the outer ones; none where it does not come near
-/// zero, or starts from there.
-pub(crate) fn vertex([(t0, m0), (t1, m1), (t2, m2)]: [(f64, f64); 3]) -> Option<f64> {
-    let (before, after) = ((m1 - m0) / (t1 - t0), (m2 - m1) / (t2 - t1));
-    let curvature = (after - before) / (t2 - t0);
-    let slope = before + curvature * (t1 - t0);
-    let lowest = t1 - 0.5 * slope / curvature;
-    let value = m1 - 0.25 * slope * slope / curvature;
-    let near = value < 0.1 * m0.min(m1).min(m2);
-    (m0 > 0.0 && curvature > 0.0 && near && lowest > t0 && lowest < t2).then_some(lowest)
 }

@@ -122,7 +122,7 @@ enum TabulatedSignal {
 }
 
 /// slope · q + offset + a column, of a coordinate; of a speed, the same divided by q̇.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct TabulatedCoordinate {
     slope: f64,
     offset: f64,

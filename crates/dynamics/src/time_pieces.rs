@@ -28,14 +28,6 @@ pub(crate) struct TimePieces<'f> {
     max_steps: usize,
 }
 
-/// A part of the motion without a switch.
-pub(crate) struct Segment {
-    /// Its last instant.
-    pub(crate) to: f64,
-    /// Whether something switches behind it.
-    pub(crate) restart: bool,
-}
-
 impl<'f> TimePieces<'f> {
     /// Prepares an integration.
     ///
@@ -67,23 +59,18 @@ impl<'f> TimePieces<'f> {
         })
     }
 
-    /// The next part without a switch, and where it begins; none at the end.
-    pub(crate) fn next_segment(&mut self) -> Result<Option<(f64, Segment)>> {
+    /// The next part without a switch; none at the end.
+    pub(crate) fn next_segment(&mut self) -> Result<Option<Piece>> {
         let mut from = None;
         loop {
             let Some(piece) = self.switches.next() else {
                 return Ok(None);
             };
-            let Piece {
-                from: begins,
-                to,
-                restart,
-                ..
-            } = piece.map_err(|e| unresolved(e, self.max_steps))?;
-            let from = *from.get_or_insert(begins);
+            let piece = piece.map_err(|e| unresolved(e, self.max_steps))?;
+            let from = *from.get_or_insert(piece.from);
             // Pieces that are not separated by a switch belong together; an integration knows no shorter end.
-            if restart || self.switches.is_exhausted() {
-                return Ok(Some((from, Segment { to, restart })));
+            if piece.restart || self.switches.is_exhausted() {
+                return Ok(Some(Piece { from, ..piece }));
             }
         }
     }

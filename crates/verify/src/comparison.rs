@@ -31,6 +31,17 @@ pub(crate) struct Comparison {
     pub(crate) condition_number: f64,
 }
 
+impl Comparison {
+    /// A difference with its scale and the reference's own error, all in `unit`.
+    pub(crate) fn new(numbers: [f64; 3], unit: &'static str, condition_number: f64) -> Self {
+        Self {
+            numbers,
+            unit,
+            condition_number,
+        }
+    }
+}
+
 impl LargestDifference {
     /// A failure without any comparison.
     pub(crate) fn failed(message: String) -> Self {

@@ -243,11 +243,7 @@ impl CheckedPosition {
 
     /// A comparison at this position.
     pub(crate) fn comparison(&self, numbers: [f64; 3], unit: &'static str) -> Comparison {
-        Comparison {
-            numbers,
-            unit,
-            condition_number: self.condition_number,
-        }
+        Comparison::new(numbers, unit, self.condition_number)
     }
 
     /// Rounding of an energy relative to itself, which next to a dead point is not the last place.

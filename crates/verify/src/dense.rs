@@ -140,6 +140,12 @@ impl DenseMechanism {
         self.rows.len() - self.mechanism.actuators.len()
     }
 
+    /// The bodies that move, each with its index and the first of its columns.
+    pub(crate) fn moving_bodies(&self) -> impl Iterator<Item = (usize, &DenseBody, usize)> {
+        let bodies = self.bodies.iter().enumerate();
+        bodies.filter_map(|(b, body)| Some((b, body, body.column?)))
+    }
+
     /// The coordinate of the only actuator.
     pub(crate) fn actuator_coordinate(&self) -> Coordinate {
         self.mechanism.actuators[0].coordinate()
@@ -152,13 +158,12 @@ impl DenseMechanism {
         }
         let ground = self.bodies[self.mechanism.ground].shift;
         let mut x = vec![0.0; self.rows.columns()];
-        for (body, pose) in self.bodies.iter().zip(poses) {
-            if let Some(c) = body.column {
-                let arm = body.shift.rotate(Vec2::from_angle(pose[2]));
-                x[c] = (pose[0] - ground.x) + arm.x;
-                x[c + 1] = (pose[1] - ground.y) + arm.y;
-                x[c + 2] = pose[2];
-            }
+        for (b, body, c) in self.moving_bodies() {
+            let [at_x, at_y, angle] = poses[b];
+            let arm = body.shift.rotate(Vec2::from_angle(angle));
+            x[c] = (at_x - ground.x) + arm.x;
+            x[c + 1] = (at_y - ground.y) + arm.y;
+            x[c + 2] = angle;
         }
         Ok(x)
     }
@@ -166,13 +171,11 @@ impl DenseMechanism {
     /// Dense velocities out of the frames of all bodies and their rates.
     pub(crate) fn velocities(&self, poses: &[[f64; 3]], rates: &[[f64; 3]]) -> Vec<f64> {
         let mut x_dot = vec![0.0; self.rows.columns()];
-        for (b, body) in self.bodies.iter().enumerate() {
-            if let Some(c) = body.column {
-                let arm = body.shift.rotate(Vec2::from_angle(poses[b][2]));
-                let [vx, vy, omega] = rates[b];
-                let v = vec2(vx, vy) + arm.perp() * omega;
-                x_dot[c..c + 3].copy_from_slice(&[v.x, v.y, omega]);
-            }
+        for (b, body, c) in self.moving_bodies() {
+            let arm = body.shift.rotate(Vec2::from_angle(poses[b][2]));
+            let [vx, vy, omega] = rates[b];
+            let v = vec2(vx, vy) + arm.perp() * omega;
+            x_dot[c..c + 3].copy_from_slice(&[v.x, v.y, omega]);
         }
         x_dot
     }

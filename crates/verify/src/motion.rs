@@ -46,13 +46,11 @@ impl DenseMechanism {
     /// kg m²/s; without that of varying moments of inertia, which is not theirs alone.
     pub fn momentum(&self, at: &Configuration, x_dot: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
-        for body in &self.bodies {
-            if let Some(c) = body.column {
-                let p = self.center_velocity(body, at, x_dot) * body.mass.mass;
-                sum[0] += p.x;
-                sum[1] += p.y;
-                sum[2] += self.center(body, at).cross(p) + body.mass.inertia * x_dot[c + 2];
-            }
+        for (_, body, c) in self.moving_bodies() {
+            let p = self.center_velocity(body, at, x_dot) * body.mass.mass;
+            sum[0] += p.x;
+            sum[1] += p.y;
+            sum[2] += self.center(body, at).cross(p) + body.mass.inertia * x_dot[c + 2];
         }
         sum
     }
@@ -98,12 +96,11 @@ impl DenseMechanism {
         actuator_values: impl Fn(f64, &mut [f64]),
     ) -> Vec<Extrapolated> {
         let positions = |configuration: &Configuration| -> Vec<f64> {
-            let moving = self.bodies.iter().filter_map(|b| Some((b, b.column?)));
-            let position = |(body, c): (&DenseBody, usize)| {
+            let position = |(_, body, c): (usize, &DenseBody, usize)| {
                 let center = self.center(body, configuration);
                 [center.x, center.y, configuration.x[c + 2]]
             };
-            moving.flat_map(position).collect()
+            self.moving_bodies().flat_map(position).collect()
         };
         let middle = positions(at);
         let actuator_row = self.actuator_row();

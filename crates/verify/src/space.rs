@@ -33,11 +33,13 @@ pub use state::{SpaceCase, SpaceState, SpaceSubject, check_states_in_space};
 
 use crate::error::{DenseError, Result};
 use dwell_geometry::JointId;
-use dwell_geometry::space::{ActuatorKind, BodyMotion, Joint, Mechanism, Placement, Vec3, Wrench};
+use dwell_geometry::space::{
+    ActuatorKind, BodyMotion, Joint, Mechanism, Placement, Vec3, Wrench, vec3,
+};
 use dwell_kinetostatics::space::{LoadKind, Mass};
 use faer::Mat;
 use faer::linalg::solvers::Svd;
-use rows::{Bodies, Gradient, Row};
+use rows::{Bodies, Gradient, Row, couple};
 use std::borrow::Cow;
 
 /// Singular values this small against the largest are zero.
@@ -106,12 +108,17 @@ impl<'a> DensePose<'a> {
 
     /// The velocities of all bodies at speeds of the actuators.
     pub fn velocities(&self, q_dot: &[f64]) -> Vec<BodyMotion> {
+        self.moving(q_dot).0.motions
+    }
+
+    /// The bodies with their velocities, and what is not met.
+    fn moving(&self, q_dot: &[f64]) -> (Bodies<'_>, f64) {
         let mut bodies = Bodies::at_rest(self.mechanism, &self.placements);
-        let (velocity, _) = self.system.solve(q_dot, &vec![0.0; self.system.rows]);
+        let (velocity, residual) = self.system.solve(q_dot, &vec![0.0; self.system.rows]);
         bodies.set(&velocity, |motion| {
             (&mut motion.velocity, &mut motion.angular_velocity)
         });
-        bodies.motions
+        (bodies, residual)
     }
 
     /// Motion and forces at speeds and accelerations of the actuators, under loads with their magnitudes.
@@ -122,11 +129,7 @@ impl<'a> DensePose<'a> {
         loads: &[(LoadKind, f64)],
     ) -> DenseSpace {
         let (mechanism, system) = (self.mechanism, &self.system);
-        let mut bodies = Bodies::at_rest(mechanism, &self.placements);
-        let (velocity, first) = system.solve(q_dot, &vec![0.0; system.rows]);
-        bodies.set(&velocity, |motion| {
-            (&mut motion.velocity, &mut motion.angular_velocity)
-        });
+        let (mut bodies, first) = self.moving(q_dot);
         let (acceleration, second) = system.solve(q_ddot, &bodies.biases());
         bodies.set(&acceleration, |motion| {
             (&mut motion.acceleration, &mut motion.angular_acceleration)
@@ -180,46 +183,29 @@ impl System {
         let svd = singular_values(&matrix)?;
         let idle = columns - rank(&svd);
         // An idle rotation stands still: the body that turns in it does not turn about its line.
-        let mut with_idle = Mat::zeros(rows.len() + 6 + idle, columns);
-        with_idle
-            .as_mut()
-            .subrows_mut(0, rows.len() + 6)
-            .copy_from(&matrix);
+        let (fixed, first) = (matrix.nrows(), matrix);
+        let mut matrix = Mat::zeros(fixed + idle, columns);
+        matrix.as_mut().subrows_mut(0, fixed).copy_from(&first);
         for k in 0..idle {
             let null = svd.V().col(columns - 1 - k);
-            let turning = |b: usize| Vec3 {
-                x: null[6 * b + 3],
-                y: null[6 * b + 4],
-                z: null[6 * b + 5],
-            };
-            let most = (0..bodies.placements.len())
-                .max_by(|&a, &b| turning(a).norm().total_cmp(&turning(b).norm()));
-            if let Some(body) = most {
-                let moment = turning(body);
-                add(
-                    &mut with_idle,
-                    rows.len() + 6 + k,
-                    body,
-                    Gradient {
-                        force: Vec3::ZERO,
-                        moment,
-                    },
-                );
+            let turning = |b: usize| vec3(null[6 * b + 3], null[6 * b + 4], null[6 * b + 5]);
+            let size = |b: &usize| turning(*b).norm();
+            let all = 0..bodies.placements.len();
+            if let Some(body) = all.max_by(|a, b| size(a).total_cmp(&size(b))) {
+                add(&mut matrix, fixed + k, body, couple(turning(body)));
             }
         }
-        let svd = singular_values(&with_idle)?;
+        let svd = singular_values(&matrix)?;
+        let on_second = rows[..constraints].iter().map(|row| row.gradients[1]);
         Ok(Self {
             rank: rank(&svd),
-            rows: with_idle.nrows(),
-            matrix: with_idle,
+            rows: matrix.nrows(),
+            matrix,
             svd,
             constraints,
             idle,
             of_joint,
-            on_second: rows[..constraints]
-                .iter()
-                .map(|row| row.gradients[1])
-                .collect(),
+            on_second: on_second.collect(),
         })
     }
 
@@ -228,12 +214,14 @@ impl System {
         self.rows - self.rank
     }
 
+    /// Right-hand sides of the rows, less those.
+    fn opposite(&self, of_rows: &[f64]) -> Mat<f64> {
+        Mat::from_fn(self.rows, 1, |i, _| of_rows.get(i).map_or(0.0, |row| -row))
+    }
+
     /// ẋ or ẍ from the rates of the actuators and J̇ẋ, and what is not met.
     fn solve(&self, rates: &[f64], biases: &[f64]) -> (Vec<f64>, f64) {
-        let mut right = Mat::zeros(self.rows, 1);
-        for (i, bias) in biases.iter().enumerate() {
-            right[(i, 0)] = -bias;
-        }
+        let mut right = self.opposite(biases);
         for (k, rate) in rates.iter().enumerate() {
             right[(self.constraints + k, 0)] += rate;
         }
@@ -244,21 +232,13 @@ impl System {
 
     /// The smallest motion of all bodies that makes up for residuals of the joints and actuators.
     fn step(&self, residuals: &[f64]) -> Vec<f64> {
-        let mut right = Mat::zeros(self.rows, 1);
-        for (i, residual) in residuals.iter().enumerate() {
-            right[(i, 0)] = -residual;
-        }
-        column(&self.pseudo_inverse(&right, false))
+        column(&self.pseudo_inverse(&self.opposite(residuals), false))
     }
 
     /// The multipliers of what the bodies require, and what is not balanced.
     fn multipliers(&self, required: &[Wrench]) -> (Vec<f64>, f64) {
-        let mut right = Mat::zeros(self.matrix.ncols(), 1);
-        for (body, wrench) in required.iter().enumerate() {
-            for (k, value) in parts(wrench).into_iter().enumerate() {
-                right[(6 * body + k, 0)] = value;
-            }
-        }
+        let parts: Vec<[f64; 6]> = required.iter().map(parts).collect();
+        let right = Mat::from_fn(self.matrix.ncols(), 1, |i, _| parts[i / 6][i % 6]);
         let multipliers = self.pseudo_inverse(&right, true);
         let residual = self.matrix.transpose() * &multipliers - &right;
         (column(&multipliers), relative(&residual, &right))
@@ -268,13 +248,12 @@ impl System {
     fn pseudo_inverse(&self, right: &Mat<f64>, transposed: bool) -> Mat<f64> {
         let (u, v) = (self.svd.U(), self.svd.V());
         let (from, to) = if transposed { (v, u) } else { (u, v) };
-        let mut part = from.transpose() * right;
+        let (part, values) = (from.transpose() * right, self.svd.S().column_vector());
         let mut scaled = Mat::zeros(to.ncols(), 1);
         for k in 0..self.rank {
-            scaled[(k, 0)] = part[(k, 0)] / self.svd.S().column_vector()[k];
+            scaled[(k, 0)] = part[(k, 0)] / values[k];
         }
-        part = to * &scaled;
-        part
+        to * &scaled
     }
 }
 
@@ -314,16 +293,7 @@ impl Bodies<'_> {
     fn set(&mut self, x: &[f64], of: impl Fn(&mut BodyMotion) -> (&mut Vec3, &mut Vec3)) {
         for (motion, x) in self.motions.iter_mut().zip(x.chunks(6)) {
             let (linear, angular) = of(motion);
-            *linear = Vec3 {
-                x: x[0],
-                y: x[1],
-                z: x[2],
-            };
-            *angular = Vec3 {
-                x: x[3],
-                y: x[4],
-                z: x[5],
-            };
+            (*linear, *angular) = (vec3(x[0], x[1], x[2]), vec3(x[3], x[4], x[5]));
         }
     }
 

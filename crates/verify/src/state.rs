@@ -242,7 +242,7 @@ impl<'a> StateChecker<'a> {
             let [speed, acceleration] =
                 [&m.solution.x_dot, &m.solution.x_ddot].map(|x| m.dense.scaled_norm(x) * size);
             let acceleration = acceleration.max(speed * speed / size);
-            for (body, column) in m.moving_bodies() {
+            for (body, _, column) in self.dense.moving_bodies() {
                 let name = &self.dense.mechanism.bodies[body].name;
                 for c in column..column + 3 {
                     let arm = if c == column + 2 { size } else { 1.0 };
@@ -290,7 +290,7 @@ impl<'a> StateChecker<'a> {
         let states = self.dense_states.par_iter();
         let from_positions: Vec<_> = states.map(DenseState::second_differences).collect();
         for (m, second) in self.dense_states.iter().zip(from_positions) {
-            for (i, (body, _)) in m.moving_bodies().enumerate() {
+            for (i, (body, ..)) in self.dense.moving_bodies().enumerate() {
                 let name = &self.dense.mechanism.bodies[body].name;
                 let net = m.net_wrench(body);
                 let Mass { mass, inertia, .. } = self.dense.bodies[body].mass;

@@ -4,7 +4,7 @@ use super::near_branch::{NearBranchStep, Passage};
 use super::{Atlas, Candidate, Chart, FOLD_SPEED_RATIO, POSE_TOLERANCE};
 use crate::error::{DynamicsError, Result};
 use crate::machine::MachineWorkspace;
-use crate::ode::{DenseOutput, OdeState, StepControl, root_subintervals, state_at};
+use crate::ode::{OdeState, Step, StepControl};
 use dwell_geometry::Motion;
 use dwell_geometry::body_states::BodyStates;
 use dwell_numerics::root;
@@ -98,45 +98,42 @@ impl<'a, 's> ChartMonitor<'a, 's> {
         Ok(fold.map(ChartExit::CoordinateFold))
     }
 
-    /// Checks a step, and takes it by `step` where it is good. `exit` is then how the chart is left
+    /// Checks a step, and takes it by `take` where it is good. `exit` is then how the chart is left
     /// from the end of the last step taken.
     pub(super) fn observe(
         &mut self,
-        before: &OdeState,
-        now: &OdeState,
-        dense: DenseOutput<'_>,
+        step: &mut Step<'_>,
         exit: &mut Option<ChartExit>,
-        step: impl FnOnce(DenseOutput<'_>) -> Result<StepControl>,
+        take: impl FnOnce(&mut Step<'_>) -> Result<StepControl>,
     ) -> Result<StepControl> {
         if !self.has_limits && !self.has_near_branches {
-            return step(dense);
+            return take(step);
         }
-        if let Some(refused) = self.refused_step(before, now) {
+        if let Some(refused) = self.refused_step(step) {
             *exit = Some(refused);
             return Ok(StepControl::Stop);
         }
         if !self.has_limits {
-            let next = step(dense)?;
-            *exit = self
-                .place_passed(now)
-                .filter(|_| next == StepControl::Continue);
+            let next = take(step)?;
+            let passed = self.place_passed(step.now);
+            *exit = passed.filter(|_| next == StepControl::Continue);
             return Ok(exit.as_ref().map_or(next, |_| StepControl::Stop));
         }
-        if let Some(fold) = self.fold_within(before, now, dense)? {
+        if let Some(fold) = self.fold_within(step)? {
             // What follows the fold is on another branch: the step is discarded.
             *exit = Some(fold);
             return Ok(StepControl::Stop);
         }
         // An explicit method may step to where nothing can be evaluated: that step is not good.
-        let exit_after = self.exit_after_step(now)?;
+        let exit_after = self.exit_after_step(step.now)?;
         if let Some(ChartExit::CoordinateFold(speeds)) = &exit_after
             && speeds.max_ratio() > FOLD_OVERSHOOT * FOLD_SPEED_RATIO
         {
             // The nearer the fold, the more an error of the coordinate changes all others.
-            *exit = Some(ChartExit::StepTooLong(now.t - before.t, None));
+            *exit = Some(ChartExit::StepTooLong(step.duration(), None));
             return Ok(StepControl::Stop);
         }
-        let next = step(dense)?;
+        let next = take(step)?;
         if next == StepControl::Continue {
             *exit = exit_after;
         }
@@ -162,12 +159,12 @@ impl<'a, 's> ChartMonitor<'a, 's> {
     }
 
     /// Why a step is not taken: it leads over a gap of the range, or past a near branch that it does not resolve.
-    fn refused_step(&self, before: &OdeState, now: &OdeState) -> Option<ChartExit> {
-        let length = now.t - before.t;
-        if self.chart.steps_over_gap(before, now) {
+    fn refused_step(&self, step: &Step<'_>) -> Option<ChartExit> {
+        let (ends, length) = ([step.before, step.now].map(|at| at.y[0]), step.duration());
+        if self.chart.steps_over_gap(ends) {
             return Some(ChartExit::StepTooLong(length, None));
         }
-        match self.chart.near_branch_step(before, now) {
+        match self.chart.near_branch_step(ends) {
             NearBranchStep::Resolved => None,
             NearBranchStep::TooLong(place) => Some(ChartExit::StepTooLong(length, Some(place))),
             NearBranchStep::Unresolvable { q, half_width } => {
@@ -197,26 +194,22 @@ impl<'a, 's> ChartMonitor<'a, 's> {
 
     /// Whether the coordinate folds within a step: its speed changes sign while others continue. A step that is
     /// longer than the distance from there to the range's end does not prove a reversal.
-    fn fold_within(
-        &mut self,
-        before: &OdeState,
-        now: &OdeState,
-        dense: DenseOutput<'_>,
-    ) -> Result<Option<ChartExit>> {
+    fn fold_within(&mut self, step: &mut Step<'_>) -> Result<Option<ChartExit>> {
+        let (before, now) = (step.before, step.now);
         let mut last = before.clone();
-        for t in root_subintervals(before, now) {
-            let point = state_at(t, now, dense)?;
+        for t in step.root_subintervals() {
+            let point = step.state_at(t)?;
             if last.y[1] * point.y[1] < 0.0 {
-                let speed = |t: f64| Ok::<_, DynamicsError>(state_at(t, now, dense)?.y[1]);
+                let speed = |t: f64| Ok::<_, DynamicsError>(step.state_at(t)?.y[1]);
                 let zero = root::find(speed, last.t, point.t)?;
-                let at = state_at(zero.unwrap_or(point.t), now, dense)?;
+                let at = step.state_at(zero.unwrap_or(point.t))?;
                 if !self.is_in_fit_window(&at) {
                     match self.candidate_speeds(&at) {
                         Ok(speeds) if speeds.max_ratio() <= FOLD_SPEED_RATIO => {
                             let [to_start, to_end] = [before, now].map(|p| at.y[0] - p.y[0]);
                             let distance = to_start.abs().max(to_end.abs());
                             if distance > self.distance_to_limit(at.y[0]) {
-                                return Ok(Some(ChartExit::StepTooLong(now.t - before.t, None)));
+                                return Ok(Some(ChartExit::StepTooLong(step.duration(), None)));
                             }
                         }
                         Ok(speeds) => return Ok(Some(ChartExit::CoordinateFold(speeds))),

@@ -57,15 +57,18 @@ impl Passage {
 }
 
 impl Chart {
-    /// What a step meets of the near branches.
-    pub(super) fn near_branch_step(&self, before: &OdeState, now: &OdeState) -> NearBranchStep {
+    /// The period after which near branches come again, rad.
+    fn branch_period(&self) -> Option<f64> {
         let plan = self.machine.model.plan();
-        let (from, to) = (before.y[0], now.y[0]);
+        let period = plan.range().period();
+        period.or_else(|| plan.is_angle(0).then_some(TAU))
+    }
+
+    /// What a step meets of the near branches.
+    pub(super) fn near_branch_step(&self, [from, to]: [f64; 2]) -> NearBranchStep {
+        let plan = self.machine.model.plan();
         let unit = plan.coordinate_unit();
-        let period = match plan.range().period() {
-            Some(period) => Some(period),
-            None => plan.is_angle(0).then_some(TAU),
-        };
+        let period = self.branch_period();
         for near in plan.near_branches() {
             let is_small = is_too_close(near, plan);
             let reach = match is_small {
@@ -104,8 +107,7 @@ impl Chart {
             true => [q - reach, q],
             false => [q, q + reach],
         };
-        let period = plan.range().period();
-        let period = period.or_else(|| plan.is_angle(0).then_some(TAU));
+        let period = self.branch_period();
         let mut near = plan.near_branches().iter();
         let (center, half_width) = near.find_map(|near| {
             let center = nearest_in_step(near, period, ends, near.half_width)?;
@@ -124,18 +126,18 @@ impl Chart {
     }
 
     /// Whether a step leads from one revolution of a limited range to another, or passes over a fit window.
-    pub(super) fn steps_over_gap(&self, before: &OdeState, now: &OdeState) -> bool {
-        let step = (now.y[0] - before.y[0]).abs();
+    pub(super) fn steps_over_gap(&self, [from, to]: [f64; 2]) -> bool {
+        let step = (to - from).abs();
         let windows = &self.machine.fit_windows;
         if windows.iter().any(|window| step > window.fit.fit_radius) {
             return true;
         }
         let plan = self.machine.model.plan();
-        let Some((from, _)) = plan.range().limits().filter(|_| windows.is_empty()) else {
+        let Some((low, _)) = plan.range().limits().filter(|_| windows.is_empty()) else {
             return false;
         };
-        let revolution = |q: f64| ((q - from) / TAU).floor();
-        plan.is_angle(0) && revolution(before.y[0]) != revolution(now.y[0])
+        let revolution = |q: f64| ((q - low) / TAU).floor();
+        plan.is_angle(0) && revolution(from) != revolution(to)
     }
 }
 

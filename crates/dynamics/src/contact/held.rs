@@ -13,7 +13,7 @@
 //! where one coordinate is held, and shares in proportion to the speeds they would have where several are. So they reach
 //! their limits together. The motion does not depend on it while they hold.
 
-use super::independent::IndependentSet;
+use super::independent::{IndependentSet, independent};
 use super::mode::sign;
 use super::{Contact, ContactMode, ContactWorkspace};
 use crate::error::Result;
@@ -28,11 +28,14 @@ const DAMPED: usize = 20;
 /// The weight of contacts that nothing presses together, where no others can hold, as a part of the largest.
 const SMALL_WEIGHT: f64 = 1e-9;
 
-/// The state without the loads that depend on reactions: the reactions, and what a unit of each of these loads adds to
-/// them, with the accelerations it causes.
-pub(crate) struct Unloaded<'r, T> {
-    pub(crate) reactions: &'r [T],
-    pub(crate) responses: &'r [InverseDynamics<T>],
+/// The contacts of a machine at a state.
+pub(crate) struct ContactProblem<'p, 's, T: Scalar, M: MachineModel> {
+    pub(crate) contacts: &'p [Contact<M::CoordinateFunction>],
+    pub(crate) state: &'p mut ForceState<'s, T, M>,
+    pub(crate) workspace: &'p mut ContactWorkspace<T>,
+    /// Without the loads that depend on reactions: the reactions, and what a unit of each of these loads adds to them.
+    pub(crate) unloaded: &'p [T],
+    pub(crate) responses: &'p [InverseDynamics<T>],
 }
 
 /// Contacts that hold, with the independent ones among them, and the working memory of their equations.
@@ -57,184 +60,179 @@ pub(super) struct HeldContacts<T> {
     by_other: Vec<T>,
 }
 
-/// Finds the modes that are open, and solves for all forces: they become the magnitudes of their loads.
-///
-/// # Errors
-/// [`KinetostaticsError::SelfLocking`](dwell_kinetostatics::KinetostaticsError::SelfLocking) where surfaces that slide have
-/// no unique force, [`DynamicsError::NoContactMode`](crate::DynamicsError::NoContactMode) where no mode agrees with the forces.
-pub(crate) fn solve_contacts<T: Scalar, M: MachineModel>(
-    contacts: &[Contact<M::CoordinateFunction>],
-    state: &mut ForceState<'_, T, M>,
-    workspace: &mut ContactWorkspace<T>,
-    unloaded: &Unloaded<'_, T>,
-    accelerations: (&[T], &[Vec<T>]),
-    freedoms: usize,
-) -> Result<()> {
-    workspace.collect(contacts, state, accelerations);
-    for (mode, speed) in workspace.modes.iter_mut().zip(&workspace.speeds) {
-        if *mode == ContactMode::Undecided {
-            *mode = match *speed == 0.0 {
-                true => ContactMode::AtRest { at_limit: false },
-                false => ContactMode::Slides {
-                    forward: *speed > 0.0,
-                },
-            };
+impl<T: Scalar, M: MachineModel> ContactProblem<'_, '_, T, M> {
+    /// Finds the modes that are open, and solves for all forces: they become the magnitudes of their loads. `accelerations` are
+    /// those of the coordinates without the loads that depend on reactions, and by load what a unit of it adds.
+    ///
+    /// # Errors
+    /// [`KinetostaticsError::SelfLocking`](dwell_kinetostatics::KinetostaticsError::SelfLocking) where surfaces that slide have
+    /// no unique force, [`DynamicsError::NoContactMode`](crate::DynamicsError::NoContactMode) where no mode agrees with the forces.
+    pub(crate) fn solve(
+        &mut self,
+        accelerations: (&[T], &[Vec<T>]),
+        freedoms: usize,
+    ) -> Result<()> {
+        let workspace = &mut *self.workspace;
+        workspace.collect(self.contacts, self.state, accelerations);
+        for (mode, speed) in workspace.modes.iter_mut().zip(&workspace.speeds) {
+            if *mode == ContactMode::Undecided {
+                *mode = match *speed == 0.0 {
+                    true => ContactMode::AtRest { at_limit: false },
+                    false => ContactMode::Slides {
+                        forward: *speed > 0.0,
+                    },
+                };
+            }
         }
-    }
-    let is_open = |mode: &ContactMode| matches!(mode, ContactMode::AtRest { .. });
-    let mut held = std::mem::take(&mut workspace.held);
-    let solved = match workspace.modes.iter().any(is_open) {
-        true => super::search::find_modes(contacts, state, workspace, unloaded, &mut held),
-        false => solve_at_modes(contacts, state, workspace, unloaded, &mut held),
-    };
-    // Nothing that could accelerate is free of them.
-    let at_rest = |&i: &usize| workspace.convective[i].value() == 0.0;
-    workspace.nothing_moves = held.basis.len() == freedoms && held.basis.iter().all(at_rest);
-    workspace.held = held;
-    solved
-}
-
-/// Solves for the forces at the modes of the workspace.
-pub(super) fn solve_at_modes<T: Scalar, M: MachineModel>(
-    contacts: &[Contact<M::CoordinateFunction>],
-    state: &mut ForceState<'_, T, M>,
-    workspace: &mut ContactWorkspace<T>,
-    unloaded: &Unloaded<'_, T>,
-    held: &mut HeldContacts<T>,
-) -> Result<()> {
-    let loads = workspace.forces.len();
-    let known = |j: usize| {
-        let i = contacts.iter().position(|contact| contact.dependent == j);
-        let Some(i) = i else {
-            return FrictionState::BySpeed;
+        let is_open = |mode: &ContactMode| matches!(mode, ContactMode::AtRest { .. });
+        let mut held = std::mem::take(&mut workspace.held);
+        let solved = match workspace.modes.iter().any(is_open) {
+            true => self.find_modes(&mut held),
+            false => self.solve_at_modes(&mut held),
         };
-        match workspace.modes[i] {
-            ContactMode::Slides { forward } => {
-                FrictionState::Factor(contacts[i].coefficient * sign(forward))
-            }
-            ContactMode::AtLimit { forward } => {
-                FrictionState::Factor(contacts[i].static_coefficient * sign(forward))
-            }
-            ContactMode::Holds | ContactMode::Undecided | ContactMode::AtRest { .. } => {
-                FrictionState::Force(T::from_f64(0.0))
-            }
-        }
-    };
-    state.set_friction_states((0..loads).map(known));
-    held.find(contacts, workspace);
-    workspace.shares.fill(0.0);
-    if held.held.is_empty() {
-        state.solve_friction(unloaded.reactions, unloaded.responses)?;
-        read_forces(state, workspace);
-        return Ok(());
+        let workspace = &mut *self.workspace;
+        // Nothing that could accelerate is free of them.
+        let at_rest = |&i: &usize| workspace.convective[i].value() == 0.0;
+        workspace.nothing_moves = held.basis.len() == freedoms && held.basis.iter().all(at_rest);
+        workspace.held = held;
+        solved
     }
-    hold(contacts, state, workspace, unloaded, held)?;
-    for &i in &held.held {
-        let contact = &contacts[i];
-        let force = workspace.forces[contact.dependent].value().abs();
-        let press = state.contact_force(contact.dependent, &workspace.reactions);
-        let limit = contact.static_coefficient * press.value();
-        // Where nothing presses, nothing is held but what needs no force.
-        workspace.shares[i] = if force == 0.0 { 0.0 } else { force / limit };
-    }
-    Ok(())
-}
 
-/// The magnitudes of the loads that depend on reactions, as their forces.
-fn read_forces<T: Scalar, M: MachineModel>(
-    state: &ForceState<'_, T, M>,
-    workspace: &mut ContactWorkspace<T>,
-) {
-    for (force, load) in workspace.forces.iter_mut().zip(state.frictions()) {
-        *force = state.magnitudes()[load];
-    }
-}
-
-/// Solves for the forces of contacts that hold, with those of all others.
-// Long because it is one loop: the weights of those that hold depend on the reactions under all forces.
-fn hold<T: Scalar, M: MachineModel>(
-    contacts: &[Contact<M::CoordinateFunction>],
-    state: &mut ForceState<'_, T, M>,
-    workspace: &mut ContactWorkspace<T>,
-    unloaded: &Unloaded<'_, T>,
-    of: &mut HeldContacts<T>,
-) -> Result<()> {
-    let count = workspace.forces.len();
-    let HeldContacts { held, others, .. } = &mut *of;
-    let is_held = |j: &usize| held.iter().any(|&i| contacts[i].dependent == *j);
-    others.clear();
-    others.extend((0..count).filter(|j| !is_held(j)));
-    let limit = |contact: &Contact<M::CoordinateFunction>| {
-        contact.static_coefficient.max(f64::MIN_POSITIVE)
-    };
-    of.set_next_weights(contacts, |contact| T::from_f64(limit(contact)), workspace);
-    std::mem::swap(&mut of.weights, &mut of.next_weights);
-    let mut last = f64::INFINITY;
-    for round in 0..MAX_ROUNDS {
-        of.solve_for_others(contacts, workspace);
-        workspace.held_reactions.copy_from_slice(unloaded.reactions);
-        let add = |reactions: &mut [T], forces: &[T]| {
-            for (&i, force) in of.held.iter().zip(forces) {
-                let response = &unloaded.responses[contacts[i].dependent].reactions;
-                for (sum, one) in reactions.iter_mut().zip(response) {
-                    *sum += *one * *force;
+    /// Solves for the forces at the modes of the workspace.
+    pub(super) fn solve_at_modes(&mut self, held: &mut HeldContacts<T>) -> Result<()> {
+        let (contacts, workspace) = (self.contacts, &mut *self.workspace);
+        let known = |j: usize| {
+            let i = contacts.iter().position(|contact| contact.dependent == j);
+            let Some(i) = i else {
+                return FrictionState::BySpeed;
+            };
+            let contact = &contacts[i];
+            match workspace.modes[i] {
+                ContactMode::Slides { forward } => {
+                    FrictionState::Factor(contact.coefficient * sign(forward))
+                }
+                ContactMode::AtLimit { forward } => {
+                    FrictionState::Factor(contact.static_coefficient * sign(forward))
+                }
+                ContactMode::Holds | ContactMode::Undecided | ContactMode::AtRest { .. } => {
+                    FrictionState::Force(T::from_f64(0.0))
                 }
             }
         };
-        add(&mut workspace.held_reactions, &of.own);
-        workspace.forces.fill(T::from_f64(0.0));
-        if !of.others.is_empty() {
-            let each = of.by_other.chunks_exact(of.held.len());
-            for (&j, forces) in of.others.iter().zip(each) {
-                let response = &mut workspace.held_responses[j];
-                response.tau.copy_from_slice(&unloaded.responses[j].tau);
-                let reactions = &unloaded.responses[j].reactions;
-                response.reactions.copy_from_slice(reactions);
-                add(&mut response.reactions, forces);
-            }
-            state.solve_friction(&workspace.held_reactions, &workspace.held_responses)?;
-            read_forces(state, workspace);
+        let loads = 0..workspace.forces.len();
+        self.state.set_friction_states(loads.map(known));
+        held.find(workspace);
+        workspace.shares.fill(0.0);
+        if held.held.is_empty() {
+            self.state.solve_friction(self.unloaded, self.responses)?;
+            self.read_forces();
+            return Ok(());
         }
-        for (h, &i) in of.held.iter().enumerate() {
-            let each = of.by_other.chunks_exact(of.held.len());
-            let from_others = of.others.iter().zip(each);
-            workspace.forces[contacts[i].dependent] = from_others
-                .fold(of.own[h], |sum, (&j, forces)| {
+        self.hold(held)?;
+        let workspace = &mut *self.workspace;
+        for &i in &held.held {
+            let contact = &contacts[i];
+            let force = workspace.forces[contact.dependent].value().abs();
+            let reactions = &workspace.reactions;
+            let press = self.state.contact_force(contact.dependent, reactions);
+            let limit = contact.static_coefficient * press.value();
+            // Where nothing presses, nothing is held but what needs no force.
+            workspace.shares[i] = if force == 0.0 { 0.0 } else { force / limit };
+        }
+        Ok(())
+    }
+
+    /// The magnitudes of the loads that depend on reactions, as their forces.
+    fn read_forces(&mut self) {
+        let forces = self.workspace.forces.iter_mut();
+        for (force, load) in forces.zip(self.state.frictions()) {
+            *force = self.state.magnitudes()[load];
+        }
+    }
+
+    /// Solves for the forces of contacts that hold, with those of all others.
+    // Long because it is one loop: the weights of those that hold depend on the reactions under all forces.
+    fn hold(&mut self, of: &mut HeldContacts<T>) -> Result<()> {
+        let (contacts, responses) = (self.contacts, self.responses);
+        let count = self.workspace.forces.len();
+        let HeldContacts { held, others, .. } = &mut *of;
+        let is_held = |j: &usize| held.iter().any(|&i| contacts[i].dependent == *j);
+        others.clear();
+        others.extend((0..count).filter(|j| !is_held(j)));
+        let limit = |i: usize| contacts[i].static_coefficient.max(f64::MIN_POSITIVE);
+        of.set_next_weights(|i| T::from_f64(limit(i)), self.workspace);
+        std::mem::swap(&mut of.weights, &mut of.next_weights);
+        let mut last = f64::INFINITY;
+        for round in 0..MAX_ROUNDS {
+            let workspace = &mut *self.workspace;
+            of.solve_for_others(workspace);
+            workspace.held_reactions.copy_from_slice(self.unloaded);
+            let add = |reactions: &mut [T], forces: &[T]| {
+                for (&i, force) in of.held.iter().zip(forces) {
+                    let response = &responses[contacts[i].dependent].reactions;
+                    for (sum, one) in reactions.iter_mut().zip(response) {
+                        *sum += *one * *force;
+                    }
+                }
+            };
+            add(&mut workspace.held_reactions, &of.own);
+            workspace.forces.fill(T::from_f64(0.0));
+            if !of.others.is_empty() {
+                let each = of.by_other.chunks_exact(of.held.len());
+                for (&j, forces) in of.others.iter().zip(each) {
+                    let response = &mut workspace.held_responses[j];
+                    response.tau.copy_from_slice(&responses[j].tau);
+                    response.reactions.copy_from_slice(&responses[j].reactions);
+                    add(&mut response.reactions, forces);
+                }
+                let (reactions, responses) = (&workspace.held_reactions, &workspace.held_responses);
+                self.state.solve_friction(reactions, responses)?;
+                self.read_forces();
+            }
+            let workspace = &mut *self.workspace;
+            for (h, &i) in of.held.iter().enumerate() {
+                let each = of.by_other.chunks_exact(of.held.len());
+                let from_others = of.others.iter().zip(each);
+                let force = from_others.fold(of.own[h], |sum, (&j, forces)| {
                     sum + forces[h] * workspace.forces[j]
                 });
-        }
-        workspace.reactions.copy_from_slice(unloaded.reactions);
-        for (force, response) in workspace.forces.iter().zip(unloaded.responses) {
-            for (sum, one) in workspace.reactions.iter_mut().zip(&response.reactions) {
-                *sum += *one * *force;
+                workspace.forces[contacts[i].dependent] = force;
             }
+            workspace.reactions.copy_from_slice(self.unloaded);
+            for (force, response) in workspace.forces.iter().zip(responses) {
+                for (sum, one) in workspace.reactions.iter_mut().zip(&response.reactions) {
+                    *sum += *one * *force;
+                }
+            }
+            if of.basis.len() == of.held.len() {
+                break;
+            }
+            let press = |i: usize| {
+                let (j, reactions) = (contacts[i].dependent, &workspace.reactions);
+                let press = self.state.contact_force(j, reactions);
+                press * T::from_f64(contacts[i].static_coefficient)
+            };
+            of.set_next_weights(press, workspace);
+            let change = of.approach_next_weights(if round < DAMPED { 1.0 } else { 0.5 });
+            if change <= AGREED || (change < 1e-12 && change >= last) || !change.is_finite() {
+                break;
+            }
+            last = change;
         }
-        if of.basis.len() == of.held.len() {
-            break;
-        }
-        let press = |contact: &Contact<M::CoordinateFunction>| {
-            let press = state.contact_force(contact.dependent, &workspace.reactions);
-            press * T::from_f64(contact.static_coefficient)
-        };
-        of.set_next_weights(contacts, press, workspace);
-        let change = of.approach_next_weights(if round < DAMPED { 1.0 } else { 0.5 });
-        if change <= AGREED || (change < 1e-12 && change >= last) || !change.is_finite() {
-            break;
-        }
-        last = change;
+        let forces = &self.workspace.forces;
+        let force = |&i: &usize| (contacts[i].load, forces[contacts[i].dependent]);
+        Ok(self.state.set_magnitudes(of.held.iter().map(force))?)
     }
-    let force = |&i: &usize| (contacts[i].load, workspace.forces[contacts[i].dependent]);
-    Ok(state.set_magnitudes(of.held.iter().map(force))?)
 }
 
 impl<T: Scalar> HeldContacts<T> {
     /// Finds those whose mode is to hold, and the independent ones among them.
-    pub(super) fn find<F>(&mut self, contacts: &[Contact<F>], workspace: &ContactWorkspace<T>) {
+    pub(super) fn find(&mut self, workspace: &ContactWorkspace<T>) {
         let modes = workspace.modes.iter().enumerate();
         self.held.clear();
         let holds = modes.filter(|(_, mode)| **mode == ContactMode::Holds);
         self.held.extend(holds.map(|(i, _)| i));
-        let of_two = |i: usize, j: usize| workspace.compliance[i][contacts[j].dependent];
+        let of_two = |i: usize, j: usize| workspace.of_two(i, j);
         let found = self
             .independent
             .find(&self.held, |i, j| of_two(i, j).value());
@@ -258,16 +256,11 @@ impl<T: Scalar> HeldContacts<T> {
     }
 
     /// Sets the next weight over √D of each contact that holds.
-    fn set_next_weights<F>(
-        &mut self,
-        contacts: &[Contact<F>],
-        of: impl Fn(&Contact<F>) -> T,
-        workspace: &ContactWorkspace<T>,
-    ) {
+    fn set_next_weights(&mut self, of: impl Fn(usize) -> T, workspace: &ContactWorkspace<T>) {
         let weight = |&i: &usize| {
-            let own = workspace.compliance[i][contacts[i].dependent].value();
+            let own = workspace.of_two(i, i).value();
             match own > 0.0 {
-                true => of(&contacts[i]) * T::from_f64(1.0 / own.sqrt()),
+                true => of(i) * T::from_f64(1.0 / own.sqrt()),
                 false => T::from_f64(0.0),
             }
         };
@@ -289,7 +282,7 @@ impl<T: Scalar> HeldContacts<T> {
     }
 
     /// The forces of those that hold, without the others and by a unit of each of them.
-    fn solve_for_others<F>(&mut self, contacts: &[Contact<F>], workspace: &ContactWorkspace<T>) {
+    fn solve_for_others(&mut self, workspace: &ContactWorkspace<T>) {
         let Self {
             held,
             basis,
@@ -302,7 +295,7 @@ impl<T: Scalar> HeldContacts<T> {
             ..
         } = self;
         let of = (&held[..], &basis[..], &coefficients[..]);
-        equations.compose(contacts, workspace, of, weights);
+        equations.compose(workspace, of, weights);
         own.clear();
         by_other.clear();
         equations.add_forces(of, |i| workspace.free[i], own);
@@ -312,19 +305,13 @@ impl<T: Scalar> HeldContacts<T> {
     }
 
     /// Whether a contact is held by those that hold, whatever its own force is.
-    pub(super) fn hold_still<F>(
-        &self,
-        i: usize,
-        contacts: &[Contact<F>],
-        workspace: &ContactWorkspace<T>,
-    ) -> bool {
+    pub(super) fn hold_still(&self, i: usize, workspace: &ContactWorkspace<T>) -> bool {
         let mut with: Vec<usize> = self.basis.clone();
         if !with.contains(&i) {
             with.push(i);
         }
-        let of_two = |i: usize, j: usize| workspace.compliance[i][contacts[j].dependent].value();
-        let own = of_two(i, i);
-        super::independent(&with, of_two).len() <= self.basis.len() && own > 0.0
+        let of_two = |i: usize, j: usize| workspace.of_two(i, j).value();
+        independent(&with, of_two).len() <= self.basis.len() && of_two(i, i) > 0.0
     }
 }
 
@@ -342,16 +329,10 @@ type HeldRows<'h, T> = (&'h [usize], &'h [usize], &'h [T]);
 
 impl<T: Scalar> HoldingEquations<T> {
     /// Composes and factors them; where they are singular, no weight is far below the largest.
-    fn compose<F>(
-        &mut self,
-        contacts: &[Contact<F>],
-        workspace: &ContactWorkspace<T>,
-        of: HeldRows<'_, T>,
-        weights: &[T],
-    ) {
+    fn compose(&mut self, workspace: &ContactWorkspace<T>, of: HeldRows<'_, T>, weights: &[T]) {
         self.weights.clear();
         self.weights.extend_from_slice(weights);
-        if self.factor(contacts, workspace, of) {
+        if self.factor(workspace, of) {
             return;
         }
         let largest = weights.iter().fold(0.0, |max, w| w.value().max(max));
@@ -364,13 +345,12 @@ impl<T: Scalar> HoldingEquations<T> {
                 *weight = T::from_f64(least);
             }
         }
-        self.factor(contacts, workspace, of);
+        self.factor(workspace, of);
     }
 
     /// Composes and factors the matrix; whether it is regular.
-    fn factor<F>(
+    fn factor(
         &mut self,
-        contacts: &[Contact<F>],
         workspace: &ContactWorkspace<T>,
         (held, basis, coefficients): HeldRows<'_, T>,
     ) -> bool {
@@ -381,7 +361,7 @@ impl<T: Scalar> HoldingEquations<T> {
         self.pivots.resize(r, 0);
         for (h, &j) in held.iter().enumerate() {
             for (row, &i) in basis.iter().enumerate() {
-                let entry = workspace.compliance[i][contacts[j].dependent] * self.weights[h];
+                let entry = workspace.of_two(i, j) * self.weights[h];
                 for (k, t) in coefficients[h * r..(h + 1) * r].iter().enumerate() {
                     self.matrix[row * r + k] += entry * *t;
                 }

@@ -28,7 +28,9 @@ pub(crate) struct ContactWorkspace<T> {
     pub(super) free: Vec<T>,
     pub(super) convective: Vec<T>,
     /// By contact and load: D.
-    pub(crate) compliance: Vec<Vec<T>>,
+    pub(super) compliance: Vec<Vec<T>>,
+    /// By contact: its load.
+    dependents: Vec<usize>,
     /// By load: F.
     pub(super) forces: Vec<T>,
     /// The reactions under all forces, and those with the contacts that hold.
@@ -60,6 +62,7 @@ impl<T: Scalar> ContactWorkspace<T> {
             free: vec![zero; n],
             convective: vec![zero; n],
             compliance: vec![vec![zero; loads]; n],
+            dependents: contacts.iter().map(|of| of.dependent).collect(),
             forces: vec![zero; loads],
             reactions: result.reactions.clone(),
             held_reactions: result.reactions.clone(),
@@ -92,6 +95,11 @@ impl<T: Scalar> ContactWorkspace<T> {
                 *entry = along(accelerations);
             }
         }
+    }
+
+    /// D of a contact and the load of another.
+    pub(crate) fn of_two(&self, contact: usize, other: usize) -> T {
+        self.compliance[contact][self.dependents[other]]
     }
 
     /// How far a contact is from a change of its mode: the speed that is left of surfaces that slide, the part of the largest

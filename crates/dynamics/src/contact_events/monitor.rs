@@ -18,13 +18,12 @@
 //! sign of q̈ behind t₁ does: as long as it leads away from the stop, there is no contact.
 
 use crate::contact::ContactStep;
+use crate::crossings::{are_together, fall_below_zero, first_of};
 use crate::error::Result;
-use crate::ode::{DenseOutput, OdeState, OdeSystem, root_subintervals, state_at};
-use crate::switch_monitor::vertex;
+use crate::ode::{OdeState, OdeSystem, Step};
 use dwell_numerics::root;
 
-/// Roundings of time within which events happen together, and how many of them count as one without end.
-const TOGETHER: f64 = 16.0 * f64::EPSILON;
+/// How many events that happen together count as one without end.
 const MAX_TOGETHER: usize = 64;
 /// Events at one time, beside those of other contacts, after which they repeat each other.
 const REPEATED: usize = 8;
@@ -95,17 +94,16 @@ impl ContactMonitor {
         }
     }
 
-    /// The first event in a step that ends at `now`.
+    /// The first event in a step.
     ///
     /// # Errors
     /// Where a state cannot be evaluated.
     pub(crate) fn first_event(
         &mut self,
         system: &mut dyn OdeSystem,
-        before: &OdeState,
-        now: &OdeState,
-        dense: DenseOutput<'_>,
+        step: &mut Step<'_>,
     ) -> Result<Option<(OdeState, Vec<bool>)>> {
+        let before = step.before;
         // Most steps begin where the last one has ended, whose margins are known.
         let is_known = |margin: &Margin| margin.points[0].0 == before.t;
         match self.margins.iter().all(is_known) {
@@ -123,27 +121,14 @@ impl ContactMonitor {
             margin.largest = value.abs();
             margin.is_inside |= value > 0.0 && margin.leaving.is_none();
         }
-        for t in root_subintervals(before, now) {
-            let point = state_at(t, now, dense)?;
+        for t in step.root_subintervals() {
+            let point = step.state_at(t)?;
             system.contact_margins(t, &point.y, &mut self.values)?;
-            let mut first: Option<(f64, Vec<usize>)> = None;
-            for k in 0..self.margins.len() {
-                let Some(at) = self.crossing(k, t, system, (before, now), dense)? else {
-                    continue;
-                };
-                match &mut first {
-                    Some((t, all)) if (at - *t).abs() <= TOGETHER * at.abs() => all.push(k),
-                    Some((t, _)) if at > *t => {}
-                    _ => first = Some((at, vec![k])),
-                }
-            }
-            if let Some((at, all)) = first {
-                let state = match at > before.t {
-                    true => state_at(at, now, dense)?,
-                    false => before.clone(),
-                };
+            let each = 0..self.margins.len();
+            let times = each.map(|k| Ok(self.crossing(k, t, system, step)?.map(|at| (at, k))));
+            if let Some((at, all)) = first_of(times)? {
                 let touched = (0..self.margins.len()).map(|k| all.contains(&k));
-                return Ok(Some((state, touched.collect())));
+                return Ok(Some((step.state_from_start(at)?, touched.collect())));
             }
         }
         Ok(None)
@@ -155,11 +140,10 @@ impl ContactMonitor {
         k: usize,
         t: f64,
         system: &mut dyn OdeSystem,
-        (before, now): (&OdeState, &OdeState),
-        dense: DenseOutput<'_>,
+        step: &mut Step<'_>,
     ) -> Result<Option<f64>> {
         let value = self.values[k];
-        if self.is_leaving(k, t, system, now, dense)? {
+        if self.is_leaving(k, t, system, step)? {
             let margin = &mut self.margins[k];
             margin.points = [(t, value), margin.points[0]];
             return Ok(None);
@@ -170,43 +154,21 @@ impl ContactMonitor {
         margin.largest = margin.largest.max(value.abs());
         let was_inside = margin.is_inside;
         margin.is_inside |= value > 0.0;
-        if value < 0.0 && !was_inside {
-            let start = earlier[0].0;
-            let first = self.first_inside(k, [start, t], system, (before, now), dense)?;
-            let Some([inside, until]) = first else {
-                return Ok(Some(start));
-            };
-            let mut values = vec![0.0; self.margins.len()];
-            let margin_at = |at: f64| -> Result<f64> {
-                let state = state_at(at, now, dense)?;
-                system.contact_margins(at, &state.y, &mut values)?;
-                Ok(values[k])
-            };
-            return root::find(margin_at, inside, until);
-        }
-        let lowest = vertex([earlier[1], earlier[0], (t, value)]);
-        let Some(end) = (value < 0.0).then_some(t).or(lowest) else {
-            return Ok(None);
-        };
-        let mut values = vec![0.0; self.margins.len()];
+        let mut values = Vec::new();
         let mut margin_at = |at: f64| -> Result<f64> {
-            let state = match at > before.t {
-                true => state_at(at, now, dense)?,
-                false => before.clone(),
-            };
+            let state = step.state_from_start(at)?;
+            values.resize(self.values.len(), 0.0);
             system.contact_margins(at, &state.y, &mut values)?;
             Ok(values[k])
         };
-        let is_beyond = margin_at(end)? < 0.0;
-        if !is_beyond {
-            return Ok(None);
+        if value < 0.0 && !was_inside {
+            let start = earlier[0].0;
+            return match first_inside([start, t], &mut margin_at)? {
+                Some([inside, until]) => root::find(margin_at, inside, until),
+                None => Ok(Some(start)),
+            };
         }
-        let from = if end > earlier[0].0 {
-            earlier[0]
-        } else {
-            earlier[1]
-        };
-        root::find(margin_at, from.0, end)
+        fall_below_zero(earlier, (t, value), margin_at)
     }
 
     /// Which coordinates leave their stops from rest: those that a force of zero has let go, which is touched, and those that
@@ -243,14 +205,13 @@ impl ContactMonitor {
         k: usize,
         t: f64,
         system: &mut dyn OdeSystem,
-        now: &OdeState,
-        dense: DenseOutput<'_>,
+        step: &mut Step<'_>,
     ) -> Result<bool> {
         let margin = &mut self.margins[k];
         let Some((speed, away)) = margin.leaving else {
             return Ok(false);
         };
-        let state = state_at(t, now, dense)?;
+        let state = step.state_at(t)?;
         let mut rates = vec![0.0; state.y.len()];
         system.rhs(t, &state.y, &mut rates)?;
         let leaves = away * rates[speed] > 0.0;
@@ -258,35 +219,6 @@ impl ContactMonitor {
             margin.leaving = None;
         }
         Ok(leaves)
-    }
-
-    /// A time soon after the start of a step at which the margin of a contact is positive, and a later one at which it is
-    /// not: a short rebound lies between two points of a step.
-    fn first_inside(
-        &self,
-        k: usize,
-        [start, end]: [f64; 2],
-        system: &mut dyn OdeSystem,
-        (_, now): (&OdeState, &OdeState),
-        dense: DenseOutput<'_>,
-    ) -> Result<Option<[f64; 2]>> {
-        /// Halvings of the step.
-        const HALVINGS: usize = 48;
-        let mut values = vec![0.0; self.margins.len()];
-        let mut until = end;
-        for _ in 0..HALVINGS {
-            let at = start + 0.5 * (until - start);
-            if at <= start || at >= until {
-                break;
-            }
-            let state = state_at(at, now, dense)?;
-            system.contact_margins(at, &state.y, &mut values)?;
-            if values[k] > 0.0 {
-                return Ok(Some([at, until]));
-            }
-            until = at;
-        }
-        Ok(None)
     }
 
     /// Changes the modes where an event has ended an integration.
@@ -299,7 +231,7 @@ impl ContactMonitor {
         at: &mut OdeState,
         touched: &[bool],
     ) -> Result<()> {
-        let together = (at.t - self.last.0).abs() <= TOGETHER * at.t.abs();
+        let together = are_together(at.t, self.last.0);
         self.last = (at.t, if together { self.last.1 + 1 } else { 0 });
         if self.last.1 > MAX_TOGETHER {
             let first = touched.iter().position(|touched| *touched);
@@ -316,4 +248,26 @@ impl ContactMonitor {
         system.pass_contacts(at.t, &mut at.y, &step)?;
         self.find_leaving(system, at, Some(touched))
     }
+}
+
+/// A time soon after the start of an interval at which a margin is positive, and a later one at which it is not: a short rebound lies
+/// between two points of a step.
+fn first_inside(
+    [start, end]: [f64; 2],
+    mut margin_at: impl FnMut(f64) -> Result<f64>,
+) -> Result<Option<[f64; 2]>> {
+    /// Halvings of the interval.
+    const HALVINGS: usize = 48;
+    let mut until = end;
+    for _ in 0..HALVINGS {
+        let at = start + 0.5 * (until - start);
+        if at <= start || at >= until {
+            break;
+        }
+        if margin_at(at)? > 0.0 {
+            return Ok(Some([at, until]));
+        }
+        until = at;
+    }
+    Ok(None)
 }

@@ -5,7 +5,7 @@ use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
 use crate::machine::{Machine, MovingModel};
 use crate::machine_ode::MachineOde;
-use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, state_at};
+use crate::ode::{DenseOutput, OdeState, OdeSystem, Step, StepControl};
 use crate::options::Options;
 use dwell_numerics::root;
 use std::f64::consts::TAU;
@@ -44,10 +44,11 @@ pub fn initial_transient<M: MovingModel>(
                 false => StepControl::Continue,
             });
         }
+        let mut step = Step { before, now, dense };
         let difference =
-            |t: f64| -> Result<f64> { Ok((state_at(t, now, dense)?.y[0] - from).abs() - distance) };
+            |t: f64| -> Result<f64> { Ok((step.state_at(t)?.y[0] - from).abs() - distance) };
         let t = root::find(difference, before.t, now.t)?;
-        reached = state_at(t.unwrap_or(now.t), now, dense)?.y;
+        reached = step.state_at(t.unwrap_or(now.t))?.y;
         Ok(StepControl::Stop)
     };
     let start = OdeState {

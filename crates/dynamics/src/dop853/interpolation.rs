@@ -144,7 +144,7 @@ impl Stages<'_> {
     }
 
     /// The next part begins with the rates at the end of this one.
-    fn continue_from_end(&mut self) {
+    pub(super) fn continue_from_end(&mut self) {
         for rates in &mut self.stage_rhs {
             rates[0] = rates[END_STAGE];
         }

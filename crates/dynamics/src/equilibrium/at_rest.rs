@@ -69,29 +69,23 @@ impl Factored {
 
     /// The smallest change of the states that changes the rates by `rates`, by the first `rank` singular values.
     fn solve(&self, rates: &[f64], rank: usize) -> Vec<f64> {
-        let mut states = vec![0.0; self.columns.len()];
-        for k in 0..rank {
-            let scaled = rates.iter().zip(&self.rows).enumerate();
-            let part: f64 = scaled
-                .map(|(i, (r, scale))| self.u[(i, k)] * r * scale)
-                .sum();
-            for (j, state) in states.iter_mut().enumerate() {
-                *state += self.columns[j] * self.v[(j, k)] * part / self.sizes[k];
-            }
-        }
-        states
+        self.sum_of_terms(rates, rank, |term| term)
     }
 
     /// The largest change of each state by changes of the rates up to `rates`.
     pub(super) fn largest_change(&self, rates: &[f64], rank: usize) -> Vec<f64> {
+        self.sum_of_terms(rates, rank, f64::abs)
+    }
+
+    /// V Σ⁻¹ Uᵀ times some rates, of all whose terms something is taken.
+    fn sum_of_terms(&self, rates: &[f64], rank: usize, of: impl Fn(f64) -> f64) -> Vec<f64> {
         let mut states = vec![0.0; self.columns.len()];
         for k in 0..rank {
             let scaled = rates.iter().zip(&self.rows).enumerate();
-            let part: f64 = scaled
-                .map(|(i, (r, scale))| (self.u[(i, k)] * r * scale).abs())
-                .sum();
+            let terms = scaled.map(|(i, (r, scale))| of(self.u[(i, k)] * r * scale));
+            let part: f64 = terms.sum();
             for (j, state) in states.iter_mut().enumerate() {
-                *state += (self.columns[j] * self.v[(j, k)] * part / self.sizes[k]).abs();
+                *state += of(self.columns[j] * self.v[(j, k)] * part / self.sizes[k]);
             }
         }
         states
@@ -112,11 +106,10 @@ impl Factored {
             };
             basis.swap(k, row);
             let pivot = basis[k].clone();
-            for (i, other) in basis.iter_mut().enumerate().filter(|(i, _)| *i != k) {
+            for (_, other) in basis.iter_mut().enumerate().filter(|(i, _)| *i != k) {
                 let factor = other[j] / pivot[j];
                 let parts = other.iter_mut().zip(&pivot);
                 parts.for_each(|(part, of_pivot)| *part -= factor * of_pivot);
-                debug_assert!(i != k);
             }
         }
         for direction in &mut basis {
@@ -255,14 +248,16 @@ impl<'m, M: MovingModel> AtRest<'m, M> {
         Ok((0..n).map(force).collect())
     }
 
+    /// The largest work of static forces over 1 rad or the size of the mechanism, J.
+    fn largest_work(&self, forces: &[f64]) -> f64 {
+        let works = forces.iter().zip(&self.arms);
+        works.fold(0.0, |max, (force, arm)| max.max(force.abs() * arm))
+    }
+
     /// Counts the forces here among those beside which others are rounding.
     pub(super) fn count_forces(&mut self) -> Result<Vec<f64>> {
         let forces = self.forces()?;
-        let works = forces
-            .iter()
-            .zip(&self.arms)
-            .map(|(force, arm)| force.abs() * arm);
-        self.work = works.fold(self.work, f64::max);
+        self.work = self.work.max(self.largest_work(&forces));
         Ok(forces)
     }
 
@@ -270,11 +265,7 @@ impl<'m, M: MovingModel> AtRest<'m, M> {
     pub(super) fn has_forces(&mut self) -> Result<bool> {
         self.evaluate()?;
         let forces = self.forces()?;
-        let works = forces
-            .iter()
-            .zip(&self.arms)
-            .map(|(force, arm)| force.abs() * arm);
-        Ok(works.fold(0.0, f64::max) > REMAINING_FORCE * self.work)
+        Ok(self.largest_work(&forces) > REMAINING_FORCE * self.work)
     }
 
     /// By free coordinate: the accelerations by forces of `part` of the largest works.
@@ -364,27 +355,23 @@ impl<'m, M: MovingModel> AtRest<'m, M> {
             let largest = entries.fold(0.0_f64, |max, a| max.max(a.abs()));
             if largest > 0.0 { largest } else { 1.0 }
         };
-        let of_coordinate = |&j: &usize| self.arms.get(j).copied();
-        let row_scales: Vec<f64> = rows
-            .iter()
-            .map(|&i| match accelerations.get(i.wrapping_sub(n)) {
-                Some(&acceleration) if acceleration > 0.0 => 1.0 / acceleration,
-                Some(_) => 1.0,
-                None => {
-                    let entries = columns.iter();
-                    let scale = |j: &usize| self.arms.get(*j).copied().unwrap_or(1.0);
-                    1.0 / largest(&mut entries.map(|j| self.entry(i, *j) * scale(j)))
-                }
-            })
-            .collect();
-        let column_scales: Vec<f64> = columns
-            .iter()
-            .map(|j| {
-                let entries = rows.iter().zip(&row_scales);
-                let mut entries = entries.map(|(&i, scale)| self.entry(i, *j) * scale);
-                of_coordinate(j).unwrap_or_else(|| 1.0 / largest(&mut entries))
-            })
-            .collect();
+        let arm = |j: usize| self.arms.get(j).copied();
+        let row_scale = |&i: &usize| match accelerations.get(i.wrapping_sub(n)) {
+            Some(&acceleration) if acceleration > 0.0 => 1.0 / acceleration,
+            Some(_) => 1.0,
+            None => {
+                let entries = columns.iter();
+                let mut entries = entries.map(|&j| self.entry(i, j) * arm(j).unwrap_or(1.0));
+                1.0 / largest(&mut entries)
+            }
+        };
+        let row_scales: Vec<f64> = rows.iter().map(row_scale).collect();
+        let column_scale = |&j: &usize| {
+            let entries = rows.iter().zip(&row_scales);
+            let mut entries = entries.map(|(&i, scale)| self.entry(i, j) * scale);
+            arm(j).unwrap_or_else(|| 1.0 / largest(&mut entries))
+        };
+        let column_scales: Vec<f64> = columns.iter().map(column_scale).collect();
         let matrix = Matrix::from_fn(rows.len(), columns.len(), |i, j| {
             self.entry(rows[i], columns[j]) * row_scales[i] * column_scales[j]
         });

@@ -17,7 +17,8 @@ const MAX_FAILED: usize = 20;
 pub(super) struct Impasse {
     start: f64,
     relative: f64,
-    absolute: Vec<f64>,
+    /// By state.
+    pub(super) absolute: Vec<f64>,
     failed: usize,
     /// The length of a step that could not be evaluated and was not shortened, s; none where it is below the rounding of time.
     pub(super) failed_step: Option<f64>,
@@ -33,11 +34,6 @@ impl Impasse {
             failed: 0,
             failed_step: None,
         }
-    }
-
-    /// The absolute tolerances by state.
-    pub(super) fn absolute(&self) -> &[f64] {
-        &self.absolute
     }
 
     /// After a step.

@@ -2,8 +2,9 @@
 
 use super::impasse::Impasse;
 use crate::error::{DynamicsError, Result};
+use crate::integration_parts::Part;
 use crate::ode::{OdeState, StepControl, StepObserver, Termination};
-use crate::options::{Options, Statistics};
+use crate::options::Statistics;
 use crate::time_pieces::TimePieces;
 use diffsol::error::OdeSolverError;
 use diffsol::{
@@ -31,9 +32,7 @@ pub(super) fn solver_error(error: &DiffsolError, t: f64) -> DynamicsError {
 
 /// What all steps of an integration share.
 pub(super) struct StepLoop<'g, 'f> {
-    pub(super) start: &'g OdeState,
-    pub(super) end: Option<f64>,
-    pub(super) options: &'g Options,
+    pub(super) part: &'g Part,
     /// The error of the last evaluation that failed.
     pub(super) failure: &'g RefCell<Option<DynamicsError>>,
     pub(super) pieces: Option<&'g mut TimePieces<'f>>,
@@ -53,7 +52,7 @@ impl StepLoop<'_, '_> {
         E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
         S: OdeSolverMethod<'a, E>,
     {
-        let mut state = self.start.clone();
+        let mut state = self.part.start.clone();
         let error = self.take_steps(solver, &mut state, observer).err();
         let solver_statistics = solver.get_statistics();
         let statistics = Statistics {
@@ -91,7 +90,7 @@ impl StepLoop<'_, '_> {
         if self.set_stop_time(solver, at.t, &cause)? {
             return Err(DynamicsError::DurationTooShort);
         }
-        for _ in 0..self.options.max_steps {
+        for _ in 0..self.part.options.max_steps {
             let reason = solver.step().map_err(|e| cause(at.t, e))?;
             let state = solver.state();
             now.t = state.t;
@@ -119,7 +118,7 @@ impl StepLoop<'_, '_> {
             // It cannot step to an end that is within its rounding of time: it is there.
             let rounding = INTEGRATOR_ROUNDING * (now.t.abs() + state.h.abs());
             let reached = state.t;
-            if let Some(end) = self.end.filter(|end| (end - now.t).abs() < rounding) {
+            if let Some(end) = self.part.end.filter(|end| (end - now.t).abs() < rounding) {
                 now.t = end;
             }
             let mut dense = |t: f64, out: &mut [f64]| -> Result<()> {
@@ -134,29 +133,38 @@ impl StepLoop<'_, '_> {
             let is_at_stop = matches!(reason, OdeSolverStopReason::TstopReached);
             // It stops within a rounding of where it is to stop.
             let rounding = f64::from(u8::from(is_at_stop)) * 8.0 * f64::EPSILON * at.t.abs();
-            let is_end = self.end.is_some_and(|end| at.t >= end - rounding);
+            let is_end = self.part.end.is_some_and(|end| at.t >= end - rounding);
             if control == StepControl::Stop || is_end {
                 return Ok(());
             }
-            let is_limited = self.options.max_step.is_some() || self.pieces.is_some();
+            let is_limited = self.part.options.max_step.is_some() || self.pieces.is_some();
             if (is_at_stop || is_limited) && self.set_stop_time(solver, at.t, &cause)? {
                 return Ok(());
             }
         }
         Err(DynamicsError::MaxStepsReached {
             t: at.t,
-            max_steps: self.options.max_steps,
+            max_steps: self.part.options.max_steps,
         })
     }
 
     /// The time at which a step that begins at `t` must end at the latest, if there is one.
     fn stop_time(&mut self, t: f64) -> Result<Option<f64>> {
-        let step = self.options.max_step.map_or(f64::INFINITY, |step| t + step);
+        let step = self
+            .part
+            .options
+            .max_step
+            .map_or(f64::INFINITY, |step| t + step);
         let feature = match &mut self.pieces {
             Some(pieces) => pieces.latest_end(t)?,
             None => f64::INFINITY,
         };
-        let stop = self.end.unwrap_or(f64::INFINITY).min(step).min(feature);
+        let stop = self
+            .part
+            .end
+            .unwrap_or(f64::INFINITY)
+            .min(step)
+            .min(feature);
         Ok(stop.is_finite().then_some(stop))
     }
 
@@ -175,7 +183,7 @@ impl StepLoop<'_, '_> {
         let Some(mut stop) = self.stop_time(t)? else {
             return Ok(false);
         };
-        let end = self.end.unwrap_or(f64::INFINITY);
+        let end = self.part.end.unwrap_or(f64::INFINITY);
         loop {
             match solver.set_stop_time(stop) {
                 Ok(()) => return Ok(false),

@@ -55,8 +55,8 @@ impl<M: MovingModel> Machine<M> {
     pub(crate) fn add_impact_works(
         &self,
         workspace: &MachineWorkspace<f64, M>,
-        (y, changes): (&mut [f64], &[f64]),
-        (stop, impulse): (&Stop, f64),
+        y: &mut [f64],
+        (stop, impulse, changes): (&Stop, f64, &[f64]),
     ) {
         let n = self.free.len();
         let equation = &workspace.equation;

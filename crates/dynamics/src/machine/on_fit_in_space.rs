@@ -3,7 +3,9 @@
 
 use super::workspace::EquationWorkspace;
 use super::{Machine, MachineState, MovingModel};
-use crate::change_point_fit::{ChangePointFitError, MAX_GAP, half_width_of_groups};
+use crate::change_point_fit::{
+    ChangePointFitError, GAP_ROUNDING, MAX_GAP, fit_radii, half_width_of_groups,
+};
 use crate::error::{Result, positive_inertia};
 use dwell_geometry::PositionError;
 use dwell_geometry::space::{BranchFit, BranchFitWorkspace, ChangePoint};
@@ -12,12 +14,8 @@ use dwell_kinetostatics::{EvaluatedState, ForceState, InverseDynamics, MachineMo
 use dwell_numerics::{Scalar, lu};
 use std::sync::Arc;
 
-/// How far from a change point poses are fitted, rad, or parts of the size: the farthest of the good ones is taken.
-const FIT_RADII: [f64; 5] = [0.15, 0.3, 0.5, 0.8, 1.2];
 /// Of the way to the next change point, or to the end of the range.
 const FREE_PART: f64 = 0.45;
-/// A gap below this is as good as any.
-const GAP_ROUNDING: f64 = 1e-11;
 
 /// The part of the coordinate about a change point on which a fit takes the place of the model.
 #[derive(Debug, Clone, PartialEq)]
@@ -116,16 +114,13 @@ fn fit_across(
     };
     let free = others.filter(|other| *other != q).chain(ends).map(distance);
     let largest = FREE_PART * free.fold(period.unwrap_or(f64::INFINITY), f64::min);
-    let mut fits = Vec::with_capacity(FIT_RADII.len());
-    for radius in FIT_RADII {
-        let radius = (radius * unit).max(1.5 * half_width).min(largest);
+    let mut fits = Vec::new();
+    for radius in fit_radii([half_width, unit], largest) {
         let fit = plan.fit_branch(q, [half_width, radius])?;
         fits.push((gap(model, &fit, q, [half_width, unit])?, fit));
     }
-    let least = fits
-        .iter()
-        .map(|(gap, _)| *gap)
-        .fold(f64::INFINITY, f64::min);
+    let gaps = fits.iter().map(|(gap, _)| *gap);
+    let least = gaps.fold(f64::INFINITY, f64::min);
     let good = |gap: f64| gap <= (10.0 * least).max(GAP_ROUNDING) && gap <= MAX_GAP;
     let best = fits.into_iter().rev().find(|(gap, _)| good(*gap));
     best.map(|(_, fit)| fit)

@@ -13,7 +13,7 @@ use super::orbit_solution::point;
 use super::stop_at_terminal;
 use super::tracker::EventTracker;
 use crate::error::{DynamicsError, Result};
-use crate::ode::OdeState;
+use crate::ode::{OdeState, Step};
 use crate::options::Options;
 use crate::orbit::Orbit;
 use std::f64::consts::TAU;
@@ -144,13 +144,14 @@ impl<'s, O: Observed> Search<'s, O> {
     fn step(&mut self) -> Result<bool> {
         let t = self.time_after(self.values.len());
         let now = point(self.orbit, t.min(self.end));
-        let mut dense = |t: f64, y: &mut [f64]| {
-            y.copy_from_slice(&point(self.orbit, t).y);
-            Ok(())
-        };
+        let mut dense = states_of(self.orbit);
         for tracker in &mut self.trackers {
-            let step = [&self.before, &now];
-            tracker.locate(step, &mut dense, &mut self.observed, &mut self.found)?;
+            let mut step = Step {
+                before: &self.before,
+                now: &now,
+                dense: &mut dense,
+            };
+            tracker.locate(&mut step, &mut self.observed, &mut self.found)?;
         }
         self.values
             .push(self.trackers.iter().map(EventTracker::value).collect());
@@ -331,16 +332,12 @@ impl<'s, O: Observed> Search<'s, O> {
         while windows <= last_wanted && before.t < self.end {
             for part in 1..=window {
                 let now = point(self.orbit, after(windows, part));
-                let mut dense = |t: f64, y: &mut [f64]| {
-                    y.copy_from_slice(&point(self.orbit, t).y);
-                    Ok(())
+                let mut step = Step {
+                    before: &before,
+                    now: &now,
+                    dense: &mut states_of(self.orbit),
                 };
-                tracker.locate(
-                    [&before, &now],
-                    &mut dense,
-                    &mut self.observed,
-                    &mut passages,
-                )?;
+                tracker.locate(&mut step, &mut self.observed, &mut passages)?;
                 before = now;
             }
             windows += 1.0;
@@ -378,5 +375,13 @@ impl<'s, O: Observed> Search<'s, O> {
         let times = (0..self.events.len()).filter_map(time);
         let first = times.min_by(f64::total_cmp);
         first.filter(|&t| t <= self.end + self.end_tolerance)
+    }
+}
+
+/// The states of an orbit as the dense output of a step.
+fn states_of(orbit: &Orbit) -> impl FnMut(f64, &mut [f64]) -> Result<()> {
+    |t, y| {
+        y.copy_from_slice(&point(orbit, t).y);
+        Ok(())
     }
 }

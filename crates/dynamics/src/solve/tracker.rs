@@ -11,7 +11,7 @@ use super::event::{
 use super::excursion::may_dip;
 use super::observed::{Observed, ObservedValue};
 use crate::error::{DynamicsError, Result};
-use crate::ode::{DenseOutput, OdeState, state_at, subinterval_ends};
+use crate::ode::{OdeState, Step};
 use dwell_numerics::{minimum, root};
 use std::f64::consts::{FRAC_PI_4, TAU};
 use std::num::NonZeroUsize;
@@ -196,22 +196,21 @@ impl<C: Copy> EventTracker<C> {
     /// Finds the occurrences in one step.
     pub(super) fn locate(
         &mut self,
-        [before, now]: [&OdeState; 2],
-        dense: DenseOutput<'_>,
+        step: &mut Step<'_>,
         observed: &mut impl Observed<Coordinate = C>,
         found: &mut Vec<FoundEvent>,
     ) -> Result<()> {
-        let angle = observed.angle_between(before, now);
+        let angle = observed.angle_between(step.before, step.now);
         let parts = SUBINTERVALS * ((angle / MAX_ANGLE).ceil() as usize).max(1);
         if parts > MAX_PARTS {
-            let t = before.t;
+            let t = step.before.t;
             return Err(DynamicsError::StepTooLongForEvents { t, angle });
         }
         let mut points = std::mem::take(&mut self.points);
         points.clear();
         points.push(self.previous);
-        for t in subinterval_ends(before, now, parts) {
-            let point = state_at(t, now, dense)?;
+        for t in step.subinterval_ends(parts) {
+            let point = step.state_at(t)?;
             let last = points.last().copied().unwrap_or(self.previous);
             let value = self.eval_unwrapped(last, observed, &point)?;
             self.size = self.size.max(value.value.abs());
@@ -222,11 +221,11 @@ impl<C: Copy> EventTracker<C> {
                 // It leaves the value that it began at.
                 self.take_side(points[k].1.value);
             }
-            while let Some(passage) = self.passage((&points, k), now, dense, observed)? {
+            while let Some(passage) = self.passage((&points, k), step, observed)? {
                 let returns = passage.exit.is_some();
                 self.add(passage, found);
                 if found.len() > MAX_OCCURRENCES {
-                    return Err(too_many_events(before.t));
+                    return Err(too_many_events(step.before.t));
                 }
                 if self.single_value().is_some() || returns {
                     break;
@@ -247,8 +246,7 @@ impl<C: Copy> EventTracker<C> {
     fn passage(
         &mut self,
         (points, k): (&[(f64, ObservedValue)], usize),
-        now: &OdeState,
-        dense: DenseOutput<'_>,
+        step: &mut Step<'_>,
         observed: &mut impl Observed<Coordinate = C>,
     ) -> Result<Option<Passage>> {
         let [(t0, v0), (t1, v1)] = [points[k - 1], points[k]];
@@ -256,7 +254,7 @@ impl<C: Copy> EventTracker<C> {
         for target in self.targets().into_iter().flatten() {
             let [d0, d1] = [v0, v1].map(|v| target.distance(v.value));
             let mut distance_at = |t: f64| -> Result<f64> {
-                let state = state_at(t, now, dense)?;
+                let state = step.state_at(t)?;
                 let value = self.eval_unwrapped(points[k - 1], observed, &state)?;
                 Ok(target.distance(value.value))
             };
@@ -283,7 +281,7 @@ impl<C: Copy> EventTracker<C> {
                     } else {
                         Some(t0)
                     };
-                    let state = state_at(zero.unwrap_or(t1), now, dense)?;
+                    let state = step.state_at(zero.unwrap_or(t1))?;
                     self.pending = Some((target.value, self.occurrence(state, target.side < 0.0)));
                 }
                 continue;
@@ -296,11 +294,11 @@ impl<C: Copy> EventTracker<C> {
                 true => root::find(&mut distance_at, deep, until)?,
                 false => None,
             };
-            let exit = exit.map(|t| state_at(t, now, dense)).transpose()?;
+            let exit = exit.map(|t| step.state_at(t)).transpose()?;
             let exit = exit.map(|state| self.occurrence(state, target.side > 0.0));
             let entry = match self.pending.take().filter(|_| is_pending) {
                 Some((_, entry)) => entry,
-                None => self.occurrence(state_at(entry, now, dense)?, target.side < 0.0),
+                None => self.occurrence(step.state_at(entry)?, target.side < 0.0),
             };
             return Ok(Some(Passage {
                 target,

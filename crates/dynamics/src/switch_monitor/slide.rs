@@ -2,9 +2,9 @@
 
 use super::{Crossing, SwitchMonitor};
 use crate::error::{DynamicsError, Result};
-use crate::ode::{DenseOutput, OdeState, OdeSystem, root_subintervals, state_at};
+use crate::ode::{OdeState, OdeSystem, Step};
 use crate::sliding::{SideRates, Sliding};
-use crate::sliding_system::SlidingSystem;
+use crate::sliding_system::{BothSides, SlidingSystem};
 use dwell_laws::SwitchKind;
 use dwell_numerics::root;
 
@@ -13,41 +13,7 @@ const STAYS: f64 = 1e-6;
 /// A distance from the switch, by rounding, decays so often in the motion.
 const DECAY: f64 = 10.0;
 
-/// Both sides of a switch: the rates of the state, the values and rates of all functions.
-struct BothSides {
-    rates: [Vec<f64>; 2],
-    functions: [Vec<[f64; 2]>; 2],
-}
-
 impl BothSides {
-    /// Evaluates them; none where the rates of the functions are not known.
-    fn evaluate(
-        sides: &[Vec<Option<f64>>; 2],
-        system: &mut dyn OdeSystem,
-        at: &OdeState,
-    ) -> Result<Option<Self>> {
-        let (n, switches) = (at.y.len(), sides[0].len());
-        let mut both = Self {
-            rates: [vec![0.0; n], vec![0.0; n]],
-            functions: [vec![[0.0; 2]; switches], vec![[0.0; 2]; switches]],
-        };
-        let each = both.rates.iter_mut().zip(&mut both.functions);
-        for ((rates, functions), pieces) in each.zip(sides) {
-            system.hold_pieces(pieces);
-            system.rhs(at.t, &at.y, rates)?;
-            if !system.switch_rates(at.t, &at.y, rates, functions)? {
-                return Ok(None);
-            }
-        }
-        Ok(Some(both))
-    }
-
-    fn of(&self, k: usize) -> SideRates {
-        SideRates {
-            sides: [self.functions[0][k], self.functions[1][k]],
-        }
-    }
-
     /// Whether a function keeps its value where the upper side has this part.
     fn stays(&self, k: usize, part: f64) -> bool {
         let [[_, lower], [_, upper]] = self.of(k).sides;
@@ -109,7 +75,7 @@ impl SwitchMonitor {
         let mut sides = [self.pieces(), self.pieces()];
         sides[0][first] = Some(-1.0);
         sides[1][first] = Some(1.0);
-        let Some(both) = BothSides::evaluate(&sides, system, at)? else {
+        let Some(both) = BothSides::at(&sides, system, at)? else {
             return Ok(false);
         };
         let change = |k: usize| {
@@ -137,7 +103,7 @@ impl SwitchMonitor {
         system: &mut dyn OdeSystem,
         at: &mut OdeState,
     ) -> Result<bool> {
-        let Some(both) = BothSides::evaluate(&sides, system, at)? else {
+        let Some(both) = BothSides::at(&sides, system, at)? else {
             return Ok(false);
         };
         let first = both.of(switches[0]);
@@ -162,31 +128,26 @@ impl SwitchMonitor {
         Ok(true)
     }
 
-    /// Where a sliding motion leaves its switch in a step that ends at `now`.
+    /// Where a sliding motion leaves its switch in a step.
     ///
     /// # Errors
     /// Where a state cannot be evaluated.
     pub(super) fn leaving(
         &mut self,
         system: &mut SlidingSystem<'_, '_>,
-        before: &OdeState,
-        now: &OdeState,
-        dense: DenseOutput<'_>,
+        step: &mut Step<'_>,
     ) -> Result<Option<Crossing>> {
         if self.sliding.is_none() {
             return Ok(None);
         }
+        let (times, mut from) = (step.root_subintervals(), step.before.t);
         let mut sides_at = |t: f64| -> Result<(OdeState, Option<SideRates>)> {
-            let state = match t > before.t {
-                true => state_at(t, now, dense)?,
-                false => before.clone(),
-            };
-            let sides = system.sliding_margin(t, &state.y)?;
+            let state = step.state_from_start(t)?;
+            let sides = system.side_rates(t, &state.y)?;
             Ok((state, sides))
         };
         let margin = |sides: Option<SideRates>| sides.map_or(f64::NAN, |sides| sides.margin());
-        let mut from = before.t;
-        for t in root_subintervals(before, now) {
+        for t in times {
             let (_, sides) = sides_at(t)?;
             if margin(sides) >= 0.0 || sides.is_none() {
                 from = t;
@@ -244,7 +205,7 @@ impl SwitchMonitor {
             source_index,
             t: at.t,
         };
-        let Some(both) = BothSides::evaluate(&sliding.sides, system, at)? else {
+        let Some(both) = BothSides::at(&sliding.sides, system, at)? else {
             return Err(several);
         };
         let rates = both.of(first);

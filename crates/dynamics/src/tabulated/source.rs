@@ -247,16 +247,14 @@ impl AuxiliaryColumns {
     pub(super) fn speed(&mut self, measured: CoordinateFunction) -> Result<TabulatedCoordinate> {
         if let Some(line) = self.linear_coordinate(measured)? {
             return Ok(TabulatedCoordinate {
-                slope: 0.0,
                 offset: line.slope,
-                column: None,
+                ..TabulatedCoordinate::default()
             });
         }
         let column = self.column(measured, 0.0, |coordinate| TableQuantity::Ds { coordinate });
         Ok(TabulatedCoordinate {
-            slope: 0.0,
-            offset: 0.0,
             column: Some(column),
+            ..TabulatedCoordinate::default()
         })
     }
 

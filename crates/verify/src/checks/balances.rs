@@ -167,15 +167,15 @@ fn balances_in_motion(
     let momentum = rate(&|at, x_dot| dense.momentum(at, x_dot).to_vec());
     let mut momentum: [Extrapolated; 3] = std::array::from_fn(|c| component(&momentum, c));
     let angles = second_angles(context, position, q_dot, &second);
-    for (body, [angle, omega, alpha]) in dense.bodies.iter().zip(angles) {
+    for (body, &[angle, omega, alpha]) in dense.bodies.iter().zip(&angles) {
         momentum[2].value += body.varying_moment(angle, omega, alpha);
     }
     let (net, errors) = momentum_balance(context, &wrenches, momentum);
     balances.extend(components(1, None, net, errors));
-    let moving = (0..dense.bodies.len()).filter(|&b| dense.bodies[b].column.is_some());
-    for (i, body) in moving.enumerate() {
+    for (i, (body, ..)) in dense.moving_bodies().enumerate() {
         let second = [0, 1, 2].map(|c| component(&second, 3 * i + c));
-        let (net, errors) = body_balance(context, (position, q_dot), &wrenches, body, second);
+        let (net, errors) =
+            body_balance(context, position, &wrenches, (body, angles[body]), second);
         balances.extend(components(3, Some(body), net, errors));
     }
     Ok(balances)
@@ -245,16 +245,12 @@ fn second_angles(
 /// (4) and (5) of a body with the second derivatives of its centre of mass and angle, and their errors.
 fn body_balance(
     context: &CheckContext<'_>,
-    (position, q_dot): (&CheckedPosition, f64),
+    position: &CheckedPosition,
     wrenches: &[BodyWrench],
-    body: usize,
+    (body, [angle, omega, _]): (usize, [f64; 3]),
     second: [Extrapolated; 3],
 ) -> (NetWrench, [f64; 3]) {
     let of = &context.dense.bodies[body];
-    let (angle, omega) = of.column.map_or((0.0, 0.0), |c| {
-        let unit = position.unit_velocity();
-        (position.configuration.x[c + 2], unit[c + 2] * q_dot)
-    });
     let inertias = [of.mass.mass, of.mass.mass, of.angular_inertia(angle)];
     let mut rate: [f64; 3] = std::array::from_fn(|c| inertias[c] * second[c].value);
     rate[2] += of.varying_moment(angle, omega, 0.0);

@@ -24,11 +24,8 @@ pub struct ComparedValue {
 pub fn compare_values(spec: &FindingSpec<'_>, domain: String, values: &[ComparedValue]) -> Finding {
     let mut worst = LargestDifference::default();
     for value in values {
-        let comparison = Comparison {
-            numbers: [value.value - value.expected, value.scale, 0.0],
-            unit: value.unit,
-            condition_number: value.condition_number,
-        };
+        let numbers = [value.value - value.expected, value.scale, 0.0];
+        let comparison = Comparison::new(numbers, value.unit, value.condition_number);
         worst.record(&comparison, || value.location.clone());
     }
     spec.finding(domain, worst)

@@ -33,12 +33,8 @@ pub(super) fn with_drives(mechanism: &Mechanism, drives: &[Drive]) -> Result<Mec
 impl MultibodySystem {
     pub(super) fn check_drives(&self) -> Result<()> {
         for (i, drive) in self.drives.iter().enumerate() {
-            let magnitude = match &drive.kind {
-                DriveKind::AppliedForce(magnitude) => magnitude,
-                DriveKind::Motor(motor) => &motor.voltage,
-                DriveKind::SpeedController(regulator) => &regulator.reference_speed,
-            };
-            if self.magnitude(magnitude, &self.rest_state()).is_none() {
+            let input = drive.kind.input();
+            if self.magnitude(input, &self.rest_state()).is_none() {
                 let what = "its magnitude does not fit the mechanism";
                 return Err(MultibodyError::Drive { drive: i, what });
             }

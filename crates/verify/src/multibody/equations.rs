@@ -78,14 +78,13 @@ impl MultibodyOde<'_> {
     fn assemble_masses(&self, x: &[f64], v: &[f64]) -> AppliedForces {
         let n = self.frames.rows.columns();
         let (mut mass, mut force) = (Mat::zeros(n, n), vec![0.0; n]);
-        for (of, body) in self.system.masses.iter().zip(&self.frames.bodies) {
-            if let Some(c) = body.column {
-                mass[(c, c)] = of.mass;
-                mass[(c + 1, c + 1)] = of.mass;
-                let varying = body.angular_inertia(x[c + 2]) - body.mass.inertia;
-                mass[(c + 2, c + 2)] = of.inertia + varying;
-                force[c + 2] = -body.varying_moment(x[c + 2], v[c + 2], 0.0);
-            }
+        for (b, body, c) in self.frames.moving_bodies() {
+            let of = &self.system.masses[b];
+            mass[(c, c)] = of.mass;
+            mass[(c + 1, c + 1)] = of.mass;
+            let varying = body.angular_inertia(x[c + 2]) - body.mass.inertia;
+            mass[(c + 2, c + 2)] = of.inertia + varying;
+            force[c + 2] = -body.varying_moment(x[c + 2], v[c + 2], 0.0);
         }
         AppliedForces {
             mass,

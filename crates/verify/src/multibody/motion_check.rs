@@ -35,11 +35,8 @@ fn record(
     t: f64,
     name: &str,
 ) {
-    let comparison = Comparison {
-        numbers: [claimed - reference, reference.abs(), 0.0],
-        unit,
-        condition_number: 1.0,
-    };
+    let numbers = [claimed - reference, reference.abs(), 0.0];
+    let comparison = Comparison::new(numbers, unit, 1.0);
     to.add(comparison, format!("t = {t} s, {name}"));
 }
 

@@ -37,8 +37,7 @@ impl DenseMechanism {
     pub(super) fn to_frames(&self, x: &[f64], v: &[f64]) -> [Vec<[f64; 3]>; 2] {
         let ground = self.bodies[self.mechanism.ground].shift;
         let mut both = [0; 2].map(|_| vec![[0.0; 3]; self.bodies.len()]);
-        for (b, body) in self.bodies.iter().enumerate() {
-            let Some(c) = body.column else { continue };
+        for (b, body, c) in self.moving_bodies() {
             let arm = body.shift.rotate(Vec2::from_angle(x[c + 2]));
             let origin = ground + (vec2(x[c], x[c + 1]) - arm);
             let velocity = vec2(v[c], v[c + 1]) - arm.perp() * v[c + 2];

@@ -69,8 +69,7 @@ impl MultibodySystem {
 
     /// The forces of a load of a given magnitude.
     pub(super) fn wrenches(&self, load: usize, force: f64, at: &MultibodyState) -> Vec<BodyWrench> {
-        let load = self.loads.get(load);
-        let wrenches = load.and_then(|load| self.wrenches_of(&load.kind, force, at));
+        let wrenches = self.wrenches_of(&self.loads[load].kind, force, at);
         wrenches.unwrap_or_default()
     }
 
@@ -136,7 +135,7 @@ impl MultibodySystem {
     /// ½ F s² of a spring, −F · displacement of weight and of a force that keeps its direction: where
     /// F is constant.
     pub(super) fn potential(&self, load: usize, at: &MultibodyState) -> Option<f64> {
-        let load = self.loads.get(load)?;
+        let load = &self.loads[load];
         let Magnitude::Constant(size) = load.magnitude else {
             return None;
         };

@@ -25,16 +25,8 @@ const BRANCH_STEP: f64 = 0.1;
 /// # Errors
 /// [`DenseError`] where a pose on the way has no closed one beside it.
 pub(super) fn continued(case: &SpaceCase<'_>, q: &[f64]) -> Result<Vec<Placement>> {
-    let (start, placements) = case.start;
-    let count = (case.distance(q) / BRANCH_STEP).ceil().max(1.0);
-    let mut at = placements.to_vec();
-    for k in 1..=count as usize {
-        let part = k as f64 / count;
-        let parts = start
-            .iter()
-            .zip(q)
-            .map(|(from, to)| from + part * (to - from));
-        let coordinates: Vec<f64> = parts.collect();
+    let mut at = case.start.1.to_vec();
+    for (_, coordinates) in case.way_to(q, BRANCH_STEP) {
         let wanted = (&coordinates[..], Some(&at[..]));
         let pose = DensePose::nearest(case.mechanism, &at, wanted, case.size)?;
         at = pose.placements.into_owned();
@@ -77,11 +69,8 @@ pub fn check_branch_in_space(case: &SpaceCase<'_>, states: &[SpaceState]) -> Fin
             }
         };
         for (body, both) in claimed.placements.iter().zip(&wanted).enumerate() {
-            let comparison = Comparison {
-                numbers: [apart(case, body, [both.0, both.1]), 1.0, 0.0],
-                unit: "",
-                condition_number: 1.0,
-            };
+            let distance = apart(case, body, [both.0, both.1]);
+            let comparison = Comparison::new([distance, 1.0, 0.0], "", 1.0);
             let name = &case.mechanism.bodies[body].name;
             worst.record(&comparison, || format!("q = {:?}, {name}", claimed.q));
         }

@@ -1,9 +1,9 @@
 //! The pose nearest to some placements that meets all rows: Newton's method with the smallest steps.
 
 use super::DensePose;
-use super::rows::{Bodies, mesh_error};
+use super::rows::{Bodies, Sides, mesh_error};
 use crate::error::{DenseError, Result};
-use dwell_geometry::space::{ActuatorKind, Mechanism, Placement, Rotation, Vec3, vec3};
+use dwell_geometry::space::{ActuatorKind, Mechanism, Placement, Rotation, vec3};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
 
@@ -20,16 +20,12 @@ pub(super) fn coordinate_error(
     placements: &[Placement],
     wanted: f64,
 ) -> f64 {
-    let joint = &mechanism.joints[kind.joint().0];
-    let at = |k: usize, v: Vec3| placements[joint.bodies[k].0].rotation.apply(v);
-    let point = |k: usize| placements[joint.bodies[k].0].position + at(k, joint.sides[k].point);
-    let (d, u) = (point(1) - point(0), at(0, joint.sides[0].axis));
+    let sides = Sides::of(&mechanism.joints[kind.joint().0], placements);
     match kind {
-        ActuatorKind::Length(_) => d.norm() - wanted,
-        ActuatorKind::Travel(_) => d.dot(u) - wanted,
+        ActuatorKind::Length(_) => sides.d.norm() - wanted,
+        ActuatorKind::Travel(_) => sides.d.dot(sides.u) - wanted,
         ActuatorKind::Angle(_) => {
-            let [n, p] = [0, 1].map(|k| at(k, joint.sides[k].normal));
-            let difference = n.cross(p).dot(u).atan2(n.dot(p)) - wanted;
+            let difference = sides.angle() - wanted;
             difference - TAU * (difference / TAU).round()
         }
     }

@@ -5,14 +5,13 @@
 //! F = d/dt m ċ,     M = dL/dt,     L = R I Rᵀ ω,     ω̂ = Ṙ Rᵀ        along q(t) = q + q̇ t + ½ q̈ t²       (2)
 //! ```
 
-use super::balances::{add_balances, largest_force, largest_power};
-use super::rows::Bodies;
-use super::state::{DenseState, SpaceCase, SpaceState, SpaceSubject, finding};
+use super::balances::power;
+use super::state::{DenseState, SpaceCase, SpaceChecker, SpaceState};
 use crate::comparison::{ComparisonSet, FindingSpec};
 use crate::subject::SubjectError;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::BodyId;
-use dwell_geometry::space::{ActuatorKind, Placement, Vec3};
+use dwell_geometry::space::{Placement, Vec3};
 
 const LAGRANGE: FindingSpec<'_> = FindingSpec {
     key: "state-lagrange",
@@ -52,172 +51,141 @@ fn derivative(of: impl Fn(usize) -> Vec3, middle: usize, step: f64) -> Vec3 {
     (near.scaled(8.0) - far).scaled(1.0 / (12.0 * step))
 }
 
-/// The unit of a coordinate: one radian, or the size.
-fn unit(case: &SpaceCase<'_>, actuator: usize) -> f64 {
-    match case.mechanism.actuators[actuator].kind {
-        ActuatorKind::Angle(_) => 1.0,
-        ActuatorKind::Travel(_) | ActuatorKind::Length(_) => case.size,
-    }
-}
-
-/// What makes an action of a force: the size of an angle's, one of a length's.
-fn lever(case: &SpaceCase<'_>, actuator: usize) -> f64 {
-    match case.mechanism.actuators[actuator].kind {
-        ActuatorKind::Angle(_) => case.size,
-        ActuatorKind::Travel(_) | ActuatorKind::Length(_) => 1.0,
-    }
-}
-
-/// ∂M/∂q_k at a state.
-fn inertia_slope(
-    case: &SpaceCase<'_>,
-    subject: &dyn SpaceSubject,
-    state: &SpaceState,
-    k: usize,
-) -> Result<Vec<f64>, SubjectError> {
-    let step = INERTIA_STEP * unit(case, k);
-    let at = |steps: f64| {
-        let mut q = state.q.clone();
-        q[k] += steps * step;
-        subject.inertias(&q)
-    };
-    let [far_before, before, after, far_after] = [at(-2.0)?, at(-1.0)?, at(1.0)?, at(2.0)?];
-    let of = |i: usize| {
-        let near = after[i] - before[i];
-        (8.0 * near - (far_after[i] - far_before[i])) / (12.0 * step)
-    };
-    Ok((0..after.len()).map(of).collect())
-}
-
-/// The generalised forces of the loads: their power at unit speed of each actuator.
-fn generalised_loads(case: &SpaceCase<'_>, state: &DenseState<'_>) -> Option<Vec<[f64; 2]>> {
-    let (closed, dense) = state.solved.as_ref().ok()?;
-    let unit = &closed.unit;
-    let bodies = Bodies {
-        mechanism: case.mechanism,
-        placements: state.placements(),
-        motions: dense.motions.clone(),
-    };
-    let mut forces = vec![[0.0; 2]; unit.len()];
-    for load in &state.claimed.loads {
-        let wrenches = bodies.load_wrenches(load, case.masses);
-        for ([force, size], unit) in forces.iter_mut().zip(unit) {
-            for (wrench, motion) in wrenches.iter().zip(unit) {
-                let power =
-                    wrench.force.dot(motion.velocity) + wrench.moment.dot(motion.angular_velocity);
-                *force += power;
-                *size += power.abs();
-            }
-        }
-    }
-    Some(forces)
-}
-
-/// (1).
-pub(super) fn by_inertias(
-    case: &SpaceCase<'_>,
-    subject: &dyn SpaceSubject,
-    states: &[DenseState<'_>],
-) -> [Finding; 2] {
-    let [mut lagrange, mut rates] = [(); 2].map(|()| ComparisonSet::with_individual_scales());
-    let mut failure = None;
-    for state in states {
-        let SpaceState {
-            q_dot,
-            q_ddot,
-            tau,
-            inertias,
-            load_power,
-            ..
-        } = state.claimed;
-        let n = q_dot.len();
-        let slopes = (0..n).map(|k| inertia_slope(case, subject, state.claimed, k));
-        let (slopes, loads) = match slopes.collect::<Result<Vec<_>, _>>() {
-            Ok(slopes) => (slopes, generalised_loads(case, state)),
-            Err(error) => {
-                failure = Some(error.to_string());
-                continue;
-            }
-        };
-        let Some(loads) = loads else { continue };
-        let (mut rate, mut supplied, mut scale_of_rate) = (0.0, *load_power, load_power.abs());
-        for k in 0..n {
-            let (mut wanted, mut scale) = (0.0, tau[k].abs() + loads[k][1]);
-            let mut add = |part: f64| {
-                wanted += part;
-                scale += part.abs();
-            };
-            for j in 0..n {
-                add(inertias[k * n + j] * q_ddot[j]);
-                for i in 0..n {
-                    let turning = slopes[j][k * n + i] - 0.5 * slopes[k][i * n + j];
-                    add(turning * q_dot[i] * q_dot[j]);
+impl DenseState<'_> {
+    /// The generalised forces of the loads: their power at unit speed of each actuator, with the sum of absolute terms; none without a
+    /// dense solution.
+    fn generalised_loads(&self) -> Option<Vec<[f64; 2]>> {
+        let (closed, dense) = self.solved.as_ref().ok()?;
+        let mut forces = vec![[0.0; 2]; closed.unit.len()];
+        for wrenches in self.load_wrenches(&dense.motions) {
+            for ([force, size], unit) in forces.iter_mut().zip(&closed.unit) {
+                for (wrench, motion) in wrenches.iter().zip(unit) {
+                    let power = power(wrench, motion);
+                    *force += power;
+                    *size += power.abs();
                 }
             }
-            let error = tau[k] + loads[k][0] - wanted;
-            let name = &case.mechanism.actuators[k].name;
-            let scale = scale.max(largest_force(case, state) * lever(case, k));
-            state.compare(&mut lagrange, [error, scale], "N m", name);
-            rate += wanted * q_dot[k];
-            supplied += tau[k] * q_dot[k];
-            scale_of_rate += scale * q_dot[k].abs();
         }
-        let error = supplied - rate;
-        let scale = scale_of_rate.max(largest_power(case, state));
-        state.compare(&mut rates, [error, scale], "W", "all bodies");
+        Some(forces)
     }
-    [
-        finding(&LAGRANGE, states, lagrange, failure.clone()),
-        finding(&ENERGY_RATE, states, rates, failure),
-    ]
 }
 
-/// (2). A state at rest shows no momentum, but its acceleration does.
-pub(super) fn newton_euler(
-    case: &SpaceCase<'_>,
-    subject: &dyn SpaceSubject,
-    states: &[DenseState<'_>],
-) -> Finding {
-    let mut set = ComparisonSet::with_individual_scales();
-    let mut failure = None;
-    for state in states {
-        match placements_along(case, subject, state.claimed) {
-            Ok((poses, step)) => {
-                let rates = |body: usize| momentum_rates(case, &poses, body, step);
-                add_balances(case, state, rates, &mut set);
+impl SpaceChecker<'_> {
+    /// ∂M/∂q_k at a state.
+    fn inertia_slope(&self, state: &SpaceState, k: usize) -> Result<Vec<f64>, SubjectError> {
+        let step = INERTIA_STEP * self.case.unit(k);
+        let at = |steps: f64| {
+            let mut q = state.q.clone();
+            q[k] += steps * step;
+            self.subject.inertias(&q)
+        };
+        let [far_before, before, after, far_after] = [at(-2.0)?, at(-1.0)?, at(1.0)?, at(2.0)?];
+        let of = |i: usize| {
+            let near = after[i] - before[i];
+            (8.0 * near - (far_after[i] - far_before[i])) / (12.0 * step)
+        };
+        Ok((0..after.len()).map(of).collect())
+    }
+
+    /// (1).
+    pub(super) fn by_inertias(&self) -> [Finding; 2] {
+        let [mut lagrange, mut rates] = [(); 2].map(|()| ComparisonSet::with_individual_scales());
+        let mut failure = None;
+        for state in &self.states {
+            let SpaceState {
+                q_dot,
+                q_ddot,
+                tau,
+                inertias,
+                load_power,
+                ..
+            } = state.claimed;
+            let n = q_dot.len();
+            let slopes = (0..n).map(|k| self.inertia_slope(state.claimed, k));
+            let slopes = match slopes.collect::<Result<Vec<_>, _>>() {
+                Ok(slopes) => slopes,
+                Err(error) => {
+                    failure = Some(error.to_string());
+                    continue;
+                }
+            };
+            let Some(loads) = state.generalised_loads() else {
+                continue;
+            };
+            let (mut rate, mut supplied, mut scale_of_rate) = (0.0, *load_power, load_power.abs());
+            for k in 0..n {
+                let (mut wanted, mut scale) = (0.0, tau[k].abs() + loads[k][1]);
+                let mut add = |part: f64| {
+                    wanted += part;
+                    scale += part.abs();
+                };
+                for j in 0..n {
+                    add(inertias[k * n + j] * q_ddot[j]);
+                    for i in 0..n {
+                        let turning = slopes[j][k * n + i] - 0.5 * slopes[k][i * n + j];
+                        add(turning * q_dot[i] * q_dot[j]);
+                    }
+                }
+                let error = tau[k] + loads[k][0] - wanted;
+                let name = &self.case.mechanism.actuators[k].name;
+                let scale = scale.max(state.largest_force() * self.case.lever(k));
+                state.compare(&mut lagrange, [error, scale], "N m", name);
+                rate += wanted * q_dot[k];
+                supplied += tau[k] * q_dot[k];
+                scale_of_rate += scale * q_dot[k].abs();
             }
-            Err(error) => failure = Some(error.to_string()),
+            let numbers = [supplied - rate, scale_of_rate.max(state.largest_power())];
+            state.compare(&mut rates, numbers, "W", "all bodies");
         }
+        [
+            self.finding(&LAGRANGE, lagrange, failure.clone()),
+            self.finding(&ENERGY_RATE, rates, failure),
+        ]
     }
-    finding(&NEWTON_EULER, states, set, failure)
-}
 
-/// The placements at successive times around a state, and the time between them, s.
-fn placements_along(
-    case: &SpaceCase<'_>,
-    subject: &dyn SpaceSubject,
-    state: &SpaceState,
-) -> Result<(Vec<Vec<Placement>>, f64), SubjectError> {
-    let fastest = |of: &[f64]| {
-        let parts = of.iter().enumerate().map(|(k, v)| v.abs() / unit(case, k));
-        parts.fold(0.0, f64::max)
-    };
-    let coordinates = fastest(&state.q_dot).max(fastest(&state.q_ddot).sqrt());
-    // A screw may turn much faster than its coordinate.
-    let pace = state.motions.iter().fold(coordinates, |max, m| {
-        max.max(m.angular_velocity.norm())
-            .max(m.angular_acceleration.norm().sqrt())
-    });
-    let is_moving = pace > 0.0 && pace.is_finite();
-    let step = POSITION_STEP / if is_moving { pace } else { 1.0 };
-    let at = |k: usize| {
-        let t = step * (k as f64 - REACH as f64);
-        let parts = state.q.iter().zip(&state.q_dot).zip(&state.q_ddot);
-        let q: Vec<f64> = parts.map(|((q, v), a)| q + t * (v + 0.5 * t * a)).collect();
-        subject.placements(&q)
-    };
-    let poses: Result<Vec<_>, _> = (0..=2 * REACH).map(at).collect();
-    Ok((poses?, step))
+    /// (2). A state at rest shows no momentum, but its acceleration does.
+    pub(super) fn newton_euler_by_differences(&self) -> Finding {
+        let mut set = ComparisonSet::with_individual_scales();
+        let mut failure = None;
+        for state in &self.states {
+            match self.placements_along(state.claimed) {
+                Ok((poses, step)) => {
+                    let rates = |body: usize| momentum_rates(self.case, &poses, body, step);
+                    state.add_balances(rates, &mut set);
+                }
+                Err(error) => failure = Some(error.to_string()),
+            }
+        }
+        self.finding(&NEWTON_EULER, set, failure)
+    }
+
+    /// The placements at successive times around a state, and the time between them, s.
+    fn placements_along(
+        &self,
+        state: &SpaceState,
+    ) -> Result<(Vec<Vec<Placement>>, f64), SubjectError> {
+        let fastest = |of: &[f64]| {
+            let parts = of.iter().enumerate();
+            let parts = parts.map(|(k, v)| v.abs() / self.case.unit(k));
+            parts.fold(0.0, f64::max)
+        };
+        let coordinates = fastest(&state.q_dot).max(fastest(&state.q_ddot).sqrt());
+        // A screw may turn much faster than its coordinate.
+        let pace = state.motions.iter().fold(coordinates, |max, m| {
+            max.max(m.angular_velocity.norm())
+                .max(m.angular_acceleration.norm().sqrt())
+        });
+        let is_moving = pace > 0.0 && pace.is_finite();
+        let step = POSITION_STEP / if is_moving { pace } else { 1.0 };
+        let at = |k: usize| {
+            let t = step * (k as f64 - REACH as f64);
+            let parts = state.q.iter().zip(&state.q_dot).zip(&state.q_ddot);
+            let q: Vec<f64> = parts.map(|((q, v), a)| q + t * (v + 0.5 * t * a)).collect();
+            self.subject.placements(&q)
+        };
+        let poses: Result<Vec<_>, _> = (0..=2 * REACH).map(at).collect();
+        Ok((poses?, step))
+    }
 }
 
 /// The rates of momentum and of angular momentum about the centre in the middle of successive placements.

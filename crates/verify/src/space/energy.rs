@@ -1,8 +1,8 @@
 //! Energies of a mechanism in space from the placements of its bodies.
 
-use super::rows::Bodies;
+use super::rows::{Bodies, Sides};
 use super::state::{SpaceCase, product};
-use dwell_geometry::space::{BodyMotion, Placement, Vec3};
+use dwell_geometry::space::{BodyMotion, Placement};
 use dwell_kinetostatics::space::{Direction, LoadKind, Mass};
 use std::f64::consts::TAU;
 
@@ -43,11 +43,8 @@ pub fn potential_energy(
             0.5 * (d.norm() - free_length).powi(2)
         }
         LoadKind::TorsionSpring { joint, free_angle } => {
-            let of = &case.mechanism.joints[joint.0];
-            let side = |k: usize, v: Vec3| bodies.arm(of.bodies[k].0, v);
-            let [n, m] = [0, 1].map(|k| side(k, of.sides[k].normal));
-            let sin = side(0, of.sides[0].axis).dot(n.cross(m));
-            let turn = sin.atan2(n.dot(m)) - free_angle;
+            let sides = Sides::of(&case.mechanism.joints[joint.0], placements);
+            let turn = sides.angle() - free_angle;
             0.5 * (turn - TAU * (turn / TAU).round()).powi(2)
         }
         LoadKind::Force { .. }

@@ -1,6 +1,6 @@
 //! What bodies require in a motion, and what loads do to them.
 
-use super::rows::Bodies;
+use super::rows::{Bodies, Sides};
 use dwell_geometry::space::{Vec3, Wrench};
 use dwell_geometry::{BodyId, JointId};
 use dwell_kinetostatics::space::{Direction, LoadKind, Mass};
@@ -69,38 +69,30 @@ impl Bodies<'_> {
                 required[a.0].moment += couple;
                 required[b.0].moment -= couple;
             }
-            LoadKind::PointToPointForce {
-                bodies: [a, b],
-                points,
-            } => {
-                let d = self.point(b.0, points[1]) - self.point(a.0, points[0]);
-                let push = d.scaled(f / d.norm());
-                required[a.0].add_at(self.arm(a.0, points[0]), push, Vec3::ZERO);
-                required[b.0].add_at(self.arm(b.0, points[1]), -push, Vec3::ZERO);
+            LoadKind::PointToPointForce { bodies, points } => {
+                let d = self.gap(bodies, points);
+                self.pull_together(bodies, points, -d.scaled(f / d.norm()), required);
             }
             LoadKind::Spring {
                 bodies,
                 points,
                 free_length,
             } => {
-                let d = self.point(bodies[1].0, points[1]) - self.point(bodies[0].0, points[0]);
+                let d = self.gap(bodies, points);
                 let tension = f * (d.norm() - free_length);
                 self.pull_together(bodies, points, d.scaled(tension / d.norm()), required);
             }
             LoadKind::Damper { bodies, points } => {
-                let d = self.point(bodies[1].0, points[1]) - self.point(bodies[0].0, points[0]);
+                let d = self.gap(bodies, points);
                 let [from, to] = [0, 1].map(|k| self.point_velocity(bodies[k].0, points[k]));
                 let tension = f * d.dot(to - from) / d.norm();
                 self.pull_together(bodies, points, d.scaled(tension / d.norm()), required);
             }
             LoadKind::JointTorque(joint) => self.turn(joint, f, required),
             LoadKind::TorsionSpring { joint, free_angle } => {
-                let of = &self.mechanism.joints[joint.0];
-                let side = |k: usize, v: Vec3| self.arm(of.bodies[k].0, v);
-                let [n, m] = [0, 1].map(|k| side(k, of.sides[k].normal));
-                let sin = side(0, of.sides[0].axis).dot(n.cross(m));
+                let sides = Sides::of(&self.mechanism.joints[joint.0], self.placements);
                 // Without whole revolutions.
-                self.turn(joint, -f * (sin.atan2(n.dot(m)) - free_angle), required);
+                self.turn(joint, -f * (sides.angle() - free_angle), required);
             }
             LoadKind::RotationalDamper(joint) => {
                 let of = &self.mechanism.joints[joint.0];
@@ -121,6 +113,11 @@ impl Bodies<'_> {
                 self.slide(joint, -f * u.dot(seen), required);
             }
         }
+    }
+
+    /// The vector from a point of a body to that of another.
+    fn gap(&self, bodies: [BodyId; 2], points: [Vec3; 2]) -> Vec3 {
+        self.point(bodies[1].0, points[1]) - self.point(bodies[0].0, points[0])
     }
 
     /// The velocity of a point of a body.

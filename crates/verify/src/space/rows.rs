@@ -13,6 +13,61 @@ pub(super) struct Row {
     pub(super) bias: f64,
 }
 
+/// The gradient of a couple.
+pub(super) fn couple(moment: Vec3) -> Gradient {
+    Gradient {
+        force: Vec3::ZERO,
+        moment,
+    }
+}
+
+/// The gradient of a force at a point, with the arm from the frame's origin.
+fn force_at(arm: Vec3, force: Vec3) -> Gradient {
+    Gradient {
+        force,
+        moment: arm.cross(force),
+    }
+}
+
+/// The sides of a joint: axes u, w and normals n, p of both bodies, and d from the first point to the second.
+pub(super) struct Sides {
+    pub(super) u: Vec3,
+    w: Vec3,
+    n: Vec3,
+    p: Vec3,
+    pub(super) d: Vec3,
+}
+
+impl Sides {
+    pub(super) fn of(joint: &Joint, placements: &[Placement]) -> Self {
+        let of = |k: usize| (&placements[joint.bodies[k].0], &joint.sides[k]);
+        let [a, b] = [0, 1].map(|k| {
+            let (Placement { position, rotation }, side) = of(k);
+            *position + rotation.apply(side.point)
+        });
+        let [u, w] = [0, 1].map(|k| of(k).0.rotation.apply(of(k).1.axis));
+        let [n, p] = [0, 1].map(|k| of(k).0.rotation.apply(of(k).1.normal));
+        Self {
+            u,
+            w,
+            n,
+            p,
+            d: b - a,
+        }
+    }
+
+    /// The angle from normal to normal about the first axis, without whole revolutions.
+    pub(super) fn angle(&self) -> f64 {
+        self.n.cross(self.p).dot(self.u).atan2(self.n.dot(self.p))
+    }
+
+    /// How far a screw's travel is from that of its angle, which may have whole turns, each of 2π pitch.
+    fn screw_error(&self, pitch: f64) -> f64 {
+        let turns = (self.d.dot(self.u) / pitch - self.angle()) / TAU;
+        (turns - turns.round()) * TAU * pitch
+    }
+}
+
 /// The bodies in a pass.
 pub(super) struct Bodies<'a> {
     pub(super) mechanism: &'a Mechanism,
@@ -49,44 +104,27 @@ impl Bodies<'_> {
 
     /// u·w of directions in the first and the second body.
     fn right_angle(&self, [a, b]: [usize; 2], u: Vec3, w: Vec3) -> Row {
-        let couple = u.cross(w);
+        let turning = u.cross(w);
         let [wa, wb] = [a, b].map(|body| self.motions[body].angular_velocity);
         let (u1, w1) = (wa.cross(u), wb.cross(w));
         let bias =
             self.turned_twice(a, u).dot(w) + 2.0 * u1.dot(w1) + u.dot(self.turned_twice(b, w));
-        let on = |moment| Gradient {
-            force: Vec3::ZERO,
-            moment,
-        };
         Row {
             bodies: [a, b],
-            gradients: [on(couple), on(-couple)],
+            gradients: [couple(turning), couple(-turning)],
             bias,
         }
     }
 
     /// u·d of a direction in the first body.
     pub(super) fn in_plane(&self, joint: &Joint, u: Vec3) -> Row {
-        let (bodies, arms, d) = self.ends(joint);
-        let [a, b] = bodies;
-        let wa = self.motions[a].angular_velocity;
-        let d1 = self.velocity(b, arms[1]) - self.velocity(a, arms[0]);
-        let d2 = self.turned_twice(b, arms[1]) - self.turned_twice(a, arms[0]);
-        let bias = self.turned_twice(a, u).dot(d) + 2.0 * wa.cross(u).dot(d1) + u.dot(d2);
-        Row {
-            bodies,
-            gradients: [
-                Gradient {
-                    force: -u,
-                    moment: u.cross(d) - arms[0].cross(u),
-                },
-                Gradient {
-                    force: u,
-                    moment: arms[1].cross(u),
-                },
-            ],
-            bias,
-        }
+        let ([a, _], _, d) = self.ends(joint);
+        let u1 = self.motions[a].angular_velocity.cross(u);
+        let mut row = self.along(joint, u, |d1| {
+            self.turned_twice(a, u).dot(d) + 2.0 * u1.dot(d1)
+        });
+        row.gradients[0].moment += u.cross(d);
+        row
     }
 
     /// e·d of a direction of the ground, or d·d of a distance.
@@ -97,16 +135,7 @@ impl Bodies<'_> {
         let d2 = self.turned_twice(b, arms[1]) - self.turned_twice(a, arms[0]);
         Row {
             bodies,
-            gradients: [
-                Gradient {
-                    force: -e,
-                    moment: -arms[0].cross(e),
-                },
-                Gradient {
-                    force: e,
-                    moment: arms[1].cross(e),
-                },
-            ],
+            gradients: [force_at(arms[0], -e), force_at(arms[1], e)],
             bias: e.dot(d2) + of_velocity(d1),
         }
     }
@@ -145,10 +174,6 @@ impl Bodies<'_> {
         let p = self.point(carrier, joint.sides[0].point);
         let arm = |body: usize| p - self.placements[body].position;
         let at = |body: usize| self.velocity(body, arm(body));
-        let on = |body: usize, force: Vec3| Gradient {
-            force,
-            moment: arm(body).cross(force),
-        };
         let turned = |body: usize| {
             let motion = &self.motions[body];
             motion.angular_velocity.cross(at(carrier) - motion.velocity)
@@ -157,7 +182,7 @@ impl Bodies<'_> {
         let n1 = self.motions[carrier].angular_velocity.cross(n);
         Row {
             bodies,
-            gradients: [on(a, -n), on(b, n)],
+            gradients: [force_at(arm(a), -n), force_at(arm(b), n)],
             bias: n1.dot(at(b) - at(a)) + n.dot(turned(b) - turned(a)),
         }
     }
@@ -166,13 +191,9 @@ impl Bodies<'_> {
     pub(super) fn angle(&self, joint: &Joint, u: Vec3) -> Row {
         let bodies = joint.bodies.map(|b| b.0);
         let [wa, wb] = bodies.map(|body| self.motions[body].angular_velocity);
-        let on = |moment| Gradient {
-            force: Vec3::ZERO,
-            moment,
-        };
         Row {
             bodies,
-            gradients: [on(-u), on(u)],
+            gradients: [couple(-u), couple(u)],
             bias: wa.cross(u).dot(wb - wa),
         }
     }
@@ -180,61 +201,47 @@ impl Bodies<'_> {
     /// The rows (2) of a joint.
     pub(super) fn rows(&self, joint: &Joint) -> Vec<Row> {
         let bodies = joint.bodies.map(|b| b.0);
-        let [u, w] = [0, 1].map(|k| self.arm(bodies[k], joint.sides[k].axis));
-        let [n, p] = [0, 1].map(|k| self.arm(bodies[k], joint.sides[k].normal));
-        let across = u.cross(n);
-        let mut rows = Vec::new();
-        let meets = |rows: &mut Vec<Row>| {
-            rows.extend(Vec3::AXES.map(|e| self.along(joint, e, |_| 0.0)));
+        let Sides { u, w, n, p, d } = Sides::of(joint, self.placements);
+        let across = [n, u.cross(n)];
+        let meets = || {
+            Vec3::AXES
+                .map(|e| self.along(joint, e, |_| 0.0))
+                .into_iter()
         };
-        let parallel = |rows: &mut Vec<Row>| {
-            rows.extend([n, across].map(|v| self.right_angle(bodies, v, w)));
-        };
-        let on_line =
-            |rows: &mut Vec<Row>| rows.extend([n, across].map(|v| self.in_plane(joint, v)));
-        let no_turn = |rows: &mut Vec<Row>| rows.push(self.right_angle(bodies, n, w.cross(p)));
+        let parallel = || across.map(|v| self.right_angle(bodies, v, w)).into_iter();
+        let on_line = || across.map(|v| self.in_plane(joint, v)).into_iter();
+        let no_turn = || [self.right_angle(bodies, n, w.cross(p))];
         match joint.kind {
-            JointKind::Weld => (meets(&mut rows), parallel(&mut rows), no_turn(&mut rows)).2,
-            JointKind::Revolute => (meets(&mut rows), parallel(&mut rows)).1,
-            JointKind::Prismatic => (on_line(&mut rows), parallel(&mut rows), no_turn(&mut rows)).2,
-            JointKind::Cylindrical => (on_line(&mut rows), parallel(&mut rows)).1,
+            JointKind::Weld => meets().chain(parallel()).chain(no_turn()).collect(),
+            JointKind::Revolute => meets().chain(parallel()).collect(),
+            JointKind::Prismatic => on_line().chain(parallel()).chain(no_turn()).collect(),
+            JointKind::Cylindrical => on_line().chain(parallel()).collect(),
             JointKind::Helical { pitch } => {
-                on_line(&mut rows);
-                parallel(&mut rows);
                 let (mut travel, turn) = (self.in_plane(joint, u), self.angle(joint, u));
                 for (row, turn) in travel.gradients.iter_mut().zip(turn.gradients) {
                     row.moment += turn.moment.scaled(-pitch);
                 }
                 travel.bias -= pitch * turn.bias;
-                rows.push(travel);
+                on_line().chain(parallel()).chain([travel]).collect()
             }
-            JointKind::Universal => {
-                meets(&mut rows);
-                rows.push(self.right_angle(bodies, u, w));
-            }
-            JointKind::Spherical => meets(&mut rows),
+            JointKind::Universal => meets().chain([self.right_angle(bodies, u, w)]).collect(),
+            JointKind::Spherical => meets().collect(),
             JointKind::Planar => {
-                rows.push(self.in_plane(joint, u));
-                parallel(&mut rows);
+                let in_plane = [self.in_plane(joint, u)].into_iter();
+                in_plane.chain(parallel()).collect()
             }
             JointKind::Distance { length } => {
-                let (_, _, d) = self.ends(joint);
-                rows.push(self.along(joint, d.scaled(1.0 / length), |d1| d1.dot(d1) / length));
+                vec![self.along(joint, d.scaled(1.0 / length), |d1| d1.dot(d1) / length)]
             }
-            JointKind::Gear { carrier } => rows.push(self.mesh(joint, carrier.0)),
+            JointKind::Gear { carrier } => vec![self.mesh(joint, carrier.0)],
         }
-        rows
     }
-}
 
-impl Bodies<'_> {
     /// The residuals of the rows (2) of a joint, in their order. That of a gear pair is one of velocities: it has none here.
     pub(super) fn residuals(&self, joint: &Joint) -> Vec<f64> {
-        let bodies = joint.bodies.map(|b| b.0);
-        let [u, w] = [0, 1].map(|k| self.arm(bodies[k], joint.sides[k].axis));
-        let [n, p] = [0, 1].map(|k| self.arm(bodies[k], joint.sides[k].normal));
+        let sides = Sides::of(joint, self.placements);
+        let Sides { u, w, n, p, d } = sides;
         let across = u.cross(n);
-        let (_, _, d) = self.ends(joint);
         let (meets, parallel) = ([d.x, d.y, d.z], [n.dot(w), across.dot(w)]);
         let (on_line, no_turn) = ([n.dot(d), across.dot(d)], n.dot(w.cross(p)));
         let all: &[&[f64]] = match joint.kind {
@@ -242,9 +249,7 @@ impl Bodies<'_> {
             JointKind::Revolute => &[&meets, &parallel],
             JointKind::Prismatic => &[&on_line, &parallel, &[no_turn]],
             JointKind::Cylindrical => &[&on_line, &parallel],
-            JointKind::Helical { pitch } => {
-                &[&on_line, &parallel, &[screw_error(pitch, [u, d, n, p])]]
-            }
+            JointKind::Helical { pitch } => &[&on_line, &parallel, &[sides.screw_error(pitch)]],
             JointKind::Universal => &[&meets, &[u.dot(w)]],
             JointKind::Spherical => &[&meets],
             JointKind::Planar => &[&[u.dot(d)], &parallel],
@@ -255,22 +260,11 @@ impl Bodies<'_> {
     }
 }
 
-/// How far a screw's travel is from that of its angle, which may have whole turns, each of 2π pitch.
-fn screw_error(pitch: f64, [u, d, n, p]: [Vec3; 4]) -> f64 {
-    let angle = n.cross(p).dot(u).atan2(n.dot(p));
-    let turns = (d.dot(u) / pitch - angle) / TAU;
-    (turns - turns.round()) * TAU * pitch
-}
-
 /// How far a joint is from closed, m and rad: the residual of its rows (2) at placements of all bodies. The row of a gear pair is one of
 /// velocities: what its wheels have travelled is seen by comparing two poses, not here.
 pub fn closure_error(joint: &Joint, placements: &[Placement]) -> f64 {
-    let bodies = joint.bodies.map(|b| b.0);
-    let at = |k: usize, v: Vec3| placements[bodies[k]].rotation.apply(v);
-    let point = |k: usize| placements[bodies[k]].position + at(k, joint.sides[k].point);
-    let d = point(1) - point(0);
-    let [u, w] = [0, 1].map(|k| at(k, joint.sides[k].axis));
-    let [n, p] = [0, 1].map(|k| at(k, joint.sides[k].normal));
+    let sides = Sides::of(joint, placements);
+    let Sides { u, w, n, p, d } = sides;
     let (apart, tilt) = (d.norm(), (u - w).norm());
     let (off_line, turn) = (d.cross(u).norm(), (n - p).norm());
     let found: &[f64] = match joint.kind {
@@ -278,7 +272,7 @@ pub fn closure_error(joint: &Joint, placements: &[Placement]) -> f64 {
         JointKind::Revolute => &[apart, tilt],
         JointKind::Prismatic => &[off_line, tilt, turn],
         JointKind::Cylindrical => &[off_line, tilt],
-        JointKind::Helical { pitch } => &[off_line, tilt, screw_error(pitch, [u, d, n, p])],
+        JointKind::Helical { pitch } => &[off_line, tilt, sides.screw_error(pitch)],
         JointKind::Universal => &[apart, u.dot(w)],
         JointKind::Spherical => &[apart],
         JointKind::Planar => &[d.dot(u), tilt],

@@ -13,16 +13,15 @@
 //! The claimed placements are closed densely first. Checks 0, 1, 3, 4 and 7 take the [dense](super) motion there; 8 takes the claimed
 //! accelerations, and then those that positions show, differenced twice along q(t) = q + q̇ t + ½ q̈ t².
 
-use super::balances;
 use super::closing::coordinate_error;
-use super::differences;
 use super::rows::{closure_error, mesh_error};
-use super::{DensePose, DenseSpace};
+use super::{DensePose, DenseSpace, parts};
 use crate::comparison::{Comparison, ComparisonSet, FindingSpec, LargestDifference};
 use crate::subject::SubjectError;
 use dwell_findings::{Check, Finding};
+use dwell_geometry::JointId;
 use dwell_geometry::space::{
-    ActuatorKind, BodyMotion, IdleBody, JointKind, Mechanism, Placement, Vec3, Wrench,
+    Actuator, ActuatorKind, BodyMotion, IdleBody, JointKind, Mechanism, Placement, Vec3, Wrench,
 };
 use dwell_kinetostatics::space::{LoadKind, Mass};
 use std::rc::Rc;
@@ -68,15 +67,33 @@ pub struct SpaceCase<'a> {
 }
 
 impl SpaceCase<'_> {
-    /// How far coordinates are from those at the assembly, rad or parts of the size.
-    pub(super) fn distance(&self, q: &[f64]) -> f64 {
-        let parts = self.start.0.iter().zip(q).zip(&self.mechanism.actuators);
-        parts.fold(0.0_f64, |max, ((from, to), actuator)| {
-            let unit = match actuator.kind {
-                ActuatorKind::Angle(_) => 1.0,
-                ActuatorKind::Travel(_) | ActuatorKind::Length(_) => self.size,
-            };
-            max.max((to - from).abs() / unit)
+    /// The unit of a coordinate: one radian, or the size.
+    pub(super) fn unit(&self, actuator: usize) -> f64 {
+        match self.mechanism.actuators[actuator].kind {
+            ActuatorKind::Angle(_) => 1.0,
+            ActuatorKind::Travel(_) | ActuatorKind::Length(_) => self.size,
+        }
+    }
+
+    /// What makes an action of a force: the size of an angle's, one of a length's.
+    pub(super) fn lever(&self, actuator: usize) -> f64 {
+        match self.mechanism.actuators[actuator].kind {
+            ActuatorKind::Angle(_) => self.size,
+            ActuatorKind::Travel(_) | ActuatorKind::Length(_) => 1.0,
+        }
+    }
+
+    /// The coordinates on a straight line from those at the assembly to others, in steps no longer than `longest`, rad or parts of the
+    /// size; with the part of the way.
+    pub(super) fn way_to(&self, q: &[f64], longest: f64) -> impl Iterator<Item = (f64, Vec<f64>)> {
+        let both = move || self.start.0.iter().zip(q);
+        let distances = both().enumerate();
+        let distances = distances.map(|(k, (from, to))| (to - from).abs() / self.unit(k));
+        let count = (distances.fold(0.0, f64::max) / longest).ceil().max(1.0);
+        (1..=count as usize).map(move |k| {
+            let part = k as f64 / count;
+            let at = both().map(|(from, to)| from + part * (to - from));
+            (part, at.collect())
         })
     }
 }
@@ -158,20 +175,32 @@ pub fn check_states_in_space(
     subject: &dyn SpaceSubject,
     states: &[SpaceState],
 ) -> Vec<Finding> {
-    let states = solve_all(case, states);
-    let mut findings = vec![closure(case, subject, &states)];
-    findings.extend(motions(case, &states));
-    findings.extend(inertias(case, &states));
-    findings.extend(differences::by_inertias(case, subject, &states));
-    findings.push(reactions(case, &states));
-    findings.extend(balances::of_whole(case, &states));
-    findings.push(balances::newton_euler(case, &states));
-    findings.push(differences::newton_euler(case, subject, &states));
+    let checker = SpaceChecker {
+        case,
+        subject,
+        states: solve_all(case, states),
+    };
+    let mut findings = vec![checker.closure()];
+    findings.extend(checker.motions());
+    findings.extend(checker.inertias());
+    findings.extend(checker.by_inertias());
+    findings.push(checker.reactions());
+    findings.extend(checker.of_whole());
+    findings.push(checker.newton_euler());
+    findings.push(checker.newton_euler_by_differences());
     findings
+}
+
+/// All claimed states of a case.
+pub(super) struct SpaceChecker<'a> {
+    pub(super) case: &'a SpaceCase<'a>,
+    pub(super) subject: &'a dyn SpaceSubject,
+    pub(super) states: Vec<DenseState<'a>>,
 }
 
 /// A claimed state with the solution of the dense equations at the nearest closed pose.
 pub(super) struct DenseState<'a> {
+    pub(super) case: &'a SpaceCase<'a>,
     pub(super) claimed: &'a SpaceState,
     /// The pose, and the solution there; or why there is none.
     pub(super) solved: Result<(Rc<ClosedPose>, DenseSpace), String>,
@@ -185,7 +214,7 @@ pub(super) struct ClosedPose {
 }
 
 /// Solves all states; those that follow each other at the same placements share the factors.
-fn solve_all<'a>(case: &SpaceCase<'_>, states: &'a [SpaceState]) -> Vec<DenseState<'a>> {
+fn solve_all<'a>(case: &'a SpaceCase<'a>, states: &'a [SpaceState]) -> Vec<DenseState<'a>> {
     let mut last: Option<(&SpaceState, DensePose<'_>, Rc<ClosedPose>)> = None;
     let mut all = Vec::with_capacity(states.len());
     for claimed in states {
@@ -215,7 +244,11 @@ fn solve_all<'a>(case: &SpaceCase<'_>, states: &'a [SpaceState]) -> Vec<DenseSta
             last = Some((claimed, pose, Rc::clone(&closed)));
             (closed, dense)
         });
-        all.push(DenseState { claimed, solved });
+        all.push(DenseState {
+            case,
+            claimed,
+            solved,
+        });
     }
     all
 }
@@ -229,12 +262,6 @@ impl DenseState<'_> {
         }
     }
 
-    /// Where it is, in words.
-    pub(super) fn place(&self, what: &str) -> String {
-        let q: Vec<String> = self.claimed.q.iter().map(|q| format!("{q:.4}")).collect();
-        format!("q = {}, {what}", q.join(" "))
-    }
-
     /// Adds a difference with its scale.
     pub(super) fn compare(
         &self,
@@ -243,139 +270,186 @@ impl DenseState<'_> {
         unit: &'static str,
         what: &str,
     ) {
-        let comparison = Comparison {
-            numbers: [difference, scale, 0.0],
-            unit,
-            condition_number: 1.0,
-        };
-        to.add(comparison, self.place(what));
+        let q: Vec<String> = self.claimed.q.iter().map(|q| format!("{q:.4}")).collect();
+        let comparison = Comparison::new([difference, scale, 0.0], unit, 1.0);
+        to.add(comparison, format!("q = {}, {what}", q.join(" ")));
+    }
+
+    /// ⟨u, v⟩ of two motions of all bodies.
+    fn product(&self, motions: [&[BodyMotion]; 2]) -> f64 {
+        product(self.case, self.placements(), motions)
     }
 }
 
-/// The finding of comparisons in all states; it fails where a state has no dense solution, or for another reason.
-pub(super) fn finding(
-    spec: &FindingSpec<'_>,
-    states: &[DenseState<'_>],
-    comparisons: ComparisonSet,
-    failure: Option<String>,
-) -> Finding {
-    let mut worst: LargestDifference = comparisons.largest();
-    let of_states = states
-        .iter()
-        .filter_map(|s| s.solved.as_ref().err().cloned());
-    for reason in of_states.chain(failure) {
-        worst.record_failure(reason);
+impl SpaceChecker<'_> {
+    /// The states that have a dense solution, with it.
+    pub(super) fn solved(
+        &self,
+    ) -> impl Iterator<Item = (&DenseState<'_>, &ClosedPose, &DenseSpace)> {
+        let solved = self.states.iter();
+        solved.filter_map(|state| match &state.solved {
+            Ok((closed, dense)) => Some((state, &**closed, dense)),
+            Err(_) => None,
+        })
     }
-    spec.finding(format!("{} states", states.len()), worst)
-}
 
-fn closure(case: &SpaceCase<'_>, subject: &dyn SpaceSubject, states: &[DenseState<'_>]) -> Finding {
-    let mut open = ComparisonSet::with_individual_scales();
-    let mut failure = None;
-    let unit = "m or rad";
-    let scale = case.size.max(1.0);
-    for state in states {
-        let at = &state.claimed.placements;
-        for (j, joint) in case.mechanism.joints.iter().enumerate() {
-            let actuators = &case.mechanism.actuators;
-            // A driven distance holds nothing.
-            let is_driven = actuators
-                .iter()
-                .any(|a| a.kind.joint().0 == j && matches!(a.kind, ActuatorKind::Length(_)));
-            if !is_driven {
-                let error = closure_error(joint, at);
-                state.compare(&mut open, [error, scale], unit, &joint.name);
-            }
+    /// The finding of comparisons in all states; it fails where a state has no dense solution, or for another reason.
+    pub(super) fn finding(
+        &self,
+        spec: &FindingSpec<'_>,
+        comparisons: ComparisonSet,
+        failure: Option<String>,
+    ) -> Finding {
+        let mut worst: LargestDifference = comparisons.largest();
+        let of_states = self.states.iter();
+        let of_states = of_states.filter_map(|s| s.solved.as_ref().err().cloned());
+        for reason in of_states.chain(failure) {
+            worst.record_failure(reason);
         }
-        let ground = &at[case.mechanism.ground];
-        for error in [ground.position.norm(), ground.rotation.vector().norm()] {
-            state.compare(&mut open, [error, scale], unit, "the ground");
-        }
-        for (k, actuator) in case.mechanism.actuators.iter().enumerate() {
-            let wanted = state.claimed.q[k];
-            let error = coordinate_error(case.mechanism, actuator.kind, at, wanted);
-            state.compare(&mut open, [error, scale], unit, &actuator.name);
-        }
-        match mesh_errors(case, subject, state.claimed) {
-            Ok(errors) => {
-                for (name, error) in errors {
-                    state.compare(&mut open, [error, scale], unit, name);
-                }
-            }
-            Err(error) => failure = Some(error.to_string()),
-        }
+        spec.finding(format!("{} states", self.states.len()), worst)
     }
-    finding(&CLOSURE, states, open, failure)
-}
 
-/// Steps from the assembly to a state within which no wheel turns by half a revolution: rad, or parts of the size.
-const MESH_STEP: f64 = 0.4;
-
-/// By gear pair: how far its teeth are off since the assembly, m.
-fn mesh_errors<'m>(
-    case: &SpaceCase<'m>,
-    subject: &dyn SpaceSubject,
-    state: &SpaceState,
-) -> Result<Vec<(&'m str, f64)>, SubjectError> {
-    let is_gear = |kind: JointKind| matches!(kind, JointKind::Gear { .. });
-    let gears = case.mechanism.joints.iter().filter(|j| is_gear(j.kind));
-    let mut errors: Vec<(&str, f64)> = gears.clone().map(|j| (j.name.as_str(), 0.0)).collect();
-    if errors.is_empty() {
-        return Ok(errors);
-    }
-    let (start, placements) = case.start;
-    let count = (case.distance(&state.q) / MESH_STEP).ceil().max(1.0);
-    let mut before = placements.to_vec();
-    for k in 1..=count as usize {
-        let part = k as f64 / count;
-        let at = |(from, to): (&f64, &f64)| from + part * (to - from);
-        let q: Vec<f64> = start.iter().zip(&state.q).map(at).collect();
-        // The last is the state itself, which may have been claimed otherwise.
-        let after = match part < 1.0 {
-            true => subject.placements(&q)?,
-            false => state.placements.clone(),
-        };
-        for ((_, sum), joint) in errors.iter_mut().zip(gears.clone()) {
-            *sum += mesh_error(joint, [&before, &after]).unwrap_or(0.0);
-        }
-        before = after;
-    }
-    Ok(errors)
-}
-
-/// Velocities and accelerations of all bodies.
-fn motions(case: &SpaceCase<'_>, states: &[DenseState<'_>]) -> [Finding; 2] {
-    let size = case.size;
-    let [mut first, mut second] = [(); 2].map(|()| ComparisonSet::with_individual_scales());
-    for state in states {
-        let Ok((_, dense)) = &state.solved else {
-            continue;
-        };
-        let largest = |of: fn(&BodyMotion) -> [Vec3; 2]| {
-            let all = dense.motions.iter().map(|m| of(m).map(Vec3::norm));
-            all.fold(0.0_f64, |max, [v, w]| max.max(v).max(w * size))
-        };
-        let velocity = |m: &BodyMotion| [m.velocity, m.angular_velocity];
-        let acceleration = |m: &BodyMotion| [m.acceleration, m.angular_acceleration];
-        let speed = largest(velocity);
-        let scale = largest(acceleration).max(speed * speed / size);
-        for (body, (claimed, dense)) in state.claimed.motions.iter().zip(&dense.motions).enumerate()
-        {
-            let name = &case.mechanism.bodies[body].name;
-            let add = |set: &mut ComparisonSet, of: fn(&BodyMotion) -> [Vec3; 2], scale| {
-                let ([v, w], [v0, w0]) = (of(claimed), of(dense));
-                for error in [(v - v0).norm(), (w - w0).norm() * size] {
-                    state.compare(set, [error, scale], "m/s", name);
-                }
+    fn closure(&self) -> Finding {
+        let (mechanism, scale) = (self.case.mechanism, self.case.size.max(1.0));
+        let mut open = ComparisonSet::with_individual_scales();
+        let mut failure = None;
+        for state in &self.states {
+            let at = &state.claimed.placements;
+            let mut add = |error: f64, what: &str| {
+                state.compare(&mut open, [error, scale], "m or rad", what);
             };
-            add(&mut first, velocity, speed);
-            add(&mut second, acceleration, scale);
+            for (j, joint) in mechanism.joints.iter().enumerate() {
+                // A driven distance holds nothing.
+                let drives = |a: &Actuator| a.kind == ActuatorKind::Length(JointId(j));
+                if !mechanism.actuators.iter().any(drives) {
+                    add(closure_error(joint, at), &joint.name);
+                }
+            }
+            let ground = &at[mechanism.ground];
+            for error in [ground.position.norm(), ground.rotation.vector().norm()] {
+                add(error, "the ground");
+            }
+            for (actuator, q) in mechanism.actuators.iter().zip(&state.claimed.q) {
+                let error = coordinate_error(mechanism, actuator.kind, at, *q);
+                add(error, &actuator.name);
+            }
+            match self.mesh_errors(state.claimed) {
+                Ok(errors) => errors
+                    .into_iter()
+                    .for_each(|(name, error)| add(error, name)),
+                Err(error) => failure = Some(error.to_string()),
+            }
         }
+        self.finding(&CLOSURE, open, failure)
     }
-    [
-        finding(&VELOCITIES, states, first, None),
-        finding(&ACCELERATIONS, states, second, None),
-    ]
+
+    /// By gear pair: how far its teeth are off since the assembly, m.
+    fn mesh_errors(&self, state: &SpaceState) -> Result<Vec<(&str, f64)>, SubjectError> {
+        /// Steps from the assembly to a state within which no wheel turns by half a revolution: rad, or parts of the size.
+        const MESH_STEP: f64 = 0.4;
+        let is_gear = |kind: JointKind| matches!(kind, JointKind::Gear { .. });
+        let joints = self.case.mechanism.joints.iter();
+        let gears = joints.filter(|j| is_gear(j.kind));
+        let mut errors: Vec<(&str, f64)> = gears.clone().map(|j| (j.name.as_str(), 0.0)).collect();
+        if errors.is_empty() {
+            return Ok(errors);
+        }
+        let mut before = self.case.start.1.to_vec();
+        for (part, q) in self.case.way_to(&state.q, MESH_STEP) {
+            // The last is the state itself, which may have been claimed otherwise.
+            let after = match part < 1.0 {
+                true => self.subject.placements(&q)?,
+                false => state.placements.clone(),
+            };
+            for ((_, sum), joint) in errors.iter_mut().zip(gears.clone()) {
+                *sum += mesh_error(joint, [&before, &after]).unwrap_or(0.0);
+            }
+            before = after;
+        }
+        Ok(errors)
+    }
+
+    /// Velocities and accelerations of all bodies.
+    fn motions(&self) -> [Finding; 2] {
+        let size = self.case.size;
+        let [mut first, mut second] = [(); 2].map(|()| ComparisonSet::with_individual_scales());
+        for (state, _, dense) in self.solved() {
+            let largest = |of: fn(&BodyMotion) -> [Vec3; 2]| {
+                let all = dense.motions.iter().map(|m| of(m).map(Vec3::norm));
+                all.fold(0.0_f64, |max, [v, w]| max.max(v).max(w * size))
+            };
+            let velocity = |m: &BodyMotion| [m.velocity, m.angular_velocity];
+            let acceleration = |m: &BodyMotion| [m.acceleration, m.angular_acceleration];
+            let speed = largest(velocity);
+            let scale = largest(acceleration).max(speed * speed / size);
+            let both = state.claimed.motions.iter().zip(&dense.motions);
+            for (body, (claimed, dense)) in both.enumerate() {
+                let name = &self.case.mechanism.bodies[body].name;
+                let add = |set: &mut ComparisonSet, of: fn(&BodyMotion) -> [Vec3; 2], scale| {
+                    let ([v, w], [v0, w0]) = (of(claimed), of(dense));
+                    for error in [(v - v0).norm(), (w - w0).norm() * size] {
+                        state.compare(set, [error, scale], "m/s", name);
+                    }
+                };
+                add(&mut first, velocity, speed);
+                add(&mut second, acceleration, scale);
+            }
+        }
+        [
+            self.finding(&VELOCITIES, first, None),
+            self.finding(&ACCELERATIONS, second, None),
+        ]
+    }
+
+    fn inertias(&self) -> [Finding; 2] {
+        let [mut matrix, mut kinetic] = [(); 2].map(|()| ComparisonSet::with_individual_scales());
+        for (state, ClosedPose { unit, .. }, _) in self.solved() {
+            let claimed = state.claimed;
+            let n = claimed.q_dot.len();
+            let dense = |i: usize, j: usize| state.product([&unit[i], &unit[j]]);
+            let mut doubled = 0.0;
+            for (k, found) in claimed.inertias.iter().enumerate() {
+                let (i, j) = (k / n, k % n);
+                let scale = (dense(i, i) * dense(j, j)).sqrt();
+                let [one, two] = [i, j].map(|k| &self.case.mechanism.actuators[k].name);
+                let what = format!("{one} {two}");
+                state.compare(&mut matrix, [found - dense(i, j), scale], "kg m2", &what);
+                doubled += claimed.q_dot[i] * found * claimed.q_dot[j];
+            }
+            let energy = state.product([&claimed.motions; 2]);
+            let numbers = [0.5 * (doubled - energy), 0.5 * energy.abs()];
+            state.compare(&mut kinetic, numbers, "J", "all bodies");
+        }
+        [
+            self.finding(&INERTIAS, matrix, None),
+            self.finding(&KINETIC, kinetic, None),
+        ]
+    }
+
+    fn reactions(&self) -> Finding {
+        let mut set = ComparisonSet::with_individual_scales();
+        let mechanism = self.case.mechanism;
+        for (state, _, dense) in self.solved() {
+            let claimed = state.claimed;
+            let scale = state.largest_force();
+            for (j, (found, wanted)) in claimed.reactions.iter().zip(&dense.reactions).enumerate() {
+                let difference = Wrench {
+                    force: found.force - wanted.force,
+                    moment: (found.moment - wanted.moment).scaled(1.0 / self.case.size),
+                };
+                let parts = parts(&difference).into_iter().zip(dense.determined[j]);
+                for (part, _) in parts.filter(|(_, is)| *is) {
+                    state.compare(&mut set, [part, scale], "N", &mechanism.joints[j].name);
+                }
+            }
+            for (k, actuator) in mechanism.actuators.iter().enumerate() {
+                let arm = 1.0 / self.case.lever(k);
+                let error = (claimed.tau[k] - dense.actuator_actions[k]) * arm;
+                state.compare(&mut set, [error, scale], "N", &actuator.name);
+            }
+        }
+        self.finding(&REACTIONS, set, None)
+    }
 }
 
 /// ⟨u, v⟩ of two motions of all bodies: Σ m u·v + ω_u·I ω_v at the centres.
@@ -394,71 +468,4 @@ pub(super) fn product(
         mass.mass * v.dot(u) + w.dot(momentum)
     };
     bodies.map(of_body).sum()
-}
-
-fn inertias(case: &SpaceCase<'_>, states: &[DenseState<'_>]) -> [Finding; 2] {
-    let [mut matrix, mut kinetic] = [(); 2].map(|()| ComparisonSet::with_individual_scales());
-    for state in states {
-        let Ok((closed, _)) = &state.solved else {
-            continue;
-        };
-        let SpaceState {
-            q_dot,
-            inertias,
-            motions,
-            ..
-        } = state.claimed;
-        let (n, unit, placements) = (q_dot.len(), &closed.unit, state.placements());
-        let dense = |i: usize, j: usize| product(case, placements, [&unit[i], &unit[j]]);
-        let mut doubled = 0.0;
-        for (k, found) in inertias.iter().enumerate() {
-            let (i, j) = (k / n, k % n);
-            let scale = (dense(i, i) * dense(j, j)).sqrt();
-            let [one, two] = [i, j].map(|k| &case.mechanism.actuators[k].name);
-            let what = format!("{one} {two}");
-            state.compare(&mut matrix, [found - dense(i, j), scale], "kg m2", &what);
-            doubled += q_dot[i] * found * q_dot[j];
-        }
-        let claimed = product(case, placements, [motions, motions]);
-        let error = 0.5 * (doubled - claimed);
-        state.compare(
-            &mut kinetic,
-            [error, 0.5 * claimed.abs()],
-            "J",
-            "all bodies",
-        );
-    }
-    [
-        finding(&INERTIAS, states, matrix, None),
-        finding(&KINETIC, states, kinetic, None),
-    ]
-}
-
-fn reactions(case: &SpaceCase<'_>, states: &[DenseState<'_>]) -> Finding {
-    let mut set = ComparisonSet::with_individual_scales();
-    for state in states {
-        let Ok((_, dense)) = &state.solved else {
-            continue;
-        };
-        let claimed = state.claimed;
-        let scale = balances::largest_force(case, state);
-        for (j, (found, wanted)) in claimed.reactions.iter().zip(&dense.reactions).enumerate() {
-            let force = found.force - wanted.force;
-            let moment = (found.moment - wanted.moment).scaled(1.0 / case.size);
-            let parts = [force.x, force.y, force.z, moment.x, moment.y, moment.z];
-            let name = &case.mechanism.joints[j].name;
-            for (part, _) in parts.iter().zip(dense.determined[j]).filter(|(_, is)| *is) {
-                state.compare(&mut set, [*part, scale], "N", name);
-            }
-        }
-        for (k, actuator) in case.mechanism.actuators.iter().enumerate() {
-            let arm = match actuator.kind {
-                ActuatorKind::Angle(_) => 1.0 / case.size,
-                ActuatorKind::Travel(_) | ActuatorKind::Length(_) => 1.0,
-            };
-            let error = (claimed.tau[k] - dense.actuator_actions[k]) * arm;
-            state.compare(&mut set, [error, scale], "N", &actuator.name);
-        }
-    }
-    finding(&REACTIONS, states, set, None)
 }

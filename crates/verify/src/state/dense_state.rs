@@ -75,18 +75,13 @@ fn inertia_wrenches(
     x_dot: &[f64],
     x_ddot: &[f64],
 ) -> Vec<BodyWrench> {
-    let wrench = |(b, body): (usize, &DenseBody)| {
-        Some(BodyWrench {
-            body: BodyId(b),
-            force: -(dense.center_acceleration(body, at, x_dot, x_ddot) * body.mass.mass),
-            point: dense.center(body, at),
-            couple: -{
-                let angle = body.column? + 2;
-                body.inertia_moment(at.x[angle], x_dot[angle], x_ddot[angle])
-            },
-        })
+    let wrench = |(b, body, c): (usize, &DenseBody, usize)| BodyWrench {
+        body: BodyId(b),
+        force: -(dense.center_acceleration(body, at, x_dot, x_ddot) * body.mass.mass),
+        point: dense.center(body, at),
+        couple: -body.inertia_moment(at.x[c + 2], x_dot[c + 2], x_ddot[c + 2]),
     };
-    dense.bodies.iter().enumerate().filter_map(wrench).collect()
+    dense.moving_bodies().map(wrench).collect()
 }
 
 impl<'a> DenseState<'a> {
@@ -135,19 +130,8 @@ impl<'a> DenseState<'a> {
     ) {
         let separator = if what.is_empty() { "" } else { ", " };
         let location = format!("t = {} s{separator}{what}", self.state.t);
-        let condition_number = self.condition_number;
-        let comparison = Comparison {
-            numbers,
-            unit,
-            condition_number,
-        };
+        let comparison = Comparison::new(numbers, unit, self.condition_number);
         set.add(comparison, location);
-    }
-
-    /// The moving bodies with their columns.
-    pub(super) fn moving_bodies(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let bodies = self.dense.bodies.iter().enumerate();
-        bodies.filter_map(|(b, body)| Some((b, body.column?)))
     }
 
     /// How much rounding may have moved the dense motion, relative to it.
@@ -167,7 +151,7 @@ impl<'a> DenseState<'a> {
         let size = self.dense.size();
         let loads = self.load_wrenches.iter();
         let loads = loads.map(|l| l.force.norm().max(l.couple.abs() / size));
-        let inertia = self.moving_bodies().map(|(body, _)| {
+        let inertia = self.dense.moving_bodies().map(|(body, ..)| {
             let [x, y, moment] = self.inertia_forces(body);
             x.hypot(y).max(moment.abs() / size)
         });
@@ -253,15 +237,13 @@ impl<'a> DenseState<'a> {
                 add(u[c + 2] * load.couple, (u[c + 2] * load.couple).abs());
             }
         }
-        for body in &self.dense.bodies {
-            if let Some(c) = body.column {
-                let v = self.dense.center_velocity(body, at, u);
-                let force = self.dense.center_acceleration(body, at, u, a) * body.mass.mass;
-                let moment = body.inertia_moment(at.x[c + 2], u[c + 2], a[c + 2]);
-                let angular_power = u[c + 2] * moment;
-                add(-v.dot(force), v.norm() * force.norm());
-                add(-angular_power, angular_power.abs());
-            }
+        for (_, body, c) in self.dense.moving_bodies() {
+            let v = self.dense.center_velocity(body, at, u);
+            let force = self.dense.center_acceleration(body, at, u, a) * body.mass.mass;
+            let moment = body.inertia_moment(at.x[c + 2], u[c + 2], a[c + 2]);
+            let angular_power = u[c + 2] * moment;
+            add(-v.dot(force), v.norm() * force.norm());
+            add(-angular_power, angular_power.abs());
         }
         (sum, terms)
     }
@@ -320,13 +302,11 @@ pub(super) fn check_counts(dense: &DenseMechanism, state: &ClaimedState) -> Resu
 /// The claimed accelerations of the moved frames, in dense order.
 fn shifted_accelerations(dense: &DenseMechanism, state: &ClaimedState) -> Vec<f64> {
     let mut x_ddot = vec![0.0; dense.rows.columns()];
-    for (b, body) in dense.bodies.iter().enumerate() {
-        if let Some(c) = body.column {
-            let arm = body.shift.rotate(Vec2::from_angle(state.poses[b][2]));
-            let ([.., omega], [ax, ay, alpha]) = (state.velocities[b], state.accelerations[b]);
-            let a = vec2(ax, ay) + arm.perp() * alpha - arm * (omega * omega);
-            x_ddot[c..c + 3].copy_from_slice(&[a.x, a.y, alpha]);
-        }
+    for (b, body, c) in dense.moving_bodies() {
+        let arm = body.shift.rotate(Vec2::from_angle(state.poses[b][2]));
+        let ([.., omega], [ax, ay, alpha]) = (state.velocities[b], state.accelerations[b]);
+        let a = vec2(ax, ay) + arm.perp() * alpha - arm * (omega * omega);
+        x_ddot[c..c + 3].copy_from_slice(&[a.x, a.y, alpha]);
     }
     x_ddot
 }
