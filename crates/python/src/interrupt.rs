@@ -1,5 +1,6 @@
 //! Long computations: other Python threads go on meanwhile, Ctrl-C ends them, and their progress is shown.
 
+use crate::errors::Raise as _;
 use dwell_dynamics::interruption;
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -35,7 +36,7 @@ impl Steps {
 pub(crate) fn run<T: Send>(
     py: Python<'_>,
     progress: &Bound<'_, PyAny>,
-    compute: impl FnOnce(&Steps) -> T + Send,
+    compute: impl FnOnce(&Steps) -> Result<T, dwell::Error> + Send,
 ) -> PyResult<T> {
     let (sender, mut receiver) = sync_channel(1);
     let steps = &Steps::default();
@@ -47,7 +48,7 @@ pub(crate) fn run<T: Send>(
         loop {
             let looked_at = &mut receiver;
             match py.detach(move || looked_at.recv_timeout(BETWEEN_LOOKS)) {
-                Ok(found) => return Ok(found),
+                Ok(found) => return found.or_raise(py),
                 // It panicked: joining it says so.
                 Err(RecvTimeoutError::Disconnected) => break,
                 Err(RecvTimeoutError::Timeout) => {}

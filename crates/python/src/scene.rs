@@ -38,8 +38,8 @@ impl Scene {
     }
 
     #[getter]
-    fn warnings(&self) -> Vec<String> {
-        self.scene.warnings().map(str::to_owned).collect()
+    fn warnings(&self) -> Vec<&str> {
+        self.scene.warnings().collect()
     }
 
     fn value(&self, py: Python<'_>, path: &str) -> PyResult<f64> {

@@ -40,8 +40,7 @@ pub(crate) fn sweep<'py>(
     }
     let found = run(py, progress, |steps| {
         sweep.run_with_progress(&|done, all| steps.show(done, all))
-    });
-    let found = found?.or_raise(py)?;
+    })?;
     let names: Vec<_> = found
         .columns()
         .map(|(name, unit)| (name.to_owned(), unit.to_owned()))
