@@ -56,7 +56,7 @@ mod variants;
 pub use error::{AssemblyError, PositionError, StructureError};
 pub use mechanism::{
     Actuator, ActuatorId, ActuatorKind, Body, BodyId, BranchHint, Component, Coordinate, Coupling,
-    Joint, JointId, JointKind, Mechanism, Reaction,
+    Guide, Joint, JointId, JointKind, Mechanism, Reaction,
 };
 pub use motion::{ForceBalance, Motion};
 pub use plan::range::{NearBranch, Range, RangeLimit};

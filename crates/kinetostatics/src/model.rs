@@ -190,10 +190,7 @@ impl Model {
 
     /// A buffer for the results of this model.
     pub fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T> {
-        InverseDynamics {
-            tau: vec![T::from_f64(0.0); self.pass_model.plan.actuators()],
-            reactions: vec![T::from_f64(0.0); self.reactions.len()],
-        }
+        InverseDynamics::buffer(self.plan().actuators(), self.reactions.len())
     }
 
     /// Inverse dynamics of inertia alone, without loads: the actuators' actions and the reactions for

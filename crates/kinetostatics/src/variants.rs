@@ -12,7 +12,7 @@ pub use search::{Extremum, Turn};
 
 use crate::load::Load;
 use crate::mass::Mass;
-use crate::model::Model;
+use crate::model::{MachineModel as _, Model};
 use crate::reduced::in_lanes;
 use dwell_geometry::{Mechanism, ModeGuess, Reaction, vec2};
 use turn::Turns;

@@ -6,7 +6,7 @@ use crate::load::{AppliedWrench, ForceSource, Mesh, find_couple_points, on_two_b
 use crate::model::Model;
 use crate::model::stages::EvaluatedState;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
-use dwell_geometry::{ActuatorId, BodyId, Joint, JointId, JointKind, Reaction, Vec2, vec2};
+use dwell_geometry::{ActuatorId, BodyId, Guide, Joint, JointId, JointKind, Reaction, Vec2, vec2};
 
 /// Converts reactions and actuator forces into forces and couples on the bodies.
 #[derive(Debug, Clone, PartialEq)]
@@ -204,11 +204,11 @@ fn coordinate_wrenches(
     wrenches: &mut Vec<AppliedWrench>,
 ) {
     let (bodies, points, actions) = match coordinate {
-        CoordinateFunction::Travel {
+        CoordinateFunction::Travel(Guide {
             bodies,
             points,
             axis,
-        } => {
+        }) => {
             let [one, two] = bodies.map(|b| states.body(b));
             let force = axis.rotate(one.rotation) * value;
             let at = two.joint_origin + two.moment_arm(points[1]);
@@ -376,11 +376,11 @@ mod tests {
         let all = [
             CoordinateFunction::Angle(bodies),
             CoordinateFunction::Length { bodies, points },
-            CoordinateFunction::Travel {
+            CoordinateFunction::Travel(Guide {
                 bodies,
                 points,
                 axis,
-            },
+            }),
         ];
         let states = states([-0.7, 2.3]);
         for coordinate in all {

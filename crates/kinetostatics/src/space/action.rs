@@ -38,13 +38,8 @@ enum Action {
     Along(CoordinateFunction),
 }
 
-/// A force on a body at an arm from the origin of its evaluation frame, with a couple, in the axes of the ground.
-pub(super) struct BodyAction<T> {
-    pub(super) body: usize,
-    pub(super) arm: Vec3<T>,
-    pub(super) force: Vec3<T>,
-    pub(super) couple: Vec3<T>,
-}
+/// On a body, at an arm from the origin of its evaluation frame, a force and a couple, in the axes of the ground.
+type BodyAction<T> = (usize, [Vec3<T>; 3]);
 
 impl CompiledKind {
     /// Checks and compiles a shape.
@@ -221,24 +216,18 @@ impl CompiledKind {
             Action::Gravity(direction) => {
                 let pull = direction.cast().scaled(f);
                 for (body, mass) in masses.iter().enumerate().filter(|(_, m)| m.mass > 0.0) {
-                    add(BodyAction {
-                        body,
-                        arm: plan.frame(pose, body).rotation.apply(mass.center.cast()),
-                        force: pull.scaled(T::from_f64(mass.mass)),
-                        couple: zero,
-                    });
+                    let arm = plan.frame(pose, body).rotation.apply(mass.center.cast());
+                    add((body, [arm, pull.scaled(T::from_f64(mass.mass)), zero]));
                 }
             }
             Action::Force {
                 body,
                 arm,
                 direction,
-            } => add(BodyAction {
-                body,
-                arm: plan.frame(pose, body).rotation.apply(arm.cast()),
-                force: turned(body, direction).scaled(f),
-                couple: zero,
-            }),
+            } => {
+                let arm = plan.frame(pose, body).rotation.apply(arm.cast());
+                add((body, [arm, turned(body, direction).scaled(f), zero]));
+            }
             Action::Torque { bodies, direction } => {
                 let couple = turned(bodies[0], direction).scaled(f);
                 couples(bodies, couple, add);
@@ -289,12 +278,7 @@ impl CompiledKind {
             }
         };
         for (k, force) in [-force, force].into_iter().enumerate() {
-            add(BodyAction {
-                body: bodies[k].0,
-                arm: arms[k],
-                force,
-                couple: Vec3::zero(),
-            });
+            add((bodies[k].0, [arms[k], force, Vec3::zero()]));
         }
         Some(())
     }
@@ -327,11 +311,6 @@ impl CompiledKind {
 #[inline]
 fn couples<T: Scalar>(bodies: [usize; 2], couple: Vec3<T>, mut add: impl FnMut(BodyAction<T>)) {
     for (body, couple) in bodies.into_iter().zip([-couple, couple]) {
-        add(BodyAction {
-            body,
-            arm: Vec3::zero(),
-            force: Vec3::zero(),
-            couple,
-        });
+        add((body, [Vec3::zero(), Vec3::zero(), couple]));
     }
 }

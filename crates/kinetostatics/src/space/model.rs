@@ -350,10 +350,7 @@ impl Model {
 
     /// A buffer for the results of this model.
     pub fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T> {
-        InverseDynamics {
-            tau: vec![T::from_f64(0.0); self.plan.actuators()],
-            reactions: vec![T::from_f64(0.0); self.reactions.len()],
-        }
+        InverseDynamics::buffer(self.plan.actuators(), self.reactions.len())
     }
 
     /// What inertia alone requires at coordinates (rad or m), speeds and accelerations: actuators' actions and reactions.

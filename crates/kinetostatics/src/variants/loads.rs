@@ -66,7 +66,8 @@ fn visit_compiled_signal(signal: &mut CompiledSignal, visit: Visit<'_>) {
         return;
     };
     match function {
-        CoordinateFunction::Travel { points, .. } | CoordinateFunction::Length { points, .. } => {
+        CoordinateFunction::Travel(Guide { points, .. })
+        | CoordinateFunction::Length { points, .. } => {
             visit_points(points, visit);
         }
         CoordinateFunction::Angle(_) => {}

@@ -9,7 +9,7 @@ use dwell_export::{
     SeveralFreedomsExport, StraightLine, record_at,
 };
 use dwell_geometry::ActuatorId;
-use dwell_kinetostatics::{InverseDynamics, Model};
+use dwell_kinetostatics::{InverseDynamics, MachineModel as _, Model};
 use dwell_numerics::Scalar;
 use dwell_scene::{Scene, SceneLocation};
 
