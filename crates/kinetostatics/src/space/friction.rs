@@ -54,10 +54,7 @@ enum Sliding {
     /// About or along one coordinate.
     Along(CoordinateFunction),
     /// Of a cylindrical joint: the coordinate of the load and the other one, and what makes a speed of the surface of the rate of each.
-    Both {
-        coordinates: [CoordinateFunction; 2],
-        levers: [f64; 2],
-    },
+    Both([CoordinateFunction; 2], [f64; 2]),
 }
 
 impl FrictionLaw {
@@ -105,11 +102,7 @@ impl FrictionLaw {
                     levers.reverse();
                 }
                 let [lever, _] = levers;
-                let sliding = Sliding::Both {
-                    coordinates,
-                    levers,
-                };
-                (sliding, lever, distance)
+                (Sliding::Both(coordinates, levers), lever, distance)
             }
             _ => {
                 return Err(
@@ -177,14 +170,8 @@ impl JointFriction {
         match (self.law.sliding, friction.regularization_speed) {
             (Sliding::Along(coordinate), _) => friction.factor(rate(coordinate)),
             // It is not compiled without a speed.
-            (Sliding::Both { .. }, None) => T::from_f64(f64::NAN),
-            (
-                Sliding::Both {
-                    coordinates,
-                    levers,
-                },
-                Some(slow),
-            ) => {
+            (Sliding::Both(..), None) => T::from_f64(f64::NAN),
+            (Sliding::Both(coordinates, levers), Some(slow)) => {
                 let speed = |k: usize| rate(coordinates[k]) * T::from_f64(levers[k] / slow);
                 let [own, other] = [speed(0), speed(1)];
                 own * tanh_quotient(own * own + other * other) * T::from_f64(friction.coefficient)
@@ -199,7 +186,7 @@ impl JointFriction {
             Sliding::Along(coordinate) if friction.regularization_speed.is_none() => {
                 Some((friction, coordinate))
             }
-            Sliding::Along(_) | Sliding::Both { .. } => None,
+            Sliding::Along(_) | Sliding::Both(..) => None,
         }
     }
 }
