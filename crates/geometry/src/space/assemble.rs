@@ -185,9 +185,8 @@ impl Plan {
 
     fn residual_norm(&self, pose: &Pose) -> f64 {
         let group = &self.groups[0];
-        let rows = group.rows.iter().zip(&group.row_scales);
-        let squares =
-            rows.map(|(&(c, k), s)| (s * pose.residuals[self.closures[c].rows.start + k]).powi(2));
+        let rows = group.residuals.iter().zip(&group.row_scales);
+        let squares = rows.map(|(row, scale)| (scale * pose.residuals[*row]).powi(2));
         squares.sum::<f64>().sqrt()
     }
 
@@ -204,13 +203,9 @@ impl Plan {
             .enumerate()
             .filter(|(_, s)| **s > RANK_TOLERANCE * largest)
         {
-            let rows = group.rows.iter().zip(&group.row_scales).enumerate();
-            let part: f64 = rows
-                .map(|(i, (&(c, r), scale))| {
-                    u[(i, k)] * -scale * pose.residuals[self.closures[c].rows.start + r]
-                })
-                .sum();
-            let factor = part * sigma / (sigma * sigma + damping);
+            let rows = group.residuals.iter().zip(&group.row_scales).enumerate();
+            let parts = rows.map(|(i, (row, scale))| u[(i, k)] * -scale * pose.residuals[*row]);
+            let factor = parts.sum::<f64>() * sigma / (sigma * sigma + damping);
             step.iter_mut()
                 .enumerate()
                 .for_each(|(j, s)| *s += factor * v[(j, k)]);

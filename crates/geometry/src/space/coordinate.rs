@@ -356,7 +356,7 @@ impl Plan {
     pub fn coordinate_rate<T: Scalar>(&self, pose: &Pose<T>, of: CoordinateFunction) -> T {
         match of {
             CoordinateFunction::Angle { bodies, axis, .. } => {
-                let [a, b] = bodies.map(|body| pose.states[body.0].angular_velocity);
+                let [a, b] = bodies.map(|body| pose.motion.states[body.0].angular_velocity);
                 let axis = pose.frames[bodies[0].0].rotation.apply(axis.cast());
                 axis.dot(b - a)
             }
@@ -377,7 +377,7 @@ impl Plan {
                 counting,
             } => {
                 let value = self.counted_angle(pose, bodies, (axis, normals), counting);
-                let [a, b] = bodies.map(|body| &pose.states[body.0]);
+                let [a, b] = bodies.map(|body| &pose.motion.states[body.0]);
                 let axis = pose.frames[bodies[0].0].rotation.apply(axis.cast());
                 let rate = axis.dot(b.angular_velocity - a.angular_velocity);
                 let acceleration = axis.dot(b.angular_acceleration - a.angular_acceleration);
@@ -391,7 +391,7 @@ impl Plan {
                 let [d, first, second] = self.separation(pose, bodies, points);
                 let frame = &pose.frames[bodies[0].0];
                 let axis = frame.rotation.apply(axis.cast());
-                let state: &BodyMotion<T> = &pose.states[bodies[0].0];
+                let state: &BodyMotion<T> = &pose.motion.states[bodies[0].0];
                 let (turning, turning_rate) = state.direction_derivatives(axis);
                 let two = T::from_f64(2.0);
                 [
@@ -419,7 +419,7 @@ impl Plan {
         points: [Vec3; 2],
     ) -> [Vec3<T>; 3] {
         let at = |k: usize| {
-            let (frame, state) = (&pose.frames[bodies[k].0], &pose.states[bodies[k].0]);
+            let (frame, state) = (&pose.frames[bodies[k].0], &pose.motion.states[bodies[k].0]);
             let arm = frame.rotation.apply(points[k].cast());
             let velocity = state.point_velocity(arm);
             [frame.origin + arm, velocity, state.point_acceleration(arm)]

@@ -6,7 +6,7 @@ use super::mechanism::ActuatorKind;
 use super::plan::{Plan, Pose};
 use super::prediction::Predictions;
 use super::tree::{FreedomKind, Step};
-use super::vector::{Rotation, Vec3};
+use super::vector::{Rotation, Vec3, vec3};
 use crate::error::PositionError;
 use crate::plan::range::Range;
 use dwell_numerics::Scalar;
@@ -85,13 +85,10 @@ impl Plan {
         for link in &self.tree.links {
             for step in &link.steps {
                 if let Step::Ball(ball, first) = *step {
-                    let of = |values: &[f64]| Vec3 {
-                        x: values[first],
-                        y: values[first + 1],
-                        z: values[first + 2],
-                    };
-                    let (rate, second) = (of(&pose.rates), of(&pose.accelerations));
-                    let carried = pose.states[link.body].angular_velocity - rate;
+                    let of =
+                        |values: &[f64]| vec3(values[first], values[first + 1], values[first + 2]);
+                    let (rate, second) = (of(&pose.motion.rates), of(&pose.motion.accelerations));
+                    let carried = pose.motion.states[link.body].angular_velocity - rate;
                     let to_frame = |v: Vec3| {
                         pose.balls[ball].apply(pose.frames[link.body].rotation.apply_inverse(v))
                     };
@@ -104,7 +101,13 @@ impl Plan {
             inverses.extend(self.inverse(group, pose));
         }
         let freedoms = 0..self.tree.freedoms.len();
-        let of = |f: usize| [pose.coordinates[f], pose.rates[f], pose.accelerations[f]];
+        let of = |f: usize| {
+            [
+                pose.coordinates[f],
+                pose.motion.rates[f],
+                pose.motion.accelerations[f],
+            ]
+        };
         // The coordinates of a ball are its rotation.
         Node {
             q,

@@ -30,7 +30,7 @@ impl Plan {
             required: bodies.clone(),
             transmitted: bodies,
             balance: vec![zero; self.tree.freedoms.len()],
-            multipliers: vec![zero; self.closures.last().map_or(0, |c| c.rows.end)],
+            multipliers: vec![zero; self.row_and_entry_counts()[0]],
             closure_actions: vec![[Wrench::default(); N]; self.closures.len()],
             scratch: [(); N].map(|()| vec![T::from_f64(0.0); largest]),
         }
