@@ -178,14 +178,14 @@ impl<T: Scalar> BodyStates<T> {
             let rotation = pose.rotation[orientation.frame];
             let angle = plan.counted_angle(body, pose);
             let state = &mut self.bodies[body];
-            state.angular_velocity = motion.angular_velocity[orientation.frame];
+            state.angular_velocity = motion.velocity.angular[orientation.frame];
             state.angle = angle;
             state.rotation = orientation.offset.cast().rotate(rotation);
             (state.joint_origin, state.velocity) = (joint_origin, velocity);
             if let Some((slide, direction)) = moving_body.slide {
                 let along = pose.vector[direction];
                 let travel_vector = along * pose.slide_travel[slide];
-                let speed = motion.slide_velocity[slide];
+                let speed = motion.velocity.slide[slide];
                 state.velocity = state.velocity_at(travel_vector) + along * speed;
                 state.joint_origin += travel_vector;
             }
@@ -205,14 +205,14 @@ impl<T: Scalar> BodyStates<T> {
             let frame = plan.frames().orientations[body].frame;
             let state = &mut self.bodies[body];
             state.acceleration = acceleration;
-            state.angular_acceleration = motion.angular_acceleration[frame];
+            state.angular_acceleration = motion.acceleration.angular[frame];
             if let Some((slide, direction)) = moving_body.slide {
                 let along = pose.vector[direction];
                 let travel_vector = along * pose.slide_travel[slide];
-                let speed = motion.slide_velocity[slide];
+                let speed = motion.velocity.slide[slide];
                 let coriolis = T::from_f64(2.0) * state.angular_velocity * speed;
                 state.acceleration = state.acceleration_at(travel_vector)
-                    + along * motion.slide_acceleration[slide]
+                    + along * motion.acceleration.slide[slide]
                     + along.perp() * coriolis;
             }
         }

@@ -303,7 +303,7 @@ impl Plan {
                 match unknown {
                     Unknown::ClassAngle(c) => {
                         let f = self.class_frame(c);
-                        let by = motion.angular_velocity[f] * step;
+                        let by = motion.velocity.angular[f] * step;
                         if self.revolution_counted[f] {
                             self.set_class_angle(c, from.angle[f] + by, pose);
                         } else {
@@ -312,7 +312,7 @@ impl Plan {
                     }
                     Unknown::SlideTravel(s) => {
                         pose.slide_travel[s] =
-                            from.slide_travel[s] + motion.slide_velocity[s] * step;
+                            from.slide_travel[s] + motion.velocity.slide[s] * step;
                     }
                 }
             }
@@ -364,10 +364,10 @@ impl Plan {
                 let derivatives = |unknown: &Unknown| match *unknown {
                     Unknown::ClassAngle(c) => {
                         let f = self.class_frame(c);
-                        (motion.angular_velocity[f], motion.angular_acceleration[f])
+                        (motion.velocity.angular[f], motion.acceleration.angular[f])
                     }
                     Unknown::SlideTravel(s) => {
-                        (motion.slide_velocity[s], motion.slide_acceleration[s])
+                        (motion.velocity.slide[s], motion.acceleration.slide[s])
                     }
                 };
                 let values = unknowns.clone().map(value).collect();

@@ -89,29 +89,21 @@ impl RowWriter<'_> {
                 coupling,
                 couplings: couplings.len(),
             })?;
-        let bodies = self.columns.len();
-        let broken = |body| ConstraintRowsError::CouplingBody {
-            coupling,
-            body,
-            bodies,
-        };
+        let named_by = ("coupling", coupling);
         Ok(ConstraintRow::Coupling {
-            dependent: self.term(described.dependent, broken)?,
-            independent: self.term(described.independent, broken)?,
+            dependent: self.term(named_by, described.dependent)?,
+            independent: self.term(named_by, described.independent)?,
             law: described.law.clone(),
         })
     }
 
-    /// The term of a coordinate; `broken` is the error for a body that does not exist.
+    /// The term of a coordinate, which what it belongs to names.
     pub(super) fn term(
         &self,
+        named_by: (&'static str, usize),
         coordinate: Coordinate,
-        broken: impl Fn(usize) -> ConstraintRowsError,
     ) -> Result<ConstraintTerm, ConstraintRowsError> {
-        let check = |bodies: [BodyId; 2]| match self.missing_body(bodies) {
-            Some(body) => Err(broken(body)),
-            None => Ok(()),
-        };
+        let check = |bodies| self.check_bodies(named_by, bodies);
         match coordinate {
             Coordinate::Angle(bodies) => {
                 check(bodies)?;
@@ -136,9 +128,22 @@ impl RowWriter<'_> {
         }
     }
 
-    pub(super) fn missing_body(&self, bodies: [BodyId; 2]) -> Option<usize> {
-        let mut bodies = bodies.into_iter().map(|b| b.0);
-        bodies.find(|&b| b >= self.columns.len())
+    /// Refuses bodies that do not exist; what names them is a joint, an actuator or a coupling, of this number.
+    pub(super) fn check_bodies(
+        &self,
+        (what, index): (&'static str, usize),
+        named: [BodyId; 2],
+    ) -> Result<(), ConstraintRowsError> {
+        let bodies = self.columns.len();
+        match named.into_iter().find(|body| body.0 >= bodies) {
+            Some(BodyId(body)) => Err(ConstraintRowsError::NoBody {
+                what,
+                index,
+                body,
+                bodies,
+            }),
+            None => Ok(()),
+        }
     }
 }
 

@@ -148,7 +148,7 @@ impl Plan {
         let unknown = "the mechanism does not have its coordinate";
         let in_frame = |body: BodyId, point: Vec3| {
             let inverse = self.tree.internal[body.0].inverse();
-            inverse.position + inverse.rotation.apply(point)
+            inverse.point(point)
         };
         if let Coordinate::Distance { bodies, points } = coordinate {
             if bodies.iter().any(|b| b.0 >= mechanism.bodies.len()) {
@@ -422,7 +422,11 @@ impl Plan {
             let (frame, state) = (&pose.frames[bodies[k].0], &pose.motion.states[bodies[k].0]);
             let arm = frame.rotation.apply(points[k].cast());
             let velocity = state.point_velocity(arm);
-            [frame.origin + arm, velocity, state.point_acceleration(arm)]
+            [
+                frame.position + arm,
+                velocity,
+                state.point_acceleration(arm),
+            ]
         };
         let ([a, a1, a2], [b, b1, b2]) = (at(0), at(1));
         [b - a, b1 - a1, b2 - a2]

@@ -167,7 +167,7 @@ impl Plan {
                     Some(axis) => (a.rotation.apply(axis) - b.rotation.apply(axis)).norm(),
                     None => a.rotation.inverse().after(&b.rotation).vector().norm(),
                 };
-            turned.max((a.origin - b.origin).norm() / self.size)
+            turned.max((a.position - b.position).norm() / self.size)
         };
         (0..before.len()).map(moved).fold(0.0, f64::max)
     }

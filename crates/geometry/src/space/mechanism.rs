@@ -1,6 +1,7 @@
 //! The description of a mechanism in space. Lengths in m, angles in rad.
 
-use super::vector::{Rotation, Vec3, vec3};
+use super::frames::Frame;
+use super::vector::{Vec3, vec3};
 use crate::mechanism::{Body, BodyId, JointId};
 
 /// A mechanism in space. Points and directions are given in the frame of the body they belong to.
@@ -215,13 +216,7 @@ impl Actuator {
 }
 
 /// Position and orientation of a body: its frame in that of the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Placement {
-    /// Origin, m.
-    pub position: Vec3,
-    /// Orientation.
-    pub rotation: Rotation,
-}
+pub type Placement = Frame<f64>;
 
 /// Where a mechanism is assembled: the coordinates, and approximately where the bodies are.
 #[derive(Debug, Clone, PartialEq, Default)]

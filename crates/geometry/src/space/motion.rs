@@ -94,7 +94,7 @@ impl Plan {
             let carried = if link.parent == self.ground {
                 BodyMotion::default()
             } else {
-                of_parent.carried(frames[link.body].origin - frames[link.parent].origin)
+                of_parent.carried(frames[link.body].position - frames[link.parent].position)
             };
             states[link.body] = link.motion(carried, of_parent, rates, freedoms, screws);
         }
@@ -118,7 +118,7 @@ impl Plan {
             ..
         } = motion;
         for link in &self.tree.links {
-            let arm = frames[link.body].origin - frames[link.parent].origin;
+            let arm = frames[link.body].position - frames[link.parent].position;
             let [origin, turn] =
                 link.added(arm, added[link.parent], accelerations, freedoms, screws);
             added[link.body] = [origin, turn];

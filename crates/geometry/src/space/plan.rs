@@ -274,7 +274,7 @@ impl Plan {
             }
         }
         // The ground is placed once.
-        pose.frames[self.ground].origin = self.tree.internal[self.ground].position.cast();
+        pose.frames[self.ground].position = self.tree.internal[self.ground].position.cast();
         pose
     }
 
@@ -291,17 +291,11 @@ impl Plan {
 
     /// Where a body is.
     pub fn placement(&self, pose: &Pose<f64>, body: usize) -> Placement {
-        let frame = &pose.frames[body];
-        let internal = Placement {
-            position: frame.origin,
-            rotation: frame.rotation,
-        };
-        internal.then(&self.tree.internal[body].inverse())
+        pose.frames[body].then(&self.tree.internal[body].inverse())
     }
 
     /// A point of a body, m in its frame, in the frame of the ground.
     pub fn point(&self, pose: &Pose<f64>, body: usize, point: Vec3) -> Vec3 {
-        let placement = self.placement(pose, body);
-        placement.position + placement.rotation.apply(point)
+        self.placement(pose, body).point(point)
     }
 }
