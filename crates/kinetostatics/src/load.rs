@@ -278,12 +278,8 @@ impl Load {
     /// The pairs of bodies on whose relative angle it depends, with whole revolutions: those of a torsional spring
     /// and those of its magnitude's signals.
     pub fn angle_pairs(&self) -> Vec<[BodyId; 2]> {
-        let by_signals = self.magnitude.angle_pairs();
-        self.kind
-            .angle_pair()
-            .into_iter()
-            .chain(by_signals)
-            .collect()
+        let by_kind = self.kind.angle_pair().into_iter();
+        by_kind.chain(self.magnitude.angle_pairs()).collect()
     }
 
     /// The bodies it acts on and those whose motion its magnitude depends on. Gravity acts on those

@@ -131,6 +131,16 @@ impl<T: Scalar> BodyMotion<T> {
         self.acceleration + self.direction_derivatives(arm).1
     }
 
+    /// From rest, with accelerations equal to these velocities.
+    #[inline(always)]
+    pub fn from_rest(&self) -> Self {
+        Self {
+            acceleration: self.velocity,
+            angular_acceleration: self.angular_velocity,
+            ..Self::default()
+        }
+    }
+
     /// The motion that the body gives to another one fixed to it, with an origin at this vector from its own.
     #[inline(always)]
     pub(super) fn carried(&self, arm: Vec3<T>) -> Self {

@@ -6,30 +6,29 @@ use crate::load::{AppliedWrench, ForceSource, Mesh, find_couple_points, on_two_b
 use crate::model::Model;
 use crate::model::stages::EvaluatedState;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
-use dwell_geometry::{ActuatorId, BodyId, Guide, Joint, JointId, JointKind, Reaction, Vec2, vec2};
+use dwell_geometry::{
+    ActuatorId, BodyId, Coupling, Guide, Joint, JointId, JointKind, Reaction, Vec2, vec2,
+};
 
 /// Converts reactions and actuator forces into forces and couples on the bodies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeBodyForces {
     joints: Vec<JointEntry>,
-    /// By actuator: its coordinate, and the points of its bodies at which its couple acts.
-    actuators: Vec<Option<(CoordinateFunction, [Vec2; 2])>>,
+    /// By actuator: its coordinate.
+    actuators: Vec<Option<ActedCoordinate>>,
     pub(crate) ground: BodyId,
 }
+
+/// A coordinate, with the points of its bodies at which a couple along it acts.
+type ActedCoordinate = (CoordinateFunction, [Vec2; 2]);
 
 /// A joint with the indices of its components in the model's reactions.
 #[derive(Debug, Clone, PartialEq)]
 struct JointEntry {
     joint: Joint,
     reaction_indices: [usize; 3],
-    /// Of a coupling: both coordinates, with the points at which their couples act.
-    coupling: Option<CouplingCoordinates>,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-struct CouplingCoordinates {
-    dependent: (CoordinateFunction, [Vec2; 2]),
-    independent: (CoordinateFunction, [Vec2; 2]),
+    /// Of a coupling: the dependent and the independent coordinate.
+    coupling: Option<[ActedCoordinate; 2]>,
 }
 
 impl FreeBodyForces {
@@ -69,12 +68,9 @@ impl FreeBodyForces {
             } else {
                 None
             };
-            let coupling = law.and_then(|law| {
-                Some(CouplingCoordinates {
-                    dependent: coordinate(law.dependent)?,
-                    independent: coordinate(law.independent)?,
-                })
-            });
+            let both =
+                |law: &Coupling| Some([coordinate(law.dependent)?, coordinate(law.independent)?]);
+            let coupling = law.and_then(both);
             joints.push(JointEntry {
                 joint: joint.clone(),
                 reaction_indices,
@@ -96,17 +92,18 @@ impl FreeBodyForces {
         for (j, entry) in self.joints.iter().enumerate() {
             let source = ForceSource::Joint(JointId(j));
             let value = |i: usize| result.reactions[entry.reaction_indices[i]];
-            if let Some(coupling) = &entry.coupling {
-                if value(0) == 0.0 {
+            if let Some([dependent, independent]) = entry.coupling {
+                let lambda = value(0);
+                if lambda == 0.0 {
                     // In a pruned group the law has not been evaluated.
                     continue;
                 }
-                let slope = state
-                    .model()
-                    .plan()
-                    .coupling_slope(JointId(j), state.pose());
+                // dependent = law(independent): −λ times the law's slope acts along the independent coordinate.
+                let plan = state.model().plan();
+                let slope = plan.coupling_slope(JointId(j), state.pose());
                 let slope = slope.unwrap_or(0.0);
-                coupling_wrenches(coupling, value(0), slope, source, states, wrenches);
+                coordinate_wrenches(dependent, lambda, source, states, wrenches);
+                coordinate_wrenches(independent, -lambda * slope, source, states, wrenches);
             } else {
                 joint_wrenches(&entry.joint, value, source, states, wrenches);
             }
@@ -119,20 +116,6 @@ impl FreeBodyForces {
         }
         wrenches.extend_from_slice(&state.loads().wrenches);
     }
-}
-
-/// The wrenches of a coupling, dependent = law(independent): −λ times the law's slope acts along the independent
-/// coordinate.
-fn coupling_wrenches(
-    coupling: &CouplingCoordinates,
-    lambda: f64,
-    slope: f64,
-    by: ForceSource,
-    states: &BodyStates,
-    acts: &mut Vec<AppliedWrench>,
-) {
-    coordinate_wrenches(coupling.dependent, lambda, by, states, acts);
-    coordinate_wrenches(coupling.independent, -lambda * slope, by, states, acts);
 }
 
 /// The wrenches of a joint on its two bodies.
@@ -197,7 +180,7 @@ fn opposite_wrenches(
 /// A generalised force along a coordinate: a couple, a force along an axis at the second body's point, or a force along
 /// the line of two points.
 fn coordinate_wrenches(
-    (coordinate, couple_points): (CoordinateFunction, [Vec2; 2]),
+    (coordinate, couple_points): ActedCoordinate,
     value: f64,
     source: ForceSource,
     states: &BodyStates,

@@ -7,7 +7,7 @@
 //! Column i of M is what the actuators do at unit acceleration of coordinate i from rest; c − Q is what they do without
 //! acceleration, under all loads. All passes share the pose and its factors.
 
-use super::action::CompiledKind;
+use super::action::{BodyAction, CompiledKind};
 use super::compiled_loads::CompiledLoads;
 use super::friction::JointFriction;
 use super::load::{Load, LoadKind};
@@ -19,7 +19,7 @@ use crate::load::{Friction, Magnitude, Signal};
 use crate::model::{EvaluatedState, KinematicState, MachineModel};
 use crate::pass::InverseDynamics;
 use dwell_geometry::PositionError;
-use dwell_geometry::space::{BodyMotion, Coordinate, CoordinateFunction, Wrench};
+use dwell_geometry::space::{Coordinate, CoordinateFunction, Wrench};
 use dwell_laws::HeldPieces;
 use dwell_numerics::Scalar;
 
@@ -68,23 +68,19 @@ impl Model {
         };
         let at = (self.plan(), &workspace.pose);
         let mut act = |kind: &CompiledKind, magnitude: T| {
-            kind.act(
-                magnitude,
-                at,
-                self.inner_masses(),
-                |(body, [arm, force, couple])| {
-                    let mut wrench = Wrench::default();
-                    wrench.add_at(arm, force, couple);
-                    add(body, wrench);
-                },
-            )
+            let add_one = |(body, [arm, force, couple]): BodyAction<T>| {
+                let mut wrench = Wrench::default();
+                wrench.add_at(arm, force, couple);
+                add(body, wrench);
+            };
+            kind.act(magnitude, at, self.inner_masses(), add_one)
         };
         let acted = match self.surface_friction(load, &workspace.surface_directions) {
             None => act(kind, magnitude),
-            Some((surface, direction)) => surface
-                .parts(direction)
-                .into_iter()
-                .try_for_each(|(kind, part)| act(kind, magnitude * part)),
+            Some((surface, direction)) => {
+                let mut parts = surface.parts(direction).into_iter();
+                parts.try_for_each(|(kind, part)| act(kind, magnitude * part))
+            }
         };
         acted.ok_or(KinetostaticsError::NoDirection { load })
     }
@@ -333,16 +329,11 @@ impl MachineModel for Model {
     fn load_power<T: Scalar>(&self, load: usize, workspace: &Workspace<T>) -> T {
         let mut power = T::from_f64(0.0);
         let plan = self.plan();
-        let acted = self.act(
-            load,
-            workspace.magnitudes[load],
-            workspace,
-            |body, wrench| {
-                let state = plan.state(&workspace.pose, body);
-                power +=
-                    wrench.force.dot(state.velocity) + wrench.moment.dot(state.angular_velocity);
-            },
-        );
+        let magnitude = workspace.magnitudes[load];
+        let acted = self.act(load, magnitude, workspace, |body, wrench| {
+            let state = plan.state(&workspace.pose, body);
+            power += wrench.force.dot(state.velocity) + wrench.moment.dot(state.angular_velocity);
+        });
         // Its wrenches were computed before: it has a direction.
         acted.map_or(T::from_f64(f64::NAN), |()| power)
     }
@@ -351,13 +342,8 @@ impl MachineModel for Model {
         let energy = |&b: &usize| {
             let state = self.plan().state(&workspace.pose, b);
             // The momentum is what an acceleration equal to the velocity from rest requires.
-            let from_rest = BodyMotion {
-                acceleration: state.velocity,
-                angular_acceleration: state.angular_velocity,
-                ..BodyMotion::default()
-            };
             let frame = self.plan().frame(&workspace.pose, b);
-            let momentum = self.inner_masses()[b].required(frame, &from_rest);
+            let momentum = self.inner_masses()[b].required(frame, &state.from_rest());
             0.5 * (momentum.force.dot(state.velocity) + momentum.moment.dot(state.angular_velocity))
         };
         self.inertial().iter().map(energy).sum()
