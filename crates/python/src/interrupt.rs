@@ -34,10 +34,10 @@ impl Steps {
 /// Runs a computation in a thread of its own. On Ctrl-C all running computations of this process end, and KeyboardInterrupt is
 /// raised. `progress` is a Python function of what is done and of how much; it is called while the computation runs.
 pub(crate) fn run<T: Send>(
-    py: Python<'_>,
     progress: &Bound<'_, PyAny>,
     compute: impl FnOnce(&Steps) -> Result<T, dwell::Error> + Send,
 ) -> PyResult<T> {
+    let py = progress.py();
     let (sender, mut receiver) = sync_channel(1);
     let steps = &Steps::default();
     thread::scope(|scope| {

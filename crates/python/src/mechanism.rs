@@ -44,7 +44,6 @@ impl Mechanism {
     }
 
     /// The state and forces at one position.
-    #[pyo3(signature = (q, q_dot, q_ddot, t))]
     fn at(
         &self,
         py: Python<'_>,
@@ -78,22 +77,20 @@ impl Mechanism {
         Ok(ReducedModel { reduced })
     }
 
-    fn kinematics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
-        run(py, progress, |_| self.mechanism.kinematics_along_motion()).map(Rows)
+    fn kinematics(&self, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        run(progress, |_| self.mechanism.kinematics_along_motion()).map(Rows)
     }
 
-    fn statics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
-        run(py, progress, |_| self.mechanism.statics_along_motion()).map(Rows)
+    fn statics(&self, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        run(progress, |_| self.mechanism.statics_along_motion()).map(Rows)
     }
 
-    fn kinetostatics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
-        run(py, progress, |_| self.mechanism.kinetostatics()).map(Rows)
+    fn kinetostatics(&self, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        run(progress, |_| self.mechanism.kinetostatics()).map(Rows)
     }
 
-    #[pyo3(signature = (accuracy, method, tolerance, sample_interval, progress))]
     fn simulate(
         &self,
-        py: Python<'_>,
         accuracy: Option<f64>,
         method: Option<&str>,
         tolerance: f64,
@@ -101,31 +98,25 @@ impl Mechanism {
         progress: &Bound<'_, PyAny>,
     ) -> PyResult<Rows> {
         let solver = solver(accuracy, method, tolerance, sample_interval)?;
-        run(py, progress, |_| self.mechanism.simulate(&solver)).map(Rows)
+        run(progress, |_| self.mechanism.simulate(&solver)).map(Rows)
     }
 
-    fn period(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
-        let found = run(py, progress, |_| self.mechanism.period())?;
+    fn period(&self, progress: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
+        let found = run(progress, |_| self.mechanism.period())?;
         Ok((found.period, found.energy))
     }
 
-    fn equilibria(
-        &self,
-        py: Python<'_>,
-        progress: &Bound<'_, PyAny>,
-    ) -> PyResult<Vec<Equilibrium>> {
-        let found = run(py, progress, |_| self.mechanism.equilibria())?;
+    fn equilibria(&self, progress: &Bound<'_, PyAny>) -> PyResult<Vec<Equilibrium>> {
+        let found = run(progress, |_| self.mechanism.equilibria())?;
         Ok(found.into_iter().map(Equilibrium::from).collect())
     }
 
-    fn linearise(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Linear> {
-        run(py, progress, |_| self.mechanism.linearise()).map(Linear::from)
+    fn linearise(&self, progress: &Bound<'_, PyAny>) -> PyResult<Linear> {
+        run(progress, |_| self.mechanism.linearise()).map(Linear::from)
     }
 
-    #[pyo3(signature = (accuracy, method, tolerance, fluctuation, progress))]
     fn cycle(
         &self,
-        py: Python<'_>,
         accuracy: Option<f64>,
         method: Option<&str>,
         tolerance: f64,
@@ -133,7 +124,7 @@ impl Mechanism {
         progress: &Bound<'_, PyAny>,
     ) -> PyResult<Cycle> {
         let solver = solver(accuracy, method, tolerance, None)?;
-        let found = run(py, progress, |_| self.mechanism.cycle(&solver, fluctuation));
+        let found = run(progress, |_| self.mechanism.cycle(&solver, fluctuation));
         found.map(Cycle::from)
     }
 

@@ -30,7 +30,6 @@ impl ReducedModel {
 
     /// The coefficients at many coordinates: m, ½m′; a and b by position and reaction; w by position and load; c by position,
     /// load and reaction.
-    #[pyo3(signature = (q, threads))]
     fn coefficients<'py>(
         &self,
         py: Python<'py>,

@@ -89,7 +89,6 @@ impl Scene {
     }
 
     /// The closed forms as a function in Python.
-    #[pyo3(signature = (reaction))]
     fn closed_form(&self, py: Python<'_>, reaction: Option<&str>) -> PyResult<String> {
         py.detach(|| self.scene.closed_form(Language::Python, reaction))
             .or_raise(py)

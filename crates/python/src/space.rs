@@ -115,7 +115,6 @@ impl SpaceMechanism {
         self.mechanism.start()
     }
 
-    #[pyo3(signature = (q, q_dot, q_ddot, t))]
     fn at(
         &self,
         py: Python<'_>,
@@ -136,22 +135,20 @@ impl SpaceMechanism {
         Ok(SpaceReducedModel { reduced })
     }
 
-    fn kinematics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
-        run(py, progress, |_| self.mechanism.kinematics_along_motion()).map(Rows)
+    fn kinematics(&self, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        run(progress, |_| self.mechanism.kinematics_along_motion()).map(Rows)
     }
 
-    fn statics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
-        run(py, progress, |_| self.mechanism.statics_along_motion()).map(Rows)
+    fn statics(&self, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        run(progress, |_| self.mechanism.statics_along_motion()).map(Rows)
     }
 
-    fn kinetostatics(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
-        run(py, progress, |_| self.mechanism.kinetostatics()).map(Rows)
+    fn kinetostatics(&self, progress: &Bound<'_, PyAny>) -> PyResult<Rows> {
+        run(progress, |_| self.mechanism.kinetostatics()).map(Rows)
     }
 
-    #[pyo3(signature = (accuracy, method, tolerance, sample_interval, progress))]
     fn simulate(
         &self,
-        py: Python<'_>,
         accuracy: Option<f64>,
         method: Option<&str>,
         tolerance: f64,
@@ -159,31 +156,25 @@ impl SpaceMechanism {
         progress: &Bound<'_, PyAny>,
     ) -> PyResult<Rows> {
         let solver = solver(accuracy, method, tolerance, sample_interval)?;
-        run(py, progress, |_| self.mechanism.simulate(&solver)).map(Rows)
+        run(progress, |_| self.mechanism.simulate(&solver)).map(Rows)
     }
 
-    fn period(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
-        let found = run(py, progress, |_| self.mechanism.period())?;
+    fn period(&self, progress: &Bound<'_, PyAny>) -> PyResult<(f64, f64)> {
+        let found = run(progress, |_| self.mechanism.period())?;
         Ok((found.period, found.energy))
     }
 
-    fn equilibria(
-        &self,
-        py: Python<'_>,
-        progress: &Bound<'_, PyAny>,
-    ) -> PyResult<Vec<Equilibrium>> {
-        let found = run(py, progress, |_| self.mechanism.equilibria())?;
+    fn equilibria(&self, progress: &Bound<'_, PyAny>) -> PyResult<Vec<Equilibrium>> {
+        let found = run(progress, |_| self.mechanism.equilibria())?;
         Ok(found.into_iter().map(Equilibrium::from).collect())
     }
 
-    fn linearise(&self, py: Python<'_>, progress: &Bound<'_, PyAny>) -> PyResult<Linear> {
-        run(py, progress, |_| self.mechanism.linearise()).map(Linear::from)
+    fn linearise(&self, progress: &Bound<'_, PyAny>) -> PyResult<Linear> {
+        run(progress, |_| self.mechanism.linearise()).map(Linear::from)
     }
 
-    #[pyo3(signature = (accuracy, method, tolerance, fluctuation, progress))]
     fn cycle(
         &self,
-        py: Python<'_>,
         accuracy: Option<f64>,
         method: Option<&str>,
         tolerance: f64,
@@ -191,7 +182,7 @@ impl SpaceMechanism {
         progress: &Bound<'_, PyAny>,
     ) -> PyResult<Cycle> {
         let solver = solver(accuracy, method, tolerance, None)?;
-        let found = run(py, progress, |_| self.mechanism.cycle(&solver, fluctuation));
+        let found = run(progress, |_| self.mechanism.cycle(&solver, fluctuation));
         found.map(Cycle::from)
     }
 }
@@ -258,7 +249,6 @@ impl SpaceReducedModel {
     }
 
     /// As of a mechanism in the plane.
-    #[pyo3(signature = (q, threads))]
     fn coefficients<'py>(
         &self,
         py: Python<'py>,

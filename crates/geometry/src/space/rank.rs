@@ -53,16 +53,6 @@ fn hangs_between_balls(mechanism: &Mechanism, body: usize) -> bool {
     of_body.all(|j| matches!(j.kind, JointKind::Spherical | JointKind::Distance { .. }))
 }
 
-/// The rank by singular values.
-pub(super) fn rank_of(svd: &Svd) -> usize {
-    let values = &svd.values;
-    let largest = values.iter().fold(0.0_f64, |a, b| a.max(*b));
-    values
-        .iter()
-        .filter(|s| **s > RANK_TOLERANCE * largest)
-        .count()
-}
-
 impl Plan {
     /// Analyses the assembled mechanism, with a row added for each idle freedom.
     pub(super) fn analyse(
@@ -73,7 +63,7 @@ impl Plan {
         let group = &self.groups[0];
         let (rows, n) = (group.rows.len(), group.unknowns.len());
         let svd = self.svd(group, &pose);
-        let rank = svd.as_ref().map_or(0, rank_of);
+        let rank = svd.as_ref().map_or(0, |svd| svd.rank(RANK_TOLERANCE));
         let mut idle = Vec::new();
         if rank < n {
             idle = self.idle_bodies(mechanism, svd.as_ref(), rank, &mut pose)?;
@@ -119,7 +109,10 @@ impl Plan {
     ) -> Result<(), AssemblyError> {
         let freedoms = self.tree.freedoms.len();
         let everything = self.group((0..freedoms).collect(), self.all_rows());
-        let left = freedoms - self.svd(&everything, pose).as_ref().map_or(0, rank_of);
+        let left = freedoms
+            - self
+                .svd(&everything, pose)
+                .map_or(0, |svd| svd.rank(RANK_TOLERANCE));
         // The rows that hold idle bodies are among all rows.
         let redundant_count = self.actuators().saturating_sub(left);
         if redundant_count == 0 {
@@ -279,7 +272,7 @@ impl Plan {
         let Some(svd) = self.dense(&group, pose).svd() else {
             return Vec::new();
         };
-        let rank = rank_of(&svd);
+        let rank = svd.rank(RANK_TOLERANCE);
         let of = |k: usize| {
             (0..group.rows.len())
                 .map(|i| svd.u[(i, k)] * group.row_scales[i])
