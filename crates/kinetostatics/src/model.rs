@@ -57,10 +57,7 @@ impl Model {
         assembly: &AssemblyConfiguration,
         reactions: &[Reaction],
     ) -> Result<Self, ModelError> {
-        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
-        let valid =
-            |m: &Mass| not_negative(m.mass) && not_negative(m.inertia) && m.center.is_finite();
-        if masses.len() != mechanism.bodies.len() || !masses.iter().all(valid) {
+        if masses.len() != mechanism.bodies.len() || !masses.iter().all(Mass::is_valid) {
             return Err(ModelError::Masses);
         }
         require_reactions(mechanism, reactions)?;

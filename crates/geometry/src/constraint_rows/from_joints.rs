@@ -39,7 +39,7 @@ impl RowWriter<'_> {
                 (1.0, ConstraintTerm::BodyFixedComponent(points, axis)),
                 (radius, ConstraintTerm::RelativeAngle(columns)),
             ];
-            ConstraintRow::sum(terms, 0.0)
+            ConstraintRow::Sum(terms, 0.0)
         };
         Ok(match joint.kind {
             JointKind::Revolute => vec![coincide(x), coincide(y)],
@@ -90,11 +90,10 @@ impl RowWriter<'_> {
                 couplings: couplings.len(),
             })?;
         let named_by = ("coupling", coupling);
-        Ok(ConstraintRow::Coupling {
-            dependent: self.term(named_by, described.dependent)?,
-            independent: self.term(named_by, described.independent)?,
-            law: described.law.clone(),
-        })
+        let dependent = self.term(named_by, described.dependent)?;
+        let independent = self.term(named_by, described.independent)?;
+        let law = described.law.clone();
+        Ok(ConstraintRow::Coupling([dependent, independent], law))
     }
 
     /// The term of a coordinate, which what it belongs to names.

@@ -16,7 +16,7 @@ use super::frames::BodyMotion;
 use super::mechanism::{ActuatorKind, Joint, JointKind, Mechanism};
 use super::plan::{Plan, Pose};
 use super::vector::{Rotation, Vec3};
-use crate::mechanism::{BodyId, JointId};
+use crate::mechanism::{BodyId, Guide, JointId};
 use dwell_numerics::Scalar;
 use std::f64::consts::TAU;
 
@@ -72,14 +72,7 @@ pub enum CoordinateFunction {
         counting: Counting,
     },
     /// A travel along an axis.
-    Travel {
-        /// The bodies.
-        bodies: [BodyId; 2],
-        /// The point on each.
-        points: [Vec3; 2],
-        /// The axis on the first.
-        axis: Vec3,
-    },
+    Travel(Guide<Vec3>),
     /// A distance.
     Distance {
         /// The bodies.
@@ -172,11 +165,11 @@ impl Plan {
                 normals: sides.map(|side| side.normal),
                 counting: counting(id)?,
             }),
-            false if has_travel => Ok(CoordinateFunction::Travel {
+            false if has_travel => Ok(CoordinateFunction::Travel(Guide {
                 bodies,
                 points: sides.map(|side| side.point),
                 axis,
-            }),
+            })),
             true => Err("its joint has no angle about an axis"),
             false => Err("its joint has no travel along an axis"),
         }
@@ -383,15 +376,11 @@ impl Plan {
                 let acceleration = axis.dot(b.angular_acceleration - a.angular_acceleration);
                 [value, rate, acceleration]
             }
-            CoordinateFunction::Travel {
-                bodies,
-                points,
-                axis,
-            } => {
-                let [d, first, second] = self.separation(pose, bodies, points);
-                let frame = &pose.frames[bodies[0].0];
-                let axis = frame.rotation.apply(axis.cast());
-                let state: &BodyMotion<T> = &pose.motion.states[bodies[0].0];
+            CoordinateFunction::Travel(guide) => {
+                let [d, first, second] = self.separation(pose, guide.bodies, guide.points);
+                let body = guide.bodies[0].0;
+                let axis = pose.frames[body].rotation.apply(guide.axis.cast());
+                let state: &BodyMotion<T> = &pose.motion.states[body];
                 let (turning, turning_rate) = state.direction_derivatives(axis);
                 let two = T::from_f64(2.0);
                 [

@@ -36,12 +36,6 @@ const MAX_REVOLUTIONS: u32 = 8;
 /// Two poses are the same: rad, or parts of the size.
 const SAME: f64 = 1e-7;
 
-/// Where a continuation along the branch ended.
-enum End {
-    Reached,
-    Blocked,
-}
-
 impl Plan {
     /// Sets the coordinates to the prediction from a stored pose at so much more of the coordinate.
     pub(super) fn start_from<T: Scalar>(&self, node: &Node, ahead: f64, pose: &mut Pose<T>) {
@@ -58,20 +52,16 @@ impl Plan {
 
     /// The coordinate in the range of the stored poses.
     pub(super) fn within_range(&self, q: f64) -> Result<f64, PositionError> {
-        let outside = |from, to| Err(PositionError::OutOfRange { q, from, to });
         let [first, last] = self.predictions.range().unwrap_or([self.start.q; 2]);
         if q >= first && q < last {
             return Ok(q);
         }
-        match self.range {
-            Range::Full => Ok(first + (q - first).rem_euclid(TAU)),
-            Range::Revolutions(count) => Ok(first + (q - first).rem_euclid(TAU * f64::from(count))),
-            Range::Limited(from, to) | Range::Stroke(from, to) | Range::Unresolved(from, to)
-                if q < from || q > to =>
-            {
-                outside(from, to)
+        match (self.range.period(), self.range.limits()) {
+            (Some(period), _) => Ok(first + (q - first).rem_euclid(period)),
+            (None, Some((from, to))) if q < from || q > to => {
+                Err(PositionError::OutOfRange { q, from, to })
             }
-            _ => Ok(q),
+            (None, _) => Ok(q),
         }
     }
 
@@ -139,7 +129,7 @@ impl Plan {
         let mut forward = vec![first.clone()];
         for revolution in 1..=MAX_REVOLUTIONS {
             let end = first.q + f64::from(revolution) * unit;
-            if let End::Blocked = self.continue_branch(&mut forward, end, unit, &mut pose) {
+            if !self.continue_branch(&mut forward, end, unit, &mut pose) {
                 return self.follow_back(forward, &first, unit, is_angle, &mut pose);
             }
             let same = self.moved_by(&start_frames, &pose.frames) < SAME;
@@ -183,10 +173,7 @@ impl Plan {
     ) -> Result<(), PositionError> {
         let far = f64::from(MAX_REVOLUTIONS) * unit;
         let mut back = vec![first.clone()];
-        let blocked_back = matches!(
-            self.continue_branch(&mut back, first.q - far, unit, pose),
-            End::Blocked
-        );
+        let blocked_back = !self.continue_branch(&mut back, first.q - far, unit, pose);
         back.reverse();
         back.extend(forward.into_iter().skip(1));
         let [from, to] = [0, back.len() - 1].map(|k| back[k].q);
@@ -208,14 +195,14 @@ impl Plan {
         self.predictions = Predictions::new(nodes, scalars.collect());
     }
 
-    /// Continues from the last node to a coordinate, in steps that the prediction follows.
-    fn continue_branch(&self, nodes: &mut Vec<Node>, to: f64, unit: f64, pose: &mut Pose) -> End {
+    /// Continues from the last node to a coordinate, in steps that the prediction follows; whether it was reached.
+    fn continue_branch(&self, nodes: &mut Vec<Node>, to: f64, unit: f64, pose: &mut Pose) -> bool {
         let largest = unit / STEPS;
         let mut step = largest;
         while let Some(last) = nodes.last() {
             let left = to - last.q;
             if left.abs() < 1e-12 * unit {
-                return End::Reached;
+                return true;
             }
             let ahead = left.signum() * step.min(left.abs());
             self.start_from(last, ahead, pose);
@@ -232,11 +219,11 @@ impl Plan {
             } else {
                 step *= 0.5;
                 if step < SMALLEST * unit {
-                    return End::Blocked;
+                    return false;
                 }
             }
         }
-        End::Blocked
+        false
     }
 
     /// How far a pose is from its prediction.

@@ -92,18 +92,15 @@ impl FreeBodyForces {
         for (j, entry) in self.joints.iter().enumerate() {
             let source = ForceSource::Joint(JointId(j));
             let value = |i: usize| result.reactions[entry.reaction_indices[i]];
-            if let Some([dependent, independent]) = entry.coupling {
-                let lambda = value(0);
-                if lambda == 0.0 {
+            if let Some(coupling) = entry.coupling {
+                if value(0) == 0.0 {
                     // In a pruned group the law has not been evaluated.
                     continue;
                 }
-                // dependent = law(independent): −λ times the law's slope acts along the independent coordinate.
                 let plan = state.model().plan();
                 let slope = plan.coupling_slope(JointId(j), state.pose());
                 let slope = slope.unwrap_or(0.0);
-                coordinate_wrenches(dependent, lambda, source, states, wrenches);
-                coordinate_wrenches(independent, -lambda * slope, source, states, wrenches);
+                coupling_wrenches(coupling, value(0), slope, source, states, wrenches);
             } else {
                 joint_wrenches(&entry.joint, value, source, states, wrenches);
             }
@@ -116,6 +113,20 @@ impl FreeBodyForces {
         }
         wrenches.extend_from_slice(&state.loads().wrenches);
     }
+}
+
+/// The wrenches of a coupling, dependent = law(independent): −λ times the law's slope acts along the independent
+/// coordinate.
+fn coupling_wrenches(
+    [dependent, independent]: [ActedCoordinate; 2],
+    lambda: f64,
+    slope: f64,
+    by: ForceSource,
+    states: &BodyStates,
+    acts: &mut Vec<AppliedWrench>,
+) {
+    coordinate_wrenches(dependent, lambda, by, states, acts);
+    coordinate_wrenches(independent, -lambda * slope, by, states, acts);
 }
 
 /// The wrenches of a joint on its two bodies.
@@ -383,14 +394,11 @@ mod tests {
         let points = [vec2(0.1, -0.2), vec2(0.4, 0.7)];
         let dependent = CoordinateFunction::Length { bodies, points };
         let independent = CoordinateFunction::Angle(bodies);
-        let coupling = CouplingCoordinates {
-            dependent: (dependent, points),
-            independent: (independent, points),
-        };
+        let coupling = [(dependent, points), (independent, points)];
         let states = states([-0.7, 2.3]);
         let mut wrenches = Vec::new();
         let joint = ForceSource::Joint(JointId(0));
-        coupling_wrenches(&coupling, 3.0, 0.8, joint, &states, &mut wrenches);
+        coupling_wrenches(coupling, 3.0, 0.8, joint, &states, &mut wrenches);
         let power: f64 = wrenches.iter().map(|wrench| wrench.power(&states)).sum();
         let rate = states.coordinate(dependent)[1] - 0.8 * states.coordinate(independent)[1];
         assert!((power - 3.0 * rate).abs() < 1e-14);

@@ -235,12 +235,9 @@ impl CompiledKind {
                 couples(bodies.map(|b| b.0), couple, add);
                 return Some(());
             }
-            CoordinateFunction::Travel {
-                bodies,
-                points,
-                axis,
-            } => {
-                let force = arm(bodies[0], axis).scaled(resisted());
+            CoordinateFunction::Travel(guide) => {
+                let (bodies, points) = (guide.bodies, guide.points);
+                let force = arm(bodies[0], guide.axis).scaled(resisted());
                 let [d, ..] = plan.separation(pose, bodies, points);
                 // On both bodies at the second body's point.
                 let arms = [arm(bodies[0], points[0]) + d, arm(bodies[1], points[1])];

@@ -216,15 +216,13 @@ impl Model {
                 continue;
             };
             let at = (self.mechanism(), self.plan());
-            let law = FrictionLaw::compile(friction, one.kind, at)
-                .map_err(|what| LoadError { load, what })?;
+            let law = FrictionLaw::compile(friction, one.kind, at);
+            let law = law.map_err(|what| LoadError { load, what })?;
+            let joint = friction.joint;
             let needed = if law.distance > 0.0 { 4 } else { 2 };
             let mut reactions = [None; 4];
             for (index, component) in reactions.iter_mut().zip(COMPONENTS).take(needed) {
-                let reaction = Reaction {
-                    joint: friction.joint,
-                    component,
-                };
+                let reaction = Reaction { joint, component };
                 let known = all.iter().position(|other| *other == reaction);
                 *index = known.or(Some(all.len()));
                 if known.is_none() {
@@ -270,7 +268,7 @@ impl Model {
 mod tests {
     use super::*;
     use dwell_geometry::space::Vec3;
-    use dwell_geometry::{BodyId, JointId};
+    use dwell_geometry::{BodyId, Guide, JointId};
     use dwell_numerics::Dual;
 
     /// The slopes with which the friction is solved are the derivatives of its contact force.
@@ -287,11 +285,11 @@ mod tests {
             };
             let law = FrictionLaw {
                 friction,
-                sliding: Sliding::Along(CoordinateFunction::Travel {
+                sliding: Sliding::Along(CoordinateFunction::Travel(Guide {
                     bodies: [BodyId(0), BodyId(1)],
                     points: [Vec3::AXES[0]; 2],
                     axis: Vec3::AXES[2],
-                }),
+                })),
                 lever,
                 distance,
             };
